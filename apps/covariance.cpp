@@ -1,0 +1,43 @@
+#include "apps/estimation.h"
+#include "apps/moments_output.h"
+#include "apps/scene_options.h"
+#include "apps/session.h"
+#include "apps/subcommands.h"
+#include "core/error.h"
+
+namespace flatspeckle::apps {
+
+int covariance(const Arguments& arguments) {
+  SceneSpec spec;
+  RunSettings settings;
+  MethodSettings methods;
+  std::string method = "mc";
+  Subcommand command("covariance", "Covariance and intensity of the speckle field of a scene");
+  add_scatterer_options(command.options(), spec);
+  add_bulk_options(command.options(), spec);
+  add_medium_options(command.options(), spec);
+  add_view_options(command.options(), spec);
+  add_request_options(command.options(), spec);
+  command.options().add_option("--method", method, "mc or wave")->capture_default_str();
+  add_mc_options(command.options(), methods);
+  add_wave_options(command.options(), methods);
+  add_run_options(command.options(), settings);
+  if (!command.parse(arguments)) return ExitStatus::done;
+
+  settle_views(command, spec);
+  if (method != "mc" && method != "wave") throw InputError("method", method, "must be one of mc wave");
+  const Scene scene = make_scene(spec);
+  const auto estimate = method == "mc" ? mc_estimation : wave_estimation;
+  const Estimation estimation = estimate(scene, methods, seed_of(settings));
+  const StopRule stop = stop_rule(settings);
+  Session session(command.command_line(), settings, estimation.plan);
+  if (session.already_complete()) return ExitStatus::done;
+  const RunState& state = session.run("", "covariance", estimation.job.batches, stop);
+  return session.finish([&](ResultFile& file) {
+    write_medium(file, scene);
+    write_axes(file, scene.request);
+    write_moments(file, "", estimation.job, scene.request, state.sums);
+  });
+}
+
+}  // namespace flatspeckle::apps

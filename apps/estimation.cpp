@@ -1,0 +1,49 @@
+#include "apps/estimation.h"
+
+#include <sstream>
+
+#include "core/error.h"
+#include "mc/covariance_estimator.h"
+#include "wave_solver/ensemble.h"
+
+namespace flatspeckle::apps {
+
+namespace {
+
+mc::ReversedPaths reversed_paths(const std::string& word) {
+  if (word == "auto") return mc::ReversedPaths::automatic;
+  if (word == "yes") return mc::ReversedPaths::yes;
+  if (word == "no") return mc::ReversedPaths::no;
+  throw InputError("reversed_paths", word, "must be one of auto yes no");
+}
+
+}  // namespace
+
+void add_mc_options(CLI::App& app, MethodSettings& settings) {
+  app.add_option("--reversed_paths", settings.reversed_paths,
+                 "Coherent backscattering in Monte Carlo: auto (where a view may see it), yes, no")
+      ->capture_default_str();
+}
+
+void add_wave_options(CLI::App& app, MethodSettings& settings) {
+  app.add_option("--wave_tolerance", settings.wave_tolerance,
+                 "Accuracy of each exact solution, relative")
+      ->capture_default_str();
+}
+
+Estimation mc_estimation(const Scene& scene, const MethodSettings& settings, std::uint64_t seed) {
+  const auto plan = mc::make_plan(scene, reversed_paths(settings.reversed_paths));
+  return {mc::covariance_job(scene, plan, seed), "mc: " + plan.describe()};
+}
+
+Estimation wave_estimation(const Scene& scene, const MethodSettings& settings, std::uint64_t seed) {
+  if (!(settings.wave_tolerance > 0 && settings.wave_tolerance < 1))
+    throw InputError("wave_tolerance", settings.wave_tolerance, "must be in (0, 1)");
+  std::ostringstream plan;
+  plan << "wave: dense T-matrix solutions of "
+       << (scene.placement.kind == PlacementRule::Kind::poisson ? "poisson" : "hard-disk")
+       << " placements, tolerance " << settings.wave_tolerance << "; sample mean removed";
+  return {wave::wave_job(scene, seed, settings.wave_tolerance), plan.str()};
+}
+
+}  // namespace flatspeckle::apps

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "apps/run_options.h"
+#include "flatland/field_moments.h"
+#include "flatland/scene.h"
+#include "mc/plan.h"
+
+namespace flatspeckle::apps {
+
+/// How each method is to be run on a scene.
+struct MethodSettings {
+  std::string reversed_paths = "auto";
+  double wave_tolerance = 1e-8;
+};
+
+void add_mc_options(CLI::App& app, MethodSettings& settings);
+void add_wave_options(CLI::App& app, MethodSettings& settings);
+
+/// A method applied to a scene: what the runner needs, and in words what was planned.
+struct Estimation {
+  FieldJob job;
+  std::string plan;
+};
+
+Estimation mc_estimation(const Scene& scene, const MethodSettings& settings, std::uint64_t seed);
+Estimation wave_estimation(const Scene& scene, const MethodSettings& settings, std::uint64_t seed);
+
+}  // namespace flatspeckle::apps

@@ -1,0 +1,66 @@
+#include <exception>
+#include <iostream>
+#include <map>
+
+#include "apps/subcommands.h"
+#include "core/error.h"
+#include "core/interrupt.h"
+#include "core/version.h"
+
+namespace {
+
+using namespace flatspeckle;
+using namespace flatspeckle::apps;
+
+const char* const usage =
+    R"(flatspeckle - speckle statistics: path-space Monte Carlo checked by an exact wave solver
+
+  flatspeckle SUBCOMMAND [--config SCENE.toml] [--key value ...] --out FILE.h5
+
+  solve        exact fields of one placement of scatterers
+  covariance   covariance and intensity of the speckle of a scene, by Monte Carlo or exactly
+  validate     both methods on one scene, compared entry by entry
+  sweep        memory-effect curves over tilts x g x albedo x optical depth
+
+  flatspeckle SUBCOMMAND --help lists the keys; flatspeckle --version tells the version.
+  Exit status: 0 done, 2 bad input, 3 stopped before the target error was reached,
+  4 input or output failed, 75 interrupted and resumable.
+)";
+
+int run(const Arguments& arguments) {
+  static const std::map<std::string, int (*)(const Arguments&)> subcommands = {
+      {"solve", solve}, {"covariance", covariance}, {"validate", validate}, {"sweep", sweep}};
+  const std::string word = arguments.size() > 1 ? arguments[1] : "--help";
+  if (word == "--help" || word == "-h" || word == "help") {
+    std::cout << usage;
+    return ExitStatus::done;
+  }
+  if (word == "--version") {
+    std::cout << "flatspeckle " << version() << " (" << git_commit() << ")\n";
+    return ExitStatus::done;
+  }
+  const auto subcommand = subcommands.find(word);
+  if (subcommand == subcommands.end())
+    throw InputError("subcommand", word, "must be one of covariance solve sweep validate");
+  return subcommand->second(arguments);
+}
+
+int fail(const char* what, int status) {
+  std::cerr << "flatspeckle: " << what << '\n';
+  return status;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  catch_interrupts();
+  try {
+    return run({argv, argv + argc});
+  } catch (const InputError& error) {
+    return fail(error.what(), ExitStatus::bad_input);
+  } catch (const IoError& error) {
+    return fail(error.what(), ExitStatus::io_failed);
+  } catch (const std::exception& error) {
+    return fail(error.what(), 1);
+  }
+}

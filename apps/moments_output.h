@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+
+#include "core/result_file.h"
+#include "flatland/field_moments.h"
+#include "flatland/scene.h"
+
+namespace flatspeckle::apps {
+
+/// Root attributes: wavelength and extent of the medium.
+void write_domain(ResultFile& file, const Scene& scene);
+/// Those and the bulk properties.
+void write_medium(ResultFile& file, const Scene& scene);
+
+/// The axes that a request's datasets stand on.
+void write_axes(ResultFile& file, const CovarianceRequest& request);
+
+/// Mean field and covariance in the shapes of the README, each with its standard error; `group` is
+/// empty for the root. Axes must have been written.
+void write_moments(ResultFile& file, const std::string& group, const FieldJob& job,
+                   const CovarianceRequest& request, const GroupedSums& sums);
+
+}  // namespace flatspeckle::apps

@@ -1,0 +1,55 @@
+#include "apps/run_options.h"
+
+#include <cmath>
+
+#include "core/error.h"
+
+namespace flatspeckle::apps {
+
+namespace {
+
+constexpr double default_target_error = 0.02;
+
+double positive(const std::string& key, double value) {
+  if (!(std::isfinite(value) && value > 0)) throw InputError(key, value, "must be positive");
+  return value;
+}
+
+}  // namespace
+
+void add_output_option(CLI::App& app, RunSettings& settings) {
+  app.add_option("--out", settings.out, "Result file (HDF5)")->configurable(false);
+}
+
+void add_run_options(CLI::App& app, RunSettings& settings) {
+  add_output_option(app, settings);
+  app.add_option("--seed", settings.seed, "Seed; the same seed and samples give the same numbers")
+      ->capture_default_str();
+  app.add_option("--samples", settings.samples, "Stop after so many light paths or placements");
+  app.add_option("--seconds", settings.seconds, "Stop after so many seconds");
+  app.add_option("--target_error", settings.target_error,
+                 "Stop at this relative error (default 0.02 if no other stop is given)");
+  app.add_option("--threads", settings.threads, "Threads; 0: as many as there are cores")
+      ->capture_default_str();
+  app.add_flag("--resume", settings.resume, "Go on from the run that --out holds, if there is one");
+}
+
+StopRule stop_rule(const RunSettings& settings) {
+  StopRule stop;
+  if (settings.threads < 0) throw InputError("threads", settings.threads, "must not be negative");
+  if (settings.samples) {
+    if (*settings.samples <= 0) throw InputError("samples", *settings.samples, "must be positive");
+    stop.samples = static_cast<std::uint64_t>(*settings.samples);
+  }
+  if (settings.seconds) stop.seconds = positive("seconds", *settings.seconds);
+  if (settings.target_error) stop.target_error = positive("target_error", *settings.target_error);
+  if (!stop.samples && !stop.seconds && !stop.target_error) stop.target_error = default_target_error;
+  return stop;
+}
+
+std::uint64_t seed_of(const RunSettings& settings) {
+  if (settings.seed < 0) throw InputError("seed", settings.seed, "must not be negative");
+  return static_cast<std::uint64_t>(settings.seed);
+}
+
+}  // namespace flatspeckle::apps

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "apps/command_line.h"
+#include "core/runner.h"
+
+namespace flatspeckle::apps {
+
+/// How long to run, on what, and where the result goes.
+struct RunSettings {
+  std::string out;
+  std::int64_t seed = 1;
+  std::optional<std::int64_t> samples;
+  std::optional<double> seconds, target_error;
+  int threads = 0;
+  bool resume = false;
+};
+
+void add_output_option(CLI::App& app, RunSettings& settings);
+void add_run_options(CLI::App& app, RunSettings& settings);
+
+/// Checks the settings; without a stop rule a target error of 2 % is set. Throws InputError.
+StopRule stop_rule(const RunSettings& settings);
+std::uint64_t seed_of(const RunSettings& settings);
+
+}  // namespace flatspeckle::apps

@@ -1,0 +1,56 @@
+#include "apps/scene_options.h"
+
+#include "core/error.h"
+
+namespace flatspeckle::apps {
+
+void add_scatterer_options(CLI::App& app, SceneSpec& spec) {
+  app.add_option("--wavelength", spec.wavelength, "Wavelength; sets the unit of length")
+      ->capture_default_str();
+  app.add_option("--scatterer", spec.scatterer, "point, soft, hard, tm, te or hg (bulk only)")
+      ->capture_default_str();
+  app.add_option("--radius", spec.radius, "Radius of soft, hard, tm and te");
+  app.add_option("--index", spec.index, "Relative index of tm and te, as \"1.5+0.1i\" (default 1.5)");
+  app.add_option("--phase_shift", spec.phase_shift,
+                 "Scattering phase shift of a lossless point (default pi/2, resonance)");
+}
+
+void add_bulk_options(CLI::App& app, SceneSpec& spec) {
+  app.add_option("--g", spec.g, "Mean cosine of hg (default 0)");
+  app.add_option("--albedo", spec.albedo, "Albedo of hg and of resonant points (default 1)");
+  app.add_option("--optical_depth", spec.optical_depth, "Density from mu_t x depth");
+}
+
+void add_medium_options(CLI::App& app, SceneSpec& spec) {
+  app.add_option("--domain", spec.domain, "box or slab (infinite in x)")->capture_default_str();
+  app.add_option("--width", spec.width, "Width of the box, |x| <= width/2");
+  app.add_option("--depth", spec.depth, "Depth, 0 <= z <= depth");
+  app.add_option("--count", spec.count, "Density from a fixed number of scatterers in the box");
+  app.add_option("--density", spec.density, "Density as number per area");
+  app.add_option("--mean_free_path", spec.mean_free_path, "Density from the mean free path 1/mu_t");
+  app.add_option("--placement", spec.placement, "poisson (points) or hard_disk (disks)");
+  app.add_option("--min_gap", spec.min_gap, "Least distance between the rims of hard disks")
+      ->capture_default_str();
+}
+
+void add_view_options(CLI::App& app, SceneSpec& spec) {
+  app.add_option("--light_angles", spec.light_angles, "Directions of the plane waves, radians from +z")
+      ->capture_default_str();
+  app.add_option("--view_angles", spec.view_angles, "Directions of the far-field views, radians from +z")
+      ->capture_default_str();
+  app.add_option("--near_sensors", spec.near_sensors, "CSV with columns x, z: near-field sensors");
+}
+
+void add_request_options(CLI::App& app, SceneSpec& spec) {
+  app.add_option("--covariance", spec.covariance, "intensity, pairs, memory_effect or full")
+      ->capture_default_str();
+  app.add_option("--tilts", spec.tilts, "memory_effect: rotations of the light, radians");
+  app.add_option("--pairs", spec.pairs,
+                 "pairs: light 1, view 1, light 2, view 2 (radians) of each pair in turn");
+}
+
+void settle_views(const Subcommand& subcommand, SceneSpec& spec) {
+  if (!spec.near_sensors.empty() && !subcommand.given("view_angles")) spec.view_angles.clear();
+}
+
+}  // namespace flatspeckle::apps

@@ -1,0 +1,21 @@
+#pragma once
+
+#include "apps/command_line.h"
+#include "flatland/scene.h"
+
+namespace flatspeckle::apps {
+
+/// Keys of one scatterer and of what is recorded.
+void add_scatterer_options(CLI::App& app, SceneSpec& spec);
+void add_view_options(CLI::App& app, SceneSpec& spec);
+/// Keys of the medium.
+void add_medium_options(CLI::App& app, SceneSpec& spec);
+/// g, albedo and optical_depth, where a subcommand takes one value of each.
+void add_bulk_options(CLI::App& app, SceneSpec& spec);
+/// Which entries of the covariance.
+void add_request_options(CLI::App& app, SceneSpec& spec);
+
+/// Near sensors take the place of the default far view.
+void settle_views(const Subcommand& subcommand, SceneSpec& spec);
+
+}  // namespace flatspeckle::apps

@@ -1,0 +1,107 @@
+#include "apps/session.h"
+
+#include <filesystem>
+#include <iostream>
+
+#include "apps/subcommands.h"
+#include "core/atomic_file.h"
+#include "core/error.h"
+#include "core/result_reader.h"
+#include "core/run_state_file.h"
+
+namespace flatspeckle::apps {
+
+namespace {
+
+/// Keys that say how long and on what to run, not what.
+const std::vector<std::string> keys_of_the_stop = {"samples", "wave_samples", "seconds",
+                                                   "target_error", "threads", "resume"};
+
+/// A run without a name has its trace in the root.
+std::string trace_group(const std::string& run) { return run.empty() ? "trace" : run + "/trace"; }
+std::string state_group(const std::string& run) { return "state/" + (run.empty() ? "run" : run); }
+
+}  // namespace
+
+Session::Session(const CommandLine& command_line, const RunSettings& settings, std::string plan)
+    : settings_(settings), identity_(without_keys(command_line.config, keys_of_the_stop)) {
+  if (settings_.out.empty()) throw InputError("out is not given: name the result file (--out FILE.h5)");
+  check_writable(settings_.out);
+  provenance_.command_line = command_line.text;
+  provenance_.config = command_line.config;
+  provenance_.seed = seed_of(settings);
+  provenance_.plan = std::move(plan);
+  provenance_.threads = settings.threads > 0 ? settings.threads : default_threads();
+  provenance_.started = utc_now();
+  if (settings_.resume && std::filesystem::exists(settings_.out)) resume(settings_.out);
+}
+
+void Session::resume(const std::string& path) {
+  resumed_ = std::make_unique<ResultReader>(path);
+  if (!resumed_->has_attribute("/", "identity") ||
+      resumed_->attribute<std::string>("/", "identity") != identity_)
+    throw InputError("resume: " + path + " holds another run; the scene and the seed must be the same");
+  already_complete_ = !resumed_->has("state");
+  if (already_complete_) std::cout << path << " is complete; nothing to resume\n";
+}
+
+const RunState& Session::run(const std::string& name, const std::string& label, const BatchJob& job,
+                             const StopRule& stop) {
+  RunState& state = states_[name];
+  run_names_.push_back(name);
+  const std::string group = state_group(name);
+  if (resumed_ && resumed_->has(group)) state = read_state(*resumed_, group, job.size);
+  if (interrupted_) return state;
+  RunOptions options{stop, settings_.threads, label, [this](const RunState&) { save_resumable(); }};
+  const StopReason reason = run_batches(job, options, state);
+  interrupted_ = reason == StopReason::interrupted;
+  const bool reached = !stop.target_error || reason == StopReason::target_error ||
+                       state.trace.relative_error.back() <= *stop.target_error;
+  converged_ = converged_ && reached && !interrupted_;
+  return state;
+}
+
+int Session::finish(const std::function<void(ResultFile&)>& contents) {
+  if (interrupted_) {
+    save_resumable();
+    std::cout << "interrupted; " << settings_.out << " holds what is done, --resume goes on\n";
+    return ExitStatus::interrupted_resumable;
+  }
+  ResultFile file(settings_.out);
+  write_common(file);
+  for (const auto& name : run_names_)
+    write_trace(file, trace_group(name), states_.at(name).trace);
+  contents(file);
+  if (!converged_) write_states(file);
+  file.commit();
+  std::cout << "wrote " << settings_.out << '\n';
+  if (converged_) return ExitStatus::done;
+  std::cout << "stopped before the target error was reached; --resume goes on\n";
+  return ExitStatus::error_not_reached;
+}
+
+void Session::write_common(ResultFile& file) const {
+  Provenance provenance = provenance_;
+  for (const auto& [name, state] : states_) {
+    provenance.wall_s += state.wall_s;
+    provenance.cpu_s += state.cpu_s;
+    provenance.samples += state.sums.total_samples();
+  }
+  provenance.converged = converged_ && !interrupted_;
+  write_provenance(file, provenance);
+  file.attribute("/", "identity", identity_);
+}
+
+void Session::save_resumable() const {
+  ResultFile file(settings_.out);
+  write_common(file);
+  write_states(file);
+  file.commit();
+}
+
+void Session::write_states(ResultFile& file) const {
+  for (const auto& [name, state] : states_)
+    if (state.sums.batches() > 0) write_state(file, state_group(name), state);
+}
+
+}  // namespace flatspeckle::apps

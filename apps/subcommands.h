@@ -1,0 +1,22 @@
+#pragma once
+
+#include "apps/command_line.h"
+
+namespace flatspeckle::apps {
+
+/// Exit statuses (README).
+enum ExitStatus : int {
+  done = 0,
+  bad_input = 2,
+  error_not_reached = 3,
+  io_failed = 4,
+  interrupted_resumable = 75
+};
+
+/// Each parses its own arguments, runs, and writes its result file.
+int solve(const Arguments& arguments);
+int covariance(const Arguments& arguments);
+int validate(const Arguments& arguments);
+int sweep(const Arguments& arguments);
+
+}  // namespace flatspeckle::apps

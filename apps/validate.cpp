@@ -1,0 +1,157 @@
+#include <cmath>
+#include <cstdio>
+
+#include "apps/estimation.h"
+#include "apps/moments_output.h"
+#include "apps/scene_options.h"
+#include "apps/session.h"
+#include "apps/subcommands.h"
+#include "core/error.h"
+
+namespace flatspeckle::apps {
+
+namespace {
+
+using Kind = CovarianceRequest::Kind;
+
+/// Where a placement rounds the number of disks, both solvers are given the rounded density (C12).
+void round_density(SceneSpec& spec) {
+  const Scene scene = make_scene(spec);
+  if (scene.placement.kind != PlacementRule::Kind::hard_disk || spec.count) return;
+  spec.density = spec.mean_free_path = spec.optical_depth = std::nullopt;
+  spec.count = std::llround(scene.placement.mean_count);
+}
+
+/// What the Monte Carlo method neglects, as a fraction: corrections of order 1/(k mean free path),
+/// and of order the packing fraction for hard disks. A size, not a bound.
+double bias_allowance(const Scene& scene) {
+  return 2 / (scene.k * scene.medium.mean_free_path()) + scene.medium.packing_fraction;
+}
+
+struct Comparison {
+  Estimate wave, mc;
+  double bias = 0;
+
+  double error(std::size_t e) const { return std::hypot(wave.error[e], mc.error[e]); }
+  double difference(std::size_t e) const { return std::abs(mc.value[e] - wave.value[e]); }
+  double deviation(std::size_t e) const {
+    return difference(e) == 0 ? 0 : difference(e) / error(e);
+  }
+  bool within_errors(std::size_t e) const { return deviation(e) <= 4; }
+  bool within_bias(std::size_t e) const { return difference(e) <= bias * std::abs(wave.value[e]); }
+};
+
+std::string show(Complex value) {
+  char text[48];
+  if (std::abs(value.imag()) < 5e-7 * std::abs(value))
+    std::snprintf(text, sizeof text, "%.5g", value.real());
+  else
+    std::snprintf(text, sizeof text, "%.5g%+.4gi", value.real(), value.imag());
+  return text;
+}
+
+/// Entries to show: intensities of the tilted field are only there for the correlation.
+std::size_t shown_entries(const CovarianceRequest& request) {
+  if (request.kind == Kind::memory_effect) return request.reference_intensity(0);
+  return request.entries.size();
+}
+
+void print_row(const CovarianceRequest& request, const Comparison& comparison, std::size_t e) {
+  const auto place = [&](std::uint32_t channel) {
+    char text[40];
+    const auto [light, view] = request.channels[channel];
+    const View& seen = request.views[view];
+    if (seen.near)
+      std::snprintf(text, sizeof text, "%8.4f  sensor %-4u", request.lights[light], view);
+    else
+      std::snprintf(text, sizeof text, "%8.4f %8.4f", request.lights[light], seen.angle);
+    return std::string(text);
+  };
+  const auto [a, b] = request.entries[e];
+  const double scale = std::max(std::abs(comparison.wave.value[e]), 1e-300);
+  std::printf("%s %s  %21s %8.2g  %21s %8.2g  %6.1f %%  %5.1f%s\n", place(a).c_str(),
+              place(b).c_str(), show(comparison.mc.value[e]).c_str(), comparison.mc.error[e],
+              show(comparison.wave.value[e]).c_str(), comparison.wave.error[e],
+              100 * comparison.difference(e) / scale, comparison.deviation(e),
+              comparison.within_errors(e) ? "" : comparison.within_bias(e) ? "  bias" : "  *");
+}
+
+void print_comparison(const Scene& scene, const Comparison& comparison) {
+  const auto& request = scene.request;
+  constexpr std::size_t most_rows = 60;
+  const std::size_t entries = shown_entries(request);
+  std::printf("%-17s %-17s  %21s %8s  %21s %8s  %8s  %s\n", "light 1  view 1", "light 2  view 2",
+              "mc", "error", "wave", "error", "|diff|", "sigma");
+  std::size_t in_errors = 0, in_bias = 0;
+  for (std::size_t e = 0; e < entries; ++e) {
+    if (e < most_rows) print_row(request, comparison, e);
+    if (comparison.within_errors(e))
+      ++in_errors;
+    else if (comparison.within_bias(e))
+      ++in_bias;
+  }
+  if (entries > most_rows) std::printf("... and %zu more\n", entries - most_rows);
+  std::printf(
+      "%zu entries: %zu within 4 combined standard errors, %zu more within the %.1f %% that the\n"
+      "method neglects at k mfp = %.1f, packing %.3f; %zu beyond both (*)\n",
+      entries, in_errors, in_bias, 100 * comparison.bias,
+      scene.k * scene.medium.mean_free_path(), scene.medium.packing_fraction,
+      entries - in_errors - in_bias);
+}
+
+void write_comparison(ResultFile& file, const Comparison& comparison) {
+  const std::size_t entries = comparison.wave.value.size();
+  std::vector<double> deviation;
+  for (std::size_t e = 0; e < entries; ++e) deviation.push_back(comparison.deviation(e));
+  file.dataset("deviation", deviation, {entries}, "1",
+               "|mc - wave| in combined standard errors, per entry in the order of the request");
+  file.attribute("/", "bias_allowance", comparison.bias);
+}
+
+}  // namespace
+
+int validate(const Arguments& arguments) {
+  SceneSpec spec;
+  RunSettings settings;
+  MethodSettings methods;
+  std::optional<std::int64_t> wave_samples;
+  Subcommand command("validate", "Both methods on one scene, compared entry by entry");
+  add_scatterer_options(command.options(), spec);
+  add_bulk_options(command.options(), spec);
+  add_medium_options(command.options(), spec);
+  add_view_options(command.options(), spec);
+  add_request_options(command.options(), spec);
+  add_mc_options(command.options(), methods);
+  add_wave_options(command.options(), methods);
+  add_run_options(command.options(), settings);
+  command.options().add_option("--wave_samples", wave_samples,
+                               "Placements of the exact solver (samples counts light paths)");
+  if (!command.parse(arguments)) return ExitStatus::done;
+
+  settle_views(command, spec);
+  round_density(spec);
+  const Scene scene = make_scene(spec);
+  if (scene.medium.mu_s == 0) throw InputError("count", 0, "nothing scatters, nothing to compare");
+  const Estimation mc = mc_estimation(scene, methods, seed_of(settings));
+  const Estimation wave = wave_estimation(scene, methods, seed_of(settings));
+  RunSettings wave_settings = settings;
+  wave_settings.samples = wave_samples;
+  const StopRule mc_stop = stop_rule(settings), wave_stop = stop_rule(wave_settings);
+  Session session(command.command_line(), settings, mc.plan + "\n" + wave.plan);
+  if (session.already_complete()) return ExitStatus::done;
+  const RunState& mc_state = session.run("mc", "mc", mc.job.batches, mc_stop);
+  const RunState& wave_state = session.run("wave", "wave", wave.job.batches, wave_stop);
+  return session.finish([&](ResultFile& file) {
+    const Comparison comparison{jackknife(wave_state.sums, wave.job.covariance),
+                                jackknife(mc_state.sums, mc.job.covariance),
+                                bias_allowance(scene)};
+    print_comparison(scene, comparison);
+    write_medium(file, scene);
+    write_axes(file, scene.request);
+    write_moments(file, "mc", mc.job, scene.request, mc_state.sums);
+    write_moments(file, "wave", wave.job, scene.request, wave_state.sums);
+    write_comparison(file, comparison);
+  });
+}
+
+}  // namespace flatspeckle::apps

@@ -1,0 +1,29 @@
+# flatspeckle_room(NAME SOURCES file... [LINK target...] [PRIVATE_LINK target...])
+# One room of the house: a static library with the alias flatspeckle::NAME, included as "NAME/header.h".
+function(flatspeckle_room name)
+  cmake_parse_arguments(room "" "" "SOURCES;LINK;PRIVATE_LINK" ${ARGN})
+  set(target flatspeckle_${name})
+  add_library(${target} STATIC ${room_SOURCES})
+  add_library(flatspeckle::${name} ALIAS ${target})
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)
+  target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
+                             $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/flatspeckle>)
+  target_compile_features(${target} PUBLIC cxx_std_20)
+  target_link_libraries(${target} PUBLIC ${room_LINK} PRIVATE ${room_PRIVATE_LINK})
+  flatspeckle_flags(${target})
+  install(TARGETS ${target} EXPORT flatspeckle ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  install(DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR}/
+          DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/flatspeckle/${name} FILES_MATCHING PATTERN "*.h")
+endfunction()
+
+# Warnings, instruction set and sanitizers; nothing of it reaches those who link the library.
+function(flatspeckle_flags target)
+  target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion)
+  if(FLATSPECKLE_NATIVE)
+    target_compile_options(${target} PRIVATE -march=native)
+  endif()
+  if(FLATSPECKLE_SANITIZE)
+    target_compile_options(${target} PRIVATE -fsanitize=${FLATSPECKLE_SANITIZE} -fno-omit-frame-pointer)
+    target_link_options(${target} PUBLIC -fsanitize=${FLATSPECKLE_SANITIZE})
+  endif()
+endfunction()

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/complex.h"
+
+namespace flatspeckle {
+
+// Cylinder functions of integer order in extended range: neither H_n at n >> x overflows nor J_n
+// underflows. Real arguments are > 0.
+
+/// r_n = J_{n+1}(z) / J_n(z) for n = 0 .. order by downward recurrence, full extended precision.
+/// Holds for large |Im z| too, where J_n itself would overflow.
+std::vector<ExtendedComplex> bessel_ratios(int order, ExtendedComplex z);
+
+/// J_n(x) for n = 0 .. order. Ratios of neighbours have full extended precision, the common factor
+/// that of glibc's j0 and j1.
+std::vector<long double> bessel_j(int order, double x);
+
+/// H_n(x) of the first kind for n = 0 .. h.size() - 1; relative error about 1e-15 of |H_n|.
+void hankel(double x, std::span<ExtendedComplex> h);
+std::vector<ExtendedComplex> hankel(int order, double x);
+
+/// H_0(x) of the first kind in double precision.
+Complex hankel0(double x);
+
+/// C_n'(x) = (n / x) C_n(x) - C_{n+1}(x) of J or H, from values[n] and values[n + 1].
+template <typename Values>
+auto cylinder_derivative(const Values& values, int n, long double x) {
+  return (static_cast<long double>(n) / x) * values[n] - values[n + 1];
+}
+
+/// a b without the test for infinities that makes std::complex slow.
+inline ExtendedComplex multiply(ExtendedComplex a, ExtendedComplex b) {
+  return {a.real() * b.real() - a.imag() * b.imag(), a.real() * b.imag() + a.imag() * b.real()};
+}
+
+}  // namespace flatspeckle

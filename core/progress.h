@@ -1,0 +1,30 @@
+#pragma once
+
+#include <string>
+
+#include "core/runner.h"
+
+namespace flatspeckle {
+
+/// Says on standard error how a run gets on: a line that renews itself on a terminal, a line every
+/// ten seconds elsewhere. Silent without a label.
+class Progress {
+ public:
+  Progress(std::string label, const StopRule& stop);
+
+  /// samples and wall seconds so far, of which `new_samples` in the `new_wall` seconds of this run.
+  void update(double samples, double new_samples, double wall, double new_wall, double error);
+  /// Leaves the last state standing on its own line.
+  void finish();
+
+ private:
+  double seconds_left(double samples, double rate, double wall, double error) const;
+
+  std::string label_;
+  StopRule stop_;
+  bool terminal_;
+  double last_shown_ = 0;
+  bool line_open_ = false;
+};
+
+}  // namespace flatspeckle

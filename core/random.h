@@ -1,0 +1,43 @@
+#pragma once
+
+#include <Random123/threefry.h>
+
+#include <array>
+#include <cstdint>
+
+namespace flatspeckle {
+
+/// Addressed random numbers (Random123, Threefry4x64-20): the key is (seed, stream), the counter is
+/// (draw block, batch). The numbers of a batch depend on these alone, never on threads or on what
+/// was drawn before.
+class RandomStream {
+ public:
+  RandomStream(std::uint64_t seed, std::uint64_t stream, std::uint64_t batch)
+      : key_{{seed, stream, 0, 0}}, counter_{{0, batch, 0, 0}} {}
+
+  std::uint64_t bits() {
+    if (used_ == block_.size()) refill();
+    return block_.v[used_++];
+  }
+
+  /// Uniform in the open interval (0, 1): odd multiples of 2^-54, so log(u) and 1/u are finite.
+  double uniform() { return (static_cast<double>(bits() >> 11) + 0.5) * 0x1p-53; }
+
+ private:
+  void refill() {
+    block_ = engine_(counter_, key_);
+    ++counter_.v[0];
+    used_ = 0;
+  }
+
+  r123::Threefry4x64 engine_;
+  r123::Threefry4x64::key_type key_;
+  r123::Threefry4x64::ctr_type counter_;
+  r123::Threefry4x64::ctr_type block_{};
+  std::size_t used_ = 4;
+};
+
+/// Streams of one seed; each use of randomness has its own.
+enum class Stream : std::uint64_t { placement = 1, light_paths = 2 };
+
+}  // namespace flatspeckle

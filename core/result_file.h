@@ -1,0 +1,70 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "core/complex.h"
+
+namespace flatspeckle {
+
+class Hdf5Handle;
+
+/// One axis of a dataset: the name of a scale written before, or a plain extent.
+using Axis = std::variant<std::size_t, std::string>;
+
+/// Value of an attribute; bool is stored as uint8.
+using Attribute =
+    std::variant<bool, std::int64_t, std::uint64_t, double, std::string, std::vector<double>,
+                 std::vector<std::uint64_t>, std::vector<std::string>>;
+
+/// A result file in the making (HDF5, readable by version 1.8 and later; h5py sees complex numbers
+/// as complex128). It is put together in memory; commit() puts it at its path as a whole, and
+/// without commit nothing is left on the disk. Names may hold groups ("trace/wall_s"), which are
+/// made as needed; "/" is the root. One thread at a time.
+///
+/// All that is written must be finite: std::logic_error names the dataset or attribute otherwise,
+/// and also where the number of values does not fit the axes or a name is used twice.
+class ResultFile {
+ public:
+  /// Throws InputError if no file can be put at `path` (check_writable).
+  explicit ResultFile(std::filesystem::path path);
+  ResultFile(ResultFile&&) noexcept;
+  ResultFile& operator=(ResultFile&&) noexcept;
+  ~ResultFile();
+
+  void group(const std::string& name);
+
+  /// Of a group (made as needed) or dataset.
+  void attribute(const std::string& object, const std::string& name, const Attribute& value);
+
+  /// An axis: a 1D dimension scale. Units and long name are left out where empty; "1" says that the
+  /// values have no unit.
+  void scale(const std::string& name, std::span<const double> values, const std::string& units,
+             const std::string& long_name);
+
+  /// Values in row-major order (last axis fastest). No axes: one scalar.
+  void dataset(const std::string& name, std::span<const double> values,
+               const std::vector<Axis>& axes, const std::string& units,
+               const std::string& long_name);
+  void dataset(const std::string& name, std::span<const Complex> values,
+               const std::vector<Axis>& axes, const std::string& units,
+               const std::string& long_name);
+  void dataset(const std::string& name, std::span<const std::uint64_t> values,
+               const std::vector<Axis>& axes, const std::string& units,
+               const std::string& long_name);
+
+  /// Puts the file at its path, replacing what is there. Throws IoError. Nothing can be written
+  /// afterwards.
+  void commit();
+
+ private:
+  std::filesystem::path path_;
+  std::unique_ptr<Hdf5Handle> file_;
+};
+
+}  // namespace flatspeckle

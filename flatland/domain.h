@@ -1,0 +1,51 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace flatspeckle {
+
+/// A point or direction of flatland: x transverse, z depth (conventions, C2).
+struct Vec2 {
+  double x = 0, z = 0;
+};
+
+inline Vec2 operator+(Vec2 a, Vec2 b) { return {a.x + b.x, a.z + b.z}; }
+inline Vec2 operator-(Vec2 a, Vec2 b) { return {a.x - b.x, a.z - b.z}; }
+inline Vec2 operator-(Vec2 a) { return {-a.x, -a.z}; }
+inline Vec2 operator*(double s, Vec2 a) { return {s * a.x, s * a.z}; }
+inline double dot(Vec2 a, Vec2 b) { return a.x * b.x + a.z * b.z; }
+inline double length(Vec2 a) { return std::hypot(a.x, a.z); }
+
+/// Unit vector of an angle measured from +z towards +x (C2).
+inline Vec2 direction(double angle) { return {std::sin(angle), std::cos(angle)}; }
+/// The angle of a vector, in (-pi, pi] (C2).
+inline double angle_of(Vec2 v) { return std::atan2(v.x, v.z); }
+
+/// Where the scatterers are: the box |x| <= width/2, 0 <= z <= depth, or the slab 0 <= z <= depth
+/// that is infinite in x.
+struct Domain {
+  enum class Kind { box, slab };
+  Kind kind = Kind::box;
+  double width = 0, depth = 0;
+
+  double area() const { return width * depth; }
+
+  bool contains(Vec2 r) const {
+    return r.z >= 0 && r.z <= depth && (kind == Kind::slab || std::abs(r.x) <= width / 2);
+  }
+
+  /// Distance from a point inside to the edge along a unit vector; infinite along a slab.
+  double distance_to_edge(Vec2 r, Vec2 w) const {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    const double along_z = w.z > 0 ? (depth - r.z) / w.z : w.z < 0 ? -r.z / w.z : infinity;
+    if (kind == Kind::slab) return std::max(0.0, along_z);
+    const double along_x = w.x > 0   ? (width / 2 - r.x) / w.x
+                           : w.x < 0 ? (-width / 2 - r.x) / w.x
+                                     : infinity;
+    return std::max(0.0, std::min(along_x, along_z));
+  }
+};
+
+}  // namespace flatspeckle

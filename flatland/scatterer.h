@@ -1,0 +1,48 @@
+#pragma once
+
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "core/complex.h"
+
+namespace flatspeckle {
+
+/// One scatterer. hg is a bulk phase function only: it has no T-matrix, and the wave solver refuses it.
+struct Scatterer {
+  enum class Kind { point, soft, hard, tm, te, hg };
+  Kind kind = Kind::point;
+  double radius = 0;                            ///< of soft, hard, tm, te
+  Complex index = 1.5;                          ///< of tm, te, relative to the surroundings
+  double g = 0;                                 ///< of hg
+  double albedo = 1;                            ///< of hg and of resonant points (C8)
+  double phase_shift = std::numbers::pi / 2;    ///< of lossless points; pi/2 is resonance
+
+  /// A disk of nonzero radius, which others must not overlap.
+  bool is_disk() const { return kind != Kind::point && kind != Kind::hg; }
+
+  bool operator==(const Scatterer&) const = default;
+};
+
+/// T_n for n = 0 .. order; T_{-n} = T_n. (conventions, C7 and C8)
+/// k: wavenumber outside. hg is a precondition violation.
+std::vector<ExtendedComplex> t_matrix(const Scatterer& scatterer, double k, int order);
+
+/// The order up to which T_n may oscillate or resonate; beyond it |T_n| falls.
+int oscillating_order(const Scatterer& scatterer, double k);
+
+/// The order beyond which no |T_n| exceeds tolerance times the largest one.
+int isolated_order(const Scatterer& scatterer, double k, double tolerance);
+
+/// Cross-sections are lengths in flatland (C4, C5, C9).
+struct CrossSections {
+  double scattering = 0, extinction = 0;
+  double g = 0;  ///< mean cosine
+};
+CrossSections cross_sections(const std::vector<ExtendedComplex>& t_matrix, double k);
+
+/// Far-field amplitude of one scatterer at the origin for light along +z (C6), at scattering angle
+/// theta.
+Complex amplitude(const std::vector<ExtendedComplex>& t_matrix, double k, double theta);
+
+}  // namespace flatspeckle

@@ -1,0 +1,44 @@
+#include "mc/accumulator.h"
+
+#include <cblas.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace flatspeckle::mc {
+
+namespace {
+constexpr std::size_t columns_at_once = 128;
+}
+
+RankKAccumulator::RankKAccumulator(const CovarianceRequest& request, std::span<Complex> sums)
+    : channels_(request.channels.size()),
+      sums_(sums),
+      collected_(channels_ * columns_at_once),
+      matrix_(channels_ * channels_) {
+  static const bool single_threaded = (openblas_set_num_threads(1), true);
+  (void)single_threaded;
+}
+
+void RankKAccumulator::add(double weight, std::span<const Complex> field) {
+  const double scale = std::sqrt(weight);
+  std::transform(field.begin(), field.end(), collected_.begin() + columns_ * channels_,
+                 [scale](Complex f) { return scale * f; });
+  if (++columns_ == columns_at_once) update();
+}
+
+void RankKAccumulator::update() {
+  const auto n = static_cast<blasint>(channels_);
+  cblas_zherk(CblasColMajor, CblasLower, CblasNoTrans, n, static_cast<blasint>(columns_), 1.0,
+              collected_.data(), n, 1.0, matrix_.data(), n);
+  columns_ = 0;
+}
+
+void RankKAccumulator::finish() {
+  update();
+  std::size_t entry = 0;
+  for (std::size_t a = 0; a < channels_; ++a)
+    for (std::size_t b = 0; b <= a; ++b) sums_[entry++] += matrix_[a + b * channels_];
+}
+
+}  // namespace flatspeckle::mc

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/complex.h"
+#include "flatland/request.h"
+
+namespace flatspeckle::mc {
+
+/// Adds weight f_a conj(f_b) for the entries of a list.
+class EntryAccumulator {
+ public:
+  EntryAccumulator(const CovarianceRequest& request, std::span<Complex> sums)
+      : entries_(request.entries), sums_(sums) {}
+
+  void add(double weight, std::span<const Complex> field) {
+    for (std::size_t e = 0; e < entries_.size(); ++e) {
+      const auto [a, b] = entries_[e];
+      sums_[e] += weight * product_with_conjugate(field[a], field[b]);
+    }
+  }
+  void finish() {}
+
+ private:
+  const std::vector<Entry>& entries_;
+  std::span<Complex> sums_;
+};
+
+/// The lower triangle of sum weight f f^H over all channels, row by row: fields are collected and
+/// merged by Hermitian rank-k updates, so the sum is positive semidefinite to rounding.
+class RankKAccumulator {
+ public:
+  RankKAccumulator(const CovarianceRequest& request, std::span<Complex> sums);
+
+  void add(double weight, std::span<const Complex> field);
+  /// Adds what was collected to the sums.
+  void finish();
+
+ private:
+  void update();
+
+  std::size_t channels_;
+  std::span<Complex> sums_;
+  std::vector<Complex> collected_;  ///< columns sqrt(weight) f
+  std::size_t columns_ = 0;
+  std::vector<Complex> matrix_;     ///< column-major, lower triangle
+};
+
+}  // namespace flatspeckle::mc

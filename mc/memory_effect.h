@@ -1,0 +1,37 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/statistics.h"
+#include "flatland/request.h"
+
+namespace flatspeckle::mc {
+
+/// C_E per tilt (C19): |sum over views of the covariance of reference and tilted field|, over the
+/// square root of the product of their intensities summed over the same views. A function of the
+/// covariance entries of a memory_effect request, whichever solver they come from. Where an intensity
+/// vanishes the correlation is 0.
+std::vector<Complex> field_correlation(const CovarianceRequest& request,
+                                       std::span<const Complex> entries);
+
+/// Half-width of an intensity-correlation curve.
+struct Range {
+  double value = 0;       ///< |q| where C_I = C_E^2 falls to 1/2
+  bool censored = false;  ///< it does not fall so far: value is the largest |q| of the curve
+};
+
+/// The first crossing of C_I = 1/2 on the side of positive q (of negative q where there is no
+/// positive one), by cubic interpolation of C_I through the four nearest tilts.
+Range memory_effect_range(const std::vector<double>& tilt_q, std::span<const Complex> correlation);
+
+/// field_correlation and the range with jackknife errors.
+struct MemoryEffect {
+  std::vector<double> correlation, correlation_error;  ///< per tilt
+  Range range;
+  double range_error = 0;
+};
+MemoryEffect memory_effect(const CovarianceRequest& request, const GroupedSums& sums,
+                           const Estimator& covariance);
+
+}  // namespace flatspeckle::mc

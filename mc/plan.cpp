@@ -1,0 +1,71 @@
+#include "mc/plan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "core/error.h"
+
+namespace flatspeckle::mc {
+
+namespace {
+
+Plan::Phase phase_of(const Scatterer& scatterer) {
+  if (scatterer.kind == Scatterer::Kind::point) return Plan::Phase::isotropic;
+  if (scatterer.kind != Scatterer::Kind::hg) return Plan::Phase::tabulated;
+  return scatterer.g == 0 ? Plan::Phase::isotropic : Plan::Phase::henyey_greenstein;
+}
+
+/// Away from backscattering the reversed paths only add terms that oscillate away, of the order of
+/// the 1/(k mean free path) that the method neglects anyway.
+bool can_see_backscattering(const CovarianceRequest& request) {
+  return std::any_of(request.views.begin(), request.views.end(), [&](const View& view) {
+    if (view.near) return true;
+    return std::any_of(request.lights.begin(), request.lights.end(), [&](double light) {
+      return std::cos(light) * std::cos(view.angle) <= 0;
+    });
+  });
+}
+
+}  // namespace
+
+Plan make_plan(const Scene& scene, ReversedPaths reversed) {
+  const auto& request = scene.request;
+  Plan plan;
+  plan.domain = scene.domain.kind;
+  plan.phase = phase_of(scene.scatterer);
+  plan.absorbing = scene.medium.albedo < 1 - 1e-12;
+  plan.reversed = reversed == ReversedPaths::yes ||
+                  (reversed == ReversedPaths::automatic && can_see_backscattering(request));
+  for (const auto& view : request.views) {
+    if (!view.near) continue;
+    plan.near = true;
+    if (scene.domain.contains(view.point)) {
+      std::ostringstream text;
+      text << "near_sensors: (" << view.point.x << ", " << view.point.z
+           << ") lies in the medium; the Monte Carlo method takes sensors outside it";
+      throw InputError(text.str());
+    }
+  }
+  plan.rank_k = request.kind == CovarianceRequest::Kind::full;
+  plan.paths_per_batch = plan.rank_k && request.channels.size() > 200 ? 50 : 1000;
+  return plan;
+}
+
+std::string Plan::describe() const {
+  std::ostringstream text;
+  text << (domain == Domain::Kind::box ? "box" : "slab, transverse position integrated") << "; ";
+  switch (phase) {
+    case Phase::isotropic: text << "isotropic scattering"; break;
+    case Phase::henyey_greenstein: text << "Henyey-Greenstein scattering"; break;
+    case Phase::tabulated: text << "tabulated amplitude"; break;
+  }
+  text << "; " << (absorbing ? "absorbing, roulette" : "lossless, no roulette") << "; "
+       << (reversed ? "reversed paths" : "no reversed paths") << "; "
+       << (near ? "near and far views" : "far views only") << "; "
+       << (rank_k ? "full covariance by rank-k updates" : "listed entries only") << "; "
+       << paths_per_batch << " paths per batch";
+  return text.str();
+}
+
+}  // namespace flatspeckle::mc

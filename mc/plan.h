@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "flatland/scene.h"
+
+namespace flatspeckle::mc {
+
+/// Whether reversed paths (coherent backscattering, the R of C14) are walked: where a view asks for
+/// them, always, never.
+enum class ReversedPaths { automatic, yes, no };
+
+/// What a scene asks of the estimator, derived before the first batch. Each choice picks a kernel
+/// that has no code for what is left out.
+struct Plan {
+  enum class Phase { isotropic, henyey_greenstein, tabulated };
+  Domain::Kind domain = Domain::Kind::box;
+  Phase phase = Phase::isotropic;
+  bool absorbing = false;  ///< paths lose weight and end by roulette
+  bool reversed = false;   ///< paths count walked backwards too
+  bool near = false;       ///< some views are points
+  bool rank_k = false;     ///< the full covariance by Hermitian rank-k updates
+  std::uint64_t paths_per_batch = 0;
+
+  std::string describe() const;
+};
+
+/// Throws InputError for what the estimator cannot do (a near sensor inside the medium).
+Plan make_plan(const Scene& scene, ReversedPaths reversed);
+
+}  // namespace flatspeckle::mc

@@ -1,0 +1,85 @@
+#!/usr/bin/env python3
+"""Error against run time: every trace of the given result files, with its fitted slope."""
+
+import pathlib
+
+import h5py
+import matplotlib.pyplot as plt
+import numpy as np
+
+import style
+
+MOST_LABELS = 7
+
+
+def traces_of(result):
+    """Names of the groups that hold a trace: trace, mc/trace, points/3/trace."""
+    names = []
+
+    def visit(name, item):
+        if isinstance(item, h5py.Group) and name.split("/")[-1] == "trace":
+            names.append(name)
+
+    result.file.visititems(visit)
+    if not names:
+        raise style.Unusable(f"{result.path}: has no trace")
+    return sorted(names, key=lambda name: [(len(part), part) for part in name.split("/")])
+
+
+def read_trace(result, name):
+    """Processor seconds and relative errors; rows without an error cannot be shown on log axes."""
+    cpu, error = (result.values(f"{name}/{column}") for column in ("cpu_s", "relative_error"))
+    shown = (cpu > 0) & (error > 0)
+    return cpu[shown], error[shown]
+
+
+def slope(cpu, error):
+    return np.polyfit(np.log(cpu), np.log(error), 1)[0] if len(cpu) > 1 else np.nan
+
+
+def read_all(results):
+    """(label, processor seconds, errors) of every trace with something to show."""
+    traces = []
+    for result in results:
+        for name in traces_of(result):
+            parts = [pathlib.Path(result.path).stem] if len(results) > 1 else []
+            parts += name.split("/")[:-1]
+            cpu, error = read_trace(result, name)
+            if len(cpu) > 0:
+                traces.append((" ".join(parts) or "run", cpu, error))
+    if not traces:
+        raise style.Unusable(f"{results[0].path}: no trace has a checkpoint with an error")
+    return traces
+
+
+def draw_guide(axis, traces):
+    """Slope -1/2, below all curves."""
+    cpu = np.array([min(t[1].min() for t in traces), max(t[1].max() for t in traces)])
+    level = min(np.min(error * np.sqrt(times)) for _, times, error in traces)
+    axis.plot(cpu, 0.6 * level / np.sqrt(cpu), color=style.GREY, linewidth=0.7,
+              linestyle=(0, (4, 2)), label="guide: slope $-1/2$", zorder=0)
+
+
+def draw(results):
+    traces = read_all(results)
+    figure, axis = plt.subplots(figsize=(style.COLUMN, 2.7))
+    few = len(traces) <= MOST_LABELS
+    slopes = [slope(cpu, error) for _, cpu, error in traces]
+    for number, (name, cpu, error) in enumerate(traces):
+        look = style.look(number) if few else {"color": style.COLOURS[0], "alpha": 0.35}
+        fitted = f", slope ${slopes[number]:.2f}$" if np.isfinite(slopes[number]) else ""
+        axis.loglog(cpu, error, **look, markersize=2.5, linewidth=0.7,
+                    label=name + fitted if few else None)
+    if not few:
+        fitted = [s for s in slopes if np.isfinite(s)]
+        middle = f", median slope ${np.median(fitted):.2f}$" if fitted else ""
+        axis.plot([], [], color=style.COLOURS[0], alpha=0.35, label=f"{len(traces)} runs{middle}")
+    draw_guide(axis, traces)
+    axis.set_xlabel("processor time (s)")
+    axis.set_ylabel("relative error")
+    axis.legend()
+    return figure
+
+
+if __name__ == "__main__":
+    style.main(draw, __doc__, several=True)

@@ -1,0 +1,115 @@
+"""What the plots share: their look, how they read result files, and their command line."""
+
+import argparse
+import pathlib
+import sys
+
+import h5py
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+import numpy as np
+
+# Okabe and Ito 2008: told apart by the colour blind, and in grey by marker and line style besides.
+COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000"]
+MARKERS = ["o", "s", "^", "D", "v", "P", "X"]
+LINES = ["-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (7, 2)), (0, (1, 1))]
+GREY = "0.5"
+COLUMN, PAGE = 3.4, 7.0  # widths of a journal's column and page, inches
+
+plt.rcParams.update({
+    "font.size": 8, "axes.labelsize": 8, "axes.titlesize": 8, "legend.fontsize": 7,
+    "xtick.labelsize": 7, "ytick.labelsize": 7, "mathtext.fontset": "dejavusans",
+    "axes.linewidth": 0.6, "lines.linewidth": 0.9, "lines.markersize": 3.5,
+    "xtick.direction": "in", "ytick.direction": "in", "xtick.top": True, "ytick.right": True,
+    "xtick.major.width": 0.6, "ytick.major.width": 0.6,
+    "errorbar.capsize": 1.5, "legend.frameon": False, "legend.handlelength": 2.4,
+    "pdf.fonttype": 42, "savefig.dpi": 300, "figure.constrained_layout.use": True,
+    "savefig.bbox": "tight", "savefig.pad_inches": 0.02,
+})
+
+
+class Unusable(Exception):
+    """A result file without what the plot needs; the message says which file and what."""
+
+
+class Result:
+    """A result file, with one clear complaint about whatever is missing."""
+
+    def __init__(self, path):
+        self.path = path
+        try:
+            self.file = h5py.File(path, "r")
+        except OSError:
+            raise Unusable(f"{path}: not a readable result file")
+
+    def has(self, name):
+        return name in self.file
+
+    def dataset(self, name):
+        if not isinstance(self.file.get(name), h5py.Dataset):
+            raise Unusable(f"{self.path}: has no dataset {name}")
+        return self.file[name]
+
+    def values(self, name):
+        return self.dataset(name)[...]
+
+    def axis(self, name, number):
+        """Values of the scale of one axis of a dataset."""
+        dimension = self.dataset(name).dims[number]
+        if len(dimension) == 0:
+            raise Unusable(f"{self.path}: axis {number} of {name} has no scale")
+        return dimension[0][...]
+
+    def attribute(self, name, default=None):
+        return self.file.attrs.get(name, default)
+
+
+def look(number):
+    """Colour, marker and line style of curve `number`, all different from its neighbours'."""
+    return {"color": COLOURS[number % len(COLOURS)], "marker": MARKERS[number % len(MARKERS)],
+            "linestyle": LINES[number % len(LINES)]}
+
+
+def angle(value):
+    """An angle in words."""
+    turns = {0.5: r"$\pi/2$", 1.0: r"$\pi$"}
+    for turn, name in turns.items():
+        if np.isclose(abs(value), turn * np.pi):
+            return ("$-$" if value < 0 else "") + name
+    return f"{value:.3g} rad"
+
+
+def angle_axis(axis, angles, label):
+    """A horizontal axis in radians, in steps of pi/2 where it spans more than a quadrant or two."""
+    axis.set_xlabel(f"{label} (rad)")
+    if np.ptp(angles) <= np.pi / 2:
+        return
+    names = {-2: r"$-\pi$", -1: r"$-\pi/2$", 0: "0", 1: r"$\pi/2$", 2: r"$\pi$", 3: r"$3\pi/2$",
+             4: r"$2\pi$"}
+    low, high = np.floor(angles.min() / (np.pi / 2)), np.ceil(angles.max() / (np.pi / 2))
+    shown = [n for n in names if low <= n <= high]
+    axis.set_xticks([n * np.pi / 2 for n in shown], [names[n] for n in shown])
+
+
+def save(figure, prefix):
+    for ending in ("png", "pdf"):
+        dates = {"CreationDate": None} if ending == "pdf" else None
+        figure.savefig(f"{prefix}.{ending}", metadata=dates)
+
+
+def main(draw, description, several=False):
+    """Runs draw(results) -> figure on the command line's files; exits 2 if they lack something."""
+    parser = argparse.ArgumentParser(description=description)
+    parser.add_argument("results", metavar="RESULT.h5", nargs="+" if several else 1)
+    parser.add_argument("--out", metavar="PREFIX", help="writes PREFIX.png and PREFIX.pdf "
+                        "(default: beside the first result, named after it and this plot)")
+    arguments = parser.parse_args()
+    first = pathlib.Path(arguments.results[0])
+    prefix = arguments.out or str(first.with_suffix("")) + "_" + pathlib.Path(sys.argv[0]).stem
+    try:
+        save(draw([Result(path) for path in arguments.results]), prefix)
+    except (Unusable, OSError) as problem:
+        print(problem, file=sys.stderr)
+        sys.exit(2)

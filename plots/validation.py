@@ -1,0 +1,130 @@
+#!/usr/bin/env python3
+"""Validation: Monte Carlo against the exact wave solver, entry by entry, and their residual."""
+
+from dataclasses import dataclass
+
+import matplotlib.pyplot as plt
+import numpy as np
+
+import style
+
+SIGMAS = 4  # agreement is judged at so many combined standard errors
+
+
+@dataclass
+class Comparison:
+    """Both solvers' entries [curve, x] and their errors; complex ones by distance in the plane."""
+
+    x: np.ndarray
+    x_label: str
+    curve_labels: list
+    y_label: str
+    mc: np.ndarray
+    mc_error: np.ndarray
+    wave: np.ndarray
+    wave_error: np.ndarray
+
+    def residual(self):
+        """mc - wave in combined standard errors, and those. A complex residual: its magnitude."""
+        combined = np.hypot(self.mc_error, self.wave_error)
+        difference = self.mc - self.wave
+        if np.iscomplexobj(difference):
+            difference = np.abs(difference)
+        # Entries that are exactly 0 for both have no errors and agree.
+        return np.divide(difference, combined, out=np.zeros(combined.shape),
+                         where=combined > 0), combined
+
+
+def read_entries(result, name):
+    entries = [result.values(f"{room}/{name}{ending}")
+               for room in ("mc", "wave") for ending in ("", "_error")]
+    if len({entry.shape for entry in entries}) > 1 or entries[0].ndim != 2:
+        raise style.Unusable(f"{result.path}: mc and wave {name} are not two tables of one shape")
+    return entries
+
+
+def read_comparison(result):
+    if result.has("mc/intensity"):
+        lights, views = (result.axis("mc/intensity", axis) for axis in (0, 1))
+        curves = [f"light {style.angle(light)}" for light in lights]
+        return Comparison(views, "view angle", curves, r"intensity $C_{vv}$",
+                          *read_entries(result, "intensity"))
+    if not result.has("mc/covariance"):
+        raise style.Unusable(f"{result.path}: has neither mc/intensity nor mc/covariance")
+    entries = read_entries(result, "covariance")
+    tilts, views = (result.axis("mc/covariance", axis) for axis in (0, 1))
+    if len(views) > max(6, len(tilts)):
+        return Comparison(views, "view angle", [f"tilt {style.angle(tilt)}" for tilt in tilts],
+                          "covariance $|C|$", *entries)
+    return Comparison(tilts, "tilt", [f"view {style.angle(view)}" for view in views],
+                      "covariance $|C|$", *(entry.T for entry in entries))
+
+
+def shifted(x, number, count):
+    """x moved a little, to keep the error bars of `count` curves apart."""
+    step = 0.05 * np.median(np.diff(np.sort(x))) if len(x) > 1 else 0
+    return x + step * (number - (count - 1) / 2)
+
+
+def draw_values(axis, data, allowance):
+    for number, label in enumerate(data.curve_labels):
+        look, order = style.look(number), np.argsort(data.x)
+        x = shifted(data.x, number, len(data.curve_labels))[order]
+        mc, wave = np.abs(data.mc[number][order]), np.abs(data.wave[number][order])
+        common = {"color": look["color"], "marker": look["marker"], "elinewidth": 0.7}
+        axis.vlines(x, mc * (1 - allowance), mc * (1 + allowance), color=look["color"], alpha=0.15,
+                    linewidth=4, zorder=0)
+        axis.plot(x, mc, color=look["color"], linestyle=look["linestyle"], linewidth=0.5, alpha=0.6)
+        axis.errorbar(x, mc, data.mc_error[number][order], linestyle="none", **common,
+                      markerfacecolor="white", markersize=5)
+        axis.errorbar(x, wave, data.wave_error[number][order], linestyle="none", **common,
+                      markersize=2.5, label=label)
+    axis.set_ylim(bottom=0)
+    axis.set_ylabel(data.y_label)
+
+
+def draw_residual(axis, data, allowance):
+    residual, combined = data.residual()
+    signed = not np.iscomplexobj(data.mc)
+    axis.axhspan(-SIGMAS if signed else 0, SIGMAS, color="0.92", zorder=0)
+    axis.axhline(0, color="black", linewidth=0.5, zorder=1)
+    for number in range(len(residual)):
+        look, x = style.look(number), shifted(data.x, number, len(residual))
+        sigma = np.where(combined[number] > 0, combined[number], 1)
+        bias = allowance * np.abs(data.mc[number]) / sigma
+        axis.vlines(x, -bias if signed else 0 * bias, bias, color=look["color"],
+                    alpha=0.2, linewidth=3, zorder=1)
+        axis.plot(x, residual[number], color=look["color"], marker=look["marker"],
+                  linestyle="none", markersize=3)
+    largest = max(SIGMAS, np.abs(residual).max()) * 1.25
+    axis.set_ylim(-largest if signed else 0, largest)
+    axis.set_ylabel(r"(mc $-$ wave) / $\sigma$" if signed else r"|mc $-$ wave| / $\sigma$")
+
+
+def add_legend(figure, axis, allowance):
+    handles, labels = axis.get_legend_handles_labels()
+    kinds = (("white", 5, "open: Monte Carlo"), ("black", 2.5, "filled: wave solver"))
+    for fill, size, label in kinds:
+        handles.append(plt.Line2D([], [], color="black", marker="o", markerfacecolor=fill,
+                                  markersize=size, linestyle="none"))
+        labels.append(label)
+    if allowance > 0:
+        handles.append(plt.Line2D([], [], color="black", alpha=0.2, linewidth=4))
+        labels.append(f"documented bias, {100 * allowance:.2g} %")
+    figure.legend(handles, labels, loc="lower center", bbox_to_anchor=(0.5, 1.0), ncol=3)
+
+
+def draw(results):
+    data = read_comparison(results[0])
+    allowance = float(results[0].attribute("bias_allowance", 0))
+    figure, (values, residual) = plt.subplots(2, 1, sharex=True, figsize=(1.3 * style.COLUMN, 4),
+                                              gridspec_kw={"height_ratios": [2.2, 1]})
+    draw_values(values, data, allowance)
+    draw_residual(residual, data, allowance)
+    style.angle_axis(residual, data.x, data.x_label)
+    add_legend(figure, values, allowance)
+    return figure
+
+
+if __name__ == "__main__":
+    style.main(draw, __doc__)

@@ -1,0 +1,50 @@
+# shellcheck shell=bash
+# Sourced by the other scripts: goes to the root of the checkout; how to prepare a machine and build.
+cd "$(dirname "${BASH_SOURCE[0]}")/.." || exit
+
+jobs=$(nproc)
+
+as_root() {
+  if [[ $EUID -eq 0 ]]; then "$@"; else sudo "$@"; fi
+}
+
+is_installed() {
+  [[ $(dpkg-query --show --showformat='${db:Status-Abbrev}' "$1" 2>/dev/null) == ii* ]]
+}
+
+# install_missing PACKAGE...: those that are not there yet, on Debian; elsewhere it only names them.
+install_missing() {
+  if ! command -v apt-get dpkg-query >/dev/null; then
+    echo "Not Debian: nothing is installed here. Needed, by Debian's names: $*"
+    return
+  fi
+  local package missing=()
+  for package in "$@"; do
+    is_installed "$package" || missing+=("$package")
+  done
+  [[ ${#missing[@]} -gt 0 ]] || return 0
+  echo "Installing ${missing[*]}"
+  as_root apt-get --quiet update
+  as_root env DEBIAN_FRONTEND=noninteractive apt-get --quiet --yes --no-install-recommends \
+    install "${missing[@]}"
+}
+
+install_build_packages() {
+  install_missing g++ cmake ninja-build pkg-config libhdf5-dev libeigen3-dev liblapacke-dev \
+    libopenblas-dev libcli11-dev librandom123-dev doctest-dev libboost-dev
+}
+
+install_plot_packages() {
+  install_missing python3 python3-numpy python3-h5py python3-matplotlib
+}
+
+# Debian's, which knows those packages, before another one that comes earlier in PATH.
+python() {
+  PATH=/usr/bin:$PATH python3 "$@"
+}
+
+# build_release TARGET: into build/release.
+build_release() {
+  cmake --preset release
+  cmake --build --preset release --parallel "$jobs" --target "$1"
+}

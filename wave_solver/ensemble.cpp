@@ -1,0 +1,92 @@
+#include "wave_solver/ensemble.h"
+
+#include <memory>
+#include <vector>
+
+#include "core/error.h"
+#include "core/random.h"
+#include "wave_solver/dense_solver.h"
+
+namespace flatspeckle::wave {
+
+namespace {
+
+// Fields of one placement in every channel of the request.
+std::vector<Complex> channel_fields(const Scene& scene, const SolveOptions& options,
+                                    RandomStream random) {
+  const CovarianceRequest& request = scene.request;
+  const Placement placement =
+      draw_placement(scene.domain, scene.scatterer, scene.placement, random);
+  const auto solution = solve(placement, scene.k, request.lights, options);
+  const auto fields = solution.fields(request.views);
+  std::vector<Complex> channels;
+  channels.reserve(request.channels.size());
+  for (const Channel& channel : request.channels)
+    channels.push_back(fields[channel.light * request.views.size() + channel.view]);
+  return channels;
+}
+
+SolveOptions batch_options(const Scene& scene, double tolerance) {
+  SolveOptions options{.tolerance = tolerance, .sensors = {}, .diagnose = false};
+  for (const View& view : scene.request.views)
+    if (view.near) options.sensors.push_back(view.point);
+  return options;
+}
+
+std::vector<Complex> sample_mean(const CovarianceRequest& request, double samples,
+                                 std::span<const Complex> sums) {
+  std::vector<Complex> mean(sums.begin(), sums.begin() + request.channels.size());
+  for (Complex& value : mean) value /= samples;
+  return mean;
+}
+
+// (sum u_a u_b* - sum u_a sum u_b* / n) / (n - 1); 0 while one sample shows no spread.
+std::vector<Complex> sample_covariance(const CovarianceRequest& request, double samples,
+                                       std::span<const Complex> sums) {
+  std::vector<Complex> covariance(request.entries.size());
+  if (samples < 2) return covariance;
+  const auto products = sums.subspan(request.channels.size());
+  for (std::size_t i = 0; i < covariance.size(); ++i) {
+    const auto [a, b] = request.entries[i];
+    covariance[i] = (products[i] - sums[a] * std::conj(sums[b]) / samples) / (samples - 1);
+  }
+  return covariance;
+}
+
+void require_solvable(const Scene& scene) {
+  if (scene.domain.kind == Domain::Kind::slab)
+    throw InputError("domain", "slab", "the wave solver needs a box");
+  if (scene.scatterer.kind == Scatterer::Kind::hg)
+    throw InputError("scatterer", "hg", "the wave solver needs point, soft, hard, tm or te");
+}
+
+}  // namespace
+
+FieldJob wave_job(const Scene& scene, std::uint64_t seed, double tolerance) {
+  require_solvable(scene);
+  const auto shared = std::make_shared<const Scene>(scene);
+  const SolveOptions options = batch_options(scene, tolerance);
+  FieldJob job;
+  job.mean = [shared](double samples, std::span<const Complex> sums) {
+    return sample_mean(shared->request, samples, sums);
+  };
+  job.covariance = [shared](double samples, std::span<const Complex> sums) {
+    return sample_covariance(shared->request, samples, sums);
+  };
+  job.batches.size = scene.request.channels.size() + scene.request.entries.size();
+  job.batches.run = [shared, options, seed](std::uint64_t number, std::span<Complex> sums) {
+    const RandomStream random(seed, static_cast<std::uint64_t>(Stream::placement), number);
+    const auto u = channel_fields(*shared, options, random);
+    for (std::size_t i = 0; i < u.size(); ++i) sums[i] += u[i];
+    for (std::size_t i = 0; i < shared->request.entries.size(); ++i) {
+      const auto [a, b] = shared->request.entries[i];
+      sums[u.size() + i] += u[a] * std::conj(u[b]);
+    }
+  };
+  job.batches.relative_error = [covariance = job.covariance](const GroupedSums& sums) {
+    return relative_error(jackknife(sums, covariance));
+  };
+  return job;
+}
+
+}  // namespace flatspeckle::wave
