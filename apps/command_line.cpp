@@ -1,9 +1,11 @@
 #include "apps/command_line.h"
 
 #include <algorithm>
+#include <charconv>
 #include <iostream>
-#include <sstream>
+#include <memory>
 
+#include "apps/scene_file.h"
 #include "core/error.h"
 
 namespace flatspeckle::apps {
@@ -17,17 +19,6 @@ std::string joined(const Arguments& arguments) {
     text += (text.empty() ? "" : " ") + (plain ? argument : "'" + argument + "'");
   }
   return text;
-}
-
-std::string key_of(const std::string& line) { return line.substr(0, line.find('=')); }
-
-/// Options that were not given and have no default are written as key=""; they say nothing.
-std::string without_empty(const std::string& config) {
-  std::istringstream lines(config);
-  std::string kept, line;
-  while (std::getline(lines, line))
-    if (!line.empty() && line.substr(key_of(line).size()) != "=\"\"") kept += line + '\n';
-  return kept;
 }
 
 std::string accepted_by(const CLI::App& app, const std::string& message) {
@@ -45,20 +36,37 @@ std::string explain(const CLI::App& app, const CLI::ParseError& error) {
   std::string message = error.what();
   std::replace(message.begin(), message.end(), '\n', ' ');
   const std::string unknown_in_file = "INI was not able to parse ";
-  if (message.starts_with(unknown_in_file)) {
-    const std::string key = message.substr(unknown_in_file.size());
-    return key.substr(0, key.find(".++")) + ": unknown key (--help lists the known ones)";
-  }
+  if (message.starts_with(unknown_in_file))
+    return message.substr(unknown_in_file.size()) + ": unknown key (--help lists the known ones)";
   const std::string not_converted = "Could not convert: --";
   if (message.starts_with(not_converted))
     return message.substr(not_converted.size()) + accepted_by(app, message);
+  if (dynamic_cast<const CLI::FileError*>(&error) != nullptr) return "config: " + message;
   return message;
 }
 
-void refuse_empty_values(const CLI::App& app) {
-  for (const CLI::Option* option : app.get_options())
-    if (option->count() > 0 && !option->results().empty() && option->results().front().empty())
-      throw InputError(option->get_name(false, true).substr(2) + " = \"\": must have a value");
+/// CLI11 lets a text option take the flag that follows it, and a whole number that is too large
+/// become the largest one.
+void refuse_odd_values(const CLI::App& app) {
+  for (const CLI::Option* option : app.get_options()) {
+    for (const std::string& value : option->results()) {
+      const std::string name = option->get_single_name();
+      if (value.empty() || value.starts_with("--"))
+        throw InputError(name, '"' + value + '"', "must have a value");
+      std::int64_t number = 0;
+      const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), number);
+      if (option->get_type_name() == "INT" && error == std::errc::result_out_of_range)
+        throw InputError(name, value, "must be a whole number of at most 18 digits");
+    }
+  }
+}
+
+void refuse_strays(const std::vector<std::string>& strays) {
+  if (strays.empty()) return;
+  const std::string& word = strays.front();
+  if (word.starts_with("--"))
+    throw InputError(word.substr(2, word.find('=') - 2) + ": unknown key (--help lists the known ones)");
+  throw InputError(word + ": expected --key value");
 }
 
 }  // namespace
@@ -67,6 +75,8 @@ Subcommand::Subcommand(const std::string& name, const std::string& purpose)
     : app_(purpose, "flatspeckle " + name) {
   app_.set_config("--config", "", "Scene file: these flags as keys, one a line (TOML)");
   app_.allow_config_extras(CLI::config_extras_mode::error);
+  app_.config_formatter(std::make_shared<SceneFile>());
+  app_.allow_extras();  // refused below, in clearer words
   app_.add_flag("--print-config", print_config_, "Print the resolved scene and exit")
       ->configurable(false);
   app_.get_formatter()->column_width(34);
@@ -81,19 +91,14 @@ bool Subcommand::parse(const Arguments& arguments) {
     return false;
   } catch (const CLI::ParseError& error) {
     throw InputError(explain(app_, error));
+  } catch (const InputError& error) {
+    throw InputError(app_.get_config_ptr()->as<std::string>() + ", " + error.what());
   }
-  refuse_empty_values(app_);
-  command_line_ = {without_empty(app_.config_to_str(true, false)), joined(arguments)};
+  refuse_odd_values(app_);
+  refuse_strays(app_.remaining());
+  command_line_ = {app_.config_to_str(), joined(arguments)};
   if (print_config_) std::cout << command_line_.config;
   return !print_config_;
-}
-
-std::string without_keys(const std::string& config, const std::vector<std::string>& keys) {
-  std::istringstream lines(config);
-  std::string kept, line;
-  while (std::getline(lines, line))
-    if (std::find(keys.begin(), keys.end(), key_of(line)) == keys.end()) kept += line + '\n';
-  return kept;
 }
 
 }  // namespace flatspeckle::apps

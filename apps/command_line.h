@@ -35,7 +35,4 @@ class Subcommand {
   CommandLine command_line_;
 };
 
-/// The lines of a resolved configuration less some keys: what makes two runs the same run.
-std::string without_keys(const std::string& config, const std::vector<std::string>& keys);
-
 }  // namespace flatspeckle::apps

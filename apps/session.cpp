@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <iostream>
 
+#include "apps/scene_file.h"
 #include "apps/subcommands.h"
 #include "core/atomic_file.h"
 #include "core/error.h"

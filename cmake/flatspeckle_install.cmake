@@ -15,4 +15,4 @@ install(EXPORT flatspeckle NAMESPACE flatspeckle:: FILE flatspeckle-targets.cmak
 
 install(DIRECTORY plots data/scenes DESTINATION ${CMAKE_INSTALL_DATADIR}/flatspeckle
         PATTERN __pycache__ EXCLUDE)
-install(FILES LICENSE README.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})

@@ -3,6 +3,7 @@
 #include <cerrno>
 #include <cstring>
 #include <fcntl.h>
+#include <sstream>
 #include <string>
 #include <unistd.h>
 #include <utility>
@@ -24,7 +25,9 @@ fs::path folder_of(const fs::path& path) {
 }
 
 fs::path temporary_beside(const fs::path& path) {
-  return folder_of(path) / ("." + path.filename().string() + ".tmp-" + std::to_string(::getpid()));
+  std::ostringstream name;
+  name << '.' << path.filename().string() << ".tmp-" << ::getpid();
+  return folder_of(path) / name.str();
 }
 
 /// A new file that is removed again unless it was renamed.

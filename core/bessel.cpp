@@ -1,10 +1,11 @@
 #include "core/bessel.h"
 
-#include <math.h>  // j0, j1, y0, y1 are POSIX
-
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
+#include <math.h>  // j0, j1, y0, y1 are POSIX
+#include <numbers>
 #include <utility>
 
 namespace flatspeckle {
@@ -31,6 +32,73 @@ void ratios_downward(int first, int last, Number z, Store store) {
     if (n <= last) store(n, ratio);
   }
 }
+
+// Below this H_0 is summed as a power series, whose terms do not exceed 1; above it is a smooth
+// amplitude times e^{ix}.
+constexpr double series_end = 2;
+
+// With y = x^2/4: J_0 = sum (-y)^k / k!^2 and
+// Y_0 = (2/pi) [(ln(x/2) + gamma) J_0 - sum (-y)^k h_k / k!^2], h_k = 1 + 1/2 + .. + 1/k
+// (DLMF 10.8.2).
+Complex hankel0_series(double x) {
+  constexpr int terms = 13;
+  const double minus_y = -x * x / 4;
+  double term = 1, harmonic = 0, j = 1, rest = 0;
+  for (int k = 1; k < terms; ++k) {
+    term *= minus_y / (k * k);
+    harmonic += 1.0 / k;
+    j += term;
+    rest += term * harmonic;
+  }
+  const double logarithm = std::log(x / 2) + std::numbers::egamma;
+  return {j, 2 / std::numbers::pi * (logarithm * j - rest)};
+}
+
+// sqrt(x) e^{-ix} H_0(x) as Chebyshev series in pieces of equal length in 1/x.
+class Amplitude {
+ public:
+  Amplitude() {
+    for (int piece = 0; piece < pieces; ++piece) fit(piece);
+  }
+
+  Complex hankel0(double x) const {
+    const double place = pieces * series_end / x;
+    const int piece = std::min(static_cast<int>(place), pieces - 1);
+    const double twice_t = 4 * (place - piece) - 2;
+    const auto& c = coefficients_[piece];
+    double re = c[degree][0], im = c[degree][1], re_before = 0, im_before = 0;
+    for (int m = degree - 1; m > 0; --m) {  // Clenshaw
+      re_before = std::exchange(re, c[m][0] + twice_t * re - re_before);
+      im_before = std::exchange(im, c[m][1] + twice_t * im - im_before);
+    }
+    re = c[0][0] + twice_t / 2 * re - re_before;
+    im = c[0][1] + twice_t / 2 * im - im_before;
+    const double size = 1 / std::sqrt(x), cosine = std::cos(x) * size, sine = std::sin(x) * size;
+    return {re * cosine - im * sine, re * sine + im * cosine};
+  }
+
+ private:
+  static constexpr int pieces = 32, degree = 6;
+
+  void fit(int piece) {
+    constexpr int nodes = degree + 1;
+    auto& c = coefficients_[piece];
+    for (int node = 0; node < nodes; ++node) {
+      const long double angle = std::numbers::pi_v<long double> * (node + 0.5L) / nodes;
+      const long double x = pieces * series_end / (piece + (1 + std::cos(angle)) / 2);
+      const ExtendedComplex value = multiply({::j0l(x), ::y0l(x)}, std::polar(std::sqrt(x), -x));
+      for (int m = 0; m < nodes; ++m) {
+        const long double weight = (m == 0 ? 1.0L : 2.0L) / nodes * std::cos(m * angle);
+        c[m][0] += static_cast<double>(weight * value.real());
+        c[m][1] += static_cast<double>(weight * value.imag());
+      }
+    }
+  }
+
+  std::array<std::array<std::array<double, 2>, degree + 1>, pieces> coefficients_{};
+};
+
+const Amplitude amplitude;
 
 }  // namespace
 
@@ -81,6 +149,9 @@ std::vector<ExtendedComplex> hankel(int order, double x) {
   return h;
 }
 
-Complex hankel0(double x) { return {::j0(x), ::y0(x)}; }
+Complex hankel0(double x) {
+  assert(x > 0);
+  return x < series_end ? hankel0_series(x) : amplitude.hankel0(x);
+}
 
 }  // namespace flatspeckle

@@ -40,7 +40,7 @@ class Merger {
       : job_(job),
         options_(options),
         state_(state),
-        clock_(state.wall_s, state.cpu_s),
+        clock_(state.wall_s),
         progress_(options.label, options.stop),
         next_(state.sums.batches()),
         limit_(batch_limit(options.stop, job.samples_per_batch)),
@@ -58,13 +58,15 @@ class Merger {
     std::unique_lock lock(mutex_);
     room_.wait(lock, [&] { return reason_ || next_ < state_.sums.batches() + lookahead_; });
     if (interrupted()) stop(StopReason::interrupted);
-    if (options_.stop.seconds && clock_.wall() >= *options_.stop.seconds) stop(StopReason::seconds);
+    if (options_.stop.seconds && clock_.seconds() >= *options_.stop.seconds) stop(StopReason::seconds);
     if (reason_ || next_ >= limit_) return std::nullopt;
     return next_++;
   }
 
-  void deliver(std::uint64_t number, std::vector<Complex> sums) {
+  /// cpu_s: what the thread has spent since its last delivery.
+  void deliver(std::uint64_t number, std::vector<Complex> sums, double cpu_s) {
     const std::lock_guard lock(mutex_);
+    state_.cpu_s += cpu_s;
     waiting_.emplace(number, std::move(sums));
     while (!waiting_.empty() && waiting_.begin()->first == state_.sums.batches() && !closed_) {
       state_.sums.add(job_.samples_per_batch, waiting_.begin()->second);
@@ -103,7 +105,7 @@ class Merger {
         closed_ = true;  // what is in hand would make the result depend on timing
       }
     }
-    const double wall = clock_.wall();
+    const double wall = clock_.seconds();
     const double error =
         state_.trace.relative_error.empty() ? INFINITY : state_.trace.relative_error.back();
     progress_.update(samples_, samples_ - first_samples_, wall, wall - first_wall_, error);
@@ -123,10 +125,7 @@ class Merger {
     state_.trace.relative_error.push_back(job_.relative_error(state_.sums));
   }
 
-  void note_time() {
-    state_.wall_s = clock_.wall();
-    state_.cpu_s = clock_.cpu();
-  }
+  void note_time() { state_.wall_s = clock_.seconds(); }
 
   void stop(StopReason reason) {
     if (!reason_) reason_ = reason;
@@ -151,10 +150,13 @@ class Merger {
 
 void work(const BatchJob& job, Merger& merger) {
   try {
+    double cpu_before = thread_cpu_seconds();
     while (const auto number = merger.take()) {
       std::vector<Complex> sums(job.size);
       job.run(*number, sums);
-      merger.deliver(*number, std::move(sums));
+      const double cpu_now = thread_cpu_seconds();
+      merger.deliver(*number, std::move(sums), cpu_now - cpu_before);
+      cpu_before = cpu_now;
     }
   } catch (...) {
     merger.fail(std::current_exception());

@@ -29,7 +29,7 @@ struct StopRule {
 };
 
 /// Error against run time, one row per checkpoint. Times are this run's plus those of the runs that
-/// it resumes.
+/// it resumes; CPU seconds are those of all threads.
 struct Trace {
   std::vector<double> wall_s, cpu_s, samples, relative_error;
 };

@@ -5,29 +5,28 @@
 
 namespace flatspeckle {
 
-/// Elapsed wall-clock and process CPU seconds (all threads) since construction, plus an offset.
+/// CPU seconds of the calling thread. Exact, where the clock of the whole process knows of other
+/// threads only what the scheduler last wrote down.
+inline double thread_cpu_seconds() {
+  timespec t{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+/// Wall-clock seconds since construction, plus an offset.
 class Stopwatch {
  public:
-  explicit Stopwatch(double wall_offset = 0, double cpu_offset = 0)
-      : wall_offset_(wall_offset), cpu_offset_(cpu_offset) {}
+  explicit Stopwatch(double offset = 0) : offset_(offset) {}
 
-  double wall() const {
-    return wall_offset_ + std::chrono::duration<double>(Clock::now() - wall_start_).count();
+  double seconds() const {
+    return offset_ + std::chrono::duration<double>(Clock::now() - start_).count();
   }
-  double cpu() const { return cpu_offset_ + process_cpu() - cpu_start_; }
 
  private:
   using Clock = std::chrono::steady_clock;
 
-  static double process_cpu() {
-    timespec t{};
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-  }
-
-  Clock::time_point wall_start_ = Clock::now();
-  double cpu_start_ = process_cpu();
-  double wall_offset_, cpu_offset_;
+  Clock::time_point start_ = Clock::now();
+  double offset_;
 };
 
 }  // namespace flatspeckle

@@ -99,14 +99,14 @@ void check_no_overlap(const Placement& placement) {
   for (const auto& placed : placement) largest = std::max(largest, disk_radius(placed.scatterer));
   CellGrid grid(largest > 0 ? 2 * largest : 1);
   for (std::size_t j = 0; j < placement.size(); ++j) {
-    const auto& [position, scatterer] = placement[j];
-    grid.any_near(position, [&, j](Vec2 other, std::size_t l) {
-      const double reach = disk_radius(scatterer) + disk_radius(placement[l].scatterer);
-      if (length(position - other) > reach) return false;
+    const PlacedScatterer& here = placement[j];
+    grid.any_near(here.position, [&, j](Vec2 other, std::size_t l) {
+      const double reach = disk_radius(here.scatterer) + disk_radius(placement[l].scatterer);
+      if (length(here.position - other) > reach) return false;
       throw InputError("placement: scatterers " + std::to_string(l + 1) + " and " +
                        std::to_string(j + 1) + " overlap or touch");
     });
-    grid.insert(position, j);
+    grid.insert(here.position, j);
   }
 }
 

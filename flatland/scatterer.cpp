@@ -34,8 +34,8 @@ std::vector<ExtendedComplex> tm_t_matrix(ExtendedComplex m, double x, int order)
 }
 
 // TE: T_n = -(s J_n + J_{n+1}) / (s H_n + H_{n+1}),  s = (n/x)(1/m^2 - 1) - r_n / m.
-// In the numerator the leading terms x/(2(n+1)) of J_{n+1}/J_n and r_n/m, which are equal, are taken
-// out by J_{n+1} = x/(2(n+1)) (J_n + J_{n+2}) on both sides.
+// In the numerator the leading terms x/(2(n+1)) of J_{n+1}/J_n and r_n/m, which are equal, are
+// taken out by J_{n+1} = x/(2(n+1)) (J_n + J_{n+2}) on both sides.
 std::vector<ExtendedComplex> te_t_matrix(ExtendedComplex m, double x, int order) {
   const auto ratios = bessel_ratios(order + 1, m * static_cast<long double>(x));
   const auto j = bessel_j(order + 2, x);
@@ -115,15 +115,14 @@ CrossSections cross_sections(const std::vector<ExtendedComplex>& t, double k) {
   const long double scattered = two_sided_sum(t, [&](int n) { return std::norm(t[n]); });
   const long double lost = -two_sided_sum(t, [&](int n) { return t[n].real(); });
   long double cosine = 0;
-  for (std::size_t n = 0; n + 1 < t.size(); ++n)
-    cosine += 2 * (t[n] * std::conj(t[n + 1])).real();
+  for (std::size_t n = 0; n + 1 < t.size(); ++n) cosine += 2 * (t[n] * std::conj(t[n + 1])).real();
   const double g = scattered > 0 ? static_cast<double>(cosine / scattered) : 0;
   return {static_cast<double>(4 * scattered / k), static_cast<double>(4 * lost / k), g};
 }
 
 Complex amplitude(const std::vector<ExtendedComplex>& t, double k, double theta) {
-  const ExtendedComplex sum = two_sided_sum(
-      t, [&](int n) { return t[n] * static_cast<long double>(std::cos(n * theta)); });
+  const ExtendedComplex sum =
+      two_sided_sum(t, [&](int n) { return t[n] * static_cast<long double>(std::cos(n * theta)); });
   return std::polar(std::sqrt(2 / (std::numbers::pi * k)), -std::numbers::pi / 4) * Complex(sum);
 }
 

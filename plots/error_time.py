@@ -6,6 +6,7 @@ import pathlib
 import h5py
 import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.ticker import NullFormatter
 
 import style
 
@@ -13,11 +14,13 @@ MOST_LABELS = 7
 
 
 def traces_of(result):
-    """Names of the groups that hold a trace: trace, mc/trace, points/3/trace."""
+    """Names of the groups that hold a trace: trace, mc/trace, points/3/trace. Those of state/, kept
+    to resume a run, say the same again."""
     names = []
 
     def visit(name, item):
-        if isinstance(item, h5py.Group) and name.split("/")[-1] == "trace":
+        parts = name.split("/")
+        if isinstance(item, h5py.Group) and parts[-1] == "trace" and parts[0] != "state":
             names.append(name)
 
     result.file.visititems(visit)
@@ -27,9 +30,12 @@ def traces_of(result):
 
 
 def read_trace(result, name):
-    """Processor seconds and relative errors; rows without an error cannot be shown on log axes."""
-    cpu, error = (result.values(f"{name}/{column}") for column in ("cpu_s", "relative_error"))
-    shown = (cpu > 0) & (error > 0)
+    """Processor seconds and relative errors, from four times the samples of the first checkpoint on:
+    the error of a handful of batches says little. Rows without an error cannot be shown on log axes.
+    """
+    cpu, samples, error = (result.values(f"{name}/{column}")
+                           for column in ("cpu_s", "samples", "relative_error"))
+    shown = (cpu > 0) & (error > 0) & (samples >= 4 * samples.min(initial=np.inf))
     return cpu[shown], error[shown]
 
 
@@ -60,6 +66,16 @@ def draw_guide(axis, traces):
               linestyle=(0, (4, 2)), label="guide: slope $-1/2$", zorder=0)
 
 
+def whole_decades(axis):
+    """Limits at powers of ten, so that each axis has at least two labels."""
+    for low_high, limit in ((axis.dataLim.intervalx, axis.set_xlim),
+                            (axis.dataLim.intervaly, axis.set_ylim)):
+        low, high = np.log10(low_high)
+        limit(10 ** np.floor(low - 0.03), 10 ** np.ceil(high + 0.03))
+    axis.xaxis.set_minor_formatter(NullFormatter())
+    axis.yaxis.set_minor_formatter(NullFormatter())
+
+
 def draw(results):
     traces = read_all(results)
     figure, axis = plt.subplots(figsize=(style.COLUMN, 2.7))
@@ -75,6 +91,7 @@ def draw(results):
         middle = f", median slope ${np.median(fitted):.2f}$" if fitted else ""
         axis.plot([], [], color=style.COLOURS[0], alpha=0.35, label=f"{len(traces)} runs{middle}")
     draw_guide(axis, traces)
+    whole_decades(axis)
     axis.set_xlabel("processor time (s)")
     axis.set_ylabel("relative error")
     axis.legend()

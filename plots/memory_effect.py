@@ -70,7 +70,7 @@ def draw_panel(axis, tilt, correlation, error, theory):
             look = style.look(number)
             axis.plot(tilt[order], theory[number][order]**2, color=look["color"], linewidth=0.7,
                       linestyle=look["linestyle"], zorder=1)
-    axis.set_ylim(0, 1.08)
+    axis.set_ylim(-0.03, 1.08)
 
 
 def write_title(axis, text, correlation):

@@ -62,7 +62,7 @@ def read_comparison(result):
 
 def shifted(x, number, count):
     """x moved a little, to keep the error bars of `count` curves apart."""
-    step = 0.05 * np.median(np.diff(np.sort(x))) if len(x) > 1 else 0
+    step = min(0.05 * np.median(np.diff(np.sort(x))), 0.012 * np.ptp(x)) if len(x) > 1 else 0
     return x + step * (number - (count - 1) / 2)
 
 
@@ -79,7 +79,7 @@ def draw_values(axis, data, allowance):
                       markerfacecolor="white", markersize=5)
         axis.errorbar(x, wave, data.wave_error[number][order], linestyle="none", **common,
                       markersize=2.5, label=label)
-    axis.set_ylim(bottom=0)
+    axis.set_ylim(bottom=-0.03 * axis.get_ylim()[1])
     axis.set_ylabel(data.y_label)
 
 

@@ -12,20 +12,21 @@ install_build_packages
 install_plot_packages
 build_release flatspeckle
 flatspeckle=build/release/bin/flatspeckle
-mkdir -p "$results"
+mkdir -p "$results/ten_disks"
 
 say() { printf '\n== %s\n' "$*"; }
 
 say "Ten disks of different sizes, solved exactly, against an independent program's fields"
 reference=data/reference/g10
-mapfile -t views < <(awk -F, 'NR > 1 && $1 == 0 { print $2 }' "$reference/farfield_TM15.csv")
-solve_and_compare() {  # KIND FLAG...: KIND as in the reference's file names
-  local kind=$1
-  shift
-  "$flatspeckle" solve --placement "$reference/placement.csv" "$@" --light_angles 0 0.7 2.5 \
-    --view_angles "${views[@]}" --out "$results/ten_disks_$kind.h5"
-  python plots/compare_reference.py "$results/ten_disks_$kind.h5" \
-    "$reference/farfield_$kind.csv"
+mapfile -t views < <(awk -F, 'NR > 1 && $1 == 0 { print $2 }' "$reference/farfield_D.csv")
+solve_and_compare() {  # KIND FLAG...: KIND as in the names of the reference's tables
+  local kind=$1 solve=("$flatspeckle" solve --placement "$reference/placement.csv"
+    --light_angles 0 0.7 2.5 "${@:2}")
+  local far=$results/ten_disks/far_$kind near=$results/ten_disks/near_$kind
+  "${solve[@]}" --view_angles "${views[@]}" --out "$far.h5"
+  "${solve[@]}" --near_sensors "$reference/nearfield_$kind.csv" --out "$near.h5"
+  python plots/compare_reference.py "$far.h5" "$reference/farfield_$kind.csv"
+  python plots/compare_reference.py "$near.h5" "$reference/nearfield_$kind.csv"
 }
 solve_and_compare D --scatterer soft
 solve_and_compare N --scatterer hard
@@ -44,4 +45,4 @@ python plots/error_time.py "$results/box_points.h5" --out "$results/error_time"
 python plots/memory_effect.py "$results/slab_hg.h5" --out "$results/memory_effect"
 
 say "Done in $SECONDS s; in $results:"
-ls "$results"
+ls "$results" "$results/ten_disks"

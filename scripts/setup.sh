@@ -30,7 +30,7 @@ install_missing() {
 }
 
 install_build_packages() {
-  install_missing g++ cmake ninja-build pkg-config libhdf5-dev libeigen3-dev liblapacke-dev \
+  install_missing g++ cmake ninja-build pkg-config libhdf5-dev liblapacke-dev \
     libopenblas-dev libcli11-dev librandom123-dev doctest-dev libboost-dev
 }
 

@@ -114,8 +114,8 @@ Magnitudes waves_of_neighbour(const Placement& placement, double k, std::size_t 
                        "its expansion leaves the range of numbers; widen the gap");
 }
 
-// What w_n leaves out (further neighbours, many orders adding up), from pairs and clusters with gaps
-// from 1e-3 to 0.5 radii and k a up to 30; between hard disks the error grows with k a.
+// What w_n leaves out (further neighbours, many orders adding up), from pairs and clusters with
+// gaps from 1e-3 to 0.5 radii and k a up to 30; between hard disks the error grows with k a.
 double safety(const Scatterer& scatterer, double k) {
   const double x = scatterer.kind == Scatterer::Kind::hard ? k * scatterer.radius : 0;
   return 30 * (1 + x * x);

@@ -65,8 +65,8 @@ Trace total_outside(const WaveSolution& solution, std::size_t light, Vec2 point,
 }
 
 // Per unknown of a penetrable disk, what it adds at the rim's angle 0 to the field inside, whose
-// coefficients follow from continuity of u: (J_n(x)/tau_n + tau_n H_n(x)), and to the slope that the
-// outside must have, q J_n'(mx)/J_n(mx) times that (C7).
+// coefficients follow from continuity of u: (J_n(x)/tau_n + tau_n H_n(x)), and to the slope that
+// the outside must have, q J_n'(mx)/J_n(mx) times that (C7).
 std::vector<Trace> interior_waves(const TMatrixSystem& system, std::size_t disk) {
   const Scatterer& cylinder = system.placement()[disk].scatterer;
   const int order = system.order(disk);
@@ -80,7 +80,8 @@ std::vector<Trace> interior_waves(const TMatrixSystem& system, std::size_t disk)
   for (int n = 0; n <= order; ++n) {
     const ExtendedComplex tau = system.tau(disk)[n];
     const ExtendedComplex u = j[n] / tau + tau * h[n];
-    const ExtendedComplex slope = q * (static_cast<long double>(n) / (m * static_cast<long double>(x)) - ratios[n]);
+    const ExtendedComplex slope =
+        q * (static_cast<long double>(n) / (m * static_cast<long double>(x)) - ratios[n]);
     waves[n] = {Complex(u), Complex(u * slope)};
   }
   return waves;

@@ -1,12 +1,12 @@
 #include "wave_solver/dense_solver.h"
 
-#include <cblas.h>
-
 #include <algorithm>
 #include <cmath>
 #include <complex>
 #include <stdexcept>
 #include <utility>
+
+#include <cblas.h>
 
 #define lapack_complex_double std::complex<double>
 #define lapack_complex_float std::complex<float>
@@ -113,8 +113,8 @@ Complex WaveSolution::near_field(Vec2 point, std::size_t light) const {
 std::vector<Complex> WaveSolution::fields(std::span<const View> views) const {
   std::vector<Complex> fields(light_angles_.size() * views.size());
   for (std::size_t view = 0; view < views.size(); ++view) {
-    const auto row = views[view].near ? system_.near_row(views[view].point)
-                                      : system_.far_row(views[view].angle);
+    const auto row =
+        views[view].near ? system_.near_row(views[view].point) : system_.far_row(views[view].angle);
     for (std::size_t light = 0; light < light_angles_.size(); ++light)
       fields[light * views.size() + view] = received(row, coefficients(light));
   }

@@ -1,10 +1,9 @@
 #include "wave_solver/t_matrix_system.h"
 
-#include <unistd.h>
-
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <unistd.h>
 #include <utility>
 
 #include "core/bessel.h"
@@ -39,6 +38,16 @@ std::vector<ExtendedComplex> outgoing_waves(double k, Vec2 d, int order) {
     phase = multiply(phase, turn);
   }
   return waves;
+}
+
+// Tile by tile, so that reads and writes stay in cache.
+void mirror_lower_triangle(std::vector<Complex>& matrix, std::size_t size) {
+  constexpr std::size_t tile = 32;
+  for (std::size_t column0 = 0; column0 < size; column0 += tile)
+    for (std::size_t row0 = column0; row0 < size; row0 += tile)
+      for (std::size_t column = column0; column < std::min(column0 + tile, size); ++column)
+        for (std::size_t row = std::max(row0, column + 1); row < std::min(row0 + tile, size); ++row)
+          matrix[row * size + column] = matrix[column * size + row];
 }
 
 void require_memory(std::size_t unknowns) {
@@ -87,6 +96,7 @@ std::vector<Complex> TMatrixSystem::matrix() const {
   return matrix;
 }
 
+// Order 0 everywhere: double precision is enough and the matrix is symmetric as it stands.
 std::vector<Complex> TMatrixSystem::point_matrix() const {
   const std::size_t size = unknowns();
   std::vector<Complex> matrix(size * size), tau(size);
@@ -94,10 +104,11 @@ std::vector<Complex> TMatrixSystem::point_matrix() const {
   for (std::size_t l = 0; l < size; ++l) {
     matrix[l * (size + 1)] = 1;
     for (std::size_t j = l + 1; j < size; ++j) {
-      const double distance = length(placement_[j].position - placement_[l].position);
-      matrix[l * size + j] = matrix[j * size + l] = -tau[j] * tau[l] * hankel0(k_ * distance);
+      const Vec2 d = placement_[j].position - placement_[l].position;
+      matrix[l * size + j] = -tau[j] * tau[l] * hankel0(k_ * std::sqrt(dot(d, d)));
     }
   }
+  mirror_lower_triangle(matrix, size);
   return matrix;
 }
 
@@ -116,8 +127,7 @@ void TMatrixSystem::pair_blocks(std::size_t j, std::size_t l, Block to_j, Block 
     for (int p = -order_j; p <= order_j; ++p) {
       const Complex element(-multiply(multiply(tau_[j][std::abs(p)], waves[order + n - p]), tau_n));
       to_j.data[(n + order_l) * to_j.rows + (p + order_j)] = element;
-      to_l.data[(order_j - p) * to_l.rows + (order_l - n)] =
-          (n - p) % 2 == 0 ? element : -element;
+      to_l.data[(order_j - p) * to_l.rows + (order_l - n)] = (n - p) % 2 == 0 ? element : -element;
     }
   }
 }
@@ -162,18 +172,17 @@ void TMatrixSystem::plane_wave(double angle, std::span<Complex> column) const {
 std::vector<Complex> TMatrixSystem::right_sides(std::span<const double> light_angles) const {
   std::vector<Complex> sides(light_angles.size() * unknowns());
   for (std::size_t light = 0; light < light_angles.size(); ++light)
-    plane_wave(light_angles[light],
-               std::span(sides).subspan(light * unknowns(), unknowns()));
+    plane_wave(light_angles[light], std::span(sides).subspan(light * unknowns(), unknowns()));
   return sides;
 }
 
-// By reciprocity the view at theta receives order n as the light from theta + pi sends order -n, times
+// By reciprocity the view at theta receives order n as the light from theta + pi sends order -n,
+// times
 // (-1)^n.
 std::vector<Complex> TMatrixSystem::far_row(double view_angle) const {
   std::vector<Complex> sent(unknowns()), row(unknowns());
   plane_wave(view_angle + std::numbers::pi, sent);
-  const Complex unit =
-      std::polar(std::sqrt(2 / (std::numbers::pi * k_)), -std::numbers::pi / 4);
+  const Complex unit = std::polar(std::sqrt(2 / (std::numbers::pi * k_)), -std::numbers::pi / 4);
   for (std::size_t j = 0; j < placement_.size(); ++j) {
     const std::size_t centre = first_[j] + order_[j];
     for (int n = -order_[j]; n <= order_[j]; ++n)
@@ -188,8 +197,8 @@ std::vector<Complex> TMatrixSystem::near_row(Vec2 point) const {
     const Vec2 d = point - placement_[j].position;
     const bool disk = placement_[j].scatterer.is_disk();
     if (disk ? length(d) < placement_[j].scatterer.radius : length(d) == 0)
-      throw InputError("near_sensors", "(" + std::to_string(point.x) + ", " +
-                                           std::to_string(point.z) + ")",
+      throw InputError("near_sensors",
+                       "(" + std::to_string(point.x) + ", " + std::to_string(point.z) + ")",
                        "must lie outside every scatterer");
     const auto waves = outgoing_waves(k_, d, order_[j]);
     for (int n = -order_[j]; n <= order_[j]; ++n)
@@ -199,8 +208,8 @@ std::vector<Complex> TMatrixSystem::near_row(Vec2 point) const {
   return row;
 }
 
-// d/ds H_n e^{i n phi} = (k/2) [H_{n-1} e^{i(n-1)phi} e^{i alpha} - H_{n+1} e^{i(n+1)phi} e^{-i alpha}]
-// along the direction of angle alpha.
+// d/ds H_n e^{i n phi} = (k/2) [H_{n-1} e^{i(n-1)phi} e^{i alpha} - H_{n+1} e^{i(n+1)phi} e^{-i
+// alpha}] along the direction of angle alpha.
 TMatrixSystem::Outgoing TMatrixSystem::outgoing(std::size_t scatterer, Vec2 point,
                                                 Vec2 along) const {
   const int order = order_[scatterer];

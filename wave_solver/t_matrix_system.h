@@ -8,15 +8,15 @@
 
 namespace flatspeckle::wave {
 
-/// The multiple-scattering equations of one placement (C10) in scaled unknowns: with tau_n = sqrt(T_n)
-/// and b_n = tau_n beta_n,
+/// The multiple-scattering equations of one placement (C10) in scaled unknowns: with tau_n =
+/// sqrt(T_n) and b_n = tau_n beta_n,
 ///   (1 - tau S tau) beta = tau a,
 /// whose entries are of moderate size however many orders T_n and S span (C11). Unknowns run over
 /// scatterers and, within each, n = -order .. order.
 class TMatrixSystem {
  public:
-  /// Orders follow from the tolerance (basis_order.h). sensors: where the near field will be wanted.
-  /// Throws InputError for scatterers without a T-matrix or disks too close to be resolved.
+  /// Orders follow from the tolerance (basis_order.h). sensors: where the near field will be
+  /// wanted. Throws InputError for scatterers without a T-matrix or disks too close to be resolved.
   TMatrixSystem(Placement placement, double k, double tolerance,
                 std::span<const Vec2> sensors = {});
 
@@ -38,11 +38,11 @@ class TMatrixSystem {
   std::vector<Complex> right_sides(std::span<const double> light_angles) const;
   /// What each unknown adds to the far-field amplitude at an angle (C6).
   std::vector<Complex> far_row(double view_angle) const;
-  /// What each unknown adds to the scattered field at a point. Throws InputError for a point inside a
-  /// disk or on a point scatterer.
+  /// What each unknown adds to the scattered field at a point. Throws InputError for a point inside
+  /// a disk or on a point scatterer.
   std::vector<Complex> near_row(Vec2 point) const;
-  /// Outgoing waves tau_n H_n(k r) e^{i n phi} of one scatterer at a point, n = -order .. order, and
-  /// their derivatives along the unit vector `along`, divided by k.
+  /// Outgoing waves tau_n H_n(k r) e^{i n phi} of one scatterer at a point, n = -order .. order,
+  /// and their derivatives along the unit vector `along`, divided by k.
   struct Outgoing {
     std::vector<Complex> field, derivative;
   };

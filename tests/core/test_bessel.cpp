@@ -1,12 +1,13 @@
-#include "core/bessel.h"
-
-#include <doctest/doctest.h>
+#include <cmath>
+#include <numbers>
 
 #include <boost/math/constants/constants.hpp>
 #include <boost/math/special_functions/bessel.hpp>
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <boost/multiprecision/cpp_complex.hpp>
-#include <cmath>
+#include <doctest/doctest.h>
+
+#include "core/bessel.h"
 
 namespace flatspeckle {
 
@@ -28,7 +29,8 @@ double error(long double found, const Wide& exact, const Wide& scale) {
   return static_cast<double>(abs((Wide(found) - exact) / scale));
 }
 
-// J_n(z) (n! 2^n / z^n) = sum (-z^2/4)^k n! / (k! (n+k)!); J_{n+1}/J_n = z / (2(n+1)) times a ratio.
+// J_n(z) (n! 2^n / z^n) = sum (-z^2/4)^k n! / (k! (n+k)!); J_{n+1}/J_n = z / (2(n+1)) times a
+// ratio.
 WideComplex power_series(int n, const WideComplex& z) {
   WideComplex term = 1, sum = 1;
   const WideComplex step = -z * z / 4;
@@ -43,8 +45,8 @@ WideComplex power_series(int n, const WideComplex& z) {
 }  // namespace
 
 TEST_CASE("Hankel functions agree with 50 digits from far below to far above the turning point") {
-  for (const double x : {1e-3, 0.1, 0.7, 1.0, 2.404825557695773, 3.831705970207512, 6.2, 12.5, 31.0,
-                         77.7, 250.0}) {
+  for (const double x :
+       {1e-3, 0.1, 0.7, 1.0, 2.404825557695773, 3.831705970207512, 6.2, 12.5, 31.0, 77.7, 250.0}) {
     const auto h = hankel(60, x);
     for (const int n : {0, 1, 2, 3, 5, 9, 17, 30, 31, 45, 60}) {
       CAPTURE(x);
@@ -116,9 +118,8 @@ TEST_CASE("Wronskian J_{n+1} Y_n - J_n Y_{n+1} = 2 / (pi x), and the two forms o
     for (int n = 1; n < 80; ++n) {
       CAPTURE(x);
       CAPTURE(n);
-      const long double wronskian =
-          h[n + 1].real() * h[n].imag() - h[n].real() * h[n + 1].imag();
-      CHECK(wronskian * x * M_PI / 2 == doctest::Approx(1).epsilon(1e-13));
+      const long double wronskian = h[n + 1].real() * h[n].imag() - h[n].real() * h[n + 1].imag();
+      CHECK(wronskian * x * std::numbers::pi / 2 == doctest::Approx(1).epsilon(1e-13));
       const ExtendedComplex symmetric = (h[n - 1] - h[n + 1]) / 2.0L;
       CHECK(std::abs(cylinder_derivative(h, n, x) - symmetric) < 1e-14 * std::abs(symmetric));
     }

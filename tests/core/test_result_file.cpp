@@ -1,5 +1,6 @@
 #include <chrono>
 #include <csignal>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -7,8 +8,8 @@
 #include <random>
 #include <stdexcept>
 #include <string>
-#include <thread>
 #include <sys/resource.h>
+#include <thread>
 
 #include <doctest/doctest.h>
 

@@ -1,12 +1,12 @@
-#include "flatland/scatterer.h"
-
-#include <doctest/doctest.h>
+#include <cmath>
 
 #include <boost/math/special_functions/bessel.hpp>
 #include <boost/math/special_functions/bessel_prime.hpp>
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <boost/multiprecision/cpp_complex.hpp>
-#include <cmath>
+#include <doctest/doctest.h>
+
+#include "flatland/scatterer.h"
 
 namespace flatspeckle {
 

@@ -9,10 +9,10 @@ std::string reference_path(const std::string& name) {
 Scatterer reference_scatterer(const std::string& kind) {
   Scatterer scatterer;
   scatterer.radius = 1;
-  scatterer.kind = kind == "D"                 ? Scatterer::Kind::soft
-                   : kind == "N"               ? Scatterer::Kind::hard
+  scatterer.kind = kind == "D"                ? Scatterer::Kind::soft
+                   : kind == "N"              ? Scatterer::Kind::hard
                    : kind.starts_with("TM15") ? Scatterer::Kind::tm
-                                               : Scatterer::Kind::te;
+                                              : Scatterer::Kind::te;
   scatterer.index = kind.ends_with("abs") ? Complex(1.5, 0.1) : Complex(1.5);
   return scatterer;
 }

@@ -1,9 +1,9 @@
 // Fixed placements against the tables of data/reference (its README says where they come from).
 
-#include <doctest/doctest.h>
-
 #include <algorithm>
 #include <string>
+
+#include <doctest/doctest.h>
 
 #include "core/csv.h"
 #include "reference.h"
@@ -75,9 +75,15 @@ double point_error(const std::string& file, double phase_shift) {
 
 }  // namespace
 
-TEST_CASE("one disk off the origin") { check_cluster("g1"); }
-TEST_CASE("two disks") { check_cluster("g2"); }
-TEST_CASE("ten disks, smallest gap 0.043") { check_cluster("g10"); }
+TEST_CASE("one disk off the origin") {
+  check_cluster("g1");
+}
+TEST_CASE("two disks") {
+  check_cluster("g2");
+}
+TEST_CASE("ten disks, smallest gap 0.043") {
+  check_cluster("g10");
+}
 
 TEST_CASE("fifty points") {
   const double resonant = point_error("resonant_deltapi2", std::numbers::pi / 2);

@@ -1,0 +1,110 @@
+"""Runs the program under test: FLATSPECKLE is its path, FLATSPECKLE_DATA the folder data/."""
+
+import contextlib
+import os
+import pathlib
+import subprocess
+import tempfile
+import unittest
+
+import h5py
+import numpy as np
+
+PROGRAM = os.environ["FLATSPECKLE"]
+DATA = pathlib.Path(os.environ["FLATSPECKLE_DATA"])
+
+BOX = {"width": 20, "depth": 10, "count": 31}
+CYLINDERS = {"width": 20, "depth": 10, "count": 20, "scatterer": "tm", "radius": 0.16}
+SLAB = {"domain": "slab", "depth": 100, "scatterer": "hg", "optical_depth": 2, "g": 0.5}
+TILTS = {"covariance": "memory_effect", "tilts": [0, 0.04, 0.16], "view_angles": [0.1, 0.5]}
+
+
+def flags(keys):
+    """{"tilts": [0, 0.1], "resume": True} -> --tilts 0 0.1 --resume; keys of value None are left out."""
+    words = []
+    for key, value in keys.items():
+        if value is None or value is False:
+            continue
+        words.append(f"--{key}")
+        if value is not True:
+            words += [str(item) for item in (value if isinstance(value, list) else [value])]
+    return words
+
+
+def toml(keys):
+    """The same keys as a scene file."""
+
+    def show(value):
+        if isinstance(value, bool):
+            return str(value).lower()
+        if isinstance(value, list):
+            return "[" + ", ".join(show(item) for item in value) + "]"
+        return f'"{value}"' if isinstance(value, str) else repr(value)
+
+    return "".join(f"{key} = {show(value)}\n" for key, value in keys.items() if value is not None)
+
+
+def datasets(path, leave_out=("trace", "state")):
+    """Every dataset of a result file by its full name, less those below the groups to leave out."""
+    found = {}
+
+    def add(name, item):
+        if isinstance(item, h5py.Dataset) and not set(name.split("/")) & set(leave_out):
+            found[name] = item[()]
+
+    with h5py.File(path) as file:
+        file.visititems(add)
+    return found
+
+
+def attributes(path):
+    with h5py.File(path) as file:
+        return dict(file.attrs)
+
+
+class ProgramTest(unittest.TestCase):
+    """Each test has a folder of its own, in which the program runs."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def call(self, *words, status=0, **keys):
+        """Runs the program with words, then keys as flags, and checks its exit status."""
+        command = [PROGRAM, *map(str, words), *flags(keys)]
+        done = subprocess.run(command, cwd=self.folder, capture_output=True, text=True, timeout=300)
+        self.assertEqual(done.returncode, status, f"{command}\n{done.stdout}{done.stderr}")
+        return done
+
+    def start(self, *words, **keys):
+        """Starts the program and does not wait for it; stopped at the latest when the test ends."""
+        process = subprocess.Popen([PROGRAM, *map(str, words), *flags(keys)], cwd=self.folder,
+                                   stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        self.addCleanup(self.end, process)
+        return process
+
+    @staticmethod
+    def end(process):
+        with contextlib.suppress(ProcessLookupError):
+            process.kill()
+        process.wait()
+        process.stderr.close()
+
+    def write(self, name, text):
+        path = self.folder / name
+        path.write_text(text)
+        return path
+
+    def listing(self):
+        """What lies in the folder, hidden files included, with contents and time of change."""
+        return {path.name: (path.stat().st_mtime_ns, path.read_bytes())
+                for path in self.folder.iterdir() if path.is_file()}
+
+    def assert_same_data(self, first, second):
+        """Bit for bit, and in the same datasets."""
+        first, second = datasets(self.folder / first), datasets(self.folder / second)
+        self.assertEqual(first.keys(), second.keys())
+        self.assertTrue(first)
+        for name, values in first.items():
+            self.assertEqual(np.asarray(values).tobytes(), np.asarray(second[name]).tobytes(), name)

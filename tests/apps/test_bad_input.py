@@ -1,0 +1,430 @@
+"""Bad input: status 2, one line that names the key or file and what is accepted, nothing written."""
+
+import unittest
+
+import h5py
+
+from program import BOX, CYLINDERS, DATA, SLAB, TILTS, ProgramTest, flags, toml
+
+POSITIVE = "must be positive"
+HG_BOX = {"width": 20, "depth": 10, "scatterer": "hg", "optical_depth": 1}
+PAIRS = {"covariance": "pairs", "pairs": [0, 0.1, 0.04, 0.14]}
+SWEEP = {"depth": 100, "optical_depth": [1, 2], "g": [0, 0.5], "tilts": [0, 0.001]}
+NUMBERS_THAT_ARE_NONE = ["-1", "0", "nan", "inf", "-inf", "1e999", "x", "1x", "1,5"]
+
+# subcommand, scene, changed keys, words of the message
+BOX_CASES = [
+    ("covariance", BOX, {"widht": 3}, ["widht", "unknown"]),
+    ("covariance", BOX, {"wave_sample": 3}, ["wave_sample", "unknown"]),
+    ("covariance", BOX, {"density": 1.0}, ["count, density", "exactly one"]),
+    ("covariance", BOX, {"density": 1.0, "mean_free_path": 3, "optical_depth": 1},
+     ["count, density, mean_free_path, optical_depth", "exactly one"]),
+    ("covariance", BOX, {"count": None}, ["no density", "exactly one"]),
+    ("covariance", BOX, {"count": -1}, ["count = -1", "must not be negative"]),
+    ("covariance", BOX, {"count": 1.5}, ["count = 1.5", "whole number"]),
+    ("covariance", BOX, {"count": "many"}, ["count = many", "whole number"]),
+    ("covariance", BOX, {"width": None}, ["width", "not given", POSITIVE]),
+    ("covariance", BOX, {"depth": None}, ["depth", "not given", POSITIVE]),
+    ("covariance", BOX, {"domain": "sphere"}, ["domain = sphere", "box slab"]),
+    ("covariance", BOX, {"scatterer": "cube"}, ["scatterer = cube", "point soft hard tm te hg"]),
+    ("covariance", BOX, {"covariance": "all"}, ["covariance = all", "intensity pairs"]),
+    ("covariance", BOX, {"method": "foo"}, ["method = foo", "mc wave"]),
+    ("covariance", BOX, {"reversed_paths": "maybe"}, ["reversed_paths = maybe", "auto yes no"]),
+    ("covariance", BOX, {"placement": "hard_disk"}, ["placement = hard_disk", "poisson"]),
+    ("covariance", BOX, {"placement": "grid"}, ["placement = grid", "poisson hard_disk"]),
+    ("covariance", BOX, {"min_gap": 0.1}, ["min_gap = 0.1", "disks"]),
+    ("covariance", BOX, {"radius": 0.1}, ["radius = 0.1", "soft, hard, tm and te"]),
+    ("covariance", BOX, {"index": "1.5"}, ["index = 1.5", "tm and te"]),
+    ("covariance", BOX, {"g": 0.5}, ["g = 0.5", "hg"]),
+    ("covariance", BOX, {"albedo": 0}, ["albedo = 0", "(0, 1]"]),
+    ("covariance", BOX, {"albedo": 1.5}, ["albedo = 1.5", "(0, 1]"]),
+    ("covariance", BOX, {"albedo": -0.1}, ["albedo = -0.1", "(0, 1]"]),
+    ("covariance", BOX, {"albedo": "nan"}, ["albedo = nan", "(0, 1]"]),
+    ("covariance", BOX, {"albedo": 0.9, "phase_shift": 1}, ["phase_shift = 1", "absorbing"]),
+    ("covariance", BOX, {"phase_shift": "inf"}, ["phase_shift = inf", "must be finite"]),
+    ("covariance", BOX, {"count": None, "optical_depth": 1, "phase_shift": 0},
+     ["point", "does not scatter"]),
+    ("covariance", BOX, {"light_angles": ["nan"]}, ["light_angles = nan", "must be finite"]),
+    ("covariance", BOX, {"view_angles": [0.1, "inf"]}, ["view_angles = inf", "must be finite"]),
+    ("covariance", BOX, {"view_angles": [0.1, "x"]}, ["view_angles", "x", "must be a number"]),
+    ("covariance", BOX, {"seed": -1}, ["seed = -1", "must not be negative"]),
+    ("covariance", BOX, {"seed": 1.5}, ["seed = 1.5", "whole number"]),
+    ("covariance", BOX, {"seed": "x"}, ["seed = x", "whole number"]),
+    ("covariance", BOX, {"seed": "99999999999999999999"}, ["seed = 99999999999999999999", "whole"]),
+    ("covariance", BOX, {"samples": 0}, ["samples = 0", POSITIVE]),
+    ("covariance", BOX, {"samples": -5}, ["samples = -5", POSITIVE]),
+    ("covariance", BOX, {"samples": 2.5}, ["samples = 2.5", "whole number"]),
+    ("covariance", BOX, {"threads": -1}, ["threads = -1", "must not be negative"]),
+    ("covariance", BOX, {"threads": "four"}, ["threads = four", "whole number"]),
+    ("covariance", BOX, {"threads": 1000000}, ["threads = 1000000", "at most"]),
+    ("covariance", BOX, {"tilts": [0.1]}, ["tilts = 0.1", "memory_effect"]),
+    ("covariance", BOX, {"pairs": [0, 0, 0, 0]}, ["pairs = 0", "covariance = pairs"]),
+    ("covariance", BOX, {"method": "wave", "wave_tolerance": 0}, ["wave_tolerance = 0", "(0, 1)"]),
+    ("covariance", BOX, {"method": "wave", "wave_tolerance": "nan"},
+     ["wave_tolerance = nan", "(0, 1)"]),
+    ("validate", BOX, {"wave_samples": 0}, ["wave_samples = 0", POSITIVE]),
+    ("validate", BOX, {"wave_samples": -1}, ["wave_samples = -1", POSITIVE]),
+    ("validate", BOX, {"count": 0}, ["count = 0", "nothing"]),
+    ("validate", BOX, {"method": "mc"}, ["method", "unknown"]),
+]
+DISK_CASES = [
+    ("covariance", CYLINDERS, {"radius": None}, ["radius", "not given", POSITIVE]),
+    ("covariance", CYLINDERS, {"scatterer": "soft", "index": "1.5"}, ["index = 1.5", "tm and te"]),
+    ("covariance", CYLINDERS, {"index": "0"}, ["index = 0", "must not be 0"]),
+    ("covariance", CYLINDERS, {"index": "1.5-0.1i"}, ["index = 1.5-0.1i", "amplify"]),
+    ("covariance", CYLINDERS, {"index": "abc"}, ["index", "abc", "1.5+0.1i"]),
+    ("covariance", CYLINDERS, {"index": "nan"}, ["index", "nan", "1.5+0.1i"]),
+    ("covariance", CYLINDERS, {"index": "1e999"}, ["index", "1e999", "1.5+0.1i"]),
+    ("covariance", CYLINDERS, {"g": 0.3}, ["g = 0.3", "hg"]),
+    ("covariance", CYLINDERS, {"albedo": 0.3}, ["albedo = 0.3", "hg and point"]),
+    ("covariance", CYLINDERS, {"phase_shift": 0.3}, ["phase_shift = 0.3", "point"]),
+    ("covariance", CYLINDERS, {"placement": "poisson"}, ["placement = poisson", "hard_disk"]),
+    ("covariance", CYLINDERS, {"min_gap": -0.1}, ["min_gap = -0.1", "must not be negative"]),
+    ("covariance", CYLINDERS, {"min_gap": "nan"}, ["min_gap = nan", "must not be negative"]),
+    ("covariance", CYLINDERS, {"min_gap": "inf"}, ["min_gap = inf", "must not be negative"]),
+    ("covariance", CYLINDERS, {"count": 2000}, ["packing fraction", "0.8", "0.5"]),
+    ("covariance", CYLINDERS, {"count": 900, "min_gap": 0.2}, ["packing fraction", "min_gap", "0.5"]),
+    ("covariance", CYLINDERS, {"count": None, "optical_depth": 1, "index": "1"},
+     ["tm", "does not scatter"]),
+    ("solve", CYLINDERS, {"count": 2000}, ["packing fraction", "0.5"]),
+    ("solve", CYLINDERS, {"tolerance": 0}, ["tolerance = 0", "(0, 1)"]),
+    ("solve", CYLINDERS, {"tolerance": "nan"}, ["tolerance = nan", "(0, 1)"]),
+    ("solve", CYLINDERS, {"seed": -1}, ["seed = -1", "must not be negative"]),
+    ("solve", CYLINDERS, {"samples": 10}, ["samples", "unknown"]),
+    ("solve", CYLINDERS, {"placement": "no.csv"}, ["placement", "no.csv"]),
+]
+BULK_CASES = [
+    ("covariance", SLAB, {"g": 1}, ["g = 1", "(-1, 1)"]),
+    ("covariance", SLAB, {"g": -1}, ["g = -1", "(-1, 1)"]),
+    ("covariance", SLAB, {"g": "nan"}, ["g = nan", "(-1, 1)"]),
+    ("covariance", SLAB, {"albedo": 1.5}, ["albedo = 1.5", "[0, 1]"]),
+    ("covariance", SLAB, {"albedo": -0.1}, ["albedo = -0.1", "[0, 1]"]),
+    ("covariance", SLAB, {"width": 20}, ["width = 20", "a box"]),
+    ("covariance", SLAB, {"optical_depth": None, "count": 10}, ["count = 10"]),
+    ("covariance", SLAB, {"optical_depth": None, "density": 1},
+     ["hg", "mean_free_path or optical_depth"]),
+    ("covariance", SLAB, {"radius": 0.1}, ["radius = 0.1", "soft, hard, tm and te"]),
+    ("covariance", SLAB, {"placement": "hard_disk"}, ["placement = hard_disk", "poisson"]),
+    ("covariance", SLAB, {"light_angles": [2]}, ["light_angles = 2", "pi/2"]),
+    ("covariance", SLAB, {"covariance": "full", "view_angles": [0, 0.1]},
+     ["covariance", "slab", "intensity or memory_effect"]),
+    ("covariance", SLAB, {"method": "wave"}, ["domain = slab", "box"]),
+    ("covariance", HG_BOX, {"method": "wave"}, ["scatterer = hg", "point, soft, hard, tm or te"]),
+    ("validate", SLAB, {}, ["domain = slab", "box"]),
+    ("validate", HG_BOX, {}, ["scatterer = hg", "point, soft, hard, tm or te"]),
+    ("solve", SLAB, {}, ["domain = slab", "box"]),
+    ("solve", HG_BOX, {}, ["scatterer = hg", "point, soft, hard, tm or te"]),
+    ("sweep", SWEEP, {"g": [0, 1]}, ["g = 1", "(-1, 1)"]),
+    ("sweep", SWEEP, {"albedo": [1, 0]}, ["albedo", "does not scatter"]),
+    ("sweep", SWEEP, {"optical_depth": [1, -2]}, ["optical_depth = -2", POSITIVE]),
+    ("sweep", SWEEP, {"optical_depth": None}, ["no density", "exactly one"]),
+    ("sweep", SWEEP, {"tilts": None}, ["tilts", "at least one"]),
+    ("sweep", SWEEP, {"covariance": "full"}, ["covariance", "unknown"]),
+    ("sweep", SWEEP, {"g": [0.5, 0.5]}, ["g = 0.5", "twice"]),
+]
+REQUEST_CASES = [
+    ("covariance", {**BOX, **TILTS}, {"tilts": None}, ["tilts", "at least one"]),
+    ("covariance", {**BOX, **TILTS}, {"tilts": ["nan"]}, ["tilts = nan", "must be finite"]),
+    ("covariance", {**BOX, **TILTS}, {"tilts": [0, 1.6]}, ["tilts = 1.6", "light past the horizon"]),
+    ("covariance", {**BOX, **TILTS}, {"tilts": [0.5], "view_angles": [1.5]},
+     ["tilts = 0.5", "view angle 1.5", "past the horizon"]),
+    ("covariance", {**BOX, **TILTS}, {"light_angles": [0, 0.1]}, ["light_angles", "one angle"]),
+    ("covariance", {**BOX, **TILTS}, {"view_angles": [0.1, 0.1]}, ["view_angles = 0.1", "twice"]),
+    ("covariance", {**BOX, **TILTS}, {"covariance": None}, ["tilts = 0", "memory_effect"]),
+    ("covariance", {**BOX, **TILTS}, {"near_sensors": "out.csv"}, ["near_sensors", "far views"]),
+    ("covariance", {**BOX, **PAIRS}, {"pairs": [0, 1, 2]}, ["pairs", "3", "light 1, view 1"]),
+    ("covariance", {**BOX, **PAIRS}, {"pairs": [0, 1, 2, 3, 4]}, ["pairs", "5", "light 1"]),
+    ("covariance", {**BOX, **PAIRS}, {"pairs": [0, 1, 2, "nan"]}, ["pairs = nan", "must be finite"]),
+    ("covariance", {**BOX, **PAIRS}, {"pairs": None}, ["pairs", "at least one"]),
+    ("covariance", {**BOX, **PAIRS}, {"near_sensors": "out.csv"}, ["near_sensors", "pairs"]),
+    ("covariance", {**BOX, **PAIRS}, {"view_angles": [0.1]}, ["view_angles", "pairs"]),
+    ("covariance", {**SLAB, **PAIRS}, {"pairs": [0, 0.1, 0.04, 0.2]}, ["covariance", "slab"]),
+    ("covariance", BOX, {"near_sensors": "in.csv"}, ["near_sensors", "(0, 5)", "in the medium"]),
+    ("covariance", BOX, {"near_sensors": "out.csv", "view_angles": [0.1]},
+     ["near_sensors", "either near_sensors or view_angles"]),
+    ("covariance", BOX, {"near_sensors": "no.csv"}, ["near_sensors", "no.csv"]),
+    ("covariance", BOX, {"near_sensors": "empty.csv"}, ["empty.csv"]),
+    ("covariance", BOX, {"near_sensors": "header.csv"}, ["header.csv", "at least one"]),
+    ("covariance", SLAB, {"near_sensors": "out.csv"}, ["near_sensors", "far views only"]),
+    ("sweep", SWEEP, {"near_sensors": "out.csv"}, ["near_sensors", "far views"]),
+]
+SENSORS = {"in.csv": "x,z\n0,5\n", "out.csv": "x,z\n0,15\n1,15\n", "header.csv": "x,z\n",
+           "empty.csv": ""}
+REAL_KEYS = [
+    ("covariance", BOX, ["width", "depth", "wavelength", "seconds", "target_error"]),
+    ("covariance", {**BOX, "count": None}, ["density", "mean_free_path", "optical_depth"]),
+    ("covariance", {**SLAB, "optical_depth": None}, ["optical_depth", "mean_free_path"]),
+    ("covariance", CYLINDERS, ["radius"]),
+    ("solve", CYLINDERS, ["radius", "wavelength", "width"]),
+    ("sweep", SWEEP, ["depth", "wavelength", "target_error"]),
+]
+
+
+class RefusingTest(ProgramTest):
+    def assert_refused(self, words, *command, **keys):
+        """Also with an older result in place, which must survive."""
+        for out in ("new.h5", "old.h5"):
+            self.write("old.h5", "an older result")
+            before = self.listing()
+            done = self.call(*command, **{"out": out, **keys}, status=2)
+            self.assertEqual(done.stdout, "")
+            self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
+            for word in ["flatspeckle: ", *words]:
+                self.assertIn(word, done.stderr)
+            self.assertEqual(self.listing(), before, done.stderr)
+
+    def assert_refused_both_ways(self, subcommand, scene, changes, words):
+        """As flags and as a scene file."""
+        keys = {**scene, **changes}
+        with self.subTest(subcommand=subcommand, given="flags", changes=changes):
+            self.assert_refused(words, subcommand, *flags(keys))
+        with self.subTest(subcommand=subcommand, given="file", changes=changes):
+            self.write("scene.toml", toml(keys))
+            self.assert_refused(words, subcommand, config="scene.toml")
+
+
+class Keys(RefusingTest):
+    def check_cases(self, cases):
+        for case in cases:
+            self.assert_refused_both_ways(*case)
+
+    def test_box(self):
+        self.check_cases(BOX_CASES)
+
+    def test_disks(self):
+        self.check_cases(DISK_CASES)
+
+    def test_bulk(self):
+        self.check_cases(BULK_CASES)
+
+    def test_request(self):
+        for name, text in SENSORS.items():
+            self.write(name, text)
+        self.check_cases(REQUEST_CASES)
+
+    def test_real_numbers(self):
+        for subcommand, scene, keys in REAL_KEYS:
+            for key in keys:
+                for value in NUMBERS_THAT_ARE_NONE:
+                    accepted = "must be a number" if value in ("x", "1x", "1,5") else POSITIVE
+                    self.assert_refused_both_ways(subcommand, scene, {key: value},
+                                                  [key, value.replace("1e999", "inf"), accepted])
+
+    def test_empty_values(self):
+        for key in ("width", "count", "seed", "samples", "view_angles", "light_angles", "covariance",
+                    "index", "near_sensors", "method", "reversed_paths"):
+            for text in (f"{key} =\n", f'{key} = ""\n', f"{key} = []\n"):
+                with self.subTest(text=text):
+                    scene = {**BOX, key: None}
+                    self.write("scene.toml", toml(scene) + text)
+                    self.assert_refused([key], "covariance", config="scene.toml")
+            with self.subTest(flag=key):
+                self.assert_refused([key], "covariance", *flags({**BOX, key: None}), f"--{key}")
+                self.assert_refused([key], "covariance", *flags({**BOX, key: None}), f"--{key}=")
+
+    def test_a_scalar_given_twice(self):
+        for line in ("width = 3", "scatterer = \"tm\"", "seed = 3", "width = [3, 4]"):
+            with self.subTest(line=line):
+                self.write("scene.toml", toml({**BOX, "scatterer": "point", "seed": 1}) + line)
+                self.assert_refused([line.split()[0]], "covariance", config="scene.toml")
+        self.assert_refused(["width"], "covariance", *flags(BOX), "--width", 3)
+
+
+class SceneFile(RefusingTest):
+    def refused_text(self, text, words):
+        with self.subTest(text=text):
+            self.write("scene.toml", toml(BOX) + text)
+            self.assert_refused(words, "covariance", config="scene.toml")
+
+    def test_tables(self):
+        self.refused_text("[medium]\nalbedo = 0.9\n", ["medium"])
+        self.refused_text("[medium]\n", ["medium"])
+        self.refused_text("[[medium]]\nalbedo = 0.9\n", ["medium"])
+        self.refused_text("medium.albedo = 0.9\n", ["medium"])
+        self.refused_text("[covariance]\nalbedo = 0.9\n", ["covariance"])
+
+    def test_what_is_no_key(self):
+        self.refused_text("nonsense\n", ["nonsense", "unknown"])
+        self.refused_text('help = true\n', ["help", "unknown"])
+        self.refused_text('config = "other.toml"\n', ["config", "unknown"])
+        self.refused_text('out = "other.h5"\n', ["out", "unknown"])
+        self.refused_text("print-config = true\n", ["print-config", "unknown"])
+        self.refused_text("resume = 7\n", ["resume", "7"])
+
+    def test_unreadable(self):
+        self.assert_refused(["config", "none.toml"], "covariance", *flags(BOX), config="none.toml")
+        (self.folder / "folder").mkdir()
+        self.assert_refused(["config", "folder"], "covariance", *flags(BOX), config="folder")
+
+    def test_binary(self):
+        with h5py.File(self.folder / "binary.toml", "w") as file:
+            file["x"] = list(range(1000))
+        self.assert_refused(["binary.toml"], "covariance", config="binary.toml")
+        (self.folder / "noise.toml").write_bytes(bytes(range(256)) * 40)
+        self.assert_refused(["noise.toml"], "covariance", config="noise.toml")
+
+    def test_an_empty_file_says_what_is_missing(self):
+        self.write("empty.toml", "")
+        self.assert_refused(["depth"], "covariance", config="empty.toml")
+
+
+class AcceptedScenes(ProgramTest):
+    """The other side: what a scene file may look like."""
+
+    def resolved(self, text):
+        self.write("scene.toml", text)
+        return self.call("covariance", "--config", "scene.toml", "--print-config").stdout
+
+    def test_comments_blank_lines_and_long_arrays(self):
+        plain = toml({**BOX, **TILTS})
+        decorated = plain.replace("width = 20", "# a box\n\n  width=20   # wavelengths\r")
+        decorated = decorated.replace("[0, 0.04, 0.16]", "[0,\n  0.04,  # small\n  0.16]")
+        self.assertEqual(self.resolved(decorated), self.resolved(plain))
+
+    def test_without_a_newline_at_the_end(self):
+        self.assertEqual(self.resolved(toml(BOX)[:-1]), self.resolved(toml(BOX)))
+
+    def test_shipped_scenes(self):
+        for scene in sorted((DATA / "scenes").glob("*.toml")):
+            subcommand = "sweep" if scene.stem == "slab_hg" else "validate"
+            with self.subTest(scene=scene.name):
+                text = self.call(subcommand, "--config", scene, "--print-config").stdout
+                self.assertNotIn("[]", text)
+        self.assertEqual(text.split("tilts=")[1].split("]")[0].count(","), 32)
+
+    def test_a_flag_beats_the_file(self):
+        self.write("scene.toml", toml(BOX))
+        text = self.call("covariance", "--width", 3, "--config", "scene.toml", "--print-config").stdout
+        self.assertIn("width=3\n", text)
+        self.assertNotIn("20", text)
+
+
+class Placements(RefusingTest):
+    def refused(self, text, words, **keys):
+        with self.subTest(text=text):
+            (self.folder / "disks.csv").write_bytes(text if isinstance(text, bytes) else text.encode())
+            scatterer = {"scatterer": "tm", "placement": "disks.csv", **keys}
+            self.assert_refused(words, "solve", *flags(scatterer))
+
+    def test_malformed(self):
+        self.refused("", ["disks.csv", "empty"])
+        self.refused("x,radius\n1,2\n", ["disks.csv", "column z"])
+        self.refused("x,z\n1,2\n", ["disks.csv", "column radius"])
+        self.refused("x,z,radius\n1,two,0.1\n", ["disks.csv", "line 2", "z", "two"])
+        self.refused("x,z,radius\n1,nan,0.1\n", ["disks.csv", "line 2", "z", "nan"])
+        self.refused("x,z,radius\n1,inf,0.1\n", ["disks.csv", "line 2", "z", "inf"])
+        self.refused("x,z,radius\n1,2\n", ["disks.csv", "line 2", "expected 3 fields, found 2"])
+        self.refused("x,z,radius\n1,2,3,4\n", ["disks.csv", "line 2", "expected 3 fields, found 4"])
+        self.refused("x,z,radius\n1,2,\n", ["disks.csv", "line 2", "radius"])
+        self.refused("x,z,radius,radius\n1,2,3,4\n", ["disks.csv", "radius", "twice"])
+        self.refused("x,z,radius,colour\n1,2,3,4\n", ["disks.csv", "colour"])
+        self.refused(bytes(range(256)) * 9, ["disks.csv"])
+
+    def test_values(self):
+        self.refused("x,z,radius\n1,2,0\n", ["disks.csv", "radius = 0", POSITIVE])
+        self.refused("x,z,radius\n1,2,-1\n", ["disks.csv", "radius = -1", POSITIVE])
+        self.refused("x,z,radius,index_re,index_im\n1,2,0.1,0,0\n", ["disks.csv", "index"])
+        self.refused("x,z,radius,index_re,index_im\n1,2,0.1,1.5,-1\n", ["disks.csv", "index"])
+        self.refused("x,z,radius,index_im\n1,2,0.1,1\n", ["disks.csv", "index_re"])
+
+    def test_overlaps(self):
+        for second in ("0.1,0", "0,0", "0.2,0"):
+            self.refused(f"x,z,radius\n5,5,0.1\n0,0,0.1\n{second},0.1\n", ["disks.csv", "2 and 3"])
+        self.refused("x,z\n0,0\n0,0\n", ["disks.csv", "1 and 2"], scatterer="point")
+
+    def test_keys_that_contradict_the_file(self):
+        self.write("disks.csv", "x,z,radius\n1,2,0.1\n")
+        placed = {"scatterer": "tm", "placement": "disks.csv"}
+        for key in ("width", "depth", "count", "density", "mean_free_path", "optical_depth",
+                    "min_gap"):
+            with self.subTest(key=key):
+                self.assert_refused([key, "disks.csv"], "solve", *flags({**placed, key: 1}))
+        self.assert_refused(["domain", "disks.csv"], "solve", *flags({**placed, "domain": "box"}))
+        self.assert_refused(["scatterer = hg"], "solve", *flags({**placed, "scatterer": "hg"}))
+
+    def test_sensor_inside_a_disk(self):
+        self.write("disks.csv", "x,z,radius\n1,2,0.5\n")
+        for place in ("1.2,2", "1,2", "1.5,2"):
+            self.write("sensors.csv", f"x,z\n8,8\n{place}\n")
+            self.assert_refused(["sensor", "disk"], "solve", scatterer="tm", placement="disks.csv",
+                                near_sensors="sensors.csv")
+
+    def test_sensor_on_a_point(self):
+        self.write("points.csv", "x,z\n1,2\n")
+        self.write("sensors.csv", "x,z\n1,2\n")
+        self.assert_refused(["sensor"], "solve", placement="points.csv", near_sensors="sensors.csv")
+
+
+class Output(RefusingTest):
+    COMMANDS = {"covariance": BOX, "validate": BOX, "solve": BOX, "sweep": SWEEP}
+
+    def test_out_that_cannot_be_written(self):
+        self.write("file", "a regular file")
+        (self.folder / "folder").mkdir()
+        for subcommand, scene in self.COMMANDS.items():
+            for out in ("none/result.h5", "file/result.h5", "/proc/result.h5", "/sys/result.h5",
+                        "folder", "folder/", "/dev/null", "n" * 300 + ".h5"):
+                with self.subTest(subcommand=subcommand, out=out):
+                    self.assert_refused([out], subcommand, *flags(scene), out=out)
+
+    def test_out_missing(self):
+        for subcommand, scene in self.COMMANDS.items():
+            with self.subTest(subcommand=subcommand):
+                self.assert_refused(["out", "--out"], subcommand, *flags(scene), out=None)
+                self.assert_refused(["out"], subcommand, *flags(scene), "--out", out=None)
+                self.assert_refused(["out"], subcommand, *flags(scene), "--out=", out=None)
+
+    def test_out_before_a_scene_that_is_wrong(self):
+        self.assert_refused(["width"], "covariance", *flags({**BOX, "width": -3}))
+
+
+class Words(RefusingTest):
+    def test_subcommand(self):
+        self.assert_refused(["subcommand = foo", "solve", "covariance", "validate", "sweep"], "foo")
+        self.assert_refused(["subcommand", "--config"], "--config", "x.toml")
+
+    def test_unknown_flags_and_stray_words(self):
+        for subcommand, scene in Output.COMMANDS.items():
+            self.assert_refused(["widht", "unknown"], subcommand, *flags(scene), "--widht", 3)
+            self.assert_refused(["-x"], subcommand, *flags(scene), "-x")
+            self.assert_refused(["stray"], subcommand, "stray", *flags(scene))
+
+    def test_abbreviations_are_not_guessed(self):
+        self.assert_refused(["wid", "unknown"], "covariance", *flags(BOX), "--wid", 3)
+
+
+class Resume(RefusingTest):
+    KEYS = {**BOX, "samples": 3000, "resume": True}
+
+    def test_what_is_no_run(self):
+        self.write("text.h5", "not HDF5")
+        self.refused_resume("text.h5", ["text.h5"])
+        with h5py.File(self.folder / "other.h5", "w") as file:
+            file["x"] = 1.0
+        self.refused_resume("other.h5", ["other.h5", "another run"])
+        (self.folder / "empty.h5").write_bytes(b"")
+        self.refused_resume("empty.h5", ["empty.h5"])
+
+    def test_another_run(self):
+        self.call("covariance", **{**self.KEYS, "seed": 2, "target_error": 1e-6}, out="run.h5", status=3)
+        self.refused_resume("run.h5", ["run.h5", "another run", "seed"])
+
+    def test_a_truncated_run(self):
+        self.call("covariance", **self.KEYS, target_error=1e-6, out="run.h5", status=3)
+        whole = (self.folder / "run.h5").read_bytes()
+        for size in (len(whole) - 1, len(whole) // 2, 100):
+            with self.subTest(size=size):
+                (self.folder / "run.h5").write_bytes(whole[:size])
+                self.refused_resume("run.h5", ["run.h5"])
+
+    def refused_resume(self, name, words):
+        before = self.listing()
+        done = self.call("covariance", **self.KEYS, out=name, status=2)
+        self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
+        for word in words:
+            self.assertIn(word, done.stderr)
+        self.assertEqual(self.listing(), before)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,52 @@
+#include <doctest/doctest.h>
+
+#include <boost/math/distributions/chi_squared.hpp>
+#include <cmath>
+#include <vector>
+
+#include "core/random.h"
+
+using namespace flatspeckle;
+
+TEST_CASE("random numbers are addressed: seed, stream, batch and draw alone fix them") {
+  RandomStream a(7, 1, 5), b(7, 1, 5);
+  for (int i = 0; i < 100; ++i) CHECK(a.bits() == b.bits());
+  const auto first = [](std::uint64_t seed, std::uint64_t stream, std::uint64_t batch) {
+    return RandomStream(seed, stream, batch).bits();
+  };
+  CHECK(first(7, 1, 5) != first(8, 1, 5));
+  CHECK(first(7, 1, 5) != first(7, 2, 5));
+  CHECK(first(7, 1, 5) != first(7, 1, 6));
+}
+
+TEST_CASE("random bits are those of Threefry4x64-20") {
+  // Known answer of Random123 (kat_vectors): counter 0, key 0.
+  RandomStream zero(0, 0, 0);
+  CHECK(zero.bits() == 0x09218ebde6c85537ULL);
+  CHECK(zero.bits() == 0x55941f5266d86105ULL);
+  CHECK(zero.bits() == 0x4bd25e16282434dcULL);
+  CHECK(zero.bits() == 0xee29ec846bd2e40bULL);
+}
+
+TEST_CASE("uniform numbers are uniform, within and across batches") {
+  constexpr int bins = 64, draws = 200'000;
+  std::vector<double> within(bins), across(bins);
+  RandomStream stream(3, 1, 0);
+  double sum = 0;
+  for (int i = 0; i < draws; ++i) {
+    const double u = stream.uniform();
+    REQUIRE(u > 0);
+    REQUIRE(u < 1);
+    sum += u;
+    ++within[static_cast<std::size_t>(u * bins)];
+    const double first = RandomStream(3, 1, static_cast<std::uint64_t>(i)).uniform();
+    ++across[static_cast<std::size_t>(first * bins)];
+  }
+  CHECK(sum / draws == doctest::Approx(0.5).epsilon(4 / std::sqrt(12.0 * draws) / 0.5));
+  const double limit = quantile(complement(boost::math::chi_squared(bins - 1), 1e-4));
+  for (const auto* counts : {&within, &across}) {
+    double chi2 = 0;
+    for (double count : *counts) chi2 += std::pow(count - 1.0 * draws / bins, 2) / (1.0 * draws / bins);
+    CHECK(chi2 < limit);
+  }
+}

@@ -1,0 +1,143 @@
+#include <doctest/doctest.h>
+
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <thread>
+
+#include "core/interrupt.h"
+#include "core/random.h"
+#include "core/runner.h"
+
+using namespace flatspeckle;
+
+namespace {
+
+std::vector<Complex> mean_of(double samples, std::span<const Complex> sums) {
+  std::vector<Complex> mean(sums.begin(), sums.end());
+  for (auto& value : mean) value /= samples;
+  return mean;
+}
+
+/// Mean of 100 numbers 1 + uniform per batch; uneven run times put batches out of order.
+BatchJob uneven_job() {
+  BatchJob job;
+  job.size = 2;
+  job.samples_per_batch = 100;
+  job.run = [](std::uint64_t number, std::span<Complex> sums) {
+    RandomStream random(11, 1, number);
+    for (int i = 0; i < 100; ++i) {
+      sums[0] += 1 + random.uniform();
+      sums[1] += Complex(0, random.uniform());
+    }
+    if (number % 7 == 0) std::this_thread::sleep_for(std::chrono::microseconds(300));
+  };
+  job.relative_error = [](const GroupedSums& sums) {
+    return relative_error(jackknife(sums, mean_of));
+  };
+  return job;
+}
+
+RunState run(const BatchJob& job, StopRule stop, int threads, RunState state = {}) {
+  RunOptions options{stop, threads, "", {}};
+  run_batches(job, options, state);
+  return state;
+}
+
+bool same_sums(const RunState& a, const RunState& b) {
+  return a.sums.state().sums == b.sums.state().sums && a.sums.batches() == b.sums.batches();
+}
+
+}  // namespace
+
+TEST_CASE("the result depends on the number of batches, not on threads") {
+  const auto job = uneven_job();
+  StopRule stop;
+  stop.samples = 50'000;
+  const auto one = run(job, stop, 1);
+  CHECK(one.sums.batches() == 500);
+  for (int threads : {2, 4, 13}) CHECK(same_sums(one, run(job, stop, threads)));
+}
+
+TEST_CASE("samples are rounded up to whole batches") {
+  StopRule stop;
+  stop.samples = 101;
+  CHECK(run(uneven_job(), stop, 2).sums.total_samples() == 200);
+}
+
+TEST_CASE("a target error stops at the same batch whatever the threads") {
+  StopRule stop;
+  stop.target_error = 2e-3;
+  const auto job = uneven_job();
+  const auto one = run(job, stop, 1), four = run(job, stop, 4);
+  CHECK(one.trace.relative_error.back() <= 2e-3);
+  CHECK(one.trace.relative_error[one.trace.relative_error.size() - 2] > 2e-3);
+  CHECK(same_sums(one, four));
+}
+
+TEST_CASE("a resumed run equals an uninterrupted one") {
+  const auto job = uneven_job();
+  StopRule half, whole;
+  half.samples = 12'300;
+  whole.samples = 30'000;
+  CHECK(same_sums(run(job, whole, 3), run(job, whole, 2, run(job, half, 3))));
+}
+
+TEST_CASE("the trace falls with slope -1/2") {
+  StopRule stop;
+  stop.samples = 400'000;
+  const auto trace = run(uneven_job(), stop, 2).trace;
+  double n = 0, x = 0, y = 0, xx = 0, xy = 0;
+  for (std::size_t i = 0; i < trace.samples.size(); ++i) {
+    if (trace.samples[i] < 5000) continue;
+    const double lx = std::log(trace.samples[i]), ly = std::log(trace.relative_error[i]);
+    n += 1, x += lx, y += ly, xx += lx * lx, xy += lx * ly;
+  }
+  CHECK(n > 10);
+  CHECK((n * xy - x * y) / (n * xx - x * x) == doctest::Approx(-0.5).epsilon(0.1));
+  for (std::size_t i = 1; i < trace.wall_s.size(); ++i) CHECK(trace.wall_s[i] >= trace.wall_s[i - 1]);
+}
+
+TEST_CASE("a time budget ends a run that has no other end") {
+  StopRule stop;
+  stop.seconds = 0.05;
+  const auto state = run(uneven_job(), stop, 2);
+  CHECK(state.sums.batches() > 0);
+  CHECK(state.wall_s < 10);
+}
+
+TEST_CASE("an error in a batch comes out of the run") {
+  auto job = uneven_job();
+  job.run = [](std::uint64_t number, std::span<Complex>) {
+    if (number == 20) throw std::runtime_error("batch 20");
+  };
+  StopRule stop;
+  stop.samples = 100'000;
+  CHECK_THROWS_WITH(run(job, stop, 4), "batch 20");
+}
+
+// Last: the flag stays raised for the rest of this program.
+TEST_CASE("zz a signal ends the run after the batches in hand, without a gap") {
+  catch_interrupts();
+  auto job = uneven_job();
+  std::atomic<bool> raised{false};
+  const auto body = job.run;
+  job.run = [&](std::uint64_t number, std::span<Complex> sums) {
+    body(number, sums);
+    if (number == 50 && !raised.exchange(true)) std::raise(SIGTERM);
+  };
+  StopRule stop;
+  stop.samples = 10'000'000;
+  RunState state;
+  CHECK(run_batches(job, {stop, 4, "", {}}, state) == StopReason::interrupted);
+  CHECK(state.sums.batches() > 50);
+  CHECK(state.sums.batches() < 200);
+  GroupedSums direct(2);
+  for (std::uint64_t b = 0; b < state.sums.batches(); ++b) {
+    std::vector<Complex> sums(2);
+    body(b, sums);
+    direct.add(100, sums);
+  }
+  CHECK(direct.state().sums == state.sums.state().sums);
+}

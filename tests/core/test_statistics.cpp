@@ -1,0 +1,108 @@
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "core/error.h"
+#include "core/random.h"
+#include "core/statistics.h"
+
+using namespace flatspeckle;
+
+namespace {
+
+std::vector<Complex> mean_of(double samples, std::span<const Complex> sums) {
+  std::vector<Complex> mean(sums.begin(), sums.end());
+  for (auto& value : mean) value /= samples;
+  return mean;
+}
+
+}  // namespace
+
+TEST_CASE("the jackknife of a mean is the standard error of the mean") {
+  GroupedSums sums(1);
+  std::vector<Complex> values;
+  RandomStream random(1, 1, 0);
+  for (int i = 0; i < 100; ++i) {
+    values.emplace_back(random.uniform(), 3 * random.uniform());
+    sums.add(1, {&values.back(), 1});
+  }
+  Complex mean = 0;
+  for (auto value : values) mean += value / 100.0;
+  double variance = 0;
+  for (auto value : values) variance += std::norm(value - mean) / 99.0;
+  const auto estimate = jackknife(sums, mean_of);
+  CHECK(std::abs(estimate.value[0] - mean) < 1e-14);
+  CHECK(estimate.error[0] == doctest::Approx(std::sqrt(variance / 100)).epsilon(1e-10));
+}
+
+TEST_CASE("with more batches than groups, and groups of unequal size, errors stay right") {
+  // 300 batches in 256 groups: 44 groups hold two batches. The spread of many such estimates is
+  // known: a uniform has variance 1/12.
+  double mean_variance = 0, mean_error2 = 0;
+  constexpr int repeats = 400, batches = 300;
+  for (int r = 0; r < repeats; ++r) {
+    RandomStream random(2, 1, static_cast<std::uint64_t>(r));
+    GroupedSums sums(1);
+    for (int b = 0; b < batches; ++b) {
+      const Complex u = random.uniform();
+      sums.add(1, {&u, 1});
+    }
+    CHECK(sums.groups() == 256);
+    const auto estimate = jackknife(sums, mean_of);
+    mean_variance += std::norm(estimate.value[0] - 0.5) / repeats;
+    mean_error2 += estimate.error[0] * estimate.error[0] / repeats;
+  }
+  const double expected = 1.0 / 12 / batches;
+  CHECK(mean_error2 == doctest::Approx(expected).epsilon(0.03));
+  CHECK(mean_variance == doctest::Approx(expected).epsilon(4 * std::sqrt(2.0 / repeats)));
+}
+
+TEST_CASE("the jackknife covers a ratio, for which no single batch has an error") {
+  // X/Y with X = y + noise: the delta method gives the error of the ratio of means.
+  const auto ratio = [](double, std::span<const Complex> s) {
+    return std::vector<Complex>{s[0] / s[1]};
+  };
+  int covered = 0;
+  constexpr int repeats = 400;
+  for (int r = 0; r < repeats; ++r) {
+    RandomStream random(4, 1, static_cast<std::uint64_t>(r));
+    GroupedSums sums(2);
+    for (int b = 0; b < 200; ++b) {
+      const double y = 1 + random.uniform(), x = 2 * y + random.uniform() - 0.5;
+      const Complex row[] = {x, y};
+      sums.add(1, row);
+    }
+    const auto estimate = jackknife(sums, ratio);
+    if (std::abs(estimate.value[0] - 2.0) < 2 * estimate.error[0]) ++covered;
+  }
+  // 95.4 % expected, standard deviation of the count 4.2
+  CHECK(covered > 0.954 * repeats - 4 * 4.2);
+  CHECK(covered < 0.954 * repeats + 4 * 4.2);
+}
+
+TEST_CASE("one batch has no error, and nothing has none") {
+  GroupedSums sums(1);
+  const Complex one = 1;
+  sums.add(1, {&one, 1});
+  CHECK(jackknife(sums, mean_of).error[0] == std::numeric_limits<double>::infinity());
+  CHECK(relative_error({{0, 0}, {0, 0}}) == 0);
+  CHECK(relative_error({{3, Complex(0, 4)}, {0.3, 0.4}}) == doctest::Approx(0.1));
+}
+
+TEST_CASE("state goes out and in bit for bit; another shape is refused") {
+  GroupedSums sums(3), other(3);
+  const Complex row[] = {1.5, Complex(0, 2), -3};
+  for (int i = 0; i < 5; ++i) sums.add(2, row);
+  other.restore(sums.state());
+  CHECK(other.batches() == 5);
+  CHECK(other.total() == sums.total());
+  CHECK(other.total_samples() == 10);
+  GroupedSums narrow(1);
+  CHECK_THROWS_AS(narrow.restore(GroupedSums(3).state()), InputError);
+}
+
+TEST_CASE("long rows get fewer groups, so that the sums fit in memory") {
+  CHECK(GroupedSums(10).state().samples.size() == 256);
+  CHECK(GroupedSums(1 << 20).state().samples.size() == 16);
+}

@@ -1,0 +1,131 @@
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "core/error.h"
+#include "flatland/scene.h"
+
+using namespace flatspeckle;
+
+namespace {
+
+SceneSpec box_points() {
+  SceneSpec spec;
+  spec.width = 20;
+  spec.depth = 10;
+  spec.count = 31;
+  return spec;
+}
+
+SceneSpec box_disks() {
+  SceneSpec spec = box_points();
+  spec.scatterer = "tm";
+  spec.radius = 0.5;
+  return spec;
+}
+
+template <typename Change>
+void refused(SceneSpec spec, Change change) {
+  change(spec);
+  CHECK_THROWS_AS(make_scene(spec), InputError);
+}
+
+constexpr double nan_value = std::numeric_limits<double>::quiet_NaN();
+
+}  // namespace
+
+TEST_CASE("the bulk of resonant points") {
+  const Scene scene = make_scene(box_points());
+  const double k = 2 * std::numbers::pi;
+  CHECK(scene.medium.cross_sections.scattering == doctest::Approx(4 / k));
+  CHECK(scene.medium.mu_t == doctest::Approx(31.0 / 200 * 4 / k));
+  CHECK(scene.medium.albedo == doctest::Approx(1));
+  CHECK(scene.medium.g == doctest::Approx(0));
+}
+
+TEST_CASE("each way to state a density gives the same medium") {
+  const Scene by_count = make_scene(box_points());
+  SceneSpec spec = box_points();
+  spec.count.reset();
+  spec.density = 31.0 / 200;
+  CHECK(make_scene(spec).medium.mu_t == doctest::Approx(by_count.medium.mu_t));
+  spec.density.reset();
+  spec.mean_free_path = 1 / by_count.medium.mu_t;
+  CHECK(make_scene(spec).medium.density == doctest::Approx(31.0 / 200));
+  spec.mean_free_path.reset();
+  spec.optical_depth = 10 * by_count.medium.mu_t;
+  CHECK(make_scene(spec).medium.density == doctest::Approx(31.0 / 200));
+}
+
+TEST_CASE("the optical theorem: albedo 1 without absorption, the stated albedo with it") {
+  SceneSpec spec = box_points();
+  spec.albedo = 0.8;
+  CHECK(make_scene(spec).medium.albedo == doctest::Approx(0.8));
+  for (const char* kind : {"tm", "te", "soft", "hard"}) {
+    SceneSpec disks = box_disks();
+    disks.scatterer = kind;
+    CHECK(make_scene(disks).medium.albedo == doctest::Approx(1).epsilon(1e-12));
+  }
+}
+
+TEST_CASE("no scatterers is a scene") {
+  SceneSpec spec = box_points();
+  spec.count = 0;
+  CHECK(make_scene(spec).medium.mu_t == 0);
+}
+
+TEST_CASE("bad scenes are refused") {
+  const auto points = box_points();
+  refused(points, [](auto& s) { s.width = -3; });
+  refused(points, [](auto& s) { s.width.reset(); });
+  refused(points, [](auto& s) { s.depth = nan_value; });
+  refused(points, [](auto& s) { s.wavelength = 0; });
+  refused(points, [](auto& s) { s.density = 1; });
+  refused(points, [](auto& s) { s.count.reset(); });
+  refused(points, [](auto& s) { s.count = -1; });
+  refused(points, [](auto& s) { s.domain = "sphere"; });
+  refused(points, [](auto& s) { s.domain = "slab"; });
+  refused(points, [](auto& s) { s.radius = 1; });
+  refused(points, [](auto& s) { s.albedo = 0; });
+  refused(points, [](auto& s) { s.albedo = 0.5, s.phase_shift = 1; });
+  refused(points, [](auto& s) { s.placement = "hard_disk"; });
+  refused(points, [](auto& s) { s.light_angles = {}; });
+  refused(points, [](auto& s) { s.view_angles = {nan_value}; });
+  refused(points, [](auto& s) { s.tilts = {0.1}; });
+  refused(points, [](auto& s) { s.covariance = "memory_effect"; });
+  refused(points, [](auto& s) { s.covariance = "pairs", s.pairs = {0, 1, 2}; });
+  const auto disks = box_disks();
+  refused(disks, [](auto& s) { s.radius.reset(); });
+  refused(disks, [](auto& s) { s.index = "0"; });
+  refused(disks, [](auto& s) { s.index = "1.5-0.1i"; });
+  refused(disks, [](auto& s) { s.count = 200; });
+  refused(disks, [](auto& s) { s.min_gap = 2; });
+  refused(disks, [](auto& s) { s.g = 0.5; });
+  refused(disks, [](auto& s) { s.placement = "poisson"; });
+}
+
+TEST_CASE("on a slab only matched pairs correlate, and others are refused") {
+  SceneSpec spec;
+  spec.domain = "slab";
+  spec.scatterer = "hg";
+  spec.depth = 10;
+  spec.optical_depth = 1;
+  spec.covariance = "pairs";
+  spec.pairs = {0, 0.1, 0.2, std::asin(std::sin(0.1) + std::sin(0.2))};
+  CHECK_NOTHROW(make_scene(spec));
+  spec.pairs.back() += 0.01;
+  CHECK_THROWS_AS(make_scene(spec), InputError);
+  spec.pairs = {3, 0.1, 3, 0.1};
+  CHECK_THROWS_AS(make_scene(spec), InputError);
+}
+
+TEST_CASE("complex numbers as people write them") {
+  CHECK(parse_complex("index", "1.5") == Complex(1.5, 0));
+  CHECK(parse_complex("index", "1.5+0.1i") == Complex(1.5, 0.1));
+  CHECK(parse_complex("index", " 0.1 + 5i ") == Complex(0.1, 5));
+  CHECK(parse_complex("index", "1e-3-2.5e+1j") == Complex(1e-3, -25));
+  CHECK(parse_complex("index", "1+i") == Complex(1, 1));
+  for (const char* bad : {"", "i", "1+", "1.5 0.1i", "abc", "nan", "1+0.1"})
+    CHECK_THROWS_AS(parse_complex("index", bad), InputError);
+}

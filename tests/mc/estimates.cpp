@@ -1,0 +1,91 @@
+#include "tests/mc/estimates.h"
+
+#include <sstream>
+
+#include <boost/math/quadrature/gauss.hpp>
+
+namespace flatspeckle::mc::tests {
+
+namespace {
+
+SceneSpec hg_spec(double depth, const HgBulk& bulk, double wavelength) {
+  SceneSpec spec;
+  spec.wavelength = wavelength;
+  spec.depth = depth;
+  spec.scatterer = "hg";
+  spec.g = bulk.g;
+  spec.albedo = bulk.albedo;
+  spec.mean_free_path = bulk.mean_free_path;
+  return spec;
+}
+
+}  // namespace
+
+Scene hg_box(double width, double depth, const HgBulk& bulk, const CovarianceRequest& request,
+             double wavelength) {
+  SceneSpec spec = hg_spec(depth, bulk, wavelength);
+  spec.width = width;
+  Scene scene = make_scene(spec);
+  scene.request = request;
+  return scene;
+}
+
+Scene hg_slab(double depth, const HgBulk& bulk, const CovarianceRequest& request,
+              double wavelength) {
+  SceneSpec spec = hg_spec(depth, bulk, wavelength);
+  spec.domain = "slab";
+  Scene scene = make_scene(spec);
+  scene.request = request;
+  return scene;
+}
+
+std::vector<View> far_views(const std::vector<double>& angles) {
+  std::vector<View> views;
+  for (double angle : angles) views.push_back(far_view(angle));
+  return views;
+}
+
+Estimate Run::weighted_sum(const std::vector<double>& weights) const {
+  return jackknife(sums, [&](double samples, std::span<const Complex> total) {
+    const auto values = job.covariance(samples, total);
+    double sum = 0;
+    for (std::size_t e = 0; e < values.size(); ++e) sum += weights[e] * values[e].real();
+    return std::vector<Complex>{sum};
+  });
+}
+
+Run run(const Scene& scene, ReversedPaths reversed, std::uint64_t paths, std::uint64_t seed,
+        std::uint64_t paths_per_batch) {
+  Plan plan = make_plan(scene, reversed);
+  if (paths_per_batch > 0) plan.paths_per_batch = paths_per_batch;
+  Run result{covariance_job(scene, plan, seed), {}};
+  RunOptions options;
+  options.stop.samples = paths;
+  options.threads = 2;
+  RunState state;
+  run_batches(result.job.batches, options, state);
+  result.sums = std::move(state.sums);
+  return result;
+}
+
+std::string text(Complex value) {
+  std::ostringstream out;
+  out << value;
+  return out.str();
+}
+
+void Quadrature::add(double from, double to, int panels) {
+  using Rule = boost::math::quadrature::gauss<double, 10>;
+  const double half = (to - from) / (2 * panels);
+  for (int panel = 0; panel < panels; ++panel) {
+    const double middle = from + (2 * panel + 1) * half;
+    for (std::size_t i = 0; i < Rule::abscissa().size(); ++i) {
+      for (const double side : {-1.0, 1.0}) {
+        node.push_back(middle + side * half * Rule::abscissa()[i]);
+        weight.push_back(half * Rule::weights()[i]);
+      }
+    }
+  }
+}
+
+}  // namespace flatspeckle::mc::tests

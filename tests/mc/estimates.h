@@ -1,0 +1,56 @@
+#pragma once
+
+#include <numbers>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include "flatland/scene.h"
+#include "mc/covariance_estimator.h"
+
+namespace flatspeckle::mc::tests {
+
+inline constexpr double pi = std::numbers::pi;
+
+/// Henyey-Greenstein bulk; `request` replaces lights, views and entries.
+struct HgBulk {
+  double mean_free_path = 1, g = 0, albedo = 1;
+};
+Scene hg_box(double width, double depth, const HgBulk& bulk, const CovarianceRequest& request,
+             double wavelength = 1);
+Scene hg_slab(double depth, const HgBulk& bulk, const CovarianceRequest& request,
+              double wavelength = 1);
+
+std::vector<View> far_views(const std::vector<double>& angles);
+
+/// What a run left behind: entries with errors, or any function of them.
+struct Run {
+  FieldJob job;
+  GroupedSums sums;
+
+  Estimate entries() const { return jackknife(sums, job.covariance); }
+  /// sum of weight x Re(entry) over the entries, and its error.
+  Estimate weighted_sum(const std::vector<double>& weights) const;
+};
+
+/// Deterministic: two threads or not. paths_per_batch = 0 keeps the plan's.
+Run run(const Scene& scene, ReversedPaths reversed, std::uint64_t paths, std::uint64_t seed,
+        std::uint64_t paths_per_batch = 0);
+
+/// Within four standard errors, plus a bias that the caller can account for.
+#define CHECK_WITHIN_4_SIGMA(found, error, expected, bias)                            \
+  do {                                                                                \
+    INFO("found ", flatspeckle::mc::tests::text(found), " +- ", error, ", expected ", \
+         flatspeckle::mc::tests::text(expected));                                     \
+    CHECK(std::abs((found) - (expected)) < 4 * (error) + (bias));                     \
+  } while (false)
+
+std::string text(Complex value);
+
+/// Nodes and weights of Gauss-Legendre quadrature over [from, to], `panels` x 10 nodes.
+struct Quadrature {
+  std::vector<double> node, weight;
+  void add(double from, double to, int panels = 1);
+};
+
+}  // namespace flatspeckle::mc::tests
