@@ -42,6 +42,10 @@ std::string explain(const CLI::App& app, const CLI::ParseError& error) {
   if (message.starts_with(not_converted))
     return message.substr(not_converted.size()) + accepted_by(app, message);
   if (dynamic_cast<const CLI::FileError*>(&error) != nullptr) return "config: " + message;
+  if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr) {
+    const bool many = message.find("At Most") != std::string::npos;
+    return message.substr(2, message.find(':') - 2) + (many ? ": must have one value" : ": must have a value");
+  }
   return message;
 }
 

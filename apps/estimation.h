@@ -13,7 +13,7 @@ namespace flatspeckle::apps {
 /// How each method is to be run on a scene.
 struct MethodSettings {
   std::string reversed_paths = "auto";
-  double wave_tolerance = 1e-8;
+  double wave_tolerance = 1e-6;
 };
 
 void add_mc_options(CLI::App& app, MethodSettings& settings);

@@ -1,10 +1,11 @@
+#include <algorithm>
+#include <cctype>
 #include <exception>
 #include <iostream>
 #include <map>
 
 #include "apps/subcommands.h"
 #include "core/error.h"
-#include "core/interrupt.h"
 #include "core/version.h"
 
 namespace {
@@ -45,7 +46,9 @@ int run(const Arguments& arguments) {
   return subcommand->second(arguments);
 }
 
-int fail(const char* what, int status) {
+/// One line, whatever a file or flag that the message quotes may hold.
+int fail(std::string what, int status) {
+  std::replace_if(what.begin(), what.end(), [](unsigned char c) { return std::iscntrl(c); }, '?');
   std::cerr << "flatspeckle: " << what << '\n';
   return status;
 }
@@ -53,7 +56,6 @@ int fail(const char* what, int status) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  catch_interrupts();
   try {
     return run({argv, argv + argc});
   } catch (const InputError& error) {

@@ -9,6 +9,7 @@ namespace flatspeckle::apps {
 namespace {
 
 constexpr double default_target_error = 0.02;
+constexpr int most_threads = 1024;
 
 double positive(const std::string& key, double value) {
   if (!(std::isfinite(value) && value > 0)) throw InputError(key, value, "must be positive");
@@ -34,17 +35,24 @@ void add_run_options(CLI::App& app, RunSettings& settings) {
   app.add_flag("--resume", settings.resume, "Go on from the run that --out holds, if there is one");
 }
 
-StopRule stop_rule(const RunSettings& settings) {
+StopRule stop_rule(const RunSettings& settings, const std::string& samples_key,
+                   const std::optional<std::int64_t>& samples) {
   StopRule stop;
   if (settings.threads < 0) throw InputError("threads", settings.threads, "must not be negative");
-  if (settings.samples) {
-    if (*settings.samples <= 0) throw InputError("samples", *settings.samples, "must be positive");
-    stop.samples = static_cast<std::uint64_t>(*settings.samples);
+  if (settings.threads > most_threads)
+    throw InputError("threads", settings.threads, "must be at most " + std::to_string(most_threads));
+  if (samples) {
+    if (*samples <= 0) throw InputError(samples_key, *samples, "must be positive");
+    stop.samples = static_cast<std::uint64_t>(*samples);
   }
   if (settings.seconds) stop.seconds = positive("seconds", *settings.seconds);
   if (settings.target_error) stop.target_error = positive("target_error", *settings.target_error);
   if (!stop.samples && !stop.seconds && !stop.target_error) stop.target_error = default_target_error;
   return stop;
+}
+
+StopRule stop_rule(const RunSettings& settings) {
+  return stop_rule(settings, "samples", settings.samples);
 }
 
 std::uint64_t seed_of(const RunSettings& settings) {

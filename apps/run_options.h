@@ -23,6 +23,9 @@ void add_run_options(CLI::App& app, RunSettings& settings);
 
 /// Checks the settings; without a stop rule a target error of 2 % is set. Throws InputError.
 StopRule stop_rule(const RunSettings& settings);
+/// The same with a number of samples that has a key of its own.
+StopRule stop_rule(const RunSettings& settings, const std::string& samples_key,
+                   const std::optional<std::int64_t>& samples);
 std::uint64_t seed_of(const RunSettings& settings);
 
 }  // namespace flatspeckle::apps

@@ -34,10 +34,11 @@ void add_medium_options(CLI::App& app, SceneSpec& spec) {
 }
 
 void add_view_options(CLI::App& app, SceneSpec& spec) {
-  app.add_option("--light_angles", spec.light_angles, "Directions of the plane waves, radians from +z")
-      ->capture_default_str();
-  app.add_option("--view_angles", spec.view_angles, "Directions of the far-field views, radians from +z")
-      ->capture_default_str();
+  // Their defaults stay out of the resolved scene: near sensors and pairs take their place.
+  app.add_option("--light_angles", spec.light_angles,
+                 "Directions of the plane waves, radians from +z (default 0)");
+  app.add_option("--view_angles", spec.view_angles,
+                 "Directions of the far-field views, radians from +z (default 0)");
   app.add_option("--near_sensors", spec.near_sensors, "CSV with columns x, z: near-field sensors");
 }
 
@@ -50,6 +51,11 @@ void add_request_options(CLI::App& app, SceneSpec& spec) {
 }
 
 void settle_views(const Subcommand& subcommand, SceneSpec& spec) {
+  if (spec.covariance == "pairs") {
+    for (const char* key : {"light_angles", "view_angles", "near_sensors"})
+      if (subcommand.given(key))
+        throw InputError(std::string(key) + ": covariance = pairs names the angles itself; leave it out");
+  }
   if (!spec.near_sensors.empty() && !subcommand.given("view_angles")) spec.view_angles.clear();
 }
 

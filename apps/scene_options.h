@@ -15,7 +15,7 @@ void add_bulk_options(CLI::App& app, SceneSpec& spec);
 /// Which entries of the covariance.
 void add_request_options(CLI::App& app, SceneSpec& spec);
 
-/// Near sensors take the place of the default far view.
+/// Near sensors take the place of the default far view; pairs name their angles themselves.
 void settle_views(const Subcommand& subcommand, SceneSpec& spec);
 
 }  // namespace flatspeckle::apps

@@ -7,6 +7,7 @@
 #include "apps/subcommands.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "core/interrupt.h"
 #include "core/result_reader.h"
 #include "core/run_state_file.h"
 
@@ -28,6 +29,7 @@ Session::Session(const CommandLine& command_line, const RunSettings& settings, s
     : settings_(settings), identity_(without_keys(command_line.config, keys_of_the_stop)) {
   if (settings_.out.empty()) throw InputError("out is not given: name the result file (--out FILE.h5)");
   check_writable(settings_.out);
+  catch_interrupts();
   provenance_.command_line = command_line.text;
   provenance_.config = command_line.config;
   provenance_.seed = seed_of(settings);
@@ -42,7 +44,7 @@ void Session::resume(const std::string& path) {
   if (!resumed_->has_attribute("/", "identity") ||
       resumed_->attribute<std::string>("/", "identity") != identity_)
     throw InputError("resume: " + path + " holds another run; the scene and the seed must be the same");
-  already_complete_ = !resumed_->has("state");
+  already_complete_ = resumed_->attribute<bool>("/", "converged");
   if (already_complete_) std::cout << path << " is complete; nothing to resume\n";
 }
 
@@ -69,7 +71,7 @@ int Session::finish(const std::function<void(ResultFile&)>& contents) {
     return ExitStatus::interrupted_resumable;
   }
   ResultFile file(settings_.out);
-  write_common(file);
+  write_common(file, converged_);
   for (const auto& name : run_names_)
     write_trace(file, trace_group(name), states_.at(name).trace);
   contents(file);
@@ -81,21 +83,21 @@ int Session::finish(const std::function<void(ResultFile&)>& contents) {
   return ExitStatus::error_not_reached;
 }
 
-void Session::write_common(ResultFile& file) const {
+void Session::write_common(ResultFile& file, bool converged) const {
   Provenance provenance = provenance_;
   for (const auto& [name, state] : states_) {
     provenance.wall_s += state.wall_s;
     provenance.cpu_s += state.cpu_s;
     provenance.samples += state.sums.total_samples();
   }
-  provenance.converged = converged_ && !interrupted_;
+  provenance.converged = converged;
   write_provenance(file, provenance);
   file.attribute("/", "identity", identity_);
 }
 
 void Session::save_resumable() const {
   ResultFile file(settings_.out);
-  write_common(file);
+  write_common(file, false);
   write_states(file);
   file.commit();
 }

@@ -40,7 +40,7 @@ class Session {
 
  private:
   void resume(const std::string& path);
-  void write_common(ResultFile& file) const;
+  void write_common(ResultFile& file, bool converged) const;
   void save_resumable() const;
   void write_states(ResultFile& file) const;
 

@@ -42,7 +42,8 @@ std::vector<Scene> sweep_scenes(const SceneSpec& spec, SweepAxes& axes) {
         point.albedo = albedo;
         scenes.push_back(make_scene(point));
         if (scenes.back().medium.mu_s == 0)
-          throw InputError("sweep: a point of it does not scatter, so it has no correlation");
+          throw InputError("albedo", scenes.back().medium.albedo,
+                           "what does not scatter has no correlation; must be in (0, 1]");
       }
     }
   }
@@ -106,9 +107,12 @@ void print_ranges(const std::vector<SweepPoint>& points, const SweepTables& tabl
   std::printf("%13s %8s %8s  %s\n", "optical depth", "g", "albedo", "range q L at C_I = 1/2");
   for (std::size_t i = 0; i < points.size(); ++i) {
     const auto& medium = points[i].scene.medium;
-    std::printf("%13.5g %8.4g %8.6g  %s%.4f +- %.4f\n",
-                medium.mu_t * points[i].scene.domain.depth, medium.g, medium.albedo,
-                tables.censored[i] != 0 ? "beyond " : "", tables.range[i], tables.range_error[i]);
+    std::printf("%13.5g %8.4g %8.6g  ", medium.mu_t * points[i].scene.domain.depth, medium.g,
+                medium.albedo);
+    if (tables.censored[i] != 0)
+      std::printf("beyond %.4g, the largest tilt\n", tables.range[i]);
+    else
+      std::printf("%.4g +- %.2g\n", tables.range[i], tables.range_error[i]);
   }
 }
 

@@ -131,12 +131,11 @@ int validate(const Arguments& arguments) {
   settle_views(command, spec);
   round_density(spec);
   const Scene scene = make_scene(spec);
-  if (scene.medium.mu_s == 0) throw InputError("count", 0, "nothing scatters, nothing to compare");
+  if (scene.medium.mu_s == 0) throw InputError("scatterer", spec.scatterer, "this scene does not scatter, there is nothing to compare");
   const Estimation mc = mc_estimation(scene, methods, seed_of(settings));
   const Estimation wave = wave_estimation(scene, methods, seed_of(settings));
-  RunSettings wave_settings = settings;
-  wave_settings.samples = wave_samples;
-  const StopRule mc_stop = stop_rule(settings), wave_stop = stop_rule(wave_settings);
+  const StopRule mc_stop = stop_rule(settings);
+  const StopRule wave_stop = stop_rule(settings, "wave_samples", wave_samples);
   Session session(command.command_line(), settings, mc.plan + "\n" + wave.plan);
   if (session.already_complete()) return ExitStatus::done;
   const RunState& mc_state = session.run("mc", "mc", mc.job.batches, mc_stop);

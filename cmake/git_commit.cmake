@@ -2,6 +2,8 @@
 # Writes OUTPUT from INPUT with the checkout's commit, and leaves OUTPUT alone where nothing changed.
 set(COMMIT unknown)
 if(GIT)
+  # Also in a checkout that belongs to somebody else, as in a container.
+  set(GIT ${GIT} -c safe.directory=${SOURCE_DIR})
   # An empty prefix: SOURCE_DIR is the top of a checkout, not a copy inside somebody else's.
   execute_process(COMMAND ${GIT} rev-parse --show-prefix WORKING_DIRECTORY ${SOURCE_DIR}
                   OUTPUT_VARIABLE prefix RESULT_VARIABLE outside ERROR_QUIET

@@ -27,10 +27,13 @@ std::uint64_t checkpoint_after(std::uint64_t batches) {
   return next;
 }
 
+/// One batch alone says nothing about its error.
+constexpr std::uint64_t fewest_batches = 2;
+
 std::uint64_t batch_limit(const StopRule& stop, double samples_per_batch) {
   if (!stop.samples) return std::numeric_limits<std::uint64_t>::max();
-  return static_cast<std::uint64_t>(
-      std::ceil(static_cast<double>(*stop.samples) / samples_per_batch));
+  const double batches = std::ceil(static_cast<double>(*stop.samples) / samples_per_batch);
+  return std::max(static_cast<std::uint64_t>(batches), fewest_batches);
 }
 
 /// Takes batches in any order, merges them in number order, and decides when enough is enough.
@@ -58,7 +61,9 @@ class Merger {
     std::unique_lock lock(mutex_);
     room_.wait(lock, [&] { return reason_ || next_ < state_.sums.batches() + lookahead_; });
     if (interrupted()) stop(StopReason::interrupted);
-    if (options_.stop.seconds && clock_.seconds() >= *options_.stop.seconds) stop(StopReason::seconds);
+    if (options_.stop.seconds && next_ >= fewest_batches &&
+        clock_.seconds() >= *options_.stop.seconds)
+      stop(StopReason::seconds);
     if (reason_ || next_ >= limit_) return std::nullopt;
     return next_++;
   }

@@ -21,7 +21,8 @@ struct BatchJob {
   std::function<double(const GroupedSums&)> relative_error;
 };
 
-/// When to stop; any that is set may. At least one must be.
+/// When to stop; any that is set may. At least one must be. Samples are rounded up to whole batches,
+/// of which there are always two.
 struct StopRule {
   std::optional<std::uint64_t> samples;
   std::optional<double> seconds;

@@ -83,6 +83,8 @@ Placement read_placement(const std::string& path, const Scatterer& scatterer) {
   const Table table = read_csv(path);
   for (const char* name : {"x", "z"})
     if (!table.has(name)) throw InputError(path + ": column " + name + " is missing");
+  if (table.has("index_im") && !table.has("index_re"))
+    throw InputError(path + ": column index_re is missing beside index_im");
   if (scatterer.is_disk() && !table.has("radius") && scatterer.radius <= 0)
     throw InputError(path + ": column radius is missing, and the key radius is not given");
   Placement placement;

@@ -230,10 +230,12 @@ Complex parse_complex(const std::string& key, const std::string& text) {
     throw InputError(key, "\"" + text + "\"", "must be a number such as 1.5 or 1.5+0.1i");
   double imaginary = 0;
   if (match[2].matched) {
-    imaginary = match[3].matched ? std::stod(match[3]) : 1;
+    imaginary = match[3].matched ? std::strtod(match[3].str().c_str(), nullptr) : 1;
     if (match[2] == "-") imaginary = -imaginary;
   }
-  return {std::stod(match[1]), imaginary};
+  const Complex value{std::strtod(match[1].str().c_str(), nullptr), imaginary};
+  if (!std::isfinite(std::abs(value))) throw InputError(key, text, "must be finite");
+  return value;
 }
 
 Scatterer make_scatterer(const SceneSpec& spec) {

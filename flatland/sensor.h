@@ -17,7 +17,7 @@ struct View {
 inline View far_view(double angle) { return {false, angle, {}}; }
 inline View near_sensor(Vec2 point) { return {true, 0, point}; }
 
-/// Reads columns x, z. Throws InputError.
+/// Reads columns x, z; at least one row. Throws InputError.
 std::vector<Vec2> read_points(const std::string& path);
 
 }  // namespace flatspeckle

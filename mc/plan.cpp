@@ -48,7 +48,7 @@ Plan make_plan(const Scene& scene, ReversedPaths reversed) {
     }
   }
   plan.rank_k = request.kind == CovarianceRequest::Kind::full;
-  plan.paths_per_batch = plan.rank_k && request.channels.size() > 200 ? 50 : 1000;
+  plan.paths_per_batch = plan.rank_k && request.channels.size() > 200 ? 50 : 200;
   return plan;
 }
 

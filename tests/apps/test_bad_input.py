@@ -10,7 +10,6 @@ POSITIVE = "must be positive"
 HG_BOX = {"width": 20, "depth": 10, "scatterer": "hg", "optical_depth": 1}
 PAIRS = {"covariance": "pairs", "pairs": [0, 0.1, 0.04, 0.14]}
 SWEEP = {"depth": 100, "optical_depth": [1, 2], "g": [0, 0.5], "tilts": [0, 0.001]}
-NUMBERS_THAT_ARE_NONE = ["-1", "0", "nan", "inf", "-inf", "1e999", "x", "1x", "1,5"]
 
 # subcommand, scene, changed keys, words of the message
 BOX_CASES = [
@@ -64,7 +63,8 @@ BOX_CASES = [
      ["wave_tolerance = nan", "(0, 1)"]),
     ("validate", BOX, {"wave_samples": 0}, ["wave_samples = 0", POSITIVE]),
     ("validate", BOX, {"wave_samples": -1}, ["wave_samples = -1", POSITIVE]),
-    ("validate", BOX, {"count": 0}, ["count = 0", "nothing"]),
+    ("validate", BOX, {"count": 0}, ["point", "does not scatter"]),
+    ("validate", BOX, {"phase_shift": 0}, ["point", "does not scatter"]),
     ("validate", BOX, {"method": "mc"}, ["method", "unknown"]),
 ]
 DISK_CASES = [
@@ -74,7 +74,7 @@ DISK_CASES = [
     ("covariance", CYLINDERS, {"index": "1.5-0.1i"}, ["index = 1.5-0.1i", "amplify"]),
     ("covariance", CYLINDERS, {"index": "abc"}, ["index", "abc", "1.5+0.1i"]),
     ("covariance", CYLINDERS, {"index": "nan"}, ["index", "nan", "1.5+0.1i"]),
-    ("covariance", CYLINDERS, {"index": "1e999"}, ["index", "1e999", "1.5+0.1i"]),
+    ("covariance", CYLINDERS, {"index": "1e999"}, ["index = 1e999", "must be finite"]),
     ("covariance", CYLINDERS, {"g": 0.3}, ["g = 0.3", "hg"]),
     ("covariance", CYLINDERS, {"albedo": 0.3}, ["albedo = 0.3", "hg and point"]),
     ("covariance", CYLINDERS, {"phase_shift": 0.3}, ["phase_shift = 0.3", "point"]),
@@ -100,7 +100,8 @@ BULK_CASES = [
     ("covariance", SLAB, {"albedo": 1.5}, ["albedo = 1.5", "[0, 1]"]),
     ("covariance", SLAB, {"albedo": -0.1}, ["albedo = -0.1", "[0, 1]"]),
     ("covariance", SLAB, {"width": 20}, ["width = 20", "a box"]),
-    ("covariance", SLAB, {"optical_depth": None, "count": 10}, ["count = 10"]),
+    ("covariance", SLAB, {"optical_depth": None, "count": 10},
+     ["hg", "mean_free_path or optical_depth"]),
     ("covariance", SLAB, {"optical_depth": None, "density": 1},
      ["hg", "mean_free_path or optical_depth"]),
     ("covariance", SLAB, {"radius": 0.1}, ["radius = 0.1", "soft, hard, tm and te"]),
@@ -120,7 +121,6 @@ BULK_CASES = [
     ("sweep", SWEEP, {"optical_depth": None}, ["no density", "exactly one"]),
     ("sweep", SWEEP, {"tilts": None}, ["tilts", "at least one"]),
     ("sweep", SWEEP, {"covariance": "full"}, ["covariance", "unknown"]),
-    ("sweep", SWEEP, {"g": [0.5, 0.5]}, ["g = 0.5", "twice"]),
 ]
 REQUEST_CASES = [
     ("covariance", {**BOX, **TILTS}, {"tilts": None}, ["tilts", "at least one"]),
@@ -142,7 +142,7 @@ REQUEST_CASES = [
     ("covariance", BOX, {"near_sensors": "in.csv"}, ["near_sensors", "(0, 5)", "in the medium"]),
     ("covariance", BOX, {"near_sensors": "out.csv", "view_angles": [0.1]},
      ["near_sensors", "either near_sensors or view_angles"]),
-    ("covariance", BOX, {"near_sensors": "no.csv"}, ["near_sensors", "no.csv"]),
+    ("covariance", BOX, {"near_sensors": "no.csv"}, ["no.csv"]),
     ("covariance", BOX, {"near_sensors": "empty.csv"}, ["empty.csv"]),
     ("covariance", BOX, {"near_sensors": "header.csv"}, ["header.csv", "at least one"]),
     ("covariance", SLAB, {"near_sensors": "out.csv"}, ["near_sensors", "far views only"]),
@@ -162,25 +162,23 @@ REAL_KEYS = [
 
 class RefusingTest(ProgramTest):
     def assert_refused(self, words, *command, **keys):
-        """Also with an older result in place, which must survive."""
-        for out in ("new.h5", "old.h5"):
-            self.write("old.h5", "an older result")
-            before = self.listing()
-            done = self.call(*command, **{"out": out, **keys}, status=2)
-            self.assertEqual(done.stdout, "")
-            self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
-            for word in ["flatspeckle: ", *words]:
-                self.assertIn(word, done.stderr)
-            self.assertEqual(self.listing(), before, done.stderr)
+        before = self.listing()
+        done = self.call(*command, **{"out": "new.h5", **keys}, status=2)
+        self.assertEqual(done.stdout, "")
+        self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
+        for word in ["flatspeckle: ", *words]:
+            self.assertIn(word, done.stderr)
+        self.assertEqual(self.listing(), before, done.stderr)
 
     def assert_refused_both_ways(self, subcommand, scene, changes, words):
-        """As flags and as a scene file."""
+        """As flags with a new result file, and as a scene file with an older result in place."""
         keys = {**scene, **changes}
         with self.subTest(subcommand=subcommand, given="flags", changes=changes):
             self.assert_refused(words, subcommand, *flags(keys))
         with self.subTest(subcommand=subcommand, given="file", changes=changes):
             self.write("scene.toml", toml(keys))
-            self.assert_refused(words, subcommand, config="scene.toml")
+            self.write("old.h5", "an older result")
+            self.assert_refused(words, subcommand, config="scene.toml", out="old.h5")
 
 
 class Keys(RefusingTest):
@@ -205,10 +203,19 @@ class Keys(RefusingTest):
     def test_real_numbers(self):
         for subcommand, scene, keys in REAL_KEYS:
             for key in keys:
-                for value in NUMBERS_THAT_ARE_NONE:
-                    accepted = "must be a number" if value in ("x", "1x", "1,5") else POSITIVE
+                for value in ("-1", "nan"):
                     self.assert_refused_both_ways(subcommand, scene, {key: value},
-                                                  [key, value.replace("1e999", "inf"), accepted])
+                                                  [f"{key} = {value}", POSITIVE])
+        for value in ("0", "inf", "-inf", "1e999"):
+            for key in ("width", "seconds", "target_error"):
+                with self.subTest(key=key, value=value):
+                    shown = value.replace("1e999", "inf")
+                    self.assert_refused([f"{key} = {shown}", POSITIVE], "covariance",
+                                        *flags({**BOX, key: value}))
+        for value in ("x", "1x", "1,5", "0.5.5", "--", "1 2"):
+            with self.subTest(value=value):
+                self.assert_refused(["width", value, "must be"], "covariance",
+                                    *flags({**BOX, "width": value}))
 
     def test_empty_values(self):
         for key in ("width", "count", "seed", "samples", "view_angles", "light_angles", "covariance",
@@ -219,14 +226,18 @@ class Keys(RefusingTest):
                     self.write("scene.toml", toml(scene) + text)
                     self.assert_refused([key], "covariance", config="scene.toml")
             with self.subTest(flag=key):
-                self.assert_refused([key], "covariance", *flags({**BOX, key: None}), f"--{key}")
+                self.assert_refused([key], "covariance", f"--{key}", *flags({**BOX, key: None}))
                 self.assert_refused([key], "covariance", *flags({**BOX, key: None}), f"--{key}=")
 
     def test_a_scalar_given_twice(self):
-        for line in ("width = 3", "scatterer = \"tm\"", "seed = 3", "width = [3, 4]"):
+        scene = {**BOX, "scatterer": "point", "seed": 1, "tilts": [0]}
+        for line in ("width = 3", 'scatterer = "tm"', "seed = 1", "tilts = [0]"):
             with self.subTest(line=line):
-                self.write("scene.toml", toml({**BOX, "scatterer": "point", "seed": 1}) + line)
-                self.assert_refused([line.split()[0]], "covariance", config="scene.toml")
+                self.write("scene.toml", toml(scene) + line)
+                self.assert_refused(["scene.toml", "line 7", line.split()[0], "twice"], "covariance",
+                                    config="scene.toml")
+        self.write("scene.toml", toml({**BOX, "width": [3, 4]}))
+        self.assert_refused(["width"], "covariance", config="scene.toml")
         self.assert_refused(["width"], "covariance", *flags(BOX), "--width", 3)
 
 
@@ -237,19 +248,28 @@ class SceneFile(RefusingTest):
             self.assert_refused(words, "covariance", config="scene.toml")
 
     def test_tables(self):
-        self.refused_text("[medium]\nalbedo = 0.9\n", ["medium"])
-        self.refused_text("[medium]\n", ["medium"])
-        self.refused_text("[[medium]]\nalbedo = 0.9\n", ["medium"])
-        self.refused_text("medium.albedo = 0.9\n", ["medium"])
-        self.refused_text("[covariance]\nalbedo = 0.9\n", ["covariance"])
+        for text in ("[medium]\nalbedo = 0.9\n", "[medium]\n", "[[medium]]\nalbedo = 0.9\n",
+                     "[covariance]\nalbedo = 0.9\n", "[default]\nalbedo = 0.9\n"):
+            self.refused_text(text, ["scene.toml, line 4", "without [tables]"])
+        self.refused_text("medium.albedo = 0.9\n", ["scene.toml, line 4", "medium"])
 
     def test_what_is_no_key(self):
-        self.refused_text("nonsense\n", ["nonsense", "unknown"])
-        self.refused_text('help = true\n', ["help", "unknown"])
-        self.refused_text('config = "other.toml"\n', ["config", "unknown"])
-        self.refused_text('out = "other.h5"\n', ["out", "unknown"])
-        self.refused_text("print-config = true\n", ["print-config", "unknown"])
-        self.refused_text("resume = 7\n", ["resume", "7"])
+        self.refused_text('help = true\n', ["help"])
+        self.refused_text('config = "other.toml"\n', ["config"])
+        self.refused_text('out = "other.h5"\n', ["out"])
+        self.refused_text("print-config = true\n", ["print-config"])
+
+    def test_what_is_no_line_of_a_scene(self):
+        for text in ("nonsense\n", "= 3\n", "g\n", "g=\n", "g 3\n", "g = 1 2\n", "g = 1, 2\n",
+                     "g = 0.5 albedo = 1\n", "g == 3\n", "two words = 3\n", '"g" = 3\n'):
+            self.refused_text(text, ["scene.toml, line 4: "])
+
+    def test_what_is_not_closed(self):
+        """It must not lose its last number or take in the keys below."""
+        for text in ("tilts = [0, 0.5", "tilts = [0, 0.5\ng = 1\n", "tilts = [0 0.5]\n",
+                     "tilts = [, 0.5]\n", "tilts = [[0, 0.5]]\n", 'index = "1.5\n', "index = '1.5",
+                     'index = "1.5\\n"\n'):
+            self.refused_text(text, ["scene.toml, line "])
 
     def test_unreadable(self):
         self.assert_refused(["config", "none.toml"], "covariance", *flags(BOX), config="none.toml")
@@ -259,9 +279,10 @@ class SceneFile(RefusingTest):
     def test_binary(self):
         with h5py.File(self.folder / "binary.toml", "w") as file:
             file["x"] = list(range(1000))
-        self.assert_refused(["binary.toml"], "covariance", config="binary.toml")
-        (self.folder / "noise.toml").write_bytes(bytes(range(256)) * 40)
-        self.assert_refused(["noise.toml"], "covariance", config="noise.toml")
+        self.assert_refused(["binary.toml", "text"], "covariance", config="binary.toml")
+        for noise in (bytes(range(256)) * 40, bytes(range(128, 256)) * 40, b"\xff" * 999):
+            (self.folder / "noise.toml").write_bytes(noise)
+            self.assert_refused(["noise.toml"], "covariance", config="noise.toml")
 
     def test_an_empty_file_says_what_is_missing(self):
         self.write("empty.toml", "")
@@ -286,16 +307,17 @@ class AcceptedScenes(ProgramTest):
 
     def test_shipped_scenes(self):
         for scene in sorted((DATA / "scenes").glob("*.toml")):
-            subcommand = "sweep" if scene.stem == "slab_hg" else "validate"
+            subcommand = "sweep" if "slab" in scene.stem else "validate"
             with self.subTest(scene=scene.name):
                 text = self.call(subcommand, "--config", scene, "--print-config").stdout
                 self.assertNotIn("[]", text)
-        self.assertEqual(text.split("tilts=")[1].split("]")[0].count(","), 32)
+                if "slab" in scene.stem:
+                    self.assertEqual(text.split("tilts = ")[1].split("]")[0].count(","), 32)
 
     def test_a_flag_beats_the_file(self):
         self.write("scene.toml", toml(BOX))
         text = self.call("covariance", "--width", 3, "--config", "scene.toml", "--print-config").stdout
-        self.assertIn("width=3\n", text)
+        self.assertIn("width = 3\n", text)
         self.assertNotIn("20", text)
 
 
@@ -317,7 +339,6 @@ class Placements(RefusingTest):
         self.refused("x,z,radius\n1,2,3,4\n", ["disks.csv", "line 2", "expected 3 fields, found 4"])
         self.refused("x,z,radius\n1,2,\n", ["disks.csv", "line 2", "radius"])
         self.refused("x,z,radius,radius\n1,2,3,4\n", ["disks.csv", "radius", "twice"])
-        self.refused("x,z,radius,colour\n1,2,3,4\n", ["disks.csv", "colour"])
         self.refused(bytes(range(256)) * 9, ["disks.csv"])
 
     def test_values(self):
@@ -329,8 +350,8 @@ class Placements(RefusingTest):
 
     def test_overlaps(self):
         for second in ("0.1,0", "0,0", "0.2,0"):
-            self.refused(f"x,z,radius\n5,5,0.1\n0,0,0.1\n{second},0.1\n", ["disks.csv", "2 and 3"])
-        self.refused("x,z\n0,0\n0,0\n", ["disks.csv", "1 and 2"], scatterer="point")
+            self.refused(f"x,z,radius\n5,5,0.1\n0,0,0.1\n{second},0.1\n", ["placement", "2 and 3"])
+        self.refused("x,z\n0,0\n0,0\n", ["placement", "1 and 2"], scatterer="point")
 
     def test_keys_that_contradict_the_file(self):
         self.write("disks.csv", "x,z,radius\n1,2,0.1\n")
@@ -344,15 +365,15 @@ class Placements(RefusingTest):
 
     def test_sensor_inside_a_disk(self):
         self.write("disks.csv", "x,z,radius\n1,2,0.5\n")
-        for place in ("1.2,2", "1,2", "1.5,2"):
+        for place in ("1.2,2", "1,2.1", "1.4999999,2"):
             self.write("sensors.csv", f"x,z\n8,8\n{place}\n")
-            self.assert_refused(["sensor", "disk"], "solve", scatterer="tm", placement="disks.csv",
+            self.assert_refused(["near_sensors = (1.", "outside"], "solve", scatterer="tm", placement="disks.csv",
                                 near_sensors="sensors.csv")
 
     def test_sensor_on_a_point(self):
         self.write("points.csv", "x,z\n1,2\n")
         self.write("sensors.csv", "x,z\n1,2\n")
-        self.assert_refused(["sensor"], "solve", placement="points.csv", near_sensors="sensors.csv")
+        self.assert_refused(["near_sensors", "outside"], "solve", placement="points.csv", near_sensors="sensors.csv")
 
 
 class Output(RefusingTest):

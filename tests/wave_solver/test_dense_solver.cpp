@@ -47,7 +47,7 @@ TEST_CASE("Residual and condition are those of a well-posed problem") {
   CHECK(diagnosis.condition < 1e5);
 }
 
-TEST_CASE("The residual sees a wrong solution") {
+TEST_CASE("The product formed block by block is that of the matrix") {
   TMatrixSystem system(reference_placement("g2", "D"), two_pi, 1e-12);
   const std::vector<double> lights{0};
   const auto sides = system.right_sides(lights);

@@ -1,0 +1,286 @@
+"""What result files hold: shapes, types, scales, errors, provenance, as the README promises."""
+
+import unittest
+
+import h5py
+import numpy as np
+
+from program import BOX, CYLINDERS, SLAB, TILTS, ProgramTest, attributes, datasets
+
+PROVENANCE = {"program": str, "version": str, "git_commit": str, "command_line": str, "config": str,
+              "seed": np.integer, "plan": str, "machine": str, "threads": np.integer, "started": str,
+              "wall_s": float, "cpu_s": float, "samples": float, "converged": np.integer}
+BULK = ["g", "albedo", "k_mean_free_path"]
+MEDIUM = [*BULK, "sigma_s", "sigma_e", "density", "packing_fraction"]
+SCALES = {"light_angle": "rad", "view_angle": "rad", "tilt": "rad", "sensor": "1", "pair": "1",
+          "g": "1", "albedo": "1", "optical_depth": "1"}
+TRACE = ["trace/wall_s", "trace/cpu_s", "trace/samples", "trace/relative_error"]
+
+LIGHTS = {"light_angles": [0, 0.3]}
+VIEWS = {"view_angles": [0.1, 0.5, 3.0]}
+PAIRS = {"covariance": "pairs", "pairs": [0, 0.1, 0.04, 0.14, 0, 0.5, 0, 0.5]}
+SENSORS = {"near_sensors": "sensors.csv"}
+LV, LS = ("light_angle", "view_angle"), ("light_angle", "sensor")
+REAL, COMPLEX = np.float64, np.complex128
+
+# request -> its keys, and its estimates: type and axes (None: an extent without a scale)
+REQUESTS = {
+    "intensity": ({**LIGHTS, **VIEWS}, {"intensity": (REAL, LV), "mean_field": (COMPLEX, LV)}),
+    "near": ({**LIGHTS, **SENSORS}, {"intensity": (REAL, LS)}),
+    "full": ({**LIGHTS, **VIEWS, "covariance": "full"},
+             {"covariance": (COMPLEX, LV + LV), "mean_field": (COMPLEX, LV)}),
+    "pairs": (PAIRS, {"covariance": (COMPLEX, ("pair",))}),
+    "memory_effect": (TILTS, {"covariance": (COMPLEX, ("tilt", "view_angle")),
+                              "reference_intensity": (REAL, ("view_angle",)),
+                              "tilted_intensity": (REAL, ("tilt", "view_angle")),
+                              "field_correlation": (REAL, ("tilt",)),
+                              "memory_effect_range": (REAL, (None,)),
+                              "mean_field": (COMPLEX, LV)}),
+}
+EXTENTS = {"light_angle": 2, "view_angle": 3, "sensor": 2, "pair": 2, "tilt": 3, None: 1}
+SWEEP = {"depth": 100, "optical_depth": [1, 2], "g": [0, 0.5, -0.2], "albedo": [1, 0.9],
+         "tilts": [0, 0.001, 0.002, 0.003], "samples": 4000}
+
+
+class ResultTest(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        self.write("sensors.csv", "# behind the box\nx, z\n0, 15\n2.5, 12\n")
+
+    def open(self, name="result.h5"):
+        file = h5py.File(self.folder / name)
+        self.addCleanup(file.close)
+        return file
+
+    def check_finite(self, file):
+        def check(name, item):
+            values = [(key, value) for key, value in item.attrs.items() if key not in
+                      ("REFERENCE_LIST", "DIMENSION_LIST", "DIMENSION_LABELS")]
+            if isinstance(item, h5py.Dataset):
+                values.append(("values", item[()]))
+            for key, value in values:
+                if np.asarray(value).dtype.kind in "fc":
+                    self.assertTrue(np.all(np.isfinite(value)), f"{name}: {key}")
+        check("/", file)
+        file.visititems(check)
+
+    def check_scales(self, file):
+        for name, units in SCALES.items():
+            if name in file:
+                self.assertEqual(file[name].attrs["CLASS"], b"DIMENSION_SCALE", name)
+                self.assertEqual(file[name].dtype, REAL)
+                self.assertEqual(file[name].attrs["units"], units)
+                self.assertTrue(file[name].attrs["long_name"])
+
+    def check_provenance(self, file, medium, command):
+        for key, kind in PROVENANCE.items():
+            self.assertIsInstance(file.attrs[key], kind, key)
+        for key in medium:
+            self.assertIsInstance(file.attrs[key], float, key)
+        self.assertEqual(file.attrs["program"], "flatspeckle")
+        self.assertIn(command, file.attrs["command_line"])
+        self.assertRegex(file.attrs["started"], r"^\d{4}-\d\d-\d\dT\d\d:\d\d:\d\dZ$")
+        self.assertEqual(file.attrs["converged"], 1)
+
+    def check_estimate(self, file, name, kind, axes, extents=EXTENTS):
+        values, error = file[name], file[name + "_error"]
+        self.assertEqual(values.dtype, kind, name)
+        self.assertEqual(error.dtype, REAL, name)
+        self.assertEqual(values.shape, tuple(extents[axis] for axis in axes), name)
+        self.assertEqual(error.shape, values.shape, name)
+        self.assertTrue(np.all(error[()] >= 0), name)
+        for data in (values, error):
+            self.assertTrue(data.attrs["long_name"])
+            for place, axis in enumerate(axes):
+                if axis is not None:
+                    self.assertEqual(data.dims[place].label, axis)
+                    self.assertEqual(data.dims[place][0].name, "/" + axis)
+
+    def check_trace(self, file, group=""):
+        columns = [file[group + name][()] for name in TRACE]
+        self.assertGreater(len(columns[0]), 1)
+        for column in columns:
+            self.assertEqual(column.shape, columns[0].shape)
+        for rising in columns[:3]:
+            self.assertTrue(np.all(np.diff(rising) >= 0))
+        self.assertTrue(np.all(columns[3] > 0))
+
+    def check_again(self, subcommand):
+        """The stored configuration gives the same data."""
+        with h5py.File(self.folder / "result.h5") as file:
+            self.write("again.toml", file.attrs["config"])
+        self.call(subcommand, config="again.toml", out="again.h5")
+        self.assert_same_data("result.h5", "again.h5")
+        self.assertEqual(attributes(self.folder / "again.h5")["config"],
+                         attributes(self.folder / "result.h5")["config"])
+
+
+class Covariance(ResultTest):
+    def check_request(self, name, scene, samples, medium=MEDIUM, **more):
+        keys, estimates = REQUESTS[name]
+        self.call("covariance", **{**scene, **keys, "samples": samples, **more}, out="result.h5")
+        file = self.open()
+        extents = {**EXTENTS, "light_angle": len(file.get("light_angle", [])),
+                   "view_angle": len(file.get("view_angle", []))}
+        for estimate, (kind, axes) in estimates.items():
+            self.check_estimate(file, estimate, kind, axes, extents)
+        self.check_scales(file)
+        self.check_provenance(file, medium, "covariance")
+        self.check_trace(file)
+        self.check_finite(file)
+        self.assertGreaterEqual(file.attrs["samples"], samples)
+        self.assertNotIn("state", file)
+        self.check_again("covariance")
+        return file
+
+    def test_mc(self):
+        for name in REQUESTS:
+            with self.subTest(request=name):
+                self.check_request(name, BOX, 4000)
+
+    def test_wave(self):
+        for name in REQUESTS:
+            with self.subTest(request=name):
+                self.check_request(name, BOX, 12, method="wave")
+        self.check_request("intensity", CYLINDERS, 12, method="wave")
+
+    def test_slab(self):
+        """Nothing of one scatterer is known there, and no mean field is estimated."""
+        self.call("covariance", **SLAB, **TILTS, samples=4000, out="result.h5")
+        file = self.open()
+        for name in ("covariance", "field_correlation"):
+            self.assertIn(name, file)
+        self.check_provenance(file, BULK, "covariance")
+        self.check_scales(file)
+        self.check_finite(file)
+        self.check_again("covariance")
+
+    def test_full_is_hermitian_and_its_diagonal_is_the_intensity(self):
+        file = self.check_request("full", BOX, 4000)
+        matrix = file["covariance"][()].reshape(6, 6)
+        np.testing.assert_array_equal(matrix, matrix.conj().T)
+        self.check_request("intensity", BOX, 4000)
+        np.testing.assert_allclose(np.diag(matrix).real, self.open()["intensity"][()].ravel(),
+                                   rtol=1e-12)
+
+    def test_memory_effect_agrees_with_pairs(self):
+        """Tilt 0.04 of light 0 seen at sin v = sin 0.1 + sin 0.04."""
+        matched = np.arcsin(np.sin(0.1) + np.sin(0.04))
+        self.call("covariance", **BOX, **TILTS, samples=4000, out="tilts.h5")
+        self.call("covariance", **BOX, covariance="pairs", samples=4000, out="pairs.h5",
+                  pairs=[0, 0.1, 0.04, repr(matched)])
+        tilts, pairs = datasets(self.folder / "tilts.h5"), datasets(self.folder / "pairs.h5")
+        error = np.hypot(tilts["covariance_error"][1, 0], pairs["covariance_error"][0])
+        self.assertLess(abs(tilts["covariance"][1, 0] - pairs["covariance"][0]), 4 * error)
+        self.assertLess(error, 0.1)
+
+    def test_axes_are_those_of_the_request(self):
+        self.check_request("memory_effect", BOX, 4000)
+        file = self.open()
+        np.testing.assert_array_equal(file["tilt"][()], TILTS["tilts"])
+        np.testing.assert_array_equal(file["view_angle"][()], TILTS["view_angles"])
+        np.testing.assert_allclose(file["tilt_q"][()], 2 * np.pi * np.sin(TILTS["tilts"]))
+        self.assertIn(file["memory_effect_range"].attrs["censored"], (0, 1))
+        self.call("covariance", **BOX, **PAIRS, samples=4000, out="result.h5")
+        stored = datasets(self.folder / "result.h5")
+        columns = [stored[f"pair_{what}"] for what in ("light_1", "view_1", "light_2", "view_2")]
+        np.testing.assert_array_equal(np.transpose(columns).ravel(), PAIRS["pairs"])
+
+    def test_few_samples_are_enough_for_an_error(self):
+        for keys in ({"samples": 1}, {"seconds": 1e-9}, {"samples": 1, "method": "wave"}):
+            with self.subTest(keys=keys):
+                self.call("covariance", **BOX, **VIEWS, **keys, out="result.h5")
+                self.check_finite(self.open())
+
+    def test_nothing_scatters(self):
+        for keys in ({"count": 0}, {"count": 0, "method": "wave"}, {"phase_shift": 0}):
+            with self.subTest(keys=keys):
+                self.call("covariance", **{**BOX, **TILTS, **keys}, samples=50, out="result.h5")
+                file = self.open()
+                self.assertTrue(np.all(file["covariance"][()] == 0))
+                self.check_finite(file)
+
+
+class Validate(ResultTest):
+    def test_groups(self):
+        for name, (keys, estimates) in REQUESTS.items():
+            with self.subTest(request=name):
+                done = self.call("validate", **{**BOX, **keys}, samples=4000, wave_samples=12,
+                                 out="result.h5")
+                self.assertIn("combined standard errors", done.stdout)
+                file = self.open()
+                for group in ("mc/", "wave/"):
+                    for estimate in estimates:
+                        self.assertEqual(file[group + estimate].shape,
+                                         file[group + estimate + "_error"].shape)
+                    self.check_trace(file, group)
+                self.check_scales(file)
+                self.check_provenance(file, MEDIUM, "validate")
+                self.check_finite(file)
+                self.check_again("validate")
+
+    def test_a_group_is_what_covariance_gives(self):
+        scene = {**BOX, **REQUESTS["intensity"][0]}
+        self.call("validate", **scene, samples=4000, wave_samples=12, out="both.h5")
+        self.call("covariance", **scene, samples=4000, out="mc.h5")
+        self.call("covariance", **scene, samples=12, method="wave", out="wave.h5")
+        both = datasets(self.folder / "both.h5")
+        for method in ("mc", "wave"):
+            alone = datasets(self.folder / f"{method}.h5")["intensity"]
+            np.testing.assert_array_equal(both[f"{method}/intensity"], alone)
+
+
+class Sweep(ResultTest):
+    def test_shapes(self):
+        done = self.call("sweep", **SWEEP, out="result.h5")
+        self.assertEqual(len(done.stdout.splitlines()), 1 + 2 * 3 * 2 + 1)
+        file = self.open()
+        extents = {"optical_depth": 2, "g": 3, "albedo": 2, "tilt": 4}
+        grid = ("optical_depth", "g", "albedo")
+        self.check_estimate(file, "field_correlation", REAL, (*grid, "tilt"), extents)
+        self.check_estimate(file, "memory_effect_range", REAL, grid, extents)
+        self.assertEqual(file["memory_effect_range"].attrs["censored"].shape, (12,))
+        np.testing.assert_allclose(file["field_correlation"][..., 0], 1, rtol=1e-12)
+        np.testing.assert_allclose(file["k_mean_free_path"][()], 2 * np.pi * 100 / np.array([1, 2]))
+        for name in ("optical_depth", "g", "albedo"):
+            np.testing.assert_array_equal(file[name][()], SWEEP[name])
+        self.check_scales(file)
+        self.check_provenance(file, [], "sweep")
+        self.check_finite(file)
+        for point in range(12):
+            self.check_trace(file, f"points/{point}/")
+        self.check_again("sweep")
+
+    def test_a_point_is_what_covariance_gives(self):
+        """At optical depth 2, g = -0.2, albedo 0.9."""
+        self.call("sweep", **SWEEP, out="sweep.h5")
+        self.call("covariance", out="point.h5", **{**SLAB, **SWEEP, "covariance": "memory_effect",
+                                                   "optical_depth": 2, "g": -0.2, "albedo": 0.9})
+        sweep, point = datasets(self.folder / "sweep.h5"), datasets(self.folder / "point.h5")
+        for name in ("field_correlation", "field_correlation_error"):
+            np.testing.assert_array_equal(sweep[name][1, 2, 1], point[name])
+        self.assertAlmostEqual(sweep["memory_effect_range"][1, 2, 1],
+                               100 * point["memory_effect_range"][0])
+
+
+class Solve(ResultTest):
+    def test_shapes(self):
+        for keys, name, axes in (({**LIGHTS, **VIEWS}, "far_field", LV),
+                                 ({**LIGHTS, **SENSORS}, "near_field", LS)):
+            with self.subTest(field=name):
+                self.call("solve", **CYLINDERS, **keys, out="result.h5")
+                file = self.open()
+                self.assertEqual(file[name].dtype, COMPLEX)
+                self.assertEqual(file[name].shape, tuple(EXTENTS[axis] for axis in axes))
+                self.assertEqual([dim[0].name for dim in file[name].dims], ["/" + a for a in axes])
+                for scalar in ("residual", "condition"):
+                    self.assertEqual(file[f"solve/{scalar}"].shape, ())
+                self.assertEqual(file["solve/basis_order"].shape, (CYLINDERS["count"],))
+                self.check_scales(file)
+                self.check_provenance(file, MEDIUM, "solve")
+                self.check_finite(file)
+                self.check_again("solve")
+
+
+if __name__ == "__main__":
+    unittest.main()
