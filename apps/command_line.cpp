@@ -15,7 +15,8 @@ namespace {
 std::string joined(const Arguments& arguments) {
   std::string text;
   for (const auto& argument : arguments) {
-    const bool plain = argument.find_first_of(" \"'$\\*?[]") == std::string::npos && !argument.empty();
+    const bool plain =
+        argument.find_first_of(" \"'$\\*?[]") == std::string::npos && !argument.empty();
     text += (text.empty() ? "" : " ") + (plain ? argument : "'" + argument + "'");
   }
   return text;
@@ -44,7 +45,8 @@ std::string explain(const CLI::App& app, const CLI::ParseError& error) {
   if (dynamic_cast<const CLI::FileError*>(&error) != nullptr) return "config: " + message;
   if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr) {
     const bool many = message.find("At Most") != std::string::npos;
-    return message.substr(2, message.find(':') - 2) + (many ? ": must have one value" : ": must have a value");
+    return message.substr(2, message.find(':') - 2) +
+           (many ? ": must have one value" : ": must have a value");
   }
   return message;
 }
@@ -69,7 +71,8 @@ void refuse_strays(const std::vector<std::string>& strays) {
   if (strays.empty()) return;
   const std::string& word = strays.front();
   if (word.starts_with("--"))
-    throw InputError(word.substr(2, word.find('=') - 2) + ": unknown key (--help lists the known ones)");
+    throw InputError(word.substr(2, word.find('=') - 2) +
+                     ": unknown key (--help lists the known ones)");
   throw InputError(word + ": expected --key value");
 }
 

@@ -1,8 +1,9 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 #include <vector>
+
+#include <CLI/CLI.hpp>
 
 namespace flatspeckle::apps {
 
@@ -15,8 +16,8 @@ struct CommandLine {
   std::string text;    ///< as typed
 };
 
-/// The parser of a subcommand: a scene file (--config) holds the flags as flat keys, a flag beats the
-/// file, unknown keys are errors.
+/// The parser of a subcommand: a scene file (--config) holds the flags as flat keys, a flag beats
+/// the file, unknown keys are errors.
 class Subcommand {
  public:
   Subcommand(const std::string& name, const std::string& purpose);

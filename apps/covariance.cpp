@@ -25,14 +25,18 @@ int covariance(const Arguments& arguments) {
   if (!command.parse(arguments)) return ExitStatus::done;
 
   settle_views(command, spec);
-  if (method != "mc" && method != "wave") throw InputError("method", method, "must be one of mc wave");
+  if (method != "mc" && method != "wave")
+    throw InputError("method", method, "must be one of mc wave");
   const Scene scene = make_scene(spec);
   const auto estimate = method == "mc" ? mc_estimation : wave_estimation;
   const Estimation estimation = estimate(scene, methods, seed_of(settings));
-  const StopRule stop = stop_rule(settings);
+  const StopRule mc_stop = stop_rule(settings);
+  const StopRule wave_stop = stop_rule(
+      settings, "wave_samples", methods.wave_samples ? methods.wave_samples : settings.samples);
   Session session(command.command_line(), settings, estimation.plan);
   if (session.already_complete()) return ExitStatus::done;
-  const RunState& state = session.run("", "covariance", estimation.job.batches, stop);
+  const RunState& state =
+      session.run("", "covariance", estimation.job.batches, method == "mc" ? mc_stop : wave_stop);
   return session.finish([&](ResultFile& file) {
     write_medium(file, scene);
     write_axes(file, scene.request);

@@ -29,6 +29,8 @@ void add_wave_options(CLI::App& app, MethodSettings& settings) {
   app.add_option("--wave_tolerance", settings.wave_tolerance,
                  "Accuracy of each exact solution, relative")
       ->capture_default_str();
+  app.add_option("--wave_samples", settings.wave_samples,
+                 "Placements of the exact solver, where samples counts light paths");
 }
 
 Estimation mc_estimation(const Scene& scene, const MethodSettings& settings, std::uint64_t seed) {

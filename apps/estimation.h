@@ -14,6 +14,7 @@ namespace flatspeckle::apps {
 struct MethodSettings {
   std::string reversed_paths = "auto";
   double wave_tolerance = 1e-6;
+  std::optional<std::int64_t> wave_samples;
 };
 
 void add_mc_options(CLI::App& app, MethodSettings& settings);

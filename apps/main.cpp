@@ -3,6 +3,7 @@
 #include <exception>
 #include <iostream>
 #include <map>
+#include <new>
 
 #include "apps/subcommands.h"
 #include "core/error.h"
@@ -48,7 +49,8 @@ int run(const Arguments& arguments) {
 
 /// One line, whatever a file or flag that the message quotes may hold.
 int fail(std::string what, int status) {
-  std::replace_if(what.begin(), what.end(), [](unsigned char c) { return std::iscntrl(c); }, '?');
+  std::replace_if(
+      what.begin(), what.end(), [](unsigned char c) { return std::iscntrl(c); }, '?');
   std::cerr << "flatspeckle: " << what << '\n';
   return status;
 }
@@ -62,6 +64,8 @@ int main(int argc, char** argv) {
     return fail(error.what(), ExitStatus::bad_input);
   } catch (const IoError& error) {
     return fail(error.what(), ExitStatus::io_failed);
+  } catch (const std::bad_alloc&) {
+    return fail("this scene needs more memory than there is", ExitStatus::bad_input);
   } catch (const std::exception& error) {
     return fail(error.what(), 1);
   }

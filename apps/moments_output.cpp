@@ -24,7 +24,8 @@ std::vector<double> real_parts(const std::vector<Complex>& values) {
 }
 
 Estimate part(const Estimate& all, std::size_t first, std::size_t count) {
-  const auto from = static_cast<std::ptrdiff_t>(first), to = from + static_cast<std::ptrdiff_t>(count);
+  const auto from = static_cast<std::ptrdiff_t>(first),
+             to = from + static_cast<std::ptrdiff_t>(count);
   return {{all.value.begin() + from, all.value.begin() + to},
           {all.error.begin() + from, all.error.begin() + to}};
 }
@@ -36,7 +37,8 @@ std::string view_axis(const CovarianceRequest& request) {
 /// Writes datasets of one group; each estimate with its `_error`.
 class Group {
  public:
-  Group(ResultFile& file, const std::string& name) : file_(file), prefix_(name.empty() ? "" : name + "/") {}
+  Group(ResultFile& file, const std::string& name)
+      : file_(file), prefix_(name.empty() ? "" : name + "/") {}
 
   void complex(const std::string& name, const Estimate& estimate, const Axes& axes,
                const std::string& long_name) {

@@ -40,14 +40,16 @@ StopRule stop_rule(const RunSettings& settings, const std::string& samples_key,
   StopRule stop;
   if (settings.threads < 0) throw InputError("threads", settings.threads, "must not be negative");
   if (settings.threads > most_threads)
-    throw InputError("threads", settings.threads, "must be at most " + std::to_string(most_threads));
+    throw InputError("threads", settings.threads,
+                     "must be at most " + std::to_string(most_threads));
   if (samples) {
     if (*samples <= 0) throw InputError(samples_key, *samples, "must be positive");
     stop.samples = static_cast<std::uint64_t>(*samples);
   }
   if (settings.seconds) stop.seconds = positive("seconds", *settings.seconds);
   if (settings.target_error) stop.target_error = positive("target_error", *settings.target_error);
-  if (!stop.samples && !stop.seconds && !stop.target_error) stop.target_error = default_target_error;
+  if (!stop.samples && !stop.seconds && !stop.target_error)
+    stop.target_error = default_target_error;
   return stop;
 }
 

@@ -15,7 +15,8 @@ constexpr char end_of_text = '\0';
 constexpr const char* delimiter = " = ";
 
 bool is_control(char c) {
-  return (static_cast<unsigned char>(c) < ' ' && c != '\t' && c != '\n' && c != '\r') || c == '\x7f';
+  return (static_cast<unsigned char>(c) < ' ' && c != '\t' && c != '\n' && c != '\r') ||
+         c == '\x7f';
 }
 
 bool is_key_character(char c) {
@@ -24,7 +25,9 @@ bool is_key_character(char c) {
 }
 
 /// Numbers, true and false; what they mean is for the option to say.
-bool is_bare_character(char c) { return is_key_character(c) || c == '+' || c == '.'; }
+bool is_bare_character(char c) {
+  return is_key_character(c) || c == '+' || c == '.';
+}
 
 class SceneText {
  public:
@@ -49,7 +52,8 @@ class SceneText {
 
  private:
   [[noreturn]] void fail(const std::string& what) const {
-    const auto lines = std::count(text_.begin(), text_.begin() + static_cast<std::ptrdiff_t>(at_), '\n');
+    const auto lines =
+        std::count(text_.begin(), text_.begin() + static_cast<std::ptrdiff_t>(at_), '\n');
     throw InputError("line " + std::to_string(lines + 1) + ": " + what);
   }
 
@@ -81,7 +85,8 @@ class SceneText {
     if (here() == '[') fail("a scene is one flat list of keys, without [tables]");
     const std::string name = take_while(is_key_character);
     skip_blanks();
-    if (name.empty() || !take('=')) fail(name + (name.empty() ? "" : ": ") + "expected key = value");
+    if (name.empty() || !take('='))
+      fail(name + (name.empty() ? "" : ": ") + "expected key = value");
     skip_blanks();
     return name;
   }
@@ -110,7 +115,8 @@ class SceneText {
     const char quote = text_[at_++];
     std::string content;
     while (!take(quote)) {
-      if (here() == end_of_text || here() == '\n') fail(name + ": the text is not closed by " + quote);
+      if (here() == end_of_text || here() == '\n')
+        fail(name + ": the text is not closed by " + quote);
       if (quote == '"' && take('\\') && here() != '"' && here() != '\\')
         fail(name + ": a backslash in \"text\" is written \\\\");
       content += text_[at_++];
@@ -138,7 +144,8 @@ std::string in_quotes(const std::string& text) {
 std::string number(const std::string& text) {
   double value = 0;
   const char* const end = text.data() + text.size();
-  if (const auto read = std::from_chars(text.data(), end, value); read.ec != std::errc{} || read.ptr != end)
+  if (const auto read = std::from_chars(text.data(), end, value);
+      read.ec != std::errc{} || read.ptr != end)
     return text;
   char shortest[32];
   return {shortest, std::to_chars(shortest, shortest + sizeof shortest, value).ptr};
@@ -152,15 +159,16 @@ std::string element(const CLI::Option& option, const std::string& text) {
 
 /// Empty where there is neither value nor default.
 std::string value_of(const CLI::Option& option) {
-  const bool list = option.get_expected_max() > 1;
-  if (option.get_expected_min() == 0) return option.count() > 0 ? option.as<std::string>() : "false";
+  if (option.get_expected_min() == 0)
+    return option.count() > 0 ? option.as<std::string>() : "false";
   if (option.count() == 0) {
-    const std::string text = option.get_default_str();  // a list stands in brackets already
-    return text.empty() || list ? text : element(option, text);
+    const std::string text = option.get_default_str();
+    return text.empty() ? text : element(option, text);
   }
   std::string joined;
-  for (const auto& text : option.results()) joined += (joined.empty() ? "" : ", ") + element(option, text);
-  return list ? '[' + joined + ']' : joined;
+  for (const auto& text : option.results())
+    joined += (joined.empty() ? "" : ", ") + element(option, text);
+  return option.get_expected_max() > 1 ? '[' + joined + ']' : joined;
 }
 
 }  // namespace

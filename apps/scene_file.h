@@ -1,14 +1,16 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 #include <vector>
+
+#include <CLI/CLI.hpp>
 
 namespace flatspeckle::apps {
 
 /// Scene files: one flat list of `key = value` lines of TOML. A value is a number, true, false, a
-/// "string" or 'string', or a [list] of these, which may go over several lines; '#' starts a comment.
-/// CLI11's own reader would take an unclosed list or a key that is given twice without a word.
+/// "string" or 'string', or a [list] of these, which may go over several lines; '#' starts a
+/// comment. CLI11's own reader would take an unclosed list or a key that is given twice without a
+/// word.
 class SceneFile : public CLI::Config {
  public:
   /// The options of an app, lists always as lists; those without a value or default are left out.

@@ -10,7 +10,8 @@ void add_scatterer_options(CLI::App& app, SceneSpec& spec) {
   app.add_option("--scatterer", spec.scatterer, "point, soft, hard, tm, te or hg (bulk only)")
       ->capture_default_str();
   app.add_option("--radius", spec.radius, "Radius of soft, hard, tm and te");
-  app.add_option("--index", spec.index, "Relative index of tm and te, as \"1.5+0.1i\" (default 1.5)");
+  app.add_option("--index", spec.index,
+                 "Relative index of tm and te, as \"1.5+0.1i\" (default 1.5)");
   app.add_option("--phase_shift", spec.phase_shift,
                  "Scattering phase shift of a lossless point (default pi/2, resonance)");
 }
@@ -54,7 +55,8 @@ void settle_views(const Subcommand& subcommand, SceneSpec& spec) {
   if (spec.covariance == "pairs") {
     for (const char* key : {"light_angles", "view_angles", "near_sensors"})
       if (subcommand.given(key))
-        throw InputError(std::string(key) + ": covariance = pairs names the angles itself; leave it out");
+        throw InputError(std::string(key) +
+                         ": covariance = pairs names the angles itself; leave it out");
   }
   if (!spec.near_sensors.empty() && !subcommand.given("view_angles")) spec.view_angles.clear();
 }

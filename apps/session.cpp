@@ -16,18 +16,23 @@ namespace flatspeckle::apps {
 namespace {
 
 /// Keys that say how long and on what to run, not what.
-const std::vector<std::string> keys_of_the_stop = {"samples", "wave_samples", "seconds",
-                                                   "target_error", "threads", "resume"};
+const std::vector<std::string> keys_of_the_stop = {"samples",      "wave_samples", "seconds",
+                                                   "target_error", "threads",      "resume"};
 
 /// A run without a name has its trace in the root.
-std::string trace_group(const std::string& run) { return run.empty() ? "trace" : run + "/trace"; }
-std::string state_group(const std::string& run) { return "state/" + (run.empty() ? "run" : run); }
+std::string trace_group(const std::string& run) {
+  return run.empty() ? "trace" : run + "/trace";
+}
+std::string state_group(const std::string& run) {
+  return "state/" + (run.empty() ? "run" : run);
+}
 
 }  // namespace
 
 Session::Session(const CommandLine& command_line, const RunSettings& settings, std::string plan)
     : settings_(settings), identity_(without_keys(command_line.config, keys_of_the_stop)) {
-  if (settings_.out.empty()) throw InputError("out is not given: name the result file (--out FILE.h5)");
+  if (settings_.out.empty())
+    throw InputError("out is not given: name the result file (--out FILE.h5)");
   check_writable(settings_.out);
   catch_interrupts();
   provenance_.command_line = command_line.text;
@@ -43,7 +48,8 @@ void Session::resume(const std::string& path) {
   resumed_ = std::make_unique<ResultReader>(path);
   if (!resumed_->has_attribute("/", "identity") ||
       resumed_->attribute<std::string>("/", "identity") != identity_)
-    throw InputError("resume: " + path + " holds another run; the scene and the seed must be the same");
+    throw InputError("resume: " + path +
+                     " holds another run; the scene and the seed must be the same");
   already_complete_ = resumed_->attribute<bool>("/", "converged");
   if (already_complete_) std::cout << path << " is complete; nothing to resume\n";
 }
@@ -72,8 +78,7 @@ int Session::finish(const std::function<void(ResultFile&)>& contents) {
   }
   ResultFile file(settings_.out);
   write_common(file, converged_);
-  for (const auto& name : run_names_)
-    write_trace(file, trace_group(name), states_.at(name).trace);
+  for (const auto& name : run_names_) write_trace(file, trace_group(name), states_.at(name).trace);
   contents(file);
   if (!converged_) write_states(file);
   file.commit();

@@ -34,8 +34,8 @@ class Session {
 
   bool interrupted() const { return interrupted_; }
 
-  /// Writes the result (after an interruption: what can be resumed), says so on standard output, and
-  /// returns the exit status. contents: everything but provenance, traces and states.
+  /// Writes the result (after an interruption: what can be resumed), says so on standard output,
+  /// and returns the exit status. contents: everything but provenance, traces and states.
   int finish(const std::function<void(ResultFile&)>& contents);
 
  private:

@@ -33,14 +33,18 @@ Placement make_placement(const SceneSpec& spec, const Subcommand& command, std::
     refuse_medium_keys(command, *spec.placement);
     const Scatterer scatterer = make_scatterer(spec);
     if (scatterer.kind == Scatterer::Kind::hg)
-      throw InputError("scatterer", spec.scatterer, "is a bulk phase function; the exact solver needs point, soft, hard, tm or te");
+      throw InputError(
+          "scatterer", spec.scatterer,
+          "is a bulk phase function; the exact solver needs point, soft, hard, tm or te");
     return read_placement(*spec.placement, scatterer);
   }
   const Scene scene = make_scene(spec);
   if (scene.domain.kind == Domain::Kind::slab)
     throw InputError("domain", spec.domain, "the exact solver needs a box");
   if (!scene.medium.has_scatterers)
-    throw InputError("scatterer", spec.scatterer, "is a bulk phase function; the exact solver needs point, soft, hard, tm or te");
+    throw InputError(
+        "scatterer", spec.scatterer,
+        "is a bulk phase function; the exact solver needs point, soft, hard, tm or te");
   RandomStream random(seed, static_cast<std::uint64_t>(Stream::placement), 0);
   return draw_placement(scene.domain, scene.scatterer, scene.placement, random);
 }
@@ -109,8 +113,8 @@ void write_solve_provenance(ResultFile& file, const CommandLine& command_line,
   std::ostringstream plan;
   plan << "dense T-matrix solution, " << solution.system().placement().size() << " scatterers, "
        << solution.system().unknowns() << " unknowns";
-  Provenance provenance{command_line.text, command_line.config, seed_of(settings), plan.str(), 1,
-                        started};
+  Provenance provenance{
+      command_line.text, command_line.config, seed_of(settings), plan.str(), 1, started};
   provenance.wall_s = clock.seconds();
   provenance.cpu_s = thread_cpu_seconds();  // one thread does it all
   provenance.samples = 1;
@@ -130,13 +134,17 @@ int solve(const Arguments& arguments) {
   add_scatterer_options(command.options(), spec);
   add_bulk_options(command.options(), spec);
   add_medium_options(command.options(), spec);
-  command.options().get_option("--placement")->description(
-      "CSV with columns x, z [, radius [, index_re, index_im]]; or poisson or hard_disk, to draw one");
+  command.options()
+      .get_option("--placement")
+      ->description(
+          "CSV with columns x, z [, radius [, index_re, index_im]]; or poisson or hard_disk, to "
+          "draw one");
   add_view_options(command.options(), spec);
   command.options()
       .add_option("--tolerance", options.tolerance, "Relative accuracy of the fields")
       ->capture_default_str();
-  command.options().add_option("--seed", settings.seed, "Seed of a drawn placement")
+  command.options()
+      .add_option("--seed", settings.seed, "Seed of a drawn placement")
       ->capture_default_str();
   add_output_option(command.options(), settings);
   if (!command.parse(arguments)) return ExitStatus::done;
@@ -145,7 +153,8 @@ int solve(const Arguments& arguments) {
   make_request(spec);  // checks lights and views
   if (!(options.tolerance > 0 && options.tolerance < 1))
     throw InputError("tolerance", options.tolerance, "must be in (0, 1)");
-  if (settings.out.empty()) throw InputError("out is not given: name the result file (--out FILE.h5)");
+  if (settings.out.empty())
+    throw InputError("out is not given: name the result file (--out FILE.h5)");
   check_writable(settings.out);
   if (!spec.near_sensors.empty()) options.sensors = read_points(spec.near_sensors);
   const auto solution =
@@ -158,11 +167,12 @@ int solve(const Arguments& arguments) {
   write_solve_provenance(file, command.command_line(), settings, started, solution, clock);
   if (is_placement_rule(spec)) write_medium(file, make_scene(spec));
   file.commit();
-  std::printf("%zu scatterers, %zu unknowns: residual %.1e, condition %.1e, boundary residual %.1e\n"
-              "wrote %s\n",
-              solution.system().placement().size(), solution.system().unknowns(),
-              solution.diagnosis().residual, solution.diagnosis().condition,
-              solution.diagnosis().boundary_residual, settings.out.c_str());
+  std::printf(
+      "%zu scatterers, %zu unknowns: residual %.1e, condition %.1e, boundary residual %.1e\n"
+      "wrote %s\n",
+      solution.system().placement().size(), solution.system().unknowns(),
+      solution.diagnosis().residual, solution.diagnosis().condition,
+      solution.diagnosis().boundary_residual, settings.out.c_str());
   return ExitStatus::done;
 }
 

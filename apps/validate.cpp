@@ -73,7 +73,9 @@ void print_row(const CovarianceRequest& request, const Comparison& comparison, s
               place(b).c_str(), show(comparison.mc.value[e]).c_str(), comparison.mc.error[e],
               show(comparison.wave.value[e]).c_str(), comparison.wave.error[e],
               100 * comparison.difference(e) / scale, comparison.deviation(e),
-              comparison.within_errors(e) ? "" : comparison.within_bias(e) ? "  bias" : "  *");
+              comparison.within_errors(e) ? ""
+              : comparison.within_bias(e) ? "  bias"
+                                          : "  *");
 }
 
 void print_comparison(const Scene& scene, const Comparison& comparison) {
@@ -94,9 +96,8 @@ void print_comparison(const Scene& scene, const Comparison& comparison) {
   std::printf(
       "%zu entries: %zu within 4 combined standard errors, %zu more within the %.1f %% that the\n"
       "method neglects at k mfp = %.1f, packing %.3f; %zu beyond both (*)\n",
-      entries, in_errors, in_bias, 100 * comparison.bias,
-      scene.k * scene.medium.mean_free_path(), scene.medium.packing_fraction,
-      entries - in_errors - in_bias);
+      entries, in_errors, in_bias, 100 * comparison.bias, scene.k * scene.medium.mean_free_path(),
+      scene.medium.packing_fraction, entries - in_errors - in_bias);
 }
 
 void write_comparison(ResultFile& file, const Comparison& comparison) {
@@ -114,7 +115,6 @@ int validate(const Arguments& arguments) {
   SceneSpec spec;
   RunSettings settings;
   MethodSettings methods;
-  std::optional<std::int64_t> wave_samples;
   Subcommand command("validate", "Both methods on one scene, compared entry by entry");
   add_scatterer_options(command.options(), spec);
   add_bulk_options(command.options(), spec);
@@ -124,26 +124,25 @@ int validate(const Arguments& arguments) {
   add_mc_options(command.options(), methods);
   add_wave_options(command.options(), methods);
   add_run_options(command.options(), settings);
-  command.options().add_option("--wave_samples", wave_samples,
-                               "Placements of the exact solver (samples counts light paths)");
   if (!command.parse(arguments)) return ExitStatus::done;
 
   settle_views(command, spec);
   round_density(spec);
   const Scene scene = make_scene(spec);
-  if (scene.medium.mu_s == 0) throw InputError("scatterer", spec.scatterer, "this scene does not scatter, there is nothing to compare");
+  if (scene.medium.mu_s == 0)
+    throw InputError("scatterer", spec.scatterer,
+                     "this scene does not scatter, there is nothing to compare");
   const Estimation mc = mc_estimation(scene, methods, seed_of(settings));
   const Estimation wave = wave_estimation(scene, methods, seed_of(settings));
   const StopRule mc_stop = stop_rule(settings);
-  const StopRule wave_stop = stop_rule(settings, "wave_samples", wave_samples);
+  const StopRule wave_stop = stop_rule(settings, "wave_samples", methods.wave_samples);
   Session session(command.command_line(), settings, mc.plan + "\n" + wave.plan);
   if (session.already_complete()) return ExitStatus::done;
   const RunState& mc_state = session.run("mc", "mc", mc.job.batches, mc_stop);
   const RunState& wave_state = session.run("wave", "wave", wave.job.batches, wave_stop);
   return session.finish([&](ResultFile& file) {
     const Comparison comparison{jackknife(wave_state.sums, wave.job.covariance),
-                                jackknife(mc_state.sums, mc.job.covariance),
-                                bias_allowance(scene)};
+                                jackknife(mc_state.sums, mc.job.covariance), bias_allowance(scene)};
     print_comparison(scene, comparison);
     write_medium(file, scene);
     write_axes(file, scene.request);

@@ -86,7 +86,7 @@ class Amplitude {
     for (int node = 0; node < nodes; ++node) {
       const long double angle = std::numbers::pi_v<long double> * (node + 0.5L) / nodes;
       const long double x = pieces * series_end / (piece + (1 + std::cos(angle)) / 2);
-      const ExtendedComplex value = multiply({::j0l(x), ::y0l(x)}, std::polar(std::sqrt(x), -x));
+      const ExtendedComplex value = product({::j0l(x), ::y0l(x)}, std::polar(std::sqrt(x), -x));
       for (int m = 0; m < nodes; ++m) {
         const long double weight = (m == 0 ? 1.0L : 2.0L) / nodes * std::cos(m * angle);
         c[m][0] += static_cast<double>(weight * value.real());

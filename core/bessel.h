@@ -31,9 +31,4 @@ auto cylinder_derivative(const Values& values, int n, long double x) {
   return (static_cast<long double>(n) / x) * values[n] - values[n + 1];
 }
 
-/// a b without the test for infinities that makes std::complex slow.
-inline ExtendedComplex multiply(ExtendedComplex a, ExtendedComplex b) {
-  return {a.real() * b.real() - a.imag() * b.imag(), a.real() * b.imag() + a.imag() * b.real()};
-}
-
 }  // namespace flatspeckle

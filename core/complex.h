@@ -11,7 +11,8 @@ using Complex = std::complex<double>;
 using ExtendedComplex = std::complex<long double>;
 
 /// a b and a conj(b) without the language's care for infinite operands, which costs a branch.
-inline Complex product(Complex a, Complex b) {
+template <typename Real>
+std::complex<Real> product(std::complex<Real> a, std::complex<Real> b) {
   return {a.real() * b.real() - a.imag() * b.imag(), a.real() * b.imag() + a.imag() * b.real()};
 }
 inline Complex product(Complex a, double b) { return {a.real() * b, a.imag() * b}; }

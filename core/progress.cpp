@@ -1,16 +1,27 @@
 #include "core/progress.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <unistd.h>
 
 namespace flatspeckle {
 
+namespace {
+
+void show_error(double error) {
+  if (std::isfinite(error)) std::fprintf(stderr, ", error %.2g %%", 100 * error);
+}
+
+}  // namespace
+
 Progress::Progress(std::string label, const StopRule& stop)
     : label_(std::move(label)), stop_(stop), terminal_(isatty(STDERR_FILENO) == 1) {}
+
+const char* Progress::line_start() const {
+  return terminal_ ? "\r\033[K" : "";
+}
 
 double Progress::seconds_left(double samples, double rate, double wall, double error) const {
   double left = std::numeric_limits<double>::infinity();
@@ -27,18 +38,19 @@ void Progress::update(double samples, double new_samples, double wall, double ne
   if (label_.empty() || new_wall - last_shown_ < interval) return;
   last_shown_ = new_wall;
   const double rate = new_samples / new_wall;
-  std::fprintf(stderr, "%s%s: %.3g samples, %.3g/s", terminal_ ? "\r\033[K" : "", label_.c_str(),
-               samples, rate);
-  if (std::isfinite(error)) std::fprintf(stderr, ", error %.2g %%", 100 * error);
+  std::fprintf(stderr, "%s%s: %.0f samples, %.*f/s", line_start(), label_.c_str(), samples,
+               rate < 10 ? 2 : 0, rate);
+  show_error(error);
   const double left = seconds_left(samples, rate, wall, error);
   if (std::isfinite(left)) std::fprintf(stderr, ", %.0f s left", left);
   std::fputs(terminal_ ? "" : "\n", stderr);
-  line_open_ = terminal_;
 }
 
-void Progress::finish() {
-  if (line_open_) std::fputs("\n", stderr);
-  line_open_ = false;
+void Progress::finish(double samples, double wall, double error) {
+  if (label_.empty()) return;
+  std::fprintf(stderr, "%s%s: %.0f samples in %.3g s", line_start(), label_.c_str(), samples, wall);
+  show_error(error);
+  std::fputs("\n", stderr);
 }
 
 }  // namespace flatspeckle

@@ -14,17 +14,17 @@ class Progress {
 
   /// samples and wall seconds so far, of which `new_samples` in the `new_wall` seconds of this run.
   void update(double samples, double new_samples, double wall, double new_wall, double error);
-  /// Leaves the last state standing on its own line.
-  void finish();
+  /// Leaves the end of the run standing on its own line.
+  void finish(double samples, double wall, double error);
 
  private:
+  const char* line_start() const;
   double seconds_left(double samples, double rate, double wall, double error) const;
 
   std::string label_;
   StopRule stop_;
   bool terminal_;
   double last_shown_ = 0;
-  bool line_open_ = false;
 };
 
 }  // namespace flatspeckle

@@ -1,7 +1,5 @@
 #include "core/runner.h"
 
-#include <omp.h>
-
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -10,6 +8,8 @@
 #include <limits>
 #include <map>
 #include <mutex>
+
+#include <omp.h>
 
 #include "core/interrupt.h"
 #include "core/progress.h"
@@ -25,6 +25,10 @@ std::uint64_t checkpoint_after(std::uint64_t batches) {
   std::uint64_t next = 8;
   while (next <= batches) next += std::max<std::uint64_t>(2, next / 7);
   return next;
+}
+
+bool is_checkpoint(std::uint64_t batches) {
+  return batches > 0 && checkpoint_after(batches - 1) == batches;
 }
 
 /// One batch alone says nothing about its error.
@@ -54,6 +58,7 @@ class Merger {
         last_saved_(state.wall_s),
         next_checkpoint_(checkpoint_after(state.sums.batches())) {
     if (next_ >= limit_) reason_ = StopReason::samples;
+    if (is_checkpoint(next_) && target_reached()) reason_ = StopReason::target_error;
   }
 
   /// The next batch to run; nothing when the run is over. Waits while far ahead of a slow batch.
@@ -91,10 +96,10 @@ class Merger {
   }
 
   StopReason finish() {
-    progress_.finish();
     if (error_) std::rethrow_exception(error_);
     note_time();
     if (state_.trace.samples.empty() || state_.trace.samples.back() != samples_) record_error();
+    progress_.finish(samples_, state_.wall_s, state_.trace.relative_error.back());
     return reason_.value_or(StopReason::samples);
   }
 
@@ -103,9 +108,7 @@ class Merger {
     if (state_.sums.batches() == next_checkpoint_) {
       record_error();
       next_checkpoint_ = checkpoint_after(next_checkpoint_);
-      constexpr std::uint64_t trusted_batches = 32;  // fewer say little about their own error
-      if (options_.stop.target_error && state_.sums.batches() >= trusted_batches &&
-          state_.trace.relative_error.back() <= *options_.stop.target_error) {
+      if (target_reached()) {
         stop(StopReason::target_error);
         closed_ = true;  // what is in hand would make the result depend on timing
       }
@@ -120,6 +123,13 @@ class Merger {
       options_.checkpoint(state_);
       last_saved_ = wall;
     }
+  }
+
+  bool target_reached() const {
+    constexpr std::uint64_t trusted_batches = 32;  // fewer say little about their own error
+    return options_.stop.target_error && state_.sums.batches() >= trusted_batches &&
+           !state_.trace.relative_error.empty() &&
+           state_.trace.relative_error.back() <= *options_.stop.target_error;
   }
 
   void record_error() {
@@ -170,7 +180,9 @@ void work(const BatchJob& job, Merger& merger) {
 
 }  // namespace
 
-int default_threads() { return omp_get_num_procs(); }
+int default_threads() {
+  return omp_get_num_procs();
+}
 
 StopReason run_batches(const BatchJob& job, const RunOptions& options, RunState& state) {
   if (state.sums.size() != job.size) state.sums = GroupedSums(job.size);

@@ -23,6 +23,10 @@ std::vector<CurvePoint> one_side(const std::vector<double>& tilt_q,
   }
   std::sort(curve.begin(), curve.end(),
             [](const CurvePoint& a, const CurvePoint& b) { return a.q < b.q; });
+  // a tilt given twice would divide by 0 between the two
+  curve.erase(std::unique(curve.begin(), curve.end(),
+                          [](const CurvePoint& a, const CurvePoint& b) { return a.q == b.q; }),
+              curve.end());
   return curve;
 }
 

@@ -16,13 +16,13 @@ Plan::Phase phase_of(const Scatterer& scatterer) {
   return scatterer.g == 0 ? Plan::Phase::isotropic : Plan::Phase::henyey_greenstein;
 }
 
-/// Away from backscattering the reversed paths only add terms that oscillate away, of the order of
-/// the 1/(k mean free path) that the method neglects anyway.
+/// More than a right angle away from exact backscattering the reversed paths only add terms that
+/// oscillate away, of the order of the 1/(k mean free path) that the method neglects anyway.
 bool can_see_backscattering(const CovarianceRequest& request) {
   return std::any_of(request.views.begin(), request.views.end(), [&](const View& view) {
     if (view.near) return true;
     return std::any_of(request.lights.begin(), request.lights.end(), [&](double light) {
-      return std::cos(light) * std::cos(view.angle) <= 0;
+      return dot(direction(light), direction(view.angle)) <= 0;
     });
   });
 }

@@ -25,8 +25,8 @@ solve_and_compare() {  # KIND FLAG...: KIND as in the names of the reference's t
   local far=$results/ten_disks/far_$kind near=$results/ten_disks/near_$kind
   "${solve[@]}" --view_angles "${views[@]}" --out "$far.h5"
   "${solve[@]}" --near_sensors "$reference/nearfield_$kind.csv" --out "$near.h5"
-  python plots/compare_reference.py "$far.h5" "$reference/farfield_$kind.csv"
-  python plots/compare_reference.py "$near.h5" "$reference/nearfield_$kind.csv"
+  python3 plots/compare_reference.py "$far.h5" "$reference/farfield_$kind.csv"
+  python3 plots/compare_reference.py "$near.h5" "$reference/nearfield_$kind.csv"
 }
 solve_and_compare D --scatterer soft
 solve_and_compare N --scatterer hard
@@ -40,9 +40,9 @@ say "A slab of Henyey-Greenstein scatterers: memory effect over g and albedo"
 "$flatspeckle" sweep --config data/scenes/slab_hg.toml --out "$results/slab_hg.h5"
 
 say "Plots"
-python plots/validation.py "$results/box_points.h5" --out "$results/validation"
-python plots/error_time.py "$results/box_points.h5" --out "$results/error_time"
-python plots/memory_effect.py "$results/slab_hg.h5" --out "$results/memory_effect"
+python3 plots/validation.py "$results/box_points.h5" --out "$results/validation"
+python3 plots/error_time.py "$results/box_points.h5" --out "$results/error_time"
+python3 plots/memory_effect.py "$results/slab_hg.h5" --out "$results/memory_effect"
 
 say "Done in $SECONDS s; in $results:"
 ls "$results" "$results/ten_disks"

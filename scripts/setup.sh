@@ -3,6 +3,8 @@
 cd "$(dirname "${BASH_SOURCE[0]}")/.." || exit
 
 jobs=$(nproc)
+# Debian's own tools go together; another python, say, would not know the packages installed here.
+PATH=/usr/bin:$PATH
 
 as_root() {
   if [[ $EUID -eq 0 ]]; then "$@"; else sudo "$@"; fi
@@ -29,18 +31,14 @@ install_missing() {
     install "${missing[@]}"
 }
 
+# For the program and its tests.
 install_build_packages() {
-  install_missing g++ cmake ninja-build pkg-config libhdf5-dev liblapacke-dev \
-    libopenblas-dev libcli11-dev librandom123-dev doctest-dev libboost-dev
+  install_missing g++ cmake ninja-build pkg-config libhdf5-dev liblapacke-dev libopenblas-dev \
+    libcli11-dev librandom123-dev doctest-dev libboost-dev python3-h5py
 }
 
 install_plot_packages() {
-  install_missing python3 python3-numpy python3-h5py python3-matplotlib
-}
-
-# Debian's, which knows those packages, before another one that comes earlier in PATH.
-python() {
-  PATH=/usr/bin:$PATH python3 "$@"
+  install_missing python3-h5py python3-matplotlib
 }
 
 # build_release TARGET: into build/release.

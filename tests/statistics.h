@@ -12,7 +12,7 @@ namespace flatspeckle::tests {
 /// Chance that a correct library fails any of its chi-square tests at fresh seeds, and how many
 /// such tests there are (rounded up): each is held to the Sidak share.
 inline constexpr double suite_significance = 1e-3;
-inline constexpr int suite_size = 100;
+inline constexpr int suite_size = 50;
 
 /// Counts against the probabilities of the bins; neighbours are merged until each expects 5.
 struct ChiSquare {

@@ -32,10 +32,10 @@ std::vector<ExtendedComplex> outgoing_waves(double k, Vec2 d, int order) {
   const ExtendedComplex turn = phasor_of(d);
   ExtendedComplex phase = 1;
   for (int n = 0; n <= order; ++n) {
-    waves[order + n] = multiply(radial[n], phase);
-    const ExtendedComplex reversed = multiply(radial[n], std::conj(phase));
+    waves[order + n] = product(radial[n], phase);
+    const ExtendedComplex reversed = product(radial[n], std::conj(phase));
     waves[order - n] = n % 2 == 0 ? reversed : -reversed;
-    phase = multiply(phase, turn);
+    phase = product(phase, turn);
   }
   return waves;
 }
@@ -125,7 +125,7 @@ void TMatrixSystem::pair_blocks(std::size_t j, std::size_t l, Block to_j, Block 
   for (int n = -order_l; n <= order_l; ++n) {
     const ExtendedComplex tau_n = tau_[l][std::abs(n)];
     for (int p = -order_j; p <= order_j; ++p) {
-      const Complex element(-multiply(multiply(tau_[j][std::abs(p)], waves[order + n - p]), tau_n));
+      const Complex element(-product(product(tau_[j][std::abs(p)], waves[order + n - p]), tau_n));
       to_j.data[(n + order_l) * to_j.rows + (p + order_j)] = element;
       to_l.data[(order_j - p) * to_l.rows + (order_l - n)] = (n - p) % 2 == 0 ? element : -element;
     }
@@ -161,10 +161,10 @@ void TMatrixSystem::plane_wave(double angle, std::span<Complex> column) const {
     ExtendedComplex up(std::polar(1.0, k_ * dot(w, placement_[j].position))), down = up;
     for (int n = 0; n <= order_[j]; ++n) {
       const std::size_t centre = first_[j] + order_[j];
-      column[centre + n] = Complex(multiply(tau_[j][n], up));
-      column[centre - n] = Complex(multiply(tau_[j][n], down));
-      up = multiply(up, turn);
-      down = multiply(down, std::conj(turn));
+      column[centre + n] = Complex(product(tau_[j][n], up));
+      column[centre - n] = Complex(product(tau_[j][n], down));
+      up = product(up, turn);
+      down = product(down, std::conj(turn));
     }
   }
 }
@@ -203,7 +203,7 @@ std::vector<Complex> TMatrixSystem::near_row(Vec2 point) const {
     const auto waves = outgoing_waves(k_, d, order_[j]);
     for (int n = -order_[j]; n <= order_[j]; ++n)
       row[first_[j] + order_[j] + n] =
-          Complex(multiply(tau_[j][std::abs(n)], waves[order_[j] + n]));
+          Complex(product(tau_[j][std::abs(n)], waves[order_[j] + n]));
   }
   return row;
 }
@@ -219,9 +219,9 @@ TMatrixSystem::Outgoing TMatrixSystem::outgoing(std::size_t scatterer, Vec2 poin
   for (int n = -order; n <= order; ++n) {
     const auto* wave = &waves[order + 1 + n];
     const ExtendedComplex tau = tau_[scatterer][std::abs(n)];
-    const ExtendedComplex slope = multiply(wave[-1], turn) - multiply(wave[1], std::conj(turn));
-    result.field.push_back(Complex(multiply(tau, *wave)));
-    result.derivative.push_back(Complex(multiply(tau, slope) * 0.5L));
+    const ExtendedComplex slope = product(wave[-1], turn) - product(wave[1], std::conj(turn));
+    result.field.push_back(Complex(product(tau, *wave)));
+    result.derivative.push_back(Complex(product(tau, slope) * 0.5L));
   }
   return result;
 }

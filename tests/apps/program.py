@@ -20,7 +20,7 @@ TILTS = {"covariance": "memory_effect", "tilts": [0, 0.04, 0.16], "view_angles":
 
 
 def flags(keys):
-    """{"tilts": [0, 0.1], "resume": True} -> --tilts 0 0.1 --resume; keys of value None are left out."""
+    """{"tilts": [0, 0.1], "resume": True} -> --tilts 0 0.1 --resume; None leaves a key out."""
     words = []
     for key, value in keys.items():
         if value is None or value is False:

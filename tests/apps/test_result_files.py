@@ -8,8 +8,9 @@ import numpy as np
 from program import BOX, CYLINDERS, SLAB, TILTS, ProgramTest, attributes, datasets
 
 PROVENANCE = {"program": str, "version": str, "git_commit": str, "command_line": str, "config": str,
-              "seed": np.integer, "plan": str, "machine": str, "threads": np.integer, "started": str,
-              "wall_s": float, "cpu_s": float, "samples": float, "converged": np.integer}
+              "seed": np.integer, "plan": str, "machine": str, "threads": np.integer,
+              "started": str, "wall_s": float, "cpu_s": float, "samples": float,
+              "converged": np.integer}
 BULK = ["g", "albedo", "k_mean_free_path"]
 MEDIUM = [*BULK, "sigma_s", "sigma_e", "density", "packing_fraction"]
 SCALES = {"light_angle": "rad", "view_angle": "rad", "tilt": "rad", "sensor": "1", "pair": "1",
@@ -199,6 +200,13 @@ class Covariance(ResultTest):
                 file = self.open()
                 self.assertTrue(np.all(file["covariance"][()] == 0))
                 self.check_finite(file)
+
+
+    def test_wave_samples_count_placements(self):
+        for method, samples in (("mc", 4000), ("wave", 12)):
+            self.call("covariance", **BOX, samples=4000, wave_samples=12, method=method,
+                      out="result.h5")
+            self.assertEqual(self.open().attrs["samples"], samples)
 
 
 class Validate(ResultTest):

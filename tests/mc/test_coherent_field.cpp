@@ -53,10 +53,11 @@ TEST_CASE("the coherent field is C15, for light and views from all sides") {
     const double forward = scene.medium.density * scene.domain.area() *
                            std::abs(amplitude(scene.medium.t_matrix, scene.k, 0));
     for (std::size_t c = 0; c < field.size(); ++c) {
-      const auto [light, view] = scene.request.channels[c];
-      const Complex expected = plane_quadrature(scene, lights[light], views[view]);
-      CAPTURE(lights[light]);
-      CAPTURE(views[view]);
+      const double light = lights[scene.request.channels[c].light];
+      const double view = views[scene.request.channels[c].view];
+      const Complex expected = plane_quadrature(scene, light, view);
+      CAPTURE(light);
+      CAPTURE(view);
       CHECK(std::abs(field[c] - expected) < 3e-4 * forward);
     }
   }

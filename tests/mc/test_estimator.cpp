@@ -302,29 +302,11 @@ TEST_CASE("the plan leaves out what a scene does not need") {
   CHECK(plan_of(0, 3, 1).reversed);
   CHECK(plan_of(3, 0.2, 1).reversed);
   CHECK_FALSE(plan_of(3, 2.9, 1).reversed);
+  // a box is lit and seen from the side as well: exact backscattering, and within the cone
+  CHECK(plan_of(pi / 2, -pi / 2, 1).reversed);
+  CHECK(plan_of(1.55, -1.565, 1).reversed);
   CHECK_FALSE(plan_of(0, 0.3, 1).absorbing);
   CHECK(plan_of(0, 0.3, 1 - 1e-9).absorbing);
-}
-
-TEST_CASE("error bars are honest: estimates of many seeds spread as they say") {
-  const auto request = memory_effect_request(2 * pi, 0, {0.1, pi}, {0.04});
-  const Scene scene = points_in_box(request);
-  constexpr int runs = 200;
-  std::vector<Estimate> estimates;
-  for (int i = 0; i < runs; ++i)
-    estimates.push_back(tests::run(scene, ReversedPaths::yes, 4000, 1000 + i, 100).entries());
-  for (std::size_t e = 0; e < request.entries.size(); ++e) {
-    Complex mean = 0;
-    double reported = 0, spread = 0;
-    for (const auto& one : estimates) {
-      mean += one.value[e] / static_cast<double>(runs);
-      reported += one.error[e] * one.error[e] / runs;
-    }
-    for (const auto& one : estimates) spread += std::norm(one.value[e] - mean) / (runs - 1);
-    CAPTURE(e);
-    // the spread of 200 normal numbers is known to 5 %
-    CHECK(std::sqrt(spread / reported) == doctest::Approx(1).epsilon(0.15));
-  }
 }
 
 }  // namespace flatspeckle::mc

@@ -65,6 +65,13 @@ TEST_CASE("the range does not depend on the order of the tilts, nor on the zero 
   CHECK(range_of({q.begin() + 1, q.end()}, gaussian).value == doctest::Approx(expected));
 }
 
+TEST_CASE("a tilt that is given twice does not spoil the range") {
+  auto q = evenly(0, 3, 13);
+  const double expected = range_of(q, gaussian).value;
+  q.insert(q.begin() + 3, q[2]);
+  CHECK(range_of(q, gaussian).value == doctest::Approx(expected));
+}
+
 TEST_CASE("the range is taken on the positive side, or on the negative where that is all") {
   const auto lopsided = [](double x) { return x > 0 ? gaussian(x) : gaussian(x / 2); };
   const double half = std::sqrt(std::log(2.0) / 2);

@@ -118,6 +118,21 @@ TEST_CASE("at exact backscattering reversed paths double all but single scatteri
                        0.01 * std::abs(without.value[1]));
 }
 
+TEST_CASE("at exact backscattering reversed paths double it with peaked scattering, too") {
+  const double depth = 20, g = 0.6, light = 0.4;
+  const auto request = intensity_request({light}, tests::far_views({light + pi}));
+  const Scene scene = tests::hg_slab(depth, {depth / 8, g, 0.95}, request);
+  const auto with = tests::run(scene, ReversedPaths::yes, 200000, 33).entries();
+  const auto without = tests::run(scene, ReversedPaths::no, 200000, 34).entries();
+  // p(pi) in place of 1/(2 pi)
+  const tests::IsotropicSlab isotropic(k, depth, 8 / depth, 0.95);
+  const Channel back{light, light + pi};
+  const Complex single = (1 - g) / (1 + g) * isotropic.single(back, back);
+  CHECK_WITHIN_4_SIGMA(with.value[0] - single, std::hypot(with.error[0], 2 * without.error[0]),
+                       2.0 * (without.value[0] - single), 0);
+  CHECK(with.error[0] < 0.02 * with.value[0].real());
+}
+
 TEST_CASE("isotropic slab a million wavelengths over 2 pi thick") {
   const double depth = 1e6 / k, tilt = 1e-6;
   check_entries({depth, 2, 1}, memory_effect_request(k, 0.5, {0.5, 0.1}, {tilt, -2 * tilt}),

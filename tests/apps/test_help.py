@@ -1,0 +1,55 @@
+"""--help and --version."""
+
+import unittest
+
+from program import ProgramTest
+
+SCATTERER = ["wavelength", "scatterer", "radius", "index", "g", "albedo"]
+MEDIUM = ["domain", "width", "depth", "count", "density", "mean_free_path", "optical_depth",
+          "placement", "min_gap"]
+VIEWS = ["light_angles", "view_angles", "near_sensors"]
+RUN = ["seed", "samples", "seconds", "target_error", "threads", "resume"]
+PROGRAM = ["config", "print-config", "out", "help"]
+SCENE = SCATTERER + MEDIUM + VIEWS
+KEYS = {
+    "solve": SCENE + ["seed"],
+    "covariance": SCENE + ["tilts", "covariance", "method", "wave_samples"] + RUN,
+    "validate": SCENE + ["tilts", "covariance", "wave_samples"] + RUN,
+    "sweep": SCENE + ["tilts"] + RUN,
+}
+
+
+class Help(ProgramTest):
+    def test_every_key_is_listed(self):
+        for subcommand, keys in KEYS.items():
+            for flag in ("--help", "-h"):
+                done = self.call(subcommand, flag)
+                self.assertEqual(done.stderr, "")
+                listed = done.stdout.split()
+                for key in keys + PROGRAM:
+                    with self.subTest(subcommand=subcommand, key=key):
+                        names = {f"--{key}", f"-h,--{key}"}
+                        self.assertTrue(names & set(listed))
+
+    def test_help_wins(self):
+        """Also when the rest is wrong or missing."""
+        self.call("covariance", "--width", -3, "--help")
+
+    def test_program(self):
+        for words in ((), ("--help",), ("-h",), ("help",)):
+            text = self.call(*words).stdout
+            for subcommand in KEYS:
+                self.assertIn(subcommand, text)
+            for status in ("0 done", "2 bad input", "3 stopped", "4 input or output", "75"):
+                self.assertIn(status, text)
+
+    def test_version(self):
+        self.assertRegex(self.call("--version").stdout, r"^flatspeckle \d+\.\d+\.\d+ \(.+\)\n$")
+
+    def test_nothing_is_written(self):
+        self.call("covariance", "--help", "--out", "x.h5")
+        self.assertEqual(self.listing(), {})
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,217 @@
+"""Interrupted, killed, resumed: nothing is lost or damaged, and the numbers stay the same."""
+
+import random
+import signal
+import time
+import unittest
+
+import h5py
+import numpy as np
+
+from program import BOX, TILTS, ProgramTest, attributes, datasets
+
+# Each runs for half a second or more on two threads.
+LONG = {
+    "mc": ("covariance", {**BOX, **TILTS, "samples": 1_000_000}),
+    "wave": ("covariance", {**BOX, **TILTS, "samples": 8000, "method": "wave"}),
+    "validate, in mc": ("validate", {**BOX, **TILTS, "samples": 1_000_000, "wave_samples": 20}),
+    "validate, in wave": ("validate", {**BOX, **TILTS, "samples": 5000, "wave_samples": 8000}),
+    "sweep": ("sweep", {"depth": 100, "optical_depth": [2, 5], "g": [0, 0.5], "tilts": [0, 0.001],
+                        "samples": 100_000}),
+}
+SHORT = {**BOX, **TILTS, "samples": 20_000, "threads": 2}
+NEVER = 1e-9  # a target error that is not reached
+
+
+def catches(process, number):
+    """Whether the process has a handler for this signal by now."""
+    with open(f"/proc/{process.pid}/status") as status:
+        caught = next(line for line in status if line.startswith("SigCgt"))
+    return int(caught.split()[1], 16) >> (number - 1) & 1
+
+
+class Interruption(ProgramTest):
+    def interrupt(self, number, delay, *words, **keys):
+        """Signals once the run has begun; returns the exit status."""
+        process = self.start(*words, **keys)
+        self.wait_until_it_catches(process, number, True)
+        time.sleep(delay)
+        process.send_signal(number)
+        return process.wait(timeout=60)
+
+    def wait_until_it_catches(self, process, number, wanted):
+        deadline = time.monotonic() + 60
+        while bool(catches(process, number)) != wanted:
+            time.sleep(0.002)
+            self.assertIsNone(process.poll())
+            self.assertLess(time.monotonic(), deadline)
+
+    def check_resumable(self, name):
+        with h5py.File(self.folder / name) as file:
+            self.assertEqual(file.attrs["converged"], 0)
+            self.assertIn("identity", file.attrs)
+            self.assertIn("state", file)
+        self.assertEqual([path for path in self.listing() if ".tmp" in path], [])
+
+    def test_resumed_equals_uninterrupted(self):
+        for name, (subcommand, keys) in LONG.items():
+            with self.subTest(run=name):
+                out = {"out": f"{name}.h5", "threads": 2}
+                for number, delay in ((signal.SIGINT, 0.05), (signal.SIGTERM, 0.02)):
+                    status = self.interrupt(number, delay, subcommand, "--resume", **keys, **out)
+                    self.assertEqual(status, 75)
+                    self.check_resumable(out["out"])
+                done = self.call(subcommand, "--resume", **keys, **out)
+                self.assertIn("wrote", done.stdout)
+                self.call(subcommand, **keys, out="whole.h5")
+                self.assert_same_data(out["out"], "whole.h5")
+                self.check_complete(out["out"], "whole.h5")
+
+    def check_complete(self, resumed, whole):
+        resumed, whole = attributes(self.folder / resumed), attributes(self.folder / whole)
+        self.assertEqual(resumed["converged"], 1)
+        for key in ("samples", "identity", "plan", "seed"):
+            self.assertEqual(resumed[key], whole[key])
+
+    def test_the_trace_goes_on(self):
+        keys = LONG["mc"][1]
+        self.interrupt(signal.SIGINT, 0.1, "covariance", **keys, threads=2, out="run.h5")
+        before = datasets(self.folder / "run.h5", leave_out=())["state/run/trace/samples"]
+        self.call("covariance", "--resume", **keys, threads=2, out="run.h5")
+        trace = datasets(self.folder / "run.h5", leave_out=())
+        samples = trace["trace/samples"]
+        np.testing.assert_array_equal(samples[:len(before)], before)
+        self.assertEqual(samples[-1], keys["samples"])
+        self.assertTrue(np.all(np.diff(trace["trace/wall_s"]) >= 0))
+
+    def test_other_threads_and_stops_may_resume(self):
+        keys = LONG["mc"][1]
+        self.interrupt(signal.SIGINT, 0.1, "covariance", **keys, threads=2, out="run.h5")
+        keys = {**keys, "samples": 1_100_000}
+        self.call("covariance", "--resume", **keys, threads=3, out="run.h5")
+        self.call("covariance", **keys, out="whole.h5")
+        self.assert_same_data("run.h5", "whole.h5")
+
+    def test_another_seed_may_not(self):
+        keys = LONG["mc"][1]
+        self.interrupt(signal.SIGINT, 0.1, "covariance", **keys, threads=2, out="run.h5")
+        before = self.listing()
+        self.call("covariance", "--resume", **keys, seed=2, out="run.h5", status=2)
+        self.assertEqual(self.listing(), before)
+
+    def test_a_second_signal_ends_at_once(self):
+        self.call("covariance", **SHORT, out="run.h5")
+        before = self.listing()
+        process = self.start("covariance", width=200, depth=200, count=3000, method="wave",
+                             threads=1, samples=9, out="run.h5")
+        self.wait_until_it_catches(process, signal.SIGINT, True)
+        time.sleep(0.1)
+        process.send_signal(signal.SIGINT)
+        self.wait_until_it_catches(process, signal.SIGINT, False)
+        process.send_signal(signal.SIGINT)
+        self.assertEqual(process.wait(timeout=60), -signal.SIGINT)
+        self.assertEqual(self.listing(), before)
+
+    def test_solve_ends_at_once(self):
+        """It has nothing to resume."""
+        process = self.start("solve", width=200, depth=200, count=3000, out="run.h5")
+        time.sleep(0.1)
+        process.send_signal(signal.SIGINT)
+        self.assertEqual(process.wait(timeout=60), -signal.SIGINT)
+        self.assertEqual(self.listing(), {})
+
+
+class Kill(ProgramTest):
+    def test_killed_at_any_moment(self):
+        started = time.monotonic()
+        self.call("covariance", **SHORT, out="whole.h5")
+        duration = time.monotonic() - started
+        self.call("covariance", **SHORT, seed=2, out="older.h5")
+        older = (self.folder / "older.h5").read_bytes()
+        moments = random.Random(1)
+        for previous in (None, older) * 4:
+            (self.folder / "run.h5").unlink(missing_ok=True)
+            if previous:
+                (self.folder / "run.h5").write_bytes(previous)
+            process = self.start("covariance", **SHORT, out="run.h5")
+            time.sleep(moments.random() * duration)
+            process.kill()
+            process.wait()
+            self.check_left_behind(previous)
+        self.write(".run.h5.tmp-1", "left behind")
+        self.call("covariance", **SHORT, out="run.h5")
+        self.assert_same_data("run.h5", "whole.h5")
+
+    def check_left_behind(self, previous):
+        path = self.folder / "run.h5"
+        if not path.exists():
+            self.assertIsNone(previous)
+        elif path.read_bytes() != previous:
+            self.assert_same_data("run.h5", "whole.h5")
+
+
+class Target(ProgramTest):
+    def test_not_reached_then_resumed(self):
+        done = self.call("covariance", **SHORT, target_error=NEVER, out="run.h5", status=3)
+        self.assertIn("--resume", done.stdout)
+        self.assertEqual(attributes(self.folder / "run.h5")["converged"], 0)
+        self.call("covariance", **SHORT, out="whole.h5")
+        self.assert_same_data("run.h5", "whole.h5")
+
+        more = {**SHORT, "samples": 50_000}
+        self.call("covariance", "--resume", **more, target_error=NEVER, out="run.h5", status=3)
+        self.call("covariance", **more, out="whole.h5")
+        self.assert_same_data("run.h5", "whole.h5")
+
+        self.call("covariance", "--resume", **more, target_error=0.5, out="run.h5")
+        self.assert_same_data("run.h5", "whole.h5")
+        self.assertEqual(attributes(self.folder / "run.h5")["converged"], 1)
+
+    def test_not_reached_by_one_part_of_validate(self):
+        scene = {**BOX, **TILTS, "samples": 400_000, "wave_samples": 20, "target_error": 0.05}
+        self.call("validate", **scene, out="run.h5", status=3)
+        self.call("validate", "--resume", **{**scene, "wave_samples": 40}, out="run.h5", status=3)
+        self.call("validate", **{**scene, "wave_samples": 40}, out="whole.h5", status=3)
+        self.assert_same_data("run.h5", "whole.h5")
+
+    def test_reached(self):
+        self.call("covariance", **{**SHORT, "samples": None}, target_error=0.05, out="run.h5")
+        with h5py.File(self.folder / "run.h5") as file:
+            self.assertLessEqual(file["trace/relative_error"][-1], 0.05)
+            self.assertEqual(file.attrs["converged"], 1)
+
+    def test_seconds(self):
+        started = time.monotonic()
+        self.call("covariance", **{**SHORT, "samples": None}, seconds=0.3, out="run.h5")
+        self.assertLess(time.monotonic() - started, 20)
+        self.call("covariance", **{**SHORT, "samples": None}, seconds=0.3, target_error=NEVER,
+                  out="run.h5", status=3)
+
+
+class Resume(ProgramTest):
+    def test_of_a_finished_run_changes_nothing(self):
+        self.call("covariance", **SHORT, out="run.h5")
+        before = self.listing()
+        done = self.call("covariance", "--resume", **SHORT, out="run.h5")
+        self.assertIn("complete", done.stdout)
+        self.assertEqual(self.listing(), before)
+
+    def test_of_nothing_starts_afresh(self):
+        self.call("covariance", "--resume", **SHORT, out="run.h5")
+        self.call("covariance", **SHORT, out="whole.h5")
+        self.assert_same_data("run.h5", "whole.h5")
+
+    def test_without_resume_a_result_is_replaced(self):
+        self.call("covariance", **SHORT, seed=2, out="run.h5")
+        self.call("covariance", **SHORT, out="run.h5")
+        self.call("covariance", **SHORT, out="whole.h5")
+        self.assert_same_data("run.h5", "whole.h5")
+
+    def test_from_the_stored_configuration(self):
+        self.call("covariance", **SHORT, target_error=NEVER, out="run.h5", status=3)
+        self.write("run.toml", attributes(self.folder / "run.h5")["config"])
+        self.call("covariance", config="run.toml", resume=True, target_error=0.9, out="run.h5")
+
+
+if __name__ == "__main__":
+    unittest.main()

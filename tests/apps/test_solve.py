@@ -1,0 +1,158 @@
+"""Exact fields through the command line."""
+
+import resource
+import signal
+import subprocess
+import unittest
+
+import h5py
+import numpy as np
+
+from program import BOX, CYLINDERS, DATA, PROGRAM, ProgramTest, attributes, datasets, flags
+
+DISKS = {"placement": DATA / "reference/g2/placement.csv", "scatterer": "te", "index": "1.5+0.1i"}
+
+
+def table(name):
+    return np.genfromtxt(DATA / "reference/g2" / name, delimiter=",", names=True)
+
+
+def relative_distance(found, expected):
+    return np.linalg.norm(found - expected) / np.linalg.norm(expected)
+
+
+class Reference(ProgramTest):
+    def test_far_field(self):
+        rows = table("farfield_TE15abs.csv")
+        lights, views = np.unique(rows["light_angle"]), np.unique(rows["view_angle"])
+        self.call("solve", **DISKS, light_angles=list(map(repr, lights.tolist())),
+                  view_angles=list(map(repr, views.tolist())), out="far.h5")
+        field = datasets(self.folder / "far.h5")["far_field"]
+        found = field[np.searchsorted(lights, rows["light_angle"]),
+                      np.searchsorted(views, rows["view_angle"])]
+        self.assertGreater(len(rows), 50)
+        self.assertLess(relative_distance(found, rows["re"] + 1j * rows["im"]), 1e-10)
+
+    def test_near_field(self):
+        rows = table("nearfield_TE15abs.csv")
+        self.assertGreater(len(rows), 10)
+        for light in np.unique(rows["light_angle"]):
+            seen = rows[rows["light_angle"] == light]
+            lines = [f"{x!r},{z!r}\n" for x, z in zip(seen["x"].tolist(), seen["z"].tolist())]
+            self.write("sensors.csv", "x,z\n" + "".join(lines))
+            self.call("solve", **DISKS, light_angles=[light], near_sensors="sensors.csv",
+                      out="near.h5")
+            found = datasets(self.folder / "near.h5")["near_field"][0]
+            self.assertLess(relative_distance(found, seen["re"] + 1j * seen["im"]), 1e-10)
+
+    def test_the_file_is_told_back(self):
+        self.call("solve", **DISKS, out="result.h5")
+        stored, rows = datasets(self.folder / "result.h5"), table("placement.csv")
+        for column in ("x", "z", "radius"):
+            np.testing.assert_array_equal(stored[f"placement/{column}"], rows[column])
+
+    def test_order_of_rows_and_spelling_do_not_matter(self):
+        self.write("a.csv", "x,z,radius\n0,0,0.3\n1,2,0.2\n")
+        self.write("b.csv", "# two disks\r\nradius , z , x\r\n\r\n+2e-1, 2.0, 1\r\n.3,0,0\r\n")
+        for name in "ab":
+            self.call("solve", scatterer="soft", placement=f"{name}.csv", out=f"{name}.h5")
+        a, b = (datasets(self.folder / f"{name}.h5")["far_field"] for name in "ab")
+        self.assertLess(relative_distance(b, a), 1e-13)
+
+    def test_index_by_column(self):
+        self.write("by_key.csv", "x,z,radius\n0,0,0.3\n1,2,0.2\n")
+        self.write("by_column.csv",
+                   "x,z,radius,index_re,index_im\n0,0,0.3,1.5,.1\n1,2,0.2,1.5,.1\n")
+        self.call("solve", scatterer="tm", placement="by_key.csv", index="1.5+0.1i", out="a.h5")
+        self.call("solve", scatterer="tm", placement="by_column.csv", out="b.h5")
+        self.assert_same_data("a.h5", "b.h5")
+
+
+class Few(ProgramTest):
+    def test_no_scatterers(self):
+        self.write("none.csv", "x,z\n")
+        self.write("sensors.csv", "x,z\n1,2\n")
+        for keys in ({"placement": "none.csv"}, {**BOX, "count": 0},
+                     {"placement": "none.csv", "near_sensors": "sensors.csv"}):
+            with self.subTest(keys=keys):
+                done = self.call("solve", **keys, light_angles=[0, 1], out="result.h5")
+                self.assertIn("0 scatterers", done.stdout)
+                field = datasets(self.folder / "result.h5")
+                field = field.get("far_field", field.get("near_field"))
+                np.testing.assert_array_equal(field, [[0], [0]])
+
+    def test_one_point(self):
+        """A resonant point at the origin: the same amplitude everywhere."""
+        self.write("one.csv", "x,z\n0,0\n")
+        self.call("solve", placement="one.csv", view_angles=[0, 1, 2], out="result.h5")
+        field = datasets(self.folder / "result.h5")["far_field"][0]
+        np.testing.assert_allclose(field, field[0], rtol=1e-14)
+        sigma_s = 2 / np.pi  # 4/k at k = 2 pi
+        self.assertAlmostEqual(2 * np.pi * abs(field[0]) ** 2, sigma_s, places=12)
+
+
+class Drawn(ProgramTest):
+    def test_by_seed(self):
+        for name, seed in (("a", 5), ("b", 5), ("c", 6)):
+            self.call("solve", **CYLINDERS, min_gap=0.1, seed=seed, out=f"{name}.h5")
+        self.assert_same_data("a.h5", "b.h5")
+        a, c = (datasets(self.folder / f"{name}.h5")["placement/x"] for name in "ac")
+        self.assertFalse(np.any(a == c))
+
+    def test_disks_lie_in_the_box_and_apart(self):
+        self.call("solve", **CYLINDERS, min_gap=0.1, out="result.h5")
+        stored = datasets(self.folder / "result.h5")
+        x, z = stored["placement/x"], stored["placement/z"]
+        self.assertLessEqual(np.abs(x).max(), 10)
+        self.assertTrue(0 <= z.min() and z.max() <= 10)
+        gaps = np.hypot(x[:, None] - x, z[:, None] - z) + 10 * np.eye(len(x)) - 2 * 0.16
+        self.assertGreaterEqual(gaps.min(), 0.1)
+        self.assertEqual(len(x), CYLINDERS["count"])
+
+    def test_a_drawn_placement_as_a_file(self):
+        self.call("solve", **CYLINDERS, view_angles=[0, 1], out="drawn.h5")
+        drawn = datasets(self.folder / "drawn.h5")
+        rows = zip(drawn["placement/x"].tolist(), drawn["placement/z"].tolist())
+        self.write("drawn.csv", "x,z\n" + "".join(f"{x!r},{z!r}\n" for x, z in rows))
+        self.call("solve", scatterer="tm", radius=0.16, placement="drawn.csv", view_angles=[0, 1],
+                  out="read.h5")
+        np.testing.assert_array_equal(drawn["far_field"],
+                                      datasets(self.folder / "read.h5")["far_field"])
+
+
+class FullDisk(ProgramTest):
+    """A limit on the size of files stands for a disk that is full."""
+
+    def call_with_little_room(self, *words, **keys):
+        def little_room():
+            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+            resource.setrlimit(resource.RLIMIT_FSIZE, (2000, 2000))
+
+        return subprocess.run([PROGRAM, *words, *flags(keys)], cwd=self.folder, text=True,
+                              capture_output=True, preexec_fn=little_room, restore_signals=False,
+                              timeout=60)
+
+    def test_status_4_and_the_older_result_stays(self):
+        self.write("result.h5", "an older result")
+        before = self.listing()
+        for command, keys in (("solve", BOX), ("covariance", {**BOX, "samples": 3000})):
+            with self.subTest(command=command):
+                done = self.call_with_little_room(command, **keys, out="result.h5")
+                self.assertEqual(done.returncode, 4, done.stderr)
+                self.assertRegex(done.stderr, r"(^|\n)flatspeckle: writing result.h5 failed: .+\n$")
+                self.assertEqual(self.listing(), before)
+
+
+class Result(ProgramTest):
+    def test_provenance(self):
+        self.call("solve", **DISKS, out="result.h5")
+        stored = attributes(self.folder / "result.h5")
+        self.assertEqual(stored["converged"], 1)
+        with h5py.File(self.folder / "result.h5") as file:
+            self.assertLess(file["solve/residual"][()], 1e-12)
+            self.assertGreaterEqual(file["solve/condition"][()], 1)
+        self.assertNotIn("density", stored)
+
+
+if __name__ == "__main__":
+    unittest.main()
