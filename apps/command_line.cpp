@@ -1,6 +1,7 @@
 #include "apps/command_line.h"
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <iostream>
 #include <memory>
@@ -51,14 +52,30 @@ std::string explain(const CLI::App& app, const CLI::ParseError& error) {
   return message;
 }
 
-/// CLI11 lets a text option take the flag that follows it, and a whole number that is too large
-/// become the largest one.
+/// Numbers in the shortest form that reads back as the same one: 20.0 and 2e1 are 20.
+std::string shortest(const std::string& text) {
+  double value = 0;
+  const char* const end = text.data() + text.size();
+  const auto read = std::from_chars(text.data(), end, value);
+  if (read.ec != std::errc{} || read.ptr != end) return text;
+  char digits[32];
+  return {digits, std::to_chars(digits, digits + sizeof digits, value).ptr};
+}
+
+bool is_odd(unsigned char c) {
+  return std::iscntrl(c) != 0 || c == '"' || c == '\\';
+}
+
+/// CLI11 lets a text option take the flag that follows it, a whole number that is too large become
+/// the largest one, and writes texts without escapes.
 void refuse_odd_values(const CLI::App& app) {
   for (const CLI::Option* option : app.get_options()) {
     for (const std::string& value : option->results()) {
       const std::string name = option->get_single_name();
       if (value.empty() || value.starts_with("--"))
         throw InputError(name, '"' + value + '"', "must have a value");
+      if (std::any_of(value.begin(), value.end(), is_odd))
+        throw InputError(name, value, "must be without control characters, \" and \\");
       std::int64_t number = 0;
       const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), number);
       if (option->get_type_name() == "INT" && error == std::errc::result_out_of_range)
@@ -91,6 +108,8 @@ Subcommand::Subcommand(const std::string& name, const std::string& purpose)
 
 bool Subcommand::parse(const Arguments& arguments) {
   std::vector<std::string> own(arguments.rbegin(), arguments.rend() - 2);
+  for (CLI::Option* option : app_.get_options())
+    if (option->get_type_name() == "FLOAT") option->transform(shortest);
   try {
     app_.parse(own);
   } catch (const CLI::CallForHelp&) {

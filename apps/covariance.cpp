@@ -33,14 +33,14 @@ int covariance(const Arguments& arguments) {
   const StopRule mc_stop = stop_rule(settings);
   const StopRule wave_stop = stop_rule(
       settings, "wave_samples", methods.wave_samples ? methods.wave_samples : settings.samples);
-  Session session(command.command_line(), settings, estimation.plan);
-  if (session.already_complete()) return ExitStatus::done;
-  const RunState& state =
-      session.run("", "covariance", estimation.job.batches, method == "mc" ? mc_stop : wave_stop);
-  return session.finish([&](ResultFile& file) {
+  Session session(
+      command.command_line(), settings, estimation.plan,
+      {{"", "covariance", estimation.job.batches, method == "mc" ? mc_stop : wave_stop}},
+      sensors_text(scene.request));
+  return session.run([&](ResultFile& file) {
     write_medium(file, scene);
     write_axes(file, scene.request);
-    write_moments(file, "", estimation.job, scene.request, state.sums);
+    write_moments(file, "", estimation.job, scene.request, session.state("").sums);
   });
 }
 

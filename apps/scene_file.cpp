@@ -1,7 +1,7 @@
 #include "apps/scene_file.h"
 
 #include <algorithm>
-#include <charconv>
+#include <cctype>
 #include <iterator>
 #include <sstream>
 
@@ -11,180 +11,93 @@ namespace flatspeckle::apps {
 
 namespace {
 
-constexpr char end_of_text = '\0';
 constexpr const char* delimiter = " = ";
 
-bool is_control(char c) {
-  return (static_cast<unsigned char>(c) < ' ' && c != '\t' && c != '\n' && c != '\r') ||
-         c == '\x7f';
+bool is_binary(unsigned char c) {
+  return std::iscntrl(c) != 0 && std::isspace(c) == 0;
 }
 
-bool is_key_character(char c) {
-  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
-         c == '-';
-}
-
-/// Numbers, true and false; what they mean is for the option to say.
-bool is_bare_character(char c) {
-  return is_key_character(c) || c == '+' || c == '.';
-}
-
-class SceneText {
- public:
-  explicit SceneText(std::istream& input)
-      : text_(std::istreambuf_iterator<char>(input), std::istreambuf_iterator<char>()) {
-    if (std::any_of(text_.begin(), text_.end(), is_control)) throw InputError("not a text file");
-  }
-
-  std::vector<CLI::ConfigItem> items() {
-    std::vector<CLI::ConfigItem> items;
-    for (skip_to_content(); here() != end_of_text; skip_to_content()) {
-      CLI::ConfigItem item;
-      item.name = key();
-      for (const auto& other : items)
-        if (other.name == item.name) fail(item.name + " is given twice");
-      item.inputs = value(item.name);
-      end_line(item.name);
-      items.push_back(std::move(item));
+/// Appends a line of a file less its comment.
+void append(const std::string& line, std::string& statement, bool& in_list) {
+  char quote = '\0';
+  for (const char c : line) {
+    if (quote == '\0' && c == '#') break;
+    if (quote != '\0' || c == '"' || c == '\'') {
+      quote = quote == '\0' ? c : quote == c ? '\0' : quote;
+    } else if (c == '[' || c == ']') {
+      if (in_list == (c == '[')) throw InputError("brackets do not match; a list is [a, b]");
+      in_list = !in_list;
+    } else if (c == ',') {
+      CLI::detail::rtrim(statement);  // CLI11 would read "1 ," as the text "1 "
     }
-    return items;
+    statement += c;
   }
-
- private:
-  [[noreturn]] void fail(const std::string& what) const {
-    const auto lines =
-        std::count(text_.begin(), text_.begin() + static_cast<std::ptrdiff_t>(at_), '\n');
-    throw InputError("line " + std::to_string(lines + 1) + ": " + what);
-  }
-
-  char here() const { return at_ < text_.size() ? text_[at_] : end_of_text; }
-
-  bool take(char c) {
-    if (here() != c) return false;
-    ++at_;
-    return true;
-  }
-
-  std::string take_while(bool (*belongs)(char)) {
-    const std::size_t from = at_;
-    while (belongs(here())) ++at_;
-    return text_.substr(from, at_ - from);
-  }
-
-  void skip_blanks() {
-    while (here() == ' ' || here() == '\t' || here() == '\r') ++at_;
-    if (here() == '#') at_ = std::min(text_.find('\n', at_), text_.size());
-  }
-
-  void skip_to_content() {
-    do skip_blanks();
-    while (take('\n'));
-  }
-
-  std::string key() {
-    if (here() == '[') fail("a scene is one flat list of keys, without [tables]");
-    const std::string name = take_while(is_key_character);
-    skip_blanks();
-    if (name.empty() || !take('='))
-      fail(name + (name.empty() ? "" : ": ") + "expected key = value");
-    skip_blanks();
-    return name;
-  }
-
-  std::vector<std::string> value(const std::string& name) {
-    if (!take('[')) return {scalar(name)};
-    std::vector<std::string> list;
-    for (skip_to_content(); !take(']'); skip_to_content()) {
-      list.push_back(scalar(name));
-      skip_to_content();
-      if (!take(',') && here() != ']') fail(name + ": expected , or ] in the list");
-    }
-    if (list.empty()) fail(name + " = []: must hold at least one value");
-    return list;
-  }
-
-  std::string scalar(const std::string& name) {
-    if (here() == '"' || here() == '\'') return quoted(name);
-    const std::string word = take_while(is_bare_character);
-    if (word.empty()) fail(name + ": expected a number, \"text\", or a list [a, b]");
-    return word;
-  }
-
-  /// A backslash lets a " or a backslash be part of a "string"; a 'string' is taken as it is.
-  std::string quoted(const std::string& name) {
-    const char quote = text_[at_++];
-    std::string content;
-    while (!take(quote)) {
-      if (here() == end_of_text || here() == '\n')
-        fail(name + ": the text is not closed by " + quote);
-      if (quote == '"' && take('\\') && here() != '"' && here() != '\\')
-        fail(name + ": a backslash in \"text\" is written \\\\");
-      content += text_[at_++];
-    }
-    return content;
-  }
-
-  void end_line(const std::string& name) {
-    skip_blanks();
-    if (here() != '\n' && here() != end_of_text)
-      fail(name + ": one value; text stands in \"\", a list in [ ]");
-  }
-
-  std::string text_;
-  std::size_t at_ = 0;
-};
-
-std::string in_quotes(const std::string& text) {
-  std::string quoted;
-  for (char c : text) quoted += c == '"' || c == '\\' ? std::string{'\\', c} : std::string{c};
-  return '"' + quoted + '"';
+  if (quote != '\0') throw InputError(std::string("a text is not closed by ") + quote);
+  statement += ' ';
 }
 
-/// The shortest form that reads back as the same number: 20.0 and 2e1 are 20.
-std::string number(const std::string& text) {
-  double value = 0;
-  const char* const end = text.data() + text.size();
-  if (const auto read = std::from_chars(text.data(), end, value);
-      read.ec != std::errc{} || read.ptr != end)
-    return text;
-  char shortest[32];
-  return {shortest, std::to_chars(shortest, shortest + sizeof shortest, value).ptr};
-}
-
-std::string element(const CLI::Option& option, const std::string& text) {
-  const std::string type = option.get_type_name();
-  if (type == "TEXT") return in_quotes(text);
-  return type == "FLOAT" ? number(text) : text;
-}
-
-/// Empty where there is neither value nor default.
-std::string value_of(const CLI::Option& option) {
-  if (option.get_expected_min() == 0)
-    return option.count() > 0 ? option.as<std::string>() : "false";
-  if (option.count() == 0) {
-    const std::string text = option.get_default_str();
-    return text.empty() ? text : element(option, text);
-  }
-  std::string joined;
-  for (const auto& text : option.results())
-    joined += (joined.empty() ? "" : ", ") + element(option, text);
-  return option.get_expected_max() > 1 ? '[' + joined + ']' : joined;
+/// Names and values less all that stands between them.
+std::string content(std::string text) {
+  constexpr std::string_view between = " \t\r\f\v\"'[],=";
+  std::erase_if(text, [&](char c) { return between.find(c) != std::string_view::npos; });
+  return text;
 }
 
 }  // namespace
 
-std::string SceneFile::to_config(const CLI::App* app, bool, bool, std::string) const {
-  std::string config;
-  for (const CLI::Option* option : app->get_options()) {
-    if (!option->get_configurable()) continue;
-    const std::string value = value_of(*option);
-    if (!value.empty()) config += option->get_single_name() + delimiter + value + '\n';
-  }
-  return config;
+SceneFile::SceneFile() {
+  comment('\n');  // CLI11 would cut a text in quotes at its #
+}
+
+CLI::ConfigItem SceneFile::item(const std::string& statement) const {
+  std::istringstream input(statement);
+  const auto read = CLI::ConfigTOML::from_config(input);
+  const bool one = read.size() == 1 && std::isalpha(static_cast<unsigned char>(read[0].name[0]));
+  if (!one || content(read[0].name + CLI::detail::join(read[0].inputs, "")) != content(statement))
+    throw InputError("expected key = value or key = [a, b], without [tables]");
+  if (read[0].inputs.empty() || CLI::detail::find_member("", read[0].inputs) >= 0)
+    throw InputError(read[0].name + ": must have a value");
+  if (read[0].inputs.size() > 1 && statement.find('[') == std::string::npos)
+    throw InputError(read[0].name + ": expected one value; a list is [a, b]");
+  return read[0];
 }
 
 std::vector<CLI::ConfigItem> SceneFile::from_config(std::istream& input) const {
-  return SceneText(input).items();
+  std::string text{std::istreambuf_iterator<char>(input), std::istreambuf_iterator<char>()};
+  if (std::any_of(text.begin(), text.end(), is_binary)) throw InputError("not a text file");
+  if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);  // byte order mark
+
+  std::vector<CLI::ConfigItem> keys;
+  std::istringstream lines(text);
+  std::string line, statement;
+  bool in_list = false;
+  int number = 0;
+  try {
+    while (std::getline(lines, line)) {
+      ++number;
+      append(line, statement, in_list);
+      if (in_list || CLI::detail::trim(statement).empty()) continue;
+      keys.push_back(item(statement));
+      for (auto key = keys.begin(); key + 1 != keys.end(); ++key)
+        if (key->name == keys.back().name) throw InputError(key->name + " is given twice");
+      statement.clear();
+    }
+    if (in_list) throw InputError("a list is not closed by ]");
+  } catch (const InputError& error) {
+    throw InputError("line " + std::to_string(number) + ": " + error.what());
+  }
+  return keys;
+}
+
+std::string SceneFile::to_config(const CLI::App* app, bool, bool, std::string) const {
+  std::istringstream lines(CLI::ConfigTOML::to_config(app, true, false, ""));
+  std::string config, key, value;
+  while (std::getline(lines, key, '=') && std::getline(lines, value)) {
+    if (value == R"("")") continue;
+    const bool list = app->get_option("--" + key)->get_expected_max() > 1;
+    config += key + delimiter + (list && value.front() != '[' ? '[' + value + ']' : value) + '\n';
+  }
+  return config;
 }
 
 std::string without_keys(const std::string& config, const std::vector<std::string>& keys) {

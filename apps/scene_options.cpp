@@ -1,5 +1,8 @@
 #include "apps/scene_options.h"
 
+#include <limits>
+#include <sstream>
+
 #include "core/error.h"
 
 namespace flatspeckle::apps {
@@ -59,6 +62,14 @@ void settle_views(const Subcommand& subcommand, SceneSpec& spec) {
                          ": covariance = pairs names the angles itself; leave it out");
   }
   if (!spec.near_sensors.empty() && !subcommand.given("view_angles")) spec.view_angles.clear();
+}
+
+std::string sensors_text(const CovarianceRequest& request) {
+  std::ostringstream text;
+  text.precision(std::numeric_limits<double>::max_digits10);
+  for (const View& view : request.views)
+    if (view.near) text << view.point.x << ',' << view.point.z << '\n';
+  return text.str();
 }
 
 }  // namespace flatspeckle::apps

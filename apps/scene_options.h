@@ -18,4 +18,7 @@ void add_request_options(CLI::App& app, SceneSpec& spec);
 /// Near sensors take the place of the default far view; pairs name their angles themselves.
 void settle_views(const Subcommand& subcommand, SceneSpec& spec);
 
+/// The near sensors that were read, exactly.
+std::string sensors_text(const CovarianceRequest& request);
+
 }  // namespace flatspeckle::apps

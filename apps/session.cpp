@@ -10,6 +10,7 @@
 #include "core/interrupt.h"
 #include "core/result_reader.h"
 #include "core/run_state_file.h"
+#include "core/version.h"
 
 namespace flatspeckle::apps {
 
@@ -19,7 +20,6 @@ namespace {
 const std::vector<std::string> keys_of_the_stop = {"samples",      "wave_samples", "seconds",
                                                    "target_error", "threads",      "resume"};
 
-/// A run without a name has its trace in the root.
 std::string trace_group(const std::string& run) {
   return run.empty() ? "trace" : run + "/trace";
 }
@@ -29,8 +29,11 @@ std::string state_group(const std::string& run) {
 
 }  // namespace
 
-Session::Session(const CommandLine& command_line, const RunSettings& settings, std::string plan)
-    : settings_(settings), identity_(without_keys(command_line.config, keys_of_the_stop)) {
+Session::Session(const CommandLine& command_line, const RunSettings& settings, std::string plan,
+                 std::vector<PlannedRun> runs, const std::string& inputs)
+    : settings_(settings), runs_(std::move(runs)) {
+  identity_ = "flatspeckle " + version() + '\n' +
+              without_keys(command_line.config, keys_of_the_stop) + inputs;
   if (settings_.out.empty())
     throw InputError("out is not given: name the result file (--out FILE.h5)");
   check_writable(settings_.out);
@@ -41,33 +44,44 @@ Session::Session(const CommandLine& command_line, const RunSettings& settings, s
   provenance_.plan = std::move(plan);
   provenance_.threads = settings.threads > 0 ? settings.threads : default_threads();
   provenance_.started = utc_now();
+  for (const auto& run : runs_) states_[run.name];
   if (settings_.resume && std::filesystem::exists(settings_.out)) resume(settings_.out);
 }
 
+/// All states at once: what is saved while one run goes on must hold those of the others.
 void Session::resume(const std::string& path) {
-  resumed_ = std::make_unique<ResultReader>(path);
-  if (!resumed_->has_attribute("/", "identity") ||
-      resumed_->attribute<std::string>("/", "identity") != identity_)
-    throw InputError("resume: " + path +
-                     " holds another run; the scene and the seed must be the same");
-  already_complete_ = resumed_->attribute<bool>("/", "converged");
-  if (already_complete_) std::cout << path << " is complete; nothing to resume\n";
+  const ResultReader file(path);
+  if (!file.has_attribute("/", "identity") ||
+      file.attribute<std::string>("/", "identity") != identity_)
+    throw InputError(
+        "resume: " + path +
+        " holds another run; scene, sensors, seed and program version must be the same");
+  already_complete_ = file.attribute<bool>("/", "converged");
+  for (const auto& [name, label, job, stop] : runs_)
+    if (const std::string group = state_group(name); file.has(group))
+      states_[name] = read_state(file, group, job.size);
 }
 
-const RunState& Session::run(const std::string& name, const std::string& label, const BatchJob& job,
-                             const StopRule& stop) {
-  RunState& state = states_[name];
-  run_names_.push_back(name);
-  const std::string group = state_group(name);
-  if (resumed_ && resumed_->has(group)) state = read_state(*resumed_, group, job.size);
-  if (interrupted_) return state;
-  RunOptions options{stop, settings_.threads, label, [this](const RunState&) { save_resumable(); }};
-  const StopReason reason = run_batches(job, options, state);
+int Session::run(const std::function<void(ResultFile&)>& contents) {
+  if (already_complete_) {
+    std::cout << settings_.out << " is complete; nothing to resume (for more samples run it "
+              << "afresh, without --resume)\n";
+    return ExitStatus::done;
+  }
+  for (const auto& run : runs_)
+    if (!interrupted_) run_one(run);
+  return finish(contents);
+}
+
+void Session::run_one(const PlannedRun& run) {
+  RunState& state = states_[run.name];
+  const RunOptions options{run.stop, settings_.threads, run.label,
+                           [this](const RunState&) { save_resumable(); }};
+  const StopReason reason = run_batches(run.job, options, state);
   interrupted_ = reason == StopReason::interrupted;
-  const bool reached = !stop.target_error || reason == StopReason::target_error ||
-                       state.trace.relative_error.back() <= *stop.target_error;
+  const bool reached = !run.stop.target_error || reason == StopReason::target_error ||
+                       state.trace.relative_error.back() <= *run.stop.target_error;
   converged_ = converged_ && reached && !interrupted_;
-  return state;
 }
 
 int Session::finish(const std::function<void(ResultFile&)>& contents) {
@@ -78,7 +92,7 @@ int Session::finish(const std::function<void(ResultFile&)>& contents) {
   }
   ResultFile file(settings_.out);
   write_common(file, converged_);
-  for (const auto& name : run_names_) write_trace(file, trace_group(name), states_.at(name).trace);
+  for (const auto& [name, state] : states_) write_trace(file, trace_group(name), state.trace);
   contents(file);
   if (!converged_) write_states(file);
   file.commit();

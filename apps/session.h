@@ -2,7 +2,6 @@
 
 #include <functional>
 #include <map>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -10,36 +9,39 @@
 #include "apps/run_options.h"
 #include "core/provenance.h"
 #include "core/result_file.h"
-#include "core/result_reader.h"
 #include "core/runner.h"
 
 namespace flatspeckle::apps {
+
+/// One of the runs of a session. A run without a name has its trace in the root of the result.
+struct PlannedRun {
+  std::string name, label;
+  BatchJob job;
+  StopRule stop;
+};
 
 /// The runs of one call of the program and the result file they end in. While they run, the file
 /// holds what could be resumed; at the end, the result. Each state of it replaces the one before as
 /// a whole.
 class Session {
  public:
+  /// inputs: what the scene takes from other files, as text; a resumed run must have the same.
   /// Throws InputError where --out is missing or not writable, or where --resume finds a file of
   /// another run.
-  Session(const CommandLine& command_line, const RunSettings& settings, std::string plan);
+  Session(const CommandLine& command_line, const RunSettings& settings, std::string plan,
+          std::vector<PlannedRun> runs, const std::string& inputs = "");
 
-  /// --resume found a file that holds the finished result: there is nothing to do.
-  bool already_complete() const { return already_complete_; }
+  const RunState& state(const std::string& run) const { return states_.at(run); }
 
-  /// Runs a job to its end or goes on with it. Runs have different names; after an interruption the
-  /// remaining ones do nothing. The state stays where it is until the session ends.
-  const RunState& run(const std::string& name, const std::string& label, const BatchJob& job,
-                      const StopRule& stop);
-
-  bool interrupted() const { return interrupted_; }
-
-  /// Writes the result (after an interruption: what can be resumed), says so on standard output,
-  /// and returns the exit status. contents: everything but provenance, traces and states.
-  int finish(const std::function<void(ResultFile&)>& contents);
+  /// Runs all to their end, or until an interruption, or goes on with them. Writes the result
+  /// (after an interruption: what can be resumed), says so on standard output, and returns the exit
+  /// status. contents: everything but provenance, traces and states.
+  int run(const std::function<void(ResultFile&)>& contents);
 
  private:
   void resume(const std::string& path);
+  void run_one(const PlannedRun& run);
+  int finish(const std::function<void(ResultFile&)>& contents);
   void write_common(ResultFile& file, bool converged) const;
   void save_resumable() const;
   void write_states(ResultFile& file) const;
@@ -47,9 +49,8 @@ class Session {
   RunSettings settings_;
   Provenance provenance_;
   std::string identity_;
+  std::vector<PlannedRun> runs_;
   std::map<std::string, RunState> states_;
-  std::unique_ptr<ResultReader> resumed_;
-  std::vector<std::string> run_names_;
   bool already_complete_ = false, interrupted_ = false, converged_ = true;
 };
 

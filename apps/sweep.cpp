@@ -22,7 +22,7 @@ struct SweepPoint {
   std::string name;
   Scene scene;
   FieldJob job;
-  const RunState* state = nullptr;
+  const GroupedSums* sums = nullptr;
 };
 
 std::vector<std::optional<double>> values_or_none(const std::vector<double>& values) {
@@ -60,8 +60,7 @@ struct SweepTables {
   std::vector<std::uint64_t> censored;
 
   void add(const SweepPoint& point) {
-    const auto effect =
-        mc::memory_effect(point.scene.request, point.state->sums, point.job.covariance);
+    const auto effect = mc::memory_effect(point.scene.request, *point.sums, point.job.covariance);
     const double depth = point.scene.domain.depth;
     correlation.insert(correlation.end(), effect.correlation.begin(), effect.correlation.end());
     correlation_error.insert(correlation_error.end(), effect.correlation_error.begin(),
@@ -148,14 +147,15 @@ int sweep(const Arguments& arguments) {
     points.push_back({name, std::move(scene), std::move(estimation.job), nullptr});
   }
   const StopRule stop = stop_rule(settings);
-  Session session(command.command_line(), settings, plan);
-  if (session.already_complete()) return ExitStatus::done;
-  for (std::size_t i = 0; i < points.size(); ++i) {
+  std::vector<PlannedRun> runs;
+  for (const auto& point : points) {
     const std::string label =
-        "point " + std::to_string(i + 1) + "/" + std::to_string(points.size());
-    points[i].state = &session.run(points[i].name, label, points[i].job.batches, stop);
+        "point " + std::to_string(runs.size() + 1) + "/" + std::to_string(points.size());
+    runs.push_back({point.name, label, point.job.batches, stop});
   }
-  return session.finish([&](ResultFile& file) {
+  Session session(command.command_line(), settings, plan, std::move(runs));
+  for (auto& point : points) point.sums = &session.state(point.name).sums;
+  return session.run([&](ResultFile& file) {
     SweepTables tables;
     for (const auto& point : points) tables.add(point);
     print_ranges(points, tables);

@@ -13,6 +13,8 @@ namespace flatspeckle {
 
 namespace {
 
+constexpr const char* byte_order_mark = "\xEF\xBB\xBF";
+
 std::string_view trimmed(std::string_view text) {
   constexpr std::string_view space = " \t\r";
   const auto first = text.find_first_not_of(space);
@@ -53,7 +55,7 @@ class CsvReader {
   /// Goes to the next line that says something.
   bool next_line() {
     while (std::getline(file_, text_)) {
-      ++number_;
+      if (++number_ == 1 && text_.starts_with(byte_order_mark)) text_.erase(0, 3);
       line_ = trimmed(text_);
       if (!line_.empty() && line_.front() != '#') return true;
     }

@@ -26,8 +26,8 @@ class Table {
 };
 
 /// Reads a comma-separated file: one line of column names, then lines of finite numbers. Spaces
-/// around fields, blank lines, CRLF and lines that start with '#' are allowed. Throws InputError
-/// naming file, line and what is wrong.
+/// around fields, blank lines, CRLF, lines that start with '#' and a UTF-8 byte order mark are
+/// allowed. Throws InputError naming file, line and what is wrong.
 Table read_csv(const std::filesystem::path& path);
 
 }  // namespace flatspeckle

@@ -1,9 +1,9 @@
 #include "flatland/request.h"
 
-#include <unistd.h>
-
 #include <cmath>
+#include <map>
 #include <numbers>
+#include <unistd.h>
 
 #include "core/complex.h"
 #include "core/error.h"
@@ -14,7 +14,9 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-std::uint32_t as_index(std::size_t n) { return static_cast<std::uint32_t>(n); }
+std::uint32_t as_index(std::size_t n) {
+  return static_cast<std::uint32_t>(n);
+}
 
 CovarianceRequest every_channel(std::vector<double> lights, std::vector<View> views) {
   CovarianceRequest request;
@@ -26,31 +28,19 @@ CovarianceRequest every_channel(std::vector<double> lights, std::vector<View> vi
   return request;
 }
 
-/// The number of a value in a list, to which it is added where it is new.
-template <typename T>
-std::uint32_t number_of(std::vector<T>& list, const T& value, bool (*same)(const T&, const T&)) {
-  for (std::size_t i = 0; i < list.size(); ++i)
-    if (same(list[i], value)) return as_index(i);
-  list.push_back(value);
-  return as_index(list.size() - 1);
-}
+/// Numbers things as they come; equal ones share a number.
+template <typename Key>
+class Numbering {
+ public:
+  /// The number of `key`, and whether it is new.
+  std::pair<std::uint32_t, bool> number(const Key& key) {
+    const auto [known, is_new] = numbers_.emplace(key, as_index(numbers_.size()));
+    return {known->second, is_new};
+  }
 
-std::uint32_t light_number(CovarianceRequest& request, double angle) {
-  return number_of<double>(request.lights, angle, [](const double& a, const double& b) { return a == b; });
-}
-
-std::uint32_t view_number(CovarianceRequest& request, const View& view) {
-  return number_of<View>(request.views, view, [](const View& a, const View& b) {
-    return a.near == b.near && a.angle == b.angle && a.point.x == b.point.x &&
-           a.point.z == b.point.z;
-  });
-}
-
-std::uint32_t channel_number(CovarianceRequest& request, double light, double view) {
-  const Channel channel{light_number(request, light), view_number(request, far_view(view))};
-  return number_of<Channel>(request.channels, channel,
-                            [](const Channel& a, const Channel& b) { return a == b; });
-}
+ private:
+  std::map<Key, std::uint32_t> numbers_;
+};
 
 double tilted_light(double light, double tilt) {
   const double tilted = light + tilt;
@@ -64,9 +54,9 @@ double matched_view(double view, double q_over_k, double tilt) {
   if (q_over_k == 0) return view;
   const double sine = std::sin(view) + q_over_k;
   if (std::abs(sine) >= 1) {
-    throw InputError("tilts", tilt,
-                     "takes the matched view of view angle " + std::to_string(view) +
-                         " past the horizon");
+    throw InputError(
+        "tilts", tilt,
+        "takes the matched view of view angle " + std::to_string(view) + " past the horizon");
   }
   const double forward = std::asin(sine);
   if (std::cos(view) >= 0) return forward;
@@ -89,8 +79,8 @@ CovarianceRequest full_request(std::vector<double> lights, std::vector<View> vie
   const std::size_t n = request.channels.size(), entries = n * (n + 1) / 2;
   // About twenty copies of the sums are held: the groups and the batches in hand.
   const double bytes = 20.0 * sizeof(Complex) * static_cast<double>(entries);
-  const double memory = static_cast<double>(sysconf(_SC_PHYS_PAGES)) *
-                        static_cast<double>(sysconf(_SC_PAGE_SIZE));
+  const double memory =
+      static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
   if (bytes > 0.8 * memory) {
     throw InputError("covariance", "full",
                      std::to_string(n) + " channels need " + std::to_string(bytes / 1e9) +
@@ -105,9 +95,20 @@ CovarianceRequest full_request(std::vector<double> lights, std::vector<View> vie
 CovarianceRequest pairs_request(const std::vector<AnglePair>& pairs) {
   CovarianceRequest request;
   request.kind = CovarianceRequest::Kind::pairs;
+  Numbering<double> lights, views;
+  Numbering<std::pair<std::uint32_t, std::uint32_t>> channels;
+  const auto channel = [&](double light_angle, double view_angle) {
+    const auto [light, new_light] = lights.number(light_angle);
+    const auto [view, new_view] = views.number(view_angle);
+    if (new_light) request.lights.push_back(light_angle);
+    if (new_view) request.views.push_back(far_view(view_angle));
+    const auto [number, is_new] = channels.number({light, view});
+    if (is_new) request.channels.push_back({light, view});
+    return number;
+  };
   for (const auto& pair : pairs) {
-    const auto a = channel_number(request, pair.light1, pair.view1);
-    request.entries.push_back({a, channel_number(request, pair.light2, pair.view2)});
+    const auto a = channel(pair.light1, pair.view1);
+    request.entries.push_back({a, channel(pair.light2, pair.view2)});
   }
   return request;
 }
@@ -118,18 +119,28 @@ CovarianceRequest memory_effect_request(double k, double light, std::vector<doub
   request.kind = CovarianceRequest::Kind::memory_effect;
   request.tilts = std::move(tilts);
   request.reference_views = views.size();
-  std::vector<std::uint32_t> reference, tilted;
-  for (double view : views) reference.push_back(channel_number(request, light, view));
+  std::vector<std::uint32_t> tilted;  // channels [tilt][view]
+  const auto add_light = [&](double angle, double q_over_k, double tilt) {
+    request.lights.push_back(angle);
+    for (double view : views) {
+      request.views.push_back(far_view(matched_view(view, q_over_k, tilt)));
+      request.channels.push_back(
+          {as_index(request.lights.size() - 1), as_index(request.views.size() - 1)});
+    }
+  };
+  add_light(light, 0, 0);
   for (double tilt : request.tilts) {
-    const double light2 = tilted_light(light, tilt);
-    const double q_over_k = tilt == 0 ? 0 : std::sin(light2) - std::sin(light);
+    const double angle = tilted_light(light, tilt);
+    const double q_over_k = tilt == 0 ? 0 : std::sin(angle) - std::sin(light);
     request.tilt_q.push_back(k * q_over_k);
-    for (double view : views)
-      tilted.push_back(channel_number(request, light2, matched_view(view, q_over_k, tilt)));
+    const std::size_t first = tilt == 0 ? 0 : request.channels.size();
+    if (tilt != 0) add_light(angle, q_over_k, tilt);
+    for (std::size_t v = 0; v < views.size(); ++v) tilted.push_back(as_index(first + v));
   }
   for (std::size_t i = 0; i < tilted.size(); ++i)
-    request.entries.push_back({reference[i % views.size()], tilted[i]});
-  for (auto channel : reference) request.entries.push_back({channel, channel});
+    request.entries.push_back({as_index(i % views.size()), tilted[i]});
+  for (std::size_t v = 0; v < views.size(); ++v)
+    request.entries.push_back({as_index(v), as_index(v)});
   for (auto channel : tilted) request.entries.push_back({channel, channel});
   return request;
 }

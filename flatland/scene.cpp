@@ -202,6 +202,7 @@ CovarianceRequest memory_effect(const SceneSpec& spec) {
   if (!spec.near_sensors.empty())
     throw InputError("near_sensors", spec.near_sensors, "memory_effect has far views only");
   not_empty("tilts", spec.tilts);
+  no_repeats("tilts", spec.tilts);
   not_empty("view_angles", spec.view_angles);
   no_repeats("view_angles", spec.view_angles);
   return memory_effect_request(2 * std::numbers::pi / spec.wavelength, spec.light_angles[0],

@@ -254,7 +254,7 @@ class SceneFile(RefusingTest):
         for text in ("[medium]\nalbedo = 0.9\n", "[medium]\n", "[[medium]]\nalbedo = 0.9\n",
                      "[covariance]\nalbedo = 0.9\n", "[default]\nalbedo = 0.9\n"):
             self.refused_text(text, ["scene.toml, line 4", "without [tables]"])
-        self.refused_text("medium.albedo = 0.9\n", ["scene.toml, line 4", "medium"])
+        self.refused_text("medium.albedo = 0.9\n", ["scene.toml, line 4", "key = value"])
 
     def test_what_is_no_key(self):
         self.refused_text('help = true\n', ["help"])
@@ -264,15 +264,26 @@ class SceneFile(RefusingTest):
 
     def test_what_is_no_line_of_a_scene(self):
         for text in ("nonsense\n", "= 3\n", "g\n", "g=\n", "g 3\n", "g = 1 2\n", "g = 1, 2\n",
-                     "g = 0.5 albedo = 1\n", "g == 3\n", "two words = 3\n", '"g" = 3\n'):
+                     "tilts = 0,5\n", "tilts = 0 5\n", "g = 0.5 albedo = 1\n", "g == 3\n", "; g\n",
+                     "resume\n", "-- = 3\n", "++ = 3\n", "--g = 3\n", ".g = 3\n",
+                     'tilts = ["0"5]\n', "tilts = [0] 5\n", 'tilts = ["0"] 5\n', "tilts = 0]\n"):
             self.refused_text(text, ["scene.toml, line 4: "])
+        self.refused_text("two words = 3\n", ["two words", "unknown key"])
 
     def test_what_is_not_closed(self):
         """It must not lose its last number or take in the keys below."""
-        for text in ("tilts = [0, 0.5", "tilts = [0, 0.5\ng = 1\n", "tilts = [0 0.5]\n",
-                     "tilts = [, 0.5]\n", "tilts = [[0, 0.5]]\n", 'index = "1.5\n', "index = '1.5",
-                     'index = "1.5\\n"\n'):
+        for text in ("tilts = [0, 0.5", "tilts = [0, 0.5\ng = 1\n", "tilts = [0, 0.5\ntilts = [1]\n",
+                     "tilts = [, 0.5]\n", "tilts = [0, , 0.5]\n", "tilts = [[0, 0.5]]\n",
+                     'index = "1.5\n', "index = '1.5"):
             self.refused_text(text, ["scene.toml, line "])
+        self.refused_text("tilts = [0 0.5]\n", ["tilts = 0 0.5", "must be a number"])
+
+    def test_text_that_could_not_be_written_back(self):
+        for text in ('index = "1.5\\n"\n', "index = '1\"5'\n"):
+            self.refused_text(text, ["index", "without control characters"])
+        for value in ('a"b.csv', "a\\b.csv", "a\nb.csv"):
+            self.assert_refused(["near_sensors", "without control characters"], "covariance",
+                                *flags(BOX), near_sensors=value)
 
     def test_unreadable(self):
         self.assert_refused(["config", "none.toml"], "covariance", *flags(BOX), config="none.toml")
@@ -304,6 +315,21 @@ class AcceptedScenes(ProgramTest):
         decorated = plain.replace("width = 20", "# a box\n\n  width=20   # wavelengths\r")
         decorated = decorated.replace("[0, 0.04, 0.16]", "[0,\n  0.04,  # small\n  0.16]")
         self.assertEqual(self.resolved(decorated), self.resolved(plain))
+
+    def test_blanks_around_commas_and_a_comma_at_the_end(self):
+        plain = toml({**BOX, **TILTS})
+        for tilts in ("[ 0 ,0.04\t, 0.16 ]", "[0, 0.04, 0.16,]", "['0' , \"0.04\", 0.16\n, # last\n]"):
+            with self.subTest(tilts=tilts):
+                self.assertEqual(self.resolved(plain.replace("[0, 0.04, 0.16]", tilts)),
+                                 self.resolved(plain))
+
+    def test_a_hash_in_a_text(self):
+        for name in ("a#b.csv", "a #b, [c] = 'd'.csv"):
+            text = self.resolved(toml({**BOX, "near_sensors": name}) + "# it's \"open\n")
+            self.assertIn(f'near_sensors = "{name}"\n', text)
+
+    def test_a_byte_order_mark(self):
+        self.assertEqual(self.resolved("\ufeff" + toml(BOX)), self.resolved(toml(BOX)))
 
     def test_without_a_newline_at_the_end(self):
         self.assertEqual(self.resolved(toml(BOX)[:-1]), self.resolved(toml(BOX)))

@@ -92,6 +92,20 @@ class Interruption(ProgramTest):
         self.call("covariance", **keys, out="whole.h5")
         self.assert_same_data("run.h5", "whole.h5")
 
+    def test_a_part_that_waits_its_turn_is_kept(self):
+        """More samples for the first part: meanwhile the file still holds the second one."""
+        scene = LONG["validate, in wave"][1]
+        self.interrupt(signal.SIGINT, 0.3, "validate", **scene, threads=2, out="run.h5")
+        before = datasets(self.folder / "run.h5", leave_out=())["state/wave/group_sums"]
+        more = {**scene, "samples": 50_000_000}
+        status = self.interrupt(signal.SIGINT, 0.05, "validate", "--resume", **more, threads=2,
+                                out="run.h5")
+        self.assertEqual(status, 75)
+        after = datasets(self.folder / "run.h5", leave_out=())
+        np.testing.assert_array_equal(after["state/wave/group_sums"], before)
+        with h5py.File(self.folder / "run.h5") as file:
+            self.assertGreater(file["state/mc/group_samples"][()].sum(), scene["samples"])
+
     def test_another_seed_may_not(self):
         keys = LONG["mc"][1]
         self.interrupt(signal.SIGINT, 0.1, "covariance", **keys, threads=2, out="run.h5")
@@ -189,11 +203,33 @@ class Target(ProgramTest):
 
 
 class Resume(ProgramTest):
+    def test_other_sensors_in_the_same_file_may_not(self):
+        keys = {**BOX, "samples": 3000, "target_error": NEVER, "near_sensors": "s.csv"}
+        self.write("s.csv", "x,z\n0,15\n1,15\n")
+        self.call("covariance", **keys, out="run.h5", status=3)
+        self.write("s.csv", "x,z\n0,15\n1,15.000000000000002\n")
+        before = self.listing()
+        done = self.call("covariance", "--resume", **keys, out="run.h5", status=2)
+        self.assertIn("sensors", done.stderr)
+        self.assertEqual(self.listing(), before)
+        self.write("s.csv", "z,x\n15,0\n15,1\n")
+        self.call("covariance", "--resume", **keys, out="run.h5", status=3)
+
+    def test_another_version_may_not(self):
+        self.call("covariance", **SHORT, target_error=NEVER, out="run.h5", status=3)
+        with h5py.File(self.folder / "run.h5", "r+") as file:
+            version = file.attrs["version"]
+            self.assertIn(f"flatspeckle {version}\n", file.attrs["identity"])
+            file.attrs["identity"] = file.attrs["identity"].replace(version, "0.0.0")
+        done = self.call("covariance", "--resume", **SHORT, out="run.h5", status=2)
+        self.assertIn("version", done.stderr)
+
     def test_of_a_finished_run_changes_nothing(self):
         self.call("covariance", **SHORT, out="run.h5")
         before = self.listing()
         done = self.call("covariance", "--resume", **SHORT, out="run.h5")
-        self.assertIn("complete", done.stdout)
+        for word in ("complete", "more samples", "without --resume"):
+            self.assertIn(word, done.stdout)
         self.assertEqual(self.listing(), before)
 
     def test_of_nothing_starts_afresh(self):

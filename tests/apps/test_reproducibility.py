@@ -65,7 +65,7 @@ class PrintedConfiguration(ProgramTest):
     SCENES = [
         ("covariance", {**BOX, **TILTS, "samples": 5, "resume": True}),
         ("covariance", {**CYLINDERS, "index": "1.5+0.1i", "light_angles": [-0.1],
-                        "near_sensors": 'a "b" \\ #c.csv'}),
+                        "near_sensors": "a 'b' = [1, 2] #c.csv"}),
         ("covariance", {**BOX, **REQUESTS["pairs"], "seconds": "1e1", "threads": 2}),
         ("validate", {**BOX, "wave_samples": 7}),
         ("sweep", {**SWEEP, "optical_depth": [2]}),

@@ -79,6 +79,11 @@ TEST_CASE("spaces, CRLF, comments, blank lines and a missing last newline are al
   CHECK(table_of("x,z\n").rows() == 0);
 }
 
+TEST_CASE("a byte order mark is no part of the first name") {
+  CHECK(table_of("\xEF\xBB\xBFx,z\n1,2\n").names() == std::vector<std::string>{"x", "z"});
+  CHECK(complaint("\xEF\xBB\xBF") == ": empty, expected a line of column names");
+}
+
 TEST_CASE("numbers are read exactly") {
   CHECK(column(table_of("x\n0.1\n-1.7976931348623157e308\n"), "x") ==
         std::vector{0.1, -1.7976931348623157e308});
