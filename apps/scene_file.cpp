@@ -3,19 +3,15 @@
 #include <algorithm>
 #include <cctype>
 #include <iterator>
+#include <set>
 #include <sstream>
+#include <utility>
 
 #include "core/error.h"
 
 namespace flatspeckle::apps {
 
 namespace {
-
-constexpr const char* delimiter = " = ";
-
-bool is_binary(unsigned char c) {
-  return std::iscntrl(c) != 0 && std::isspace(c) == 0;
-}
 
 /// Appends a line of a file less its comment.
 void append(const std::string& line, std::string& statement, bool& in_list) {
@@ -55,38 +51,38 @@ CLI::ConfigItem SceneFile::item(const std::string& statement) const {
   const bool one = read.size() == 1 && std::isalpha(static_cast<unsigned char>(read[0].name[0]));
   if (!one || content(read[0].name + CLI::detail::join(read[0].inputs, "")) != content(statement))
     throw InputError("expected key = value or key = [a, b], without [tables]");
-  if (read[0].inputs.empty() || CLI::detail::find_member("", read[0].inputs) >= 0)
-    throw InputError(read[0].name + ": must have a value");
-  if (read[0].inputs.size() > 1 && statement.find('[') == std::string::npos)
-    throw InputError(read[0].name + ": expected one value; a list is [a, b]");
+  const auto& values = read[0].inputs;
+  if (values.empty() || std::find(values.begin(), values.end(), "") != values.end() ||
+      (values.size() > 1 && statement.find('[') == std::string::npos))
+    throw InputError(read[0].name + ": must have one value or a list [a, b] of values");
   return read[0];
 }
 
 std::vector<CLI::ConfigItem> SceneFile::from_config(std::istream& input) const {
   std::string text{std::istreambuf_iterator<char>(input), std::istreambuf_iterator<char>()};
+  const auto is_binary = [](unsigned char c) { return std::iscntrl(c) && !std::isspace(c); };
   if (std::any_of(text.begin(), text.end(), is_binary)) throw InputError("not a text file");
   if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);  // byte order mark
 
-  std::vector<CLI::ConfigItem> keys;
+  std::vector<CLI::ConfigItem> read;
+  std::set<std::string> names;
   std::istringstream lines(text);
   std::string line, statement;
   bool in_list = false;
   int number = 0;
   try {
-    while (std::getline(lines, line)) {
-      ++number;
+    while (++number, std::getline(lines, line)) {
       append(line, statement, in_list);
       if (in_list || CLI::detail::trim(statement).empty()) continue;
-      keys.push_back(item(statement));
-      for (auto key = keys.begin(); key + 1 != keys.end(); ++key)
-        if (key->name == keys.back().name) throw InputError(key->name + " is given twice");
-      statement.clear();
+      read.push_back(item(std::exchange(statement, "")));
+      const std::string& name = read.back().name;
+      if (!names.insert(name).second) throw InputError(name + " is given twice");
     }
-    if (in_list) throw InputError("a list is not closed by ]");
+    if (in_list) throw InputError("the end comes before a list is closed by ]");
   } catch (const InputError& error) {
     throw InputError("line " + std::to_string(number) + ": " + error.what());
   }
-  return keys;
+  return read;
 }
 
 std::string SceneFile::to_config(const CLI::App* app, bool, bool, std::string) const {
@@ -95,19 +91,9 @@ std::string SceneFile::to_config(const CLI::App* app, bool, bool, std::string) c
   while (std::getline(lines, key, '=') && std::getline(lines, value)) {
     if (value == R"("")") continue;
     const bool list = app->get_option("--" + key)->get_expected_max() > 1;
-    config += key + delimiter + (list && value.front() != '[' ? '[' + value + ']' : value) + '\n';
+    config += key + " = " + (list && value.front() != '[' ? '[' + value + ']' : value) + '\n';
   }
   return config;
-}
-
-std::string without_keys(const std::string& config, const std::vector<std::string>& keys) {
-  std::istringstream lines(config);
-  std::string kept, line;
-  while (std::getline(lines, line)) {
-    const std::string key = line.substr(0, line.find(delimiter));
-    if (std::find(keys.begin(), keys.end(), key) == keys.end()) kept += line + '\n';
-  }
-  return kept;
 }
 
 }  // namespace flatspeckle::apps

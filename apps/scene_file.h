@@ -24,7 +24,4 @@ class SceneFile : public CLI::ConfigTOML {
   CLI::ConfigItem item(const std::string& statement) const;
 };
 
-/// The lines of a configuration that to_config wrote less some keys: what makes two runs the same.
-std::string without_keys(const std::string& config, const std::vector<std::string>& keys);
-
 }  // namespace flatspeckle::apps

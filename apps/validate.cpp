@@ -33,7 +33,7 @@ double bias_allowance(const Scene& scene) {
 /// Where a fixed number of points lacks a part of the covariance that Monte Carlo has (C12).
 bool misses_forward_lobe(const Scene& scene) {
   const auto& request = scene.request;
-  return scene.placement.count &&
+  return scene.placement.kind == PlacementRule::Kind::poisson && scene.placement.count &&
          std::any_of(request.channels.begin(), request.channels.end(), [&](const Channel& channel) {
            const View& view = request.views[channel.view];
            const double q =
@@ -115,7 +115,7 @@ void print_comparison(const Scene& scene, const Comparison& comparison) {
       scene.medium.packing_fraction, entries - in_errors - in_bias);
   if (misses_forward_lobe(scene))
     std::puts(
-        "with a fixed count the exact covariance lacks the forward lobe's number fluctuation;\n"
+        "with a fixed count the exact covariance lacks the forward lobe's number fluctuation; "
         "give density instead");
 }
 

@@ -15,7 +15,9 @@ template <typename Real>
 std::complex<Real> product(std::complex<Real> a, std::complex<Real> b) {
   return {a.real() * b.real() - a.imag() * b.imag(), a.real() * b.imag() + a.imag() * b.real()};
 }
-inline Complex product(Complex a, double b) { return {a.real() * b, a.imag() * b}; }
+inline Complex product(Complex a, double b) {
+  return {a.real() * b, a.imag() * b};
+}
 inline Complex product_with_conjugate(Complex a, Complex b) {
   return {a.real() * b.real() + a.imag() * b.imag(), a.imag() * b.real() - a.real() * b.imag()};
 }

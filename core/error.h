@@ -26,7 +26,8 @@ class InputError : public std::runtime_error {
   }
 };
 
-/// Reading or writing failed though the input was right (disk full, folder vanished). Exit status 4.
+/// Reading or writing failed though the input was right (disk full, folder vanished). Exit
+/// status 4.
 class IoError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

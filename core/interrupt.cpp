@@ -22,6 +22,8 @@ void catch_interrupts() {
   std::signal(SIGTERM, on_signal);
 }
 
-bool interrupted() { return signal_seen; }
+bool interrupted() {
+  return signal_seen;
+}
 
 }  // namespace flatspeckle

@@ -1,5 +1,5 @@
-// Compiled with -ffast-math, which lets the compiler call vector versions of sin, cos and exp; each in
-// a loop of its own, or they do not vectorise.
+// Compiled with -ffast-math, which lets the compiler call vector versions of sin, cos and exp; each
+// in a loop of its own, or they do not vectorise.
 #include "core/phasor.h"
 
 #include <algorithm>

@@ -6,8 +6,8 @@
 
 namespace flatspeckle {
 
-/// out[j] = exp(log_magnitude[j] + i phase[j]) for arrays of one length, vectorised (4e-16 accurate).
-/// All arguments must be finite.
+/// out[j] = exp(log_magnitude[j] + i phase[j]) for arrays of one length, vectorised (4e-16
+/// accurate). All arguments must be finite.
 void damped_phasors(std::span<const double> phase, std::span<const double> log_magnitude,
                     std::span<Complex> out);
 

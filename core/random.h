@@ -1,9 +1,9 @@
 #pragma once
 
-#include <Random123/threefry.h>
-
 #include <array>
 #include <cstdint>
+
+#include <Random123/threefry.h>
 
 namespace flatspeckle {
 

@@ -13,7 +13,7 @@ namespace flatspeckle {
 
 /// Random work cut into numbered batches: each a pure function (scene, seed, number) -> sums.
 struct BatchJob {
-  std::size_t size = 0;            ///< complex sums per batch
+  std::size_t size = 0;  ///< complex sums per batch
   double samples_per_batch = 1;
   /// Adds batch `number` to `sums` (zeroed). Called from several threads at once.
   std::function<void(std::uint64_t number, std::span<Complex> sums)> run;
@@ -21,8 +21,8 @@ struct BatchJob {
   std::function<double(const GroupedSums&)> relative_error;
 };
 
-/// When to stop; any that is set may. At least one must be. Samples are rounded up to whole batches,
-/// of which there are always two.
+/// When to stop; any that is set may. At least one must be. Samples are rounded up to whole
+/// batches, of which there are always two.
 struct StopRule {
   std::optional<std::uint64_t> samples;
   std::optional<double> seconds;
@@ -46,15 +46,15 @@ struct RunState {
 
 struct RunOptions {
   StopRule stop;
-  int threads = 0;     ///< 0: as many as there are cores
-  std::string label;   ///< shown with the progress; empty: silent
+  int threads = 0;    ///< 0: as many as there are cores
+  std::string label;  ///< shown with the progress; empty: silent
   /// Called about once a minute with what could be resumed.
   std::function<void(const RunState&)> checkpoint;
 };
 
 /// Runs batches over threads and merges them in number order, so that the result depends on the
-/// number of batches alone. Goes on from `state` where that holds batches already. SIGINT and SIGTERM
-/// end it after the batches in hand.
+/// number of batches alone. Goes on from `state` where that holds batches already. SIGINT and
+/// SIGTERM end it after the batches in hand.
 StopReason run_batches(const BatchJob& job, const RunOptions& options, RunState& state);
 
 int default_threads();

@@ -9,9 +9,9 @@
 
 namespace flatspeckle {
 
-/// Sums of numbered batches, kept in a fixed number of groups so that the error of *any* function of
-/// the sums (a mean, a covariance with its mean removed, a ratio, a half-width) follows from leaving
-/// one group out at a time. Batch b belongs to group b mod groups.
+/// Sums of numbered batches, kept in a fixed number of groups so that the error of *any* function
+/// of the sums (a mean, a covariance with its mean removed, a ratio, a half-width) follows from
+/// leaving one group out at a time. Batch b belongs to group b mod groups.
 class GroupedSums {
  public:
   GroupedSums() = default;
@@ -55,7 +55,8 @@ struct Estimate {
 };
 
 /// What is estimated, as a function of summed samples: theta(samples, sums) -> values.
-using Estimator = std::function<std::vector<Complex>(double samples, std::span<const Complex> sums)>;
+using Estimator =
+    std::function<std::vector<Complex>(double samples, std::span<const Complex> sums)>;
 
 /// Value of theta on all groups and its delete-one-group jackknife error for groups of unequal size
 /// (Busing, Meijer and van der Leeden 1999, eqs. 6-7). With fewer than two groups the error is

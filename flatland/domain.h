@@ -11,17 +11,33 @@ struct Vec2 {
   double x = 0, z = 0;
 };
 
-inline Vec2 operator+(Vec2 a, Vec2 b) { return {a.x + b.x, a.z + b.z}; }
-inline Vec2 operator-(Vec2 a, Vec2 b) { return {a.x - b.x, a.z - b.z}; }
-inline Vec2 operator-(Vec2 a) { return {-a.x, -a.z}; }
-inline Vec2 operator*(double s, Vec2 a) { return {s * a.x, s * a.z}; }
-inline double dot(Vec2 a, Vec2 b) { return a.x * b.x + a.z * b.z; }
-inline double length(Vec2 a) { return std::hypot(a.x, a.z); }
+inline Vec2 operator+(Vec2 a, Vec2 b) {
+  return {a.x + b.x, a.z + b.z};
+}
+inline Vec2 operator-(Vec2 a, Vec2 b) {
+  return {a.x - b.x, a.z - b.z};
+}
+inline Vec2 operator-(Vec2 a) {
+  return {-a.x, -a.z};
+}
+inline Vec2 operator*(double s, Vec2 a) {
+  return {s * a.x, s * a.z};
+}
+inline double dot(Vec2 a, Vec2 b) {
+  return a.x * b.x + a.z * b.z;
+}
+inline double length(Vec2 a) {
+  return std::hypot(a.x, a.z);
+}
 
 /// Unit vector of an angle measured from +z towards +x (C2).
-inline Vec2 direction(double angle) { return {std::sin(angle), std::cos(angle)}; }
+inline Vec2 direction(double angle) {
+  return {std::sin(angle), std::cos(angle)};
+}
 /// The angle of a vector, in (-pi, pi] (C2).
-inline double angle_of(Vec2 v) { return std::atan2(v.x, v.z); }
+inline double angle_of(Vec2 v) {
+  return std::atan2(v.x, v.z);
+}
 
 /// Where the scatterers are: the box |x| <= width/2, 0 <= z <= depth, or the slab 0 <= z <= depth
 /// that is infinite in x.

@@ -6,8 +6,8 @@
 
 namespace flatspeckle {
 
-/// What either solver makes of a scene: batches for the runner, and how their sums are read. Nothing
-/// else may know which of the two it was.
+/// What either solver makes of a scene: batches for the runner, and how their sums are read.
+/// Nothing else may know which of the two it was.
 struct FieldJob {
   BatchJob batches;
   Estimator mean;        ///< mean scattered field per channel; empty where it is not defined

@@ -39,8 +39,9 @@ Placement draw_hard_disks(const Domain& box, const Scatterer& scatterer, const P
       throw InputError("the disks cannot be packed: placing " + std::to_string(count) +
                        " one after the other does not end; lower the density or min_gap");
     const Vec2 position = uniform_in(box, random);
-    const bool taken = grid.any_near(
-        position, [&](Vec2 other, std::size_t) { return length(position - other) < least_distance; });
+    const bool taken = grid.any_near(position, [&](Vec2 other, std::size_t) {
+      return length(position - other) < least_distance;
+    });
     if (taken) continue;
     grid.insert(position, placement.size());
     placement.push_back({position, scatterer});
@@ -48,7 +49,9 @@ Placement draw_hard_disks(const Domain& box, const Scatterer& scatterer, const P
   return placement;
 }
 
-double disk_radius(const Scatterer& scatterer) { return scatterer.is_disk() ? scatterer.radius : 0; }
+double disk_radius(const Scatterer& scatterer) {
+  return scatterer.is_disk() ? scatterer.radius : 0;
+}
 
 Scatterer row_scatterer(const Table& table, std::size_t row, Scatterer scatterer,
                         const std::string& path) {

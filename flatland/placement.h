@@ -37,9 +37,9 @@ Placement draw_placement(const Domain& box, const Scatterer& scatterer, const Pl
 /// refused: random sequential addition jams at 0.547 and is hopelessly slow well before.
 inline constexpr double highest_sequential_packing = 0.5;
 
-/// Reads columns x, z [, radius [, index_re, index_im]] by the names in the first line; what a column
-/// does not give comes from `scatterer`. Throws InputError on anything missing, malformed, or not
-/// finite, and where two scatterers overlap.
+/// Reads columns x, z [, radius [, index_re, index_im]] by the names in the first line; what a
+/// column does not give comes from `scatterer`. Throws InputError on anything missing, malformed,
+/// or not finite, and where two scatterers overlap.
 Placement read_placement(const std::string& path, const Scatterer& scatterer);
 
 /// Throws InputError naming two scatterers that overlap or coincide.

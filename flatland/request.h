@@ -18,11 +18,13 @@ struct Entry {
   std::uint32_t a = 0, b = 0;
 };
 
-/// Which lights, views and entries a run is asked for. The order of `entries` is that of the result:
+/// Which lights, views and entries a run is asked for. The order of `entries` is that of the
+/// result:
 ///  intensity      [light][view], a = b
 ///  full           the lower triangle of channels [light][view], row by row, b <= a
 ///  pairs          [pair]
-///  memory_effect  [tilt][view] reference against tilted; then the reference's [view] and the tilted
+///  memory_effect  [tilt][view] reference against tilted; then the reference's [view] and the
+///  tilted
 ///                 [tilt][view] intensities
 struct CovarianceRequest {
   enum class Kind { intensity, pairs, memory_effect, full };
@@ -32,8 +34,8 @@ struct CovarianceRequest {
   std::vector<Channel> channels;
   std::vector<Entry> entries;
   // memory_effect only
-  std::vector<double> tilts;       ///< rotation of the light, radians
-  std::vector<double> tilt_q;      ///< k (sin tilted - sin reference), per tilt (C19)
+  std::vector<double> tilts;   ///< rotation of the light, radians
+  std::vector<double> tilt_q;  ///< k (sin tilted - sin reference), per tilt (C19)
   std::size_t reference_views = 0;
 
   std::size_t tilted_entry(std::size_t tilt, std::size_t view) const {

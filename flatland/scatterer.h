@@ -8,15 +8,16 @@
 
 namespace flatspeckle {
 
-/// One scatterer. hg is a bulk phase function only: it has no T-matrix, and the wave solver refuses it.
+/// One scatterer. hg is a bulk phase function only: it has no T-matrix, and the wave solver refuses
+/// it.
 struct Scatterer {
   enum class Kind { point, soft, hard, tm, te, hg };
   Kind kind = Kind::point;
-  double radius = 0;                            ///< of soft, hard, tm, te
-  Complex index = 1.5;                          ///< of tm, te, relative to the surroundings
-  double g = 0;                                 ///< of hg
-  double albedo = 1;                            ///< of hg and of resonant points (C8)
-  double phase_shift = std::numbers::pi / 2;    ///< of lossless points; pi/2 is resonance
+  double radius = 0;                          ///< of soft, hard, tm, te
+  Complex index = 1.5;                        ///< of tm, te, relative to the surroundings
+  double g = 0;                               ///< of hg
+  double albedo = 1;                          ///< of hg and of resonant points (C8)
+  double phase_shift = std::numbers::pi / 2;  ///< of lossless points; pi/2 is resonance
 
   /// A disk of nonzero radius, which others must not overlap.
   bool is_disk() const { return kind != Kind::point && kind != Kind::hg; }

@@ -67,7 +67,8 @@ Kind scatterer_kind(const std::string& word) {
 
 double checked_albedo(double albedo, bool is_point) {
   const bool in_range = albedo <= 1 && (is_point ? albedo > 0 : albedo >= 0);
-  if (!in_range) throw InputError("albedo", albedo, is_point ? "must be in (0, 1]" : "must be in [0, 1]");
+  if (!in_range)
+    throw InputError("albedo", albedo, is_point ? "must be in (0, 1]" : "must be in [0, 1]");
   return albedo;
 }
 
@@ -91,7 +92,8 @@ void check_density_keys(const SceneSpec& spec) {
   if (given.size() == 1) return;
   std::string all;
   for (const auto& key : given) all += (all.empty() ? "" : ", ") + key;
-  throw InputError((given.empty() ? "no density is given" : "the density is given more than once (" + all + ")") +
+  throw InputError((given.empty() ? "no density is given"
+                                  : "the density is given more than once (" + all + ")") +
                    ": give exactly one of count, density, mean_free_path, optical_depth");
 }
 
@@ -111,7 +113,8 @@ double number_density(const SceneSpec& spec, const Domain& domain, double sigma_
     return static_cast<double>(*spec.count) / domain.area();
   }
   if (sigma_e <= 0)
-    throw InputError("scatterer", spec.scatterer, "does not scatter, so no density gives this extinction");
+    throw InputError("scatterer", spec.scatterer,
+                     "does not scatter, so no density gives this extinction");
   return *stated_extinction(spec, domain) / sigma_e;
 }
 
@@ -132,9 +135,9 @@ PlacementRule make_placement_rule(const SceneSpec& spec, const Scatterer& scatte
   PlacementRule rule;
   rule.kind = scatterer.is_disk() ? PlacementRule::Kind::hard_disk : PlacementRule::Kind::poisson;
   if (spec.placement) {
-    const auto kind = choose<PlacementRule::Kind>("placement", *spec.placement,
-                                                  {{"poisson", PlacementRule::Kind::poisson},
-                                                   {"hard_disk", PlacementRule::Kind::hard_disk}});
+    const auto kind = choose<PlacementRule::Kind>(
+        "placement", *spec.placement,
+        {{"poisson", PlacementRule::Kind::poisson}, {"hard_disk", PlacementRule::Kind::hard_disk}});
     if (kind != rule.kind)
       throw InputError("placement", *spec.placement,
                        scatterer.is_disk() ? "disks must not overlap: hard_disk"
@@ -143,7 +146,8 @@ PlacementRule make_placement_rule(const SceneSpec& spec, const Scatterer& scatte
   const bool disks = rule.kind == PlacementRule::Kind::hard_disk;
   if (!(std::isfinite(spec.min_gap) && spec.min_gap >= 0))
     throw InputError("min_gap", spec.min_gap, "must not be negative");
-  if (spec.min_gap > 0 && !disks) throw InputError("min_gap", spec.min_gap, "is a key of disks only");
+  if (spec.min_gap > 0 && !disks)
+    throw InputError("min_gap", spec.min_gap, "is a key of disks only");
   rule.min_gap = spec.min_gap;
   if (spec.count) rule.count = static_cast<std::uint64_t>(*spec.count);
   rule.mean_count = density * domain.area();
@@ -175,7 +179,8 @@ void check_slab_request(const CovarianceRequest& request) {
     return std::sin(request.lights[c.light]) - std::sin(request.views[c.view].angle);
   };
   for (const auto& entry : request.entries) {
-    if (std::abs(momentum(request.channels[entry.a]) - momentum(request.channels[entry.b])) > tolerance)
+    if (std::abs(momentum(request.channels[entry.a]) - momentum(request.channels[entry.b])) >
+        tolerance)
       throw InputError(
           "covariance: on an infinite slab only pairs with sin(light) - sin(view) unchanged "
           "correlate (the others are exactly 0); use intensity or memory_effect, or a box");
@@ -225,7 +230,8 @@ CovarianceRequest angle_pairs(const SceneSpec& spec) {
 
 Complex parse_complex(const std::string& key, const std::string& text) {
   static const std::string number = R"(([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?))";
-  static const std::regex form("\\s*" + number + R"(\s*(?:([+-])\s*((?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)?\s*[ij])?\s*)");
+  static const std::regex form(
+      "\\s*" + number + R"(\s*(?:([+-])\s*((?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)?\s*[ij])?\s*)");
   std::smatch match;
   if (!std::regex_match(text, match, form))
     throw InputError(key, "\"" + text + "\"", "must be a number such as 1.5 or 1.5+0.1i");
@@ -260,7 +266,8 @@ Scatterer make_scatterer(const SceneSpec& spec) {
   if (spec.phase_shift) {
     all_finite("phase_shift", {*spec.phase_shift});
     if (scatterer.albedo != 1)
-      throw InputError("phase_shift", *spec.phase_shift, "an absorbing point is resonant; leave it out");
+      throw InputError("phase_shift", *spec.phase_shift,
+                       "an absorbing point is resonant; leave it out");
     scatterer.phase_shift = *spec.phase_shift;
   }
   return scatterer;
@@ -300,8 +307,7 @@ Scene make_scene(const SceneSpec& spec) {
   scene.k = 2 * std::numbers::pi / spec.wavelength;
   scene.domain = make_domain(spec);
   scene.medium = make_medium(spec, scene.scatterer, scene.domain, scene.k);
-  scene.placement =
-      make_placement_rule(spec, scene.scatterer, scene.domain, scene.medium.density);
+  scene.placement = make_placement_rule(spec, scene.scatterer, scene.domain, scene.medium.density);
   check_packing(scene.scatterer, scene.medium, scene.placement.min_gap);
   scene.request = make_request(spec);
   if (scene.domain.kind == Domain::Kind::slab) check_slab_request(scene.request);

@@ -7,15 +7,20 @@
 
 namespace flatspeckle {
 
-/// What records the field: a direction far away (amplitude A of C4) or a point (the scattered field).
+/// What records the field: a direction far away (amplitude A of C4) or a point (the scattered
+/// field).
 struct View {
   bool near = false;
   double angle = 0;  ///< far view
   Vec2 point;        ///< near sensor
 };
 
-inline View far_view(double angle) { return {false, angle, {}}; }
-inline View near_sensor(Vec2 point) { return {true, 0, point}; }
+inline View far_view(double angle) {
+  return {false, angle, {}};
+}
+inline View near_sensor(Vec2 point) {
+  return {true, 0, point};
+}
 
 /// Reads columns x, z; at least one row. Throws InputError.
 std::vector<Vec2> read_points(const std::string& path);

@@ -5,12 +5,17 @@
 namespace flatspeckle::grin {
 
 /// Attenuation of intensity over a length, in any number of dimensions.
-inline double transmittance(double mu_t, double length) { return std::exp(-mu_t * length); }
+inline double transmittance(double mu_t, double length) {
+  return std::exp(-mu_t * length);
+}
 
 /// Distance to the next scattering event of density mu_t exp(-mu_t s), from a uniform u in (0, 1).
-inline double sample_free_flight(double mu_t, double u) { return -std::log(u) / mu_t; }
+inline double sample_free_flight(double mu_t, double u) {
+  return -std::log(u) / mu_t;
+}
 
-/// The same on condition that it is no longer than `longest`: exact also where mu_t longest is tiny.
+/// The same on condition that it is no longer than `longest`: exact also where mu_t longest is
+/// tiny.
 struct BoundedFlight {
   double mu_t, longest;
 

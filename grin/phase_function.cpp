@@ -10,7 +10,9 @@ constexpr double pi = std::numbers::pi;
 
 TabulatedPhaseFunction::TabulatedPhaseFunction(const std::function<double(double)>& p,
                                                std::size_t intervals)
-    : step_(pi / static_cast<double>(intervals)), density_(intervals + 1), cumulative_(intervals + 1) {
+    : step_(pi / static_cast<double>(intervals)),
+      density_(intervals + 1),
+      cumulative_(intervals + 1) {
   for (std::size_t i = 0; i <= intervals; ++i) density_[i] = p(static_cast<double>(i) * step_);
   for (std::size_t i = 0; i < intervals; ++i)
     cumulative_[i + 1] = cumulative_[i] + step_ * (density_[i] + density_[i + 1]);
@@ -30,7 +32,8 @@ double TabulatedPhaseFunction::sample(double u) const {
   const double sign = u < 0.5 ? -1 : 1;
   const double target = std::abs(2 * u - 1);
   const auto above = std::upper_bound(cumulative_.begin(), cumulative_.end() - 1, target);
-  const auto i = static_cast<std::size_t>(std::max<std::ptrdiff_t>(above - cumulative_.begin() - 1, 0));
+  const auto i =
+      static_cast<std::size_t>(std::max<std::ptrdiff_t>(above - cumulative_.begin() - 1, 0));
   // In the interval the integral of 2p is step (2 p0 t + (p1 - p0) t^2): the stable root.
   const double p0 = density_[i], slope = density_[i + 1] - density_[i];
   const double rest = (target - cumulative_[i]) / step_;

@@ -8,9 +8,9 @@
 
 namespace flatspeckle::grin {
 
-/// Phase functions of flatland (Dimension 2: per radian, scattering angle in (-pi, pi]) and of space
-/// (Dimension 3: per steradian, polar angle in [0, pi], azimuth uniform and left to the caller).
-/// sample() takes a uniform u in (0, 1).
+/// Phase functions of flatland (Dimension 2: per radian, scattering angle in (-pi, pi]) and of
+/// space (Dimension 3: per steradian, polar angle in [0, pi], azimuth uniform and left to the
+/// caller). sample() takes a uniform u in (0, 1).
 
 template <int Dimension>
 struct Isotropic {

@@ -1,9 +1,9 @@
 #include "mc/accumulator.h"
 
-#include <cblas.h>
-
 #include <algorithm>
 #include <cmath>
+
+#include <cblas.h>
 
 namespace flatspeckle::mc {
 

@@ -44,7 +44,7 @@ class RankKAccumulator {
   std::span<Complex> sums_;
   std::vector<Complex> collected_;  ///< columns sqrt(weight) f
   std::size_t columns_ = 0;
-  std::vector<Complex> matrix_;     ///< column-major, lower triangle
+  std::vector<Complex> matrix_;  ///< column-major, lower triangle
 };
 
 }  // namespace flatspeckle::mc

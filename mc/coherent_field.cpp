@@ -16,15 +16,16 @@ Complex exponential_integral(Complex rate, double length) {
 }
 
 /// The integral along z at one distance from the side x = -width/2, for a light with w.x, w.z >= 0:
-/// shallow points were reached through the face z = 0, deeper ones through the side, so the exponent
-/// is linear in z on two pieces.
+/// shallow points were reached through the face z = 0, deeper ones through the side, so the
+/// exponent is linear in z on two pieces.
 class Column {
  public:
   Column(const Domain& box, Vec2 w, Complex extra, double beta)
       : box_(box), w_(w), extra_(extra), beta_(0, beta) {}
 
   Complex operator()(double from_side) const {
-    const double turn = w_.x * box_.depth <= w_.z * from_side ? box_.depth : w_.z * from_side / w_.x;
+    const double turn =
+        w_.x * box_.depth <= w_.z * from_side ? box_.depth : w_.z * from_side / w_.x;
     Complex sum = 0;
     if (turn > 0) sum = exponential_integral(beta_ + extra_ / w_.z, turn);
     if (turn < box_.depth) {
@@ -81,12 +82,11 @@ Complex mean_field(const Scene& scene, double light, double view) {
   // Where the ray through the far corner enters, the integrand has a kink.
   const double kink = w.z > 0 ? std::min(box.width, w.x / w.z * box.depth) : box.width;
   const double shaded = w.x > 0 ? kink / w.x : 0;
-  const double radians =
-      std::abs(alpha) * kink + (std::abs(beta) * w.z + std::abs(extra)) * shaded;
+  const double radians = std::abs(alpha) * kink + (std::abs(beta) * w.z + std::abs(extra)) * shaded;
   const Complex near_side = integrate(integrand, 0, kink, radians);
   const Complex rest = integrate(integrand, kink, box.width, std::abs(alpha) * (box.width - kink));
-  return origin * scene.medium.density *
-         amplitude(scene.medium.t_matrix, scene.k, view - light) * (near_side + rest);
+  return origin * scene.medium.density * amplitude(scene.medium.t_matrix, scene.k, view - light) *
+         (near_side + rest);
 }
 
 }  // namespace
@@ -100,7 +100,8 @@ bool has_coherent_field(const Scene& scene) {
 std::vector<Complex> coherent_field(const Scene& scene) {
   std::vector<Complex> field;
   for (const auto& [light, view] : scene.request.channels)
-    field.push_back(mean_field(scene, scene.request.lights[light], scene.request.views[view].angle));
+    field.push_back(
+        mean_field(scene, scene.request.lights[light], scene.request.views[view].angle));
   return field;
 }
 

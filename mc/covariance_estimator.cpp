@@ -58,10 +58,12 @@ BatchFunction specialise(const std::shared_ptr<const Scene>& scene, const Plan& 
                          std::uint64_t seed) {
   if (scene->medium.mu_s == 0) return [](std::uint64_t, std::span<Complex>) {};
   switch (plan.phase) {
-    case Plan::Phase::isotropic: return specialise(scene, IsotropicScattering{}, plan, seed);
+    case Plan::Phase::isotropic:
+      return specialise(scene, IsotropicScattering{}, plan, seed);
     case Plan::Phase::henyey_greenstein:
       return specialise(scene, HenyeyGreensteinScattering{{scene->scatterer.g}}, plan, seed);
-    case Plan::Phase::tabulated: break;
+    case Plan::Phase::tabulated:
+      break;
   }
   return specialise(scene, TabulatedScattering(scene->medium, scene->k), plan, seed);
 }

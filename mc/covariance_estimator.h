@@ -9,8 +9,8 @@
 namespace flatspeckle::mc {
 
 /// The Monte Carlo estimator of a scene's covariance as numbered batches of light paths
-/// (conventions, C13-C18). The covariance is absolute: that of C4 amplitudes for unit plane waves, on
-/// a slab per unit illuminated length. The mean field is that of coherent_field.h.
+/// (conventions, C13-C18). The covariance is absolute: that of C4 amplitudes for unit plane waves,
+/// on a slab per unit illuminated length. The mean field is that of coherent_field.h.
 FieldJob covariance_job(const Scene& scene, const Plan& plan, std::uint64_t seed);
 
 }  // namespace flatspeckle::mc

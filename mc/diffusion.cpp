@@ -8,13 +8,16 @@ namespace flatspeckle::mc {
 namespace {
 
 /// log sinh(a) without overflow.
-double log_sinh(double a) { return a + std::log(-std::expm1(-2 * a) / 2); }
+double log_sinh(double a) {
+  return a + std::log(-std::expm1(-2 * a) / 2);
+}
 
 }  // namespace
 
 double diffusion_field_correlation(const BulkMedium& medium, double thickness, double q) {
   const double transport_length = medium.transport_mean_free_path();
-  const double source = std::min(transport_length, thickness), extrapolation = 0.818 * transport_length;
+  const double source = std::min(transport_length, thickness),
+               extrapolation = 0.818 * transport_length;
   const double mu_a = medium.mu_t - medium.mu_s;
   const double kappa2 = 2 * mu_a / transport_length;
   // f of C20; below the least Q it has its limit at 0 to rounding.

@@ -5,9 +5,9 @@
 namespace flatspeckle::mc {
 
 /// Diffusion theory of C_E for a slab of scatterers between index-matched sides (conventions, C20;
-/// Berkovits and Feng 1994): transmitted light, tilt wavenumber q. The first source lies one transport
-/// mean free path deep, the extrapolation length is 0.818 transport mean free paths. A limit for
-/// thick slabs and small q, not a reference for thin ones.
+/// Berkovits and Feng 1994): transmitted light, tilt wavenumber q. The first source lies one
+/// transport mean free path deep, the extrapolation length is 0.818 transport mean free paths. A
+/// limit for thick slabs and small q, not a reference for thin ones.
 double diffusion_field_correlation(const BulkMedium& medium, double thickness, double q);
 
 }  // namespace flatspeckle::mc

@@ -14,8 +14,7 @@ struct CurvePoint {
 /// The curve on one side by rising |q|, with C_I = 1 at q = 0.
 std::vector<CurvePoint> one_side(const std::vector<double>& tilt_q,
                                  std::span<const Complex> correlation) {
-  const bool positive =
-      std::any_of(tilt_q.begin(), tilt_q.end(), [](double q) { return q > 0; });
+  const bool positive = std::any_of(tilt_q.begin(), tilt_q.end(), [](double q) { return q > 0; });
   std::vector<CurvePoint> curve{{0, 1}};
   for (std::size_t t = 0; t < tilt_q.size(); ++t) {
     const double q = positive ? tilt_q[t] : -tilt_q[t];

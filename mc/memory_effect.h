@@ -10,8 +10,8 @@ namespace flatspeckle::mc {
 
 /// C_E per tilt (C19): |sum over views of the covariance of reference and tilted field|, over the
 /// square root of the product of their intensities summed over the same views. A function of the
-/// covariance entries of a memory_effect request, whichever solver they come from. Where an intensity
-/// vanishes the correlation is 0.
+/// covariance entries of a memory_effect request, whichever solver they come from. Where an
+/// intensity vanishes the correlation is 0.
 std::vector<Complex> field_correlation(const CovarianceRequest& request,
                                        std::span<const Complex> entries);
 

@@ -101,11 +101,11 @@ class PathKernel {
       const Direction back = w.reversed();
       const double backward_density = start_density(back);
       for (std::size_t i = 0; i < lights_.size(); ++i)
-        light_last_[i] =
-            product(light_last_[i], scattering_.amplitude(lights_.direction(i), back));
+        light_last_[i] = product(light_last_[i], scattering_.amplitude(lights_.direction(i), back));
       for (std::size_t c = 0; c < channels.size(); ++c) {
         const auto [i, v] = channels[c];
-        field_[c] = product(forward_light_[i], view_last_[v]) + product(light_last_[i], view_first_[v]);
+        field_[c] =
+            product(forward_light_[i], view_last_[v]) + product(light_last_[i], view_first_[v]);
       }
       accumulator.add(weight / (forward_density + backward_density), field_);
     } else {
@@ -127,11 +127,12 @@ class PathKernel {
   const Scattering& scattering_;
   Lights lights_;
   Views<near> views_;
-  std::vector<Complex> light_first_, light_last_;  ///< e_i (light_last_ then times A) at the path's ends
-  std::vector<double> density_;                    ///< of each light's sampling, where last asked
-  std::vector<Complex> forward_light_;             ///< e_i(first) A(i -> start)
-  std::vector<Complex> view_first_, view_last_;    ///< A e_v at the path's ends
-  std::vector<Complex> field_;                     ///< per channel
+  std::vector<Complex> light_first_,
+      light_last_;                      ///< e_i (light_last_ then times A) at the path's ends
+  std::vector<double> density_;         ///< of each light's sampling, where last asked
+  std::vector<Complex> forward_light_;  ///< e_i(first) A(i -> start)
+  std::vector<Complex> view_first_, view_last_;  ///< A e_v at the path's ends
+  std::vector<Complex> field_;                   ///< per channel
 };
 
 }  // namespace flatspeckle::mc

@@ -56,9 +56,15 @@ std::string Plan::describe() const {
   std::ostringstream text;
   text << (domain == Domain::Kind::box ? "box" : "slab, transverse position integrated") << "; ";
   switch (phase) {
-    case Phase::isotropic: text << "isotropic scattering"; break;
-    case Phase::henyey_greenstein: text << "Henyey-Greenstein scattering"; break;
-    case Phase::tabulated: text << "tabulated amplitude"; break;
+    case Phase::isotropic:
+      text << "isotropic scattering";
+      break;
+    case Phase::henyey_greenstein:
+      text << "Henyey-Greenstein scattering";
+      break;
+    case Phase::tabulated:
+      text << "tabulated amplitude";
+      break;
   }
   text << "; " << (absorbing ? "absorbing, roulette" : "lossless, no roulette") << "; "
        << (reversed ? "reversed paths" : "no reversed paths") << "; "

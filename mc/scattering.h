@@ -75,7 +75,8 @@ class TabulatedScattering {
     std::vector<Complex> values(intervals + 1);
     const double scale = 1 / std::sqrt(medium.cross_sections.scattering);
     for (std::size_t i = 0; i <= intervals; ++i) {
-      const double angle = std::numbers::pi * static_cast<double>(i) / static_cast<double>(intervals);
+      const double angle =
+          std::numbers::pi * static_cast<double>(i) / static_cast<double>(intervals);
       values[i] = scale * flatspeckle::amplitude(medium.t_matrix, k, angle);
     }
     return values;

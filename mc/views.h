@@ -12,8 +12,8 @@
 
 namespace flatspeckle::mc {
 
-/// Field of a unit scatterer at distance r in the far-field form exp(ikr)/sqrt(r) (C4), by the Hankel
-/// function itself where k r is small (C13).
+/// Field of a unit scatterer at distance r in the far-field form exp(ikr)/sqrt(r) (C4), by the
+/// Hankel function itself where k r is small (C13).
 inline Complex outgoing_wave(double k, double r) {
   constexpr double far_enough = 10;
   if (k * r > far_enough) return std::polar(1 / std::sqrt(r), k * r);
@@ -39,7 +39,7 @@ class Views {
   template <typename Scattering>
   void at(Vec2 x, const Direction& from, const Scattering& scattering, std::span<Complex> out) {
     attenuate(x, out);
-    for (std::size_t v = 0; v < size(); ++v) 
+    for (std::size_t v = 0; v < size(); ++v)
       out[v] = product(out[v], scattering.amplitude(from, towards(v, x)));
   }
 

@@ -202,8 +202,7 @@ std::vector<Complex> TMatrixSystem::near_row(Vec2 point) const {
                        "must lie outside every scatterer");
     const auto waves = outgoing_waves(k_, d, order_[j]);
     for (int n = -order_[j]; n <= order_[j]; ++n)
-      row[first_[j] + order_[j] + n] =
-          Complex(product(tau_[j][std::abs(n)], waves[order_[j] + n]));
+      row[first_[j] + order_[j] + n] = Complex(product(tau_[j][std::abs(n)], waves[order_[j] + n]));
   }
   return row;
 }

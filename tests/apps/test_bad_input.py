@@ -251,7 +251,8 @@ class SceneFile(RefusingTest):
             self.assert_refused(words, "covariance", config="scene.toml")
 
     def test_tables(self):
-        for text in ("[medium]\nalbedo = 0.9\n", "[medium]\n", "[[medium]]\nalbedo = 0.9\n",
+        self.refused_text("[[medium]]\nalbedo = 0.9\n", ["scene.toml, line 4", "brackets"])
+        for text in ("[medium]\nalbedo = 0.9\n", "[medium]\n",
                      "[covariance]\nalbedo = 0.9\n", "[default]\nalbedo = 0.9\n"):
             self.refused_text(text, ["scene.toml, line 4", "without [tables]"])
         self.refused_text("medium.albedo = 0.9\n", ["scene.toml, line 4", "key = value"])
@@ -272,9 +273,9 @@ class SceneFile(RefusingTest):
 
     def test_what_is_not_closed(self):
         """It must not lose its last number or take in the keys below."""
-        for text in ("tilts = [0, 0.5", "tilts = [0, 0.5\ng = 1\n", "tilts = [0, 0.5\ntilts = [1]\n",
-                     "tilts = [, 0.5]\n", "tilts = [0, , 0.5]\n", "tilts = [[0, 0.5]]\n",
-                     'index = "1.5\n', "index = '1.5"):
+        for text in ("tilts = [0, 0.5", "tilts = [0, 0.5\ng = 1\n",
+                     "tilts = [0, 0.5\ntilts = [1]\n", "tilts = [, 0.5]\n", "tilts = [0, , 0.5]\n",
+                     "tilts = [[0, 0.5]]\n", 'index = "1.5\n', "index = '1.5"):
             self.refused_text(text, ["scene.toml, line "])
         self.refused_text("tilts = [0 0.5]\n", ["tilts = 0 0.5", "must be a number"])
 
@@ -318,7 +319,8 @@ class AcceptedScenes(ProgramTest):
 
     def test_blanks_around_commas_and_a_comma_at_the_end(self):
         plain = toml({**BOX, **TILTS})
-        for tilts in ("[ 0 ,0.04\t, 0.16 ]", "[0, 0.04, 0.16,]", "['0' , \"0.04\", 0.16\n, # last\n]"):
+        for tilts in ("[ 0 ,0.04\t, 0.16 ]", "[0, 0.04, 0.16,]",
+                      "['0' , \"0.04\", 0.16\n, # last\n]"):
             with self.subTest(tilts=tilts):
                 self.assertEqual(self.resolved(plain.replace("[0, 0.04, 0.16]", tilts)),
                                  self.resolved(plain))

@@ -227,6 +227,17 @@ class Validate(ResultTest):
                 self.check_finite(file)
                 self.check_again("validate")
 
+    def test_a_fixed_count_and_the_forward_lobe(self):
+        """Said where it holds: sin 0.04 lies within wavelength/width = 0.05 of the light."""
+        poisson, disks = {**BOX, "count": None, "density": 0.155}, {**BOX, "scatterer": "soft"}
+        for scene, view, said in ((BOX, 0.04, True), (BOX, -0.04, True), (BOX, 0.06, False),
+                                  (BOX, np.pi, False), (poisson, 0.04, False),
+                                  ({**disks, "radius": 0.1}, 0.04, False)):
+            with self.subTest(scene=scene, view=view):
+                done = self.call("validate", **scene, view_angles=[1, view], samples=400,
+                                 wave_samples=2, out="result.h5")
+                self.assertEqual("give density instead" in done.stdout, said)
+
     def test_a_group_is_what_covariance_gives(self):
         scene = {**BOX, **REQUESTS["intensity"][0]}
         self.call("validate", **scene, samples=4000, wave_samples=12, out="both.h5")

@@ -5,8 +5,8 @@
 #include "core/result_file.h"
 #include "wave_solver/dense_solver.h"
 
-// One sound-soft disk under a plane wave: writes its far field, and fails unless the forward amplitude
-// obeys the optical theorem (conventions, C6 and C9).
+// One sound-soft disk under a plane wave: writes its far field, and fails unless the forward
+// amplitude obeys the optical theorem (conventions, C6 and C9).
 int main() {
   using namespace flatspeckle;
   constexpr double k = 2 * std::numbers::pi;
@@ -17,8 +17,8 @@ int main() {
   file.dataset("forward_amplitude", std::span(&forward, 1), {std::size_t{1}}, "1", "");
   file.commit();
 
-  const double extinction =
-      -std::sqrt(8 * std::numbers::pi / k) * (forward * std::polar(1.0, std::numbers::pi / 4)).real();
+  const double extinction = -std::sqrt(8 * std::numbers::pi / k) *
+                            (forward * std::polar(1.0, std::numbers::pi / 4)).real();
   const double expected = cross_sections(t_matrix(soft, k, 40), k).extinction;
   std::cout << "extinction " << extinction << ", expected " << expected << '\n';
   return std::abs(extinction / expected - 1) < 1e-12 ? 0 : 1;

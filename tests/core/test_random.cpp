@@ -1,8 +1,8 @@
-#include <doctest/doctest.h>
-
-#include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 #include <vector>
+
+#include <boost/math/distributions/chi_squared.hpp>
+#include <doctest/doctest.h>
 
 #include "core/random.h"
 
@@ -46,7 +46,8 @@ TEST_CASE("uniform numbers are uniform, within and across batches") {
   const double limit = quantile(complement(boost::math::chi_squared(bins - 1), 1e-4));
   for (const auto* counts : {&within, &across}) {
     double chi2 = 0;
-    for (double count : *counts) chi2 += std::pow(count - 1.0 * draws / bins, 2) / (1.0 * draws / bins);
+    for (double count : *counts)
+      chi2 += std::pow(count - 1.0 * draws / bins, 2) / (1.0 * draws / bins);
     CHECK(chi2 < limit);
   }
 }

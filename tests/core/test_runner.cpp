@@ -1,10 +1,10 @@
-#include <doctest/doctest.h>
-
 #include <atomic>
 #include <chrono>
 #include <cmath>
 #include <csignal>
 #include <thread>
+
+#include <doctest/doctest.h>
 
 #include "core/interrupt.h"
 #include "core/random.h"
@@ -96,7 +96,8 @@ TEST_CASE("the trace falls with slope -1/2") {
   }
   CHECK(n > 10);
   CHECK((n * xy - x * y) / (n * xx - x * x) == doctest::Approx(-0.5).epsilon(0.1));
-  for (std::size_t i = 1; i < trace.wall_s.size(); ++i) CHECK(trace.wall_s[i] >= trace.wall_s[i - 1]);
+  for (std::size_t i = 1; i < trace.wall_s.size(); ++i)
+    CHECK(trace.wall_s[i] >= trace.wall_s[i - 1]);
 }
 
 TEST_CASE("a time budget ends a run that has no other end") {

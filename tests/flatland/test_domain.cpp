@@ -1,7 +1,7 @@
-#include <doctest/doctest.h>
-
 #include <cmath>
 #include <limits>
+
+#include <doctest/doctest.h>
 
 #include "flatland/domain.h"
 
@@ -10,7 +10,8 @@ using namespace flatspeckle;
 TEST_CASE("angles go from +z towards +x") {
   CHECK(direction(0).z == 1);
   CHECK(direction(1.5707963267948966).x == 1);
-  for (double angle : {-3.0, -1.0, 0.0, 0.5, 3.1}) CHECK(angle_of(direction(angle)) == doctest::Approx(angle));
+  for (double angle : {-3.0, -1.0, 0.0, 0.5, 3.1})
+    CHECK(angle_of(direction(angle)) == doctest::Approx(angle));
 }
 
 TEST_CASE("distance to the edge of a box ends on the edge") {
@@ -18,7 +19,8 @@ TEST_CASE("distance to the edge of a box ends on the edge") {
   for (double angle = -3.1; angle < 3.2; angle += 0.17) {
     const Vec2 start{3, 7}, w = direction(angle);
     const Vec2 end = start + box.distance_to_edge(start, w) * w;
-    const double to_edge = std::min({std::abs(std::abs(end.x) - 10), std::abs(end.z), std::abs(end.z - 10)});
+    const double to_edge =
+        std::min({std::abs(std::abs(end.x) - 10), std::abs(end.z), std::abs(end.z - 10)});
     CHECK(to_edge < 1e-12);
     CHECK(box.contains(start + 0.999 * (end - start)));
     CHECK_FALSE(box.contains(start + 1.001 * (end - start)));

@@ -1,10 +1,9 @@
-#include <doctest/doctest.h>
-
 #include <cmath>
-#include <unistd.h>
-
 #include <filesystem>
 #include <fstream>
+#include <unistd.h>
+
+#include <doctest/doctest.h>
 
 #include "core/error.h"
 #include "flatland/placement.h"
@@ -24,11 +23,14 @@ Placement draw(const Scatterer& scatterer, const PlacementRule& rule, std::uint6
 struct CsvFile {
   std::filesystem::path path;
   explicit CsvFile(const std::string& text)
-      : path(std::filesystem::temp_directory_path() / ("placement" + std::to_string(getpid()) + ".csv")) {
+      : path(std::filesystem::temp_directory_path() /
+             ("placement" + std::to_string(getpid()) + ".csv")) {
     std::ofstream(path) << text;
   }
   ~CsvFile() { std::filesystem::remove(path); }
-  Placement read(const Scatterer& scatterer) const { return read_placement(path.string(), scatterer); }
+  Placement read(const Scatterer& scatterer) const {
+    return read_placement(path.string(), scatterer);
+  }
 };
 
 Scatterer disk(double radius) {
@@ -40,7 +42,8 @@ Scatterer disk(double radius) {
 
 }  // namespace
 
-TEST_CASE("a Poisson placement has a Poisson number, uniform positions, and a fixed number on request") {
+TEST_CASE(
+    "a Poisson placement has a Poisson number, uniform positions, and a fixed number on request") {
   PlacementRule rule;
   rule.mean_count = 31;
   double sum = 0, sum2 = 0, x2 = 0, z = 0;
@@ -85,10 +88,13 @@ TEST_CASE("the overlap check agrees with trying every pair") {
     Placement placement;
     bool overlap = false;
     for (int i = 0; i < 12; ++i) {
-      placement.push_back({{10 * random.uniform() - 5, 10 * random.uniform() - 5}, disk(0.1 + 0.5 * random.uniform())});
+      placement.push_back({{10 * random.uniform() - 5, 10 * random.uniform() - 5},
+                           disk(0.1 + 0.5 * random.uniform())});
       for (int j = 0; j < i; ++j)
-        overlap |= length(placement.back().position - placement[static_cast<std::size_t>(j)].position) <=
-                   placement.back().scatterer.radius + placement[static_cast<std::size_t>(j)].scatterer.radius;
+        overlap |=
+            length(placement.back().position - placement[static_cast<std::size_t>(j)].position) <=
+            placement.back().scatterer.radius +
+                placement[static_cast<std::size_t>(j)].scatterer.radius;
     }
     clashes += overlap;
     if (overlap)
@@ -101,7 +107,8 @@ TEST_CASE("the overlap check agrees with trying every pair") {
 }
 
 TEST_CASE("placements are read by column name") {
-  const auto placement = CsvFile("z,x,radius,index_re,index_im\n1,2,0.5,1.4,0.1\n4,-3,0.25,1.5,0\n").read(disk(0));
+  const auto placement =
+      CsvFile("z,x,radius,index_re,index_im\n1,2,0.5,1.4,0.1\n4,-3,0.25,1.5,0\n").read(disk(0));
   CHECK(placement.size() == 2);
   CHECK(placement[0].position.x == 2);
   CHECK(placement[0].position.z == 1);

@@ -1,11 +1,11 @@
 // One scene, two eyes: the Monte Carlo estimator against the exact solver, on absolute scale with
 // nothing fitted. Where they disagree beyond 4 combined standard errors, the difference must stay
-// within what the method neglects (corrections of order 1/(k mean free path), and of order the packing
-// fraction for hard disks).
-#include <doctest/doctest.h>
-
+// within what the method neglects (corrections of order 1/(k mean free path), and of order the
+// packing fraction for hard disks).
 #include <cmath>
 #include <numbers>
+
+#include <doctest/doctest.h>
 
 #include "flatland/scene.h"
 #include "mc/covariance_estimator.h"
@@ -131,7 +131,8 @@ TEST_CASE("a Poisson number keeps the forward lobe that a fixed number loses") {
   const auto with_poisson = by_wave(poisson, 10'000), with_fixed = by_wave(fixed, 10'000);
   CHECK(std::abs(with_poisson.covariance.value[0] - mc) <
         4 * with_poisson.covariance.error[0] + 0.03 * mc);
-  CHECK(std::abs(with_fixed.covariance.value[0] - 0.90) < 4 * with_fixed.covariance.error[0] + 0.03);
+  CHECK(std::abs(with_fixed.covariance.value[0] - 0.90) <
+        4 * with_fixed.covariance.error[0] + 0.03);
 }
 
 TEST_CASE("the coherent field is the exact mean field") {
@@ -156,7 +157,7 @@ TEST_CASE("near sensors outside the box see the same covariance by both methods"
   spec.covariance = "intensity";
   spec.tilts = {};
   Scene scene = make_scene(spec);
-  scene.request = intensity_request(
-      {0}, {near_sensor({0, 14}), near_sensor({6, 12}), near_sensor({14, 5}), near_sensor({2, -3})});
+  scene.request = intensity_request({0}, {near_sensor({0, 14}), near_sensor({6, 12}),
+                                          near_sensor({14, 5}), near_sensor({2, -3})});
   check_agreement(by_mc(scene, 300'000), by_wave(scene, 10'000), 0.03);
 }
