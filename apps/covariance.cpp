@@ -24,7 +24,7 @@ int covariance(const Arguments& arguments) {
   add_run_options(command.options(), settings);
   if (!command.parse(arguments)) return ExitStatus::done;
 
-  settle_views(command, spec);
+  settle_request(command, spec);
   if (method != "mc" && method != "wave")
     throw InputError("method", method, "must be one of mc wave");
   const Scene scene = make_scene(spec);

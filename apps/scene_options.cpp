@@ -55,13 +55,19 @@ void add_request_options(CLI::App& app, SceneSpec& spec) {
 }
 
 void settle_views(const Subcommand& subcommand, SceneSpec& spec) {
+  if (!spec.near_sensors.empty() && !subcommand.given("view_angles")) spec.view_angles.clear();
+}
+
+void settle_request(const Subcommand& subcommand, SceneSpec& spec) {
   if (spec.covariance == "pairs") {
     for (const char* key : {"light_angles", "view_angles", "near_sensors"})
       if (subcommand.given(key))
         throw InputError(std::string(key) +
                          ": covariance = pairs names the angles itself; leave it out");
   }
-  if (!spec.near_sensors.empty() && !subcommand.given("view_angles")) spec.view_angles.clear();
+  settle_views(subcommand, spec);
+  if (!spec.near_sensors.empty() && !spec.view_angles.empty())
+    throw InputError("near_sensors", spec.near_sensors, "give either near_sensors or view_angles");
 }
 
 std::string sensors_text(const CovarianceRequest& request) {

@@ -15,8 +15,10 @@ void add_bulk_options(CLI::App& app, SceneSpec& spec);
 /// Which entries of the covariance.
 void add_request_options(CLI::App& app, SceneSpec& spec);
 
-/// Near sensors take the place of the default far view; pairs name their angles themselves.
+/// Near sensors take the place of the default far view.
 void settle_views(const Subcommand& subcommand, SceneSpec& spec);
+/// For a covariance, whose views are all near or all far; pairs name their angles themselves.
+void settle_request(const Subcommand& subcommand, SceneSpec& spec);
 
 /// The near sensors that were read, exactly.
 std::string sensors_text(const CovarianceRequest& request);

@@ -145,7 +145,7 @@ int validate(const Arguments& arguments) {
   add_run_options(command.options(), settings);
   if (!command.parse(arguments)) return ExitStatus::done;
 
-  settle_views(command, spec);
+  settle_request(command, spec);
   round_density(spec);
   const Scene scene = make_scene(spec);
   if (scene.medium.mu_s == 0)

@@ -291,8 +291,6 @@ CovarianceRequest make_request(const SceneSpec& spec) {
   if (kind == Request::memory_effect) return memory_effect(spec);
   if (kind == Request::pairs) return angle_pairs(spec);
   const auto views = requested_views(spec);
-  if (!spec.near_sensors.empty() && !spec.view_angles.empty())
-    throw InputError("near_sensors", spec.near_sensors, "give either near_sensors or view_angles");
   if (views.empty()) throw InputError("view_angles = []: must hold at least one number");
   if (kind == Request::full) return full_request(spec.light_angles, views);
   return intensity_request(spec.light_angles, views);

@@ -20,13 +20,11 @@ say "Ten disks of different sizes, solved exactly, against an independent progra
 reference=data/reference/g10
 mapfile -t views < <(awk -F, 'NR > 1 && $1 == 0 { print $2 }' "$reference/farfield_D.csv")
 solve_and_compare() {  # KIND FLAG...: KIND as in the names of the reference's tables
-  local kind=$1 solve=("$flatspeckle" solve --placement "$reference/placement.csv"
-    --light_angles 0 0.7 2.5 "${@:2}")
-  local far=$results/ten_disks/far_$kind near=$results/ten_disks/near_$kind
-  "${solve[@]}" --view_angles "${views[@]}" --out "$far.h5"
-  "${solve[@]}" --near_sensors "$reference/nearfield_$kind.csv" --out "$near.h5"
-  python3 plots/compare_reference.py "$far.h5" "$reference/farfield_$kind.csv"
-  python3 plots/compare_reference.py "$near.h5" "$reference/nearfield_$kind.csv"
+  local kind=$1 result=$results/ten_disks/$1.h5
+  "$flatspeckle" solve --placement "$reference/placement.csv" "${@:2}" \
+    --light_angles 0 0.7 2.5 --view_angles "${views[@]}" \
+    --near_sensors "$reference/nearfield_$kind.csv" --out "$result"
+  python3 plots/compare_reference.py "$result" "$reference"/{far,near}"field_$kind.csv"
 }
 solve_and_compare D --scatterer soft
 solve_and_compare N --scatterer hard

@@ -416,7 +416,7 @@ class Output(RefusingTest):
         self.write("file", "a regular file")
         (self.folder / "folder").mkdir()
         for subcommand, scene in self.COMMANDS.items():
-            for out in ("none/result.h5", "file/result.h5", "/proc/result.h5", "/sys/result.h5",
+            for out in ("none/result.h5", "file/result.h5", "/proc/result.h5", "/dev/null/result.h5",
                         "folder", "folder/", "/dev/null", "n" * 300 + ".h5"):
                 with self.subTest(subcommand=subcommand, out=out):
                     self.assert_refused([out], subcommand, *flags(scene), out=out)
