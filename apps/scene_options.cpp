@@ -66,7 +66,8 @@ void settle_request(const Subcommand& subcommand, SceneSpec& spec) {
                          ": covariance = pairs names the angles itself; leave it out");
   }
   settle_views(subcommand, spec);
-  if (!spec.near_sensors.empty() && !spec.view_angles.empty())
+  const bool both = !spec.near_sensors.empty() && !spec.view_angles.empty();
+  if (both && spec.covariance != "memory_effect")  // which has no near sensors at all
     throw InputError("near_sensors", spec.near_sensors, "give either near_sensors or view_angles");
 }
 
