@@ -62,6 +62,12 @@ void GroupedSums::restore(State state) {
   sums_ = std::move(state.sums);
 }
 
+std::vector<Complex> sample_mean(double samples, std::span<const Complex> sums) {
+  std::vector<Complex> mean(sums.begin(), sums.end());
+  for (Complex& value : mean) value /= samples;
+  return mean;
+}
+
 Estimate jackknife(const GroupedSums& sums, const Estimator& theta) {
   const double samples = sums.total_samples();
   const std::vector<Complex> total = sums.total();

@@ -58,6 +58,9 @@ struct Estimate {
 using Estimator =
     std::function<std::vector<Complex>(double samples, std::span<const Complex> sums)>;
 
+/// The simplest of them: sums / samples.
+std::vector<Complex> sample_mean(double samples, std::span<const Complex> sums);
+
 /// Value of theta on all groups and its delete-one-group jackknife error for groups of unequal size
 /// (Busing, Meijer and van der Leeden 1999, eqs. 6-7). With fewer than two groups the error is
 /// infinite.

@@ -73,11 +73,7 @@ BatchFunction specialise(const std::shared_ptr<const Scene>& scene, const Plan& 
 FieldJob covariance_job(const Scene& scene, const Plan& plan, std::uint64_t seed) {
   const auto shared = std::make_shared<const Scene>(scene);
   FieldJob job;
-  job.covariance = [](double samples, std::span<const Complex> sums) {
-    std::vector<Complex> mean(sums.begin(), sums.end());
-    for (Complex& value : mean) value /= samples;
-    return mean;
-  };
+  job.covariance = sample_mean;
   if (has_coherent_field(scene)) {
     job.mean = [field = coherent_field(scene)](double, std::span<const Complex>) { return field; };
   }

@@ -33,13 +33,6 @@ SolveOptions batch_options(const Scene& scene, double tolerance) {
   return options;
 }
 
-std::vector<Complex> sample_mean(const CovarianceRequest& request, double samples,
-                                 std::span<const Complex> sums) {
-  std::vector<Complex> mean(sums.begin(), sums.begin() + request.channels.size());
-  for (Complex& value : mean) value /= samples;
-  return mean;
-}
-
 // (sum u_a u_b* - sum u_a sum u_b* / n) / (n - 1); 0 while one sample shows no spread.
 std::vector<Complex> sample_covariance(const CovarianceRequest& request, double samples,
                                        std::span<const Complex> sums) {
@@ -68,7 +61,7 @@ FieldJob wave_job(const Scene& scene, std::uint64_t seed, double tolerance) {
   const SolveOptions options = batch_options(scene, tolerance);
   FieldJob job;
   job.mean = [shared](double samples, std::span<const Complex> sums) {
-    return sample_mean(shared->request, samples, sums);
+    return sample_mean(samples, sums.first(shared->request.channels.size()));
   };
   job.covariance = [shared](double samples, std::span<const Complex> sums) {
     return sample_covariance(shared->request, samples, sums);

@@ -14,12 +14,6 @@ using namespace flatspeckle;
 
 namespace {
 
-std::vector<Complex> mean_of(double samples, std::span<const Complex> sums) {
-  std::vector<Complex> mean(sums.begin(), sums.end());
-  for (auto& value : mean) value /= samples;
-  return mean;
-}
-
 /// Mean of 100 numbers 1 + uniform per batch; uneven run times put batches out of order.
 BatchJob uneven_job() {
   BatchJob job;
@@ -34,7 +28,7 @@ BatchJob uneven_job() {
     if (number % 7 == 0) std::this_thread::sleep_for(std::chrono::microseconds(300));
   };
   job.relative_error = [](const GroupedSums& sums) {
-    return relative_error(jackknife(sums, mean_of));
+    return relative_error(jackknife(sums, sample_mean));
   };
   return job;
 }

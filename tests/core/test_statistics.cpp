@@ -9,16 +9,6 @@
 
 using namespace flatspeckle;
 
-namespace {
-
-std::vector<Complex> mean_of(double samples, std::span<const Complex> sums) {
-  std::vector<Complex> mean(sums.begin(), sums.end());
-  for (auto& value : mean) value /= samples;
-  return mean;
-}
-
-}  // namespace
-
 TEST_CASE("the jackknife of a mean is the standard error of the mean") {
   GroupedSums sums(1);
   std::vector<Complex> values;
@@ -31,7 +21,7 @@ TEST_CASE("the jackknife of a mean is the standard error of the mean") {
   for (auto value : values) mean += value / 100.0;
   double variance = 0;
   for (auto value : values) variance += std::norm(value - mean) / 99.0;
-  const auto estimate = jackknife(sums, mean_of);
+  const auto estimate = jackknife(sums, sample_mean);
   CHECK(std::abs(estimate.value[0] - mean) < 1e-14);
   CHECK(estimate.error[0] == doctest::Approx(std::sqrt(variance / 100)).epsilon(1e-10));
 }
@@ -49,7 +39,7 @@ TEST_CASE("with more batches than groups, and groups of unequal size, errors sta
       sums.add(1, {&u, 1});
     }
     CHECK(sums.groups() == 256);
-    const auto estimate = jackknife(sums, mean_of);
+    const auto estimate = jackknife(sums, sample_mean);
     mean_variance += std::norm(estimate.value[0] - 0.5) / repeats;
     mean_error2 += estimate.error[0] * estimate.error[0] / repeats;
   }
@@ -85,7 +75,7 @@ TEST_CASE("one batch has no error, and nothing has none") {
   GroupedSums sums(1);
   const Complex one = 1;
   sums.add(1, {&one, 1});
-  CHECK(jackknife(sums, mean_of).error[0] == std::numeric_limits<double>::infinity());
+  CHECK(jackknife(sums, sample_mean).error[0] == std::numeric_limits<double>::infinity());
   CHECK(relative_error({{0, 0}, {0, 0}}) == 0);
   CHECK(relative_error({{3, Complex(0, 4)}, {0.3, 0.4}}) == doctest::Approx(0.1));
 }
