@@ -1,5 +1,6 @@
 #include "apps/estimation.h"
 #include "apps/moments_output.h"
+#include "apps/moments_table.h"
 #include "apps/scene_options.h"
 #include "apps/session.h"
 #include "apps/subcommands.h"
@@ -38,9 +39,11 @@ int covariance(const Arguments& arguments) {
       {{"", "covariance", estimation.job.batches, method == "mc" ? mc_stop : wave_stop}},
       sensors_text(scene.request));
   return session.run([&](ResultFile& file) {
+    const GroupedSums& sums = session.state("").sums;
+    print_entries(scene.request, jackknife(sums, estimation.job.covariance));
     write_medium(file, scene);
     write_axes(file, scene.request);
-    write_moments(file, "", estimation.job, scene.request, session.state("").sums);
+    write_moments(file, "", estimation.job, scene, sums);
   });
 }
 

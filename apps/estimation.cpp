@@ -1,5 +1,7 @@
 #include "apps/estimation.h"
 
+#include <cmath>
+#include <iostream>
 #include <sstream>
 
 #include "core/error.h"
@@ -15,6 +17,15 @@ mc::ReversedPaths reversed_paths(const std::string& word) {
   if (word == "yes") return mc::ReversedPaths::yes;
   if (word == "no") return mc::ReversedPaths::no;
   throw InputError("reversed_paths", word, "must be one of auto yes no");
+}
+
+/// Whole disks only: says so where that changes the density (conventions, C12).
+void note_rounding(const Scene& scene) {
+  const double mean = scene.placement.mean_count, placed = std::round(mean);
+  if (scene.placement.kind != PlacementRule::Kind::hard_disk || std::abs(placed - mean) < 1e-9)
+    return;
+  std::cerr << "note: hard disks are placed in whole numbers: " << placed << " in each placement, "
+            << mean << " asked for\n";
 }
 
 }  // namespace
@@ -41,6 +52,7 @@ Estimation mc_estimation(const Scene& scene, const MethodSettings& settings, std
 Estimation wave_estimation(const Scene& scene, const MethodSettings& settings, std::uint64_t seed) {
   if (!(settings.wave_tolerance > 0 && settings.wave_tolerance < 1))
     throw InputError("wave_tolerance", settings.wave_tolerance, "must be in (0, 1)");
+  note_rounding(scene);
   std::ostringstream plan;
   plan << "wave: dense T-matrix solutions of "
        << (scene.placement.kind == PlacementRule::Kind::poisson ? "poisson" : "hard-disk")

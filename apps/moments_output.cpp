@@ -1,8 +1,7 @@
 #include "apps/moments_output.h"
 
+#include <cstdio>
 #include <numeric>
-
-#include "mc/memory_effect.h"
 
 namespace flatspeckle::apps {
 
@@ -37,27 +36,33 @@ std::string view_axis(const CovarianceRequest& request) {
 /// Writes datasets of one group; each estimate with its `_error`.
 class Group {
  public:
-  Group(ResultFile& file, const std::string& name)
-      : file_(file), prefix_(name.empty() ? "" : name + "/") {}
+  /// Covariances are in units of the square of the field: far fields are lengths^(1/2), and a
+  /// slab's covariance counts per unit length.
+  Group(ResultFile& file, const std::string& name, const Scene& scene)
+      : file_(file), prefix_(name.empty() ? "" : name + "/") {
+    const bool far_field = !scene.request.views.front().near;
+    if (far_field && scene.domain.kind == Domain::Kind::box) {
+      field_units_ = "length^(1/2)";
+      covariance_units_ = "length";
+    }
+  }
 
-  void complex(const std::string& name, const Estimate& estimate, const Axes& axes,
-               const std::string& long_name) {
-    file_.dataset(prefix_ + name, estimate.value, axes, "", long_name);
-    error(name, estimate.error, axes, long_name);
-  }
-  void real(const std::string& name, const Estimate& estimate, const Axes& axes,
-            const std::string& long_name) {
-    file_.dataset(prefix_ + name, real_parts(estimate.value), axes, "", long_name);
-    error(name, estimate.error, axes, long_name);
-  }
-  void error(const std::string& name, const std::vector<double>& values, const Axes& axes,
+  template <typename Number>
+  void write(const std::string& name, const std::vector<Number>& values,
+             const std::vector<double>& errors, const Axes& axes, const std::string& units,
              const std::string& long_name) {
-    file_.dataset(prefix_ + name + "_error", values, axes, "", "standard error: " + long_name);
+    file_.dataset(prefix_ + name, values, axes, units, long_name);
+    file_.dataset(prefix_ + name + "_error", errors, axes, units, "standard error: " + long_name);
   }
-  void real(const std::string& name, const std::vector<double>& values,
-            const std::vector<double>& errors, const Axes& axes, const std::string& long_name) {
-    file_.dataset(prefix_ + name, values, axes, "", long_name);
-    error(name, errors, axes, long_name);
+  void covariance(const Estimate& estimate, const Axes& axes, const std::string& long_name) {
+    write("covariance", estimate.value, estimate.error, axes, covariance_units_, long_name);
+  }
+  void intensity(const std::string& name, const Estimate& estimate, const Axes& axes,
+                 const std::string& long_name) {
+    write(name, real_parts(estimate.value), estimate.error, axes, covariance_units_, long_name);
+  }
+  void mean_field(const Estimate& estimate, const Axes& axes, const std::string& long_name) {
+    write("mean_field", estimate.value, estimate.error, axes, field_units_, long_name);
   }
   void attribute(const std::string& name, const std::string& key, const Attribute& value) {
     file_.attribute(prefix_ + name, key, value);
@@ -65,7 +70,7 @@ class Group {
 
  private:
   ResultFile& file_;
-  std::string prefix_;
+  std::string prefix_, field_units_ = "1", covariance_units_ = "1";
 };
 
 Estimate unpack_full(const CovarianceRequest& request, const Estimate& triangle) {
@@ -82,28 +87,33 @@ Estimate unpack_full(const CovarianceRequest& request, const Estimate& triangle)
   return full;
 }
 
-void write_memory_effect(Group& group, const FieldJob& job, const CovarianceRequest& request,
+void write_memory_effect(Group& group, const FieldJob& job, const Scene& scene,
                          const GroupedSums& sums, const Estimate& covariance) {
+  const CovarianceRequest& request = scene.request;
   const std::size_t views = request.reference_views, tilts = request.tilts.size();
-  group.complex("covariance", part(covariance, 0, tilts * views), {"tilt", "view_angle"},
-                "covariance of reference and tilted field");
-  group.real("reference_intensity", part(covariance, request.reference_intensity(0), views),
-             {"view_angle"}, "variance of the reference field");
-  group.real("tilted_intensity", part(covariance, request.tilted_intensity(0, 0), tilts * views),
-             {"tilt", "view_angle"}, "variance of the tilted field in the matched view");
+  group.covariance(part(covariance, 0, tilts * views), {"tilt", "view_angle"},
+                   "covariance of reference and tilted field");
+  group.intensity("reference_intensity", part(covariance, request.reference_intensity(0), views),
+                  {"view_angle"}, "variance of the reference field");
+  group.intensity("tilted_intensity",
+                  part(covariance, request.tilted_intensity(0, 0), tilts * views),
+                  {"tilt", "view_angle"}, "variance of the tilted field in the matched view");
   const auto effect = mc::memory_effect(request, sums, job.covariance);
-  group.real("field_correlation", effect.correlation, effect.correlation_error, {"tilt"},
-             "field correlation C_E, summed over views");
-  group.real("memory_effect_range", {effect.range.value}, {effect.range_error}, {std::size_t{1}},
-             "|q| at C_I = 1/2");
-  group.attribute("memory_effect_range", "censored", effect.range.censored);
+  group.write("field_correlation", effect.correlation, effect.correlation_error, {"tilt"}, "1",
+              "field correlation C_E, summed over views");
+  const double depth = scene.domain.depth;
+  group.write<double>("memory_effect_range", {effect.range.value * depth},
+                      {effect.range_error * depth}, {std::size_t{1}}, "1",
+                      "q L at C_I = 1/2, L the depth");
+  group.attribute("memory_effect_range", "censored",
+                  static_cast<std::uint64_t>(effect.range.censored));
 }
 
 /// The mean field in the channels that stand on the light and view axes.
 void write_mean(Group& group, const CovarianceRequest& request, const Estimate& mean) {
   if (mean.value.empty() || request.kind == Kind::pairs) return;
   if (request.kind != Kind::memory_effect) {
-    group.complex("mean_field", mean, {"light_angle", view_axis(request)}, "mean scattered field");
+    group.mean_field(mean, {"light_angle", view_axis(request)}, "mean scattered field");
     return;
   }
   Estimate reference;
@@ -112,8 +122,8 @@ void write_mean(Group& group, const CovarianceRequest& request, const Estimate& 
     reference.value.push_back(mean.value[channel]);
     reference.error.push_back(mean.error[channel]);
   }
-  group.complex("mean_field", reference, {"light_angle", "view_angle"},
-                "mean scattered field of the reference light");
+  group.mean_field(reference, {"light_angle", "view_angle"},
+                   "mean scattered field of the reference light");
 }
 
 void write_view_axis(ResultFile& file, const std::vector<View>& views) {
@@ -192,25 +202,39 @@ void write_axes(ResultFile& file, const CovarianceRequest& request) {
   file.dataset("tilt_q", request.tilt_q, {"tilt"}, "1/length", "transverse wavenumber of the tilt");
 }
 
+std::string range_text(const mc::Range& range, double error) {
+  using Censoring = mc::Range::Censoring;
+  char text[64];
+  if (range.censored == Censoring::above_value)
+    std::snprintf(text, sizeof text, "above %.4g, the largest tilt", range.value);
+  else if (range.censored == Censoring::below_value)
+    std::snprintf(text, sizeof text, "below %.4g, the smallest tilt", range.value);
+  else
+    std::snprintf(text, sizeof text, "%.4g +- %.2g", range.value, error);
+  return text;
+}
+
 void write_moments(ResultFile& file, const std::string& group_name, const FieldJob& job,
-                   const CovarianceRequest& request, const GroupedSums& sums) {
+                   const Scene& scene, const GroupedSums& sums) {
+  const CovarianceRequest& request = scene.request;
   const FieldMoments moments = field_moments(job, sums);
-  Group group(file, group_name);
+  Group group(file, group_name, scene);
   write_mean(group, request, moments.mean);
   const std::string view = view_axis(request);
   switch (request.kind) {
     case Kind::intensity:
-      group.real("intensity", moments.covariance, {"light_angle", view}, "variance of the field");
+      group.intensity("intensity", moments.covariance, {"light_angle", view},
+                      "variance of the field");
       break;
     case Kind::pairs:
-      group.complex("covariance", moments.covariance, {"pair"}, "covariance of the pair");
+      group.covariance(moments.covariance, {"pair"}, "covariance of the pair");
       break;
     case Kind::full:
-      group.complex("covariance", unpack_full(request, moments.covariance),
-                    {"light_angle", view, "light_angle", view}, "covariance of the fields");
+      group.covariance(unpack_full(request, moments.covariance),
+                       {"light_angle", view, "light_angle", view}, "covariance of the fields");
       break;
     case Kind::memory_effect:
-      write_memory_effect(group, job, request, sums, moments.covariance);
+      write_memory_effect(group, job, scene, sums, moments.covariance);
       break;
   }
 }

@@ -5,6 +5,7 @@
 #include "core/result_file.h"
 #include "flatland/field_moments.h"
 #include "flatland/scene.h"
+#include "mc/memory_effect.h"
 
 namespace flatspeckle::apps {
 
@@ -16,9 +17,12 @@ void write_medium(ResultFile& file, const Scene& scene);
 /// The axes that a request's datasets stand on.
 void write_axes(ResultFile& file, const CovarianceRequest& request);
 
+/// "1.36 +- 0.01", or which tilts are missing.
+std::string range_text(const mc::Range& range, double error);
+
 /// Mean field and covariance in the shapes of the README, each with its standard error; `group` is
 /// empty for the root. Axes must have been written.
 void write_moments(ResultFile& file, const std::string& group, const FieldJob& job,
-                   const CovarianceRequest& request, const GroupedSums& sums);
+                   const Scene& scene, const GroupedSums& sums);
 
 }  // namespace flatspeckle::apps

@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 #include "apps/estimation.h"
@@ -57,7 +59,8 @@ std::vector<Scene> sweep_scenes(const SceneSpec& spec, SweepAxes& axes) {
 /// Everything the result holds, in the order of the points.
 struct SweepTables {
   std::vector<double> correlation, correlation_error, diffusion, range, range_error;
-  std::vector<std::uint64_t> censored;
+  std::vector<std::uint64_t> censored;  ///< numbers of mc::Range::Censoring
+  std::vector<std::string> shown_range;
 
   void add(const SweepPoint& point) {
     const auto effect = mc::memory_effect(point.scene.request, *point.sums, point.job.covariance);
@@ -69,9 +72,16 @@ struct SweepTables {
       diffusion.push_back(mc::diffusion_field_correlation(point.scene.medium, depth, q));
     range.push_back(effect.range.value * depth);
     range_error.push_back(effect.range_error * depth);
-    censored.push_back(effect.range.censored ? 1 : 0);
+    shown_range.push_back(range_text({range.back(), effect.range.censored}, range_error.back()));
+    censored.push_back(static_cast<std::uint64_t>(effect.range.censored));
   }
 };
+
+/// Diffusion theory is that of transmitted light.
+bool transmission_only(const CovarianceRequest& request) {
+  return std::all_of(request.views.begin(), request.views.end(),
+                     [](const View& view) { return std::cos(view.angle) > 0; });
+}
 
 /// k mean_free_path per optical depth.
 std::vector<double> small_parameter(const SweepAxes& axes, const Scene& scene) {
@@ -95,7 +105,8 @@ void write_tables(ResultFile& file, const SweepAxes& axes, const std::vector<Swe
   file.dataset("field_correlation", tables.correlation, curves, "1", "field correlation C_E");
   file.dataset("field_correlation_error", tables.correlation_error, curves, "1",
                "standard error: field correlation C_E");
-  file.dataset("diffusion_theory", tables.diffusion, curves, "1", "C_E in diffusion theory");
+  if (transmission_only(scene.request))
+    file.dataset("diffusion_theory", tables.diffusion, curves, "1", "C_E in diffusion theory");
   file.dataset("memory_effect_range", tables.range, grid, "1", "q L at C_I = 1/2");
   file.dataset("memory_effect_range_error", tables.range_error, grid, "1",
                "standard error: q L at C_I = 1/2");
@@ -108,10 +119,7 @@ void print_ranges(const std::vector<SweepPoint>& points, const SweepTables& tabl
     const auto& medium = points[i].scene.medium;
     std::printf("%13.5g %8.4g %8.6g  ", medium.mu_t * points[i].scene.domain.depth, medium.g,
                 medium.albedo);
-    if (tables.censored[i] != 0)
-      std::printf("beyond %.4g, the largest tilt\n", tables.range[i]);
-    else
-      std::printf("%.4g +- %.2g\n", tables.range[i], tables.range_error[i]);
+    std::puts(tables.shown_range[i].c_str());
   }
 }
 

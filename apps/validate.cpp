@@ -1,10 +1,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <iostream>
 #include <numbers>
 
 #include "apps/estimation.h"
 #include "apps/moments_output.h"
+#include "apps/moments_table.h"
 #include "apps/scene_options.h"
 #include "apps/session.h"
 #include "apps/subcommands.h"
@@ -22,6 +24,8 @@ void round_density(SceneSpec& spec) {
   if (scene.placement.kind != PlacementRule::Kind::hard_disk || spec.count) return;
   spec.density = spec.mean_free_path = spec.optical_depth = std::nullopt;
   spec.count = std::llround(scene.placement.mean_count);
+  std::cerr << "note: hard disks are placed in whole numbers; both methods get count = "
+            << *spec.count << "\n";
 }
 
 /// What the Monte Carlo method neglects, as a fraction: corrections of order 1/(k mean free path),
@@ -56,37 +60,13 @@ struct Comparison {
   bool within_bias(std::size_t e) const { return difference(e) <= bias * std::abs(wave.value[e]); }
 };
 
-std::string show(Complex value) {
-  char text[48];
-  if (std::abs(value.imag()) < 5e-7 * std::abs(value))
-    std::snprintf(text, sizeof text, "%.5g", value.real());
-  else
-    std::snprintf(text, sizeof text, "%.5g%+.4gi", value.real(), value.imag());
-  return text;
-}
-
-/// Entries to show: intensities of the tilted field are only there for the correlation.
-std::size_t shown_entries(const CovarianceRequest& request) {
-  if (request.kind == Kind::memory_effect) return request.reference_intensity(0);
-  return request.entries.size();
-}
-
 void print_row(const CovarianceRequest& request, const Comparison& comparison, std::size_t e) {
-  const auto place = [&](std::uint32_t channel) {
-    char text[40];
-    const auto [light, view] = request.channels[channel];
-    const View& seen = request.views[view];
-    if (seen.near)
-      std::snprintf(text, sizeof text, "%8.4f  sensor %-4u", request.lights[light], view);
-    else
-      std::snprintf(text, sizeof text, "%8.4f %8.4f", request.lights[light], seen.angle);
-    return std::string(text);
-  };
   const auto [a, b] = request.entries[e];
   const double scale = std::max(std::abs(comparison.wave.value[e]), 1e-300);
-  std::printf("%s %s  %21s %8.2g  %21s %8.2g  %6.1f %%  %5.1f%s\n", place(a).c_str(),
-              place(b).c_str(), show(comparison.mc.value[e]).c_str(), comparison.mc.error[e],
-              show(comparison.wave.value[e]).c_str(), comparison.wave.error[e],
+  std::printf("%s %s  %21s %8.2g  %21s %8.2g  %6.1f %%  %5.1f%s\n",
+              shown_channel(request, a).c_str(), shown_channel(request, b).c_str(),
+              shown_value(comparison.mc.value[e]).c_str(), comparison.mc.error[e],
+              shown_value(comparison.wave.value[e]).c_str(), comparison.wave.error[e],
               100 * comparison.difference(e) / scale, comparison.deviation(e),
               comparison.within_errors(e) ? ""
               : comparison.within_bias(e) ? "  bias"
@@ -95,7 +75,6 @@ void print_row(const CovarianceRequest& request, const Comparison& comparison, s
 
 void print_comparison(const Scene& scene, const Comparison& comparison) {
   const auto& request = scene.request;
-  constexpr std::size_t most_rows = 60;
   const std::size_t entries = shown_entries(request);
   std::printf("%-17s %-17s  %21s %8s  %21s %8s  %8s  %s\n", "light 1  view 1", "light 2  view 2",
               "mc", "error", "wave", "error", "|diff|", "sigma");
@@ -166,8 +145,8 @@ int validate(const Arguments& arguments) {
     print_comparison(scene, comparison);
     write_medium(file, scene);
     write_axes(file, scene.request);
-    write_moments(file, "mc", mc.job, scene.request, mc_sums);
-    write_moments(file, "wave", wave.job, scene.request, wave_sums);
+    write_moments(file, "mc", mc.job, scene, mc_sums);
+    write_moments(file, "wave", wave.job, scene, wave_sums);
     write_comparison(file, comparison);
   });
 }

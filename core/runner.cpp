@@ -126,7 +126,7 @@ class Merger {
   }
 
   bool target_reached() const {
-    constexpr std::uint64_t trusted_batches = 32;  // fewer say little about their own error
+    constexpr std::uint64_t trusted_batches = 256;  // fewer miss the tail of rare strong paths
     return options_.stop.target_error && state_.sums.batches() >= trusted_batches &&
            !state_.trace.relative_error.empty() &&
            state_.trace.relative_error.back() <= *options_.stop.target_error;

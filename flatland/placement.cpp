@@ -73,6 +73,10 @@ Scatterer row_scatterer(const Table& table, std::size_t row, Scatterer scatterer
 
 Placement draw_placement(const Domain& box, const Scatterer& scatterer, const PlacementRule& rule,
                          RandomStream& random) {
+  constexpr double most_scatterers = 1e7;
+  if (rule.mean_count > most_scatterers)
+    throw InputError("count", rule.mean_count,
+                     "too many to place, more than this machine can solve");
   if (rule.kind == PlacementRule::Kind::hard_disk)
     return draw_hard_disks(box, scatterer, rule, random);
   const std::uint64_t count = rule.count ? *rule.count : poisson_number(rule.mean_count, random);

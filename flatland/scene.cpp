@@ -28,6 +28,14 @@ void all_finite(const std::string& key, const std::vector<double>& values) {
     if (!std::isfinite(value)) throw InputError(key, value, "must be finite");
 }
 
+/// Whoever writes 45 means degrees.
+void all_radians(const std::string& key, const std::vector<double>& angles) {
+  all_finite(key, angles);
+  for (double angle : angles)
+    if (std::abs(angle) > 2 * std::numbers::pi)
+      throw InputError(key, angle, "angles are in radians, at most 2 pi");
+}
+
 void not_empty(const std::string& key, const std::vector<double>& values) {
   if (values.empty()) throw InputError(key + " = []: must hold at least one number");
 }
@@ -216,7 +224,7 @@ CovarianceRequest memory_effect(const SceneSpec& spec) {
 
 CovarianceRequest angle_pairs(const SceneSpec& spec) {
   not_empty("pairs", spec.pairs);
-  all_finite("pairs", spec.pairs);
+  all_radians("pairs", spec.pairs);
   if (spec.pairs.size() % 4 != 0)
     throw InputError("pairs", spec.pairs.size(),
                      "numbers; must be light 1, view 1, light 2, view 2 of each pair in turn");
@@ -275,9 +283,9 @@ Scatterer make_scatterer(const SceneSpec& spec) {
 
 CovarianceRequest make_request(const SceneSpec& spec) {
   not_empty("light_angles", spec.light_angles);
-  all_finite("light_angles", spec.light_angles);
-  all_finite("view_angles", spec.view_angles);
-  all_finite("tilts", spec.tilts);
+  all_radians("light_angles", spec.light_angles);
+  all_radians("view_angles", spec.view_angles);
+  all_radians("tilts", spec.tilts);
   using Request = CovarianceRequest::Kind;
   const auto kind = choose<Request>("covariance", spec.covariance,
                                     {{"intensity", Request::intensity},

@@ -67,14 +67,15 @@ Range memory_effect_range(const std::vector<double>& tilt_q, std::span<const Com
   const auto curve = one_side(tilt_q, correlation);
   for (std::size_t i = 0; i + 1 < curve.size(); ++i) {
     if (curve[i + 1].intensity_correlation > 0.5) continue;
+    if (i == 0) return {curve[1].q, Range::Censoring::below_value};
     double above = curve[i].q, below = curve[i + 1].q;
     for (int step = 0; step < 60; ++step) {
       const double middle = (above + below) / 2;
       (interpolate(curve, i, middle) > 0.5 ? above : below) = middle;
     }
-    return {(above + below) / 2, false};
+    return {(above + below) / 2, Range::Censoring::none};
   }
-  return {curve.back().q, true};
+  return {curve.back().q, Range::Censoring::above_value};
 }
 
 MemoryEffect memory_effect(const CovarianceRequest& request, const GroupedSums& sums,

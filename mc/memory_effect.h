@@ -17,12 +17,16 @@ std::vector<Complex> field_correlation(const CovarianceRequest& request,
 
 /// Half-width of an intensity-correlation curve.
 struct Range {
-  double value = 0;       ///< |q| where C_I = C_E^2 falls to 1/2
-  bool censored = false;  ///< it does not fall so far: value is the largest |q| of the curve
+  /// Where the tilts do not reach the half width, or leave it out.
+  enum class Censoring { none, above_value, below_value };
+  double value = 0;  ///< |q| where C_I = C_E^2 falls to 1/2; if censored the last or first tilt's
+  Censoring censored = Censoring::none;
 };
 
-/// The first crossing of C_I = 1/2 on the side of positive q (of negative q where there is no
-/// positive one), by cubic interpolation of C_I through the four nearest tilts.
+/// Censored above the last tilt if C_I does not fall to 1/2 there, and below the first one that is
+/// not 0 if C_I has fallen already. Else the first crossing of C_I = 1/2 on the side of positive q
+/// (of negative q where there is no positive one), by cubic interpolation of C_I through the four
+/// nearest tilts.
 Range memory_effect_range(const std::vector<double>& tilt_q, std::span<const Complex> correlation);
 
 /// field_correlation and the range with jackknife errors.

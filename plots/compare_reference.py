@@ -5,9 +5,9 @@ relative L2 error against each and exits 1 where one is above the limit."""
 import argparse
 import sys
 
-import numpy as np
-
 import style
+
+import numpy as np
 
 
 def positions(result, name, axis, wanted):

@@ -3,12 +3,12 @@
 
 import pathlib
 
+import style
+
 import h5py
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.ticker import NullFormatter
-
-import style
 
 MOST_LABELS = 7
 

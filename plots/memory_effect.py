@@ -1,10 +1,27 @@
 #!/usr/bin/env python3
-"""Memory effect: intensity correlation against tilt, from a sweep or a memory_effect covariance."""
+"""Memory effect: intensity correlation against tilt, from one sweep, or from any number of
+memory_effect results of `covariance` and `validate`, compared in one panel."""
+
+import pathlib
+from dataclasses import dataclass
+
+import style
 
 import matplotlib.pyplot as plt
 import numpy as np
 
-import style
+METHODS = {"mc": "Monte Carlo", "wave": "wave solver"}
+
+
+@dataclass
+class Series:
+    """One method's field correlation [tilt], of one result file."""
+
+    label: str
+    tilt: np.ndarray  # mrad
+    correlation: np.ndarray
+    error: np.ndarray
+    look: dict
 
 
 def read_curves(result):
@@ -13,19 +30,59 @@ def read_curves(result):
     if result.has("diffusion_theory"):
         names.append("diffusion_theory")
     curves = [np.real(result.values(name)) for name in names]
-    curves += [None] * (3 - len(curves))
-    if curves[0].ndim == 4:
-        return curves
-    if curves[0].ndim == 1:
-        return [c if c is None else c[None, None, None, :] for c in curves]
-    raise style.Unusable(f"{result.path}: field_correlation has neither 1 nor 4 axes")
+    return curves + [None] * (3 - len(curves))
 
 
-def parameters(result):
-    """Optical depths, g and albedos of the curves; [None] where a single scene does not say."""
-    if result.dataset("field_correlation").ndim == 4:
-        return [result.axis("field_correlation", axis) for axis in range(3)]
-    return [[result.attribute(name)] for name in ("optical_depth", "g", "albedo")]
+def is_sweep(result):
+    return result.has("field_correlation") and result.dataset("field_correlation").ndim == 4
+
+
+def read_groups(result):
+    """(method, prefix of its datasets): both groups of a `validate` result, the root of others."""
+    if result.has("mc/field_correlation"):
+        return [(method, f"{method}/") for method in METHODS]
+    if not result.has("field_correlation"):
+        raise style.Unusable(f"{result.path}: has no field_correlation; needs a sweep, or "
+                             'covariance = "memory_effect"')
+    method = str(result.attribute("plan", "")).split(":")[0]
+    if method not in METHODS:
+        raise style.Unusable(f"{result.path}: attribute plan names neither method, mc nor wave")
+    return [(method, "")]
+
+
+def method_marker(method, number):
+    """A colour and symbol per file; Monte Carlo large and open, so that the wave solver's shows."""
+    look = style.look(number)
+    is_mc = method == "mc"
+    return {"color": look["color"], "marker": look["marker"], "markersize": 5.5 if is_mc else 2.5,
+            "markerfacecolor": "none" if is_mc else look["color"]}
+
+
+def read_series(results):
+    series = []
+    for number, result in enumerate(results):
+        for method, prefix in read_groups(result):
+            name = f"{prefix}field_correlation"
+            if result.dataset(name).ndim != 1:
+                raise style.Unusable(f"{result.path}: {name} is not a curve over tilts")
+            series.append(Series(f"{pathlib.Path(result.path).stem}, {METHODS[method]}",
+                                 1000 * result.axis(name, 0), np.real(result.values(name)),
+                                 result.values(f"{name}_error"), method_marker(method, number)))
+    return series
+
+
+def shared(results, name):
+    """An attribute that all files agree on, else None."""
+    values = {result.attribute(name) for result in results}
+    return values.pop() if len(values) == 1 else None
+
+
+def share_q(results):
+    """Whether a tilt is the same q L in all files."""
+    first, *others = [np.append(result.values("tilt_q"), result.axis("tilt_q", 0))
+                      for result in results if result.has("tilt_q")] or [None]
+    return (all(np.array_equal(first, other) for other in others)
+            and shared(results, "depth") is not None)
 
 
 def add_q_axis(axis, result, tilt):
@@ -48,9 +105,10 @@ def add_q_axis(axis, result, tilt):
     axis.tick_params(top=False)
 
 
-def title(depth, anisotropy):
-    named = (("OD", depth), ("$g$", anisotropy))
-    return "\n".join(f"{name} = {value:g}" for name, value in named if value is not None)
+def title(**values):
+    names = {"optical_depth": "OD", "g": "$g$", "albedo": "albedo"}
+    return "\n".join(f"{names[key]} = {value:.3g}" for key, value in values.items()
+                     if value is not None)
 
 
 def marker(number):
@@ -60,22 +118,31 @@ def marker(number):
             "markerfacecolor": "white" if number % 2 else look["color"]}
 
 
+def draw_curve(axis, tilt, field, error, look):
+    """C_I = C_E^2 with its error bars."""
+    return axis.errorbar(tilt, field**2, 2 * np.abs(field) * error, linestyle="none",
+                         elinewidth=0.7, **look)
+
+
+def prepare(axis):
+    axis.axhline(0.5, color=style.GREY, linewidth=0.6, linestyle=(0, (1, 2)), zorder=0)
+    axis.set_ylim(-0.03, 1.08)
+
+
 def draw_panel(axis, tilt, correlation, error, theory):
     order = np.argsort(tilt)
-    axis.axhline(0.5, color=style.GREY, linewidth=0.6, linestyle=(0, (1, 2)), zorder=0)
+    prepare(axis)
     for number, field in enumerate(correlation):
-        axis.errorbar(tilt, field**2, 2 * np.abs(field) * error[number], linestyle="none",
-                      elinewidth=0.7, **marker(number))
+        draw_curve(axis, tilt, field, error[number], marker(number))
         if theory is not None:
             look = style.look(number)
             axis.plot(tilt[order], theory[number][order]**2, color=look["color"], linewidth=0.7,
                       linestyle=look["linestyle"], zorder=1)
-    axis.set_ylim(-0.03, 1.08)
 
 
-def write_title(axis, text, correlation):
+def write_title(axis, text, curves):
     """In the corner that the curves leave free."""
-    falls = np.all(correlation[:, -1]**2 < 0.6)
+    falls = all(curve[-1]**2 < 0.6 for curve in curves)
     place = (0.95, 0.95, "right", "top") if falls else (0.06, 0.05, "left", "bottom")
     axis.text(*place[:2], text, ha=place[2], va=place[3], transform=axis.transAxes)
 
@@ -84,7 +151,7 @@ def add_legend(figure, albedos, has_theory):
     handles = [plt.Line2D([], [], linewidth=0.7, **marker(number),
                           linestyle=style.look(number)["linestyle"] if has_theory else "none")
                for number in range(len(albedos))]
-    labels = ["simulation" if albedo is None else f"albedo {albedo:g}" for albedo in albedos]
+    labels = [f"albedo {albedo}" for albedo in style.short(albedos)]
     if has_theory:
         handles.append(plt.Line2D([], [], linestyle="none"))
         labels.append("(lines: diffusion theory)")
@@ -92,11 +159,27 @@ def add_legend(figure, albedos, has_theory):
                   ncol=len(labels) if figure.get_figwidth() > style.COLUMN else 2)
 
 
-def draw(results):
-    result = results[0]
+def draw_series(results):
+    series = read_series(results)
+    figure, axis = plt.subplots(figsize=(style.COLUMN, 2.6))
+    prepare(axis)
+    handles = [draw_curve(axis, s.tilt, s.correlation, s.error, s.look) for s in series]
+    text = title(**{name: shared(results, name) for name in ("optical_depth", "g", "albedo")})
+    write_title(axis, text, [s.correlation for s in series])
+    if share_q(results):
+        add_q_axis(axis, results[0], series[0].tilt)
+    axis.set_xlabel("tilt (mrad)")
+    axis.set_ylabel(r"intensity correlation $C_I$")
+    figure.legend(handles, [s.label for s in series], loc="lower center",
+                  bbox_to_anchor=(0.5, 1.0), ncol=2)
+    return figure
+
+
+def draw_sweep(result):
     correlation, error, theory = read_curves(result)
-    depths, anisotropies, albedos = parameters(result)
-    tilt = 1000 * result.axis("field_correlation", result.dataset("field_correlation").ndim - 1)
+    depths, anisotropies, albedos, tilt = (result.axis("field_correlation", axis)
+                                           for axis in range(4))
+    tilt = 1000 * tilt
     rows, columns = len(depths), len(anisotropies)
     single = rows == columns == 1
     width = style.COLUMN if single else min(style.PAGE, max(style.COLUMN, 2.4 * columns))
@@ -106,7 +189,7 @@ def draw(results):
     for i, j in np.ndindex(rows, columns):
         draw_panel(axes[i, j], tilt, correlation[i, j], error[i, j],
                    None if theory is None else theory[i, j])
-        write_title(axes[i, j], title(depths[i], anisotropies[j]), correlation[i, j])
+        write_title(axes[i, j], title(optical_depth=depths[i], g=anisotropies[j]), correlation[i, j])
     for axis in axes[0]:
         add_q_axis(axis, result, tilt)
     for axis in axes[-1]:
@@ -117,5 +200,14 @@ def draw(results):
     return figure
 
 
+def draw(results):
+    if not any(is_sweep(result) for result in results):
+        return draw_series(results)
+    if len(results) > 1:
+        raise style.Unusable("a sweep is drawn alone: give one sweep, or several covariance or "
+                             "validate results")
+    return draw_sweep(results[0])
+
+
 if __name__ == "__main__":
-    style.main(draw, __doc__)
+    style.main(draw, __doc__, several=True)

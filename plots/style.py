@@ -1,8 +1,17 @@
-"""What the plots share: their look, how they read result files, and their command line."""
+"""What the plots share: their look, how they read result files, and their command line. To be
+imported before the packages that it looks for."""
 
 import argparse
+import importlib
 import pathlib
 import sys
+
+for package in ("numpy", "h5py", "matplotlib"):
+    try:
+        importlib.import_module(package)
+    except ImportError:
+        print(f"this python has no {package}; on Debian use /usr/bin/python3", file=sys.stderr)
+        sys.exit(2)
 
 import h5py
 import matplotlib
@@ -72,6 +81,12 @@ def look(number):
             "linestyle": LINES[number % len(LINES)]}
 
 
+def short(values):
+    """Numbers in three significant digits, or more where two would read the same."""
+    texts = [f"{value:.3g}" for value in values]
+    return texts if len(set(texts)) == len(texts) else [f"{value:g}" for value in values]
+
+
 def angle(value):
     """An angle in words."""
     turns = {0.5: r"$\pi/2$", 1.0: r"$\pi$"}
@@ -97,6 +112,7 @@ def save(figure, prefix):
     for ending in ("png", "pdf"):
         dates = {"CreationDate": None} if ending == "pdf" else None
         figure.savefig(f"{prefix}.{ending}", metadata=dates)
+        print(f"wrote {prefix}.{ending}")
 
 
 def main(draw, description, several=False):

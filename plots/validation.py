@@ -3,12 +3,13 @@
 
 from dataclasses import dataclass
 
+import style
+
 import matplotlib.pyplot as plt
 import numpy as np
 
-import style
-
 SIGMAS = 4  # agreement is judged at so many combined standard errors
+BAND = "0.92"
 
 
 @dataclass
@@ -86,7 +87,7 @@ def draw_values(axis, data, allowance):
 def draw_residual(axis, data, allowance):
     residual, combined = data.residual()
     signed = not np.iscomplexobj(data.mc)
-    axis.axhspan(-SIGMAS if signed else 0, SIGMAS, color="0.92", zorder=0)
+    axis.axhspan(-SIGMAS if signed else 0, SIGMAS, color=BAND, zorder=0)
     axis.axhline(0, color="black", linewidth=0.5, zorder=1)
     for number in range(len(residual)):
         look, x = style.look(number), shifted(data.x, number, len(residual))
@@ -101,16 +102,19 @@ def draw_residual(axis, data, allowance):
     axis.set_ylabel(r"(mc $-$ wave) / $\sigma$" if signed else r"|mc $-$ wave| / $\sigma$")
 
 
-def add_legend(figure, axis, allowance):
+def add_legend(figure, axis, data, allowance):
     handles, labels = axis.get_legend_handles_labels()
     kinds = (("white", 5, "open: Monte Carlo"), ("black", 2.5, "filled: wave solver"))
     for fill, size, label in kinds:
         handles.append(plt.Line2D([], [], color="black", marker="o", markerfacecolor=fill,
                                   markersize=size, linestyle="none"))
         labels.append(label)
+    handles.append(plt.Rectangle((0, 0), 1, 1, color=BAND))
+    sign = "" if np.iscomplexobj(data.mc) else r"$\pm$"
+    labels.append(f"{sign}{SIGMAS} standard errors ($\\sigma$)")
     if allowance > 0:
         handles.append(plt.Line2D([], [], color="black", alpha=0.2, linewidth=4))
-        labels.append(f"documented bias, {100 * allowance:.2g} %")
+        labels.append(f"size of what Monte Carlo neglects, {100 * allowance:.2g} %")
     figure.legend(handles, labels, loc="lower center", bbox_to_anchor=(0.5, 1.0), ncol=3)
 
 
@@ -122,7 +126,7 @@ def draw(results):
     draw_values(values, data, allowance)
     draw_residual(residual, data, allowance)
     style.angle_axis(residual, data.x, data.x_label)
-    add_legend(figure, values, allowance)
+    add_legend(figure, values, data, allowance)
     return figure
 
 

@@ -68,7 +68,7 @@ TEST_CASE("error bars of the memory effect and its range are honest") {
                       effect.correlation_error};
     estimate.value.emplace_back(effect.range.value);
     estimate.error.push_back(effect.range_error);
-    CHECK_FALSE(effect.range.censored);
+    CHECK(effect.range.censored == Range::Censoring::none);
     return estimate;
   });
   for (const double ratio : ratios) CHECK(ratio == doctest::Approx(1).epsilon(0.15));

@@ -50,7 +50,7 @@ TEST_CASE("the range of known curves is found to 1e-3 from 33 tilts") {
   CHECK(range_of(finer, gaussian).value == doctest::Approx(half_gaussian).epsilon(1e-3));
   CHECK(range_of(q, [](double x) { return sinc(x); }).value ==
         doctest::Approx(1.391557378).epsilon(1e-3));  // sinc^2 = 1/2
-  CHECK_FALSE(range_of(finer, gaussian).censored);
+  CHECK(range_of(finer, gaussian).censored == Range::Censoring::none);
   // scaled: a range in the middle, and one close to the last tilt
   for (const double scale : {2.0, 4.0, 5.7}) {
     const auto wide = [&](double x) { return sinc(x / scale); };
@@ -81,12 +81,18 @@ TEST_CASE("the range is taken on the positive side, or on the negative where tha
 
 TEST_CASE("a curve that does not fall to 1/2 is censored at its last tilt") {
   const auto range = range_of(evenly(0, 0.3, 5), gaussian);
-  CHECK(range.censored);
+  CHECK(range.censored == Range::Censoring::above_value);
   CHECK(range.value == doctest::Approx(0.3));
   // a revival beyond the first crossing does not count
   const auto revival = range_of(evenly(0, 8, 81), [](double x) { return std::cos(x); });
   CHECK(revival.value == doctest::Approx(pi / 4).epsilon(1e-3));
-  CHECK(range_of({0.0}, gaussian).censored);
+  CHECK(range_of({0.0}, gaussian).censored == Range::Censoring::above_value);
+}
+
+TEST_CASE("a curve that has fallen below 1/2 at its first tilt is censored there") {
+  const auto range = range_of({0.0, 1.5, 3.0}, gaussian);
+  CHECK(range.censored == Range::Censoring::below_value);
+  CHECK(range.value == 1.5);
 }
 
 TEST_CASE("field correlation of known entries, summed over views before the ratio") {
