@@ -79,10 +79,10 @@ def shared(results, name):
 
 def share_q(results):
     """Whether a tilt is the same q L in all files."""
-    first, *others = [np.append(result.values("tilt_q"), result.axis("tilt_q", 0))
-                      for result in results if result.has("tilt_q")] or [None]
-    return (all(np.array_equal(first, other) for other in others)
-            and shared(results, "depth") is not None)
+    if shared(results, "depth") is None or not all(result.has("tilt_q") for result in results):
+        return False
+    scales = [(result.axis("tilt_q", 0), result.values("tilt_q")) for result in results]
+    return all(np.array_equal(scales[0], other) for other in scales)
 
 
 def add_q_axis(axis, result, tilt):
@@ -189,7 +189,8 @@ def draw_sweep(result):
     for i, j in np.ndindex(rows, columns):
         draw_panel(axes[i, j], tilt, correlation[i, j], error[i, j],
                    None if theory is None else theory[i, j])
-        write_title(axes[i, j], title(optical_depth=depths[i], g=anisotropies[j]), correlation[i, j])
+        text = title(optical_depth=depths[i], g=anisotropies[j])
+        write_title(axes[i, j], text, correlation[i, j])
     for axis in axes[0]:
         add_q_axis(axis, result, tilt)
     for axis in axes[-1]:

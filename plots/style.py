@@ -6,7 +6,7 @@ import importlib
 import pathlib
 import sys
 
-for package in ("numpy", "h5py", "matplotlib"):
+for package in ("matplotlib", "h5py", "numpy"):
     try:
         importlib.import_module(package)
     except ImportError:

@@ -111,7 +111,7 @@ Magnitudes waves_of_neighbour(const Placement& placement, double k, std::size_t 
                    "the disk at (" + std::to_string(placed.position.x) + ", " +
                        std::to_string(placed.position.z) +
                        ") is so close to a neighbour or sensor, for its size in wavelengths, that "
-                       "its expansion leaves the range of numbers; widen the gap");
+                       "its expansion leaves the range of numbers; widen the gap (min_gap)");
 }
 
 // What w_n leaves out (further neighbours, many orders adding up), from pairs and clusters with

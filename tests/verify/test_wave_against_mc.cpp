@@ -8,6 +8,7 @@
 #include <doctest/doctest.h>
 
 #include "flatland/scene.h"
+#include "mc/coherent_field.h"
 #include "mc/covariance_estimator.h"
 #include "wave_solver/ensemble.h"
 
@@ -133,6 +134,20 @@ TEST_CASE("a Poisson number keeps the forward lobe that a fixed number loses") {
         4 * with_poisson.covariance.error[0] + 0.03 * mc);
   CHECK(std::abs(with_fixed.covariance.value[0] - 0.90) <
         4 * with_fixed.covariance.error[0] + 0.03);
+
+  // What is lost is the fluctuation of the mean field with the number, N |dm/dN|^2; it is not
+  // |m|^2 / N, because m does not grow in proportion to N.
+  constexpr double count = 31;
+  const auto mean_of = [&](double number) {
+    spec.density = number / 200;
+    return mc::coherent_field(make_scene(spec))[0];
+  };
+  const double lost = count * std::norm((mean_of(count + 1) - mean_of(count - 1)) / 2.0);
+  const double found =
+      with_poisson.covariance.value[0].real() - with_fixed.covariance.value[0].real();
+  const double error = std::hypot(with_poisson.covariance.error[0], with_fixed.covariance.error[0]);
+  CHECK(std::abs(found - lost) < 4 * error + 0.05 * lost);
+  CHECK(found + 4 * error < std::norm(mean_of(count)) / count);
 }
 
 TEST_CASE("the coherent field is the exact mean field") {
