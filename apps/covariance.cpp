@@ -40,10 +40,11 @@ int covariance(const Arguments& arguments) {
       sensors_text(scene.request));
   return session.run([&](ResultFile& file) {
     const GroupedSums& sums = session.state("").sums;
-    print_entries(scene.request, jackknife(sums, estimation.job.covariance));
+    const FieldMoments moments = field_moments(estimation.job, sums);
+    print_entries(scene.request, moments.covariance);
     write_medium(file, scene);
     write_axes(file, scene.request);
-    write_moments(file, "", estimation.job, scene, sums);
+    write_moments(file, "", estimation.job, scene, sums, moments);
   });
 }
 

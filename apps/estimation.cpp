@@ -20,15 +20,6 @@ mc::ReversedPaths reversed_paths(const std::string& word) {
   throw InputError("reversed_paths", word, "must be one of auto yes no");
 }
 
-/// Whole disks only: says so where that changes the density (conventions, C12).
-void note_rounding(const Scene& scene) {
-  const double mean = scene.placement.mean_count, placed = std::round(mean);
-  if (scene.placement.kind != PlacementRule::Kind::hard_disk || std::abs(placed - mean) < 1e-9)
-    return;
-  std::cerr << "note: hard disks are placed in whole numbers: " << placed << " in each placement, "
-            << mean << " asked for\n";
-}
-
 /// What crosses a deep absorbing medium does so on rare paths that short runs do not see at all.
 void note_deep_absorption(const Scene& scene) {
   const double depth = scene.medium.mu_t * scene.domain.depth;
@@ -57,6 +48,14 @@ void add_wave_options(CLI::App& app, MethodSettings& settings) {
       ->capture_default_str();
   app.add_option("--wave_samples", settings.wave_samples,
                  "Placements of the exact solver, where samples counts light paths");
+}
+
+void note_rounding(const Scene& scene) {
+  const double mean = scene.placement.mean_count, placed = std::round(mean);
+  if (scene.placement.kind != PlacementRule::Kind::hard_disk || std::abs(placed - mean) < 1e-9)
+    return;
+  std::cerr << "note: hard disks are placed in whole numbers: " << placed << " in each placement, "
+            << mean << " asked for\n";
 }
 
 Estimation mc_estimation(const Scene& scene, const MethodSettings& settings, std::uint64_t seed) {

@@ -26,6 +26,10 @@ struct Estimation {
   std::string plan;
 };
 
+/// Disks are placed in whole numbers: says so on standard error where that changes the density
+/// (conventions, C12).
+void note_rounding(const Scene& scene);
+
 Estimation mc_estimation(const Scene& scene, const MethodSettings& settings, std::uint64_t seed);
 Estimation wave_estimation(const Scene& scene, const MethodSettings& settings, std::uint64_t seed);
 

@@ -126,22 +126,6 @@ void write_mean(Group& group, const CovarianceRequest& request, const Estimate& 
                    "mean scattered field of the reference light");
 }
 
-void write_view_axis(ResultFile& file, const std::vector<View>& views) {
-  std::vector<double> angle, x, z;
-  for (const auto& view : views) {
-    angle.push_back(view.angle);
-    x.push_back(view.point.x);
-    z.push_back(view.point.z);
-  }
-  if (!views.front().near) {
-    file.scale("view_angle", angle, "rad", "direction of view, from +z towards +x");
-    return;
-  }
-  file.scale("sensor", counting(views.size()), "1", "near-field sensor");
-  file.dataset("sensor_x", x, {"sensor"}, "length", "transverse position");
-  file.dataset("sensor_z", z, {"sensor"}, "length", "depth");
-}
-
 void write_pair_axis(ResultFile& file, const CovarianceRequest& request) {
   file.scale("pair", counting(request.entries.size()), "1", "requested pair");
   std::vector<double> angles[4];
@@ -183,6 +167,22 @@ void write_medium(ResultFile& file, const Scene& scene) {
   root("k_shift", medium.k_shift);
 }
 
+void write_view_axis(ResultFile& file, const std::vector<View>& views) {
+  std::vector<double> angle, x, z;
+  for (const auto& view : views) {
+    angle.push_back(view.angle);
+    x.push_back(view.point.x);
+    z.push_back(view.point.z);
+  }
+  if (!views.front().near) {
+    file.scale("view_angle", angle, "rad", "direction of view, from +z towards +x");
+    return;
+  }
+  file.scale("sensor", counting(views.size()), "1", "near-field sensor");
+  file.dataset("sensor_x", x, {"sensor"}, "length", "transverse position");
+  file.dataset("sensor_z", z, {"sensor"}, "length", "depth");
+}
+
 void write_axes(ResultFile& file, const CovarianceRequest& request) {
   if (request.kind == Kind::pairs) {
     write_pair_axis(file, request);
@@ -215,9 +215,8 @@ std::string range_text(const mc::Range& range, double error) {
 }
 
 void write_moments(ResultFile& file, const std::string& group_name, const FieldJob& job,
-                   const Scene& scene, const GroupedSums& sums) {
+                   const Scene& scene, const GroupedSums& sums, const FieldMoments& moments) {
   const CovarianceRequest& request = scene.request;
-  const FieldMoments moments = field_moments(job, sums);
   Group group(file, group_name, scene);
   write_mean(group, request, moments.mean);
   const std::string view = view_axis(request);

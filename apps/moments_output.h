@@ -14,6 +14,9 @@ void write_domain(ResultFile& file, const Scene& scene);
 /// Those and the bulk properties.
 void write_medium(ResultFile& file, const Scene& scene);
 
+/// The axis of views that are all far (view_angle) or all near (sensor, with its coordinates).
+void write_view_axis(ResultFile& file, const std::vector<View>& views);
+
 /// The axes that a request's datasets stand on.
 void write_axes(ResultFile& file, const CovarianceRequest& request);
 
@@ -21,8 +24,8 @@ void write_axes(ResultFile& file, const CovarianceRequest& request);
 std::string range_text(const mc::Range& range, double error);
 
 /// Mean field and covariance in the shapes of the README, each with its standard error; `group` is
-/// empty for the root. Axes must have been written.
+/// empty for the root. Axes must have been written; moments are those of job and sums.
 void write_moments(ResultFile& file, const std::string& group, const FieldJob& job,
-                   const Scene& scene, const GroupedSums& sums);
+                   const Scene& scene, const GroupedSums& sums, const FieldMoments& moments);
 
 }  // namespace flatspeckle::apps

@@ -1,5 +1,5 @@
 #include <cstdio>
-#include <numeric>
+#include <numbers>
 #include <sstream>
 
 #include "apps/moments_output.h"
@@ -49,12 +49,6 @@ Placement make_placement(const SceneSpec& spec, const Subcommand& command, std::
   return draw_placement(scene.domain, scene.scatterer, scene.placement, random);
 }
 
-std::vector<double> counting(std::size_t n) {
-  std::vector<double> numbers(n);
-  std::iota(numbers.begin(), numbers.end(), 0.0);
-  return numbers;
-}
-
 void write_placement(ResultFile& file, const wave::WaveSolution& solution) {
   const Placement& placement = solution.system().placement();
   std::vector<double> x, z, radius;
@@ -88,21 +82,14 @@ void write_fields(ResultFile& file, const SceneSpec& spec, const wave::WaveSolut
   if (!spec.view_angles.empty()) {
     std::vector<View> views;
     for (double angle : spec.view_angles) views.push_back(far_view(angle));
-    file.scale("view_angle", spec.view_angles, "rad", "direction of view, from +z towards +x");
+    write_view_axis(file, views);
     file.dataset("far_field", solution.fields(views), {"light_angle", "view_angle"}, "length^(1/2)",
                  "far-field amplitude A, phase origin at r = 0");
   }
   if (sensors.empty()) return;
   std::vector<View> views;
-  std::vector<double> x, z;
-  for (const Vec2& point : sensors) {
-    views.push_back(near_sensor(point));
-    x.push_back(point.x);
-    z.push_back(point.z);
-  }
-  file.scale("sensor", counting(sensors.size()), "1", "near-field sensor");
-  file.dataset("sensor_x", x, {"sensor"}, "length", "transverse position");
-  file.dataset("sensor_z", z, {"sensor"}, "length", "depth");
+  for (const Vec2& point : sensors) views.push_back(near_sensor(point));
+  write_view_axis(file, views);
   file.dataset("near_field", solution.fields(views), {"light_angle", "sensor"}, "1",
                "scattered field, without the incident wave");
 }

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <iostream>
 #include <numbers>
 
 #include "apps/estimation.h"
@@ -23,9 +22,8 @@ void round_density(SceneSpec& spec) {
   const Scene scene = make_scene(spec);
   if (scene.placement.kind != PlacementRule::Kind::hard_disk || spec.count) return;
   spec.density = spec.mean_free_path = spec.optical_depth = std::nullopt;
+  note_rounding(scene);
   spec.count = std::llround(scene.placement.mean_count);
-  std::cerr << "note: hard disks are placed in whole numbers; both methods get count = "
-            << *spec.count << "\n";
 }
 
 /// What the Monte Carlo method neglects, as a fraction: corrections of order 1/(k mean free path),
@@ -140,13 +138,15 @@ int validate(const Arguments& arguments) {
       sensors_text(scene.request));
   return session.run([&](ResultFile& file) {
     const GroupedSums &mc_sums = session.state("mc").sums, &wave_sums = session.state("wave").sums;
-    const Comparison comparison{jackknife(wave_sums, wave.job.covariance),
-                                jackknife(mc_sums, mc.job.covariance), bias_allowance(scene)};
+    const FieldMoments mc_moments = field_moments(mc.job, mc_sums),
+                       wave_moments = field_moments(wave.job, wave_sums);
+    const Comparison comparison{wave_moments.covariance, mc_moments.covariance,
+                                bias_allowance(scene)};
     print_comparison(scene, comparison);
     write_medium(file, scene);
     write_axes(file, scene.request);
-    write_moments(file, "mc", mc.job, scene, mc_sums);
-    write_moments(file, "wave", wave.job, scene, wave_sums);
+    write_moments(file, "mc", mc.job, scene, mc_sums, mc_moments);
+    write_moments(file, "wave", wave.job, scene, wave_sums, wave_moments);
     write_comparison(file, comparison);
   });
 }

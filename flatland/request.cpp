@@ -3,10 +3,10 @@
 #include <cmath>
 #include <map>
 #include <numbers>
-#include <unistd.h>
 
 #include "core/complex.h"
 #include "core/error.h"
+#include "core/memory.h"
 
 namespace flatspeckle {
 
@@ -79,8 +79,7 @@ CovarianceRequest full_request(std::vector<double> lights, std::vector<View> vie
   const std::size_t n = request.channels.size(), entries = n * (n + 1) / 2;
   // About twenty copies of the sums are held: the groups and the batches in hand.
   const double bytes = 20.0 * sizeof(Complex) * static_cast<double>(entries);
-  const double memory =
-      static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
+  const double memory = physical_memory();
   if (bytes > 0.8 * memory) {
     throw InputError("covariance", "full",
                      std::to_string(n) + " channels need " + std::to_string(bytes / 1e9) +

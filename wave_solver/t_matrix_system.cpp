@@ -3,11 +3,11 @@
 #include <cmath>
 #include <numbers>
 #include <string>
-#include <unistd.h>
 #include <utility>
 
 #include "core/bessel.h"
 #include "core/error.h"
+#include "core/memory.h"
 #include "wave_solver/basis_order.h"
 
 namespace flatspeckle::wave {
@@ -53,8 +53,7 @@ void mirror_lower_triangle(std::vector<Complex>& matrix, std::size_t size) {
 void require_memory(std::size_t unknowns) {
   const double bytes =
       sizeof(Complex) * static_cast<double>(unknowns) * static_cast<double>(unknowns);
-  const double physical =
-      static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+  const double physical = physical_memory();
   if (bytes < 0.9 * physical) return;
   throw InputError("unknowns", unknowns,
                    "the dense matrix needs " + std::to_string(static_cast<long long>(bytes)) +
