@@ -10,7 +10,7 @@
 #include "core/error.h"
 #include "core/provenance.h"
 #include "core/stopwatch.h"
-#include "wave_solver/dense_solver.h"
+#include "wave_solver/wave_solution.h"
 
 namespace flatspeckle::apps {
 

@@ -8,7 +8,7 @@
 #include "core/phasor.h"
 #include "flatland/scene.h"
 #include "mc/covariance_estimator.h"
-#include "wave_solver/dense_solver.h"
+#include "wave_solver/wave_solution.h"
 
 using namespace flatspeckle;
 

@@ -22,6 +22,8 @@ struct Scatterer {
   /// A disk of nonzero radius, which others must not overlap.
   bool is_disk() const { return kind != Kind::point && kind != Kind::hg; }
 
+  double disk_radius() const { return is_disk() ? radius : 0; }
+
   bool operator==(const Scatterer&) const = default;
 };
 

@@ -53,10 +53,6 @@ class TMatrices {
   std::vector<std::vector<ExtendedComplex>> t_;
 };
 
-double disk_radius(const PlacedScatterer& placed) {
-  return placed.scatterer.is_disk() ? placed.scatterer.radius : 0;
-}
-
 Surroundings surroundings(const Placement& placement, std::size_t j,
                           std::span<const Vec2> sensors) {
   Surroundings around{.neighbour = j};
@@ -64,7 +60,7 @@ Surroundings surroundings(const Placement& placement, std::size_t j,
     if (l == j) continue;
     const double distance = length(placement[l].position - placement[j].position);
     const double source =
-        nearest_image(disk_radius(placement[j]), disk_radius(placement[l]), distance);
+        nearest_image(placement[j].scatterer.disk_radius(), placement[l].scatterer.disk_radius(), distance);
     if (source < around.source) {
       around.neighbour = l;
       around.distance = distance;
@@ -94,7 +90,7 @@ Magnitudes waves_of_neighbour(const Placement& placement, double k, std::size_t 
   if (l == j || !placement[l].scatterer.is_disk()) return bound;
   const auto& t = t_matrices.of(l, order);
   const double image =
-      nearest_image(disk_radius(placement[l]), disk_radius(placement[j]), around.distance);
+      nearest_image(placement[l].scatterer.disk_radius(), placement[j].scatterer.disk_radius(), around.distance);
   Magnitudes sent = reach(order, k, image);
   for (int m = 0; m <= order; ++m) sent[m] = std::abs(t[m]) * std::max(1.0L, sent[m]);
   const Magnitudes translation = reach(2 * order, k, around.distance);

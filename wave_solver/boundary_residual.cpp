@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/bessel.h"
-#include "wave_solver/dense_solver.h"
+#include "wave_solver/wave_solution.h"
 
 namespace flatspeckle::wave {
 
@@ -49,24 +49,38 @@ struct Trace {
   Complex field, slope;
 };
 
-Trace total_outside(const WaveSolution& solution, std::size_t light, Vec2 point, Vec2 normal,
-                    const std::vector<TMatrixSystem::Outgoing>& waves) {
+// Scattered field and slope of all lights at points on a rim: [light][point].
+std::vector<Trace> scattered_traces(const WaveSolution& solution, std::span<const Vec2> points,
+                                    std::span<const Vec2> normals) {
   const TMatrixSystem& system = solution.system();
-  const Vec2 w = direction(solution.light_angles()[light]);
-  const Complex incident = std::polar(1.0, system.k() * dot(w, point));
-  Trace total{incident, Complex(0, dot(w, normal)) * incident};
-  const auto beta = solution.coefficients(light);
-  for (std::size_t j = 0; j < waves.size(); ++j)
-    for (std::size_t n = 0; n < waves[j].field.size(); ++n) {
-      total.field += beta[system.first(j) + n] * waves[j].field[n];
-      total.slope += beta[system.first(j) + n] * waves[j].derivative[n];
+  const std::size_t lights = solution.light_angles().size(), count = points.size();
+  std::vector<Trace> traces(lights * count);
+  for (std::size_t j = 0; j < system.placement().size(); ++j) {
+    const ModeSet sender = system.modes(j);
+    std::vector<Complex> values(count * sender.modes.size()), derivatives(values.size());
+    field_at(system.k(), points, sender, {values.data(), count});
+    slopes(system.k(), points, normals, sender, {derivatives.data(), count});
+    for (std::size_t light = 0; light < lights; ++light) {
+      const auto beta = solution.coefficients(light).subspan(system.first(j));
+      for (std::size_t n = 0; n < sender.modes.size(); ++n)
+        for (std::size_t i = 0; i < count; ++i) {
+          traces[light * count + i].field += beta[n] * values[n * count + i];
+          traces[light * count + i].slope += beta[n] * derivatives[n * count + i];
+        }
     }
-  return total;
+  }
+  return traces;
 }
 
-// Per unknown of a penetrable disk, what it adds at the rim's angle 0 to the field inside, whose
-// coefficients follow from continuity of u: (J_n(x)/tau_n + tau_n H_n(x)), and to the slope that
-// the outside must have, q J_n'(mx)/J_n(mx) times that (C7).
+Trace incident(double k, double light_angle, Vec2 point, Vec2 normal) {
+  const Vec2 w = direction(light_angle);
+  const Complex wave = std::polar(1.0, k * dot(w, point));
+  return {wave, Complex(0, dot(w, normal)) * wave};
+}
+
+// Per order of a penetrable disk, what its modes add at the rim, but for their angle, to the field
+// inside, whose coefficients follow from continuity of u: sigma (J_n(x)/T_n + H_n(x)), and to the
+// slope that the outside must have, q J_n'(mx)/J_n(mx) times that (C7).
 std::vector<Trace> interior_waves(const TMatrixSystem& system, std::size_t disk) {
   const Scatterer& cylinder = system.placement()[disk].scatterer;
   const int order = system.order(disk);
@@ -78,8 +92,8 @@ std::vector<Trace> interior_waves(const TMatrixSystem& system, std::size_t disk)
   const auto ratios = bessel_ratios(order, m * static_cast<long double>(x));
   std::vector<Trace> waves(order + 1);
   for (int n = 0; n <= order; ++n) {
-    const ExtendedComplex tau = system.tau(disk)[n];
-    const ExtendedComplex u = j[n] / tau + tau * h[n];
+    const ExtendedComplex t = system.t_matrix(disk)[n];
+    const ExtendedComplex u = std::sqrt(std::abs(t)) * (j[n] / t + h[n]);
     const ExtendedComplex slope =
         q * (static_cast<long double>(n) / (m * static_cast<long double>(x)) - ratios[n]);
     waves[n] = {Complex(u), Complex(u * slope)};
@@ -87,14 +101,15 @@ std::vector<Trace> interior_waves(const TMatrixSystem& system, std::size_t disk)
   return waves;
 }
 
-Trace total_inside(std::span<const Complex> beta, const std::vector<Trace>& waves, double angle) {
-  const int order = static_cast<int>(waves.size()) - 1;
+Trace total_inside(std::span<const Complex> beta, const ModeSet& modes,
+                   const std::vector<Trace>& waves, double angle) {
   Trace total{0, 0};
-  for (int n = -order; n <= order; ++n) {
-    const double sign = n < 0 && n % 2 != 0 ? -1 : 1;  // J_{-n} = (-1)^n J_n
-    const Complex factor = beta[order + n] * sign * std::polar(1.0, n * angle);
-    total.field += factor * waves[std::abs(n)].field;
-    total.slope += factor * waves[std::abs(n)].slope;
+  for (std::size_t i = 0; i < modes.modes.size(); ++i) {
+    const int n = modes.modes[i].order;
+    const double turn = modes.modes[i].odd ? std::sin(n * angle) : std::cos(n * angle);
+    const Complex factor = beta[i] * (n == 0 ? 1 : std::numbers::sqrt2) * turn;
+    total.field += factor * waves[n].field;
+    total.slope += factor * waves[n].slope;
   }
   return total;
 }
@@ -109,21 +124,26 @@ double residual_on(const WaveSolution& solution, const Neighbour& rim) {
   const TMatrixSystem& system = solution.system();
   const auto& [position, scatterer] = system.placement()[rim.disk];
   const bool penetrable = scatterer.kind == Kind::tm || scatterer.kind == Kind::te;
-  if (penetrable && system.tau(rim.disk)[0] == 0.0L) return 0;  // index 1: nothing is there
+  if (penetrable && system.t_matrix(rim.disk)[0] == 0.0L) return 0;  // index 1: nothing is there
   const auto inside_waves = penetrable ? interior_waves(system, rim.disk) : std::vector<Trace>{};
-  const int points = 2 * std::min(system.order(rim.disk), 24) + 8;
+  const int count = 2 * std::min(system.order(rim.disk), 24) + 8;
+  std::vector<double> angles;
+  std::vector<Vec2> normals, points;
+  for (int i = 0; i < count; ++i) {
+    angles.push_back(rim.angle + 2 * std::numbers::pi * i / count);
+    normals.push_back(direction(angles.back()));
+    points.push_back(position + scatterer.radius * normals.back());
+  }
+  const auto scattered = scattered_traces(solution, points, normals);
   double worst = 0;
-  for (int i = 0; i < points; ++i) {
-    const double angle = rim.angle + 2 * std::numbers::pi * i / points;
-    const Vec2 normal = direction(angle), point = position + scatterer.radius * normal;
-    std::vector<TMatrixSystem::Outgoing> waves;
-    for (std::size_t j = 0; j < system.placement().size(); ++j)
-      waves.push_back(system.outgoing(j, point, normal));
-    for (std::size_t light = 0; light < solution.light_angles().size(); ++light) {
-      const auto beta = solution.coefficients(light).subspan(system.first(rim.disk),
-                                                             2 * system.order(rim.disk) + 1);
-      const Trace inside = penetrable ? total_inside(beta, inside_waves, angle) : Trace{};
-      const Trace outside = total_outside(solution, light, point, normal, waves);
+  for (std::size_t light = 0; light < solution.light_angles().size(); ++light) {
+    const auto beta = solution.coefficients(light).subspan(system.first(rim.disk));
+    for (int i = 0; i < count; ++i) {
+      Trace outside = incident(system.k(), solution.light_angles()[light], points[i], normals[i]);
+      outside.field += scattered[light * count + i].field;
+      outside.slope += scattered[light * count + i].slope;
+      const Trace inside =
+          penetrable ? total_inside(beta, system.modes(rim.disk), inside_waves, angles[i]) : Trace{};
       worst = std::max(worst, mismatch(scatterer.kind, outside, inside));
     }
   }

@@ -1,24 +1,24 @@
 #include "wave_solver/ensemble.h"
 
+#include <cmath>
 #include <memory>
 #include <vector>
 
 #include "core/error.h"
 #include "core/random.h"
-#include "wave_solver/dense_solver.h"
+#include "wave_solver/wave_solution.h"
 
 namespace flatspeckle::wave {
 
 namespace {
 
 // Fields of one placement in every channel of the request.
-std::vector<Complex> channel_fields(const Scene& scene, const SolveOptions& options,
-                                    RandomStream random) {
+std::vector<Complex> channel_fields(const Scene& scene, const FieldPlan& plan,
+                                    const SolveOptions& options, RandomStream random) {
   const CovarianceRequest& request = scene.request;
   const Placement placement =
       draw_placement(scene.domain, scene.scatterer, scene.placement, random);
-  const auto solution = solve(placement, scene.k, request.lights, options);
-  const auto fields = solution.fields(request.views);
+  const auto fields = scattered_fields(placement, scene.k, plan, options);
   std::vector<Complex> channels;
   channels.reserve(request.channels.size());
   for (const Channel& channel : request.channels)
@@ -31,6 +31,14 @@ SolveOptions batch_options(const Scene& scene, double tolerance) {
   for (const View& view : scene.request.views)
     if (view.near) options.sensors.push_back(view.point);
   return options;
+}
+
+FieldPlan field_plan(const Scene& scene, double tolerance) {
+  const Domain& box = scene.domain;
+  const double radius =
+      std::hypot(box.width, box.depth) / 2 + scene.scatterer.disk_radius();
+  return make_field_plan(scene.request.lights, scene.request.views, scene.k,
+                         {{0, box.depth / 2}, radius}, tolerance);
 }
 
 // (sum u_a u_b* - sum u_a sum u_b* / n) / (n - 1); 0 while one sample shows no spread.
@@ -59,6 +67,7 @@ FieldJob wave_job(const Scene& scene, std::uint64_t seed, double tolerance) {
   require_solvable(scene);
   const auto shared = std::make_shared<const Scene>(scene);
   const SolveOptions options = batch_options(scene, tolerance);
+  const auto plan = std::make_shared<const FieldPlan>(field_plan(scene, tolerance));
   FieldJob job;
   job.mean = [shared](double samples, std::span<const Complex> sums) {
     return sample_mean(samples, sums.first(shared->request.channels.size()));
@@ -67,9 +76,9 @@ FieldJob wave_job(const Scene& scene, std::uint64_t seed, double tolerance) {
     return sample_covariance(shared->request, samples, sums);
   };
   job.batches.size = scene.request.channels.size() + scene.request.entries.size();
-  job.batches.run = [shared, options, seed](std::uint64_t number, std::span<Complex> sums) {
+  job.batches.run = [shared, plan, options, seed](std::uint64_t number, std::span<Complex> sums) {
     const RandomStream random(seed, static_cast<std::uint64_t>(Stream::placement), number);
-    const auto u = channel_fields(*shared, options, random);
+    const auto u = channel_fields(*shared, *plan, options, random);
     for (std::size_t i = 0; i < u.size(); ++i) sums[i] += u[i];
     for (std::size_t i = 0; i < shared->request.entries.size(); ++i) {
       const auto [a, b] = shared->request.entries[i];

@@ -3,7 +3,7 @@
 #include <numbers>
 
 #include "core/result_file.h"
-#include "wave_solver/dense_solver.h"
+#include "wave_solver/wave_solution.h"
 
 // One sound-soft disk under a plane wave: writes its far field, and fails unless the forward
 // amplitude obeys the optical theorem (conventions, C6 and C9).

@@ -5,7 +5,7 @@
 #include "core/error.h"
 #include "reference.h"
 #include "wave_solver/basis_order.h"
-#include "wave_solver/dense_solver.h"
+#include "wave_solver/wave_solution.h"
 
 namespace flatspeckle::wave {
 

@@ -4,7 +4,7 @@
 
 #include "core/error.h"
 #include "reference.h"
-#include "wave_solver/dense_solver.h"
+#include "wave_solver/wave_solution.h"
 #include "wave_solver/ensemble.h"
 
 namespace flatspeckle::wave {

@@ -7,7 +7,7 @@
 #include <doctest/doctest.h>
 
 #include "reference.h"
-#include "wave_solver/dense_solver.h"
+#include "wave_solver/wave_solution.h"
 
 namespace flatspeckle::wave {
 

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <vector>
 
 #include "flatland/sensor.h"
+#include "wave_solver/light_basis.h"
 #include "wave_solver/t_matrix_system.h"
 
 namespace flatspeckle::wave {
@@ -27,6 +29,7 @@ struct Diagnosis {
 /// radians (C2), positions in the placement's unit.
 class WaveSolution {
  public:
+  /// coefficients: beta of TMatrixSystem, [light][unknown].
   WaveSolution(TMatrixSystem system, std::vector<double> light_angles,
                std::vector<Complex> coefficients);
 
@@ -34,7 +37,9 @@ class WaveSolution {
   const std::vector<double>& light_angles() const { return light_angles_; }
   std::vector<int> basis_order() const;
   const Diagnosis& diagnosis() const { return diagnosis_; }
-  /// Scaled coefficients beta = b / tau of a light: [unknown].
+  /// How the equations were solved, in words.
+  const std::string& method() const { return method_; }
+  /// beta of a light: [unknown].
   std::span<const Complex> coefficients(std::size_t light) const;
 
   /// Far-field amplitude A of the whole placement (C4), phase origin r = 0.
@@ -51,12 +56,27 @@ class WaveSolution {
   TMatrixSystem system_;
   std::vector<double> light_angles_;
   std::vector<Complex> coefficients_;
+  std::string method_;
   Diagnosis diagnosis_;
 };
 
-/// Solves by dense LU. Throws InputError for overlapping scatterers, disks too close to resolve, or
-/// too little memory; std::runtime_error where no finite solution is found.
+/// Throws InputError for overlapping scatterers, disks too close to resolve, or too little memory;
+/// std::runtime_error where no finite solution is found.
 WaveSolution solve(const Placement& placement, double k, const std::vector<double>& light_angles,
                    const SolveOptions& options = {});
+
+/// What lights and views need of a placement within a circle, found once for a whole ensemble: the
+/// few of many lights, or of many far views, that stand for all (light_basis.h).
+struct FieldPlan {
+  LightBasis lights, far_views;
+  std::vector<View> views;
+};
+FieldPlan make_field_plan(const std::vector<double>& light_angles, std::vector<View> views,
+                          double k, const Circle& circle, double tolerance);
+
+/// Fields of a placement, [light][view], without diagnosis; by reciprocity the equations are solved
+/// for the fewer of lights and views.
+std::vector<Complex> scattered_fields(const Placement& placement, double k, const FieldPlan& plan,
+                                      const SolveOptions& options);
 
 }  // namespace flatspeckle::wave
