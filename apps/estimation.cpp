@@ -52,7 +52,7 @@ void add_wave_options(CLI::App& app, MethodSettings& settings) {
 
 void note_rounding(const Scene& scene) {
   const double mean = scene.placement.mean_count, placed = std::round(mean);
-  if (scene.placement.kind != PlacementRule::Kind::hard_disk || std::abs(placed - mean) < 1e-9)
+  if (scene.placement.kind == PlacementRule::Kind::poisson || std::abs(placed - mean) < 1e-9)
     return;
   std::cerr << "note: hard disks are placed in whole numbers: " << placed << " in each placement, "
             << mean << " asked for\n";
@@ -69,8 +69,7 @@ Estimation wave_estimation(const Scene& scene, const MethodSettings& settings, s
     throw InputError("wave_tolerance", settings.wave_tolerance, "must be in (0, 1)");
   note_rounding(scene);
   std::ostringstream plan;
-  plan << "wave: dense T-matrix solutions of "
-       << (scene.placement.kind == PlacementRule::Kind::poisson ? "poisson" : "hard-disk")
+  plan << "wave: dense T-matrix solutions of " << placement_word(scene.placement.kind)
        << " placements, tolerance " << settings.wave_tolerance << "; sample mean removed";
   return {wave::wave_job(scene, seed, settings.wave_tolerance), plan.str()};
 }

@@ -19,6 +19,7 @@ const char* const usage =
 
   flatspeckle SUBCOMMAND [--config SCENE.toml] [--key value ...] --out FILE.h5
 
+  place        a placement of scatterers, drawn and written as CSV
   solve        exact fields of one placement of scatterers
   covariance   covariance and intensity of the speckle of a scene, by Monte Carlo or exactly
   validate     both methods on one scene, compared entry by entry
@@ -31,7 +32,11 @@ const char* const usage =
 
 int run(const Arguments& arguments) {
   static const std::map<std::string, int (*)(const Arguments&)> subcommands = {
-      {"solve", solve}, {"covariance", covariance}, {"validate", validate}, {"sweep", sweep}};
+      {"place", place},
+      {"solve", solve},
+      {"covariance", covariance},
+      {"validate", validate},
+      {"sweep", sweep}};
   const std::string word = arguments.size() > 1 ? arguments[1] : "--help";
   if (word == "--help" || word == "-h" || word == "help") {
     std::cout << usage;
@@ -43,7 +48,7 @@ int run(const Arguments& arguments) {
   }
   const auto subcommand = subcommands.find(word);
   if (subcommand == subcommands.end())
-    throw InputError("subcommand", word, "must be one of covariance solve sweep validate");
+    throw InputError("subcommand", word, "must be one of covariance place solve sweep validate");
   return subcommand->second(arguments);
 }
 

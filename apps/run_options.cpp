@@ -22,6 +22,11 @@ void add_output_option(CLI::App& app, RunSettings& settings) {
   app.add_option("--out", settings.out, "Result file (HDF5)")->configurable(false);
 }
 
+void add_thread_option(CLI::App& app, RunSettings& settings) {
+  app.add_option("--threads", settings.threads, "Threads; 0: as many as there are cores")
+      ->capture_default_str();
+}
+
 void add_run_options(CLI::App& app, RunSettings& settings) {
   add_output_option(app, settings);
   app.add_option("--seed", settings.seed, "Seed; the same seed and samples give the same numbers")
@@ -30,18 +35,22 @@ void add_run_options(CLI::App& app, RunSettings& settings) {
   app.add_option("--seconds", settings.seconds, "Stop after so many seconds");
   app.add_option("--target_error", settings.target_error,
                  "Stop at this relative error (default 0.02 if no other stop is given)");
-  app.add_option("--threads", settings.threads, "Threads; 0: as many as there are cores")
-      ->capture_default_str();
+  add_thread_option(app, settings);
   app.add_flag("--resume", settings.resume, "Go on from the run that --out holds, if there is one");
+}
+
+int threads_of(const RunSettings& settings) {
+  if (settings.threads < 0) throw InputError("threads", settings.threads, "must not be negative");
+  if (settings.threads > most_threads)
+    throw InputError("threads", settings.threads,
+                     "must be at most " + std::to_string(most_threads));
+  return settings.threads > 0 ? settings.threads : default_threads();
 }
 
 StopRule stop_rule(const RunSettings& settings, const std::string& samples_key,
                    const std::optional<std::int64_t>& samples) {
   StopRule stop;
-  if (settings.threads < 0) throw InputError("threads", settings.threads, "must not be negative");
-  if (settings.threads > most_threads)
-    throw InputError("threads", settings.threads,
-                     "must be at most " + std::to_string(most_threads));
+  threads_of(settings);  // checks
   if (samples) {
     if (*samples <= 0) throw InputError(samples_key, *samples, "must be positive");
     stop.samples = static_cast<std::uint64_t>(*samples);

@@ -19,7 +19,11 @@ struct RunSettings {
 };
 
 void add_output_option(CLI::App& app, RunSettings& settings);
+void add_thread_option(CLI::App& app, RunSettings& settings);
 void add_run_options(CLI::App& app, RunSettings& settings);
+
+/// The number of threads that is meant. Throws InputError.
+int threads_of(const RunSettings& settings);
 
 /// Checks the settings; without a stop rule a target error of 2 % is set. Throws InputError.
 StopRule stop_rule(const RunSettings& settings);

@@ -32,9 +32,10 @@ void add_medium_options(CLI::App& app, SceneSpec& spec) {
   app.add_option("--count", spec.count, "Density from a fixed number of scatterers in the box");
   app.add_option("--density", spec.density, "Density as number per area");
   app.add_option("--mean_free_path", spec.mean_free_path, "Density from the mean free path 1/mu_t");
-  app.add_option("--placement", spec.placement, "poisson (points) or hard_disk (disks)");
-  app.add_option("--min_gap", spec.min_gap, "Least distance between the rims of hard disks")
-      ->capture_default_str();
+  app.add_option("--placement", spec.placement,
+                 "poisson (points), hard_disk or equilibrium (disks)");
+  app.add_option("--min_gap", spec.min_gap,
+                 "Least distance between the rims of disks (default 1e-3 radius)");
 }
 
 void add_view_options(CLI::App& app, SceneSpec& spec) {

@@ -54,7 +54,7 @@ Session::Session(const CommandLine& command_line, const RunSettings& settings, s
   provenance_.config = command_line.config;
   provenance_.seed = seed_of(settings);
   provenance_.plan = std::move(plan);
-  provenance_.threads = settings.threads > 0 ? settings.threads : default_threads();
+  provenance_.threads = threads_of(settings);
   provenance_.started = utc_now();
   for (const auto& run : runs_) states_[run.name];
   if (settings_.resume && std::filesystem::exists(settings_.out)) resume(settings_.out);

@@ -2,12 +2,16 @@
 #include <numbers>
 #include <sstream>
 
+#include <omp.h>
+
+#include "apps/field_map_output.h"
 #include "apps/moments_output.h"
 #include "apps/run_options.h"
 #include "apps/scene_options.h"
 #include "apps/subcommands.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "core/interrupt.h"
 #include "core/provenance.h"
 #include "core/stopwatch.h"
 #include "wave_solver/wave_solution.h"
@@ -17,20 +21,34 @@ namespace flatspeckle::apps {
 namespace {
 
 bool is_placement_rule(const SceneSpec& spec) {
-  return !spec.placement || spec.placement == "poisson" || spec.placement == "hard_disk";
+  return !spec.placement || spec.placement == "poisson" || spec.placement == "hard_disk" ||
+         spec.placement == "equilibrium";
 }
 
-/// A file brings its own positions: keys that would place scatterers contradict it.
-void refuse_medium_keys(const Subcommand& command, const std::string& path) {
-  for (const char* key : {"domain", "width", "depth", "count", "density", "mean_free_path",
-                          "optical_depth", "min_gap"})
+wave::Method solver_named(const std::string& name) {
+  using enum wave::Method;
+  if (name == "auto") return automatic;
+  if (name == "dense") return dense;
+  if (name == "fast") return fast;
+  if (name == "krylov") return krylov;
+  throw InputError("solver", name, "must be one of auto dense fast krylov");
+}
+
+/// A file brings its own positions: keys that would place scatterers contradict it. (A stored
+/// configuration names the default domain.)
+void refuse_medium_keys(const Subcommand& command, const SceneSpec& spec) {
+  const std::string& path = *spec.placement;
+  if (spec.domain != SceneSpec().domain)
+    throw InputError("domain: the placement comes from " + path + "; leave it out");
+  for (const char* key :
+       {"width", "depth", "count", "density", "mean_free_path", "optical_depth", "min_gap"})
     if (command.given(key))
       throw InputError(std::string(key) + ": the placement comes from " + path + "; leave it out");
 }
 
 Placement make_placement(const SceneSpec& spec, const Subcommand& command, std::uint64_t seed) {
   if (!is_placement_rule(spec)) {
-    refuse_medium_keys(command, *spec.placement);
+    refuse_medium_keys(command, spec);
     const Scatterer scatterer = make_scatterer(spec);
     if (scatterer.kind == Scatterer::Kind::hg)
       throw InputError(
@@ -71,7 +89,8 @@ void write_diagnosis(ResultFile& file, const wave::Diagnosis& diagnosis) {
     file.dataset(std::string("solve/") + name, std::vector<double>{value}, {}, "1", long_name);
   };
   scalar("residual", diagnosis.residual, "relative residual of the unscaled equations");
-  scalar("condition", diagnosis.condition, "condition estimate of the scaled matrix, 1-norm");
+  if (diagnosis.condition >= 0)
+    scalar("condition", diagnosis.condition, "condition estimate of the scaled matrix, 1-norm");
   scalar("boundary_residual", diagnosis.boundary_residual,
          "largest mismatch of the boundary conditions, unit incident waves");
 }
@@ -96,17 +115,86 @@ void write_fields(ResultFile& file, const SceneSpec& spec, const wave::WaveSolut
 
 void write_solve_provenance(ResultFile& file, const CommandLine& command_line,
                             const RunSettings& settings, const std::string& started,
-                            const wave::WaveSolution& solution, const Stopwatch& clock) {
+                            const wave::WaveSolution& solution, const std::string& map,
+                            const Stopwatch& clock) {
   std::ostringstream plan;
-  plan << "dense T-matrix solution, " << solution.system().placement().size() << " scatterers, "
-       << solution.system().unknowns() << " unknowns";
-  Provenance provenance{
-      command_line.text, command_line.config, seed_of(settings), plan.str(), 1, started};
+  plan << solution.system().placement().size() << " scatterers, " << solution.system().unknowns()
+       << " unknowns: " << solution.method() << (map.empty() ? "" : "; ") << map;
+  Provenance provenance{command_line.text, command_line.config,  seed_of(settings),
+                        plan.str(),        threads_of(settings), started};
   provenance.wall_s = clock.seconds();
-  provenance.cpu_s = thread_cpu_seconds();  // one thread does it all
+  provenance.cpu_s = process_cpu_seconds();
   provenance.samples = 1;
   provenance.converged = true;
   write_provenance(file, provenance);
+}
+
+void print_summary(const wave::WaveSolution& solution) {
+  const wave::Diagnosis& diagnosis = solution.diagnosis();
+  std::printf("%zu scatterers, %zu unknowns: %s\nresidual %.1e, ",
+              solution.system().placement().size(), solution.system().unknowns(),
+              solution.method().c_str(), diagnosis.residual);
+  if (diagnosis.condition >= 0) std::printf("condition %.1e, ", diagnosis.condition);
+  std::printf("boundary residual %.1e\n", diagnosis.boundary_residual);
+}
+
+/// What the user asks.
+struct SolveKeys {
+  SceneSpec spec;
+  RunSettings settings;
+  MapSettings map;
+  double tolerance = wave::SolveOptions().tolerance;
+  std::string solver = "auto";
+};
+
+void add_options(CLI::App& app, SolveKeys& keys) {
+  add_scatterer_options(app, keys.spec);
+  add_bulk_options(app, keys.spec);
+  add_medium_options(app, keys.spec);
+  app.get_option("--placement")
+      ->description(
+          "CSV with columns x, z [, radius [, index_re, index_im]]; or poisson, hard_disk or "
+          "equilibrium, to draw one");
+  add_view_options(app, keys.spec);
+  add_map_options(app, keys.map);
+  app.add_option("--tolerance", keys.tolerance, "Relative accuracy of the fields")
+      ->capture_default_str();
+  app.add_option("--solver", keys.solver,
+                 "auto, dense, fast (direct, for thousands of unknowns and more) or krylov "
+                 "(iterative, for weak scattering)")
+      ->capture_default_str();
+  add_thread_option(app, keys.settings);
+  app.add_option("--seed", keys.settings.seed, "Seed of a drawn placement")->capture_default_str();
+  add_output_option(app, keys.settings);
+}
+
+void check(const SolveKeys& keys) {
+  make_request(keys.spec);  // checks lights and views
+  if (!(keys.tolerance > 0 && keys.tolerance < 1))
+    throw InputError("tolerance", keys.tolerance, "must be in (0, 1)");
+  solver_named(keys.solver);
+  threads_of(keys.settings);
+  if (keys.settings.out.empty())
+    throw InputError("out is not given: name the result file (--out FILE.h5)");
+  check_writable(keys.settings.out);
+}
+
+std::vector<Vec2> sensors_of(const SceneSpec& spec, const Placement& placement) {
+  std::vector<Vec2> sensors;
+  if (!spec.near_sensors.empty()) sensors = read_points(spec.near_sensors);
+  for (const Vec2& sensor : sensors) require_outside(placement, sensor);
+  return sensors;
+}
+
+wave::WaveSolution solved(const SolveKeys& keys, const Placement& placement,
+                          const std::optional<wave::MapGrid>& grid,
+                          const std::vector<Vec2>& sensors) {
+  wave::SolveOptions options{.tolerance = keys.tolerance, .sensors = sensors};
+  options.method = solver_named(keys.solver);
+  if (grid)
+    for (const Vec2& point : wave::map_sensors(*grid, placement)) options.sensors.push_back(point);
+  return wave::solve(placement, 2 * std::numbers::pi / keys.spec.wavelength, keys.spec.light_angles,
+                     options);
 }
 
 }  // namespace
@@ -114,52 +202,37 @@ void write_solve_provenance(ResultFile& file, const CommandLine& command_line,
 int solve(const Arguments& arguments) {
   const Stopwatch clock;
   const std::string started = utc_now();
-  SceneSpec spec;
-  RunSettings settings;
-  wave::SolveOptions options;
+  SolveKeys keys;
   Subcommand command("solve", "Exact fields of one placement of scatterers");
-  add_scatterer_options(command.options(), spec);
-  add_bulk_options(command.options(), spec);
-  add_medium_options(command.options(), spec);
-  command.options()
-      .get_option("--placement")
-      ->description(
-          "CSV with columns x, z [, radius [, index_re, index_im]]; or poisson or hard_disk, to "
-          "draw one");
-  add_view_options(command.options(), spec);
-  command.options()
-      .add_option("--tolerance", options.tolerance, "Relative accuracy of the fields")
-      ->capture_default_str();
-  command.options()
-      .add_option("--seed", settings.seed, "Seed of a drawn placement")
-      ->capture_default_str();
-  add_output_option(command.options(), settings);
+  add_options(command.options(), keys);
   if (!command.parse(arguments)) return ExitStatus::done;
+  settle_views(command, keys.spec);
+  check(keys);
+  omp_set_num_threads(threads_of(keys.settings));
+  const auto grid = map_grid(keys.map, keys.spec.wavelength);
+  const Placement placement = make_placement(keys.spec, command, seed_of(keys.settings));
+  const auto sensors = sensors_of(keys.spec, placement);
+  const auto solution = solved(keys, placement, grid, sensors);
 
-  settle_views(command, spec);
-  make_request(spec);  // checks lights and views
-  if (!(options.tolerance > 0 && options.tolerance < 1))
-    throw InputError("tolerance", options.tolerance, "must be in (0, 1)");
-  if (settings.out.empty())
-    throw InputError("out is not given: name the result file (--out FILE.h5)");
-  check_writable(settings.out);
-  if (!spec.near_sensors.empty()) options.sensors = read_points(spec.near_sensors);
-  const auto solution =
-      wave::solve(make_placement(spec, command, seed_of(settings)),
-                  2 * std::numbers::pi / spec.wavelength, spec.light_angles, options);
-  ResultFile file(settings.out);
-  write_fields(file, spec, solution, options.sensors);
+  if (grid) catch_interrupts();  // which must not leave the file that a map is written to
+  const std::string& out = keys.settings.out;
+  ResultFile file(out, grid ? ResultFile::Storage::disk : ResultFile::Storage::memory);
+  write_fields(file, keys.spec, solution, sensors);
+  std::string map_method;
+  if (grid) {
+    const auto method = write_map(file, solution, *grid, keys.tolerance);
+    if (!method) return ExitStatus::interrupted_for_good;
+    map_method = *method;
+  }
   write_placement(file, solution);
   write_diagnosis(file, solution.diagnosis());
-  write_solve_provenance(file, command.command_line(), settings, started, solution, clock);
-  if (is_placement_rule(spec)) write_medium(file, make_scene(spec));
+  write_solve_provenance(file, command.command_line(), keys.settings, started, solution, map_method,
+                         clock);
+  if (is_placement_rule(keys.spec)) write_medium(file, make_scene(keys.spec));
   file.commit();
-  std::printf(
-      "%zu scatterers, %zu unknowns: residual %.1e, condition %.1e, boundary residual %.1e\n"
-      "wrote %s\n",
-      solution.system().placement().size(), solution.system().unknowns(),
-      solution.diagnosis().residual, solution.diagnosis().condition,
-      solution.diagnosis().boundary_residual, settings.out.c_str());
+  print_summary(solution);
+  if (grid) std::printf("%s\n", map_method.c_str());
+  std::printf("wrote %s\n", out.c_str());
   return ExitStatus::done;
 }
 

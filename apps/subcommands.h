@@ -10,10 +10,12 @@ enum ExitStatus : int {
   bad_input = 2,
   error_not_reached = 3,
   io_failed = 4,
-  interrupted_resumable = 75
+  interrupted_resumable = 75,
+  interrupted_for_good = 130  ///< nothing written, nothing to resume
 };
 
 /// Each parses its own arguments, runs, and writes its result file.
+int place(const Arguments& arguments);
 int solve(const Arguments& arguments);
 int covariance(const Arguments& arguments);
 int validate(const Arguments& arguments);

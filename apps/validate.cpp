@@ -20,7 +20,7 @@ using Kind = CovarianceRequest::Kind;
 /// Where a placement rounds the number of disks, both solvers are given the rounded density (C12).
 void round_density(SceneSpec& spec) {
   const Scene scene = make_scene(spec);
-  if (scene.placement.kind != PlacementRule::Kind::hard_disk || spec.count) return;
+  if (scene.placement.kind == PlacementRule::Kind::poisson || spec.count) return;
   spec.density = spec.mean_free_path = spec.optical_depth = std::nullopt;
   note_rounding(scene);
   spec.count = std::llround(scene.placement.mean_count);

@@ -1,10 +1,12 @@
 // What the hot parts cost, each beside what it replaces where there is such a thing. Compare rows
-// of one run; absolute times say little on a shared machine.
+// of one run, by CPU time; absolute times say little on a shared machine. Against its drift:
+// --benchmark_enable_random_interleaving=true --benchmark_repetitions=9
 #include <cmath>
 
 #include <benchmark/benchmark.h>
 
 #include "core/bessel.h"
+#include "core/hankel_array.h"
 #include "core/phasor.h"
 #include "flatland/scene.h"
 #include "mc/covariance_estimator.h"
@@ -21,30 +23,65 @@ std::vector<double> distances(std::size_t n) {
   return values;
 }
 
-void hankel_order_0(benchmark::State& state) {
-  const auto x = distances(1000);
-  for (auto _ : state)
-    for (double value : x) benchmark::DoNotOptimize(hankel0(value));
-  state.SetItemsProcessed(state.iterations() * 1000);
+// Every second one below 4, where another piece of the kernel holds.
+std::vector<double> mixed_distances(std::size_t n) {
+  auto values = distances(n);
+  for (std::size_t i = 0; i < n; i += 2) values[i] /= 50;
+  return values;
 }
-BENCHMARK(hankel_order_0);
 
-void glibc_j0_and_y0(benchmark::State& state) {
-  const auto x = distances(1000);
-  for (auto _ : state)
-    for (double value : x) benchmark::DoNotOptimize(Complex(::j0(value), ::y0(value)));
-  state.SetItemsProcessed(state.iterations() * 1000);
+constexpr std::size_t many = 100'000;
+
+void hankel_order_0(benchmark::State& state, const std::vector<double>& x) {
+  std::vector<Complex> h(x.size());
+  for (auto _ : state) hankel0(x, h);
+  state.SetItemsProcessed(state.iterations() * x.size());
 }
-BENCHMARK(glibc_j0_and_y0);
 
-void hankel_set_to_order_30(benchmark::State& state) {
+void glibc_j0_and_y0(benchmark::State& state, const std::vector<double>& x) {
+  std::vector<Complex> h(x.size());
+  for (auto _ : state)
+    for (std::size_t i = 0; i < x.size(); ++i) h[i] = {::j0(x[i]), ::y0(x[i])};
+  state.SetItemsProcessed(state.iterations() * x.size());
+}
+
+BENCHMARK_CAPTURE(hankel_order_0, uniform, distances(many));
+BENCHMARK_CAPTURE(glibc_j0_and_y0, uniform, distances(many));
+BENCHMARK_CAPTURE(hankel_order_0, mixed, mixed_distances(many));
+BENCHMARK_CAPTURE(glibc_j0_and_y0, mixed, mixed_distances(many));
+
+constexpr int set_order = 30;
+
+void hankel_sets_to_30(benchmark::State& state) {
   const auto x = distances(1000);
-  std::vector<ExtendedComplex> h(31);
+  std::vector<double> re(x.size() * (set_order + 1)), im(re.size());
+  for (auto _ : state) hankel_sets(x, set_order, re.data(), im.data());
+  state.SetItemsProcessed(state.iterations() * x.size());
+}
+BENCHMARK(hankel_sets_to_30);
+
+void hankel_sets_to_30_extended(benchmark::State& state) {
+  const auto x = distances(1000);
+  std::vector<ExtendedComplex> h(set_order + 1);
   for (auto _ : state)
     for (double value : x) hankel(value, h);
-  state.SetItemsProcessed(state.iterations() * 1000);
+  state.SetItemsProcessed(state.iterations() * x.size());
 }
-BENCHMARK(hankel_set_to_order_30);
+BENCHMARK(hankel_sets_to_30_extended);
+
+void hankel_sets_to_30_seeded_by_glibc(benchmark::State& state) {
+  const auto x = distances(1000);
+  std::vector<Complex> h(set_order + 1);
+  for (auto _ : state)
+    for (double value : x) {
+      h[0] = {::j0(value), ::y0(value)};
+      h[1] = {::j1(value), ::y1(value)};
+      for (int n = 1; n < set_order; ++n) h[n + 1] = 2 * n / value * h[n] - h[n - 1];
+      benchmark::DoNotOptimize(h.data());
+    }
+  state.SetItemsProcessed(state.iterations() * x.size());
+}
+BENCHMARK(hankel_sets_to_30_seeded_by_glibc);
 
 void phasors_vectorised(benchmark::State& state) {
   const auto phase = distances(1000);

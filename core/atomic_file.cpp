@@ -16,8 +16,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string reason() {
-  return std::strerror(errno);
+std::string reason(int error = errno) {
+  return std::strerror(error);
 }
 
 fs::path folder_of(const fs::path& path) {
@@ -30,41 +30,9 @@ fs::path temporary_beside(const fs::path& path) {
   return folder_of(path) / name.str();
 }
 
-/// A new file that is removed again unless it was renamed.
-class TemporaryFile {
- public:
-  explicit TemporaryFile(const fs::path& path)
-      : path_(temporary_beside(path)),
-        descriptor_(::open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)) {}
-  TemporaryFile(const TemporaryFile&) = delete;
-  TemporaryFile& operator=(const TemporaryFile&) = delete;
-  ~TemporaryFile() {
-    if (!is_open()) return;
-    ::close(descriptor_);
-    ::unlink(path_.c_str());
-  }
-
-  bool is_open() const { return descriptor_ >= 0; }
-
-  bool write(std::span<const std::byte> bytes) {
-    while (!bytes.empty()) {
-      const ::ssize_t written = ::write(descriptor_, bytes.data(), bytes.size());
-      if (written < 0 && errno != EINTR) return false;
-      if (written > 0) bytes = bytes.subspan(static_cast<std::size_t>(written));
-    }
-    return true;
-  }
-
-  /// From here on the file is no longer ours to remove.
-  bool rename_to(const fs::path& path) {
-    if (::fsync(descriptor_) != 0 || ::rename(path_.c_str(), path.c_str()) != 0) return false;
-    return ::close(std::exchange(descriptor_, -1)) == 0;
-  }
-
- private:
-  fs::path path_;
-  int descriptor_;
-};
+int create(const fs::path& path) {
+  return ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+}
 
 /// The new name itself survives a power failure only once its folder is on the disk.
 bool sync_folder(const fs::path& folder) {
@@ -84,15 +52,56 @@ void check_writable(const fs::path& path) {
   std::error_code unknown;  // leaves it to the attempt below to complain
   if (fs::exists(path, unknown) && !fs::is_regular_file(path, unknown))
     throw InputError("cannot write " + path.string() + ": not a regular file");
-  if (!TemporaryFile(path).is_open())
-    throw InputError("cannot write " + path.string() + ": " + reason());
+  const fs::path temporary = temporary_beside(path);
+  const int descriptor = create(temporary);
+  if (descriptor < 0) throw InputError("cannot write " + path.string() + ": " + reason());
+  ::close(descriptor);
+  ::unlink(temporary.c_str());
+}
+
+FileBeside::FileBeside(fs::path path)
+    : path_(std::move(path)), temporary_(temporary_beside(path_)), descriptor_(create(temporary_)) {
+  if (descriptor_ < 0) fail(errno);
+}
+
+FileBeside::~FileBeside() {
+  if (descriptor_ < 0) return;
+  ::close(descriptor_);
+  ::unlink(temporary_.c_str());
+}
+
+void FileBeside::fail(int error) const {
+  throw IoError("writing " + path_.string() + " failed: " + reason(error));
+}
+
+void FileBeside::write(std::span<const std::byte> bytes) {
+  while (!bytes.empty()) {
+    const ::ssize_t written = ::write(descriptor_, bytes.data(), bytes.size());
+    if (written < 0 && errno != EINTR) fail(errno);
+    if (written > 0) bytes = bytes.subspan(static_cast<std::size_t>(written));
+  }
+}
+
+void FileBeside::reserve(std::uintmax_t bytes) {
+  const int error = ::posix_fallocate(descriptor_, 0, static_cast<::off_t>(bytes));
+  // Some file systems cannot reserve: a full disk then shows later.
+  if (error != 0 && error != EOPNOTSUPP && error != EINVAL) fail(error);
+}
+
+void FileBeside::truncate(std::uintmax_t bytes) {
+  if (::ftruncate(descriptor_, static_cast<::off_t>(bytes)) != 0) fail(errno);
+}
+
+void FileBeside::put_in_place() {
+  if (::fsync(descriptor_) != 0 || ::rename(temporary_.c_str(), path_.c_str()) != 0) fail(errno);
+  // From here on it is no longer ours to remove.
+  if (::close(std::exchange(descriptor_, -1)) != 0 || !sync_folder(folder_of(path_))) fail(errno);
 }
 
 void replace_file(const fs::path& path, std::span<const std::byte> bytes) {
-  TemporaryFile file(path);
-  if (!file.is_open() || !file.write(bytes) || !file.rename_to(path) ||
-      !sync_folder(folder_of(path)))
-    throw IoError("writing " + path.string() + " failed: " + reason());
+  FileBeside file(path);
+  file.write(bytes);
+  file.put_in_place();
 }
 
 }  // namespace flatspeckle

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <span>
 
@@ -10,8 +11,34 @@ namespace flatspeckle {
 /// InputError where the folder is missing or closed to us, or something that is no file is there.
 void check_writable(const std::filesystem::path& path);
 
+/// A file that grows beside `path` under a temporary name (.name.tmp-PID), and is removed again
+/// unless it was put in place.
+class FileBeside {
+ public:
+  /// Makes an empty one. Throws IoError.
+  explicit FileBeside(std::filesystem::path path);
+  FileBeside(const FileBeside&) = delete;
+  FileBeside& operator=(const FileBeside&) = delete;
+  ~FileBeside();
+
+  const std::filesystem::path& name() const { return temporary_; }
+  void write(std::span<const std::byte> bytes);
+  /// Makes sure that so many bytes have room on the disk, or throws IoError.
+  void reserve(std::uintmax_t bytes);
+  /// Ends the file there, giving back what was reserved beyond.
+  void truncate(std::uintmax_t bytes);
+  /// Syncs it and puts it at `path`, replacing what is there. Throws IoError.
+  void put_in_place();
+
+ private:
+  [[noreturn]] void fail(int error) const;
+
+  std::filesystem::path path_, temporary_;
+  int descriptor_;
+};
+
 /// Puts `bytes` at `path` as a whole or not at all, also when the machine stops in between: written
-/// beside it under a temporary name (.name.tmp-PID), synced, renamed. Throws IoError, having
+/// by way of a FileBeside. Throws IoError, having
 /// removed the temporary file and left what was at `path` before.
 void replace_file(const std::filesystem::path& path, std::span<const std::byte> bytes);
 

@@ -1,11 +1,9 @@
 #include "core/bessel.h"
 
 #include <algorithm>
-#include <array>
 #include <cassert>
 #include <cmath>
-#include <math.h>  // j0, j1, y0, y1 are POSIX
-#include <numbers>
+#include <math.h>  // j0, j1, y0, y1, j0l, j1l are no part of standard C++
 #include <utility>
 
 namespace flatspeckle {
@@ -33,72 +31,21 @@ void ratios_downward(int first, int last, Number z, Store store) {
   }
 }
 
-// Below this H_0 is summed as a power series, whose terms do not exceed 1; above it is a smooth
-// amplitude times e^{ix}.
-constexpr double series_end = 2;
-
-// With y = x^2/4: J_0 = sum (-y)^k / k!^2 and
-// Y_0 = (2/pi) [(ln(x/2) + gamma) J_0 - sum (-y)^k h_k / k!^2], h_k = 1 + 1/2 + .. + 1/k
-// (DLMF 10.8.2).
-Complex hankel0_series(double x) {
-  constexpr int terms = 13;
-  const double minus_y = -x * x / 4;
-  double term = 1, harmonic = 0, j = 1, rest = 0;
-  for (int k = 1; k < terms; ++k) {
-    term *= minus_y / (k * k);
-    harmonic += 1.0 / k;
-    j += term;
-    rest += term * harmonic;
+// From J_0 and J_1 to J_order; J_n stands at j[n * stride].
+void continue_j(double x, int order, int stride, long double* j) {
+  const long double two_over_x = 2 / static_cast<long double>(x);
+  const int turning = x < order ? std::max(static_cast<int>(x), 1) : order;
+  long double before = j[0], value = j[stride];
+  for (int n = 1; n < turning; ++n) {
+    before = std::exchange(value, n * two_over_x * value - before);
+    j[(n + 1) * stride] = value;
   }
-  const double logarithm = std::log(x / 2) + std::numbers::egamma;
-  return {j, 2 / std::numbers::pi * (logarithm * j - rest)};
+  if (turning >= order) return;
+  // Upwards is unstable beyond n = x, where J_n has no zeros: ratios take over.
+  ratios_downward(turning, order - 1, static_cast<long double>(x),
+                  [&](int n, long double ratio) { j[(n + 1) * stride] = ratio; });
+  for (int n = turning; n < order; ++n) j[(n + 1) * stride] *= j[n * stride];
 }
-
-// sqrt(x) e^{-ix} H_0(x) as Chebyshev series in pieces of equal length in 1/x.
-class Amplitude {
- public:
-  Amplitude() {
-    for (int piece = 0; piece < pieces; ++piece) fit(piece);
-  }
-
-  Complex hankel0(double x) const {
-    const double place = pieces * series_end / x;
-    const int piece = std::min(static_cast<int>(place), pieces - 1);
-    const double twice_t = 4 * (place - piece) - 2;
-    const auto& c = coefficients_[piece];
-    double re = c[degree][0], im = c[degree][1], re_before = 0, im_before = 0;
-    for (int m = degree - 1; m > 0; --m) {  // Clenshaw
-      re_before = std::exchange(re, c[m][0] + twice_t * re - re_before);
-      im_before = std::exchange(im, c[m][1] + twice_t * im - im_before);
-    }
-    re = c[0][0] + twice_t / 2 * re - re_before;
-    im = c[0][1] + twice_t / 2 * im - im_before;
-    const double size = 1 / std::sqrt(x), cosine = std::cos(x) * size, sine = std::sin(x) * size;
-    return {re * cosine - im * sine, re * sine + im * cosine};
-  }
-
- private:
-  static constexpr int pieces = 32, degree = 6;
-
-  void fit(int piece) {
-    constexpr int nodes = degree + 1;
-    auto& c = coefficients_[piece];
-    for (int node = 0; node < nodes; ++node) {
-      const long double angle = std::numbers::pi_v<long double> * (node + 0.5L) / nodes;
-      const long double x = pieces * series_end / (piece + (1 + std::cos(angle)) / 2);
-      const ExtendedComplex value = product({::j0l(x), ::y0l(x)}, std::polar(std::sqrt(x), -x));
-      for (int m = 0; m < nodes; ++m) {
-        const long double weight = (m == 0 ? 1.0L : 2.0L) / nodes * std::cos(m * angle);
-        c[m][0] += static_cast<double>(weight * value.real());
-        c[m][1] += static_cast<double>(weight * value.imag());
-      }
-    }
-  }
-
-  std::array<std::array<std::array<double, 2>, degree + 1>, pieces> coefficients_{};
-};
-
-const Amplitude amplitude;
 
 }  // namespace
 
@@ -110,14 +57,11 @@ std::vector<ExtendedComplex> bessel_ratios(int order, ExtendedComplex z) {
 
 std::vector<long double> bessel_j(int order, double x) {
   assert(x > 0);
-  std::vector<long double> j(order + 2);
-  ratios_downward(0, order, static_cast<long double>(x),
-                  [&](int n, long double ratio) { j[n + 1] = ratio; });
-  // Anchored at whichever of J_0 and J_1 is not close to a zero.
-  const double j0 = ::j0(x), j1 = ::j1(x);
-  j[0] = std::abs(j0) >= std::abs(j1) ? j0 : j1 / j[1];
-  for (int n = 0; n <= order; ++n) j[n + 1] *= j[n];
-  j.pop_back();
+  std::vector<long double> j(std::max(order, 1) + 1);
+  j[0] = ::j0l(x);
+  j[1] = ::j1l(x);
+  continue_j(x, order, 1, j.data());
+  j.resize(order + 1);
   return j;
 }
 
@@ -127,31 +71,20 @@ void hankel(double x, std::span<ExtendedComplex> h) {
   const int order = static_cast<int>(h.size()) - 1;
   h[0] = {::j0(x), ::y0(x)};
   if (order == 0) return;
-  const int turning = x < order ? static_cast<int>(x) : order;
-  long double j_before = h[0].real(), j = ::j1(x), y_before = h[0].imag(), y = ::y1(x);
+  h[1] = {::j1(x), ::y1(x)};
+  continue_j(x, order, 2, reinterpret_cast<long double*>(h.data()));
   const long double two_over_x = 2 / static_cast<long double>(x);
-  for (int n = 1; n <= order; ++n) {
-    h[n] = {j, y};
-    const long double factor = n * two_over_x;
-    y_before = std::exchange(y, factor * y - y_before);
-    if (n < turning) j_before = std::exchange(j, factor * j - j_before);
+  long double y_before = h[0].imag(), y = h[1].imag();
+  for (int n = 1; n < order; ++n) {
+    y_before = std::exchange(y, n * two_over_x * y - y_before);
+    h[n + 1].imag(y);
   }
-  if (turning == order) return;
-  // J_n grows unstable upwards beyond n = x, where it has no zeros: ratios take over.
-  ratios_downward(turning, order - 1, static_cast<long double>(x),
-                  [&](int n, long double ratio) { h[n + 1].real(ratio); });
-  for (int n = turning; n < order; ++n) h[n + 1].real(h[n + 1].real() * h[n].real());
 }
 
 std::vector<ExtendedComplex> hankel(int order, double x) {
   std::vector<ExtendedComplex> h(order + 1);
   hankel(x, h);
   return h;
-}
-
-Complex hankel0(double x) {
-  assert(x > 0);
-  return x < series_end ? hankel0_series(x) : amplitude.hankel0(x);
 }
 
 }  // namespace flatspeckle

@@ -10,20 +10,18 @@ namespace flatspeckle {
 // Cylinder functions of integer order in extended range: neither H_n at n >> x overflows nor J_n
 // underflows. Real arguments are > 0.
 
-/// r_n = J_{n+1}(z) / J_n(z) for n = 0 .. order by downward recurrence, full extended precision.
-/// Holds for large |Im z| too, where J_n itself would overflow.
+/// r_n = J_{n+1}(z) / J_n(z) for n = 0 .. order by downward recurrence from beyond |z|, in full
+/// extended precision; where J_n oscillates, up to 1e-19 |z| (1 + |r_n|^2). Holds for large |Im z|
+/// too, where J_n itself would overflow.
 std::vector<ExtendedComplex> bessel_ratios(int order, ExtendedComplex z);
 
-/// J_n(x) for n = 0 .. order. Ratios of neighbours have full extended precision, the common factor
-/// that of glibc's j0 and j1.
+/// J_n(x) for n = 0 .. order in full extended precision: relative to |J_n| beyond n = x, to |H_n|
+/// below.
 std::vector<long double> bessel_j(int order, double x);
 
 /// H_n(x) of the first kind for n = 0 .. h.size() - 1; relative error about 1e-15 of |H_n|.
 void hankel(double x, std::span<ExtendedComplex> h);
 std::vector<ExtendedComplex> hankel(int order, double x);
-
-/// H_0(x) of the first kind in double precision.
-Complex hankel0(double x);
 
 /// C_n'(x) = (n / x) C_n(x) - C_{n+1}(x) of J or H, from values[n] and values[n + 1].
 template <typename Values>

@@ -8,9 +8,9 @@
 
 namespace flatspeckle {
 
-/// body(i) for i = 0 .. count - 1 over the threads of OpenMP, or in order on this thread where it is
-/// already one of several. Indices are handed out one by one. The first exception is thrown again
-/// here, and what has not begun by then is left out.
+/// body(i) for i = 0 .. count - 1 over the threads of OpenMP, or in order on this thread where it
+/// is already one of several. Indices are handed out one by one. The first exception is thrown
+/// again here, and what has not begun by then is left out.
 template <typename Body>
 void parallel_for(std::size_t count, const Body& body) {
   std::exception_ptr failure;
@@ -25,6 +25,13 @@ void parallel_for(std::size_t count, const Body& body) {
     }
   }
   if (failure) std::rethrow_exception(failure);
+}
+
+/// The same, in order on this thread unless that is `worthwhile`.
+template <typename Body>
+void parallel_for(std::size_t count, bool worthwhile, const Body& body) {
+  if (worthwhile) return parallel_for(count, body);
+  for (std::size_t i = 0; i < count; ++i) body(i);
 }
 
 }  // namespace flatspeckle

@@ -16,8 +16,11 @@ void show_error(double error) {
 
 }  // namespace
 
-Progress::Progress(std::string label, const StopRule& stop)
-    : label_(std::move(label)), stop_(stop), terminal_(isatty(STDERR_FILENO) == 1) {}
+Progress::Progress(std::string label, const StopRule& stop, std::string unit)
+    : label_(std::move(label)),
+      unit_(std::move(unit)),
+      stop_(stop),
+      terminal_(isatty(STDERR_FILENO) == 1) {}
 
 const char* Progress::line_start() const {
   return terminal_ ? "\r\033[K" : "";
@@ -38,8 +41,8 @@ void Progress::update(double samples, double new_samples, double wall, double ne
   if (label_.empty() || new_wall - last_shown_ < interval) return;
   last_shown_ = new_wall;
   const double rate = new_samples / new_wall;
-  std::fprintf(stderr, "%s%s: %.0f samples, %.*f/s", line_start(), label_.c_str(), samples,
-               rate < 10 ? 2 : 0, rate);
+  std::fprintf(stderr, "%s%s: %.0f %s, %.*f/s", line_start(), label_.c_str(), samples,
+               unit_.c_str(), rate < 10 ? 2 : 0, rate);
   show_error(error);
   const double left = seconds_left(samples, rate, wall, error);
   if (std::isfinite(left)) std::fprintf(stderr, ", %.0f s left", left);
@@ -48,7 +51,8 @@ void Progress::update(double samples, double new_samples, double wall, double ne
 
 void Progress::finish(double samples, double wall, double error) {
   if (label_.empty()) return;
-  std::fprintf(stderr, "%s%s: %.0f samples in %.3g s", line_start(), label_.c_str(), samples, wall);
+  std::fprintf(stderr, "%s%s: %.0f %s in %.3g s", line_start(), label_.c_str(), samples,
+               unit_.c_str(), wall);
   show_error(error);
   std::fputs("\n", stderr);
 }

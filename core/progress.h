@@ -10,7 +10,8 @@ namespace flatspeckle {
 /// ten seconds elsewhere. Silent without a label.
 class Progress {
  public:
-  Progress(std::string label, const StopRule& stop);
+  /// unit: what the samples are called.
+  Progress(std::string label, const StopRule& stop, std::string unit = "samples");
 
   /// samples and wall seconds so far, of which `new_samples` in the `new_wall` seconds of this run.
   void update(double samples, double new_samples, double wall, double new_wall, double error);
@@ -21,7 +22,7 @@ class Progress {
   const char* line_start() const;
   double seconds_left(double samples, double rate, double wall, double error) const;
 
-  std::string label_;
+  std::string label_, unit_;
   StopRule stop_;
   bool terminal_;
   double last_shown_ = 0;

@@ -69,6 +69,35 @@ class Writer {
     std::visit([&](const auto& given) { write_attribute(object.get(), attribute, given); }, value);
   }
 
+  void begin(const std::vector<std::string>& scales, const std::vector<std::size_t>& chunk) const {
+    if (exists(file_, name_)) throw std::logic_error(name_ + ": written twice");
+    std::vector<hsize_t> shape, stored(chunk.begin(), chunk.end());
+    for (std::size_t i = 0; i < scales.size(); ++i) {
+      shape.push_back(extent(scales[i]));
+      stored[i] = std::min(stored[i], shape[i]);
+    }
+    const Hdf5Handle set = create<Complex>(shape, compressed(stored));
+    for (unsigned i = 0; i < scales.size(); ++i) attach(set.get(), i, scales[i]);
+  }
+
+  /// Opened and closed each time, so that no chunk waits in HDF5's cache for a full disk.
+  void block(std::span<const Complex> values, const std::vector<std::size_t>& start,
+             const std::vector<std::size_t>& count) const {
+    require_finite(name_, values);
+    const std::vector<hsize_t> from(start.begin(), start.end()),
+        extents(count.begin(), count.end());
+    const Hdf5Handle set = call_.handle(H5Dopen2(file_, name_.c_str(), H5P_DEFAULT), H5Dclose);
+    const Hdf5Handle there = call_.handle(H5Dget_space(set.get()), H5Sclose);
+    const Hdf5Handle here = call_.handle(dataspace(extents), H5Sclose), type = complex_type();
+    if (static_cast<std::size_t>(H5Sget_simple_extent_npoints(here.get())) != values.size())
+      throw std::logic_error(name_ + ": the number of values does not fit the block");
+    call_.check(H5Sselect_hyperslab(there.get(), H5S_SELECT_SET, from.data(), nullptr,
+                                    extents.data(), nullptr));
+    call_.check(
+        H5Dwrite(set.get(), type.get(), here.get(), there.get(), H5P_DEFAULT, values.data()));
+    call_.check(H5Dflush(set.get()));
+  }
+
   template <typename Number>
   Hdf5Handle values(std::span<const Number> values, const std::vector<hsize_t>& shape) const {
     if (exists(file_, name_)) throw std::logic_error(name_ + ": written twice");
@@ -77,11 +106,7 @@ class Writer {
         values.size())
       throw std::logic_error(name_ + ": the number of values does not fit the axes");
     const Hdf5Handle type = number_type<Number>();
-    const Hdf5Handle space = call_.handle(dataspace(shape), H5Sclose);
-    const Hdf5Handle links = intermediate_groups(), layout = storage(shape, sizeof(Number));
-    Hdf5Handle set = call_.handle(H5Dcreate2(file_, name_.c_str(), type.get(), space.get(),
-                                             links.get(), layout.get(), H5P_DEFAULT),
-                                  H5Dclose);
+    Hdf5Handle set = create<Number>(shape, storage(shape, sizeof(Number)));
     call_.check(H5Dwrite(set.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()));
     return set;
   }
@@ -116,21 +141,39 @@ class Writer {
                          : H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr);
   }
 
+  template <typename Number>
+  Hdf5Handle create(const std::vector<hsize_t>& shape, const Hdf5Handle& layout) const {
+    const Hdf5Handle type = number_type<Number>();
+    const Hdf5Handle space = call_.handle(dataspace(shape), H5Sclose);
+    const Hdf5Handle links = intermediate_groups();
+    return call_.handle(H5Dcreate2(file_, name_.c_str(), type.get(), space.get(), links.get(),
+                                   layout.get(), H5P_DEFAULT),
+                        H5Dclose);
+  }
+
   Hdf5Handle intermediate_groups() const {
     Hdf5Handle links = call_.handle(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
     call_.check(H5Pset_create_intermediate_group(links.get(), 1));
     return links;
   }
 
-  /// No time stamps: the same results make the same bytes. Small sets gain nothing from filters.
+  /// Small sets gain nothing from filters.
   Hdf5Handle storage(const std::vector<hsize_t>& shape, std::size_t value_bytes) const {
     constexpr hsize_t small = 4096;
+    const hsize_t bytes =
+        std::accumulate(shape.begin(), shape.end(), hsize_t{value_bytes}, std::multiplies<>());
+    return bytes <= small ? untimed() : compressed(chunk_shape(shape, value_bytes));
+  }
+
+  /// No time stamps: the same results make the same bytes.
+  Hdf5Handle untimed() const {
     Hdf5Handle layout = call_.handle(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
     call_.check(H5Pset_obj_track_times(layout.get(), false));
-    if (std::accumulate(shape.begin(), shape.end(), hsize_t{value_bytes}, std::multiplies<>()) <=
-        small)
-      return layout;
-    const auto chunk = chunk_shape(shape, value_bytes);
+    return layout;
+  }
+
+  Hdf5Handle compressed(const std::vector<hsize_t>& chunk) const {
+    Hdf5Handle layout = untimed();
     call_.check(H5Pset_chunk(layout.get(), static_cast<int>(chunk.size()), chunk.data()));
     call_.check(H5Pset_shuffle(layout.get()));
     call_.check(H5Pset_deflate(layout.get(), 1));
@@ -217,29 +260,53 @@ std::unique_ptr<Hdf5Handle> file_in_memory() {
       call.handle(H5Fcreate(name.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.get()), H5Fclose));
 }
 
+/// What HDF5 may write of its own with a dataset or attribute.
+constexpr std::size_t overhead = std::size_t{1} << 20;
+
+std::unique_ptr<Hdf5Handle> file_on_disk(FileBeside& place) {
+  place.reserve(overhead);
+  const Hdf5Calls<IoError> call("HDF5 cannot make " + place.name().string());
+  return std::make_unique<Hdf5Handle>(call.handle(
+      H5Fcreate(place.name().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose));
+}
+
 }  // namespace
 
-ResultFile::ResultFile(std::filesystem::path path) : path_(std::move(path)) {
+ResultFile::ResultFile(std::filesystem::path path, Storage storage) : path_(std::move(path)) {
   check_writable(path_);
   silence_hdf5();
-  file_ = file_in_memory();
+  if (storage == Storage::disk) beside_ = std::make_unique<FileBeside>(path_);
+  file_ = beside_ ? file_on_disk(*beside_) : file_in_memory();
+  make_room(0);
 }
 
 ResultFile::ResultFile(ResultFile&&) noexcept = default;
 ResultFile& ResultFile::operator=(ResultFile&&) noexcept = default;
 ResultFile::~ResultFile() = default;
 
+// HDF5 does not survive a full disk, not even until its file is closed: room is made before.
+void ResultFile::make_room(std::size_t bytes) {
+  if (!beside_ || !file_) return;
+  hsize_t size = 0;
+  const Hdf5Calls<IoError> call("HDF5 cannot write " + path_.string());
+  call.check(H5Fget_filesize(file_->get(), &size));
+  beside_->reserve(size + bytes + bytes / 64 + overhead);
+}
+
 void ResultFile::group(const std::string& name) {
+  make_room(0);
   Writer(file_.get(), path_.string(), name).group();
 }
 
 void ResultFile::attribute(const std::string& object, const std::string& name,
                            const Attribute& value) {
+  make_room(0);
   Writer(file_.get(), path_.string(), object).attribute(name, value);
 }
 
 void ResultFile::scale(const std::string& name, std::span<const double> values,
                        const std::string& units, const std::string& long_name) {
+  make_room(values.size_bytes());
   const Writer writer(file_.get(), path_.string(), name);
   writer.scale(values);
   writer.describe(units, long_name);
@@ -248,6 +315,7 @@ void ResultFile::scale(const std::string& name, std::span<const double> values,
 void ResultFile::dataset(const std::string& name, std::span<const double> values,
                          const std::vector<Axis>& axes, const std::string& units,
                          const std::string& long_name) {
+  make_room(values.size_bytes());
   const Writer writer(file_.get(), path_.string(), name);
   writer.dataset(values, axes);
   writer.describe(units, long_name);
@@ -256,6 +324,7 @@ void ResultFile::dataset(const std::string& name, std::span<const double> values
 void ResultFile::dataset(const std::string& name, std::span<const Complex> values,
                          const std::vector<Axis>& axes, const std::string& units,
                          const std::string& long_name) {
+  make_room(values.size_bytes());
   const Writer writer(file_.get(), path_.string(), name);
   writer.dataset(values, axes);
   writer.describe(units, long_name);
@@ -264,15 +333,41 @@ void ResultFile::dataset(const std::string& name, std::span<const Complex> value
 void ResultFile::dataset(const std::string& name, std::span<const std::uint64_t> values,
                          const std::vector<Axis>& axes, const std::string& units,
                          const std::string& long_name) {
+  make_room(values.size_bytes());
   const Writer writer(file_.get(), path_.string(), name);
   writer.dataset(values, axes);
   writer.describe(units, long_name);
 }
 
+void ResultFile::begin_dataset(const std::string& name, const std::vector<std::string>& axes,
+                               const std::vector<std::size_t>& chunk, const std::string& units,
+                               const std::string& long_name) {
+  make_room(0);
+  const Writer writer(file_.get(), path_.string(), name);
+  writer.begin(axes, chunk);
+  writer.describe(units, long_name);
+}
+
+void ResultFile::write_block(const std::string& name, std::span<const Complex> values,
+                             const std::vector<std::size_t>& start,
+                             const std::vector<std::size_t>& count) {
+  make_room(values.size_bytes());
+  Writer(file_.get(), path_.string(), name).block(values, start, count);
+}
+
 void ResultFile::commit() {
   if (!file_) throw std::logic_error(path_.string() + ": finished twice");
+  make_room(0);
   const Hdf5Calls<IoError> call("HDF5 cannot finish " + path_.string());
   call.check(H5Fflush(file_->get(), H5F_SCOPE_GLOBAL));
+  if (beside_) {
+    hsize_t size = 0;
+    call.check(H5Fget_filesize(file_->get(), &size));
+    file_.reset();
+    beside_->truncate(size);
+    beside_->put_in_place();
+    return;
+  }
   std::vector<std::byte> image(
       static_cast<std::size_t>(call.check(H5Fget_file_image(file_->get(), nullptr, 0))));
   call.check(H5Fget_file_image(file_->get(), image.data(), image.size()));

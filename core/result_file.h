@@ -12,6 +12,7 @@
 
 namespace flatspeckle {
 
+class FileBeside;
 class Hdf5Handle;
 
 /// One axis of a dataset: the name of a scale written before, or a plain extent.
@@ -23,16 +24,20 @@ using Attribute =
                  std::vector<std::uint64_t>, std::vector<std::string>>;
 
 /// A result file in the making (HDF5, readable by version 1.8 and later; h5py sees complex numbers
-/// as complex128). It is put together in memory; commit() puts it at its path as a whole, and
-/// without commit nothing is left on the disk. Names may hold groups ("trace/wall_s"), which are
-/// made as needed; "/" is the root. One thread at a time.
+/// as complex128). It is put together in memory or, where it may be large, on disk under a
+/// temporary name; commit() puts it at its path as a whole, and without commit nothing is left.
+/// Names may hold groups ("trace/wall_s"), which are made as needed; "/" is the root. One thread at
+/// a time.
 ///
 /// All that is written must be finite: std::logic_error names the dataset or attribute otherwise,
 /// and also where the number of values does not fit the axes or a name is used twice.
 class ResultFile {
  public:
+  /// disk: memory stays bounded; one file in the making per path.
+  enum class Storage { memory, disk };
+
   /// Throws InputError if no file can be put at `path` (check_writable).
-  explicit ResultFile(std::filesystem::path path);
+  explicit ResultFile(std::filesystem::path path, Storage storage = Storage::memory);
   ResultFile(ResultFile&&) noexcept;
   ResultFile& operator=(ResultFile&&) noexcept;
   ~ResultFile();
@@ -58,12 +63,25 @@ class ResultFile {
                const std::vector<Axis>& axes, const std::string& units,
                const std::string& long_name);
 
+  /// A complex dataset whose values come in blocks, compressed by chunks of this shape. Axes with
+  /// scales only. What no block brings is 0.
+  void begin_dataset(const std::string& name, const std::vector<std::string>& axes,
+                     const std::vector<std::size_t>& chunk, const std::string& units,
+                     const std::string& long_name);
+  /// Values of a block from index `start` on, of `count` along each axis; best of whole chunks.
+  /// Throws IoError.
+  void write_block(const std::string& name, std::span<const Complex> values,
+                   const std::vector<std::size_t>& start, const std::vector<std::size_t>& count);
+
   /// Puts the file at its path, replacing what is there. Throws IoError. Nothing can be written
   /// afterwards.
   void commit();
 
  private:
+  void make_room(std::size_t bytes);
+
   std::filesystem::path path_;
+  std::unique_ptr<FileBeside> beside_;  // outlives file_
   std::unique_ptr<Hdf5Handle> file_;
 };
 

@@ -5,12 +5,20 @@
 
 namespace flatspeckle {
 
+inline double cpu_seconds(clockid_t clock) {
+  timespec t{};
+  clock_gettime(clock, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
 /// CPU seconds of the calling thread. Exact, where the clock of the whole process knows of other
 /// threads only what the scheduler last wrote down.
 inline double thread_cpu_seconds() {
-  timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+  return cpu_seconds(CLOCK_THREAD_CPUTIME_ID);
+}
+/// Of all threads, since the program began.
+inline double process_cpu_seconds() {
+  return cpu_seconds(CLOCK_PROCESS_CPUTIME_ID);
 }
 
 /// Wall-clock seconds since construction, plus an offset.

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/bessel.h"
+#include "core/scaled_bessel.h"
 
 namespace flatspeckle {
 
@@ -21,11 +22,11 @@ ExtendedComplex point_t_matrix(const Scatterer& point) {
 // C7 with J_n'(mx) = (n/(mx) - r_n) J_n(mx), r_n = J_{n+1}(mx)/J_n(mx), and likewise outside:
 //   TM: T_n = -(J_{n+1} - m r_n J_n) / (H_{n+1} - m r_n H_n).
 // The terms n/x, which would cancel for small or faint cylinders, are gone.
-std::vector<ExtendedComplex> tm_t_matrix(ExtendedComplex m, double x, int order) {
+std::vector<ScaledComplex> tm_t_matrix(ExtendedComplex m, double x, int order) {
   const auto ratios = bessel_ratios(order, m * static_cast<long double>(x));
-  const auto j = bessel_j(order + 1, x);
-  const auto h = hankel(order + 1, x);
-  std::vector<ExtendedComplex> t(order + 1);
+  const auto j = scaled_bessel_j(order + 1, x);
+  const auto h = scaled_hankel(order + 1, x);
+  std::vector<ScaledComplex> t(order + 1);
   for (int n = 0; n <= order; ++n) {
     const ExtendedComplex inside = m * ratios[n];
     t[n] = -(j[n + 1] - inside * j[n]) / (h[n + 1] - inside * h[n]);
@@ -36,26 +37,26 @@ std::vector<ExtendedComplex> tm_t_matrix(ExtendedComplex m, double x, int order)
 // TE: T_n = -(s J_n + J_{n+1}) / (s H_n + H_{n+1}),  s = (n/x)(1/m^2 - 1) - r_n / m.
 // In the numerator the leading terms x/(2(n+1)) of J_{n+1}/J_n and r_n/m, which are equal, are
 // taken out by J_{n+1} = x/(2(n+1)) (J_n + J_{n+2}) on both sides.
-std::vector<ExtendedComplex> te_t_matrix(ExtendedComplex m, double x, int order) {
+std::vector<ScaledComplex> te_t_matrix(ExtendedComplex m, double x, int order) {
   const auto ratios = bessel_ratios(order + 1, m * static_cast<long double>(x));
-  const auto j = bessel_j(order + 2, x);
-  const auto h = hankel(order + 1, x);
-  std::vector<ExtendedComplex> t(order + 1);
+  const auto j = scaled_bessel_j(order + 2, x);
+  const auto h = scaled_hankel(order + 1, x);
+  std::vector<ScaledComplex> t(order + 1);
   for (int n = 0; n <= order; ++n) {
     const long double leading = static_cast<long double>(x) / (2 * (n + 1));
     const ExtendedComplex jump =
         static_cast<long double>(n) / x * (1.0L - m) * (1.0L + m) / (m * m);
-    const ExtendedComplex numerator =
+    const ScaledComplex numerator =
         (jump - leading * ratios[n] * ratios[n + 1]) * j[n] + leading * j[n + 2];
     t[n] = -numerator / ((jump - ratios[n] / m) * h[n] + h[n + 1]);
   }
   return t;
 }
 
-std::vector<ExtendedComplex> impenetrable_t_matrix(Kind kind, double x, int order) {
-  const auto j = bessel_j(order + 1, x);
-  const auto h = hankel(order + 1, x);
-  std::vector<ExtendedComplex> t(order + 1);
+std::vector<ScaledComplex> impenetrable_t_matrix(Kind kind, double x, int order) {
+  const auto j = scaled_bessel_j(order + 1, x);
+  const auto h = scaled_hankel(order + 1, x);
+  std::vector<ScaledComplex> t(order + 1);
   for (int n = 0; n <= order; ++n)
     t[n] = kind == Kind::soft ? -j[n] / h[n]
                               : -cylinder_derivative(j, n, x) / cylinder_derivative(h, n, x);
@@ -72,9 +73,9 @@ auto two_sided_sum(const std::vector<ExtendedComplex>& t, Term term) {
 
 }  // namespace
 
-std::vector<ExtendedComplex> t_matrix(const Scatterer& scatterer, double k, int order) {
+std::vector<ScaledComplex> scaled_t_matrix(const Scatterer& scatterer, double k, int order) {
   assert(scatterer.kind != Kind::hg);
-  std::vector<ExtendedComplex> t(order + 1);
+  std::vector<ScaledComplex> t(order + 1);
   const double x = k * scatterer.radius;
   switch (scatterer.kind) {
     case Kind::soft:
@@ -89,6 +90,13 @@ std::vector<ExtendedComplex> t_matrix(const Scatterer& scatterer, double k, int 
     default:
       t[0] = point_t_matrix(scatterer);
   }
+  return t;
+}
+
+std::vector<ExtendedComplex> t_matrix(const Scatterer& scatterer, double k, int order) {
+  const auto scaled = scaled_t_matrix(scatterer, k, order);
+  std::vector<ExtendedComplex> t;
+  for (const ScaledComplex& t_n : scaled) t.push_back(static_cast<ExtendedComplex>(t_n));
   return t;
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/complex.h"
+#include "core/scaled.h"
 
 namespace flatspeckle {
 
@@ -29,6 +30,8 @@ struct Scatterer {
 
 /// T_n for n = 0 .. order; T_{-n} = T_n. (conventions, C7 and C8)
 /// k: wavenumber outside. hg is a precondition violation.
+std::vector<ScaledComplex> scaled_t_matrix(const Scatterer& scatterer, double k, int order);
+/// The same; 0 where T_n is below the range of long double.
 std::vector<ExtendedComplex> t_matrix(const Scatterer& scatterer, double k, int order);
 
 /// The order up to which T_n may oscillate or resonate; beyond it |T_n| falls.

@@ -138,40 +138,43 @@ BulkMedium make_medium(const SceneSpec& spec, const Scatterer& scatterer, const 
   return bulk_medium(scatterer, k, number_density(spec, domain, sigma_e));
 }
 
+PlacementRule::Kind placement_kind(const SceneSpec& spec, bool disks) {
+  using Rule = PlacementRule::Kind;
+  if (!spec.placement) return disks ? Rule::hard_disk : Rule::poisson;
+  const Rule rule = choose<Rule>("placement", *spec.placement,
+                                 {{"poisson", Rule::poisson},
+                                  {"hard_disk", Rule::hard_disk},
+                                  {"equilibrium", Rule::equilibrium}});
+  if (disks == (rule == Rule::poisson))
+    throw InputError("placement", *spec.placement,
+                     disks ? "disks must not overlap: hard_disk or equilibrium"
+                           : "scatterers without a radius: poisson");
+  return rule;
+}
+
 PlacementRule make_placement_rule(const SceneSpec& spec, const Scatterer& scatterer,
                                   const Domain& domain, double density) {
+  const bool disks = scatterer.is_disk();
   PlacementRule rule;
-  rule.kind = scatterer.is_disk() ? PlacementRule::Kind::hard_disk : PlacementRule::Kind::poisson;
-  if (spec.placement) {
-    const auto kind = choose<PlacementRule::Kind>(
-        "placement", *spec.placement,
-        {{"poisson", PlacementRule::Kind::poisson}, {"hard_disk", PlacementRule::Kind::hard_disk}});
-    if (kind != rule.kind)
-      throw InputError("placement", *spec.placement,
-                       scatterer.is_disk() ? "disks must not overlap: hard_disk"
-                                           : "scatterers without a radius: poisson");
-  }
-  const bool disks = rule.kind == PlacementRule::Kind::hard_disk;
-  if (!(std::isfinite(spec.min_gap) && spec.min_gap >= 0))
-    throw InputError("min_gap", spec.min_gap, "must not be negative");
-  if (spec.min_gap > 0 && !disks)
-    throw InputError("min_gap", spec.min_gap, "is a key of disks only");
-  rule.min_gap = spec.min_gap;
+  rule.kind = placement_kind(spec, disks);
+  rule.min_gap = spec.min_gap.value_or(disks ? default_gap * scatterer.radius : 0);
+  if (!(std::isfinite(rule.min_gap) && rule.min_gap >= 0))
+    throw InputError("min_gap", rule.min_gap, "must not be negative");
+  if (rule.min_gap > 0 && !disks)
+    throw InputError("min_gap", rule.min_gap, "is a key of disks only");
   if (spec.count) rule.count = static_cast<std::uint64_t>(*spec.count);
   rule.mean_count = density * domain.area();
   return rule;
 }
 
-void check_packing(const Scatterer& scatterer, const BulkMedium& medium, double min_gap) {
-  if (!scatterer.is_disk()) return;
-  const double inflation = std::pow(1 + min_gap / (2 * scatterer.radius), 2);
-  const double packing = medium.packing_fraction * inflation;
-  if (packing > highest_sequential_packing) {
-    throw InputError("packing fraction (with min_gap)", packing,
-                     "hard disks placed one after the other reach " +
-                         std::to_string(highest_sequential_packing).substr(0, 3) +
-                         "; lower the density, the radius or min_gap");
-  }
+void check_packing(const Scene& scene) {
+  if (!scene.scatterer.is_disk()) return;
+  const double reach = scene.scatterer.radius + scene.placement.min_gap / 2;
+  const bool box = scene.domain.kind == Domain::Kind::box;
+  const double density =
+      box ? std::round(scene.placement.mean_count) / scene.domain.area() : scene.medium.density;
+  check_packing(scene.domain, scene.placement.kind, density * std::numbers::pi * reach * reach,
+                2 * reach);
 }
 
 /// The infinite slab has far fields only, lights from below the horizon, and (C18) only entries
@@ -314,7 +317,7 @@ Scene make_scene(const SceneSpec& spec) {
   scene.domain = make_domain(spec);
   scene.medium = make_medium(spec, scene.scatterer, scene.domain, scene.k);
   scene.placement = make_placement_rule(spec, scene.scatterer, scene.domain, scene.medium.density);
-  check_packing(scene.scatterer, scene.medium, scene.placement.min_gap);
+  check_packing(scene);
   scene.request = make_request(spec);
   if (scene.domain.kind == Domain::Kind::slab) check_slab_request(scene.request);
   return scene;

@@ -25,7 +25,7 @@ struct SceneSpec {
   std::optional<std::int64_t> count;
   std::optional<double> density, mean_free_path, optical_depth;
   std::optional<std::string> placement;
-  double min_gap = 0;
+  std::optional<double> min_gap;
   std::vector<double> light_angles{0};
   std::vector<double> view_angles{0};
   std::string near_sensors;

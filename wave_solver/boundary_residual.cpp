@@ -5,7 +5,8 @@
 #include <numbers>
 #include <vector>
 
-#include "core/bessel.h"
+#include "wave_solver/interior_field.h"
+#include "wave_solver/neighbours.h"
 #include "wave_solver/wave_solution.h"
 
 namespace flatspeckle::wave {
@@ -14,34 +15,28 @@ namespace {
 
 using Kind = Scatterer::Kind;
 
-struct Neighbour {
+// A disk and what comes closest to it.
+struct Rim {
   std::size_t disk = 0;
-  double gap = 0;    // to the nearest other scatterer
-  double angle = 0;  // in which direction that is
+  double gap = 0;
+  double angle = 0;  // towards the neighbour
 };
 
-Neighbour nearest_neighbour(const Placement& placement, std::size_t disk) {
-  Neighbour nearest{disk, std::numeric_limits<double>::infinity(), 0};
-  for (std::size_t l = 0; l < placement.size(); ++l) {
-    if (l == disk) continue;
-    const Vec2 d = placement[l].position - placement[disk].position;
-    const Scatterer& other = placement[l].scatterer;
-    const double gap =
-        length(d) - placement[disk].scatterer.radius - (other.is_disk() ? other.radius : 0);
-    if (gap < nearest.gap) nearest = {disk, gap, angle_of(d)};
-  }
-  return nearest;
-}
-
-std::vector<Neighbour> narrowest(const Placement& placement) {
+std::vector<Rim> narrowest(const Placement& placement) {
   constexpr std::size_t most = 16;
-  std::vector<Neighbour> all;
-  for (std::size_t j = 0; j < placement.size(); ++j)
-    if (placement[j].scatterer.is_disk()) all.push_back(nearest_neighbour(placement, j));
-  std::stable_sort(all.begin(), all.end(),
-                   [](const Neighbour& a, const Neighbour& b) { return a.gap < b.gap; });
-  all.resize(std::min(all.size(), most));
-  return all;
+  const auto neighbours = nearest_neighbours(placement);
+  std::vector<Rim> rims;
+  for (std::size_t j = 0; j < placement.size(); ++j) {
+    if (!placement[j].scatterer.is_disk()) continue;
+    const auto& other = placement[neighbours[j].scatterer];
+    rims.push_back(
+        {j, neighbours[j].distance - placement[j].scatterer.radius - other.scatterer.disk_radius(),
+         angle_of(other.position - placement[j].position)});
+  }
+  std::stable_sort(rims.begin(), rims.end(),
+                   [](const Rim& a, const Rim& b) { return a.gap < b.gap; });
+  rims.resize(std::min(rims.size(), most));
+  return rims;
 }
 
 // A field and its derivative along r, divided by k.
@@ -78,38 +73,15 @@ Trace incident(double k, double light_angle, Vec2 point, Vec2 normal) {
   return {wave, Complex(0, dot(w, normal)) * wave};
 }
 
-// Per order of a penetrable disk, what its modes add at the rim, but for their angle, to the field
-// inside, whose coefficients follow from continuity of u: sigma (J_n(x)/T_n + H_n(x)), and to the
-// slope that the outside must have, q J_n'(mx)/J_n(mx) times that (C7).
-std::vector<Trace> interior_waves(const TMatrixSystem& system, std::size_t disk) {
-  const Scatterer& cylinder = system.placement()[disk].scatterer;
-  const int order = system.order(disk);
-  const double x = system.k() * cylinder.radius;
-  const ExtendedComplex m(cylinder.index);
-  const ExtendedComplex q = cylinder.kind == Kind::tm ? m : 1.0L / m;
-  const auto j = bessel_j(order, x);
-  const auto h = hankel(order, x);
-  const auto ratios = bessel_ratios(order, m * static_cast<long double>(x));
-  std::vector<Trace> waves(order + 1);
-  for (int n = 0; n <= order; ++n) {
-    const ExtendedComplex t = system.t_matrix(disk)[n];
-    const ExtendedComplex u = std::sqrt(std::abs(t)) * (j[n] / t + h[n]);
-    const ExtendedComplex slope =
-        q * (static_cast<long double>(n) / (m * static_cast<long double>(x)) - ratios[n]);
-    waves[n] = {Complex(u), Complex(u * slope)};
-  }
-  return waves;
-}
-
 Trace total_inside(std::span<const Complex> beta, const ModeSet& modes,
-                   const std::vector<Trace>& waves, double angle) {
+                   const std::vector<RimWave>& waves, double angle) {
   Trace total{0, 0};
   for (std::size_t i = 0; i < modes.modes.size(); ++i) {
     const int n = modes.modes[i].order;
     const double turn = modes.modes[i].odd ? std::sin(n * angle) : std::cos(n * angle);
     const Complex factor = beta[i] * (n == 0 ? 1 : std::numbers::sqrt2) * turn;
-    total.field += factor * waves[n].field;
-    total.slope += factor * waves[n].slope;
+    total.field += factor * Complex(waves[n].field);
+    total.slope += factor * Complex(waves[n].slope);
   }
   return total;
 }
@@ -120,12 +92,12 @@ double mismatch(Kind kind, const Trace& outside, const Trace& inside) {
   return std::max(std::abs(outside.field - inside.field), std::abs(outside.slope - inside.slope));
 }
 
-double residual_on(const WaveSolution& solution, const Neighbour& rim) {
+double residual_on(const WaveSolution& solution, const Rim& rim) {
   const TMatrixSystem& system = solution.system();
   const auto& [position, scatterer] = system.placement()[rim.disk];
   const bool penetrable = scatterer.kind == Kind::tm || scatterer.kind == Kind::te;
-  if (penetrable && system.t_matrix(rim.disk)[0] == 0.0L) return 0;  // index 1: nothing is there
-  const auto inside_waves = penetrable ? interior_waves(system, rim.disk) : std::vector<Trace>{};
+  if (penetrable && is_transparent(system, rim.disk)) return 0;
+  const auto inside_waves = penetrable ? rim_waves(system, rim.disk) : std::vector<RimWave>{};
   const int count = 2 * std::min(system.order(rim.disk), 24) + 8;
   std::vector<double> angles;
   std::vector<Vec2> normals, points;
@@ -142,8 +114,9 @@ double residual_on(const WaveSolution& solution, const Neighbour& rim) {
       Trace outside = incident(system.k(), solution.light_angles()[light], points[i], normals[i]);
       outside.field += scattered[light * count + i].field;
       outside.slope += scattered[light * count + i].slope;
-      const Trace inside =
-          penetrable ? total_inside(beta, system.modes(rim.disk), inside_waves, angles[i]) : Trace{};
+      const Trace inside = penetrable
+                               ? total_inside(beta, system.modes(rim.disk), inside_waves, angles[i])
+                               : Trace{};
       worst = std::max(worst, mismatch(scatterer.kind, outside, inside));
     }
   }
@@ -154,7 +127,7 @@ double residual_on(const WaveSolution& solution, const Neighbour& rim) {
 
 double boundary_residual(const WaveSolution& solution) {
   double worst = 0;
-  for (const Neighbour& rim : narrowest(solution.system().placement()))
+  for (const Rim& rim : narrowest(solution.system().placement()))
     worst = std::max(worst, residual_on(solution, rim));
   return worst;
 }

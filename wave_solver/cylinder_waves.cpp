@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/bessel.h"
 #include "core/error.h"
 #include "core/hankel_array.h"
+#include "core/scaled_bessel.h"
 
 namespace flatspeckle::wave {
 
@@ -45,22 +45,17 @@ struct Pair {
   }
 };
 
-// Pairs in long double: m up to thousands.
-Pair<ExtendedComplex> extended_pair(double k, Vec2 d, int order) {
-  Pair<ExtendedComplex> pair;
+// Pairs beyond the range of double: m up to thousands.
+Pair<ScaledComplex> scaled_pair(double k, Vec2 d, int order) {
+  Pair<ScaledComplex> pair;
   pair.resize(order);
-  std::vector<ExtendedComplex> h(order + 1);
   const long double x = d.x, z = d.z, r = std::sqrt(x * x + z * z);
-  hankel(static_cast<double>(k * r), h);
-  if (!std::isfinite(std::abs(h.back())))
-    throw InputError(
-        "two disks are so close at this wavelength that translating their waves, of order " +
-        std::to_string(order) + ", leaves the range of numbers; widen the gap (min_gap)");
+  const auto h = scaled_hankel(order, static_cast<double>(k * r));
   const ExtendedComplex turn(z / r, x / r);
   ExtendedComplex phase = 1;
   for (int m = 0; m <= order; ++m) {
-    pair.cosine[m] = h[m] * phase.real();
-    pair.sine[m] = h[m] * phase.imag();
+    pair.cosine[m] = phase.real() * h[m];
+    pair.sine[m] = phase.imag() * h[m];
     phase = product(phase, turn);
   }
   return pair;
@@ -146,17 +141,23 @@ void for_each_pair(double k, const std::vector<Displacement>& displacements,
         table.read(i - first, displacements[i].order, pair);
         element(pair, i);
       } else {
-        element(extended_pair(k, displacements[i].d, displacements[i].order), i);
+        element(scaled_pair(k, displacements[i].d, displacements[i].order), i);
       }
     }
   }
 }
 
 // Weights one after the other: their product may underflow where the wave is large.
-template <typename Number>
-Complex weighted(Number wave, long double to, long double from) {
-  using Real = typename Number::value_type;
-  return Complex(wave * static_cast<Real>(to) * static_cast<Real>(from));
+Complex weighted(Complex wave, const ScaledReal& to, const ScaledReal& from) {
+  return wave * static_cast<double>(to) * static_cast<double>(from);
+}
+Complex weighted(const ScaledComplex& wave, const ScaledReal& to, const ScaledReal& from) {
+  const auto result = static_cast<Complex>(wave * to * from);
+  if (!std::isfinite(result.real()) || !std::isfinite(result.imag()))
+    throw InputError(
+        "two scatterers are so close at this wavelength that translating their waves "
+        "leaves the range of numbers; widen the gap (min_gap)");
+  return result;
 }
 
 void translate_points(double k, std::span<const ModeSet> receivers, const ModeSet& sender,
@@ -167,7 +168,7 @@ void translate_points(double k, std::span<const ModeSet> receivers, const ModeSe
     r[i] = is_zero(d) ? 1 : k * std::sqrt(dot(d, d));
   }
   hankel0(r, {out.data, r.size()});
-  const auto from = static_cast<double>(2 * sender.modes[0].weight);
+  const auto from = 2 * static_cast<double>(sender.modes[0].weight);
   for (std::size_t i = 0; i < r.size(); ++i) {
     const bool apart = !is_zero(receivers[i].centre - sender.centre);
     out.data[i] *= apart ? from * static_cast<double>(receivers[i].modes[0].weight) : 0;

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/complex.h"
+#include "core/scaled.h"
 #include "flatland/domain.h"
 
 namespace flatspeckle::wave {
@@ -15,7 +16,7 @@ namespace flatspeckle::wave {
 struct Mode {
   int order = 0;
   bool odd = false;  ///< sin
-  long double weight = 0;
+  ScaledReal weight;
 };
 
 /// A centre and some of its modes.
@@ -38,8 +39,9 @@ struct Target {
 /// one after the other. With E_m = H_m cos(m theta), O_m = H_m sin(m theta) of the displacement
 /// from sender to receiver, cos p receives E_{n-p} + (-1)^p E_{n+p} from cos n and
 /// O_{n-p} + (-1)^p O_{n+p} from sin n; sin p receives -O_{n-p} + (-1)^p O_{n+p} and
-/// E_{n-p} - (-1)^p E_{n+p}. A receiver at the very place of the sender gets 0. Vectorised over receivers in double precision; pairs whose H_m would
-/// leave its range are done in extended precision. Throws InputError where that does not do either.
+/// E_{n-p} - (-1)^p E_{n+p}. A receiver at the very place of the sender gets 0. Vectorised over
+/// receivers in double precision; pairs whose H_m would leave its range are done in Scaled numbers.
+/// Throws InputError where the result itself is out of range.
 void translate(double k, std::span<const ModeSet> receivers, const ModeSet& sender, Target out);
 
 /// The sender's outgoing modes at points: rows are points.

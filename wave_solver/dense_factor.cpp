@@ -15,12 +15,6 @@ namespace {
 
 constexpr double good = 1e-14;  // backward error
 
-// Measured on zsyrk, csyrk and zsymm: three solutions in single precision and two residuals pay
-// from here on.
-bool mixed_pays(std::size_t unknowns, std::size_t columns) {
-  return unknowns > 30 * columns + 300;
-}
-
 double squared_norm(const Complex* values, std::size_t n) {
   double sum = 0;
   for (std::size_t i = 0; i < n; ++i)
@@ -39,9 +33,8 @@ std::vector<Complex> combination(const std::vector<Complex>& columns, std::size_
   return sum;
 }
 
-bool fits_single(Complex value) {
-  constexpr double most = std::numeric_limits<float>::max();
-  return std::abs(value.real()) < most && std::abs(value.imag()) < most;
+void conjugate(std::vector<Complex>& values) {
+  for (Complex& value : values) value = std::conj(value);
 }
 
 }  // namespace
@@ -49,58 +42,34 @@ bool fits_single(Complex value) {
 DenseFactor::DenseFactor(std::vector<Complex> matrix, std::size_t unknowns)
     : n_(unknowns), matrix_(std::move(matrix)), diagonal_(unknowns) {
   blas_single_thread();
-  double squares = 0;
-  for (std::size_t j = 0; j < n_; ++j) {
-    diagonal_[j] = matrix_[j * (n_ + 1)];
-    double sum = 0;
-    for (std::size_t i = 0; i < n_; ++i) {
-      const double square = std::norm(matrix_[j * n_ + i]);
-      squares += square;
-      sum += std::sqrt(square);
-    }
-    one_norm_ = std::max(one_norm_, sum);
-  }
-  norm_ = std::sqrt(squares);
+  for (std::size_t j = 0; j < n_; ++j) diagonal_[j] = matrix_[j * (n_ + 1)];
+  norm_ = std::sqrt(squared_norm(matrix_.data(), matrix_.size()));
   if (!std::isfinite(norm_))
     throw std::runtime_error("the multiple-scattering equations are not finite");
+  factored_ = factor_symmetric(matrix_.data(), n_, n_);
 }
 
-bool DenseFactor::factor() {
+bool DenseFactor::factor_pivoted() {
   const auto n = static_cast<lapack_int>(n_);
-  factored_ = true;
-  switch (method_) {
-    case Method::mixed:
-      if (!std::all_of(matrix_.begin(), matrix_.end(), fits_single)) return false;
-      single_.assign(matrix_.begin(), matrix_.end());
-      return factor_symmetric(single_.data(), n_, n_);
-    case Method::symmetric:
-      single_ = {};
-      return factor_symmetric(matrix_.data(), n_, n_);
-    default:
-      lu_.resize(n_ * n_);
-      for (std::size_t j = 0; j < n_; ++j) {
-        lu_[j * (n_ + 1)] = diagonal_[j];
-        for (std::size_t i = 0; i < j; ++i) lu_[j * n_ + i] = lu_[i * n_ + j] = matrix_[j * n_ + i];
-      }
-      pivots_.resize(n_);
-      return LAPACKE_zgetrf(LAPACK_COL_MAJOR, n, n, lu_.data(), n, pivots_.data()) == 0;
+  lu_.resize(n_ * n_);
+  for (std::size_t j = 0; j < n_; ++j) {
+    lu_[j * (n_ + 1)] = matrix_[j * (n_ + 1)] = diagonal_[j];
+    for (std::size_t i = 0; i < j; ++i) lu_[j * n_ + i] = lu_[i * n_ + j] = matrix_[j * n_ + i];
   }
+  pivots_.resize(n_);
+  pivoted_ = true;
+  return LAPACKE_zgetrf(LAPACK_COL_MAJOR, n, n, lu_.data(), n, pivots_.data()) == 0;
 }
 
 void DenseFactor::solve_once(std::vector<Complex>& x) const {
   const std::size_t columns = x.size() / n_;
-  const auto n = static_cast<lapack_int>(n_);
-  if (method_ == Method::symmetric) {
-    solve_forward(matrix_.data(), n_, n_, x.data(), columns, n_);
-    solve_backward(matrix_.data(), n_, n_, x.data(), columns, n_);
-  } else if (method_ == Method::mixed) {
-    std::vector<std::complex<float>> y(x.begin(), x.end());
-    solve_forward(single_.data(), n_, n_, y.data(), columns, n_);
-    solve_backward(single_.data(), n_, n_, y.data(), columns, n_);
-    std::copy(y.begin(), y.end(), x.begin());
-  } else {
+  if (pivoted_) {
+    const auto n = static_cast<lapack_int>(n_);
     LAPACKE_zgetrs(LAPACK_COL_MAJOR, 'N', n, static_cast<lapack_int>(columns), lu_.data(), n,
                    pivots_.data(), x.data(), n);
+  } else {
+    solve_forward(matrix_.data(), n_, n_, x.data(), columns, n_);
+    solve_backward(matrix_.data(), n_, n_, x.data(), columns, n_);
   }
 }
 
@@ -152,25 +121,35 @@ bool DenseFactor::refine(const std::vector<Complex>& b, std::vector<Complex>& x)
   }
 }
 
-std::vector<Complex> DenseFactor::right_method(const std::vector<Complex>& b) {
-  for (;;) {
-    const bool ready = factored_ || factor();
-    if (ready) {
-      std::vector<Complex> x = b;
-      solve_once(x);
-      if ((method_ != Method::mixed && is_good(b, x)) || refine(b, x)) return x;
-    }
-    if (method_ == Method::pivoted)
-      throw std::runtime_error("the multiple-scattering equations have no solution in reach");
-    method_ = method_ == Method::mixed ? Method::symmetric : Method::pivoted;
-    factored_ = false;
-  }
+// Empty if it does not do.
+std::vector<Complex> DenseFactor::attempt(const std::vector<Complex>& b) const {
+  std::vector<Complex> x = b;
+  solve_once(x);
+  if (!is_good(b, x) && !refine(b, x)) x.clear();
+  return x;
 }
 
 std::vector<Complex> DenseFactor::solve(const std::vector<Complex>& columns) {
   if (columns.empty() || n_ == 0) return columns;
-  if (!factored_ && mixed_pays(n_, columns.size() / n_)) method_ = Method::mixed;
-  return right_method(columns);
+  std::vector<Complex> x;
+  if (factored_) x = attempt(columns);
+  if (x.empty() && !pivoted_ && (factored_ = factor_pivoted())) x = attempt(columns);
+  if (x.empty())
+    throw std::runtime_error("the multiple-scattering equations have no solution in reach");
+  return x;
+}
+
+double DenseFactor::one_norm() const {
+  std::vector<double> sums(n_);
+  for (std::size_t j = 0; j < n_; ++j) {
+    sums[j] += std::abs(diagonal_[j]);
+    for (std::size_t i = 0; i < j; ++i) {
+      const double size = std::abs(matrix_[j * n_ + i]);
+      sums[i] += size;
+      sums[j] += size;
+    }
+  }
+  return *std::max_element(sums.begin(), sums.end());
 }
 
 double DenseFactor::condition() const {
@@ -181,17 +160,12 @@ double DenseFactor::condition() const {
   lapack_int kase = 0, state[3] = {};
   for (;;) {
     LAPACKE_zlacn2(n, v.data(), x.data(), &inverse_norm, &kase, state);
-    if (kase == 0) return inverse_norm * one_norm_;
-    const bool adjoint = kase == 2;  // (M^-1)^H = conj(M^-1), M being symmetric
-    if (adjoint) std::transform(x.begin(), x.end(), x.begin(), [](Complex c) { return std::conj(c); });
+    if (kase == 0) return inverse_norm * one_norm();
+    const bool adjoint = kase == 2;  // M being symmetric, (M^-1)^H = conj(M^-1)
+    if (adjoint) conjugate(x);
     solve_once(x);
-    if (adjoint) std::transform(x.begin(), x.end(), x.begin(), [](Complex c) { return std::conj(c); });
+    if (adjoint) conjugate(x);
   }
-}
-
-std::string describe(DenseFactor::Method method) {
-  if (method == DenseFactor::Method::mixed) return "single-precision L L^T, refined";
-  return method == DenseFactor::Method::symmetric ? "symmetric L L^T" : "LU with pivoting";
 }
 
 }  // namespace flatspeckle::wave

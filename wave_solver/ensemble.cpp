@@ -35,8 +35,7 @@ SolveOptions batch_options(const Scene& scene, double tolerance) {
 
 FieldPlan field_plan(const Scene& scene, double tolerance) {
   const Domain& box = scene.domain;
-  const double radius =
-      std::hypot(box.width, box.depth) / 2 + scene.scatterer.disk_radius();
+  const double radius = std::hypot(box.width, box.depth) / 2 + scene.scatterer.disk_radius();
   return make_field_plan(scene.request.lights, scene.request.views, scene.k,
                          {{0, box.depth / 2}, radius}, tolerance);
 }

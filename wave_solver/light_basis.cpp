@@ -26,7 +26,8 @@ std::vector<double> wave_sizes(double x, double tolerance) {
 }
 
 // Column-major: rows n = -M .. M of size_n i^n e^{-i n angle}, columns lights.
-std::vector<Complex> coefficients(std::span<const double> angles, const std::vector<double>& sizes) {
+std::vector<Complex> coefficients(std::span<const double> angles,
+                                  const std::vector<double>& sizes) {
   const int most = static_cast<int>(sizes.size()) - 1;
   std::vector<Complex> matrix;
   for (double angle : angles)

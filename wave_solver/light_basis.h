@@ -9,7 +9,7 @@
 namespace flatspeckle::wave {
 
 /// A few of many plane waves, of which the others are combinations within a circle: never more than
-/// about 2 k R + 40, however many lights there are, and fewer where they come from a narrow range.
+/// about 2 k R + 50, however many lights there are, and fewer where they come from a narrow range.
 struct LightBasis {
   std::vector<double> angles;
   std::vector<Complex> weights;  ///< [light][basis]; empty where every light stands for itself
@@ -28,8 +28,9 @@ struct Circle {
 /// Around the rims of all disks.
 Circle enclosing_circle(const Placement& placement);
 
-/// Column-pivoted QR of the waves' Bessel coefficients on the circle (J_n decays beyond k R); what it
-/// leaves out is below tolerance of a unit wave. Falls back to all lights where that saves little.
+/// Column-pivoted QR of the waves' Bessel coefficients on the circle (J_n decays beyond k R); what
+/// it leaves out is below tolerance of a unit wave. Falls back to all lights where that saves
+/// little.
 LightBasis light_basis(std::span<const double> angles, double k, const Circle& circle,
                        double tolerance);
 

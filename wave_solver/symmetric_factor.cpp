@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <type_traits>
 
 #include "wave_solver/blas.h"
 
@@ -10,63 +9,35 @@ namespace flatspeckle::wave {
 
 namespace {
 
-template <typename Real>
 void triangular_solve(CBLAS_SIDE side, CBLAS_TRANSPOSE transpose, std::size_t rows,
-                      std::size_t columns, const std::complex<Real>* l, std::size_t ld,
-                      std::complex<Real>* x, std::size_t ldx) {
-  const std::complex<Real> one = 1;
-  const auto call = [&](auto trsm) {
-    trsm(CblasColMajor, side, CblasLower, transpose, CblasNonUnit, static_cast<blasint>(rows),
-         static_cast<blasint>(columns), &one, l, static_cast<blasint>(ld), x,
-         static_cast<blasint>(ldx));
-  };
-  if constexpr (std::is_same_v<Real, double>)
-    call(cblas_ztrsm);
-  else
-    call(cblas_ctrsm);
+                      std::size_t columns, const Complex* l, std::size_t ld, Complex* x,
+                      std::size_t ldx) {
+  const Complex one = 1;
+  cblas_ztrsm(CblasColMajor, side, CblasLower, transpose, CblasNonUnit, static_cast<blasint>(rows),
+              static_cast<blasint>(columns), &one, l, static_cast<blasint>(ld), x,
+              static_cast<blasint>(ldx));
 }
 
 // C -= W W^T, lower triangle
-template <typename Real>
-void subtract_square(std::size_t n, std::size_t depth, const std::complex<Real>* w,
-                     std::complex<Real>* c, std::size_t ld) {
-  const std::complex<Real> one = 1, minus_one = -1;
-  const auto call = [&](auto syrk) {
-    syrk(CblasColMajor, CblasLower, CblasNoTrans, static_cast<blasint>(n),
-         static_cast<blasint>(depth), &minus_one, w, static_cast<blasint>(ld), &one, c,
-         static_cast<blasint>(ld));
-  };
-  if constexpr (std::is_same_v<Real, double>)
-    call(cblas_zsyrk);
-  else
-    call(cblas_csyrk);
-}
-
-// y -= f x, spelt out: std::complex's product checks for NaN
-template <typename Real>
-void subtract_multiple(std::complex<Real> f, const std::complex<Real>* x, std::complex<Real>* y,
-                       std::size_t n) {
-  const Real re = f.real(), im = f.imag();
-  const Real* from = reinterpret_cast<const Real*>(x);
-  Real* to = reinterpret_cast<Real*>(y);
-  for (std::size_t i = 0; i < n; ++i) {
-    to[2 * i] -= re * from[2 * i] - im * from[2 * i + 1];
-    to[2 * i + 1] -= re * from[2 * i + 1] + im * from[2 * i];
-  }
+void subtract_square(std::size_t n, std::size_t depth, const Complex* w, Complex* c,
+                     std::size_t ld) {
+  const Complex one = 1, minus_one = -1;
+  cblas_zsyrk(CblasColMajor, CblasLower, CblasNoTrans, static_cast<blasint>(n),
+              static_cast<blasint>(depth), &minus_one, w, static_cast<blasint>(ld), &one, c,
+              static_cast<blasint>(ld));
 }
 
 // Column by column.
-template <typename Real>
-bool factor_small(std::complex<Real>* a, std::size_t n, std::size_t ld) {
+bool factor_small(Complex* a, std::size_t n, std::size_t ld) {
   for (std::size_t j = 0; j < n; ++j) {
-    std::complex<Real>* column = a + j * ld;
-    const std::complex<Real> pivot = std::sqrt(column[j]);
+    Complex* column = a + j * ld;
+    const Complex pivot = std::sqrt(column[j]);
     if (!(std::norm(pivot) > 0) || !std::isfinite(std::norm(pivot))) return false;
     column[j] = pivot;
-    const std::complex<Real> inverse = Real(1) / pivot;
-    for (std::size_t i = j + 1; i < n; ++i) column[i] *= inverse;
+    const Complex inverse = 1.0 / pivot;
+    for (std::size_t i = j + 1; i < n; ++i) column[i] = product(column[i], inverse);
     for (std::size_t l = j + 1; l < n; ++l)
-      subtract_multiple(column[l], column + l, a + l * ld + l, n - l);
+      for (std::size_t i = l; i < n; ++i) a[l * ld + i] -= product(column[l], column[i]);
   }
   return true;
 }
@@ -74,8 +45,7 @@ bool factor_small(std::complex<Real>* a, std::size_t n, std::size_t ld) {
 constexpr std::size_t small = 32, block = 192;
 
 // Halves down to small ones, so that the panels of a block are made by BLAS too.
-template <typename Real>
-bool factor_block(std::complex<Real>* a, std::size_t n, std::size_t ld) {
+bool factor_block(Complex* a, std::size_t n, std::size_t ld) {
   if (n <= small) return factor_small(a, n, ld);
   const std::size_t half = n / 2;
   if (!factor_block(a, half, ld)) return false;
@@ -86,11 +56,10 @@ bool factor_block(std::complex<Real>* a, std::size_t n, std::size_t ld) {
 
 }  // namespace
 
-template <typename Real>
-bool factor_symmetric(std::complex<Real>* a, std::size_t n, std::size_t ld) {
+bool factor_symmetric(Complex* a, std::size_t n, std::size_t ld) {
   for (std::size_t first = 0; first < n; first += block) {
     const std::size_t size = std::min(block, n - first), rest = n - first - size;
-    std::complex<Real>* corner = a + first * (ld + 1);
+    Complex* corner = a + first * (ld + 1);
     if (!factor_block(corner, size, ld)) return false;
     if (rest == 0) break;
     triangular_solve(CblasRight, CblasTrans, rest, size, corner, ld, corner + size, ld);
@@ -99,28 +68,14 @@ bool factor_symmetric(std::complex<Real>* a, std::size_t n, std::size_t ld) {
   return true;
 }
 
-template <typename Real>
-void solve_forward(const std::complex<Real>* l, std::size_t n, std::size_t ld,
-                   std::complex<Real>* x, std::size_t columns, std::size_t ldx) {
-  if (n > 0 && columns > 0)
-    triangular_solve(CblasLeft, CblasNoTrans, n, columns, l, ld, x, ldx);
+void solve_forward(const Complex* l, std::size_t n, std::size_t ld, Complex* x, std::size_t columns,
+                   std::size_t ldx) {
+  if (n > 0 && columns > 0) triangular_solve(CblasLeft, CblasNoTrans, n, columns, l, ld, x, ldx);
 }
 
-template <typename Real>
-void solve_backward(const std::complex<Real>* l, std::size_t n, std::size_t ld,
-                    std::complex<Real>* x, std::size_t columns, std::size_t ldx) {
+void solve_backward(const Complex* l, std::size_t n, std::size_t ld, Complex* x,
+                    std::size_t columns, std::size_t ldx) {
   if (n > 0 && columns > 0) triangular_solve(CblasLeft, CblasTrans, n, columns, l, ld, x, ldx);
 }
-
-template bool factor_symmetric(std::complex<double>*, std::size_t, std::size_t);
-template bool factor_symmetric(std::complex<float>*, std::size_t, std::size_t);
-template void solve_forward(const std::complex<double>*, std::size_t, std::size_t,
-                            std::complex<double>*, std::size_t, std::size_t);
-template void solve_forward(const std::complex<float>*, std::size_t, std::size_t,
-                            std::complex<float>*, std::size_t, std::size_t);
-template void solve_backward(const std::complex<double>*, std::size_t, std::size_t,
-                             std::complex<double>*, std::size_t, std::size_t);
-template void solve_backward(const std::complex<float>*, std::size_t, std::size_t,
-                             std::complex<float>*, std::size_t, std::size_t);
 
 }  // namespace flatspeckle::wave

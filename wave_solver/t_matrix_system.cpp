@@ -7,8 +7,10 @@
 #include <utility>
 
 #include "core/error.h"
+#include "core/hankel_array.h"
 #include "core/memory.h"
 #include "core/parallel.h"
+#include "core/phasor.h"
 #include "wave_solver/basis_order.h"
 
 namespace flatspeckle::wave {
@@ -20,8 +22,8 @@ void mirror_lower_triangle(std::vector<Complex>& matrix, std::size_t size) {
   constexpr std::size_t tile = 32;
   for (std::size_t column0 = 0; column0 < size; column0 += tile)
     for (std::size_t row0 = column0; row0 < size; row0 += tile)
-      for (std::size_t column = column0; column < std::min(column0 + tile, size); ++column)
-        for (std::size_t row = std::max(row0, column + 1); row < std::min(row0 + tile, size); ++row)
+      for (std::size_t row = row0; row < std::min(row0 + tile, size); ++row)
+        for (std::size_t column = column0; column < std::min(column0 + tile, row); ++column)
           matrix[row * size + column] = matrix[column * size + row];
 }
 
@@ -47,17 +49,18 @@ Complex product_sum(std::span<const Complex> a, std::span<const Complex> b) {
 
 TMatrixSystem::TMatrixSystem(Placement placement, double k, double tolerance,
                              std::span<const Vec2> sensors)
-    : placement_(std::move(placement)),
-      k_(k),
-      first_{0},
-      t_(basis(placement_, k, tolerance, sensors)) {
+    : placement_(std::move(placement)), k_(k), first_{0} {
+  const auto t = basis(placement_, k, tolerance, sensors);
   for (std::size_t j = 0; j < placement_.size(); ++j) {
-    for (int n = 0; n <= order(j); ++n) {
-      const long double size = std::abs(t_[j][n]), sigma = std::sqrt(size);
-      const Complex diagonal = size > 0 ? Complex(-size / t_[j][n]) : Complex(1);
+    t_.emplace_back();
+    for (int n = 0; n < static_cast<int>(t[j].size()); ++n) {
+      const ScaledReal size = abs(t[j][n]), sigma = sqrt(size);
+      const Complex diagonal =
+          size.value() > 0 ? -static_cast<Complex>(size / t[j][n]) : Complex(1);
+      t_[j].push_back(static_cast<ExtendedComplex>(t[j][n]));
       for (const bool odd : {false, true}) {
         if (n == 0 && odd) continue;
-        modes_.push_back({n, odd, n == 0 ? sigma * root_half : sigma});
+        modes_.push_back({n, odd, n == 0 ? root_half * sigma : sigma});
         diagonal_.push_back(diagonal);
         scatterer_.push_back(j);
       }
@@ -124,10 +127,37 @@ std::vector<ModeSet> TMatrixSystem::all_modes() const {
   return all;
 }
 
+// Order 0 everywhere: plain arrays of distances.
+void TMatrixSystem::point_columns(Complex* matrix) const {
+  const std::size_t size = unknowns();
+  std::vector<double> strength(size);
+  std::vector<Vec2> positions(size);
+  for (std::size_t j = 0; j < size; ++j) {
+    strength[j] = std::numbers::sqrt2 * static_cast<double>(modes_[j].weight);
+    positions[j] = placement_[j].position;
+  }
+  parallel_for(size, [&](std::size_t j) {
+    Complex* const column = matrix + j * (size + 1);
+    std::vector<double> distance(size - j);
+    for (std::size_t i = 1; i < distance.size(); ++i) {
+      const Vec2 d = positions[j + i] - positions[j];
+      distance[i] = k_ * std::sqrt(dot(d, d));
+    }
+    column[0] = diagonal_[j];
+    hankel0(std::span(distance).subspan(1), {column + 1, distance.size() - 1});
+    for (std::size_t i = 1; i < distance.size(); ++i) column[i] *= strength[j] * strength[j + i];
+  });
+}
+
 std::vector<Complex> TMatrixSystem::matrix() const {
   require_memory(unknowns());
   const std::size_t size = unknowns();
   std::vector<Complex> matrix(size * size);
+  if (size == placement_.size()) {
+    point_columns(matrix.data());
+    mirror_lower_triangle(matrix, size);
+    return matrix;
+  }
   const auto all = all_modes();
   parallel_for(all.size(), [&](std::size_t j) {
     Complex* const corner = &matrix[first_[j] * (size + 1)];
@@ -172,9 +202,12 @@ void TMatrixSystem::plane_wave(Vec2 w, Complex factor, std::span<Complex> column
     phase = product(phase, turn);
     power = {-power.imag(), power.real()};
   }
+  std::vector<double> phases;
+  for (const auto& placed : placement_) phases.push_back(k_ * dot(w, placed.position));
+  std::vector<Complex> waves(phases.size());
+  damped_phasors(phases, std::vector<double>(phases.size()), waves);
   for (std::size_t j = 0; j < placement_.size(); ++j) {
-    const Complex there =
-        factor * std::numbers::sqrt2 * std::polar(1.0, k_ * dot(w, placement_[j].position));
+    const Complex there = product(waves[j], std::numbers::sqrt2 * factor);
     for (std::size_t i = first_[j]; i < first_[j + 1]; ++i) {
       const Complex turned = modes_[i].odd ? sines[modes_[i].order] : cosines[modes_[i].order];
       column[i] = product(turned, there) * static_cast<double>(modes_[i].weight);
@@ -198,16 +231,10 @@ std::vector<Complex> TMatrixSystem::far_row(double view_angle) const {
 }
 
 std::vector<Complex> TMatrixSystem::near_row(Vec2 point) const {
+  require_outside(placement_, point);
   std::vector<Complex> row(unknowns());
-  for (std::size_t j = 0; j < placement_.size(); ++j) {
-    const double distance = length(point - placement_[j].position);
-    const bool disk = placement_[j].scatterer.is_disk();
-    if (disk ? distance < placement_[j].scatterer.radius : distance == 0)
-      throw InputError("near_sensors",
-                       "(" + std::to_string(point.x) + ", " + std::to_string(point.z) + ")",
-                       "must lie outside every scatterer");
+  for (std::size_t j = 0; j < placement_.size(); ++j)
     field_at(k_, {&point, 1}, modes(j), {&row[first_[j]], 1});
-  }
   return row;
 }
 

@@ -13,8 +13,8 @@ namespace flatspeckle::wave {
 /// cylinder_waves.h, with b = sigma beta, sigma_n = sqrt|T_n|:
 ///   M beta = -sigma a,   M = diag(-|T_n|/T_n) + sigma S sigma  (diagonal 1 where T_n = 0).
 /// Entries are of moderate size however many orders T_n and S span (C11), and M is complex
-/// symmetric. No scatterer amplifies, -Re 1/T_n >= 1, and Re S + 1 is a Gram matrix of waves, so the
-/// real part of M is positive semidefinite; Schur complements and real congruences keep that.
+/// symmetric. No scatterer amplifies, -Re 1/T_n >= 1, and Re S + 1 is a Gram matrix of waves, so
+/// the real part of M is positive semidefinite; Schur complements and real congruences keep that.
 ///
 /// Unknowns run over scatterers and, within each, over 0, cos 1, sin 1, cos 2, sin 2, .. order.
 class TMatrixSystem {
@@ -37,12 +37,12 @@ class TMatrixSystem {
   ModeSet modes(std::size_t scatterer) const;
 
   Complex diagonal(std::size_t unknown) const { return diagonal_[unknown]; }
-  /// M(rows, columns) into out[i + ld * j], for unknowns listed so that those of one scatterer stand
-  /// side by side.
+  /// M(rows, columns) into out[i + ld * j], for unknowns listed so that those of one scatterer
+  /// stand side by side.
   void entries(std::span<const std::size_t> rows, std::span<const std::size_t> columns,
                Complex* out, std::size_t ld) const;
-  /// Field at points of sigma psi of each column's unknown, into out[i + ld * j]. The points must lie
-  /// off the scatterers concerned.
+  /// Field at points of sigma psi of each column's unknown, into out[i + ld * j]. The points must
+  /// lie off the scatterers concerned.
   void outgoing(std::span<const Vec2> points, std::span<const std::size_t> columns, Complex* out,
                 std::size_t ld) const;
 
@@ -53,8 +53,8 @@ class TMatrixSystem {
 
   /// -sigma a of unit plane waves (C6): [light][unknown].
   std::vector<Complex> right_sides(std::span<const double> light_angles) const;
-  /// What each unknown adds to the far-field amplitude at an angle (C6). By reciprocity a multiple of
-  /// the right side of the light that comes from there.
+  /// What each unknown adds to the far-field amplitude at an angle (C6). By reciprocity a multiple
+  /// of the right side of the light that comes from there.
   std::vector<Complex> far_row(double view_angle) const;
   /// What each unknown adds to the scattered field at a point. Throws InputError for a point inside
   /// a disk or on a point scatterer.
@@ -63,6 +63,7 @@ class TMatrixSystem {
  private:
   struct Listed;
   std::vector<ModeSet> all_modes() const;
+  void point_columns(Complex* matrix) const;
   void plane_wave(Vec2 w, Complex factor, std::span<Complex> column) const;
 
   Placement placement_;

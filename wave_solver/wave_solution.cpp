@@ -8,7 +8,6 @@
 
 #include "wave_solver/blas.h"
 #include "wave_solver/boundary_residual.h"
-#include "wave_solver/dense_factor.h"
 
 namespace flatspeckle::wave {
 
@@ -22,10 +21,9 @@ void require_finite(std::span<const Complex> values) {
 
 // Rows of the scaled equations times sigma are those of the unscaled ones.
 double unscaled_residual(const TMatrixSystem& system, std::span<const Complex> sides,
-                         std::span<const Complex> x) {
-  const auto product = system.apply(x);
+                         std::span<const Complex> product) {
   double left = 0, given = 0;
-  for (std::size_t i = 0; i < x.size(); ++i) {
+  for (std::size_t i = 0; i < product.size(); ++i) {
     const std::size_t unknown = i % system.unknowns(), j = system.scatterer_of(unknown);
     const int n = static_cast<int>(unknown - system.first(j) + 1) / 2;
     const auto weight = static_cast<double>(std::abs(system.t_matrix(j)[n]));
@@ -39,18 +37,19 @@ double unscaled_residual(const TMatrixSystem& system, std::span<const Complex> s
 std::vector<Complex> transposed_product(const std::vector<Complex>& a, const Complex* b,
                                         std::size_t columns_b, std::size_t n) {
   if (n == 0) return {};
-  const auto columns_a = static_cast<blasint>(a.size() / n), columns = static_cast<blasint>(columns_b),
-             rows = static_cast<blasint>(n);
+  const auto columns_a = static_cast<blasint>(a.size() / n),
+             columns = static_cast<blasint>(columns_b), rows = static_cast<blasint>(n);
   std::vector<Complex> result(columns_b * (a.size() / n));
   if (result.empty()) return result;
   const Complex one = 1, zero = 0;
-  cblas_zgemm(CblasColMajor, CblasTrans, CblasNoTrans, columns_a, columns, rows, &one, a.data(), rows,
-              b, rows, &zero, result.data(), columns_a);
+  cblas_zgemm(CblasColMajor, CblasTrans, CblasNoTrans, columns_a, columns, rows, &one, a.data(),
+              rows, b, rows, &zero, result.data(), columns_a);
   return result;
 }
 
 // Columns of the basis, n long, to those of all lights.
-std::vector<Complex> expanded(const LightBasis& basis, std::vector<Complex> columns, std::size_t n) {
+std::vector<Complex> expanded(const LightBasis& basis, std::vector<Complex> columns,
+                              std::size_t n) {
   if (basis.weights.empty() || n == 0) return columns;
   const auto rank = static_cast<blasint>(basis.angles.size()), rows = static_cast<blasint>(n),
              lights = static_cast<blasint>(basis.count());
@@ -131,21 +130,22 @@ WaveSolution solve(const Placement& placement, double k, const std::vector<doubl
   check_no_overlap(placement);
   TMatrixSystem system(placement, k, options.tolerance, options.sensors);
   const auto basis = light_basis(light_angles, k, enclosing_circle(placement), options.tolerance);
-  DenseFactor factor(system.matrix(), system.unknowns());
-  auto x = expanded(basis, factor.solve(system.right_sides(basis.angles)), system.unknowns());
+  EquationSolver solver(system, options.method, options.tolerance);
+  const auto sides = system.right_sides(basis.angles);
+  auto x = solver.solve(sides);
+  Diagnosis diagnosis;
+  if (options.diagnose)
+    diagnosis = {unscaled_residual(system, sides, solver.product(x)), solver.condition(), -1};
+  x = expanded(basis, std::move(x), system.unknowns());
   WaveSolution solution(std::move(system), light_angles, std::move(x));
-  solution.method_ = describe(factor.method());
-  if (options.diagnose) {
-    const TMatrixSystem& solved = solution.system_;
-    solution.diagnosis_ = {
-        unscaled_residual(solved, solved.right_sides(light_angles), solution.coefficients_),
-        factor.condition(), boundary_residual(solution)};
-  }
+  if (options.diagnose) diagnosis.boundary_residual = boundary_residual(solution);
+  solution.diagnosis_ = diagnosis;
+  solution.method_ = solver.description();
   return solution;
 }
 
-FieldPlan make_field_plan(const std::vector<double>& light_angles, std::vector<View> views, double k,
-                          const Circle& circle, double tolerance) {
+FieldPlan make_field_plan(const std::vector<double>& light_angles, std::vector<View> views,
+                          double k, const Circle& circle, double tolerance) {
   FieldPlan plan{light_basis(light_angles, k, circle, tolerance), {}, std::move(views)};
   if (all_far(plan.views)) {
     std::vector<double> angles;
@@ -166,14 +166,15 @@ std::vector<Complex> scattered_fields(const Placement& placement, double k, cons
   const auto rows = view_rows(system, views), sides = system.right_sides(plan.lights.angles);
   const std::size_t lights = plan.lights.angles.size();
   if (n == 0) return std::vector<Complex>(plan.views.size() * plan.lights.count());
-  DenseFactor factor(system.matrix(), n);
+  EquationSolver solver(system, options.method, options.tolerance);
   auto fields = views.size() < lights
-                    ? transposed_product(factor.solve(rows), sides.data(), lights, n)
-                    : transposed_product(rows, factor.solve(sides).data(), lights, n);
+                    ? transposed_product(solver.solve(rows), sides.data(), lights, n)
+                    : transposed_product(rows, solver.solve(sides).data(), lights, n);
   fields = expanded(plan.lights, std::move(fields), views.size());  // [light][basis view]
   if (compressed)
-    fields = transposed(expanded(plan.far_views, transposed(fields, views.size()), plan.lights.count()),
-                        plan.lights.count());
+    fields =
+        transposed(expanded(plan.far_views, transposed(fields, views.size()), plan.lights.count()),
+                   plan.lights.count());
   require_finite(fields);
   return fields;
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "flatland/sensor.h"
+#include "wave_solver/equation_solver.h"
 #include "wave_solver/light_basis.h"
 #include "wave_solver/t_matrix_system.h"
 
@@ -16,6 +17,7 @@ struct SolveOptions {
   std::vector<Vec2> sensors;
   /// Also estimate residual, condition and boundary residual: about the cost of a second assembly.
   bool diagnose = true;
+  Method method = Method::automatic;
 };
 
 /// How far a solution can be trusted; NaN-free, -1 where it was not asked for.

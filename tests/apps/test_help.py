@@ -12,6 +12,8 @@ RUN = ["seed", "samples", "seconds", "target_error", "threads", "resume"]
 PROGRAM = ["config", "print-config", "out", "help"]
 SCENE = SCATTERER + MEDIUM + VIEWS
 KEYS = {
+    "place": ["width", "depth", "radii", "fractions", "count", "packing_fraction", "placement",
+              "min_gap", "seed", "structure", "realizations"],
     "solve": SCENE + ["seed"],
     "covariance": SCENE + ["tilts", "covariance", "method", "wave_samples"] + RUN,
     "validate": SCENE + ["tilts", "covariance", "wave_samples"] + RUN,

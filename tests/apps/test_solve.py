@@ -51,6 +51,13 @@ class Reference(ProgramTest):
         for column in ("x", "z", "radius"):
             np.testing.assert_array_equal(stored[f"placement/{column}"], rows[column])
 
+    def test_the_stored_configuration_runs_again(self):
+        self.call("solve", **DISKS, view_angles=[0, 1], out="first.h5")
+        self.write("stored.toml", attributes(self.folder / "first.h5")["config"])
+        self.call("solve", config="stored.toml", out="second.h5")
+        first, second = (datasets(self.folder / name) for name in ("first.h5", "second.h5"))
+        np.testing.assert_array_equal(first["far_field"], second["far_field"])
+
     def test_order_of_rows_and_spelling_do_not_matter(self):
         self.write("a.csv", "x,z,radius\n0,0,0.3\n1,2,0.2\n")
         self.write("b.csv", "# two disks\r\nradius , z , x\r\n\r\n+2e-1, 2.0, 1\r\n.3,0,0\r\n")
@@ -118,6 +125,25 @@ class Drawn(ProgramTest):
                   out="read.h5")
         np.testing.assert_array_equal(drawn["far_field"],
                                       datasets(self.folder / "read.h5")["far_field"])
+
+
+class Solvers(ProgramTest):
+    """Weakly scattering points, so that the iterative solver ends."""
+
+    POINTS = {"domain": "box", "width": 20, "depth": 20, "scatterer": "point", "phase_shift": 0.2,
+              "count": 2000, "tolerance": 1e-9, "light_angles": [0, 0.3], "view_angles": [0.1, 3]}
+
+    def test_agree(self):
+        for solver in ("dense", "fast", "krylov"):
+            self.call("solve", **self.POINTS, solver=solver, out=f"{solver}.h5")
+            result = datasets(self.folder / f"{solver}.h5")
+            self.assertLess(result["solve/residual"], 1e-9)
+            if solver == "dense":
+                exact = result["far_field"]
+                self.assertGreater(result["solve/condition"], 1)
+            self.assertLess(relative_distance(result["far_field"], exact), 1e-8)
+        self.assertIn("skeletonization", attributes(self.folder / "fast.h5")["plan"])
+        self.assertIn("GMRES", attributes(self.folder / "krylov.h5")["plan"])
 
 
 class FullDisk(ProgramTest):

@@ -1,33 +1,19 @@
 #include <cmath>
 #include <numbers>
+#include <string>
 
-#include <boost/math/constants/constants.hpp>
-#include <boost/math/special_functions/bessel.hpp>
-#include <boost/multiprecision/cpp_bin_float.hpp>
 #include <boost/multiprecision/cpp_complex.hpp>
 #include <doctest/doctest.h>
 
 #include "core/bessel.h"
+#include "core/csv.h"
+#include "tests/core/bessel_oracle.h"
 
 namespace flatspeckle {
 
 namespace {
 
-using Wide = boost::multiprecision::cpp_bin_float_50;
 using WideComplex = boost::multiprecision::cpp_complex_100;
-
-struct Oracle {
-  Wide j, y;
-};
-
-Oracle oracle(int n, double x) {
-  return {boost::math::cyl_bessel_j(n, Wide(x)), boost::math::cyl_neumann(n, Wide(x))};
-}
-
-// |found - exact| / scale without leaving extended range
-double error(long double found, const Wide& exact, const Wide& scale) {
-  return static_cast<double>(abs((Wide(found) - exact) / scale));
-}
 
 // J_n(z) (n! 2^n / z^n) = sum (-z^2/4)^k n! / (k! (n+k)!); J_{n+1}/J_n = z / (2(n+1)) times a
 // ratio.
@@ -45,14 +31,14 @@ WideComplex power_series(int n, const WideComplex& z) {
 }  // namespace
 
 TEST_CASE("Hankel functions agree with 50 digits from far below to far above the turning point") {
-  for (const double x :
-       {1e-3, 0.1, 0.7, 1.0, 2.404825557695773, 3.831705970207512, 6.2, 12.5, 31.0, 77.7, 250.0}) {
+  for (const double x : {1e-8, 1e-3, 0.1, 0.7, 1.0, 2.404825557695773, 3.831705970207512, 6.2, 12.5,
+                         31.0, 77.7, 250.0, 4e3, 1e6}) {
     const auto h = hankel(60, x);
     for (const int n : {0, 1, 2, 3, 5, 9, 17, 30, 31, 45, 60}) {
       CAPTURE(x);
       CAPTURE(n);
-      const auto [j, y] = oracle(n, x);
-      const Wide size = sqrt(j * j + y * y);
+      const auto [j, y] = bessel_oracle(n, x);
+      const Wide size = BesselOracle{j, y}.size();
       CHECK(error(h[n].real(), j, n > x ? abs(j) : size) < 1e-14);
       CHECK(error(h[n].imag(), y, size) < 1e-14);
     }
@@ -63,7 +49,7 @@ TEST_CASE("Orders of several hundred stay in range at small arguments") {
   for (const double x : {1e-3, 0.1, 6.28}) {
     const auto h = hankel(400, x);
     CAPTURE(x);
-    const auto [j, y] = oracle(400, x);
+    const auto [j, y] = bessel_oracle(400, x);
     CHECK(error(h[400].real(), j, abs(j)) < 1e-14);
     CHECK(error(h[400].imag(), y, abs(y)) < 1e-14);
   }
@@ -75,7 +61,7 @@ TEST_CASE("J_n agrees with 50 digits, relative to itself away from zeros") {
     for (const int n : {0, 1, 2, 7, 14, 40, 99, 130}) {
       CAPTURE(x);
       CAPTURE(n);
-      const auto [j, y] = oracle(n, x);
+      const auto [j, y] = bessel_oracle(n, x);
       const bool near_zero = abs(j) < 0.1 * abs(y) && n < x;
       CHECK(error(values[n], j, near_zero ? Wide(1) : abs(j)) < (near_zero ? 1e-15 : 1e-13));
     }
@@ -88,7 +74,7 @@ TEST_CASE("Neighbouring J_n have ratios of full extended precision") {
     for (const int n : {0, 3, 29}) {
       CAPTURE(x);
       CAPTURE(n);
-      const Wide exact = oracle(n + 1, x).j / oracle(n, x).j;
+      const Wide exact = bessel_oracle(n + 1, x).j / bessel_oracle(n, x).j;
       CHECK(error(values[n + 1] / values[n], exact, abs(exact)) < 1e-17);
     }
   }
@@ -126,14 +112,40 @@ TEST_CASE("Wronskian J_{n+1} Y_n - J_n Y_{n+1} = 2 / (pi x), and the two forms o
   }
 }
 
-TEST_CASE("Fast H_0 agrees with 50 digits") {
-  for (double x = 1e-6; x < 1e4; x *= 1.37) {
-    CAPTURE(x);
-    const auto [j, y] = oracle(0, x);
-    const Wide size = sqrt(j * j + y * y);
-    const Complex h = hankel0(x);
-    CHECK(error(h.real(), j, size) < 2e-15);
-    CHECK(error(h.imag(), y, size) < 2e-15);
+TEST_CASE("H_n and J_n agree with Arb from 1e-8 to 1e6") {
+  const Table table = read_csv(FLATSPECKLE_DATA "/reference/bessel_arb.csv");
+  const auto order = table.column("order"), x = table.column("x"), j = table.column("j"),
+             y = table.column("y");
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    CAPTURE(order[row]);
+    CAPTURE(x[row]);
+    const int n = static_cast<int>(order[row]);
+    const double size = std::hypot(j[row], y[row]);
+    const ExtendedComplex h = hankel(n, x[row])[n];
+    CHECK(std::abs(h - ExtendedComplex(j[row], y[row])) < 1e-14 * size);
+    const double j_size = n > x[row] ? std::abs(j[row]) : size;
+    CHECK(std::abs(h.real() - j[row]) < 1e-14 * j_size);
+    CHECK(std::abs(bessel_j(n, x[row])[n] - j[row]) < 1e-14 * j_size);
+  }
+}
+
+TEST_CASE("J_{n+1} / J_n and J_n' / J_n of complex argument agree with Arb") {
+  const Table table = read_csv(FLATSPECKLE_DATA "/reference/bessel_ratio_arb.csv");
+  const auto value = [&](const char* name, std::size_t row) {
+    return ExtendedComplex(table.column(name + std::string("_re"))[row],
+                           table.column(name + std::string("_im"))[row]);
+  };
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    const int n = static_cast<int>(table.column("order")[row]);
+    const ExtendedComplex z = value("z", row), ratio = value("ratio", row);
+    CAPTURE(n);
+    CAPTURE(z);
+    const ExtendedComplex found = bessel_ratios(n, z)[n];
+    const ExtendedComplex slope = static_cast<long double>(n) / z - found;
+    const long double error = 1.1e-19L * std::abs(z) * (1 + std::norm(found));
+    constexpr long double rounding = 1.2e-16L;  // of the table
+    CHECK(std::abs(found - ratio) < error + rounding * std::abs(ratio));
+    CHECK(std::abs(slope - value("slope", row)) < error + rounding * std::abs(slope));
   }
 }
 

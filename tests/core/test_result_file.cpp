@@ -253,6 +253,51 @@ TEST_CASE("a full disk is an IoError and leaves the old file alone") {
   CHECK(folder.entries() == 1);
 }
 
+TEST_CASE("a dataset written in blocks comes back whole, in memory and on disk") {
+  const Folder folder;
+  std::vector<Complex> values(2 * 5 * 7);
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = {static_cast<double>(i), -1};
+  for (const auto storage : {ResultFile::Storage::memory, ResultFile::Storage::disk}) {
+    ResultFile file(folder / "blocks.h5", storage);
+    file.scale("a", std::vector<double>{0, 1}, "1", "");
+    file.scale("b", std::vector<double>(5, 1.0), "1", "");
+    file.scale("c", std::vector<double>(7, 1.0), "1", "");
+    file.begin_dataset("u", {"a", "b", "c"}, {1, 4, 64}, "1", "blocks");
+    for (const std::size_t first : {3, 0})  // rows 3 and 4, then 0 to 2 of b
+      for (const std::size_t a : {0, 1}) {
+        const std::size_t count = first == 0 ? 3 : 2;
+        file.write_block("u", std::span(values).subspan(7 * (5 * a + first), 7 * count),
+                         {a, first, 0}, {1, count, 7});
+      }
+    CHECK_THROWS_AS(file.write_block("u", values, {0, 0, 0}, {1, 1, 1}), std::logic_error);
+    CHECK_THROWS_AS(file.begin_dataset("u", {"a"}, {1}, "1", ""), std::logic_error);
+    file.commit();
+    const ResultReader reader(folder / "blocks.h5");
+    CHECK(reader.dataset<Complex>("u") == values);
+    CHECK(reader.scales("u") == std::vector<std::string>{"a", "b", "c"});
+    CHECK(folder.entries() == 1);
+  }
+}
+
+TEST_CASE("a file on disk leaves nothing without commit or room, and the old one alone") {
+  const Folder folder;
+  write_number(folder / "a.h5", 1);
+  const std::vector<Complex> row(100'000, Complex(0.1, 0.2));
+  {
+    ResultFile file(folder / "a.h5", ResultFile::Storage::disk);
+    file.dataset("u", row, {row.size()}, "1", "");
+    CHECK(folder.entries() == 2);
+  }
+  CHECK(folder.entries() == 1);
+  {
+    const FullDisk full(1'500'000);
+    ResultFile file(folder / "a.h5", ResultFile::Storage::disk);
+    CHECK_THROWS_AS(file.dataset("u", row, {row.size()}, "1", ""), IoError);
+  }
+  CHECK(read_number(folder / "a.h5") == 1);
+  CHECK(folder.entries() == 1);
+}
+
 TEST_CASE("a place that cannot be written is bad input, told at once") {
   const Folder folder;
   std::ofstream(folder / "file") << "text";

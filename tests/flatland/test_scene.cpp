@@ -120,6 +120,24 @@ TEST_CASE("on a slab only matched pairs correlate, and others are refused") {
   CHECK_THROWS_AS(make_scene(spec), InputError);
 }
 
+TEST_CASE("disks are placed one after the other or in equilibrium, apart by default") {
+  SceneSpec spec = box_disks();
+  CHECK(make_scene(spec).placement.kind == PlacementRule::Kind::hard_disk);
+  CHECK(make_scene(spec).placement.min_gap == default_gap * 0.5);
+  spec.min_gap = 0;
+  CHECK(make_scene(spec).placement.min_gap == 0);
+  spec.placement = "equilibrium";
+  spec.count = 175;  // packing 0.687
+  CHECK(make_scene(spec).placement.kind == PlacementRule::Kind::equilibrium);
+  refused(spec, [](auto& s) { s.placement = "hard_disk"; });
+  refused(spec, [](auto& s) { s.min_gap = 0.01; });
+  refused(spec, [](auto& s) { s.count = 177; });
+  spec.count = 5;
+  refused(spec, [](auto& s) { s.depth = 2.9; });
+  refused(box_points(), [](auto& s) { s.placement = "equilibrium"; });
+  CHECK(make_scene(box_points()).placement.min_gap == 0);
+}
+
 TEST_CASE("complex numbers as people write them") {
   CHECK(parse_complex("index", "1.5") == Complex(1.5, 0));
   CHECK(parse_complex("index", "1.5+0.1i") == Complex(1.5, 0.1));

@@ -1,6 +1,7 @@
 // Fixed placements against the tables of data/reference (its README says where they come from).
 
 #include <algorithm>
+#include <sstream>
 #include <string>
 
 #include <doctest/doctest.h>
@@ -36,9 +37,10 @@ ReferenceField read_field(const std::string& name, bool near) {
   return reference;
 }
 
-double error_against(const std::string& name, bool near, const Placement& placement) {
+double error_against(const std::string& name, bool near, const Placement& placement,
+                     double tolerance) {
   const ReferenceField reference = read_field(name, near);
-  SolveOptions options{.sensors = {}, .diagnose = false};
+  SolveOptions options{.tolerance = tolerance, .sensors = {}, .diagnose = false};
   if (near)
     for (const View& view : reference.views) options.sensors.push_back(view.point);
   const auto solution = solve(placement, two_pi, reference.lights, options);
@@ -49,28 +51,36 @@ double error_against(const std::string& name, bool near, const Placement& placem
   return relative_distance(found, reference.field);
 }
 
-double accepted(const std::string& folder, const std::string& kind) {
-  return folder == "g10" && kind == "N" ? 1e-9 : 1e-10;
+// What the tables themselves are good for, where that is more than 1e-13 (their README).
+double table_error(const std::string& folder, const std::string& kind) {
+  if (folder != "g10") return 1e-14;
+  return kind == "N" ? 1e-10 : 3e-13;
 }
 
+// The orders are those that the tolerance needs: no more accurate than 1/1000 of it.
 void check_cluster(const std::string& folder) {
-  for (const std::string kind : {"D", "N", "TM15", "TE15", "TM15abs", "TE15abs"}) {
-    CAPTURE(folder);
-    CAPTURE(kind);
-    const Placement placement = reference_placement(folder, kind);
-    const double far = error_against(folder + "/farfield_" + kind + ".csv", false, placement);
-    const double near = error_against(folder + "/nearfield_" + kind + ".csv", true, placement);
-    MESSAGE(folder << " " << kind << ": relative L2 error far " << far << ", near " << near);
-    CHECK(far <= accepted(folder, kind));
-    CHECK(near <= accepted(folder, kind));
-  }
+  for (const std::string kind : {"D", "N", "TM15", "TE15", "TM15abs", "TE15abs"})
+    for (const bool near : {false, true}) {
+      const Placement placement = reference_placement(folder, kind);
+      const std::string file = folder + (near ? "/nearfield_" : "/farfield_") + kind + ".csv";
+      std::ostringstream line;
+      for (const double tolerance : {1e-3, 1e-6, 1e-9, 1e-12}) {
+        CAPTURE(file);
+        CAPTURE(tolerance);
+        const double error = error_against(file, near, placement, tolerance);
+        CHECK(error < std::max(tolerance, table_error(folder, kind)));
+        CHECK(error > tolerance / 1000);
+        line << " " << error / tolerance;
+      }
+      MESSAGE(file << ", error / tolerance:" << line.str());
+    }
 }
 
-double point_error(const std::string& file, double phase_shift) {
+double point_error(const std::string& file, double phase_shift, double tolerance) {
   Scatterer point;
   point.phase_shift = phase_shift;
   return error_against("p50/farfield_" + file + ".csv", false,
-                       read_placement(reference_path("p50/placement.csv"), point));
+                       read_placement(reference_path("p50/placement.csv"), point), tolerance);
 }
 
 }  // namespace
@@ -85,12 +95,14 @@ TEST_CASE("ten disks, smallest gap 0.043") {
   check_cluster("g10");
 }
 
-TEST_CASE("fifty points") {
-  const double resonant = point_error("resonant_deltapi2", std::numbers::pi / 2);
-  const double weak = point_error("weak_delta0.3", 0.3);
-  MESSAGE("p50: relative L2 error resonant " << resonant << ", weak " << weak);
-  CHECK(resonant <= 1e-10);
-  CHECK(weak <= 1e-10);
+TEST_CASE("fifty points: nothing is truncated, the tolerance does not matter") {
+  for (const double tolerance : {1e-3, 1e-12}) {
+    const double resonant = point_error("resonant_deltapi2", std::numbers::pi / 2, tolerance);
+    const double weak = point_error("weak_delta0.3", 0.3, tolerance);
+    MESSAGE("p50: relative L2 error resonant " << resonant << ", weak " << weak);
+    CHECK(resonant <= 1e-12);
+    CHECK(weak <= 1e-12);
+  }
 }
 
 }  // namespace flatspeckle::wave

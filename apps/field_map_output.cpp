@@ -1,0 +1,99 @@
+#include "apps/field_map_output.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <sstream>
+
+#include "core/error.h"
+#include "core/interrupt.h"
+#include "core/progress.h"
+#include "core/stopwatch.h"
+
+namespace flatspeckle::apps {
+
+namespace {
+
+constexpr double most_pixels = 100'000;  // of a side
+
+std::string words(const auto& numbers) {
+  std::ostringstream text;
+  for (std::size_t i = 0; i < numbers.size(); ++i) text << (i > 0 ? " " : "") << numbers[i];
+  return text.str();
+}
+
+std::size_t pixels_along(const MapSettings& settings, std::size_t side, double extent,
+                         double wavelength) {
+  constexpr double per_wavelength = 10;
+  const double wanted = settings.map_pixels.empty()
+                            ? std::max(1.0, std::round(per_wavelength * extent / wavelength))
+                            : static_cast<double>(settings.map_pixels[side]);
+  if (!(wanted >= 1 && wanted <= most_pixels))
+    throw InputError(
+        "map_pixels", wanted,
+        "must be two whole numbers nx nz from 1 to 100000 (default: ten per wavelength)");
+  return static_cast<std::size_t>(wanted);
+}
+
+std::vector<double> pixel_centres(const wave::MapGrid& grid, std::size_t count, bool along_z) {
+  std::vector<double> centres;
+  for (std::size_t i = 0; i < count; ++i)
+    centres.push_back(along_z ? grid.pixel(0, i).z : grid.pixel(i, 0).x);
+  return centres;
+}
+
+}  // namespace
+
+void add_map_options(CLI::App& app, MapSettings& settings) {
+  app.add_option("--map", settings.map,
+                 "x0 x1 z0 z1: the total field on a grid over this rectangle");
+  app.add_option("--map_pixels", settings.map_pixels,
+                 "nx nz: pixels of the map (default: ten per wavelength)");
+}
+
+std::optional<wave::MapGrid> map_grid(const MapSettings& settings, double wavelength) {
+  const auto& [map, pixels] = settings;
+  if (map.empty()) {
+    if (!pixels.empty()) throw InputError("map_pixels", words(pixels), "needs a map");
+    return std::nullopt;
+  }
+  if (map.size() != 4 || !(map[0] < map[1] && map[2] < map[3]) || !std::isfinite(map[1] - map[0]) ||
+      !std::isfinite(map[3] - map[2]))
+    throw InputError("map", words(map), "must be x0 x1 z0 z1 with x0 < x1 and z0 < z1");
+  if (!pixels.empty() && pixels.size() != 2)
+    throw InputError("map_pixels", words(pixels), "must be nx nz");
+  return wave::MapGrid{{map[0], map[2]},
+                       {map[1], map[3]},
+                       pixels_along(settings, 0, map[1] - map[0], wavelength),
+                       pixels_along(settings, 1, map[3] - map[2], wavelength)};
+}
+
+std::optional<std::string> write_map(ResultFile& file, const wave::WaveSolution& solution,
+                                     const wave::MapGrid& grid, double tolerance) {
+  wave::FieldMap map(solution, grid, tolerance);
+  file.scale("map_z", pixel_centres(grid, grid.nz, true), "length", "depth of the pixels");
+  file.scale("map_x", pixel_centres(grid, grid.nx, false), "length",
+             "transverse place of the pixels");
+  file.begin_dataset("total_field", {"light_angle", "map_z", "map_x"},
+                     {1, wave::map_chunk, wave::map_chunk}, "1",
+                     "incident and scattered field, also inside; 0 in soft and hard disks; on a "
+                     "point scatterer the field that excites it");
+  file.attribute("total_field", "wavelength", 2 * std::numbers::pi / solution.system().k());
+  const auto all = static_cast<std::uint64_t>(grid.nx) * grid.nz;
+  Progress progress("map", {all, std::nullopt, std::nullopt}, "pixels");
+  const Stopwatch clock;
+  double done = 0;
+  constexpr double no_error = std::numeric_limits<double>::infinity();
+  for (const wave::MapTile& tile : map.tiles()) {
+    file.write_block("total_field", map.field(tile), {0, tile.iz, tile.ix},
+                     {solution.light_angles().size(), tile.nz, tile.nx});
+    if (interrupted()) return std::nullopt;
+    done += static_cast<double>(tile.pixels());
+    progress.update(done, done, clock.seconds(), clock.seconds(), no_error);
+  }
+  progress.finish(done, clock.seconds(), no_error);
+  return map.method();
+}
+
+}  // namespace flatspeckle::apps

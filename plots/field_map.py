@@ -1,0 +1,74 @@
+#!/usr/bin/env python3
+"""Amplitude and phase of the total field on the map of `flatspeckle solve --map`, a row per light,
+with the outlines of the disks. Light of angle 0 travels to the right. The highest 0.1 % of the
+amplitudes share one colour."""
+
+import style
+
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.collections import EllipseCollection
+from matplotlib.ticker import MaxNLocator
+
+MOST_LIGHTS = 4
+plt.rcParams["savefig.dpi"] = 118  # pictures without white paper make large files
+
+
+def edges(centres):
+    """Where the first pixel begins and the last one ends."""
+    step = (centres[-1] - centres[0]) / max(len(centres) - 1, 1) or 1
+    return centres[0] - step / 2, centres[-1] + step / 2
+
+
+def outlines(result, wavelength):
+    """Rims of the disks, to be drawn once per panel; points have none."""
+    x, z, radius = (result.values(f"placement/{name}") / wavelength
+                    for name in ("x", "z", "radius"))
+    size = 2 * radius[radius > 0]
+    return {"widths": size, "heights": size, "angles": 0 * size,
+            "offsets": np.column_stack([z, x])[radius > 0]}
+
+
+def panel(figure, axis, values, extent, disks, label, bar="neither", **look):
+    image = axis.imshow(values.T, origin="lower", extent=extent, interpolation="antialiased",
+                        interpolation_stage="rgba", **look)
+    axis.add_collection(EllipseCollection(units="xy", transOffset=axis.transData, **disks,
+                                          facecolors="none", edgecolors="white", linewidths=0.5))
+    axis.set_xlabel(r"$z/\lambda$")
+    axis.tick_params(direction="out", top=False, right=False)
+    return figure.colorbar(image, ax=axis, label=label, extend=bar, shrink=0.9, pad=0.015)
+
+
+def draw_light(figure, axes, field, extent, disks):
+    amplitude = np.abs(field)
+    highest = np.quantile(amplitude, 0.999) or 1
+    panel(figure, axes[0], amplitude, extent, disks, "$|u|$", bar="max", cmap="inferno", vmin=0,
+          vmax=highest)
+    bar = panel(figure, axes[1], np.angle(field), extent, disks, "phase of $u$ (rad)",
+                cmap="twilight", vmin=-np.pi, vmax=np.pi)
+    bar.set_ticks([-np.pi, 0, np.pi], labels=[r"$-\pi$", "0", r"$\pi$"])
+    axes[0].set_ylabel(r"$x/\lambda$")
+    for axis in axes:
+        axis.xaxis.set_major_locator(MaxNLocator(6, steps=[1, 2, 5, 10]))
+        axis.yaxis.set_major_locator(MaxNLocator(6, steps=[1, 2, 5, 10]))
+
+
+def draw(results):
+    result = results[0]
+    field = result.dataset("total_field")
+    wavelength = field.attrs["wavelength"]
+    x, z = (result.values(name) / wavelength for name in ("map_x", "map_z"))
+    extent, lights = (*edges(z), *edges(x)), min(len(field), MOST_LIGHTS)
+    height = (extent[3] - extent[2]) / (extent[1] - extent[0]) * 0.42 * style.PAGE
+    figure, axes = plt.subplots(lights, 2, sharex=True, sharey=True, squeeze=False,
+                                figsize=(style.PAGE, lights * np.clip(height, 0.8, 8)))
+    disks = outlines(result, wavelength)
+    for light in range(lights):
+        draw_light(figure, axes[light], field[light], extent, disks)
+        if lights > 1:
+            axes[light, 0].set_title(f"light {style.angle(result.values('light_angle')[light])}")
+    return figure
+
+
+if __name__ == "__main__":
+    style.main(draw, __doc__)

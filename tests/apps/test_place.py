@@ -1,0 +1,160 @@
+"""place: what it writes, that solve reads it back bit for bit, and what it refuses."""
+
+import unittest
+
+import numpy as np
+
+from program import ProgramTest, attributes, datasets
+
+DISKS = {"width": 12, "depth": 8, "radii": 0.4, "packing_fraction": 0.4}
+MIXED = {"width": 12, "depth": 8, "radii": [0.3, 0.6], "fractions": [3, 1], "count": 60}
+
+
+class PlaceTest(ProgramTest):
+    def place(self, out="placed.csv", **keys):
+        """The columns of the file that is written."""
+        self.call("place", out=out, **keys)
+        lines = [line for line in (self.folder / out).read_text().splitlines() if line[0] != "#"]
+        rows = np.array([[float(field) for field in line.split(",")] for line in lines[1:]])
+        return dict(zip(lines[0].split(","), rows.T))
+
+    def gaps(self, placed):
+        x, z, radius = (placed[name] for name in ("x", "z", "radius"))
+        gaps = np.hypot(x[:, None] - x, z[:, None] - z) - radius[:, None] - radius
+        return gaps[np.triu_indices(len(x), 1)]
+
+
+class Written(PlaceTest):
+    def test_disks(self):
+        for rule in ("hard_disk", "equilibrium"):
+            placed = self.place(**DISKS, placement=rule, min_gap=0.01)
+            self.assertEqual(list(placed), ["x", "z", "radius"])
+            self.assertEqual(len(placed["x"]), 76)  # 0.4 x 96 / (pi 0.16) = 76.4
+            self.assertGreaterEqual(self.gaps(placed).min(), 0.01)
+            self.assertLessEqual(np.abs(placed["x"]).max(), 6)
+            self.assertTrue(0 <= placed["z"].min() and placed["z"].max() <= 8)
+
+    def test_gap_when_none_is_stated(self):
+        placed = self.place(**{**DISKS, "packing_fraction": 0.65}, placement="equilibrium")
+        self.assertGreaterEqual(self.gaps(placed).min(), 0.4e-3)
+
+    def test_mixed_radii(self):
+        for rule in ("hard_disk", "equilibrium"):
+            placed = self.place(**MIXED, placement=rule)
+            sizes, numbers = np.unique(placed["radius"], return_counts=True)
+            self.assertEqual([*sizes, *numbers], [0.3, 0.6, 45, 15])
+            self.assertGreater(self.gaps(placed).min(), 0)
+
+    def test_points(self):
+        placed = self.place(width=5, depth=4, count=17)
+        self.assertEqual(list(placed), ["x", "z"])
+        self.assertEqual(len(placed["x"]), 17)
+
+    def test_says_how_it_was_made(self):
+        self.place(**DISKS, placement="equilibrium", seed=3)
+        head = (self.folder / "placed.csv").read_text().splitlines()[:2]
+        for word in ("# flatspeckle", "--seed 3", "--packing_fraction 0.4", "# equilibrium: 76",
+                     "packing fraction 0.397", "min_gap 4e-04"):
+            self.assertIn(word, "\n".join(head))
+
+    def test_seed(self):
+        for rule in ("hard_disk", "equilibrium"):
+            a, b, c = (self.place(**DISKS, placement=rule, seed=seed)["x"] for seed in (1, 1, 2))
+            np.testing.assert_array_equal(a, b)
+            self.assertFalse(np.any(a == c))
+
+
+class ReadBack(PlaceTest):
+    def test_bit_for_bit(self):
+        placed = self.place(**MIXED, min_gap=0.03)
+        self.call("solve", placement="placed.csv", scatterer="soft", wavelength=4, out="a.h5")
+        stored = datasets(self.folder / "a.h5")
+        for name, values in placed.items():
+            np.testing.assert_array_equal(stored[f"placement/{name}"], values)
+
+    def test_solve_draws_the_same(self):
+        box = {"width": 12, "depth": 8, "seed": 5, "count": 20}
+        light = {"scatterer": "soft", "wavelength": 4}
+        for rule in ("hard_disk", "equilibrium"):
+            self.place(**box, radii=0.4, placement=rule)
+            self.call("solve", placement="placed.csv", **light, out="read.h5")
+            self.call("solve", placement=rule, **box, radius=0.4, **light, out="drawn.h5")
+            read, drawn = (datasets(self.folder / name) for name in ("read.h5", "drawn.h5"))
+            for name in read:
+                np.testing.assert_array_equal(read[name], drawn[name], name)
+
+    def test_ensembles_take_the_rule(self):
+        scene = {"width": 5, "depth": 4, "scatterer": "tm", "radius": 0.3, "index": 1.2,
+                 "count": 40, "min_gap": 0.02, "placement": "equilibrium", "wavelength": 4}
+        self.call("covariance", **scene, method="wave", samples=4, out="wave.h5")
+        self.assertIn("equilibrium placements", attributes(self.folder / "wave.h5")["plan"])
+        self.call("validate", **scene, wave_samples=4, samples=2000, out="both.h5")
+
+
+class Structure(PlaceTest):
+    def test_points(self):
+        self.place(width=12, depth=8, count=50, structure="s.h5", realizations=200)
+        stored = datasets(self.folder / "s.h5")
+        deviation = (stored["structure_factor"] - 1) / stored["structure_factor_error"]
+        self.assertGreater(len(deviation), 40)
+        self.assertLess(np.abs(deviation).max(), 4.5)
+        self.assertNotIn("structure_factor_theory", stored)
+
+    def test_equilibrium(self):
+        self.place(**DISKS, placement="equilibrium", structure="s.h5", realizations=200)
+        stored = datasets(self.folder / "s.h5")
+        theory, error = stored["structure_factor_theory"], stored["structure_factor_error"]
+        deviation = np.abs(stored["structure_factor"] - theory)
+        self.assertTrue(np.all(deviation < 4 * error + 0.02 * theory))
+        self.assertLess(theory.min(), 0.3)
+        self.assertGreater(theory.max(), 1.4)
+        self.assertAlmostEqual(attributes(self.folder / "s.h5")["packing_fraction"], 0.3979, 3)
+
+
+class Refused(PlaceTest):
+    CASES = [
+        ({"width": None}, ["width", "must be positive"]),
+        ({"depth": "nan"}, ["depth = nan", "must be positive"]),
+        ({"radii": [0.4, -1]}, ["radii = -1", "must be positive"]),
+        ({"radii": None}, ["packing_fraction = 0.4", "count"]),
+        ({"fractions": [1, 2]}, ["fractions = 2", "one for each"]),
+        ({"fractions": [0]}, ["fractions = 0", "must be positive"]),
+        ({"count": 5}, ["count, packing_fraction", "one of them"]),
+        ({"packing_fraction": None}, ["no number", "count", "packing_fraction"]),
+        ({"packing_fraction": None, "count": 0}, ["count = 0", "1 to"]),
+        ({"packing_fraction": None, "count": 10**15}, ["count = 1e+15", "1 to"]),
+        ({"packing_fraction": -0.1}, ["packing_fraction = -0.1", "must be positive"]),
+        ({"packing_fraction": 0.6}, ["packing fraction", "0.5", "equilibrium"]),
+        ({"packing_fraction": 0.72, "placement": "equilibrium"}, ["packing fraction", "0.69"]),
+        ({"packing_fraction": 0.6, "min_gap": 0.1, "placement": "equilibrium"},
+         ["packing fraction (with min_gap)", "0.69"]),
+        ({"depth": 2, "placement": "equilibrium"}, ["depth = 2", "three times"]),
+        ({"placement": "poisson"}, ["placement = poisson", "hard_disk or equilibrium"]),
+        ({"placement": "grid"}, ["placement = grid", "poisson hard_disk equilibrium"]),
+        ({"radii": None, "packing_fraction": None, "count": 5, "placement": "equilibrium"},
+         ["placement = equilibrium", "poisson"]),
+        ({"radii": None, "packing_fraction": None, "count": 5, "min_gap": 0.1},
+         ["min_gap = 0.1", "disks"]),
+        ({"min_gap": -1}, ["min_gap = -1", "must not be negative"]),
+        ({"seed": -1}, ["seed = -1", "must not be negative"]),
+        ({"out": None}, ["out", "not given"]),
+        ({"out": "none/placed.csv"}, ["none"]),
+        ({"realizations": 5}, ["realizations = 5", "--structure"]),
+        ({"structure": "s.h5", "realizations": 1}, ["realizations = 1", "at least 2"]),
+        ({"radius": 0.4}, ["radius", "unknown"]),
+    ]
+
+    def test_bad_input(self):
+        for changes, words in self.CASES:
+            with self.subTest(changes=changes):
+                keys = {**DISKS, "out": "placed.csv", **changes}
+                done = self.call("place", **keys, status=2)
+                self.assertEqual(done.stdout, "")
+                self.assertRegex(done.stderr, r"^flatspeckle: [^\n]+\n$")
+                for word in words:
+                    self.assertIn(word, done.stderr)
+                self.assertEqual(self.listing(), {})
+
+
+if __name__ == "__main__":
+    unittest.main()

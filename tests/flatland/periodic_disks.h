@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cmath>
+#include <numbers>
+#include <span>
+#include <vector>
+
+#include "flatland/domain.h"
+
+namespace flatspeckle::tests {
+
+/// Square box in which so many disks of diameter 1 have a packing fraction.
+inline Domain unit_disk_box(std::size_t disks, double packing) {
+  const double side = std::sqrt(static_cast<double>(disks) * std::numbers::pi / (4 * packing));
+  return {Domain::Kind::box, side, side};
+}
+
+/// Distance to the nearest periodic image.
+inline double periodic_distance(const Domain& box, Vec2 a, Vec2 b) {
+  const Vec2 d = a - b;
+  const double x = d.x - box.width * std::floor(d.x / box.width + 0.5);
+  const double z = d.z - box.depth * std::floor(d.z / box.depth + 0.5);
+  return std::sqrt(x * x + z * z);
+}
+
+/// Pairs (j < i) by distance: counts[b] of those in [start + b width, start + (b + 1) width).
+inline void count_pairs(const Domain& box, std::span<const Vec2> centres, double start,
+                        double width, std::span<double> counts) {
+  for (std::size_t i = 0; i < centres.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j) {
+      const double bin = (periodic_distance(box, centres[i], centres[j]) - start) / width;
+      if (bin >= 0 && bin < static_cast<double>(counts.size()))
+        counts[static_cast<std::size_t>(bin)] += 1;
+    }
+}
+
+}  // namespace flatspeckle::tests

@@ -1,0 +1,108 @@
+#include <cmath>
+#include <limits>
+
+#include <doctest/doctest.h>
+
+#include "core/random.h"
+#include "reference.h"
+#include "wave_solver/dense_factor.h"
+#include "wave_solver/symmetric_factor.h"
+#include "wave_solver/t_matrix_system.h"
+
+namespace flatspeckle::wave {
+
+namespace {
+
+// Resonant points, ten to the square wavelength: as badly conditioned as lossless media get.
+TMatrixSystem resonant_points(std::size_t count) {
+  RandomStream random(7, 1, count);
+  const double side = std::sqrt(static_cast<double>(count) / 10);
+  Placement placement(count);
+  for (auto& placed : placement) placed.position = {side * random.uniform(), side * random.uniform()};
+  return {placement, two_pi, 1e-12};
+}
+
+std::vector<Complex> random_columns(std::size_t size) {
+  RandomStream random(8, 1, 0);
+  std::vector<Complex> values(size);
+  for (Complex& value : values) value = {random.uniform() - 0.5, random.uniform() - 0.5};
+  return values;
+}
+
+std::vector<Complex> product(const std::vector<Complex>& matrix, const std::vector<Complex>& x,
+                             std::size_t n) {
+  std::vector<Complex> y(x.size());
+  for (std::size_t column = 0; column < x.size() / n; ++column)
+    for (std::size_t j = 0; j < n; ++j)
+      for (std::size_t i = 0; i < n; ++i)
+        y[column * n + i] += matrix[j * n + i] * x[column * n + j];
+  return y;
+}
+
+// Relative to b; what a stable method leaves is the condition number larger at most.
+double residual(const std::vector<Complex>& matrix, const std::vector<Complex>& x,
+                const std::vector<Complex>& b, std::size_t n) {
+  return relative_distance(product(matrix, x, n), b);
+}
+
+}  // namespace
+
+TEST_CASE("L L^T is the matrix, its upper triangle untouched") {
+  for (const std::size_t n : {1, 31, 32, 33, 200, 500}) {
+    const auto system = resonant_points(n);
+    const auto matrix = system.matrix();
+    auto l = matrix;
+    REQUIRE(factor_symmetric(l.data(), n, n));
+    double worst = 0, upper = 0;
+    for (std::size_t j = 0; j < n; ++j)
+      for (std::size_t i = j; i < n; ++i) {
+        Complex sum = 0;
+        for (std::size_t m = 0; m <= j; ++m) sum += l[m * n + i] * l[m * n + j];
+        worst = std::max(worst, std::abs(sum - matrix[j * n + i]));
+        if (i > j) upper = std::max(upper, std::abs(l[i * n + j] - matrix[i * n + j]));
+      }
+    CAPTURE(n);
+    CHECK(worst < 1e-13);
+    CHECK(upper == 0);
+  }
+}
+
+TEST_CASE("A vanishing pivot is told") {
+  std::vector<Complex> exchange{0, 1, 1, 0};
+  CHECK_FALSE(factor_symmetric(exchange.data(), 2, 2));
+}
+
+TEST_CASE("Resonant points: small residual, no row exchanged") {
+  const auto system = resonant_points(500);
+  const auto b = random_columns(500 * 10);
+  DenseFactor factor(system.matrix(), 500);
+  CHECK(residual(system.matrix(), factor.solve(b), b, 500) < 1e-12);
+  CHECK_FALSE(factor.is_pivoted());
+}
+
+TEST_CASE("A pivot that is small, but not 0, is found out by the residual") {
+  auto matrix = resonant_points(400).matrix();
+  matrix[0] = 1e-14;
+  const auto b = random_columns(400 * 3);
+  DenseFactor factor(matrix, 400);
+  const auto x = factor.solve(b);
+  CHECK(residual(matrix, x, b, 400) < 1e-11);
+}
+
+TEST_CASE("Where no pivot may be kept, rows are exchanged") {
+  const std::vector<Complex> matrix{0, 1, 0, 1, 0, 0, 0, 0, 2};
+  const std::vector<Complex> b{1, 2, 3};
+  DenseFactor factor(matrix, 3);
+  const auto x = factor.solve(b);
+  CHECK(factor.is_pivoted());
+  CHECK(relative_distance(x, std::vector<Complex>{2, 1, 1.5}) < 1e-15);
+  CHECK(factor.condition() == doctest::Approx(2));
+}
+
+TEST_CASE("Singular and infinite systems are refused") {
+  CHECK_THROWS_AS(DenseFactor({1, 1, 1, 1}, 2).solve({1, 2}), std::runtime_error);
+  const double infinity = std::numeric_limits<double>::infinity();
+  CHECK_THROWS_AS(DenseFactor({infinity}, 1), std::runtime_error);
+}
+
+}  // namespace flatspeckle::wave

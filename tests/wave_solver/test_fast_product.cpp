@@ -1,0 +1,125 @@
+#include <cmath>
+#include <limits>
+
+#include <doctest/doctest.h>
+#include <omp.h>
+
+#include "core/random.h"
+#include "reference.h"
+#include "wave_solver/fast_product.h"
+#include "wave_solver/ring_product.h"
+
+namespace flatspeckle::wave {
+
+namespace {
+
+using Kind = Scatterer::Kind;
+
+// On a grid of squares, each shifted by up to `room` of what its square leaves.
+Placement shaken_grid(std::size_t side, double square, const std::vector<Scatterer>& scatterers) {
+  RandomStream random(3, 1, side);
+  Placement placement;
+  for (std::size_t i = 0; i < side * side; ++i) {
+    const Scatterer& s = scatterers[i % scatterers.size()];
+    const double room = std::max(0.0, square - 2.05 * s.disk_radius());
+    placement.push_back({{square * static_cast<double>(i % side) + room * random.uniform(),
+                          square * static_cast<double>(i / side) + room * random.uniform()},
+                         s});
+  }
+  return placement;
+}
+
+std::vector<Complex> random_columns(std::size_t size) {
+  RandomStream random(8, 1, 0);
+  std::vector<Complex> values(size);
+  for (Complex& value : values) value = {random.uniform() - 0.5, random.uniform() - 0.5};
+  return values;
+}
+
+Scatterer disk(Kind kind, double radius, Complex index = 1.5) {
+  return {.kind = kind, .radius = radius, .index = index};
+}
+
+struct Disks {
+  std::size_t side;
+  double square;
+  std::vector<Scatterer> scatterers;
+};
+
+const std::vector<Disks> all_disks{
+    {9, 0.6, {disk(Kind::soft, 0.2)}},
+    {8, 0.6, {disk(Kind::hard, 0.25)}},
+    {6, 3, {disk(Kind::te, 1.1)}},
+    {7, 2.5, {disk(Kind::tm, 0.9, {1.5, 0.1}), disk(Kind::soft, 0.1), {.kind = Kind::point}}},
+    {9, 0.01, {disk(Kind::hard, 0.004)}},
+    {4, 9, {disk(Kind::soft, 4)}},
+    {8, 1.5, {disk(Kind::tm, 0.5, 3.2), disk(Kind::tm, 0.61, 3.2)}},
+};
+
+}  // namespace
+
+TEST_CASE("rings on a grid and near blocks make the matrix, whatever the range") {
+  for (const Disks& disks : all_disks) {
+    const TMatrixSystem system(shaken_grid(disks.side, disks.square, disks.scatterers), two_pi,
+                               1e-10);
+    const auto x = random_columns(2 * system.unknowns());
+    const auto exact = system.apply(x);
+    const double extent = disks.square * static_cast<double>(disks.side);
+    for (const double range : {extent / 12, extent / 4})
+      for (const double tolerance : {1e-5, 1e-11}) {
+        CAPTURE(disks.square);
+        CAPTURE(range);
+        CAPTURE(tolerance);
+        const RingProduct product(system, range, tolerance);
+        CHECK(product.resolved());
+        CHECK(relative_distance(product(x), exact) < tolerance);
+      }
+    const RingProduct stored(system, std::numeric_limits<double>::infinity(), 1e-12);
+    CHECK(relative_distance(stored(x), exact) < 1e-14);
+    CHECK(relative_distance(FastProduct(system, 1e-12)(x), exact) < 1e-12);
+  }
+}
+
+TEST_CASE("points: the sum of sigma H_0 sigma and the diagonal") {
+  Placement placement = shaken_grid(40, 0.3, {{.kind = Kind::point, .phase_shift = 0.3}});
+  for (std::size_t i = 0; i < placement.size(); i += 3) placement[i].scatterer.phase_shift = 1.2;
+  const TMatrixSystem system(placement, two_pi, 1e-12);
+  const auto x = random_columns(3 * system.unknowns());
+  const auto exact = system.apply(x);
+  for (const double tolerance : {1e-3, 1e-6, 1e-9, 1e-12})
+    CHECK(relative_distance(FastProduct(system, tolerance)(x), exact) < tolerance);
+}
+
+TEST_CASE("no scatterer, one, and two close ones") {
+  CHECK(FastProduct(TMatrixSystem({}, two_pi, 1e-10), 1e-10)({}).empty());
+  for (const Placement& placement :
+       {Placement{{{1, 2}, disk(Kind::soft, 0.3)}}, Placement{{{1, 2}, {.kind = Kind::point}}},
+        Placement{{{0, 0}, disk(Kind::hard, 0.3)}, {{0.601, 0}, disk(Kind::hard, 0.3)}}}) {
+    const TMatrixSystem system(placement, two_pi, 1e-10);
+    const auto x = random_columns(system.unknowns());
+    CHECK(relative_distance(FastProduct(system, 1e-12)(x), system.apply(x)) < 1e-12);
+  }
+}
+
+// A whispering gallery: T_n is near 1 where J_n(k a) is below 1e-6.
+TEST_CASE("waves too singular for a grid are told and done without") {
+  const TMatrixSystem system(shaken_grid(10, 2.4, {disk(Kind::tm, 1, 6.0)}), two_pi, 1e-10);
+  CHECK(!RingProduct(system, 3, 1e-12).resolved());
+  const auto x = random_columns(system.unknowns());
+  CHECK(relative_distance(FastProduct(system, 1e-12)(x), system.apply(x)) < 1e-12);
+}
+
+TEST_CASE("the product does not depend on the number of threads") {
+  const TMatrixSystem system(shaken_grid(14, 0.6, {disk(Kind::soft, 0.2)}), two_pi, 1e-8);
+  const auto x = random_columns(2 * system.unknowns());
+  const int threads = omp_get_max_threads();
+  std::vector<std::vector<Complex>> products;
+  for (const int count : {1, 2, 5}) {
+    omp_set_num_threads(count);
+    products.push_back(RingProduct(system, 1.5, 1e-8)(x));
+  }
+  omp_set_num_threads(threads);
+  for (const auto& other : products) CHECK(other == products[0]);
+}
+
+}  // namespace flatspeckle::wave

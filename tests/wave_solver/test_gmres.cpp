@@ -1,0 +1,177 @@
+#include <algorithm>
+#include <cmath>
+
+#include <doctest/doctest.h>
+
+#include "core/random.h"
+#include "reference.h"
+#include "wave_solver/fast_product.h"
+#include "wave_solver/gmres.h"
+#include "wave_solver/wave_solution.h"
+
+namespace flatspeckle::wave {
+
+namespace {
+
+TMatrixSystem points(std::size_t count, double side, double phase_shift) {
+  RandomStream random(4, 1, count);
+  Placement placement;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double x = side * random.uniform(), z = side * random.uniform();
+    placement.push_back({{x, z}, {.kind = Scatterer::Kind::point, .phase_shift = phase_shift}});
+  }
+  return {placement, two_pi, 1e-12};
+}
+
+std::vector<double> lights(int count) {
+  std::vector<double> angles;
+  for (int i = 0; i < count; ++i) angles.push_back(0.1 * i - 0.5);
+  return angles;
+}
+
+// By the slow product.
+std::vector<double> residuals(const TMatrixSystem& system, std::span<const Complex> x,
+                              std::span<const Complex> b) {
+  return relative_residuals([&](auto columns) { return system.apply(columns); }, system.unknowns(),
+                            x, b);
+}
+
+BlockMap dense_map(const std::vector<Complex>& matrix, std::size_t n) {
+  return [&matrix, n](std::span<const Complex> x) {
+    std::vector<Complex> y(x.size());
+    for (std::size_t c = 0; c < x.size() / n; ++c)
+      for (std::size_t j = 0; j < n; ++j)
+        for (std::size_t i = 0; i < n; ++i) y[c * n + i] += matrix[j * n + i] * x[c * n + j];
+    return y;
+  };
+}
+
+}  // namespace
+
+TEST_CASE("weak points: the fields are those of the dense solution") {
+  const auto system = points(800, 25, 0.3);
+  const FastProduct product(system, 1e-12);
+  const auto angles = lights(3);
+  const auto b = system.right_sides(angles);
+  const auto found =
+      gmres([&](auto x) { return product(x); }, system.unknowns(), b, {.tolerance = 1e-10});
+  CHECK(found.converged);
+  const auto solution =
+      solve(system.placement(), two_pi, angles, {.tolerance = 1e-12, .sensors = {}});
+  for (std::size_t light = 0; light < angles.size(); ++light) {
+    CHECK(found.residuals[light] <= 1e-10);
+    const std::span x = std::span(found.x).subspan(light * system.unknowns(), system.unknowns());
+    CHECK(relative_distance(x, solution.coefficients(light)) < 1e-9);
+  }
+  const auto checked = residuals(system, found.x, b);
+  for (std::size_t light = 0; light < angles.size(); ++light)
+    CHECK(std::abs(checked[light] - found.residuals[light]) < 1e-11);
+}
+
+TEST_CASE("residuals of known vectors") {
+  const BlockMap twice = [](std::span<const Complex> x) {
+    std::vector<Complex> y;
+    for (const Complex value : x) y.push_back(2.0 * value);
+    return y;
+  };
+  const std::vector<Complex> x{1, 2, 0, 0, 3, 4}, b{2, 4, 5, {0, 1}, 0, 0};
+  const auto found = relative_residuals(twice, 2, x, b);
+  CHECK(found[0] == 0);
+  CHECK(found[1] == doctest::Approx(1));
+  CHECK(found[2] == doctest::Approx(10));
+}
+
+TEST_CASE("resonant points do not converge, and that is said") {
+  const auto system = points(600, 6, two_pi / 4);
+  const auto matrix = system.matrix();
+  const auto b = system.right_sides(lights(2));
+  const auto found = gmres(dense_map(matrix, 600), 600, b, {.tolerance = 1e-8, .products = 40});
+  CHECK(!found.converged);
+  const auto checked = residuals(system, found.x, b);
+  for (std::size_t light = 0; light < 2; ++light) {
+    CHECK(found.residuals[light] > 1e-8);
+    CHECK(found.residuals[light] < 1);
+    CHECK(found.residuals[light] == doctest::Approx(checked[light]).epsilon(1e-6));
+    CHECK(found.steps[light] <= 40);
+  }
+}
+
+TEST_CASE("stagnating restarts end, with the residual told") {
+  const auto system = points(600, 6, two_pi / 4);
+  const auto matrix = system.matrix();
+  const auto found = gmres(dense_map(matrix, 600), 600, system.right_sides(lights(1)),
+                           {.tolerance = 1e-10, .products = 100000, .basis_bytes = 16 * 600 * 20});
+  CHECK(!found.converged);
+  CHECK(found.residuals[0] > 1e-10);
+  CHECK(found.steps[0] < 10000);
+}
+
+TEST_CASE("restarts reach the tolerance where each brings enough") {
+  const auto system = points(500, 30, 0.3);
+  const auto matrix = system.matrix();
+  const auto found = gmres(dense_map(matrix, 500), 500, system.right_sides(lights(2)),
+                           {.tolerance = 1e-10, .basis_bytes = 16 * 500 * 60});
+  CHECK(found.converged);
+  CHECK(found.steps[0] > 30);
+}
+
+TEST_CASE("right sides that share a space need fewer steps than each alone") {
+  const std::size_t n = 500;
+  const auto system = points(n, 12, 0.3);
+  const auto matrix = system.matrix();
+  const auto b = system.right_sides(lights(8));
+  const auto apart = gmres(dense_map(matrix, n), n, b, {.tolerance = 1e-6, .block = 1});
+  const auto together = gmres(dense_map(matrix, n), n, b, {.tolerance = 1e-6, .block = 8});
+  CHECK(apart.converged);
+  CHECK(together.converged);
+  CHECK(together.steps[0] * 2 < apart.steps[0]);
+  CHECK(relative_distance(together.x, apart.x) < 1e-4);
+}
+
+TEST_CASE("dependent, equal and vanishing right sides") {
+  const auto system = points(200, 8, 0.3);
+  const auto matrix = system.matrix();
+  const std::size_t n = 200;
+  auto b = system.right_sides(lights(4));
+  for (std::size_t i = 0; i < n; ++i) {
+    b[n + i] = b[i];
+    b[2 * n + i] = 0;
+    b[3 * n + i] *= 1e-20;
+  }
+  const auto found = gmres(dense_map(matrix, n), n, b, {.tolerance = 1e-11});
+  CHECK(found.converged);
+  CHECK(found.residuals[2] == 0);
+  const auto checked = residuals(system, found.x, b);
+  for (const std::size_t column : {0, 1, 3}) CHECK(checked[column] < 1.1e-11);
+  for (std::size_t i = 0; i < n; ++i) CHECK(found.x[2 * n + i] == Complex());
+}
+
+TEST_CASE("more right sides than unknowns, and spaces that are used up") {
+  for (const std::size_t n : {1, 2, 7}) {
+    const auto system = points(n, 2, two_pi / 4);
+    const auto matrix = system.matrix();
+    const auto b = system.right_sides(lights(11));
+    const auto found = gmres(dense_map(matrix, n), n, b, {.tolerance = 1e-12});
+    CHECK(found.converged);
+    const auto checked = residuals(system, found.x, b);
+    CHECK(*std::max_element(checked.begin(), checked.end()) < 2e-12);
+  }
+  CHECK(gmres({}, 0, {}).converged);
+}
+
+// The preconditioner is a solution to three digits, as a factorization of low accuracy gives.
+TEST_CASE("a preconditioner makes it iterative refinement, resonant points or not") {
+  const auto system = points(400, 6, two_pi / 4);
+  const auto matrix = system.matrix();
+  const auto b = system.right_sides(lights(3));
+  const BlockMap inverse = [&](std::span<const Complex> x) {
+    std::vector<Complex> y(x.begin(), x.end());
+    return gmres(dense_map(matrix, 400), 400, x, {.tolerance = 1e-3}).x;
+  };
+  const auto found =
+      gmres(dense_map(matrix, 400), 400, b, {.tolerance = 1e-11, .preconditioner = inverse});
+  CHECK(found.converged);
+  CHECK(found.steps[0] <= 8);
+}
+
+}  // namespace flatspeckle::wave

@@ -1,0 +1,196 @@
+#include <cmath>
+
+#include <doctest/doctest.h>
+#include <omp.h>
+
+#include "core/bessel.h"
+#include "core/random.h"
+#include "reference.h"
+#include "wave_solver/grid_sum.h"
+#include "wave_solver/helmholtz_sum.h"
+
+namespace flatspeckle::wave {
+
+namespace {
+
+std::vector<Vec2> points_in_box(std::size_t count, double width, double depth,
+                                std::uint64_t seed = 1) {
+  RandomStream random(seed, 1, count);
+  std::vector<Vec2> points(count);
+  for (Vec2& p : points) p = {width * (random.uniform() - 0.5), depth * random.uniform()};
+  return points;
+}
+
+std::vector<Complex> random_charges(std::size_t count) {
+  RandomStream random(5, 2, count);
+  std::vector<Complex> charges(count);
+  for (Complex& q : charges) q = {random.uniform() - 0.5, random.uniform() - 0.5};
+  return charges;
+}
+
+// The slow oracle.
+std::vector<Complex> direct_sum(double k, const std::vector<Vec2>& sources,
+                                const std::vector<Vec2>& targets,
+                                const std::vector<Complex>& charges) {
+  const std::size_t columns = charges.size() / sources.size();
+  std::vector<Complex> sums(columns * targets.size());
+  for (std::size_t i = 0; i < targets.size(); ++i)
+    for (std::size_t j = 0; j < sources.size(); ++j) {
+      const double r = length(targets[i] - sources[j]);
+      if (r == 0) continue;
+      const Complex h = Complex(hankel(0, k * r)[0]);
+      for (std::size_t c = 0; c < columns; ++c)
+        sums[c * targets.size() + i] += h * charges[c * sources.size() + j];
+    }
+  return sums;
+}
+
+constexpr double tolerances[] = {1e-3, 1e-6, 1e-9, 1e-12};
+
+void check_accuracy(double k, const std::vector<Vec2>& points) {
+  const auto charges = random_charges(points.size());
+  const auto exact = direct_sum(k, points, points, charges);
+  for (const double tolerance : tolerances) {
+    CAPTURE(tolerance);
+    const HelmholtzSum sum(k, points, tolerance);
+    CHECK(sum.range() > 0);
+    CHECK(relative_distance(sum(charges), exact) < tolerance);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("near and far parts make H_0, near vanishes at its range") {
+  for (const double range : {1e-3, 0.3, 2.0, 30.0})
+    for (const double tolerance : tolerances) {
+      const KernelSplit split(two_pi, range, tolerance);
+      CHECK(split.band() > two_pi);
+      const std::vector<double> distances{1e-6 * range,  0.1 * range,   0.7 * range,
+                                          0.999 * range, 1.001 * range, 5 * range};
+      std::vector<double> near(distances.size());
+      std::vector<Complex> far(distances.size());
+      split.near(distances, near);
+      split.far(distances, far);
+      for (std::size_t i = 0; i < near.size(); ++i) {
+        const Complex exact = Complex(hankel(0, two_pi * distances[i])[0]);
+        CHECK(std::abs(far[i] + Complex(0, near[i]) - exact) < 1e-13 * std::abs(exact));
+      }
+      CHECK(std::abs(near[3]) < 1e-7);
+      CHECK(near[4] == 0);
+    }
+}
+
+// far = H_0 convolved with a mollifier, so that its Laplacian + k^2 is the mollifier: within the
+// range far is no wave, but its Laplacian there must be smooth, and equal -k^2 far beyond.
+TEST_CASE("the far part is a wave beyond the range and smooth at it") {
+  const double k = two_pi, range = 0.8, step = 1e-3;
+  const KernelSplit split(k, range, 1e-10);
+  const auto source = [&](double r) {
+    const std::vector<double> at{r - step, r, r + step};
+    std::vector<Complex> u(3);
+    split.far(at, u);
+    return std::abs((u[2] - 2.0 * u[1] + u[0]) / (step * step) + (u[2] - u[0]) / (2 * step * r) +
+                    k * k * u[1]);
+  };
+  CHECK(source(1.1 * range) < 1e-3);
+  CHECK(source(range) < 1e-3);
+  CHECK(source(0.05 * range) > 1);
+}
+
+TEST_CASE("the sum is as accurate as asked for, in boxes of all shapes") {
+  struct Box {
+    std::size_t count;
+    double width, depth;
+  };
+  for (const Box box : {Box{1500, 12, 12},
+                        {1500, 40, 3},
+                        {1500, 0.02, 60},
+                        {1500, 100, 100},
+                        {1500, 1, 1},
+                        {1500, 1e-3, 1e-3},
+                        {1500, 1e-5, 2e-7}}) {
+    CAPTURE(box.width);
+    check_accuracy(two_pi, points_in_box(box.count, box.width, box.depth));
+  }
+}
+
+TEST_CASE("the sum scales with the wavelength") {
+  const auto points = points_in_box(1200, 10, 10);
+  std::vector<Vec2> larger;
+  for (const Vec2 p : points) larger.push_back(1e4 * p);
+  const auto charges = random_charges(points.size());
+  CHECK(relative_distance(HelmholtzSum(two_pi * 1e-4, larger, 1e-9)(charges),
+                          HelmholtzSum(two_pi, points, 1e-9)(charges)) < 1e-9);
+}
+
+TEST_CASE("close points count in full, coincident ones not at all") {
+  auto points = points_in_box(1500, 12, 12);
+  for (std::size_t i = 0; i < 50; ++i) {
+    points[100 + i] = points[i] + Vec2{1e-6, 0};
+    points[200 + i] = points[i] + Vec2{0, -1e-10};
+    points[300 + i] = points[i];
+  }
+  check_accuracy(two_pi, points);
+}
+
+TEST_CASE("points on a line, clustered, and on the corners of the box") {
+  check_accuracy(two_pi, points_in_box(1500, 0, 50));
+  check_accuracy(two_pi, points_in_box(1500, 50, 0));
+  auto clustered = points_in_box(1500, 20, 20);
+  for (std::size_t i = 0; i < 500; ++i) clustered[i] = 1e-3 * clustered[i];
+  for (const Vec2 corner : {Vec2{-10, 0}, {10, 0}, {-10, 20}, {10, 20}})
+    clustered.push_back(corner);
+  check_accuracy(two_pi, clustered);
+}
+
+TEST_CASE("no, one and two points") {
+  CHECK(HelmholtzSum(two_pi, {}, 1e-9)({}).empty());
+  const std::vector<Vec2> pair{{0, 0}, {0.3, 0.4}};
+  CHECK(HelmholtzSum(two_pi, std::span(pair).first(1), 1e-9)(random_charges(1))[0] == Complex());
+  const auto charges = random_charges(2);
+  CHECK(relative_distance(HelmholtzSum(two_pi, pair, 1e-9)(charges),
+                          direct_sum(two_pi, pair, pair, charges)) < 1e-14);
+  const std::vector<Vec2> same(3, Vec2{1, 1});
+  for (const Complex u : HelmholtzSum(two_pi, same, 1e-9)(random_charges(3))) CHECK(u == Complex());
+}
+
+TEST_CASE("few points very far apart are summed as they are") {
+  const auto points = points_in_box(300, 1e6, 1e6);
+  const HelmholtzSum sum(two_pi, points, 1e-12);
+  CHECK(sum.range() == 0);
+  const auto charges = random_charges(points.size());
+  CHECK(relative_distance(sum(charges), direct_sum(two_pi, points, points, charges)) < 1e-13);
+}
+
+TEST_CASE("targets apart from sources, several columns") {
+  auto sources = points_in_box(1200, 12, 12), targets = points_in_box(2500, 6, 25, 2);
+  targets[7] = sources[3];
+  const auto charges = random_charges(3 * sources.size());
+  const auto exact = direct_sum(two_pi, sources, targets, charges);
+  for (const double tolerance : tolerances) {
+    const HelmholtzSum sum(two_pi, sources, targets, tolerance);
+    CHECK(sum.range() > 0);
+    CHECK(relative_distance(sum(charges), exact) < tolerance);
+  }
+  CHECK(HelmholtzSum(two_pi, sources, {}, 1e-6)(charges).empty());
+}
+
+TEST_CASE("the sum does not depend on the number of threads") {
+  const auto points = points_in_box(3000, 17, 17);
+  const auto charges = random_charges(2 * points.size());
+  const int threads = omp_get_max_threads();
+  std::vector<std::vector<Complex>> sums;
+  for (const int count : {1, 2, 3, 7}) {
+    omp_set_num_threads(count);
+    sums.push_back(HelmholtzSum(two_pi, points, 1e-9)(charges));
+  }
+  omp_set_num_threads(threads);
+  const HelmholtzSum sum(two_pi, points, 1e-9);
+  std::vector<std::vector<Complex>> inside(2);
+#pragma omp parallel for num_threads(2)
+  for (std::size_t i = 0; i < 2; ++i) inside[i] = sum(charges);
+  sums.insert(sums.end(), inside.begin(), inside.end());
+  for (const auto& other : sums) CHECK(other == sums[0]);
+}
+
+}  // namespace flatspeckle::wave

@@ -1,0 +1,92 @@
+#include <doctest/doctest.h>
+
+#include "reference.h"
+#include "wave_solver/light_basis.h"
+#include "wave_solver/wave_solution.h"
+
+namespace flatspeckle::wave {
+
+namespace {
+
+std::vector<double> fan(double first, double last, int lights) {
+  std::vector<double> angles;
+  for (int i = 0; i < lights; ++i) angles.push_back(first + (last - first) * i / lights);
+  return angles;
+}
+
+constexpr Circle circle{{0.7, -2}, 1.5};
+
+// The largest error of the combinations over points in the circle.
+double worst_error(const std::vector<double>& angles, const LightBasis& basis) {
+  double worst = 0;
+  const std::size_t rank = basis.angles.size();
+  for (std::size_t light = 0; light < angles.size(); ++light)
+    for (int i = 0; i < 40; ++i) {
+      const Vec2 point = circle.centre + circle.radius * (i % 10 / 9.0) * direction(i);
+      Complex sum = 0;
+      for (std::size_t j = 0; j < rank; ++j)
+        sum += basis.weights[light * rank + j] *
+               std::polar(1.0, two_pi * dot(direction(basis.angles[j]), point));
+      const Complex wave = std::polar(1.0, two_pi * dot(direction(angles[light]), point));
+      worst = std::max(worst, std::abs(sum - wave));
+    }
+  return worst;
+}
+
+}  // namespace
+
+TEST_CASE("Many lights are combinations of few") {
+  for (const double tolerance : {1e-3, 1e-6, 1e-12}) {
+    const auto around = fan(0, two_pi, 200), narrow = fan(0.2, 0.4, 33);
+    const auto all = light_basis(around, two_pi, circle, tolerance);
+    const auto some = light_basis(narrow, two_pi, circle, tolerance);
+    CAPTURE(tolerance);
+    CHECK(all.count() == 200);
+    CHECK(all.angles.size() > 2 * two_pi * circle.radius);
+    CHECK(all.angles.size() < 2 * two_pi * circle.radius + 50);
+    CHECK(some.angles.size() < 16);
+    CHECK(worst_error(around, all) < 10 * tolerance);
+    CHECK(worst_error(narrow, some) < 10 * tolerance);
+  }
+}
+
+TEST_CASE("Lights that no fewer can stand for are left alone") {
+  const auto angles = fan(0, two_pi, 20);
+  const auto basis = light_basis(angles, two_pi, circle, 1e-6);
+  CHECK(basis.angles == angles);
+  CHECK(basis.weights.empty());
+  CHECK(light_basis(fan(0, 0.1, 3), two_pi, circle, 1e-6).weights.empty());
+}
+
+TEST_CASE("Compressed lights and exchanged views change no field") {
+  const Placement placement = reference_placement("g10", "TE15");
+  const SolveOptions options{.tolerance = 1e-12, .sensors = {}, .diagnose = false};
+  const Circle around = enclosing_circle(placement);
+  for (const auto& [lights, views] : {std::pair{120, 40}, std::pair{30, 300}, std::pair{200, 200}}) {
+    const auto angles = fan(-1, 1, lights);
+    std::vector<View> sensors;
+    for (double angle : fan(0, two_pi, views)) sensors.push_back(far_view(angle));
+    // Each light solved for by itself, and each view taken from it.
+    std::vector<Complex> one_by_one;
+    for (double angle : angles) {
+      const auto fields = solve(placement, two_pi, {angle}, options).fields(sensors);
+      one_by_one.insert(one_by_one.end(), fields.begin(), fields.end());
+      if (one_by_one.size() > 2000) break;
+    }
+    const auto plan = make_field_plan(angles, sensors, two_pi, around, 1e-12);
+    auto fields = scattered_fields(placement, two_pi, plan, options);
+    CHECK(fields.size() == angles.size() * sensors.size());
+    fields.resize(one_by_one.size());
+    CHECK(relative_distance(fields, one_by_one) < 1e-11);
+  }
+}
+
+TEST_CASE("The circle holds all rims") {
+  const Placement placement = reference_placement("g10", "D");
+  const Circle around = enclosing_circle(placement);
+  for (const auto& [position, disk] : placement)
+    CHECK(length(position - around.centre) + disk.radius <= around.radius * (1 + 1e-15));
+  CHECK(enclosing_circle({}).radius == 0);
+}
+
+}  // namespace flatspeckle::wave
