@@ -17,6 +17,8 @@ namespace flatspeckle::wave {
 
 namespace {
 
+constexpr std::size_t worth_threads = 300;  // unknowns
+
 // Tile by tile, so that reads and writes stay in cache.
 void mirror_lower_triangle(std::vector<Complex>& matrix, std::size_t size) {
   constexpr std::size_t tile = 32;
@@ -136,7 +138,7 @@ void TMatrixSystem::point_columns(Complex* matrix) const {
     strength[j] = std::numbers::sqrt2 * static_cast<double>(modes_[j].weight);
     positions[j] = placement_[j].position;
   }
-  parallel_for(size, [&](std::size_t j) {
+  parallel_for(size, size > worth_threads, [&](std::size_t j) {
     Complex* const column = matrix + j * (size + 1);
     std::vector<double> distance(size - j);
     for (std::size_t i = 1; i < distance.size(); ++i) {
@@ -159,7 +161,7 @@ std::vector<Complex> TMatrixSystem::matrix() const {
     return matrix;
   }
   const auto all = all_modes();
-  parallel_for(all.size(), [&](std::size_t j) {
+  parallel_for(all.size(), size > worth_threads, [&](std::size_t j) {
     Complex* const corner = &matrix[first_[j] * (size + 1)];
     const std::size_t height = all[j].modes.size();
     for (std::size_t i = 0; i < height; ++i) corner[i * (size + 1)] = diagonal_[first_[j] + i];
