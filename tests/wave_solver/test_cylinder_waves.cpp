@@ -65,7 +65,8 @@ TEST_CASE("Sending back is the transpose") {
   translate(k, {&a, 1}, b, {back.data(), n});
   for (std::size_t i = 0; i < n; ++i)
     for (std::size_t j = 0; j < n; ++j)
-      CHECK(std::abs(forth[j * n + i] - back[i * n + j]) < 1e-13 * std::abs(forth[j * n + i]) + 1e-15);
+      CHECK(std::abs(forth[j * n + i] - back[i * n + j]) <
+            1e-13 * std::abs(forth[j * n + i]) + 1e-15);
 }
 
 TEST_CASE("Values and slopes at points") {
@@ -103,8 +104,9 @@ TEST_CASE("Large orders at small distances leave double, not the result") {
   // Statics: J_p H_{n+p} J_n -> (n+p)! / (n! p!) (x/r)^{n+p} / (pi (n+p)) of the size parameters.
   const int p = order;
   const Complex element = block[(2 * p - 1) * n + (2 * p - 1)];
-  const double expected = std::exp(std::lgamma(2 * p) - 2 * std::lgamma(p + 1) +
-                                   2 * p * std::log(0.1 / 0.3)) / std::numbers::pi;
+  const double expected =
+      std::exp(std::lgamma(2 * p) - 2 * std::lgamma(p + 1) + 2 * p * std::log(0.1 / 0.3)) /
+      std::numbers::pi;
   CHECK(std::abs(element) == doctest::Approx(expected).epsilon(1e-3));
   const std::vector<Mode> bare = unit_modes(2500);
   const ModeSet c{{0, 0}, bare, 2500}, d{{1e-6, 0}, bare, 2500};

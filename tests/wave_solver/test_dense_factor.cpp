@@ -18,7 +18,8 @@ TMatrixSystem resonant_points(std::size_t count) {
   RandomStream random(7, 1, count);
   const double side = std::sqrt(static_cast<double>(count) / 10);
   Placement placement(count);
-  for (auto& placed : placement) placed.position = {side * random.uniform(), side * random.uniform()};
+  for (auto& placed : placement)
+    placed.position = {side * random.uniform(), side * random.uniform()};
   return {placement, two_pi, 1e-12};
 }
 
@@ -62,7 +63,7 @@ TEST_CASE("L L^T is the matrix, its upper triangle untouched") {
         if (i > j) upper = std::max(upper, std::abs(l[i * n + j] - matrix[i * n + j]));
       }
     CAPTURE(n);
-    CHECK(worst < 1e-13);
+    CHECK(worst < 1e-12);  // n rounding errors of entries of L of moderate size
     CHECK(upper == 0);
   }
 }

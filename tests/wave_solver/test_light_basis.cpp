@@ -62,7 +62,8 @@ TEST_CASE("Compressed lights and exchanged views change no field") {
   const Placement placement = reference_placement("g10", "TE15");
   const SolveOptions options{.tolerance = 1e-12, .sensors = {}, .diagnose = false};
   const Circle around = enclosing_circle(placement);
-  for (const auto& [lights, views] : {std::pair{120, 40}, std::pair{30, 300}, std::pair{200, 200}}) {
+  for (const auto& [lights, views] :
+       {std::pair{120, 40}, std::pair{30, 300}, std::pair{200, 200}}) {
     const auto angles = fan(-1, 1, lights);
     std::vector<View> sensors;
     for (double angle : fan(0, two_pi, views)) sensors.push_back(far_view(angle));
