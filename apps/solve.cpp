@@ -73,7 +73,7 @@ void write_placement(ResultFile& file, const wave::WaveSolution& solution) {
   for (const auto& [position, scatterer] : placement) {
     x.push_back(position.x);
     z.push_back(position.z);
-    radius.push_back(scatterer.is_disk() ? scatterer.radius : 0);
+    radius.push_back(scatterer.disk_radius());
   }
   const std::vector<Axis> axes = {placement.size()};
   file.dataset("placement/x", x, axes, "length", "transverse position");

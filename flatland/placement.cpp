@@ -50,10 +50,6 @@ std::vector<Vec2> add_disks(const Domain& box, std::span<const double> radii,
   return centres;
 }
 
-double disk_radius(const Scatterer& scatterer) {
-  return scatterer.is_disk() ? scatterer.radius : 0;
-}
-
 Scatterer row_scatterer(const Table& table, std::size_t row, Scatterer scatterer,
                         const std::string& path) {
   if (table.has("radius")) {
@@ -174,12 +170,12 @@ void require_outside(const Placement& placement, Vec2 sensor) {
 
 void check_no_overlap(const Placement& placement) {
   double largest = 0;
-  for (const auto& placed : placement) largest = std::max(largest, disk_radius(placed.scatterer));
+  for (const auto& placed : placement) largest = std::max(largest, placed.scatterer.disk_radius());
   CellGrid grid(largest > 0 ? 2 * largest : 1);
   for (std::size_t j = 0; j < placement.size(); ++j) {
     const PlacedScatterer& here = placement[j];
     grid.any_near(here.position, [&, j](Vec2 other, std::size_t l) {
-      const double reach = disk_radius(here.scatterer) + disk_radius(placement[l].scatterer);
+      const double reach = here.scatterer.disk_radius() + placement[l].scatterer.disk_radius();
       if (length(here.position - other) > reach) return false;
       throw InputError("placement: scatterers " + std::to_string(l + 1) + " and " +
                        std::to_string(j + 1) + " overlap or touch");

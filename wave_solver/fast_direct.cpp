@@ -15,6 +15,7 @@
 #include "wave_solver/box_tree.h"
 #include "wave_solver/skeletonization.h"
 #include "wave_solver/symmetric_factor.h"
+#include "wave_solver/tiles.h"
 
 namespace flatspeckle::wave {
 
@@ -26,8 +27,7 @@ std::vector<SortedDisk> disks_of(const TMatrixSystem& system) {
   std::vector<SortedDisk> disks;
   for (std::size_t j = 0; j < system.placement().size(); ++j) {
     const auto& [position, scatterer] = system.placement()[j];
-    disks.push_back({position, scatterer.is_disk() ? scatterer.radius : 0,
-                     system.first(j + 1) - system.first(j)});
+    disks.push_back({position, scatterer.disk_radius(), system.first(j + 1) - system.first(j)});
   }
   return disks;
 }

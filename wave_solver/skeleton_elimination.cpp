@@ -4,6 +4,7 @@
 
 #include "wave_solver/blas.h"
 #include "wave_solver/symmetric_factor.h"
+#include "wave_solver/tiles.h"
 
 namespace flatspeckle::wave {
 
@@ -74,12 +75,6 @@ void divide(CBLAS_TRANSPOSE transpose, std::size_t rows, std::size_t n,
 }
 
 }  // namespace
-
-void mirror_lower(std::vector<Complex>& matrix, std::size_t size) {
-  for_each_tiled(size, size, [&](std::size_t i, std::size_t j) {
-    if (i < j) matrix[i + size * j] = matrix[j + size * i];
-  });
-}
 
 SkeletonElimination::SkeletonElimination(const std::vector<std::size_t>& unknowns,
                                          const std::vector<Complex>& m,

@@ -41,17 +41,4 @@ class SkeletonElimination {
   std::vector<Complex> e_, l_, rest_;  // column-major
 };
 
-/// body(i, j) for i < rows, j < columns, tile by tile: both [i][j] and [j][i] stay in cache.
-template <typename Body>
-void for_each_tiled(std::size_t rows, std::size_t columns, const Body& body) {
-  constexpr std::size_t tile = 32;
-  for (std::size_t j0 = 0; j0 < columns; j0 += tile)
-    for (std::size_t i0 = 0; i0 < rows; i0 += tile)
-      for (std::size_t j = j0; j < std::min(j0 + tile, columns); ++j)
-        for (std::size_t i = i0; i < std::min(i0 + tile, rows); ++i) body(i, j);
-}
-
-/// Copies the lower triangle onto the upper one.
-void mirror_lower(std::vector<Complex>& matrix, std::size_t size);
-
 }  // namespace flatspeckle::wave

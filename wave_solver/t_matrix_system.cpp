@@ -12,22 +12,13 @@
 #include "core/parallel.h"
 #include "core/phasor.h"
 #include "wave_solver/basis_order.h"
+#include "wave_solver/tiles.h"
 
 namespace flatspeckle::wave {
 
 namespace {
 
 constexpr std::size_t worth_threads = 300;  // unknowns
-
-// Tile by tile, so that reads and writes stay in cache.
-void mirror_lower_triangle(std::vector<Complex>& matrix, std::size_t size) {
-  constexpr std::size_t tile = 32;
-  for (std::size_t column0 = 0; column0 < size; column0 += tile)
-    for (std::size_t row0 = column0; row0 < size; row0 += tile)
-      for (std::size_t row = row0; row < std::min(row0 + tile, size); ++row)
-        for (std::size_t column = column0; column < std::min(column0 + tile, row); ++column)
-          matrix[row * size + column] = matrix[column * size + row];
-}
 
 void require_memory(std::size_t unknowns) {
   const double bytes =
@@ -151,23 +142,26 @@ void TMatrixSystem::point_columns(Complex* matrix) const {
   });
 }
 
-std::vector<Complex> TMatrixSystem::matrix() const {
-  require_memory(unknowns());
+void TMatrixSystem::multipole_columns(Complex* matrix) const {
   const std::size_t size = unknowns();
-  std::vector<Complex> matrix(size * size);
-  if (size == placement_.size()) {
-    point_columns(matrix.data());
-    mirror_lower_triangle(matrix, size);
-    return matrix;
-  }
   const auto all = all_modes();
   parallel_for(all.size(), size > worth_threads, [&](std::size_t j) {
-    Complex* const corner = &matrix[first_[j] * (size + 1)];
+    Complex* const corner = matrix + first_[j] * (size + 1);
     const std::size_t height = all[j].modes.size();
     for (std::size_t i = 0; i < height; ++i) corner[i * (size + 1)] = diagonal_[first_[j] + i];
     translate(k_, std::span(all).subspan(j + 1), all[j], {corner + height, size});
   });
-  mirror_lower_triangle(matrix, size);
+}
+
+std::vector<Complex> TMatrixSystem::matrix() const {
+  require_memory(unknowns());
+  const std::size_t size = unknowns();
+  std::vector<Complex> matrix(size * size);
+  if (size == placement_.size())
+    point_columns(matrix.data());
+  else
+    multipole_columns(matrix.data());
+  mirror_lower(matrix, size);
   return matrix;
 }
 

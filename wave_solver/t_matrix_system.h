@@ -63,7 +63,9 @@ class TMatrixSystem {
  private:
   struct Listed;
   std::vector<ModeSet> all_modes() const;
+  // The lower triangle and diagonal of M.
   void point_columns(Complex* matrix) const;
+  void multipole_columns(Complex* matrix) const;
   void plane_wave(Vec2 w, Complex factor, std::span<Complex> column) const;
 
   Placement placement_;

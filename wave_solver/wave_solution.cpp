@@ -25,7 +25,7 @@ double unscaled_residual(const TMatrixSystem& system, std::span<const Complex> s
   double left = 0, given = 0;
   for (std::size_t i = 0; i < product.size(); ++i) {
     const std::size_t unknown = i % system.unknowns(), j = system.scatterer_of(unknown);
-    const int n = static_cast<int>(unknown - system.first(j) + 1) / 2;
+    const int n = system.modes(j).modes[unknown - system.first(j)].order;
     const auto weight = static_cast<double>(std::abs(system.t_matrix(j)[n]));
     left += weight * std::norm(sides[i] - product[i]);
     given += weight * std::norm(sides[i]);
