@@ -8,13 +8,21 @@
 
 namespace flatspeckle::mc {
 
+/// What takes the fields of sampled paths: the mean of weight f_a conj(f_b) over the paths of a batch
+/// is the covariance of channels a and b.
+class Accumulator {
+ public:
+  virtual ~Accumulator() = default;
+  virtual void add(double weight, std::span<const Complex> field) = 0;
+};
+
 /// Adds weight f_a conj(f_b) for the entries of a list.
-class EntryAccumulator {
+class EntryAccumulator : public Accumulator {
  public:
   EntryAccumulator(const CovarianceRequest& request, std::span<Complex> sums)
       : entries_(request.entries), sums_(sums) {}
 
-  void add(double weight, std::span<const Complex> field) {
+  void add(double weight, std::span<const Complex> field) override {
     for (std::size_t e = 0; e < entries_.size(); ++e) {
       const auto [a, b] = entries_[e];
       sums_[e] += weight * product_with_conjugate(field[a], field[b]);
@@ -29,11 +37,11 @@ class EntryAccumulator {
 
 /// The lower triangle of sum weight f f^H over all channels, row by row: fields are collected and
 /// merged by Hermitian rank-k updates, so the sum is positive semidefinite to rounding.
-class RankKAccumulator {
+class RankKAccumulator : public Accumulator {
  public:
   RankKAccumulator(const CovarianceRequest& request, std::span<Complex> sums);
 
-  void add(double weight, std::span<const Complex> field);
+  void add(double weight, std::span<const Complex> field) override;
   /// Adds what was collected to the sums.
   void finish();
 

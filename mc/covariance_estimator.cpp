@@ -20,43 +20,46 @@ void with_flag(bool flag, F f) {
     f(std::false_type{});
 }
 
-using BatchFunction = std::function<void(std::uint64_t, std::span<Complex>)>;
-
-template <typename Scattering, bool reversed, bool absorbing, bool near, typename Accumulator>
-BatchFunction batch_function(std::shared_ptr<const Scene> scene, Scattering scattering,
-                             std::uint64_t paths, std::uint64_t seed) {
-  return [=](std::uint64_t number, std::span<Complex> sums) {
+template <typename Scattering, bool reversed, bool absorbing, bool near>
+PathBatches batches(std::shared_ptr<const Scene> scene, Scattering scattering, std::uint64_t paths,
+                    std::uint64_t seed) {
+  return [=](std::uint64_t number, Accumulator& accumulator) {
     RandomStream random(seed, static_cast<std::uint64_t>(Stream::light_paths), number);
     PathKernel<Scattering, reversed, absorbing, near> kernel(*scene, scattering);
-    Accumulator accumulator(scene->request, sums);
     for (std::uint64_t path = 0; path < paths; ++path) kernel.walk(random, accumulator);
-    accumulator.finish();
   };
 }
 
 template <typename Scattering>
-BatchFunction specialise(const std::shared_ptr<const Scene>& scene, const Scattering& scattering,
-                         const Plan& plan, std::uint64_t seed) {
-  BatchFunction chosen;
+PathBatches specialise(const std::shared_ptr<const Scene>& scene, const Scattering& scattering,
+                       const Plan& plan, std::uint64_t seed) {
+  PathBatches chosen;
   with_flag(plan.reversed, [&](auto reversed) {
     with_flag(plan.absorbing, [&](auto absorbing) {
       with_flag(plan.near, [&](auto near) {
-        with_flag(plan.rank_k, [&](auto rank_k) {
-          using Accumulator =
-              std::conditional_t<decltype(rank_k)::value, RankKAccumulator, EntryAccumulator>;
-          chosen = batch_function<Scattering, decltype(reversed)::value, decltype(absorbing)::value,
-                                  decltype(near)::value, Accumulator>(scene, scattering,
-                                                                      plan.paths_per_batch, seed);
-        });
+        chosen = batches<Scattering, decltype(reversed)::value, decltype(absorbing)::value,
+                         decltype(near)::value>(scene, scattering, plan.paths_per_batch, seed);
       });
     });
   });
   return chosen;
 }
 
-BatchFunction specialise(const std::shared_ptr<const Scene>& scene, const Plan& plan,
-                         std::uint64_t seed) {
-  if (scene->medium.mu_s == 0) return [](std::uint64_t, std::span<Complex>) {};
+template <typename A>
+std::function<void(std::uint64_t, std::span<Complex>)> accumulated(
+    const PathBatches& batches, const CovarianceRequest& request) {
+  return [batches, request](std::uint64_t number, std::span<Complex> sums) {
+    A accumulator(request, sums);
+    batches(number, accumulator);
+    accumulator.finish();
+  };
+}
+
+}  // namespace
+
+PathBatches path_batches(const Scene& original, const Plan& plan, std::uint64_t seed) {
+  const auto scene = std::make_shared<const Scene>(original);
+  if (scene->medium.mu_s == 0) return [](std::uint64_t, Accumulator&) {};
   switch (plan.phase) {
     case Plan::Phase::isotropic:
       return specialise(scene, IsotropicScattering{}, plan, seed);
@@ -68,10 +71,7 @@ BatchFunction specialise(const std::shared_ptr<const Scene>& scene, const Plan& 
   return specialise(scene, TabulatedScattering(scene->medium, scene->k), plan, seed);
 }
 
-}  // namespace
-
 FieldJob covariance_job(const Scene& scene, const Plan& plan, std::uint64_t seed) {
-  const auto shared = std::make_shared<const Scene>(scene);
   FieldJob job;
   job.covariance = sample_mean;
   if (has_coherent_field(scene)) {
@@ -79,7 +79,9 @@ FieldJob covariance_job(const Scene& scene, const Plan& plan, std::uint64_t seed
   }
   job.batches.size = scene.request.entries.size();
   job.batches.samples_per_batch = static_cast<double>(plan.paths_per_batch);
-  job.batches.run = specialise(shared, plan, seed);
+  const auto batches = path_batches(scene, plan, seed);
+  job.batches.run = plan.rank_k ? accumulated<RankKAccumulator>(batches, scene.request)
+                                : accumulated<EntryAccumulator>(batches, scene.request);
   job.batches.relative_error = [covariance = job.covariance](const GroupedSums& sums) {
     return relative_error(jackknife(sums, covariance));
   };
