@@ -5,7 +5,9 @@
 
 #include "mc/accumulator.h"
 #include "mc/coherent_field.h"
-#include "mc/path_kernel.h"
+#include "mc/path_fields.h"
+#include "mc/path_walk.h"
+#include "mc/single_scattering.h"
 
 namespace flatspeckle::mc {
 
@@ -20,29 +22,80 @@ void with_flag(bool flag, F f) {
     f(std::false_type{});
 }
 
-template <typename Scattering, bool reversed, bool absorbing, bool near>
-PathBatches batches(std::shared_ptr<const Scene> scene, Scattering scattering, std::uint64_t paths,
+/// What all batches share.
+template <typename Scattering, bool reversed, bool weighted>
+struct Setup {
+  Setup(const Scene& its_scene, const Plan& its_plan, const Scattering& its_scattering)
+      : scene(its_scene),
+        plan(its_plan),
+        scattering(its_scattering),
+        walk(scene, plan, scattering) {}
+  Setup(const Setup&) = delete;
+
+  const Scene scene;
+  const Plan plan;
+  const Scattering scattering;
+  const PathWalk<Scattering, reversed, weighted> walk;
+};
+
+template <bool reversed, bool weighted, bool near, bool phases, typename Scattering>
+PathBatches batches(const Scene& scene, const Plan& plan, const Scattering& scattering,
                     std::uint64_t seed) {
-  return [=](std::uint64_t number, Accumulator& accumulator) {
+  using Shared = Setup<Scattering, reversed, weighted>;
+  const auto setup = std::make_shared<const Shared>(scene, plan, scattering);
+  return [setup, seed](std::uint64_t number, Accumulator& accumulator) {
     RandomStream random(seed, static_cast<std::uint64_t>(Stream::light_paths), number);
-    PathKernel<Scattering, reversed, absorbing, near> kernel(*scene, scattering);
-    for (std::uint64_t path = 0; path < paths; ++path) kernel.walk(random, accumulator);
+    auto walk = setup->walk;
+    PathFields<Scattering, reversed, near, phases> fields(setup->scene, setup->scattering,
+                                                          accumulator);
+    walk.begin(random);
+    for (std::uint64_t path = 0; path < setup->plan.paths_per_batch; ++path)
+      walk.walk(random, fields);
   };
 }
 
 template <typename Scattering>
-PathBatches specialise(const std::shared_ptr<const Scene>& scene, const Scattering& scattering,
-                       const Plan& plan, std::uint64_t seed) {
+PathBatches specialise(const Scene& scene, const Plan& plan, const Scattering& scattering,
+                       std::uint64_t seed) {
   PathBatches chosen;
-  with_flag(plan.reversed, [&](auto reversed) {
-    with_flag(plan.absorbing, [&](auto absorbing) {
-      with_flag(plan.near, [&](auto near) {
-        chosen = batches<Scattering, decltype(reversed)::value, decltype(absorbing)::value,
-                         decltype(near)::value>(scene, scattering, plan.paths_per_batch, seed);
-      });
+  with_flag(plan.weighted, [&](auto weighted) {
+    with_flag(plan.near, [&](auto near) {
+      constexpr bool w = decltype(weighted)::value, n = decltype(near)::value;
+      if (plan.reversed)
+        chosen = batches<true, w, n, true>(scene, plan, scattering, seed);
+      else if (plan.phases)
+        chosen = batches<false, w, n, true>(scene, plan, scattering, seed);
+      else
+        chosen = batches<false, w, n, false>(scene, plan, scattering, seed);
     });
   });
   return chosen;
+}
+
+template <typename F>
+void with_scattering(const Scene& scene, const Plan& plan, F f) {
+  switch (plan.phase) {
+    case Plan::Phase::isotropic:
+      return f(IsotropicScattering{});
+    case Plan::Phase::henyey_greenstein:
+      return f(HenyeyGreensteinScattering{{scene.scatterer.g}});
+    case Plan::Phase::tabulated:
+      return f(TabulatedScattering(scene.medium, scene.k));
+  }
+}
+
+/// Sampled paths, and those of one scatterer where no walk samples them.
+Estimator covariance_of(const Scene& scene, const Plan& plan) {
+  if (plan.sampled_single || scene.medium.mu_s == 0) return sample_mean;
+  std::vector<Complex> single;
+  with_scattering(scene, plan, [&](const auto& scattering) {
+    single = single_scattering(scene, scattering);
+  });
+  return [single](double samples, std::span<const Complex> sums) {
+    auto values = sample_mean(samples, sums);
+    for (std::size_t e = 0; e < values.size(); ++e) values[e] += single[e];
+    return values;
+  };
 }
 
 template <typename A>
@@ -57,23 +110,18 @@ std::function<void(std::uint64_t, std::span<Complex>)> accumulated(
 
 }  // namespace
 
-PathBatches path_batches(const Scene& original, const Plan& plan, std::uint64_t seed) {
-  const auto scene = std::make_shared<const Scene>(original);
-  if (scene->medium.mu_s == 0) return [](std::uint64_t, Accumulator&) {};
-  switch (plan.phase) {
-    case Plan::Phase::isotropic:
-      return specialise(scene, IsotropicScattering{}, plan, seed);
-    case Plan::Phase::henyey_greenstein:
-      return specialise(scene, HenyeyGreensteinScattering{{scene->scatterer.g}}, plan, seed);
-    case Plan::Phase::tabulated:
-      break;
-  }
-  return specialise(scene, TabulatedScattering(scene->medium, scene->k), plan, seed);
+PathBatches path_batches(const Scene& scene, const Plan& plan, std::uint64_t seed) {
+  if (scene.medium.mu_s == 0) return [](std::uint64_t, Accumulator&) {};
+  PathBatches chosen;
+  with_scattering(scene, plan, [&](const auto& scattering) {
+    chosen = specialise(scene, plan, scattering, seed);
+  });
+  return chosen;
 }
 
 FieldJob covariance_job(const Scene& scene, const Plan& plan, std::uint64_t seed) {
   FieldJob job;
-  job.covariance = sample_mean;
+  job.covariance = covariance_of(scene, plan);
   if (has_coherent_field(scene)) {
     job.mean = [field = coherent_field(scene)](double, std::span<const Complex>) { return field; };
   }

@@ -17,10 +17,17 @@ struct Plan {
   enum class Phase { isotropic, henyey_greenstein, tabulated };
   Domain::Kind domain = Domain::Kind::box;
   Phase phase = Phase::isotropic;
-  bool absorbing = false;  ///< paths lose weight and end by roulette
-  bool reversed = false;   ///< paths count walked backwards too
-  bool near = false;       ///< some views are points
-  bool rank_k = false;     ///< the full covariance by Hermitian rank-k updates
+  bool phases = true;     ///< false: magnitudes alone, which is all that intensities need
+  bool reversed = false;  ///< paths count walked backwards too
+  bool near = false;      ///< some lights or views are points
+  bool weighted = false;  ///< walkers split and play roulette: absorption, depth
+  bool rank_k = false;    ///< the full covariance by Hermitian rank-k updates
+  bool sampled_single = true;  ///< false: paths of one scatterer by quadrature
+  /// Expected contribution, in units of that of an isotropic scatterer next to a view, below which
+  /// scoring is left to chance; 0: never.
+  double score_level = 0.3;
+  /// Paths that share a column of a rank-k update, with random phases between them.
+  std::uint64_t paths_per_column = 1;
   std::uint64_t paths_per_batch = 0;
 
   std::string describe() const;

@@ -3,52 +3,76 @@
 #include <cmath>
 #include <cstddef>
 #include <numbers>
-#include <utility>
+#include <span>
 #include <vector>
 
 #include "core/complex.h"
+#include "core/random.h"
 #include "flatland/domain.h"
 #include "flatland/medium.h"
 #include "grin/phase_function.h"
 
 namespace flatspeckle::mc {
 
-/// A unit vector together with its angle (C2).
-struct Direction {
-  double angle;
-  Vec2 w;
+/// A list of unit vectors and their angles (C2), in arrays that vectorise.
+struct Directions {
+  std::vector<double> x, z, angle;
 
-  explicit Direction(double a) : angle(a), w(direction(a)) {}
-  Direction(double a, Vec2 unit) : angle(a), w(unit) {}
-  Direction reversed() const { return {angle + std::numbers::pi, -w}; }
+  explicit Directions(std::size_t size = 0) : x(size), z(size), angle(size) {}
+  std::size_t size() const { return x.size(); }
+  Vec2 operator[](std::size_t i) const { return {x[i], z[i]}; }
+  void set(std::size_t i, Vec2 w, double its_angle) { x[i] = w.x, z[i] = w.z, angle[i] = its_angle; }
 };
 
+/// w turned from +z towards +x by the angle of the unit vector `turn`.
+inline Vec2 turned(Vec2 w, Vec2 turn) {
+  return {w.x * turn.z + w.z * turn.x, w.z * turn.z - w.x * turn.x};
+}
+
+/// A uniform direction, by rejection: no trigonometry.
+inline Vec2 sample_direction(RandomStream& random) {
+  while (true) {
+    const double a = 2 * random.uniform() - 1, b = 2 * random.uniform() - 1;
+    const double square = a * a + b * b;
+    if (square <= 1) return {2 * a * b / square, (a * a - b * b) / square};
+  }
+}
+
 /// What happens at a scatterer, in the three forms that a plan picks from. amplitude() is A of C14
-/// divided by sqrt(sigma_s), so that |amplitude|^2 is the phase function; sample() draws a new
-/// direction from it.
+/// divided by sqrt(sigma_s), so that |amplitude|^2 is the phase function; towards() multiplies
+/// out[j] by the amplitude from one direction to each of many; sample() draws a new direction from
+/// the phase function.
 
 struct IsotropicScattering {
   static constexpr grin::Isotropic<2> phase{};
 
-  double density(const Direction&, const Direction&) const { return phase.value; }
-  double amplitude(const Direction&, const Direction&) const { return std::sqrt(phase.value); }
-  Direction sample(const Direction& from, double u) const {
-    return Direction(from.angle + phase.sample(u));
+  double density(Vec2, Vec2) const { return phase.value; }
+  double amplitude(Vec2, Vec2) const { return std::sqrt(phase.value); }
+  void towards(Vec2, const Directions&, std::span<Complex> out) const {
+    const double a = std::sqrt(phase.value);
+    for (Complex& value : out) value *= a;
   }
+  Vec2 sample(Vec2, RandomStream& random) const { return sample_direction(random); }
 };
 
 struct HenyeyGreensteinScattering {
   grin::HenyeyGreenstein<2> phase;
 
-  double density(const Direction& from, const Direction& to) const {
-    const Vec2 step = to.w - from.w;  // 1 - cos = |step|^2 / 2 does not cancel
+  double density(Vec2 from, Vec2 to) const {
+    const Vec2 step = to - from;  // 1 - cos = |step|^2 / 2 does not cancel
     return phase.density_at(1 - dot(step, step) / 2);
   }
-  double amplitude(const Direction& from, const Direction& to) const {
-    return std::sqrt(density(from, to));
+  double amplitude(Vec2 from, Vec2 to) const { return std::sqrt(density(from, to)); }
+  void towards(Vec2 from, const Directions& to, std::span<Complex> out) const {
+    for (std::size_t j = 0; j < out.size(); ++j) out[j] *= amplitude(from, to[j]);
   }
-  Direction sample(const Direction& from, double u) const {
-    return Direction(from.angle + phase.sample(u));
+  /// tan(theta/2) = (1-g)/(1+g) tan(phi/2) of a uniform phi (C22).
+  Vec2 sample(Vec2 from, RandomStream& random) const {
+    const Vec2 uniform = sample_direction(random);
+    const double c = (1 - phase.g) * uniform.x, d = (1 + phase.g) * (1 + uniform.z);
+    const double square = c * c + d * d;
+    if (square == 0) return -from;
+    return turned(from, {2 * c * d / square, (d * d - c * c) / square});
   }
 };
 
@@ -60,17 +84,21 @@ class TabulatedScattering {
         amplitude_(tabulate(medium, k, intervals_)),
         phase_([this](double angle) { return std::norm(at(angle)); }, intervals_) {}
 
-  double density(const Direction& from, const Direction& to) const {
-    return phase_.density(to.angle - from.angle);
+  double density(Vec2 from, Vec2 to) const { return phase_.density(angle_between(from, to)); }
+  Complex amplitude(Vec2 from, Vec2 to) const { return at(angle_between(from, to)); }
+  void towards(Vec2 from, const Directions& to, std::span<Complex> out) const {
+    const double angle = angle_of(from);
+    for (std::size_t j = 0; j < out.size(); ++j) out[j] = product(out[j], at(to.angle[j] - angle));
   }
-  Complex amplitude(const Direction& from, const Direction& to) const {
-    return at(to.angle - from.angle);
-  }
-  Direction sample(const Direction& from, double u) const {
-    return Direction(from.angle + phase_.sample(u));
+  Vec2 sample(Vec2 from, RandomStream& random) const {
+    return turned(from, direction(phase_.sample(random.uniform())));
   }
 
  private:
+  static double angle_between(Vec2 from, Vec2 to) {
+    return std::atan2(from.z * to.x - from.x * to.z, dot(from, to));
+  }
+
   static std::vector<Complex> tabulate(const BulkMedium& medium, double k, std::size_t intervals) {
     std::vector<Complex> values(intervals + 1);
     const double scale = 1 / std::sqrt(medium.cross_sections.scattering);
@@ -82,9 +110,11 @@ class TabulatedScattering {
     return values;
   }
 
+  /// Angles up to some turns.
   Complex at(double angle) const {
-    const double position = std::abs(std::remainder(angle, 2 * std::numbers::pi)) /
-                            std::numbers::pi * static_cast<double>(intervals_);
+    const double turns = std::abs(angle) / (2 * std::numbers::pi);
+    const double part = std::abs(turns - static_cast<double>(static_cast<int>(turns + 0.5)));
+    const double position = 2 * part * static_cast<double>(intervals_);
     const std::size_t i = std::min(static_cast<std::size_t>(position), intervals_ - 1);
     const double t = position - static_cast<double>(i);
     return (1 - t) * amplitude_[i] + t * amplitude_[i + 1];

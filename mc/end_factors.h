@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "core/complex.h"
+#include "flatland/scene.h"
+#include "mc/scattering.h"
+
+namespace flatspeckle::mc {
+
+/// Field of a unit scatterer at distance r in the far-field form exp(ikr)/sqrt(r) (C4), by the
+/// Hankel function itself where k r is small (C13).
+Complex outgoing_wave(double k, double r);
+
+/// Where light enters a path or leaves it. By reciprocity both are one thing: a far light along w
+/// is a far view towards -w, its amplitude A(i -> w_1) that from -w_1 towards -w.
+struct End {
+  bool near = false;
+  Vec2 towards;  ///< far: unit vector out of the medium
+  Vec2 point;    ///< near
+};
+std::vector<End> light_ends(const Scene& scene);
+std::vector<End> view_ends(const Scene& scene);
+
+/// End factors e of C13 for a list of ends, times the amplitude towards them (C14). Near: some ends
+/// are points. Phases: without them only magnitudes, which is all that intensities need.
+template <bool near, bool phases>
+class EndFactors {
+ public:
+  EndFactors(const Scene& scene, const std::vector<End>& ends);
+
+  std::size_t size() const { return directions_.size(); }
+
+  /// out[j] = A(arrival -> end j) e_j(x), for light that reaches x along `arrival`.
+  template <typename Scattering>
+  void at(Vec2 x, Vec2 arrival, const Scattering& scattering, std::span<Complex> out) {
+    attenuate(x, out);
+    scattering.towards(arrival, directions_, out);
+  }
+
+  /// out[j] = e_j(x) alone.
+  void attenuate(Vec2 x, std::span<Complex> out);
+
+  /// Towards the end, from where attenuate() was called last.
+  Vec2 direction(std::size_t j) const { return directions_[j]; }
+
+ private:
+  void attenuate_near(Vec2 x, std::span<Complex> out);
+
+  Domain domain_;
+  double k_, mu_t_;
+  std::vector<std::size_t> near_;  ///< which ends are points
+  std::vector<Vec2> points_;
+  Directions directions_;
+  // Distance to the edge = min((edge - x) per_cosine) over both axes.
+  std::vector<double> edge_x_, edge_z_, per_cosine_x_, per_cosine_z_;
+  std::vector<double> phase_, log_magnitude_, magnitude_;
+};
+
+}  // namespace flatspeckle::mc

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <vector>
+
+#include "core/random.h"
+#include "flatland/scene.h"
+#include "mc/end_factors.h"
+
+namespace flatspeckle::mc {
+
+/// How fast light of all directions dies out with depth deep inside a medium, per mean free path
+/// and as a factor: exp(-rate mu_t z). The smallest root of the transport equation's dispersion
+/// relation for Henyey-Greenstein scattering in flatland; 0 without absorption.
+double diffusion_rate(double albedo, double g);
+
+/// What a walker at a depth is worth to the far views: the share of its light that leaves the medium
+/// on their sides, by diffusion theory, 1 at the mean first scatterer. Walkers are split where it
+/// rises and play roulette where it falls, so that all contributions weigh alike. It changes the
+/// variance alone.
+class DepthImportance {
+ public:
+  explicit DepthImportance(const Scene& scene);
+
+  double operator()(double z) const;
+
+ private:
+  double depth_;
+  std::vector<double> table_;  ///< at equally spaced depths
+};
+
+/// What a scatterer at the end of a path is likely to contribute, up to a factor: the largest
+/// attenuation times phase function towards any of a few representative ends. Contributions cost far
+/// more than steps, so small ones play roulette before they are computed.
+class ExpectedContribution {
+ public:
+  ExpectedContribution(const Scene& scene, const std::vector<End>& ends);
+
+  /// About 1 where an end is near and scattering is isotropic.
+  double operator()(Vec2 x, Vec2 arrival) const;
+
+ private:
+  Domain domain_;
+  double mu_t_, g_;
+  std::vector<Vec2> towards_;
+  bool always_ = false;  ///< near ends: no guess
+};
+
+/// Angles that lie no further than `spacing` (radians) from every one of `angles`.
+std::vector<double> representatives(const std::vector<double>& angles, double spacing);
+
+}  // namespace flatspeckle::mc
