@@ -23,4 +23,8 @@ void damped_phasors(std::span<const double> phase, std::span<const double> log_m
   }
 }
 
+void damping(std::span<const double> log_magnitude, std::span<double> out) {
+  for (std::size_t j = 0; j < log_magnitude.size(); ++j) out[j] = std::exp(log_magnitude[j]);
+}
+
 }  // namespace flatspeckle

@@ -11,4 +11,7 @@ namespace flatspeckle {
 void damped_phasors(std::span<const double> phase, std::span<const double> log_magnitude,
                     std::span<Complex> out);
 
+/// out[j] = exp(log_magnitude[j]), likewise.
+void damping(std::span<const double> log_magnitude, std::span<double> out);
+
 }  // namespace flatspeckle

@@ -19,13 +19,15 @@ inline double sample_free_flight(double mu_t, double u) {
 struct BoundedFlight {
   double mu_t, longest;
 
+  /// Of a flight no longer than that.
+  double probability() const { return -std::expm1(-mu_t * longest); }
   double sample(double u) const {
     if (mu_t * longest == 0) return u * longest;
     return -std::log1p(u * std::expm1(-mu_t * longest)) / mu_t;
   }
   double density(double distance) const {
     if (mu_t * longest == 0) return 1 / longest;
-    return mu_t * std::exp(-mu_t * distance) / -std::expm1(-mu_t * longest);
+    return mu_t * std::exp(-mu_t * distance) / probability();
   }
 };
 

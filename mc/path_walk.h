@@ -56,11 +56,14 @@ class PathWalk {
     path_ = {x, scattering_.sample(arrival, random), {}, {}, 0, true};
     start_density_ = -1;
     if constexpr (reversed) expected_first_ = expected(x, -path_.start);
-    fly(x, path_.start, 1, random, scorer);
+    // The first flight stays inside: else most walks of a thin medium would find nothing.
+    const grin::BoundedFlight flight{medium_.mu_t, domain_.distance_to_edge(x, path_.start)};
+    const Vec2 second = x + flight.sample(random.uniform()) * path_.start;
+    follow({second, path_.start, flight.probability(), 1}, random, scorer);
     while (!waiting_.empty()) {
-      const Walker walker = waiting_.back();
+      Walker walker = waiting_.back();
       if (--waiting_.back().copies == 0) waiting_.pop_back();
-      fly(walker.x, scattering_.sample(walker.arrival, random), walker.weight, random, scorer);
+      if (step(walker, random)) follow(walker, random, scorer);
     }
   }
 
@@ -72,46 +75,54 @@ class PathWalk {
     std::uint32_t copies;
   };
 
-  /// From a scatterer on, until the walker leaves, dies or splits.
+  /// From where a walker has arrived, until it leaves, dies or splits.
   template <typename Scorer>
-  void fly(Vec2 x, Vec2 w, double weight, RandomStream& random, Scorer& scorer) {
-    while (true) {
-      const double flight = grin::sample_free_flight(medium_.mu_t, random.uniform());
-      if (flight >= domain_.distance_to_edge(x, w)) return;
-      x = x + flight * w;
-      score(x, w, weight, scorer);
+  void follow(Walker walker, RandomStream& random, Scorer& scorer) {
+    do {
+      score(walker, scorer);
       if constexpr (weighted) {
-        if (!reweigh(x, w, weight, random)) return;
+        if (!reweigh(walker, random)) return;
       }
-      w = scattering_.sample(w, random);
-    }
+    } while (step(walker, random));
+  }
+
+  /// To the next scatterer; false if there is none.
+  bool step(Walker& walker, RandomStream& random) const {
+    const Vec2 w = scattering_.sample(walker.arrival, random);
+    const double flight = grin::sample_free_flight(medium_.mu_t, random.uniform());
+    if (flight >= domain_.distance_to_edge(walker.x, w)) return false;
+    walker.x = walker.x + flight * w;
+    walker.arrival = w;
+    return true;
   }
 
   /// The weight window: false if the walker died, or waits as several.
-  bool reweigh(Vec2 x, Vec2 arrival, double& weight, RandomStream& random) {
-    weight *= medium_.albedo;
-    const double worth = weight * importance_(x.z);
+  bool reweigh(Walker& walker, RandomStream& random) {
+    walker.weight *= medium_.albedo;
+    const double worth = walker.weight * importance_(walker.x.z);
     if (worth < 0.5) {
-      weight /= worth;
+      walker.weight /= worth;
       return random.uniform() < worth;
     }
     if (worth < 2) return true;
-    const auto copies = static_cast<std::uint32_t>(worth + random.uniform());
-    waiting_.push_back({x, arrival, weight / worth, copies});
+    walker.weight /= worth;
+    walker.copies = static_cast<std::uint32_t>(worth + random.uniform());
+    waiting_.push_back(walker);
     return false;
   }
 
   /// Contributions that promise less than a score play systematic roulette: every so many of them,
   /// measured in what they promise, one is taken for all.
   template <typename Scorer>
-  void score(Vec2 x, Vec2 arrival, double weight, Scorer& scorer) {
-    double promise = expected(x, arrival), backward_density = 0;
+  void score(const Walker& walker, Scorer& scorer) {
+    double promise = expected(walker.x, walker.arrival), backward_density = 0;
     if constexpr (reversed) {
-      backward_density = first_.density(x, -arrival, scattering_);
+      backward_density = first_.density(walker.x, -walker.arrival, scattering_);
       const double forward = start_density();
       promise = (forward * promise + backward_density * expected_first_) /
                 (forward + backward_density);
     }
+    double weight = walker.weight;
     const double chance = promise * weight / plan_.score_level;
     if (chance < 1) {
       ticket_ += chance;
@@ -119,8 +130,8 @@ class PathWalk {
       ticket_ -= 1;
       weight /= chance;
     }
-    path_.last = x;
-    path_.arrival = arrival;
+    path_.last = walker.x;
+    path_.arrival = walker.arrival;
     path_.weight = medium_.mu_s * medium_.albedo * weight / (start_density() + backward_density);
     scorer.multiple(path_);
     path_.new_start = false;
