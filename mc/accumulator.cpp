@@ -11,6 +11,20 @@ namespace {
 constexpr std::size_t columns_at_once = 128;
 }
 
+EntryAccumulator::EntryAccumulator(const CovarianceRequest& request, std::span<Complex> sums)
+    : sums_(sums) {
+  for (std::uint32_t e = 0; e < request.entries.size(); ++e) {
+    const Entry entry = request.entries[e];
+    (entry.a == entry.b ? intensities_ : others_).push_back({entry, e});
+  }
+}
+
+void EntryAccumulator::add(double weight, std::span<const Complex> field) {
+  for (const auto& [entry, sum] : intensities_) sums_[sum] += weight * std::norm(field[entry.a]);
+  for (const auto& [entry, sum] : others_)
+    sums_[sum] += weight * product_with_conjugate(field[entry.a], field[entry.b]);
+}
+
 RankKAccumulator::RankKAccumulator(const CovarianceRequest& request, std::span<Complex> sums)
     : channels_(request.channels.size()),
       sums_(sums),

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -19,19 +20,16 @@ class Accumulator {
 /// Adds weight f_a conj(f_b) for the entries of a list.
 class EntryAccumulator : public Accumulator {
  public:
-  EntryAccumulator(const CovarianceRequest& request, std::span<Complex> sums)
-      : entries_(request.entries), sums_(sums) {}
+  EntryAccumulator(const CovarianceRequest& request, std::span<Complex> sums);
 
-  void add(double weight, std::span<const Complex> field) override {
-    for (std::size_t e = 0; e < entries_.size(); ++e) {
-      const auto [a, b] = entries_[e];
-      sums_[e] += weight * product_with_conjugate(field[a], field[b]);
-    }
-  }
-  void finish() {}
+  void add(double weight, std::span<const Complex> field) override;
 
  private:
-  const std::vector<Entry>& entries_;
+  struct Term {
+    Entry entry;
+    std::uint32_t sum;
+  };
+  std::vector<Term> intensities_, others_;
   std::span<Complex> sums_;
 };
 

@@ -1,47 +1,21 @@
 #include "mc/covariance_estimator.h"
 
 #include <memory>
-#include <type_traits>
 
 #include "mc/accumulator.h"
 #include "mc/coherent_field.h"
 #include "mc/path_fields.h"
-#include "mc/path_walk.h"
 #include "mc/single_scattering.h"
+#include "mc/walk_setup.h"
 
 namespace flatspeckle::mc {
 
 namespace {
 
-/// Calls f with std::true_type or std::false_type.
-template <typename F>
-void with_flag(bool flag, F f) {
-  if (flag)
-    f(std::true_type{});
-  else
-    f(std::false_type{});
-}
-
-/// What all batches share.
-template <typename Scattering, bool reversed, bool weighted>
-struct Setup {
-  Setup(const Scene& its_scene, const Plan& its_plan, const Scattering& its_scattering)
-      : scene(its_scene),
-        plan(its_plan),
-        scattering(its_scattering),
-        walk(scene, plan, scattering) {}
-  Setup(const Setup&) = delete;
-
-  const Scene scene;
-  const Plan plan;
-  const Scattering scattering;
-  const PathWalk<Scattering, reversed, weighted> walk;
-};
-
 template <bool reversed, bool weighted, bool near, bool phases, typename Scattering>
 PathBatches batches(const Scene& scene, const Plan& plan, const Scattering& scattering,
                     std::uint64_t seed) {
-  using Shared = Setup<Scattering, reversed, weighted>;
+  using Shared = WalkSetup<Scattering, reversed, weighted>;
   const auto setup = std::make_shared<const Shared>(scene, plan, scattering);
   return [setup, seed](std::uint64_t number, Accumulator& accumulator) {
     RandomStream random(seed, static_cast<std::uint64_t>(Stream::light_paths), number);
@@ -72,18 +46,6 @@ PathBatches specialise(const Scene& scene, const Plan& plan, const Scattering& s
   return chosen;
 }
 
-template <typename F>
-void with_scattering(const Scene& scene, const Plan& plan, F f) {
-  switch (plan.phase) {
-    case Plan::Phase::isotropic:
-      return f(IsotropicScattering{});
-    case Plan::Phase::henyey_greenstein:
-      return f(HenyeyGreensteinScattering{{scene.scatterer.g}});
-    case Plan::Phase::tabulated:
-      return f(TabulatedScattering(scene.medium, scene.k));
-  }
-}
-
 /// Sampled paths, and those of one scatterer where no walk samples them.
 Estimator covariance_of(const Scene& scene, const Plan& plan) {
   if (plan.sampled_single || scene.medium.mu_s == 0) return sample_mean;
@@ -98,11 +60,18 @@ Estimator covariance_of(const Scene& scene, const Plan& plan) {
   };
 }
 
-template <typename A>
-std::function<void(std::uint64_t, std::span<Complex>)> accumulated(
-    const PathBatches& batches, const CovarianceRequest& request) {
-  return [batches, request](std::uint64_t number, std::span<Complex> sums) {
-    A accumulator(request, sums);
+using SummedBatches = std::function<void(std::uint64_t, std::span<Complex>)>;
+
+SummedBatches listed_entries(const CovarianceRequest& request, const PathBatches& batches) {
+  return [=](std::uint64_t number, std::span<Complex> sums) {
+    EntryAccumulator accumulator(request, sums);
+    batches(number, accumulator);
+  };
+}
+
+SummedBatches whole_matrix(const CovarianceRequest& request, const PathBatches& batches) {
+  return [=](std::uint64_t number, std::span<Complex> sums) {
+    RankKAccumulator accumulator(request, sums);
     batches(number, accumulator);
     accumulator.finish();
   };
@@ -128,8 +97,8 @@ FieldJob covariance_job(const Scene& scene, const Plan& plan, std::uint64_t seed
   job.batches.size = scene.request.entries.size();
   job.batches.samples_per_batch = static_cast<double>(plan.paths_per_batch);
   const auto batches = path_batches(scene, plan, seed);
-  job.batches.run = plan.rank_k ? accumulated<RankKAccumulator>(batches, scene.request)
-                                : accumulated<EntryAccumulator>(batches, scene.request);
+  job.batches.run = plan.rank_k ? whole_matrix(scene.request, batches)
+                                : listed_entries(scene.request, batches);
   job.batches.relative_error = [covariance = job.covariance](const GroupedSums& sums) {
     return relative_error(jackknife(sums, covariance));
   };

@@ -34,6 +34,11 @@ double score_level(double g) {
   return 2 * (1 + square) / (1 - square);
 }
 
+/// So many that the sums of a batch cost less to merge than to make.
+std::uint64_t paths_per_batch(const Plan& plan, std::size_t channels) {
+  return plan.rank_k && channels > 100 ? 2000 : 400;
+}
+
 }  // namespace
 
 Plan make_plan(const Scene& scene, ReversedPaths reversed) {
@@ -49,12 +54,11 @@ Plan make_plan(const Scene& scene, ReversedPaths reversed) {
   }
   plan.rank_k = request.kind == CovarianceRequest::Kind::full;
   plan.score_level = score_level(scene.medium.g);
-  if (getenv("SL")) plan.score_level = atof(getenv("SL"));
   plan.phases = plan.reversed || request.kind != CovarianceRequest::Kind::intensity;
   plan.weighted = scene.medium.albedo < 1 - 1e-12;
   constexpr std::size_t few = 20000;  // entries; a millisecond each at the most
   plan.sampled_single = plan.near || plan.rank_k || request.entries.size() > few;
-  plan.paths_per_batch = plan.rank_k && request.channels.size() > 200 ? 50 : 400;
+  plan.paths_per_batch = paths_per_batch(plan, request.channels.size());
   return plan;
 }
 

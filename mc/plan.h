@@ -26,8 +26,6 @@ struct Plan {
   /// Expected contribution, in units of that of an isotropic scatterer next to a view, below which
   /// scoring is left to chance; 0: never.
   double score_level = 0.3;
-  /// Paths that share a column of a rank-k update, with random phases between them.
-  std::uint64_t paths_per_column = 1;
   std::uint64_t paths_per_batch = 0;
 
   std::string describe() const;
