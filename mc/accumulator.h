@@ -9,8 +9,8 @@
 
 namespace flatspeckle::mc {
 
-/// What takes the fields of sampled paths: the mean of weight f_a conj(f_b) over the paths of a batch
-/// is the covariance of channels a and b.
+/// What takes the fields of sampled paths: the mean of weight f_a conj(f_b) over the paths of a
+/// batch is the covariance of channels a and b.
 class Accumulator {
  public:
   virtual ~Accumulator() = default;

@@ -50,9 +50,8 @@ PathBatches specialise(const Scene& scene, const Plan& plan, const Scattering& s
 Estimator covariance_of(const Scene& scene, const Plan& plan) {
   if (plan.sampled_single || scene.medium.mu_s == 0) return sample_mean;
   std::vector<Complex> single;
-  with_scattering(scene, plan, [&](const auto& scattering) {
-    single = single_scattering(scene, scattering);
-  });
+  with_scattering(scene, plan,
+                  [&](const auto& scattering) { single = single_scattering(scene, scattering); });
   return [single](double samples, std::span<const Complex> sums) {
     auto values = sample_mean(samples, sums);
     for (std::size_t e = 0; e < values.size(); ++e) values[e] += single[e];
@@ -97,8 +96,8 @@ FieldJob covariance_job(const Scene& scene, const Plan& plan, std::uint64_t seed
   job.batches.size = scene.request.entries.size();
   job.batches.samples_per_batch = static_cast<double>(plan.paths_per_batch);
   const auto batches = path_batches(scene, plan, seed);
-  job.batches.run = plan.rank_k ? whole_matrix(scene.request, batches)
-                                : listed_entries(scene.request, batches);
+  job.batches.run =
+      plan.rank_k ? whole_matrix(scene.request, batches) : listed_entries(scene.request, batches);
   job.batches.relative_error = [covariance = job.covariance](const GroupedSums& sums) {
     return relative_error(jackknife(sums, covariance));
   };

@@ -54,8 +54,8 @@ EndFactors<near, phases>::EndFactors(const Scene& scene, const std::vector<End>&
     if (ends[j].near) near_.push_back(j);
     points_.push_back(ends[j].point);
     directions_.set(j, w, angle_of(w));
-    const Edge across = box ? edge_along(w.x, -domain_.width / 2, domain_.width / 2)
-                            : Edge{never, 1},
+    const Edge across =
+                   box ? edge_along(w.x, -domain_.width / 2, domain_.width / 2) : Edge{never, 1},
                deep = edge_along(w.z, 0, domain_.depth);
     edge_x_.push_back(across.position);
     per_cosine_x_.push_back(across.per_cosine);
@@ -70,8 +70,8 @@ EndFactors<near, phases>::EndFactors(const Scene& scene, const std::vector<End>&
 template <bool near, bool phases>
 void EndFactors<near, phases>::attenuate(Vec2 x, std::span<Complex> out) {
   for (std::size_t j = 0; j < size(); ++j) {
-    const double inside = std::min((edge_x_[j] - x.x) * per_cosine_x_[j],
-                                   (edge_z_[j] - x.z) * per_cosine_z_[j]);
+    const double inside =
+        std::min((edge_x_[j] - x.x) * per_cosine_x_[j], (edge_z_[j] - x.z) * per_cosine_z_[j]);
     log_magnitude_[j] = std::max(-mu_t_ * std::max(inside, 0.0) / 2, log_of_nothing);
   }
   if constexpr (phases) {

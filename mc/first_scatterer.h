@@ -14,12 +14,11 @@ namespace flatspeckle::mc {
 /// attenuation and phase function are close to its own. The rest need no density of their own.
 std::vector<double> representative_lights(const Scene& scene);
 
-/// Samples a path's first scatterer and first direction by the attenuation and phase function of the
-/// representative lights, all having equal shares, and knows the density of the mixture.
+/// Samples a path's first scatterer and first direction by the attenuation and phase function of
+/// the representative lights, all having equal shares, and knows the density of the mixture.
 class FirstScatterer {
  public:
-  explicit FirstScatterer(const Scene& scene)
-      : domain_(scene.domain), mu_t_(scene.medium.mu_t) {
+  explicit FirstScatterer(const Scene& scene) : domain_(scene.domain), mu_t_(scene.medium.mu_t) {
     for (double angle : representative_lights(scene)) lights_.push_back(direction(angle));
   }
 

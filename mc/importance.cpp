@@ -26,10 +26,9 @@ bool below_root(double albedo, double g, double rate) {
   return 1 - albedo > 2 * s / tail;
 }
 
-/// sinh(a) / sinh(b), 0 <= a <= b, without overflow.
-double sinh_ratio(double a, double b) {
-  if (b < 1e-6) return a / b;
-  return std::exp(a - b) * -std::expm1(-2 * a) / -std::expm1(-2 * b);
+/// log [sinh(a) / sinh(b)], 0 < a <= b.
+double log_sinh_ratio(double a, double b) {
+  return a - b + std::log(std::expm1(-2 * a) / std::expm1(-2 * b));
 }
 
 /// exp(-x), more or less and in a third of the time.
@@ -62,7 +61,8 @@ std::vector<double> representatives(const std::vector<double>& angles, double sp
 }
 
 std::vector<double> representative_lights(const Scene& scene) {
-  return representatives(scene.request.lights, std::max(0.5 * (1 - std::abs(scene.medium.g)), 0.01));
+  return representatives(scene.request.lights,
+                         std::max(0.5 * (1 - std::abs(scene.medium.g)), 0.01));
 }
 
 DepthImportance::DepthImportance(const Scene& scene) : depth_(scene.domain.depth) {
@@ -76,23 +76,28 @@ DepthImportance::DepthImportance(const Scene& scene) : depth_(scene.domain.depth
   for (const View& view : scene.request.views)
     (view.near || std::cos(view.angle) > 0 ? transmitted : reflected) = 1;
   const auto leaving = [&](double to_edge) {
-    return sinh_ratio(rate * (to_edge + beyond), rate * (depth_ + 2 * beyond));
+    return log_sinh_ratio(rate * (to_edge + beyond), rate * (depth_ + 2 * beyond));
   };
   const double first = std::min(medium.mean_free_path(), depth_ / 2);
   constexpr int nodes = 512;
   for (int i = 0; i <= nodes; ++i) {
     const double z = depth_ * i / nodes;
-    const double worth = transmitted * leaving(z) / leaving(first) +
-                         reflected * leaving(depth_ - z) / leaving(depth_ - first);
-    table_.push_back(worth / (transmitted + reflected));
+    const double forward = leaving(z) - leaving(first),
+                 backward = leaving(depth_ - z) - leaving(depth_ - first);
+    const double larger = transmitted == 0 ? backward
+                          : reflected == 0 ? forward
+                                           : std::max(forward, backward);
+    log_worth_.push_back(larger + std::log((transmitted * std::exp(forward - larger) +
+                                            reflected * std::exp(backward - larger)) /
+                                           (transmitted + reflected)));
   }
 }
 
-double DepthImportance::operator()(double z) const {
-  const double position = z / depth_ * static_cast<double>(table_.size() - 1);
-  const auto i = std::min(static_cast<std::size_t>(position), table_.size() - 2);
+double DepthImportance::log_worth(double z) const {
+  const double position = z / depth_ * static_cast<double>(log_worth_.size() - 1);
+  const auto i = std::min(static_cast<std::size_t>(position), log_worth_.size() - 2);
   const double t = position - static_cast<double>(i);
-  return (1 - t) * table_[i] + t * table_[i + 1];
+  return (1 - t) * log_worth_[i] + t * log_worth_[i + 1];
 }
 
 ExpectedContribution::ExpectedContribution(const Scene& scene, const std::vector<End>& ends)

@@ -13,24 +13,24 @@ namespace flatspeckle::mc {
 /// relation for Henyey-Greenstein scattering in flatland; 0 without absorption.
 double diffusion_rate(double albedo, double g);
 
-/// What a walker at a depth is worth to the far views: the share of its light that leaves the medium
-/// on their sides, by diffusion theory, 1 at the mean first scatterer. Walkers are split where it
-/// rises and play roulette where it falls, so that all contributions weigh alike. It changes the
-/// variance alone.
+/// What a walker at a depth is worth to the far views: the share of its light that leaves the
+/// medium on their sides, by diffusion theory, relative to a mean free path from where the light
+/// enters. Walkers are split where it rises and play roulette where it falls, so that all
+/// contributions weigh alike. It changes the variance alone.
 class DepthImportance {
  public:
   explicit DepthImportance(const Scene& scene);
 
-  double operator()(double z) const;
+  double log_worth(double z) const;
 
  private:
   double depth_;
-  std::vector<double> table_;  ///< at equally spaced depths
+  std::vector<double> log_worth_;  ///< at equally spaced depths
 };
 
 /// What a scatterer at the end of a path is likely to contribute, up to a factor: the largest
-/// attenuation times phase function towards any of a few representative ends. Contributions cost far
-/// more than steps, so small ones play roulette before they are computed.
+/// attenuation times phase function towards any of a few representative ends. Contributions cost
+/// far more than steps, so small ones play roulette before they are computed.
 class ExpectedContribution {
  public:
   ExpectedContribution(const Scene& scene, const std::vector<End>& ends);

@@ -16,11 +16,11 @@
 namespace flatspeckle::mc {
 
 /// A path of B >= 2 scatterers as the walk found it. The mean of weight f_a conj(f_b) over walks is
-/// the covariance, with f = F, or F + R with reversed paths (conventions, C14), whose amplitudes are
-/// divided by sqrt(sigma_s).
+/// the covariance, with f = F, or F + R with reversed paths (conventions, C14), whose amplitudes
+/// are divided by sqrt(sigma_s).
 struct Path {
-  Vec2 first, start;    ///< the first scatterer and the direction to the second
-  Vec2 last, arrival;   ///< the last one and the direction in which it is reached
+  Vec2 first, start;   ///< the first scatterer and the direction to the second
+  Vec2 last, arrival;  ///< the last one and the direction in which it is reached
   double weight = 0;
   bool new_start = false;  ///< the first such path from this first scatterer and start
 };
@@ -31,9 +31,9 @@ struct Path {
 /// Steps are cheap and scoring is not, so a contribution that promises little plays roulette first.
 /// Walkers split and die by what their depth is worth.
 ///
-/// With reversed paths a path is weighed by the mean of the densities with which the walk would find
-/// it from either end. That is unbiased, because F + R does not change when a path is turned round,
-/// and no |R|^2 can outgrow its weight.
+/// With reversed paths a path is weighed by the mean of the densities with which the walk would
+/// find it from either end. That is unbiased, because F + R does not change when a path is turned
+/// round, and no |R|^2 can outgrow its weight.
 template <typename Scattering, bool reversed, bool weighted>
 class PathWalk {
  public:
@@ -55,6 +55,7 @@ class PathWalk {
     if (plan_.sampled_single) scorer.single(x, medium_.mu_s / first_.density(x));
     path_ = {x, scattering_.sample(arrival, random), {}, {}, 0, true};
     start_density_ = -1;
+    log_worth_first_ = std::max(importance_.log_worth(x.z), 0.0);
     if constexpr (reversed) expected_first_ = expected(x, -path_.start);
     // The first flight stays inside: else most walks of a thin medium would find nothing.
     const grin::BoundedFlight flight{medium_.mu_t, domain_.distance_to_edge(x, path_.start)};
@@ -99,7 +100,7 @@ class PathWalk {
   /// The weight window: false if the walker died, or waits as several.
   bool reweigh(Walker& walker, RandomStream& random) {
     walker.weight *= medium_.albedo;
-    const double worth = walker.weight * importance_(walker.x.z);
+    const double worth = walker.weight * importance(walker.x);
     if (worth < 0.5) {
       walker.weight /= worth;
       return random.uniform() < worth;
@@ -119,8 +120,8 @@ class PathWalk {
     if constexpr (reversed) {
       backward_density = first_.density(walker.x, -walker.arrival, scattering_);
       const double forward = start_density();
-      promise = (forward * promise + backward_density * expected_first_) /
-                (forward + backward_density);
+      promise =
+          (forward * promise + backward_density * expected_first_) / (forward + backward_density);
     }
     double weight = walker.weight;
     const double chance = promise * weight / plan_.score_level;
@@ -137,10 +138,15 @@ class PathWalk {
     path_.new_start = false;
   }
 
+  /// Of x relative to where the walk began, so that a deep beginning is not split at once.
+  double importance(Vec2 x) const {
+    return std::exp(importance_.log_worth(x.z) - log_worth_first_);
+  }
+
   /// What a path that ends at x is likely to contribute, for a walker of usual weight there.
   double expected(Vec2 x, Vec2 arrival) const {
     const double value = expected_view_(x, arrival);
-    if constexpr (weighted) return value * importance_(x.z);
+    if constexpr (weighted) return value * importance(x);
     return value;
   }
 
@@ -159,7 +165,7 @@ class PathWalk {
   ExpectedContribution expected_view_;
   std::vector<Walker> waiting_;
   Path path_;
-  double start_density_ = -1, expected_first_ = 0;
+  double start_density_ = -1, log_worth_first_ = 0, expected_first_ = 0;
   double ticket_ = 0;  ///< a score at every whole number
 };
 

@@ -77,9 +77,9 @@ std::string Plan::describe() const {
       break;
   }
   text << "; " << (weighted ? "walkers split and play roulette" : "walkers of equal weight") << "; "
-       << (sampled_single ? "" : "single scattering in closed form; ") << (phases ? "" : "no phases; ")
-       << (reversed ? "reversed paths" : "no reversed paths") << "; "
-       << (near ? "near and far views" : "far views only") << "; "
+       << (sampled_single ? "" : "single scattering in closed form; ")
+       << (phases ? "" : "no phases; ") << (reversed ? "reversed paths" : "no reversed paths")
+       << "; " << (near ? "near and far views" : "far views only") << "; "
        << (rank_k ? "full covariance by rank-k updates" : "listed entries only") << "; "
        << paths_per_batch << " paths per batch";
   return text.str();

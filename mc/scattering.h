@@ -21,7 +21,9 @@ struct Directions {
   explicit Directions(std::size_t size = 0) : x(size), z(size), angle(size) {}
   std::size_t size() const { return x.size(); }
   Vec2 operator[](std::size_t i) const { return {x[i], z[i]}; }
-  void set(std::size_t i, Vec2 w, double its_angle) { x[i] = w.x, z[i] = w.z, angle[i] = its_angle; }
+  void set(std::size_t i, Vec2 w, double its_angle) {
+    x[i] = w.x, z[i] = w.z, angle[i] = its_angle;
+  }
 };
 
 /// w turned from +z towards +x by the angle of the unit vector `turn`.
@@ -52,7 +54,9 @@ struct IsotropicScattering {
     const double a = std::sqrt(phase.value);
     for (Complex& value : out) value *= a;
   }
-  Vec2 sample(Vec2, RandomStream& random) const { return sample_direction(random); }
+  Vec2 sample(Vec2 from, RandomStream& random) const {
+    return turned(from, sample_direction(random));
+  }
 };
 
 struct HenyeyGreensteinScattering {

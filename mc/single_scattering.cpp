@@ -10,6 +10,7 @@ namespace flatspeckle::mc {
 namespace {
 
 constexpr double never = 1e300;
+constexpr double parallel = 1e-12;  ///< to an edge, which is then never met
 
 /// Distance to the edge along a unit vector: the lesser of a function of z (to a face) and one of x
 /// (to a side).
@@ -18,12 +19,10 @@ struct Leg {
   double face, side;  ///< the z and x they end on
 
   Leg(const Domain& domain, Vec2 w)
-      : u(w),
-        face(w.z > 0 ? domain.depth : 0),
-        side(std::copysign(domain.width / 2, w.x)) {}
+      : u(w), face(w.z > 0 ? domain.depth : 0), side(std::copysign(domain.width / 2, w.x)) {}
 
-  double to_face(double z) const { return u.z == 0 ? never : (face - z) / u.z; }
-  double to_side(double x) const { return u.x == 0 ? never : (side - x) / u.x; }
+  double to_face(double z) const { return std::abs(u.z) < parallel ? never : (face - z) / u.z; }
+  double to_side(double x) const { return std::abs(u.x) < parallel ? never : (side - x) / u.x; }
   /// Where both are equal, above or below the medium too.
   double turn(double x) const { return face - u.z * to_side(x); }
 };
@@ -64,12 +63,11 @@ std::vector<double> kinks(const Domain& domain, const std::array<Leg, 4>& legs) 
   };
   std::vector<std::array<double, 2>> turns;  // slope and value at 0
   for (const Leg& leg : legs)
-    if (std::abs(leg.u.x) > 1e-12) turns.push_back({leg.u.z / leg.u.x, leg.turn(0)});
+    if (std::abs(leg.u.x) >= parallel) turns.push_back({leg.u.z / leg.u.x, leg.turn(0)});
   for (std::size_t a = 0; a < turns.size(); ++a) {
     add(turns[a][0], turns[a][1]);
     add(turns[a][0], turns[a][1] - domain.depth);
-    for (std::size_t b = 0; b < a; ++b)
-      add(turns[a][0] - turns[b][0], turns[a][1] - turns[b][1]);
+    for (std::size_t b = 0; b < a; ++b) add(turns[a][0] - turns[b][0], turns[a][1] - turns[b][1]);
   }
   std::sort(found.begin(), found.end());
   return found;
@@ -80,11 +78,12 @@ double radians(const Domain& domain, double mu_t, Vec2 kappa, const std::array<L
                double from, double to) {
   double sum = std::abs(kappa.x) * (to - from);
   for (const Leg& leg : legs) {
-    if (std::abs(leg.u.x) <= 1e-12) continue;
+    if (std::abs(leg.u.x) < parallel) continue;
     const double moved = std::abs(std::clamp(leg.turn(to), 0.0, domain.depth) -
                                   std::clamp(leg.turn(from), 0.0, domain.depth));
-    const double longest = std::min((to - from) / std::abs(leg.u.x),
-                                    leg.u.z == 0 ? never : domain.depth / std::abs(leg.u.z));
+    const double longest =
+        std::min((to - from) / std::abs(leg.u.x),
+                 std::abs(leg.u.z) < parallel ? never : domain.depth / std::abs(leg.u.z));
     sum += std::abs(kappa.z) * moved + mu_t * longest / 2;
   }
   return sum / 3;  // eight nodes are enough for that much at once
@@ -96,8 +95,8 @@ Complex attenuated_wave_integral(const Domain& domain, double mu_t, Vec2 kappa,
                                  const std::array<Vec2, 4>& towards) {
   Domain box = domain;
   if (domain.kind == Domain::Kind::slab) box.width = never;
-  const std::array<Leg, 4> legs = {Leg(box, towards[0]), Leg(box, towards[1]),
-                                   Leg(box, towards[2]), Leg(box, towards[3])};
+  const std::array<Leg, 4> legs = {Leg(box, towards[0]), Leg(box, towards[1]), Leg(box, towards[2]),
+                                   Leg(box, towards[3])};
   if (domain.kind == Domain::Kind::slab) return column(box, mu_t, kappa.z, legs, 0);
   const auto cut = kinks(box, legs);
   Complex sum = 0;

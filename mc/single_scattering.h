@@ -32,7 +32,7 @@ std::vector<Complex> single_scattering(const Scene& scene, const Scattering& sca
         product_with_conjugate(scattering.amplitude(i1, v1), scattering.amplitude(i2, v2));
     entries[e] = scene.medium.mu_s * amplitudes *
                  attenuated_wave_integral(scene.domain, scene.medium.mu_t,
-                                          scene.k * (i1 - v1 - i2 + v2), {-i1, v1, -i2, v2});
+                                          scene.k * ((i1 - i2) - (v1 - v2)), {-i1, v1, -i2, v2});
   });
   return entries;
 }

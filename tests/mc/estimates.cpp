@@ -58,6 +58,10 @@ Run run(const Scene& scene, ReversedPaths reversed, std::uint64_t paths, std::ui
         std::uint64_t paths_per_batch) {
   Plan plan = make_plan(scene, reversed);
   if (paths_per_batch > 0) plan.paths_per_batch = paths_per_batch;
+  return run(scene, plan, paths, seed);
+}
+
+Run run(const Scene& scene, const Plan& plan, std::uint64_t paths, std::uint64_t seed) {
   Run result{covariance_job(scene, plan, seed), {}};
   RunOptions options;
   options.stop.samples = paths;

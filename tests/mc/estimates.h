@@ -33,7 +33,9 @@ struct Run {
   Estimate weighted_sum(const std::vector<double>& weights) const;
 };
 
-/// Deterministic: two threads or not. paths_per_batch = 0 keeps the plan's.
+/// Deterministic: two threads or not.
+Run run(const Scene& scene, const Plan& plan, std::uint64_t paths, std::uint64_t seed);
+/// By the plan of the scene. paths_per_batch = 0 keeps the plan's.
 Run run(const Scene& scene, ReversedPaths reversed, std::uint64_t paths, std::uint64_t seed,
         std::uint64_t paths_per_batch = 0);
 

@@ -54,7 +54,7 @@ TEST_CASE("optical depth 1e-3: what is seen is single scattering and a thousandt
 }
 
 TEST_CASE("optical depth 100: little comes through, as much as it should") {
-  check_slab(100, 1, {0}, {0.1, -1, 2.2}, ReversedPaths::no, 16000, 2);
+  check_slab(100, 1, {0}, {0.1, -1, 2.2}, ReversedPaths::no, 32000, 2);
 }
 
 TEST_CASE("albedo close to 1 is continuous") {

@@ -3,7 +3,7 @@
 
 #include <doctest/doctest.h>
 
-#include "mc/lights.h"
+#include "mc/first_scatterer.h"
 #include "tests/mc/estimates.h"
 #include "tests/statistics.h"
 
@@ -20,28 +20,26 @@ constexpr double width = 6, depth = 4;
 constexpr int columns = 10, rows = 8;
 
 /// Of first scatterers in a cell: the density on a fine grid of points (it is 1/chord in corners).
-double cell_probability(Lights& lights, int column, int row) {
+double cell_probability(const FirstScatterer& first, int column, int row) {
   constexpr int grid = 80;
   const double dx = width / (columns * grid), dz = depth / (rows * grid);
-  std::vector<Complex> factor(1);
-  std::vector<double> density(1);
   double sum = 0;
   for (int a = 0; a < grid; ++a) {
     for (int b = 0; b < grid; ++b) {
       const Vec2 x{-width / 2 + (column * grid + a + 0.5) * dx, (row * grid + b + 0.5) * dz};
-      lights.at(x, factor, density);
-      sum += density[0];
+      sum += first.density(x);
     }
   }
   return sum * dx * dz;
 }
 
-std::vector<double> counts_per_cell(const Scene& scene, const Lights& lights, std::uint64_t seed) {
+std::vector<double> counts_per_cell(const Scene& scene, const FirstScatterer& first,
+                                    std::uint64_t seed) {
   RandomStream random(seed, 79, 0);
   std::vector<double> counts(columns * rows);
   int outside = 0;
   for (int i = 0; i < 20000; ++i) {
-    const Vec2 x = lights.sample_first(0, random);
+    const Vec2 x = first.sample(random).x;
     if (scene.domain.distance_to_edge(x, {0, 1}) > depth * (1 + 1e-12)) ++outside;
     const int column = static_cast<int>((x.x / width + 0.5) * columns);
     const int row = static_cast<int>(x.z / depth * rows);
@@ -62,12 +60,12 @@ TEST_CASE("box: first scatterers are sampled by the density that the weight uses
       CAPTURE(mean_free_path);
       const Scene scene =
           tests::hg_box(width, depth, {mean_free_path}, intensity_request({light}, {far_view(0)}));
-      Lights lights(scene);
+      const FirstScatterer first(scene);
       std::vector<double> probabilities;
       for (int row = 0; row < rows; ++row)
         for (int column = 0; column < columns; ++column)
-          probabilities.push_back(cell_probability(lights, column, row));
-      flatspeckle::tests::check_chi_square(counts_per_cell(scene, lights, ++seed), probabilities);
+          probabilities.push_back(cell_probability(first, column, row));
+      flatspeckle::tests::check_chi_square(counts_per_cell(scene, first, ++seed), probabilities);
     }
   }
 }
@@ -78,23 +76,20 @@ TEST_CASE("slab: first depths are sampled by the density that the weight uses") 
     for (const double optical_depth : {1e-3, 3.0}) {
       const Scene scene =
           tests::hg_slab(depth, {depth / optical_depth}, intensity_request({light}, {far_view(0)}));
-      Lights lights(scene);
-      std::vector<Complex> factor(1);
-      std::vector<double> density(1);
+      const FirstScatterer first(scene);
       RandomStream random(++seed, 79, 0);
       // of a thick slab only as deep as light gets
       constexpr int bins = 20;
       const double seen = std::min(depth, 8 * std::cos(light) * depth / optical_depth);
       std::vector<double> counts(bins), probabilities;
       for (int i = 0; i < 20000; ++i) {
-        const double z = lights.sample_first(0, random).z;
+        const double z = first.sample(random).x.z;
         if (z < seen) ++counts[static_cast<int>(z / seen * bins)];
       }
       for (int bin = 0; bin < bins; ++bin) {
         probabilities.push_back(flatspeckle::tests::integral(
             [&](double z) {
-              lights.at({0, z}, factor, density);
-              return density[0];
+              return first.density({0, z});
             },
             seen * bin / bins, seen * (bin + 1) / bins));
       }
@@ -105,20 +100,25 @@ TEST_CASE("slab: first depths are sampled by the density that the weight uses") 
   }
 }
 
-TEST_CASE("the end factor of a light is C13") {
-  const double angle = -0.4, mean_free_path = 3;
-  const Scene scene =
-      tests::hg_box(width, depth, {mean_free_path}, intensity_request({angle}, {far_view(0)}));
-  Lights lights(scene);
-  std::vector<Complex> factor(1);
-  std::vector<double> density(1);
-  const Vec2 x{0.7, 2.5};
-  lights.at(x, factor, density);
-  // back along the ray, z = 0 is met at x = 0.7 + 2.5 tan 0.4 = 1.757, inside the face
-  const double behind = 2.5 / std::cos(angle);
-  const Complex expected = std::polar(std::exp(-behind / (2 * mean_free_path)),
-                                      scene.k * (std::sin(angle) * x.x + std::cos(angle) * x.z));
-  CHECK(std::abs(factor[0] - expected) < 1e-13);
+TEST_CASE("several lights: the mixture and first direction have the density that the weight uses") {
+  const Scene scene = tests::hg_box(width, depth, {1.5, 0.6},
+                                    intensity_request({0, 0.05, 0.4, -1.2}, {far_view(0)}));
+  CHECK(representative_lights(scene) == std::vector<double>{0, 0.4, -1.2});
+  const FirstScatterer first(scene);
+  std::vector<double> probabilities;
+  for (int row = 0; row < rows; ++row)
+    for (int column = 0; column < columns; ++column)
+      probabilities.push_back(cell_probability(first, column, row));
+  flatspeckle::tests::check_chi_square(counts_per_cell(scene, first, 500), probabilities);
+
+  // Left in any direction: the density of position and direction integrates to that of position.
+  const HenyeyGreensteinScattering scattering{{0.6}};
+  const Vec2 x{0.3, 1.1};
+  double sum = 0;
+  constexpr int directions_round = 400;
+  for (int i = 0; i < directions_round; ++i)
+    sum += first.density(x, direction(2 * pi * i / directions_round), scattering);
+  CHECK(sum * 2 * pi / directions_round == doctest::Approx(first.density(x)).epsilon(1e-12));
 }
 
 }  // namespace flatspeckle::mc
