@@ -142,7 +142,6 @@ REQUEST_CASES = [
     ("covariance", {**BOX, **PAIRS}, {"near_sensors": "out.csv"}, ["near_sensors", "pairs"]),
     ("covariance", {**BOX, **PAIRS}, {"view_angles": [0.1]}, ["view_angles", "pairs"]),
     ("covariance", {**SLAB, **PAIRS}, {"pairs": [0, 0.1, 0.04, 0.2]}, ["covariance", "slab"]),
-    ("covariance", BOX, {"near_sensors": "in.csv"}, ["near_sensors", "(0, 5)", "in the medium"]),
     ("covariance", BOX, {"near_sensors": "out.csv", "view_angles": [0.1]},
      ["near_sensors", "either near_sensors or view_angles"]),
     ("covariance", BOX, {"near_sensors": "no.csv"}, ["no.csv"]),
@@ -151,7 +150,7 @@ REQUEST_CASES = [
     ("covariance", SLAB, {"near_sensors": "out.csv"}, ["near_sensors", "far views only"]),
     ("sweep", SWEEP, {"near_sensors": "out.csv"}, ["near_sensors", "far views"]),
 ]
-SENSORS = {"in.csv": "x,z\n0,5\n", "out.csv": "x,z\n0,15\n1,15\n", "header.csv": "x,z\n",
+SENSORS = {"out.csv": "x,z\n0,15\n1,15\n", "header.csv": "x,z\n",
            "empty.csv": ""}
 REAL_KEYS = [
     ("covariance", BOX, ["width", "depth", "wavelength", "seconds", "target_error"]),
