@@ -11,16 +11,14 @@
 
 namespace flatspeckle::apps {
 
-namespace {
-
-mc::ReversedPaths reversed_paths(const std::string& word) {
+mc::ReversedPaths reversed_paths(const MethodSettings& settings) {
+  const std::string& word = settings.reversed_paths;
   if (word == "auto") return mc::ReversedPaths::automatic;
   if (word == "yes") return mc::ReversedPaths::yes;
   if (word == "no") return mc::ReversedPaths::no;
   throw InputError("reversed_paths", word, "must be one of auto yes no");
 }
 
-/// What crosses a deep absorbing medium does so on rare paths that short runs do not see at all.
 void note_deep_absorption(const Scene& scene) {
   const double depth = scene.medium.mu_t * scene.domain.depth;
   constexpr double deep =
@@ -33,8 +31,6 @@ void note_deep_absorption(const Scene& scene) {
               << scene.medium.albedo
               << " rests on rare paths; short runs come out too low, with too small errors\n";
 }
-
-}  // namespace
 
 void add_mc_options(CLI::App& app, MethodSettings& settings) {
   app.add_option("--reversed_paths", settings.reversed_paths,
@@ -60,7 +56,7 @@ void note_rounding(const Scene& scene) {
 
 Estimation mc_estimation(const Scene& scene, const MethodSettings& settings, std::uint64_t seed) {
   note_deep_absorption(scene);
-  const auto plan = mc::make_plan(scene, reversed_paths(settings.reversed_paths));
+  const auto plan = mc::make_plan(scene, reversed_paths(settings));
   return {mc::covariance_job(scene, plan, seed), "mc: " + plan.describe()};
 }
 

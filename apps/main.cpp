@@ -24,6 +24,7 @@ const char* const usage =
   covariance   covariance and intensity of the speckle of a scene, by Monte Carlo or exactly
   validate     both methods on one scene, compared entry by entry
   sweep        memory-effect curves over tilts x g x albedo x optical depth
+  field        speckle fields drawn with the covariance of a scene, also over tilts of the light
 
   flatspeckle SUBCOMMAND --help lists the keys; flatspeckle --version tells the version.
   Exit status: 0 done, 2 bad input, 3 stopped before the target error was reached,
@@ -36,7 +37,8 @@ int run(const Arguments& arguments) {
       {"solve", solve},
       {"covariance", covariance},
       {"validate", validate},
-      {"sweep", sweep}};
+      {"sweep", sweep},
+      {"field", field}};
   const std::string word = arguments.size() > 1 ? arguments[1] : "--help";
   if (word == "--help" || word == "-h" || word == "help") {
     std::cout << usage;
@@ -48,7 +50,7 @@ int run(const Arguments& arguments) {
   }
   const auto subcommand = subcommands.find(word);
   if (subcommand == subcommands.end())
-    throw InputError("subcommand", word, "must be one of covariance place solve sweep validate");
+    throw InputError("subcommand", word, "must be one of covariance field place solve sweep validate");
   return subcommand->second(arguments);
 }
 

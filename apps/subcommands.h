@@ -20,5 +20,6 @@ int solve(const Arguments& arguments);
 int covariance(const Arguments& arguments);
 int validate(const Arguments& arguments);
 int sweep(const Arguments& arguments);
+int field(const Arguments& arguments);
 
 }  // namespace flatspeckle::apps

@@ -31,12 +31,17 @@ inline Vec2 turned(Vec2 w, Vec2 turn) {
   return {w.x * turn.z + w.z * turn.x, w.z * turn.z - w.x * turn.x};
 }
 
-/// A uniform direction, by rejection: no trigonometry.
-inline Vec2 sample_direction(RandomStream& random) {
+/// The direction at twice the angle of (a, b), both measured from the second axis.
+inline Vec2 doubled_angle(double a, double b) {
+  const double per_square = 1 / (a * a + b * b);
+  return {2 * a * b * per_square, (b * b - a * a) * per_square};
+}
+
+/// Uniform in the unit disk without its centre; its angle needs no trigonometry.
+inline Vec2 sample_disk(RandomStream& random) {
   while (true) {
-    const double a = 2 * random.uniform() - 1, b = 2 * random.uniform() - 1;
-    const double square = a * a + b * b;
-    if (square <= 1) return {2 * a * b / square, (a * a - b * b) / square};
+    const Vec2 point{2 * random.uniform() - 1, 2 * random.uniform() - 1};
+    if (const double square = dot(point, point); square <= 1 && square > 0) return point;
   }
 }
 
@@ -55,7 +60,8 @@ struct IsotropicScattering {
     for (Complex& value : out) value *= a;
   }
   Vec2 sample(Vec2 from, RandomStream& random) const {
-    return turned(from, sample_direction(random));
+    const Vec2 uniform = sample_disk(random);
+    return turned(from, doubled_angle(uniform.x, uniform.z));
   }
 };
 
@@ -70,13 +76,10 @@ struct HenyeyGreensteinScattering {
   void towards(Vec2 from, const Directions& to, std::span<Complex> out) const {
     for (std::size_t j = 0; j < out.size(); ++j) out[j] *= amplitude(from, to[j]);
   }
-  /// tan(theta/2) = (1-g)/(1+g) tan(phi/2) of a uniform phi (C22).
+  /// tan(theta/2) = (1-g)/(1+g) tan(half) of a uniform half angle (C22).
   Vec2 sample(Vec2 from, RandomStream& random) const {
-    const Vec2 uniform = sample_direction(random);
-    const double c = (1 - phase.g) * uniform.x, d = (1 + phase.g) * (1 + uniform.z);
-    const double square = c * c + d * d;
-    if (square == 0) return -from;
-    return turned(from, {2 * c * d / square, (d * d - c * c) / square});
+    const Vec2 uniform = sample_disk(random);
+    return turned(from, doubled_angle((1 - phase.g) * uniform.x, (1 + phase.g) * uniform.z));
   }
 };
 

@@ -17,6 +17,8 @@ KEYS = {
     "solve": SCENE + ["seed"],
     "covariance": SCENE + ["tilts", "covariance", "method", "wave_samples"] + RUN,
     "validate": SCENE + ["tilts", "covariance", "wave_samples"] + RUN,
+    "field": SCENE + ["tilts", "method", "fields", "paths_per_field", "target_error", "seed",
+                      "threads"],
     "sweep": SCENE + ["tilts"] + RUN,
 }
 
