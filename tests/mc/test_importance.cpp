@@ -1,0 +1,99 @@
+#include <cmath>
+
+#include <doctest/doctest.h>
+
+#include "mc/importance.h"
+#include "tests/mc/estimates.h"
+#include "tests/mc/slab_theory.h"
+#include "tests/mc/textbook.h"
+
+namespace flatspeckle::mc {
+
+namespace {
+
+using tests::pi;
+
+constexpr double k = 2 * pi;
+
+/// Transmitted and reflected intensities and a matched pair through an isotropic slab of depth 10
+/// against the integral equation. largest_error: relative, of the intensities.
+void check_slab(double optical_depth, double albedo, const std::vector<double>& views,
+                const Plan& changed, std::uint64_t paths, double largest_error) {
+  const double depth = 10;
+  const auto request = memory_effect_request(k, 0, views, {0.02});
+  const Scene scene = tests::hg_slab(depth, {depth / optical_depth, 0, albedo}, request);
+  Plan plan = make_plan(scene, ReversedPaths::no);
+  plan.weighted = changed.weighted;
+  plan.score_level = changed.score_level;
+  const auto found = tests::run(scene, plan, paths, 3).entries();
+  const tests::IsotropicSlab theory(k, depth, optical_depth / depth, albedo);
+  const auto channel = [&](std::uint32_t c) {
+    return tests::IsotropicSlab::Channel{request.lights[request.channels[c].light],
+                                         request.views[request.channels[c].view].angle};
+  };
+  for (std::size_t e = 0; e < request.entries.size(); ++e) {
+    const auto [a, b] = request.entries[e];
+    const Complex expected = theory.without_reversed(channel(a), channel(b));
+    CAPTURE(e);
+    CAPTURE(plan.score_level);
+    CAPTURE(plan.weighted);
+    CHECK_WITHIN_4_SIGMA(found.value[e], found.error[e], expected, 1e-3 * std::abs(expected));
+    if (a == b) CHECK(found.error[e] < largest_error * std::abs(expected));
+  }
+}
+
+Plan with(double score_level, bool weighted) {
+  Plan plan;
+  plan.score_level = score_level;
+  plan.weighted = weighted;
+  return plan;
+}
+
+}  // namespace
+
+TEST_CASE("the rate at which light dies out is that of the transport equation") {
+  // In flatland isotropic scattering has 1 = albedo / sqrt(1 - rate^2).
+  for (const double albedo : {0.01, 0.3, 0.8, 0.99, 1 - 1e-9})
+    CHECK(diffusion_rate(albedo, 0) ==
+          doctest::Approx(std::sqrt((1 - albedo) * (1 + albedo))).epsilon(1e-6));
+  for (const double g : {-0.5, 0.5, 0.9}) {  // the diffusion limit
+    const double absorbed = 1e-6;
+    CHECK(diffusion_rate(1 - absorbed, g) ==
+          doctest::Approx(std::sqrt(2 * absorbed * (1 - g))).epsilon(1e-3));
+  }
+  CHECK(diffusion_rate(1, 0.9) == 0);
+  CHECK(diffusion_rate(0.9, 0.9) > diffusion_rate(0.9, 0.95));
+}
+
+TEST_CASE("roulette of scores and depth windows change the variance alone") {
+  for (const double level : {0.0, 0.3, 5.0, 50.0})
+    for (const bool weighted : {false, true})
+      check_slab(3, 1, {0.1, pi - 0.2}, with(level, weighted), 40000, 0.2);
+  for (const double level : {0.0, 2.0})
+    check_slab(4, 0.7, {0.1, pi - 0.2}, with(level, true), 40000, 0.2);
+}
+
+TEST_CASE("what crosses deep absorbing media is found and weighs what it should") {
+  check_slab(30, 0.9, {0.1}, with(2, true), 80000, 0.1);
+  check_slab(20, 0.5, {0}, with(2, true), 200000, 0.3);
+  check_slab(100, 0.9, {pi - 0.4}, with(2, true), 40000, 0.05);
+}
+
+TEST_CASE("boxes that absorb, with reversed paths, agree with the textbook") {
+  const auto request = intensity_request({0, 0.4}, tests::far_views({0.2, 1.5, pi, pi - 0.4}));
+  const Scene scene = tests::hg_box(12, 8, {2, 0.5, 0.7}, request);
+  const auto found = tests::run(scene, ReversedPaths::yes, 200000, 5).entries();
+  const FieldJob textbook = tests::textbook_job(scene, true, 200, 6);
+  RunState state;
+  RunOptions options;
+  options.stop.samples = 400000;
+  run_batches(textbook.batches, options, state);
+  const auto expected = jackknife(state.sums, textbook.covariance);
+  for (std::size_t e = 0; e < request.entries.size(); ++e) {
+    CAPTURE(e);
+    CHECK_WITHIN_4_SIGMA(found.value[e], std::hypot(found.error[e], expected.error[e]),
+                         expected.value[e], 0.0);
+  }
+}
+
+}  // namespace flatspeckle::mc
