@@ -17,6 +17,7 @@ int covariance(const Arguments& arguments) {
   add_scatterer_options(command.options(), spec);
   add_bulk_options(command.options(), spec);
   add_medium_options(command.options(), spec);
+  add_structure_option(command.options(), spec);
   add_view_options(command.options(), spec);
   add_request_options(command.options(), spec);
   command.options().add_option("--method", method, "mc or wave")->capture_default_str();
@@ -37,7 +38,7 @@ int covariance(const Arguments& arguments) {
   Session session(
       command.command_line(), settings, estimation.plan,
       {{"", "covariance", estimation.job.batches, method == "mc" ? mc_stop : wave_stop}},
-      sensors_text(scene.request));
+      inputs_text(scene));
   return session.run([&](ResultFile& file) {
     const GroupedSums& sums = session.state("").sums;
     const FieldMoments moments = field_moments(estimation.job, sums);

@@ -19,19 +19,6 @@ mc::ReversedPaths reversed_paths(const MethodSettings& settings) {
   throw InputError("reversed_paths", word, "must be one of auto yes no");
 }
 
-void note_deep_absorption(const Scene& scene) {
-  const double depth = scene.medium.mu_t * scene.domain.depth;
-  constexpr double deep =
-      8;  // of optical depth x sqrt(1 - albedo); above, 4-sigma misses were seen
-  const bool transmitted =
-      std::any_of(scene.request.views.begin(), scene.request.views.end(),
-                  [](const View& view) { return view.near || std::cos(view.angle) > 0; });
-  if (transmitted && depth * std::sqrt(1 - std::min(1.0, scene.medium.albedo)) > deep)
-    std::cerr << "note: transmission through optical depth " << depth << " at albedo "
-              << scene.medium.albedo
-              << " rests on rare paths; short runs come out too low, with too small errors\n";
-}
-
 void add_mc_options(CLI::App& app, MethodSettings& settings) {
   app.add_option("--reversed_paths", settings.reversed_paths,
                  "Coherent backscattering in Monte Carlo: auto (where a view may see it), yes, no")
@@ -55,9 +42,11 @@ void note_rounding(const Scene& scene) {
 }
 
 Estimation mc_estimation(const Scene& scene, const MethodSettings& settings, std::uint64_t seed) {
-  note_deep_absorption(scene);
   const auto plan = mc::make_plan(scene, reversed_paths(settings));
-  return {mc::covariance_job(scene, plan, seed), "mc: " + plan.describe()};
+  const auto& structure = scene.medium.structure;
+  return {mc::covariance_job(scene, plan, seed),
+          "mc: " + plan.describe() +
+              (structure.independent() ? "" : "; structure factor " + structure.origin())};
 }
 
 Estimation wave_estimation(const Scene& scene, const MethodSettings& settings, std::uint64_t seed) {

@@ -22,9 +22,6 @@ void add_wave_options(CLI::App& app, MethodSettings& settings);
 
 /// Throws InputError.
 mc::ReversedPaths reversed_paths(const MethodSettings& settings);
-/// What crosses a deep absorbing medium does so on rare paths that short runs do not see at all:
-/// says so on standard error.
-void note_deep_absorption(const Scene& scene);
 
 /// A method applied to a scene: what the runner needs, and in words what was planned.
 struct Estimation {

@@ -38,6 +38,13 @@ void add_medium_options(CLI::App& app, SceneSpec& spec) {
                  "Least distance between the rims of disks (default 1e-3 radius)");
 }
 
+void add_structure_option(CLI::App& app, SceneSpec& spec) {
+  app.add_option("--structure", spec.structure,
+                 "Structure factor of disks in Monte Carlo: none, hard_disks, or a file that "
+                 "place --structure wrote")
+      ->capture_default_str();
+}
+
 void add_view_options(CLI::App& app, SceneSpec& spec) {
   // Their defaults stay out of the resolved scene: near sensors and pairs take their place.
   app.add_option("--light_angles", spec.light_angles,
@@ -78,6 +85,10 @@ std::string sensors_text(const CovarianceRequest& request) {
   for (const View& view : request.views)
     if (view.near) text << view.point.x << ',' << view.point.z << '\n';
   return text.str();
+}
+
+std::string inputs_text(const Scene& scene) {
+  return sensors_text(scene.request) + scene.medium.structure.text();
 }
 
 }  // namespace flatspeckle::apps

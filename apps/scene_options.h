@@ -10,6 +10,8 @@ void add_scatterer_options(CLI::App& app, SceneSpec& spec);
 void add_view_options(CLI::App& app, SceneSpec& spec);
 /// Keys of the medium.
 void add_medium_options(CLI::App& app, SceneSpec& spec);
+/// The structure factor that Monte Carlo takes positions to have.
+void add_structure_option(CLI::App& app, SceneSpec& spec);
 /// g, albedo and optical_depth, where a subcommand takes one value of each.
 void add_bulk_options(CLI::App& app, SceneSpec& spec);
 /// Which entries of the covariance.
@@ -22,5 +24,7 @@ void settle_request(const Subcommand& subcommand, SceneSpec& spec);
 
 /// The near sensors that were read, exactly.
 std::string sensors_text(const CovarianceRequest& request);
+/// Those and the structure factor: all that a scene takes from other files.
+std::string inputs_text(const Scene& scene);
 
 }  // namespace flatspeckle::apps

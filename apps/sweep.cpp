@@ -140,6 +140,7 @@ int sweep(const Arguments& arguments) {
   options.add_option("--albedo", axes.albedo, "Albedos to sweep");
   options.add_option("--optical_depth", axes.optical_depth, "Optical depths to sweep");
   add_medium_options(options, spec);
+  add_structure_option(options, spec);
   add_view_options(options, spec);
   options.add_option("--tilts", spec.tilts, "Rotations of the light, radians");
   add_mc_options(options, methods);
@@ -161,7 +162,8 @@ int sweep(const Arguments& arguments) {
         "point " + std::to_string(runs.size() + 1) + "/" + std::to_string(points.size());
     runs.push_back({point.name, label, point.job.batches, stop});
   }
-  Session session(command.command_line(), settings, plan, std::move(runs));
+  Session session(command.command_line(), settings, plan, std::move(runs),
+                  inputs_text(points.front().scene));
   for (auto& point : points) point.sums = &session.state(point.name).sums;
   return session.run([&](ResultFile& file) {
     SweepTables tables;

@@ -93,7 +93,8 @@ void EndFactors<near, phases>::attenuate_near(Vec2 x, std::span<Complex> out) {
     const Vec2 w = 1 / r * way;
     directions_.set(j, w, angle_of(w));
     const double inside = std::min(domain_.distance_to_edge(x, w), r);
-    out[j] = std::exp(-mu_t_ * inside / 2) * outgoing_wave(k_, r);
+    log_magnitude_[j] = -mu_t_ * inside / 2;
+    out[j] = std::exp(log_magnitude_[j]) * outgoing_wave(k_, r);
     if constexpr (!phases) out[j] = std::abs(out[j]);
   }
 }

@@ -43,8 +43,11 @@ class EndFactors {
   /// out[j] = e_j(x) alone.
   void attenuate(Vec2 x, std::span<Complex> out);
 
-  /// Towards the end, from where attenuate() was called last.
+  /// Towards the ends, from where attenuate() was called last, and the logarithm of what is left of
+  /// the field on the way there: -mu_t d/2.
   Vec2 direction(std::size_t j) const { return directions_[j]; }
+  const Directions& directions() const { return directions_; }
+  double log_attenuation(std::size_t j) const { return log_magnitude_[j]; }
 
  private:
   void attenuate_near(Vec2 x, std::span<Complex> out);

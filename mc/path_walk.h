@@ -25,26 +25,40 @@ struct Path {
   bool new_start = false;  ///< the first such path from this first scatterer and start
 };
 
+/// What a walk notes of a path's flights and inner scatterings (not those of the first and last
+/// scatterer): here nothing, at no cost.
+struct NoTally {
+  void flight(double /*length*/) {}
+  void scattering(Vec2 /*from*/, Vec2 /*to*/) {}
+};
+
+template <typename Tally>
+struct TalliedPath : Path {
+  [[no_unique_address]] Tally tally;
+};
+
 /// Walks from the lights through a scene (Bar et al. 2019) and gives what it finds to a scorer:
 ///   single(x, weight)   paths of one scatterer, where the plan samples them
-///   multiple(path)      paths of more
+///   multiple(path)      paths of more, with their tally
 /// Steps are cheap and scoring is not, so a contribution that promises little plays roulette first.
 /// Walkers split and die by what their depth is worth.
 ///
 /// With reversed paths a path is weighed by the mean of the densities with which the walk would
 /// find it from either end. That is unbiased, because F + R does not change when a path is turned
 /// round, and no |R|^2 can outgrow its weight.
-template <typename Scattering, bool reversed, bool weighted>
+template <typename Scattering, bool reversed, bool weighted, typename Tally = NoTally>
 class PathWalk {
  public:
-  PathWalk(const Scene& scene, const Plan& plan, const Scattering& scattering)
+  /// tally: what every path starts with.
+  PathWalk(const Scene& scene, const Plan& plan, const Scattering& scattering, Tally tally = {})
       : plan_(plan),
         domain_(scene.domain),
         medium_(scene.medium),
         scattering_(scattering),
         first_(scene),
         importance_(scene),
-        expected_view_(scene, view_ends(scene)) {}
+        expected_view_(scene, view_ends(scene)),
+        tally_(tally) {}
 
   /// To be called before a batch's first walk.
   void begin(RandomStream& random) { ticket_ = random.uniform(); }
@@ -53,14 +67,16 @@ class PathWalk {
   void walk(RandomStream& random, Scorer& scorer) {
     const auto [x, arrival] = first_.sample(random);
     if (plan_.sampled_single) scorer.single(x, medium_.mu_s / first_.density(x));
-    path_ = {x, scattering_.sample(arrival, random), {}, {}, 0, true};
+    path_ = {{x, scattering_.sample(arrival, random), {}, {}, 0, true}, tally_};
     start_density_ = -1;
     log_worth_first_ = std::max(importance_.log_worth(x.z), 0.0);
     if constexpr (reversed) expected_first_ = expected(x, -path_.start);
     // The first flight stays inside: else most walks of a thin medium would find nothing.
     const grin::BoundedFlight flight{medium_.mu_t, domain_.distance_to_edge(x, path_.start)};
-    const Vec2 second = x + flight.sample(random.uniform()) * path_.start;
-    follow({second, path_.start, flight.probability(), 1}, random, scorer);
+    const double length = flight.sample(random.uniform());
+    Walker second{x + length * path_.start, path_.start, flight.probability(), 1, tally_};
+    second.tally.flight(length);
+    follow(second, random, scorer);
     while (!waiting_.empty()) {
       Walker walker = waiting_.back();
       if (--waiting_.back().copies == 0) waiting_.pop_back();
@@ -74,6 +90,7 @@ class PathWalk {
     Vec2 x, arrival;
     double weight;
     std::uint32_t copies;
+    [[no_unique_address]] Tally tally;
   };
 
   /// From where a walker has arrived, until it leaves, dies or splits.
@@ -92,6 +109,8 @@ class PathWalk {
     const Vec2 w = scattering_.sample(walker.arrival, random);
     const double flight = grin::sample_free_flight(medium_.mu_t, random.uniform());
     if (flight >= domain_.distance_to_edge(walker.x, w)) return false;
+    walker.tally.scattering(walker.arrival, w);
+    walker.tally.flight(flight);
     walker.x = walker.x + flight * w;
     walker.arrival = w;
     return true;
@@ -133,6 +152,7 @@ class PathWalk {
     }
     path_.last = walker.x;
     path_.arrival = walker.arrival;
+    path_.tally = walker.tally;
     path_.weight = medium_.mu_s * medium_.albedo * weight / (start_density() + backward_density);
     scorer.multiple(path_);
     path_.new_start = false;
@@ -164,7 +184,8 @@ class PathWalk {
   DepthImportance importance_;
   ExpectedContribution expected_view_;
   std::vector<Walker> waiting_;
-  Path path_;
+  [[no_unique_address]] Tally tally_;
+  TalliedPath<Tally> path_;
   double start_density_ = -1, log_worth_first_ = 0, expected_first_ = 0;
   double ticket_ = 0;  ///< a score at every whole number
 };

@@ -32,19 +32,20 @@ void with_scattering(const Scene& scene, const Plan& plan, F f) {
 }
 
 /// What all batches of walks share.
-template <typename Scattering, bool reversed, bool weighted>
+template <typename Scattering, bool reversed, bool weighted, typename Tally = NoTally>
 struct WalkSetup {
-  WalkSetup(const Scene& its_scene, const Plan& its_plan, const Scattering& its_scattering)
+  WalkSetup(const Scene& its_scene, const Plan& its_plan, const Scattering& its_scattering,
+            Tally tally = {})
       : scene(its_scene),
         plan(its_plan),
         scattering(its_scattering),
-        walk(scene, plan, scattering) {}
+        walk(scene, plan, scattering, tally) {}
   WalkSetup(const WalkSetup&) = delete;
 
   const Scene scene;
   const Plan plan;
   const Scattering scattering;
-  const PathWalk<Scattering, reversed, weighted> walk;
+  const PathWalk<Scattering, reversed, weighted, Tally> walk;
 };
 
 }  // namespace flatspeckle::mc

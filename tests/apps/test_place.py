@@ -111,6 +111,74 @@ class Structure(PlaceTest):
         self.assertAlmostEqual(attributes(self.folder / "s.h5")["packing_fraction"], 0.3979, 3)
 
 
+class Correlated(PlaceTest):
+    """Monte Carlo takes the structure factor that was measured, and that of theory."""
+
+    SCENE = {"width": 12, "depth": 8, "scatterer": "tm", "radius": 0.16, "index": 1.2, "count": 200,
+             "view_angles": [0.5, 3.0], "samples": 4000}
+
+    def setUp(self):
+        super().setUp()
+        self.place(width=12, depth=8, radii=0.16, count=200, structure="s.h5", realizations=200)
+
+    def test_measured_and_theory_agree(self):
+        for structure in ("none", "hard_disks", "s.h5"):
+            self.call("covariance", **self.SCENE, structure=structure, out=f"{structure}.out.h5")
+        none, theory, measured = (datasets(self.folder / f"{name}.out.h5")["intensity"][0]
+                                  for name in ("none", "hard_disks", "s.h5"))
+        np.testing.assert_allclose(measured, theory, rtol=0.06)
+        self.assertGreater(none[0], 1.4 * theory[0])
+        stored = attributes(self.folder / "s.h5.out.h5")
+        self.assertIn("structure factor measured, s.h5", stored["plan"])
+        self.assertIn('structure = "s.h5"', stored["config"])
+        theory = attributes(self.folder / "hard_disks.out.h5")
+        self.assertIn("structure factor of hard disks, packing fraction 0.167", theory["plan"])
+        self.assertNotIn("structure factor", attributes(self.folder / "none.out.h5")["plan"])
+        self.assertGreater(theory["k_mean_free_path"],
+                           1.2 * attributes(self.folder / "none.out.h5")["k_mean_free_path"])
+
+    def test_both_methods(self):
+        scene = {**self.SCENE, "count": 40, "width": 6, "depth": 3}
+        for structure, allowance in (("none", 0.179), ("hard_disks", 0.0321)):
+            self.call("validate", **scene, structure=structure, wave_samples=20, out="both.h5")
+            stored = attributes(self.folder / "both.h5")
+            correlations = (stored["bias_allowance"] - 2 / stored["k_mean_free_path"]
+                            - 2 * stored["k_shift"] / (2 * np.pi))
+            self.assertAlmostEqual(correlations, allowance, 3)
+
+    def test_resumed_only_with_the_same(self):
+        self.call("covariance", **{**self.SCENE, "samples": None}, structure="s.h5", out="r.h5",
+                  target_error=1e-9, seconds=0.01, status=3)
+        self.place(width=12, depth=8, radii=0.16, count=200, structure="s.h5", realizations=201)
+        done = self.call("covariance", **{**self.SCENE, "samples": None}, structure="s.h5",
+                         out="r.h5", target_error=1e-9, seconds=0.01, resume=True, status=2)
+        self.assertIn("another run", done.stderr)
+
+    def test_refused(self):
+        self.place(out="p.csv", width=12, depth=8, count=200, structure="points.h5")
+        self.write("text.h5", "no HDF5")
+        self.call("covariance", **self.SCENE, out="result.h5")
+        for changes, words in [
+                ({"structure": "none.h5"}, ["none.h5"]),
+                ({"structure": "text.h5"}, ["text.h5"]),
+                ({"structure": "result.h5"}, ["structure = result.h5", "no dataset q"]),
+                ({"structure": "points.h5"}, ["structure = points.h5", "contact distance"]),
+                ({"structure": "s.h5", "count": 150}, ["structure = s.h5", "density"]),
+                ({"structure": "s.h5", "radius": 0.14}, ["structure = s.h5", "contact distance"]),
+                ({"structure": "s.h5", "min_gap": 0.03}, ["structure = s.h5", "contact distance"]),
+                ({"structure": "hard_disks", "scatterer": "point", "radius": None, "index": None},
+                 ["structure = hard_disks", "points and hg are independent"]),
+                ({"structure": "hard_disks", "count": None, "optical_depth": 1},
+                 ["optical_depth = 1", "count or density"])]:
+            with self.subTest(changes=changes):
+                done = self.call("covariance", **{**self.SCENE, "out": "no.h5", **changes},
+                                 status=2)
+                self.assertRegex(done.stderr, r"^flatspeckle: [^\n]+\n$")
+                for word in words:
+                    self.assertIn(word, done.stderr)
+                self.assertFalse((self.folder / "no.h5").exists())
+
+
 class Refused(PlaceTest):
     CASES = [
         ({"width": None}, ["width", "must be positive"]),

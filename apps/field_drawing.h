@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "core/runner.h"
+#include "flatland/scene.h"
+#include "mc/field_plan.h"
+#include "mc/plan.h"
+
+namespace flatspeckle::apps {
+
+/// Fields that were drawn, [realization][light][view], and what they are to be compared with.
+struct DrawnFields {
+  mc::FieldPlan plan;
+  std::vector<Complex> field;
+  Estimate intensity;  ///< E|u|^2 per channel, from light paths: without the noise of speckle
+  Estimate siegert;    ///< what the autocorrelation should be, where it is formed
+  double wall_s = 0, cpu_s = 0;  ///< of all runs
+};
+
+/// How many lights' paths, on how many threads.
+struct DrawingSettings {
+  mc::ReversedPaths reversed = mc::ReversedPaths::automatic;
+  std::uint64_t seed = 1;
+  int threads = 1;
+};
+
+/// Surveys the scene's paths, chooses how to draw (and says so on standard output), and draws.
+/// Nothing where a signal came (catch_interrupts).
+std::optional<DrawnFields> draw_fields(const Scene& scene, const mc::FieldDemand& demand,
+                                       const DrawingSettings& settings);
+
+}  // namespace flatspeckle::apps

@@ -1,0 +1,125 @@
+#!/usr/bin/env python3
+"""Speckle fields of `flatspeckle field`: intensity of the first realization over views and lights
+(over views and realizations, where there is one light), with lines along which the memory effect
+moves speckles; the histogram of all intensities; and their autocorrelation over the first light's
+views."""
+
+import style
+
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.ticker import MaxNLocator
+
+BRIGHTEST = 5  # times the mean: 0.7 % of a Gaussian field's intensities are above
+FEWEST_EXPECTED = 10  # in a bin, for its error bar to mean something
+plt.rcParams["savefig.dpi"] = 150
+
+
+def edges(centres):
+    """Boundaries between cells with these centres."""
+    middle = (centres[1:] + centres[:-1]) / 2
+    first, last = 2 * centres[0] - middle[0], 2 * centres[-1] - middle[-1]
+    return np.concatenate([[first], middle, [last]])
+
+
+def views(result):
+    """Coordinate and label of the view axis."""
+    if result.has("view_angle"):
+        return np.sin(result.values("view_angle")), r"$\sin v$"
+    x = result.values("sensor_x") / result.attribute("wavelength")
+    if len(np.unique(x)) == len(x) and np.all(np.diff(x) * (x[1] - x[0]) > 0):
+        return x, r"sensor $x/\lambda$"
+    return np.arange(len(x), dtype=float), "sensor"
+
+
+def picture(result):
+    """Intensity over its mean [row, view], coordinate and label of the rows."""
+    field = result.dataset("field")
+    mean = result.values("intensity")
+    mean = np.where(mean > 0, mean, 1)
+    if field.shape[1] > 1:
+        return np.abs(field[0])**2 / mean, np.sin(result.values("light_angle")), r"$\sin i$"
+    rows = min(len(field), 64)
+    return np.abs(field[:rows, 0])**2 / mean, np.arange(rows, dtype=float), "realization"
+
+
+def draw_shear(axis, x, y):
+    """k sin v - k sin i = const: speckles follow these lines as far as the memory effect reaches."""
+    for middle in np.linspace(x[0], x[-1], 7)[1:-1:2]:
+        axis.plot(middle + y - y.mean(), y, color="white", linewidth=0.7, linestyle=(0, (4, 4)),
+                  scalex=False, scaley=False)
+
+
+def draw_picture(figure, axis, result):
+    intensity, y, y_label = picture(result)
+    x, x_label = views(result)
+    order_x, order_y = np.argsort(x), np.argsort(y)
+    x, y, intensity = x[order_x], y[order_y], intensity[np.ix_(order_y, order_x)]
+    if len(x) < 2 or len(np.unique(y)) < len(y) or len(np.unique(x)) < len(x):
+        raise style.Unusable(f"{result.path}: needs two views or more, and none twice")
+    mesh = axis.pcolormesh(edges(x), edges(y), intensity, cmap="inferno", vmin=0, vmax=BRIGHTEST,
+                           rasterized=True)
+    if y_label == r"$\sin i$" and result.has("view_angle"):
+        draw_shear(axis, x, y)
+    axis.set(xlabel=x_label, ylabel=y_label, xlim=edges(x)[[0, -1]], ylim=edges(y)[[0, -1]])
+    axis.tick_params(direction="out", top=False, right=False)
+    axis.xaxis.set_major_locator(MaxNLocator(5))
+    axis.yaxis.set_major_locator(MaxNLocator(5))
+    figure.colorbar(mesh, ax=axis, label=r"$|u|^2/\langle |u|^2\rangle$", extend="max", pad=0.02)
+
+
+def draw_histogram(axis, result):
+    low = result.values("intensity_bin")
+    counts, error = result.values("histogram"), result.values("histogram_error")
+    expected = result.values("histogram_expected")
+    width = low[1] - low[0]
+    shown = (expected >= FEWEST_EXPECTED) & (counts > 0)
+    shown[-1] = False  # open
+    unit = expected.sum() * width
+    x = np.linspace(0, low[shown].max() + width, 200)
+    axis.semilogy(x, np.exp(-x), color=style.COLOURS[1], label=r"$\exp(-I/\langle I\rangle)$")
+    axis.errorbar(low[shown] + width / 2, counts[shown] / unit, error[shown] / unit,
+                  color=style.COLOURS[0], marker="o", markersize=2.5, linestyle="none",
+                  elinewidth=0.7, label=f"{len(result.dataset('field'))} fields")
+    contrast, spread = (result.values(name) for name in ("mean_contrast", "mean_contrast_error"))
+    axis.text(0.05, 0.06, f"contrast {contrast:.3f} $\\pm$ {spread:.1g}", transform=axis.transAxes)
+    axis.set_xlabel(r"$I/\langle I\rangle$")
+    axis.set_ylabel("probability density")
+    axis.legend(loc="upper right")
+
+
+def draw_autocorrelation(axis, result):
+    if not result.has("intensity_autocorrelation"):
+        axis.text(0.5, 0.5, "views are not equally spaced", ha="center", va="center",
+                  transform=axis.transAxes)
+        axis.set_axis_off()
+        return
+    far = result.has("view_angle")
+    lag = result.values("view_lag") / (1 if far else result.attribute("wavelength"))
+    found, error = (result.values("intensity_autocorrelation" + end) for end in ("", "_error"))
+    expected = result.values("siegert") if result.has("siegert") else np.zeros_like(found)
+    reach = lag <= 5 * lag[np.argmax((expected if expected.any() else found) < 0.3)]
+    axis.axhline(0, color=style.GREY, linewidth=0.6, linestyle=(0, (1, 2)), zorder=0)
+    if result.has("siegert"):
+        axis.plot(lag[reach], expected[reach], color=style.COLOURS[1],
+                  label=r"$|\langle u u'^*\rangle|^2/\langle I\rangle\langle I'\rangle$")
+    axis.errorbar(lag[reach], found[reach], error[reach], color=style.COLOURS[0], marker="o",
+                  markersize=2.5, linestyle="none", elinewidth=0.7,
+                  label=r"$\langle I I'\rangle/\langle I\rangle\langle I'\rangle-1$")
+    axis.set_xlabel(r"$\sin v'-\sin v$" if far else r"distance of sensors$/\lambda$")
+    axis.set_ylabel("autocorrelation")
+    axis.xaxis.set_major_locator(MaxNLocator(4))
+    axis.legend(loc="upper right")
+
+
+def draw(results):
+    figure = plt.figure(figsize=(style.PAGE, 3.2))
+    grid = figure.add_gridspec(2, 2, width_ratios=[1.9, 1])
+    draw_picture(figure, figure.add_subplot(grid[:, 0]), results[0])
+    draw_histogram(figure.add_subplot(grid[0, 1]), results[0])
+    draw_autocorrelation(figure.add_subplot(grid[1, 1]), results[0])
+    return figure
+
+
+if __name__ == "__main__":
+    style.main(draw, __doc__)
