@@ -2,8 +2,18 @@
 
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace flatspeckle {
+
+namespace {
+
+/// sqrt(S) at the momentum transfer of a scattering angle.
+double structure_amplitude(const StructureTable& structure, double k, double theta) {
+  return std::sqrt(structure(2 * k * std::abs(std::sin(theta / 2))));
+}
+
+}  // namespace
 
 BulkMedium bulk_medium(const Scatterer& scatterer, double k, double density) {
   constexpr double tolerance = 1e-13;
@@ -35,6 +45,43 @@ BulkMedium bulk_medium(const Scatterer& henyey_greenstein, double mu_t) {
   medium.mu_s = medium.albedo * mu_t;
   medium.g = henyey_greenstein.g;
   return medium;
+}
+
+BulkMedium correlated_medium(BulkMedium medium, double k, StructureTable structure) {
+  medium.structure = std::move(structure);
+  // The trapezoidal rule is spectrally accurate where S is smooth, and fine enough for a table.
+  const std::size_t intervals = 256 * (medium.t_matrix.size() + 1);
+  const auto alone = amplitudes(medium.t_matrix, k, intervals);
+  const double step = std::numbers::pi / static_cast<double>(intervals);
+  double sum = 0, cosine = 0;
+  for (std::size_t i = 0; i <= intervals; ++i) {
+    const double theta = static_cast<double>(i) * step;
+    const double weight = i == 0 || i == intervals ? step : 2 * step;
+    const double root = structure_amplitude(medium.structure, k, theta);
+    const double scattered = weight * std::norm(root * alone[i]);
+    sum += scattered;
+    cosine += scattered * std::cos(theta);
+  }
+  const double absorption = medium.mu_t - medium.mu_s;
+  medium.mu_s = medium.density * sum;
+  medium.mu_t = medium.mu_s + absorption;
+  medium.g = sum > 0 ? cosine / sum : 0;
+  medium.albedo = medium.mu_t == 0 ? 0 : medium.mu_s / medium.mu_t;
+  return medium;
+}
+
+Complex scattering_amplitude(const BulkMedium& medium, double k, double theta) {
+  return structure_amplitude(medium.structure, k, theta) * amplitude(medium.t_matrix, k, theta);
+}
+
+std::vector<Complex> normalised_amplitudes(const BulkMedium& medium, double k,
+                                           std::size_t intervals) {
+  auto values = amplitudes(medium.t_matrix, k, intervals);
+  const double scale = std::sqrt(medium.density / medium.mu_s);
+  const double step = std::numbers::pi / static_cast<double>(intervals);
+  for (std::size_t i = 0; i <= intervals; ++i)
+    values[i] *= scale * structure_amplitude(medium.structure, k, static_cast<double>(i) * step);
+  return values;
 }
 
 }  // namespace flatspeckle

@@ -50,5 +50,8 @@ CrossSections cross_sections(const std::vector<ExtendedComplex>& t_matrix, doubl
 /// Far-field amplitude of one scatterer at the origin for light along +z (C6), at scattering angle
 /// theta.
 Complex amplitude(const std::vector<ExtendedComplex>& t_matrix, double k, double theta);
+/// The same at theta = 0 .. pi in equal intervals, a node in a nanosecond per order.
+std::vector<Complex> amplitudes(const std::vector<ExtendedComplex>& t_matrix, double k,
+                                std::size_t intervals);
 
 }  // namespace flatspeckle

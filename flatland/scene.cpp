@@ -177,6 +177,26 @@ void check_packing(const Scene& scene) {
                 2 * reach);
 }
 
+/// The medium with the correlations that the scene states (C16).
+BulkMedium correlated(const SceneSpec& spec, const Scene& scene) {
+  const std::string& structure = spec.structure;
+  if (structure == "none") return scene.medium;
+  if (!scene.scatterer.is_disk())
+    throw InputError("structure", structure,
+                     "is a key of soft, hard, tm and te; points and hg are independent (none)");
+  const std::pair<const char*, const std::optional<double>*> extinctions[] = {
+      {"mean_free_path", &spec.mean_free_path}, {"optical_depth", &spec.optical_depth}};
+  for (const auto& [key, value] : extinctions)
+    if (*value)
+      throw InputError(key, **value,
+                       "correlations change the extinction; with structure give count or density");
+  const DiskSpacing disks{scene.medium.density,
+                          2 * scene.scatterer.radius + scene.placement.min_gap};
+  return correlated_medium(scene.medium, scene.k,
+                           structure == "hard_disks" ? hard_disk_structure(disks, 2 * scene.k)
+                                                     : read_structure(structure, disks));
+}
+
 /// The infinite slab has far fields only, lights from below the horizon, and (C18) only entries
 /// whose transverse momenta match.
 void check_slab_request(const CovarianceRequest& request) {
@@ -318,6 +338,7 @@ Scene make_scene(const SceneSpec& spec) {
   scene.medium = make_medium(spec, scene.scatterer, scene.domain, scene.k);
   scene.placement = make_placement_rule(spec, scene.scatterer, scene.domain, scene.medium.density);
   check_packing(scene);
+  scene.medium = correlated(spec, scene);
   scene.request = make_request(spec);
   if (scene.domain.kind == Domain::Kind::slab) check_slab_request(scene.request);
   return scene;

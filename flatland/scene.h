@@ -26,6 +26,7 @@ struct SceneSpec {
   std::optional<double> density, mean_free_path, optical_depth;
   std::optional<std::string> placement;
   std::optional<double> min_gap;
+  std::string structure = "none";
   std::vector<double> light_angles{0};
   std::vector<double> view_angles{0};
   std::string near_sensors;

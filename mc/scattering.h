@@ -83,12 +83,13 @@ struct HenyeyGreensteinScattering {
   }
 };
 
-/// The complex amplitude of a circular scatterer, tabulated and linear between the nodes.
+/// The complex amplitude of a circular scatterer, with the structure factor of its medium (C16),
+/// tabulated and linear between the nodes.
 class TabulatedScattering {
  public:
   TabulatedScattering(const BulkMedium& medium, double k)
       : intervals_(4096 * std::max<std::size_t>(medium.t_matrix.size(), 2)),
-        amplitude_(tabulate(medium, k, intervals_)),
+        amplitude_(normalised_amplitudes(medium, k, intervals_)),
         phase_([this](double angle) { return std::norm(at(angle)); }, intervals_) {}
 
   double density(Vec2 from, Vec2 to) const { return phase_.density(angle_between(from, to)); }
@@ -104,17 +105,6 @@ class TabulatedScattering {
  private:
   static double angle_between(Vec2 from, Vec2 to) {
     return std::atan2(from.z * to.x - from.x * to.z, dot(from, to));
-  }
-
-  static std::vector<Complex> tabulate(const BulkMedium& medium, double k, std::size_t intervals) {
-    std::vector<Complex> values(intervals + 1);
-    const double scale = 1 / std::sqrt(medium.cross_sections.scattering);
-    for (std::size_t i = 0; i <= intervals; ++i) {
-      const double angle =
-          std::numbers::pi * static_cast<double>(i) / static_cast<double>(intervals);
-      values[i] = scale * flatspeckle::amplitude(medium.t_matrix, k, angle);
-    }
-    return values;
   }
 
   /// Angles up to some turns.

@@ -147,3 +147,44 @@ TEST_CASE("complex numbers as people write them") {
   for (const char* bad : {"", "i", "1+", "1.5 0.1i", "abc", "nan", "1+0.1"})
     CHECK_THROWS_AS(parse_complex("index", bad), InputError);
 }
+
+TEST_CASE("a structure factor is one of disks of stated density") {
+  const auto refusal = [](SceneSpec spec, auto change) {
+    change(spec);
+    try {
+      make_scene(spec);
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string("accepted");
+  };
+  const auto says = [](const std::string& text, const char* word) {
+    INFO(text);
+    CHECK(text.find(word) != std::string::npos);
+  };
+  SceneSpec disks = box_disks(), points = box_points();
+  disks.structure = points.structure = "hard_disks";
+  const Scene scene = make_scene(disks);
+  CHECK_FALSE(scene.medium.structure.independent());
+  says(scene.medium.structure.origin(), "of hard disks, packing fraction 0.12");
+  says(refusal(points, [](auto&) {}), "structure = hard_disks: is a key of soft, hard, tm and te");
+  says(refusal(points,
+               [](auto& s) {
+                 s.scatterer = "hg";
+                 s.count.reset();
+                 s.optical_depth = 1;
+               }),
+       "structure = hard_disks: is a key of");
+  const auto by = [](auto SceneSpec::*key) {
+    return [key](auto& s) {
+      s.count.reset();
+      s.*key = 1.5;
+    };
+  };
+  says(refusal(disks, by(&SceneSpec::mean_free_path)), "mean_free_path = 1.5: correlations");
+  says(refusal(disks, by(&SceneSpec::optical_depth)), "optical_depth = 1.5: correlations");
+  says(refusal(disks, [](auto& s) { s.structure = "no_such_file.h5"; }), "no_such_file.h5");
+  // Wider gaps count: the same disks, farther apart, are a denser fluid.
+  disks.min_gap = 0.2;
+  says(make_scene(disks).medium.structure.origin(), "packing fraction 0.175");
+}

@@ -1,0 +1,158 @@
+#!/usr/bin/env python3
+"""Measures how far Monte Carlo is from the exact solver, over k mean free path and packing fraction.
+
+Runs `flatspeckle validate` on two families of scenes and writes one line per scene:
+  points  resonant points, Poisson, optical depth 1 and 2, box twice as wide as deep
+  disks   TM cylinders, k radius = 1, index 1.2, hard disks in a 12 x 8 box, Monte Carlo with
+          independent positions and with the structure factor of hard disks
+for lights 0 and pi and 16 views around the circle, less those in the forward lobe
+(k |sin view| < 2 pi / width), where a fixed number of disks lacks a part of the covariance. Each
+scene is run ten times with other seeds. A deviation is (mc - exact) / exact, exact averaged over
+the runs; its mean over the views has the error bar of the runs' scatter, its RMS over the views is
+less what the scatter adds to it. Views along the faces (+- pi / 2), where waves diffract at the
+edges of the box, have a mean of their own, `grazing`.
+"""
+
+import argparse
+import csv
+import math
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+import h5py
+import numpy as np
+
+RUNS = 10
+VIEWS = [2 * math.pi * j / 16 for j in range(-8, 8)]
+POINTS = [(optical_depth, k_mfp) for optical_depth in (1, 2)
+          for k_mfp in (5, 7, 10, 14, 20, 30, 50, 100, 200)]
+PACKINGS = [0.01, 0.02, 0.03, 0.05, 0.075, 0.1, 0.15, 0.2]
+BOX = {"width": 12, "depth": 8}
+RADIUS = 1 / (2 * math.pi)
+COLUMNS = ["family", "structure", "k_mean_free_path", "optical_depth", "packing_fraction",
+           "k_shift_over_k", "width", "depth", "placements", "mean", "mean_error", "rms",
+           "grazing", "grazing_error"]
+
+
+def call(program, folder, subcommand, threads, **keys):
+    """Runs the program; the result file."""
+    words = [program, subcommand, "--threads", str(threads), "--out", str(folder / "result.h5")]
+    for key, value in keys.items():
+        words += [f"--{key}"] + [str(item) for item in
+                                 (value if isinstance(value, list) else [value])]
+    done = subprocess.run(words, capture_output=True, text=True)
+    if done.returncode != 0:
+        sys.exit(f"{' '.join(words)}\n{done.stderr}")
+    return h5py.File(folder / "result.h5", "r")
+
+
+class Scene:
+    """Ten runs of one scene: exact and Monte Carlo intensities, [run, light x view]."""
+
+    def __init__(self, family, structure, **keys):
+        self.family, self.structure = family, structure
+        self.keys = {"light_angles": [0, math.pi], "view_angles": VIEWS, **keys}
+        self.exact, self.mc, self.attributes = [], [], {}
+
+    def kinds_of_views(self):
+        """Masks over light x view: views to average, and those along the faces."""
+        light, view = np.meshgrid([0, math.pi], VIEWS, indexing="ij")
+        forward = np.cos(view - light) > 0
+        in_lobe = forward & (np.abs(np.sin(view)) * self.keys["width"] < 1)
+        grazing = np.abs(np.cos(view)) < 1e-9
+        return (~in_lobe & ~grazing).ravel(), grazing.ravel()
+
+    def add(self, file, exact):
+        group = "mc/" if "mc" in file else ""
+        self.mc.append(file[group + "intensity"][...].ravel())
+        self.exact.append(exact)
+        self.attributes = dict(file.attrs)
+
+    def row(self, placements):
+        exact, mc = np.array(self.exact), np.array(self.mc)
+        deviation = (mc - exact) / exact.mean(axis=0)
+        chosen, grazing = self.kinds_of_views()
+        noise = deviation.var(axis=0, ddof=1) / RUNS
+        square = np.mean((deviation.mean(axis=0)**2 - noise)[chosen])
+        values = {name: self.attributes[name] for name in COLUMNS if name in self.attributes}
+        wavenumber = 2 * math.pi / self.attributes["wavelength"]
+        mean, mean_error = mean_over(deviation[:, chosen])
+        grazing, grazing_error = mean_over(deviation[:, grazing])
+        return {**values, "family": self.family, "structure": self.structure,
+                "k_shift_over_k": self.attributes["k_shift"] / wavenumber,
+                "placements": RUNS * placements, "mean": mean, "mean_error": mean_error,
+                "rms": math.sqrt(max(0, square)), "grazing": grazing,
+                "grazing_error": grazing_error}
+
+
+def mean_over(deviation):
+    """Mean of deviations [run, view] and its standard error, from the scatter of the runs."""
+    means = deviation.mean(axis=1)
+    return means.mean(), means.std(ddof=1) / math.sqrt(len(means))
+
+
+def compare(call_program, scenes, placements, paths):
+    """Scenes that share the exact solutions of the first; yields a row for each."""
+    first, *others = scenes
+    for seed in range(1, RUNS + 1):
+        with call_program("validate", **first.keys, seed=seed, samples=paths,
+                          wave_samples=placements) as file:
+            exact = file["wave/intensity"][...].ravel()
+            first.add(file, exact)
+        for other in others:
+            with call_program("covariance", **other.keys, structure=other.structure, seed=seed,
+                              samples=paths) as file:
+                other.add(file, exact)
+    return [scene.row(placements) for scene in scenes]
+
+
+def points(optical_depth, k_mfp):
+    depth = optical_depth * k_mfp / (2 * math.pi)
+    return [Scene("points", "none", width=2 * depth, depth=depth, optical_depth=optical_depth)]
+
+
+def disks(packing):
+    count = round(packing * BOX["width"] * BOX["depth"] / (math.pi * RADIUS**2))
+    keys = {**BOX, "scatterer": "tm", "radius": RADIUS, "index": "1.2", "count": count}
+    return [Scene("disks", structure, **keys) for structure in ("none", "hard_disks")]
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--program", default="build/release/bin/flatspeckle")
+    parser.add_argument("--out", default="data/bias_map.csv")
+    parser.add_argument("--threads", type=int, default=2)
+    parser.add_argument("--effort", type=float, default=1, help="times as many samples")
+    arguments = parser.parse_args()
+    with tempfile.TemporaryDirectory() as name, open(arguments.out, "w", newline="") as out:
+        out.write("# scripts/bias_map.py: Monte Carlo against the exact solver, both of this "
+                  "program; the script says what the columns are.\n")
+        table = csv.DictWriter(out, COLUMNS, lineterminator="\n")
+        table.writeheader()
+
+        def call_program(subcommand, **keys):
+            return call(arguments.program, pathlib.Path(name), subcommand, arguments.threads,
+                        **keys)
+
+        def measure(scenes, placements, paths):
+            for row in compare(call_program, scenes, int(arguments.effort * placements),
+                               int(arguments.effort * paths)):
+                table.writerow({key: f"{value:.5g}" if isinstance(value, float) else value
+                                for key, value in row.items()})
+                out.flush()
+                print(row["family"], row["structure"], f"k mfp {row['k_mean_free_path']:.4g}, "
+                      f"packing {row['packing_fraction']:.3g}: mean {row['mean']:+.4f} "
+                      f"+- {row['mean_error']:.4f}, rms {row['rms']:.4f}, "
+                      f"grazing {row['grazing']:+.4f}", flush=True)
+
+        for optical_depth, k_mfp in POINTS:
+            measure(points(optical_depth, k_mfp), 4000 if k_mfp < 60 else 3000, 100_000)
+        for packing in PACKINGS:
+            measure(disks(packing), 600 if packing < 0.06 else 300, 100_000)
+
+
+if __name__ == "__main__":
+    main()
