@@ -32,6 +32,7 @@ void add_options(CLI::App& app, FieldKeys& keys) {
   add_scatterer_options(app, keys.spec);
   add_bulk_options(app, keys.spec);
   add_medium_options(app, keys.spec);
+  add_structure_option(app, keys.spec);
   add_view_options(app, keys.spec);
   app.add_option("--tilts", keys.spec.tilts,
                  "Rotations of the light, radians: fields under each, in the same views");

@@ -15,11 +15,11 @@ KEYS = {
     "place": ["width", "depth", "radii", "fractions", "count", "packing_fraction", "placement",
               "min_gap", "seed", "structure", "realizations"],
     "solve": SCENE + ["seed"],
-    "covariance": SCENE + ["tilts", "covariance", "method", "wave_samples"] + RUN,
-    "validate": SCENE + ["tilts", "covariance", "wave_samples"] + RUN,
-    "field": SCENE + ["tilts", "method", "fields", "paths_per_field", "target_error", "seed",
+    "covariance": SCENE + ["structure", "tilts", "covariance", "method", "wave_samples"] + RUN,
+    "validate": SCENE + ["structure", "tilts", "covariance", "wave_samples"] + RUN,
+    "field": SCENE + ["structure", "tilts", "method", "fields", "paths_per_field", "target_error", "seed",
                       "threads"],
-    "sweep": SCENE + ["tilts"] + RUN,
+    "sweep": SCENE + ["structure", "tilts"] + RUN,
 }
 
 
