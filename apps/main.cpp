@@ -23,6 +23,7 @@ const char* const usage =
   solve        exact fields of one placement of scatterers
   covariance   covariance and intensity of the speckle of a scene, by Monte Carlo or exactly
   validate     both methods on one scene, compared entry by entry
+  flux         reflected, transmitted and absorbed power, intensity only
   sweep        memory-effect curves over tilts x g x albedo x optical depth
   field        speckle fields drawn with the covariance of a scene, also over tilts of the light
 
@@ -33,11 +34,8 @@ const char* const usage =
 
 int run(const Arguments& arguments) {
   static const std::map<std::string, int (*)(const Arguments&)> subcommands = {
-      {"place", place},
-      {"solve", solve},
-      {"covariance", covariance},
-      {"validate", validate},
-      {"sweep", sweep},
+      {"place", place}, {"solve", solve},       {"covariance", covariance},
+      {"flux", flux},   {"validate", validate}, {"sweep", sweep},
       {"field", field}};
   const std::string word = arguments.size() > 1 ? arguments[1] : "--help";
   if (word == "--help" || word == "-h" || word == "help") {
@@ -50,7 +48,8 @@ int run(const Arguments& arguments) {
   }
   const auto subcommand = subcommands.find(word);
   if (subcommand == subcommands.end())
-    throw InputError("subcommand", word, "must be one of covariance field place solve sweep validate");
+    throw InputError("subcommand", word,
+                     "must be one of covariance field flux place solve sweep validate");
   return subcommand->second(arguments);
 }
 

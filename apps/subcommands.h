@@ -18,6 +18,7 @@ enum ExitStatus : int {
 int place(const Arguments& arguments);
 int solve(const Arguments& arguments);
 int covariance(const Arguments& arguments);
+int flux(const Arguments& arguments);
 int validate(const Arguments& arguments);
 int sweep(const Arguments& arguments);
 int field(const Arguments& arguments);

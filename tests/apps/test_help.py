@@ -16,6 +16,7 @@ KEYS = {
               "min_gap", "seed", "structure", "realizations"],
     "solve": SCENE + ["seed"],
     "covariance": SCENE + ["structure", "tilts", "covariance", "method", "wave_samples"] + RUN,
+    "flux": SCATTERER + MEDIUM + ["light_angles", "angle_bins"] + RUN,
     "validate": SCENE + ["structure", "tilts", "covariance", "wave_samples"] + RUN,
     "field": SCENE + ["structure", "tilts", "method", "fields", "paths_per_field", "target_error", "seed",
                       "threads"],

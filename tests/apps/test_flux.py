@@ -1,0 +1,56 @@
+"""flux: shares of power in a result file, what is refused, and going on after an interruption."""
+
+import unittest
+
+import h5py
+import numpy as np
+
+from program import BOX, SLAB, ProgramTest
+
+ESTIMATES = ["reflectance", "transmittance", "direct_transmittance", "absorptance"]
+
+
+class Flux(ProgramTest):
+    def run_flux(self, keys, **more):
+        self.call("flux", **keys, light_angles=[0, 0.8], out="x.h5", **more)
+        return h5py.File(self.folder / "x.h5")
+
+    def test_shares_add_up(self):
+        for keys, sides in ((SLAB | {"albedo": 0.9}, []), (BOX, ["side_loss"])):
+            with self.run_flux(keys, target_error=0.01) as file:
+                total = sum(file[name][:] for name in ESTIMATES + sides)
+                error = sum(file[name + "_error"][:] for name in ESTIMATES + sides)
+                self.assertTrue(np.all(np.abs(total - 1) <= 4 * error + 1e-12))
+                self.assertEqual("side_loss" in file, bool(sides))
+                self.assertEqual(file["reflectance"].dims[0][0].name, "/light_angle")
+                self.assertIn("without phases", file.attrs["plan"])
+
+    def test_exit_radiance(self):
+        with self.run_flux(SLAB, angle_bins=36, samples=20000) as file:
+            radiance, angle = file["exit_radiance"][:], file["exit_angle"][:]
+            error = file["exit_radiance_error"][:]
+            self.assertEqual(radiance.shape, (2, 36))
+            through = np.sum(radiance[:, np.cos(angle) > 0], axis=1) * 2 * np.pi / 36
+            spread = 36 * np.max(error) * 2 * np.pi / 36
+            self.assertTrue(np.all(np.abs(through - file["transmittance"][:]) < spread))
+
+    def test_refused(self):
+        for keys, words in (({"angle_bins": 0}, "angle_bins = 0"),
+                            ({"view_angles": [0.1]}, "view_angles: unknown key"),
+                            ({"covariance": "full"}, "covariance: unknown key"),
+                            ({"tilts": [0.1]}, "tilts: unknown key"),
+                            ({"method": "wave"}, "method: unknown key"),
+                            ({"light_angles": [2]}, "light_angles = 2")):
+            done = self.call("flux", **(SLAB | keys), out="x.h5", status=2)
+            self.assertIn(words, done.stderr)
+            self.assertEqual(self.listing(), {})
+
+    def test_resume_ends_in_the_same_numbers(self):
+        self.call("flux", **SLAB, samples=20000, target_error=1e-9, out="part.h5", status=3)
+        self.call("flux", **SLAB, samples=60000, out="part.h5", resume=True)
+        self.call("flux", **SLAB, samples=60000, out="whole.h5")
+        self.assert_same_data("part.h5", "whole.h5")
+
+
+if __name__ == "__main__":
+    unittest.main()

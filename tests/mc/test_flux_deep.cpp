@@ -1,0 +1,41 @@
+#include <cmath>
+
+#include "tests/mc/flux_runs.h"
+
+namespace flatspeckle::mc {
+
+namespace {
+
+using tests::pi;
+
+}  // namespace
+
+TEST_CASE("flux through optical depth 100, absorbing or not") {
+  std::uint64_t seed = 100;
+  for (const double g : {0.0, 0.9})
+    for (const double albedo : {1.0, 0.9}) tests::check_slab(100, albedo, g, 0.02, ++seed);
+  tests::check_slab(100, 0.01, 0, 0.02, ++seed);
+}
+
+TEST_CASE("transmittance of a thick lossless slab has the limit of diffusion theory") {
+  // (l* + z0) / (L + 2 z0), z0 = 0.818 l* (C20)
+  for (const double g : {0.0, 0.8}) {
+    const double reach = 1 / (1 - g);
+    const Scene scene = tests::lit_slab(100, 1, g, {0});
+    const auto flux = tests::run_flux(scene, tests::paths(10000), 110).flux;
+    const double expected = 1.818 * reach / (100 + 2 * 0.818 * reach);
+    CHECK(flux.transmittance.error[0] < 0.005 * expected);
+    CHECK(flux.transmittance.value[0].real() == doctest::Approx(expected).epsilon(0.03));
+  }
+}
+
+TEST_CASE("forward-peaked scattering, g = 0.99, at optical depth 100") {
+  const Scene scene = tests::lit_slab(100, 1, 0.99, {0});
+  const auto flux = tests::run_flux(scene, tests::paths(40000), 120).flux;
+  // discrete ordinates with 800 nodes a quadrant; with 400, 0.31908
+  const double expected = 0.31914;
+  CHECK_WITHIN_4_SIGMA(flux.reflectance.value[0], flux.reflectance.error[0], expected, 1e-5);
+  CHECK(flux.reflectance.error[0] < 0.01 * expected);
+}
+
+}  // namespace flatspeckle::mc
