@@ -74,9 +74,9 @@ class PathWalk {
     // The first flight stays inside: else most walks of a thin medium would find nothing.
     const grin::BoundedFlight flight{medium_.mu_t, domain_.distance_to_edge(x, path_.start)};
     const double length = flight.sample(random.uniform());
-    Walker second{x + length * path_.start, path_.start, flight.probability(), 1, tally_};
-    second.tally.flight(length);
-    follow(second, random, scorer);
+    Tally tally = tally_;
+    tally.flight(length);
+    follow({x + length * path_.start, path_.start, flight.probability(), 1, tally}, random, scorer);
     while (!waiting_.empty()) {
       Walker walker = waiting_.back();
       if (--waiting_.back().copies == 0) waiting_.pop_back();

@@ -80,8 +80,9 @@ std::string Plan::describe() const {
        << (sampled_single ? "" : "single scattering in closed form; ")
        << (phases ? "" : "no phases; ") << (reversed ? "reversed paths" : "no reversed paths")
        << "; " << (near ? "near and far views" : "far views only") << "; "
-       << (rank_k ? "full covariance by rank-k updates" : "listed entries only") << "; "
-       << paths_per_batch << " paths per batch";
+       << (rank_k ? "full covariance by rank-k updates" : "listed entries only")
+       << "; scores promising less than " << score_level << " play roulette; " << paths_per_batch
+       << " paths per batch";
   return text.str();
 }
 

@@ -25,13 +25,12 @@ struct Plan {
   bool sampled_single = true;  ///< false: paths of one scatterer by quadrature
   /// Expected contribution, in units of that of an isotropic scatterer next to a view, below which
   /// scoring is left to chance; 0: never.
-  double score_level = 0.3;
+  double score_level = 0;
   std::uint64_t paths_per_batch = 0;
 
   std::string describe() const;
 };
 
-/// Throws InputError for what the estimator cannot do (a near sensor inside the medium).
 Plan make_plan(const Scene& scene, ReversedPaths reversed);
 
 }  // namespace flatspeckle::mc

@@ -14,7 +14,7 @@ namespace flatspeckle::mc::tests {
 /// weights with roulette below 0.2; every scatterer of the path is joined to all views and a full
 /// rank-one update made for the requested entries.
 /// reversed: f = F + R with the weight 1/2 of C14 and the density of the forward walk alone.
-/// Far views only.
+/// Far views and independent scatterers only.
 FieldJob textbook_job(const Scene& scene, bool reversed, std::uint64_t paths_per_batch,
                       std::uint64_t seed);
 

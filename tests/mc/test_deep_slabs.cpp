@@ -1,0 +1,60 @@
+#include <cmath>
+
+#include <doctest/doctest.h>
+
+#include "tests/mc/discrete_ordinates.h"
+#include "tests/mc/estimates.h"
+
+namespace flatspeckle::mc {
+
+namespace {
+
+using tests::pi;
+
+/// Intensities of a slab in transmission and reflection against discrete ordinates. nodes: of
+/// those; largest_error: relative, of the intensities.
+void check_slab(double optical_depth, double g, double albedo, int nodes, std::uint64_t paths,
+                double largest_error) {
+  const std::vector<double> lights = {0, 0.7}, views = {0.1, -1, pi - 0.2, 2.2};
+  const auto request = intensity_request(lights, tests::far_views(views));
+  const double depth = 10;
+  const auto found = tests::run(tests::hg_slab(depth, {depth / optical_depth, g, albedo}, request),
+                                ReversedPaths::no, paths, 11)
+                         .entries();
+  std::vector<double> angles = lights;
+  angles.insert(angles.end(), views.begin(), views.end());
+  const tests::SlabTransport theory({optical_depth, albedo, tests::henyey_greenstein(g)}, angles,
+                                    nodes);
+  for (std::size_t c = 0; c < request.channels.size(); ++c) {
+    const double light = lights[request.channels[c].light], view = views[request.channels[c].view];
+    const double expected = theory.covariance_without_reversed(light, view);
+    CAPTURE(optical_depth);
+    CAPTURE(g);
+    CAPTURE(albedo);
+    CAPTURE(light);
+    CAPTURE(view);
+    CHECK_WITHIN_4_SIGMA(found.value[c], found.error[c], expected, 5e-4 * expected);
+    CHECK(found.error[c] < largest_error * expected);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("thin slabs") {
+  for (const double g : {0.0, 0.9}) check_slab(1e-3, g, 1, 80, 40000, 0.02);
+}
+
+TEST_CASE("forward-peaked slabs") {
+  check_slab(10, 0.9, 1, 80, 400000, 0.02);
+  check_slab(10, 0.9, 0.9, 80, 400000, 0.02);
+}
+
+TEST_CASE("optical depth 100, g = 0.99: a hundred turns, one transport mean free path") {
+  check_slab(100, 0.99, 1, 300, 100000, 0.1);
+}
+
+TEST_CASE("optical depth 100, isotropic, albedo 1") {
+  check_slab(100, 0, 1, 40, 100000, 0.1);
+}
+
+}  // namespace flatspeckle::mc
