@@ -1,4 +1,4 @@
-#include "apps/estimation.h"
+#include "apps/extras.h"
 #include "apps/moments_output.h"
 #include "apps/moments_table.h"
 #include "apps/scene_options.h"
@@ -12,6 +12,7 @@ int covariance(const Arguments& arguments) {
   SceneSpec spec;
   RunSettings settings;
   MethodSettings methods;
+  Extras extras;
   std::string method = "mc";
   Subcommand command("covariance", "Covariance and intensity of the speckle field of a scene");
   add_scatterer_options(command.options(), spec);
@@ -19,8 +20,10 @@ int covariance(const Arguments& arguments) {
   add_medium_options(command.options(), spec);
   add_structure_option(command.options(), spec);
   add_view_options(command.options(), spec);
+  add_light_options(command.options(), spec);
   add_request_options(command.options(), spec);
   command.options().add_option("--method", method, "mc or wave")->capture_default_str();
+  add_extra_options(command.options(), extras);
   add_mc_options(command.options(), methods);
   add_wave_options(command.options(), methods);
   add_run_options(command.options(), settings);
@@ -30,8 +33,10 @@ int covariance(const Arguments& arguments) {
   if (method != "mc" && method != "wave")
     throw InputError("method", method, "must be one of mc wave");
   const Scene scene = make_scene(spec);
-  const auto estimate = method == "mc" ? mc_estimation : wave_estimation;
-  const Estimation estimation = estimate(scene, methods, seed_of(settings));
+  if (method != "mc") refuse_extras(extras);
+  const auto [estimation, write_extras] =
+      method == "mc" ? extended_estimation(scene, methods, extras, seed_of(settings))
+                     : ExtendedEstimation{wave_estimation(scene, methods, seed_of(settings)), {}};
   const StopRule mc_stop = stop_rule(settings);
   const StopRule wave_stop = stop_rule(
       settings, "wave_samples", methods.wave_samples ? methods.wave_samples : settings.samples);
@@ -39,13 +44,14 @@ int covariance(const Arguments& arguments) {
       command.command_line(), settings, estimation.plan,
       {{"", "covariance", estimation.job.batches, method == "mc" ? mc_stop : wave_stop}},
       inputs_text(scene));
-  return session.run([&](ResultFile& file) {
+  return session.run([&, &job = estimation.job, &write = write_extras](ResultFile& file) {
     const GroupedSums& sums = session.state("").sums;
-    const FieldMoments moments = field_moments(estimation.job, sums);
+    const FieldMoments moments = field_moments(job, sums);
     print_entries(scene.request, moments.covariance);
     write_medium(file, scene);
     write_axes(file, scene.request);
-    write_moments(file, "", estimation.job, scene, sums, moments);
+    write_moments(file, "", job, scene, sums, moments);
+    if (write) write(file, sums);
   });
 }
 

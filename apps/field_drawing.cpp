@@ -67,7 +67,7 @@ class Drawing {
   }
 
   /// Of all views under these lights, the first of which is the scene's first.
-  std::pair<FieldJob, RunState> covariance(const std::vector<double>& lights, std::uint64_t paths) {
+  std::pair<FieldJob, RunState> covariance(const Lights& lights, std::uint64_t paths) {
     Scene scene = scene_;
     scene.request = full_request(lights, scene_.request.views);
     mc::Plan plan = mc::make_plan(scene, settings_.reversed);

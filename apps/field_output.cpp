@@ -38,7 +38,7 @@ std::string view_axis(const Scene& scene) {
 
 void write_field_axes(ResultFile& file, const Scene& scene, const std::vector<double>& tilts,
                       std::size_t realizations) {
-  const auto& lights = scene.request.lights;
+  const auto lights = scene.request.lights.angles();
   file.scale("realization", steps(realizations, 1), "1", "number of the field");
   file.scale("light_angle", lights, "rad", "direction of the light, from +z towards +x");
   write_view_axis(file, scene.request.views);

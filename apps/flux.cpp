@@ -31,7 +31,7 @@ std::vector<double> bin_centres(std::size_t bins) {
 
 std::vector<double> direct_transmittances(const Scene& scene) {
   std::vector<double> shares;
-  for (double light : scene.request.lights)
+  for (double light : scene.request.lights.angles())
     shares.push_back(mc::direct_transmittance(scene, light));
   return shares;
 }
@@ -45,7 +45,7 @@ void print_table(const Scene& scene, const mc::FluxEstimates& flux) {
     std::printf("%-12.6g %-9.2g ", share.value[light].real(), share.error[light]);
   };
   for (std::size_t light = 0; light < direct.size(); ++light) {
-    std::printf("%8.4f  ", scene.request.lights[light]);
+    std::printf("%8.4f  ", scene.request.lights[light].angle);
     print(flux.reflectance, light);
     print(flux.transmittance, light);
     std::printf("%-12.6g ", direct[light]);
@@ -66,7 +66,7 @@ void write_estimate(ResultFile& file, const std::string& name, const Estimate& e
 
 void write_flux(ResultFile& file, const Scene& scene, std::size_t bins,
                 const mc::FluxEstimates& flux) {
-  file.scale("light_angle", scene.request.lights, "rad",
+  file.scale("light_angle", scene.request.lights.angles(), "rad",
              "direction of the light, from +z towards +x");
   file.scale("exit_angle", bin_centres(bins), "rad", "middle of the bin of exit directions");
   const auto share = [&](const std::string& name, const Estimate& estimate,

@@ -3,12 +3,14 @@
 #include <cstdio>
 #include <numeric>
 
+#include "apps/moments_group.h"
+#include "apps/moves_output.h"
+
 namespace flatspeckle::apps {
 
 namespace {
 
 using Kind = CovarianceRequest::Kind;
-using Axes = std::vector<Axis>;
 
 std::vector<double> counting(std::size_t n) {
   std::vector<double> numbers(n);
@@ -16,11 +18,37 @@ std::vector<double> counting(std::size_t n) {
   return numbers;
 }
 
-std::vector<double> real_parts(const std::vector<Complex>& values) {
-  std::vector<double> real;
-  for (Complex value : values) real.push_back(value.real());
-  return real;
+/// The mean field in the channels that stand on the light and view axes.
+void write_mean(MomentsGroup& group, const CovarianceRequest& request, const Estimate& mean) {
+  if (mean.value.empty() || request.kind == Kind::pairs) return;
+  if (!request.has_reference()) {
+    group.mean_field(mean, {light_axis(request), view_axis(request)}, "mean scattered field");
+    return;
+  }
+  Estimate reference;
+  for (std::size_t v = 0; v < request.reference_views; ++v) {
+    const auto channel = request.entries[request.reference_intensity(v)].a;
+    reference.value.push_back(mean.value[channel]);
+    reference.error.push_back(mean.error[channel]);
+  }
+  group.mean_field(reference, {light_axis(request), view_axis(request)},
+                   "mean scattered field of the reference light");
 }
+
+void write_pair_axis(ResultFile& file, const CovarianceRequest& request) {
+  file.scale("pair", counting(request.entries.size()), "1", "requested pair");
+  std::vector<double> angles[4];
+  for (const auto& [a, b] : request.entries) {
+    angles[0].push_back(request.lights[request.channels[a].light].angle);
+    angles[1].push_back(request.views[request.channels[a].view].angle);
+    angles[2].push_back(request.lights[request.channels[b].light].angle);
+    angles[3].push_back(request.views[request.channels[b].view].angle);
+  }
+  const char* names[] = {"pair_light_1", "pair_view_1", "pair_light_2", "pair_view_2"};
+  for (std::size_t i = 0; i < 4; ++i) file.dataset(names[i], angles[i], {"pair"}, "rad", "angle");
+}
+
+}  // namespace
 
 Estimate part(const Estimate& all, std::size_t first, std::size_t count) {
   const auto from = static_cast<std::ptrdiff_t>(first),
@@ -29,49 +57,18 @@ Estimate part(const Estimate& all, std::size_t first, std::size_t count) {
           {all.error.begin() + from, all.error.begin() + to}};
 }
 
+std::string light_axis(const CovarianceRequest& request) {
+  return request.lights.all(Light::Kind::plane) ? "light_angle" : "light";
+}
+
 std::string view_axis(const CovarianceRequest& request) {
   return request.views.front().near ? "sensor" : "view_angle";
 }
 
-/// Writes datasets of one group; each estimate with its `_error`.
-class Group {
- public:
-  /// Covariances are in units of the square of the field: far fields are lengths^(1/2), and a
-  /// slab's covariance counts per unit length.
-  Group(ResultFile& file, const std::string& name, const Scene& scene)
-      : file_(file), prefix_(name.empty() ? "" : name + "/") {
-    const bool far_field = !scene.request.views.front().near;
-    if (far_field && scene.domain.kind == Domain::Kind::box) {
-      field_units_ = "length^(1/2)";
-      covariance_units_ = "length";
-    }
-  }
-
-  template <typename Number>
-  void write(const std::string& name, const std::vector<Number>& values,
-             const std::vector<double>& errors, const Axes& axes, const std::string& units,
-             const std::string& long_name) {
-    file_.dataset(prefix_ + name, values, axes, units, long_name);
-    file_.dataset(prefix_ + name + "_error", errors, axes, units, "standard error: " + long_name);
-  }
-  void covariance(const Estimate& estimate, const Axes& axes, const std::string& long_name) {
-    write("covariance", estimate.value, estimate.error, axes, covariance_units_, long_name);
-  }
-  void intensity(const std::string& name, const Estimate& estimate, const Axes& axes,
-                 const std::string& long_name) {
-    write(name, real_parts(estimate.value), estimate.error, axes, covariance_units_, long_name);
-  }
-  void mean_field(const Estimate& estimate, const Axes& axes, const std::string& long_name) {
-    write("mean_field", estimate.value, estimate.error, axes, field_units_, long_name);
-  }
-  void attribute(const std::string& name, const std::string& key, const Attribute& value) {
-    file_.attribute(prefix_ + name, key, value);
-  }
-
- private:
-  ResultFile& file_;
-  std::string prefix_, field_units_ = "1", covariance_units_ = "1";
-};
+std::string covariance_units(const Scene& scene) {
+  const bool far_field = !scene.request.views.front().near;
+  return far_field && scene.domain.kind == Domain::Kind::box ? "length" : "1";
+}
 
 Estimate unpack_full(const CovarianceRequest& request, const Estimate& triangle) {
   const std::size_t n = request.channels.size();
@@ -86,60 +83,6 @@ Estimate unpack_full(const CovarianceRequest& request, const Estimate& triangle)
   }
   return full;
 }
-
-void write_memory_effect(Group& group, const FieldJob& job, const Scene& scene,
-                         const GroupedSums& sums, const Estimate& covariance) {
-  const CovarianceRequest& request = scene.request;
-  const std::size_t views = request.reference_views, tilts = request.tilts.size();
-  group.covariance(part(covariance, 0, tilts * views), {"tilt", "view_angle"},
-                   "covariance of reference and tilted field");
-  group.intensity("reference_intensity", part(covariance, request.reference_intensity(0), views),
-                  {"view_angle"}, "variance of the reference field");
-  group.intensity("tilted_intensity",
-                  part(covariance, request.tilted_intensity(0, 0), tilts * views),
-                  {"tilt", "view_angle"}, "variance of the tilted field in the matched view");
-  const auto effect = mc::memory_effect(request, sums, job.covariance);
-  group.write("field_correlation", effect.correlation, effect.correlation_error, {"tilt"}, "1",
-              "field correlation C_E, summed over views");
-  const double depth = scene.domain.depth;
-  group.write<double>("memory_effect_range", {effect.range.value * depth},
-                      {effect.range_error * depth}, {std::size_t{1}}, "1",
-                      "q L at C_I = 1/2, L the depth");
-  group.attribute("memory_effect_range", "censored",
-                  static_cast<std::uint64_t>(effect.range.censored));
-}
-
-/// The mean field in the channels that stand on the light and view axes.
-void write_mean(Group& group, const CovarianceRequest& request, const Estimate& mean) {
-  if (mean.value.empty() || request.kind == Kind::pairs) return;
-  if (request.kind != Kind::memory_effect) {
-    group.mean_field(mean, {"light_angle", view_axis(request)}, "mean scattered field");
-    return;
-  }
-  Estimate reference;
-  for (std::size_t v = 0; v < request.reference_views; ++v) {
-    const auto channel = request.entries[request.reference_intensity(v)].a;
-    reference.value.push_back(mean.value[channel]);
-    reference.error.push_back(mean.error[channel]);
-  }
-  group.mean_field(reference, {"light_angle", "view_angle"},
-                   "mean scattered field of the reference light");
-}
-
-void write_pair_axis(ResultFile& file, const CovarianceRequest& request) {
-  file.scale("pair", counting(request.entries.size()), "1", "requested pair");
-  std::vector<double> angles[4];
-  for (const auto& [a, b] : request.entries) {
-    angles[0].push_back(request.lights[request.channels[a].light]);
-    angles[1].push_back(request.views[request.channels[a].view].angle);
-    angles[2].push_back(request.lights[request.channels[b].light]);
-    angles[3].push_back(request.views[request.channels[b].view].angle);
-  }
-  const char* names[] = {"pair_light_1", "pair_view_1", "pair_light_2", "pair_view_2"};
-  for (std::size_t i = 0; i < 4; ++i) file.dataset(names[i], angles[i], {"pair"}, "rad", "angle");
-}
-
-}  // namespace
 
 void write_domain(ResultFile& file, const Scene& scene) {
   file.attribute("/", "wavelength", scene.wavelength);
@@ -183,23 +126,53 @@ void write_view_axis(ResultFile& file, const std::vector<View>& views) {
   file.dataset("sensor_z", z, {"sensor"}, "length", "depth");
 }
 
+void write_light_axis(ResultFile& file, const Lights& lights) {
+  std::vector<double> angle, x, z;
+  for (const Light& light : lights) {
+    angle.push_back(light.angle);
+    x.push_back(light.point.x);
+    z.push_back(light.point.z);
+  }
+  const char* direction = "direction of the light, from +z towards +x";
+  if (lights.all(Light::Kind::plane)) {
+    file.scale("light_angle", angle, "rad", direction);
+    return;
+  }
+  const bool beams = lights.all(Light::Kind::beam);
+  file.scale("light", counting(lights.size()), "1", beams ? "Gaussian beam" : "point source");
+  file.dataset("light_x", x, {"light"}, "length", "transverse position of the focus or source");
+  file.dataset("light_z", z, {"light"}, "length", "depth of the focus or source");
+  if (!beams) return;
+  file.dataset("light_angle", angle, {"light"}, "rad", direction);
+  file.attribute("/", "beam_waist", lights.front().waist);
+}
+
+void write_move_axes(ResultFile& file, const CovarianceRequest& request) {
+  if (!request.tilts.empty()) {
+    file.scale("tilt", request.tilts, "rad", "rotation of the light");
+    file.dataset("tilt_q", request.tilt_q, {"tilt"}, "1/length",
+                 "transverse wavenumber of the tilt");
+  }
+  if (request.shifts.empty()) return;
+  const bool far = request.kind == Kind::tilt_shift && !request.views.front().near;
+  file.scale("shift", request.shifts, far ? "1/length" : "length",
+             far ? "change of k sin(view)" : "translation along x");
+}
+
 void write_axes(ResultFile& file, const CovarianceRequest& request) {
   if (request.kind == Kind::pairs) {
     write_pair_axis(file, request);
     return;
   }
-  const bool memory_effect = request.kind == Kind::memory_effect;
   auto lights = request.lights;
   auto views = request.views;
-  if (memory_effect) {
+  if (request.has_reference()) {
     lights.resize(1);
     views.resize(request.reference_views);
   }
-  file.scale("light_angle", lights, "rad", "direction of the light, from +z towards +x");
+  write_light_axis(file, lights);
   write_view_axis(file, views);
-  if (!memory_effect) return;
-  file.scale("tilt", request.tilts, "rad", "rotation of the light");
-  file.dataset("tilt_q", request.tilt_q, {"tilt"}, "1/length", "transverse wavenumber of the tilt");
+  write_move_axes(file, request);
 }
 
 std::string range_text(const mc::Range& range, double error) {
@@ -217,23 +190,24 @@ std::string range_text(const mc::Range& range, double error) {
 void write_moments(ResultFile& file, const std::string& group_name, const FieldJob& job,
                    const Scene& scene, const GroupedSums& sums, const FieldMoments& moments) {
   const CovarianceRequest& request = scene.request;
-  Group group(file, group_name, scene);
+  MomentsGroup group(file, group_name, scene);
   write_mean(group, request, moments.mean);
-  const std::string view = view_axis(request);
+  const std::string light = light_axis(request), view = view_axis(request);
   switch (request.kind) {
     case Kind::intensity:
-      group.intensity("intensity", moments.covariance, {"light_angle", view},
-                      "variance of the field");
+      group.intensity("intensity", moments.covariance, {light, view}, "variance of the field");
       break;
     case Kind::pairs:
-      group.covariance(moments.covariance, {"pair"}, "covariance of the pair");
+      group.covariance("covariance", moments.covariance, {"pair"}, "covariance of the pair");
       break;
     case Kind::full:
-      group.covariance(unpack_full(request, moments.covariance),
-                       {"light_angle", view, "light_angle", view}, "covariance of the fields");
+      group.covariance("covariance", unpack_full(request, moments.covariance),
+                       {light, view, light, view}, "covariance of the fields");
       break;
     case Kind::memory_effect:
-      write_memory_effect(group, job, scene, sums, moments.covariance);
+    case Kind::tilt_shift:
+    case Kind::translation:
+      write_moves(group, job, scene, sums, moments.covariance);
       break;
   }
 }

@@ -17,6 +17,18 @@ void write_medium(ResultFile& file, const Scene& scene);
 /// The axis of views that are all far (view_angle) or all near (sensor, with its coordinates).
 void write_view_axis(ResultFile& file, const std::vector<View>& views);
 
+/// The names of the axes of lights and views.
+std::string light_axis(const CovarianceRequest& request);
+std::string view_axis(const CovarianceRequest& request);
+/// Of a covariance: in the square of the field's units. Far fields are lengths^(1/2), and a slab's
+/// covariance counts per unit length.
+std::string covariance_units(const Scene& scene);
+
+/// Entries [first, first + count).
+Estimate part(const Estimate& all, std::size_t first, std::size_t count);
+/// The lower triangle of a full request's entries as the whole matrix.
+Estimate unpack_full(const CovarianceRequest& request, const Estimate& triangle);
+
 /// The axes that a request's datasets stand on.
 void write_axes(ResultFile& file, const CovarianceRequest& request);
 

@@ -16,30 +16,36 @@ std::string shown_value(Complex value) {
 }
 
 std::string shown_channel(const CovarianceRequest& request, std::uint32_t channel) {
-  char text[48];
+  char light_text[24], view_text[24];
   const auto [light, view] = request.channels[channel];
+  const Light& lit = request.lights[light];
   const View& seen = request.views[view];
-  if (seen.near)
-    std::snprintf(text, sizeof text, "%8.4f sensor %-3u", request.lights[light], view);
+  if (lit.kind == Light::Kind::plane)
+    std::snprintf(light_text, sizeof light_text, "%8.4f", lit.angle);
   else
-    std::snprintf(text, sizeof text, "%8.4f %8.4f", request.lights[light], seen.angle);
-  return text;
+    std::snprintf(light_text, sizeof light_text, "light %-3u", light);
+  if (seen.near)
+    std::snprintf(view_text, sizeof view_text, "sensor %-3u", view);
+  else
+    std::snprintf(view_text, sizeof view_text, "%8.4f", seen.angle);
+  return std::string(light_text) + ' ' + view_text;
 }
 
 std::size_t shown_entries(const CovarianceRequest& request) {
-  if (request.kind == CovarianceRequest::Kind::memory_effect) return request.reference_intensity(0);
+  if (request.has_reference()) return request.reference_intensity(0);
   return request.entries.size();
 }
 
-void print_entries(const CovarianceRequest& request, const Estimate& covariance) {
+void print_entries(const CovarianceRequest& request, const Estimate& estimate,
+                   const std::string& name) {
   const std::size_t entries = shown_entries(request);
-  std::printf("%-17s %-17s  %21s %9s\n", "light 1  view 1", "light 2  view 2", "covariance",
+  std::printf("%-17s %-17s  %21s %9s\n", "light 1  view 1", "light 2  view 2", name.c_str(),
               "error");
   for (std::size_t e = 0; e < std::min(entries, most_rows); ++e) {
     const auto [a, b] = request.entries[e];
     std::printf("%s %s  %21s %9.2g\n", shown_channel(request, a).c_str(),
-                shown_channel(request, b).c_str(), shown_value(covariance.value[e]).c_str(),
-                covariance.error[e]);
+                shown_channel(request, b).c_str(), shown_value(estimate.value[e]).c_str(),
+                estimate.error[e]);
   }
   if (entries > most_rows) std::printf("... and %zu more\n", entries - most_rows);
 }

@@ -9,17 +9,18 @@ namespace flatspeckle::apps {
 
 /// A value to five digits; the imaginary part is left out where it is rounding.
 std::string shown_value(Complex value);
-/// Light and view angle of a channel, or its light and sensor number.
+/// Light and view angle of a channel; beams, sources and sensors by their numbers.
 std::string shown_channel(const CovarianceRequest& request, std::uint32_t channel);
 
-/// How many of the entries to show: intensities of the tilted field are only there for the
+/// How many of the entries to show: intensities of moved fields are only there for the
 /// correlation.
 std::size_t shown_entries(const CovarianceRequest& request);
 
 /// At most this many rows of a table are printed.
 inline constexpr std::size_t most_rows = 60;
 
-/// Prints the covariance entries of a request with their errors.
-void print_entries(const CovarianceRequest& request, const Estimate& covariance);
+/// Prints the covariance entries of a request, or what goes with each of them, with their errors.
+void print_entries(const CovarianceRequest& request, const Estimate& estimate,
+                   const std::string& name = "covariance");
 
 }  // namespace flatspeckle::apps

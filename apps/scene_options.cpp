@@ -55,11 +55,26 @@ void add_view_options(CLI::App& app, SceneSpec& spec) {
 }
 
 void add_request_options(CLI::App& app, SceneSpec& spec) {
-  app.add_option("--covariance", spec.covariance, "intensity, pairs, memory_effect or full")
+  app.add_option("--covariance", spec.covariance,
+                 "intensity, pairs, memory_effect, tilt_shift, translation or full")
       ->capture_default_str();
-  app.add_option("--tilts", spec.tilts, "memory_effect: rotations of the light, radians");
+  app.add_option("--tilts", spec.tilts,
+                 "memory_effect, tilt_shift: rotations of the light, radians");
+  app.add_option("--shifts", spec.shifts,
+                 "tilt_shift: of the views, in k sin(view) (radians per length) or of near sensors "
+                 "along x; translation: of light and near sensors along x");
   app.add_option("--pairs", spec.pairs,
                  "pairs: light 1, view 1, light 2, view 2 (radians) of each pair in turn");
+}
+
+void add_light_options(CLI::App& app, SceneSpec& spec) {
+  app.add_option("--near_sources", spec.near_sources,
+                 "CSV with columns x, z: point sources in place of plane waves");
+  app.add_option("--beam_waist", spec.beam_waist,
+                 "Gaussian beams in place of plane waves: 1/e radius of the field at the focus");
+  app.add_option("--beam_positions", spec.beam_positions,
+                 "x of the beams' focus, each with every light angle (default 0)");
+  app.add_option("--beam_depth", spec.beam_depth, "z of the beams' focus (default 0)");
 }
 
 void settle_views(const Subcommand& subcommand, SceneSpec& spec) {
@@ -68,11 +83,14 @@ void settle_views(const Subcommand& subcommand, SceneSpec& spec) {
 
 void settle_request(const Subcommand& subcommand, SceneSpec& spec) {
   if (spec.covariance == "pairs") {
-    for (const char* key : {"light_angles", "view_angles", "near_sensors"})
+    for (const char* key :
+         {"light_angles", "view_angles", "near_sensors", "near_sources", "beam_waist"})
       if (subcommand.given(key))
         throw InputError(std::string(key) +
                          ": covariance = pairs names the angles itself; leave it out");
   }
+  if (!spec.near_sources.empty() && subcommand.given("light_angles"))
+    throw InputError("near_sources", spec.near_sources, "give either near_sources or light_angles");
   settle_views(subcommand, spec);
   const bool both = !spec.near_sensors.empty() && !spec.view_angles.empty();
   if (both && spec.covariance != "memory_effect")  // which has no near sensors at all
@@ -84,6 +102,9 @@ std::string sensors_text(const CovarianceRequest& request) {
   text.precision(std::numeric_limits<double>::max_digits10);
   for (const View& view : request.views)
     if (view.near) text << view.point.x << ',' << view.point.z << '\n';
+  for (const Light& light : request.lights)
+    if (light.kind == Light::Kind::point)
+      text << "source " << light.point.x << ',' << light.point.z << '\n';
   return text.str();
 }
 

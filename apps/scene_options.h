@@ -14,6 +14,8 @@ void add_medium_options(CLI::App& app, SceneSpec& spec);
 void add_structure_option(CLI::App& app, SceneSpec& spec);
 /// g, albedo and optical_depth, where a subcommand takes one value of each.
 void add_bulk_options(CLI::App& app, SceneSpec& spec);
+/// Near sources and beams.
+void add_light_options(CLI::App& app, SceneSpec& spec);
 /// Which entries of the covariance.
 void add_request_options(CLI::App& app, SceneSpec& spec);
 
@@ -22,7 +24,7 @@ void settle_views(const Subcommand& subcommand, SceneSpec& spec);
 /// For a covariance, whose views are all near or all far; pairs name their angles themselves.
 void settle_request(const Subcommand& subcommand, SceneSpec& spec);
 
-/// The near sensors that were read, exactly.
+/// The near sensors and sources that were read, exactly.
 std::string sensors_text(const CovarianceRequest& request);
 /// Those and the structure factor: all that a scene takes from other files.
 std::string inputs_text(const Scene& scene);

@@ -44,7 +44,7 @@ bool misses_forward_lobe(const Scene& scene) {
          std::any_of(request.channels.begin(), request.channels.end(), [&](const Channel& channel) {
            const View& view = request.views[channel.view];
            const double q =
-               scene.k * (std::sin(view.angle) - std::sin(request.lights[channel.light]));
+               scene.k * (std::sin(view.angle) - std::sin(request.lights[channel.light].angle));
            return !view.near && std::cos(view.angle) > 0 &&
                   std::abs(q) < 2 * std::numbers::pi / scene.domain.width;
          });
@@ -122,6 +122,7 @@ int validate(const Arguments& arguments) {
   add_medium_options(command.options(), spec);
   add_structure_option(command.options(), spec);
   add_view_options(command.options(), spec);
+  add_light_options(command.options(), spec);
   add_request_options(command.options(), spec);
   add_mc_options(command.options(), methods);
   add_wave_options(command.options(), methods);

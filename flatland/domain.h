@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <compare>
 #include <limits>
 
 namespace flatspeckle {
@@ -9,6 +10,7 @@ namespace flatspeckle {
 /// A point or direction of flatland: x transverse, z depth (conventions, C2).
 struct Vec2 {
   double x = 0, z = 0;
+  auto operator<=>(const Vec2&) const = default;
 };
 
 inline Vec2 operator+(Vec2 a, Vec2 b) {

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <string>
 
 #include "core/complex.h"
 #include "core/error.h"
@@ -18,7 +19,7 @@ std::uint32_t as_index(std::size_t n) {
   return static_cast<std::uint32_t>(n);
 }
 
-CovarianceRequest every_channel(std::vector<double> lights, std::vector<View> views) {
+CovarianceRequest every_channel(Lights lights, std::vector<View> views) {
   CovarianceRequest request;
   request.lights = std::move(lights);
   request.views = std::move(views);
@@ -28,44 +29,126 @@ CovarianceRequest every_channel(std::vector<double> lights, std::vector<View> vi
   return request;
 }
 
-/// Numbers things as they come; equal ones share a number.
-template <typename Key>
+/// Numbers things as they come, in a list of them; equal ones share a number.
+template <typename Thing, typename List>
 class Numbering {
  public:
-  /// The number of `key`, and whether it is new.
-  std::pair<std::uint32_t, bool> number(const Key& key) {
-    const auto [known, is_new] = numbers_.emplace(key, as_index(numbers_.size()));
-    return {known->second, is_new};
+  explicit Numbering(List& list) : list_(list) {}
+
+  std::uint32_t number(const Thing& thing) {
+    const auto [known, is_new] = numbers_.emplace(thing, as_index(list_.size()));
+    if (is_new) list_.push_back(thing);
+    return known->second;
   }
 
  private:
-  std::map<Key, std::uint32_t> numbers_;
+  List& list_;
+  std::map<Thing, std::uint32_t> numbers_;
 };
 
-double tilted_light(double light, double tilt) {
-  const double tilted = light + tilt;
-  if (std::cos(tilted) * std::cos(light) <= 0)
+/// Gathers the channels of a request, each once.
+class ChannelList {
+ public:
+  explicit ChannelList(CovarianceRequest& request)
+      : lights_(request.lights), views_(request.views), channels_(request.channels) {}
+
+  std::uint32_t number(const Light& light, const View& view) {
+    return channels_.number({lights_.number(light), views_.number(view)});
+  }
+
+ private:
+  Numbering<Light, Lights> lights_;
+  Numbering<View, std::vector<View>> views_;
+  Numbering<Channel, std::vector<Channel>> channels_;
+};
+
+/// Adds moved channels and lists the entries of CovarianceRequest.
+class Moves {
+ public:
+  Moves(CovarianceRequest& request, const Light& light, const std::vector<View>& views)
+      : request_(request), channels_(request), views_(views) {
+    for (const View& view : views) reference_.push_back(channels_.number(light, view));
+    request.reference_views = views.size();
+  }
+
+  template <typename MovedView>
+  void add(const Light& light, MovedView moved) {
+    for (const View& view : views_) moved_.push_back(channels_.number(light, moved(view)));
+    ++request_.moves;
+  }
+
+  void list_entries() {
+    for (std::size_t i = 0; i < moved_.size(); ++i)
+      request_.entries.push_back({reference_[i % reference_.size()], moved_[i]});
+    for (auto channel : reference_) request_.entries.push_back({channel, channel});
+    for (auto channel : moved_) request_.entries.push_back({channel, channel});
+  }
+
+ private:
+  CovarianceRequest& request_;
+  ChannelList channels_;
+  const std::vector<View>& views_;
+  std::vector<std::uint32_t> reference_, moved_;
+};
+
+Light tilted(Light light, double tilt) {
+  const double angle = light.angle + tilt;
+  if (std::cos(angle) * std::cos(light.angle) <= 0)
     throw InputError("tilts", tilt, "takes the light past the horizon");
-  return tilted;
+  light.angle = angle;
+  return light;
 }
 
-/// The view on the same side whose sine is larger by q/k.
-double matched_view(double view, double q_over_k, double tilt) {
+double tilt_over_k(const Light& light, double tilt) {
+  return tilt == 0 ? 0 : std::sin(light.angle + tilt) - std::sin(light.angle);
+}
+
+/// The view on the same side whose sine is larger by q/k; `key` has the value that asks for it.
+View deflected(const View& view, double q_over_k, const std::string& key, double value) {
   if (q_over_k == 0) return view;
-  const double sine = std::sin(view) + q_over_k;
-  if (std::abs(sine) >= 1) {
-    throw InputError(
-        "tilts", tilt,
-        "takes the matched view of view angle " + std::to_string(view) + " past the horizon");
-  }
+  const double sine = std::sin(view.angle) + q_over_k;
+  if (std::abs(sine) >= 1)
+    throw InputError(key, value,
+                     "takes view angle " + std::to_string(view.angle) + " past the horizon");
   const double forward = std::asin(sine);
-  if (std::cos(view) >= 0) return forward;
-  return sine >= 0 ? pi - forward : -pi - forward;
+  if (std::cos(view.angle) >= 0) return far_view(forward);
+  return far_view(sine >= 0 ? pi - forward : -pi - forward);
+}
+
+Light translated(Light light, double shift) {
+  light.point.x += shift;
+  return light;
+}
+
+View translated(View view, double shift) {
+  if (view.near) view.point.x += shift;
+  return view;
+}
+
+std::vector<View> far_views(const std::vector<double>& angles) {
+  std::vector<View> views;
+  for (double angle : angles) views.push_back(far_view(angle));
+  return views;
+}
+
+/// Tilts with the views that C19 matches to them.
+void add_matched(CovarianceRequest& request, Moves& moves, const Light& light) {
+  for (double tilt : request.tilts) {
+    const double q_over_k = tilt_over_k(light, tilt);
+    moves.add(tilted(light, tilt),
+              [&](const View& view) { return deflected(view, q_over_k, "tilts", tilt); });
+  }
+}
+
+void set_tilts(CovarianceRequest& request, double k, const Light& light,
+               std::vector<double> tilts) {
+  request.tilts = std::move(tilts);
+  for (double tilt : request.tilts) request.tilt_q.push_back(k * tilt_over_k(light, tilt));
 }
 
 }  // namespace
 
-CovarianceRequest intensity_request(std::vector<double> lights, std::vector<View> views) {
+CovarianceRequest intensity_request(Lights lights, std::vector<View> views) {
   auto request = every_channel(std::move(lights), std::move(views));
   request.kind = CovarianceRequest::Kind::intensity;
   for (std::size_t c = 0; c < request.channels.size(); ++c)
@@ -73,7 +156,7 @@ CovarianceRequest intensity_request(std::vector<double> lights, std::vector<View
   return request;
 }
 
-CovarianceRequest full_request(std::vector<double> lights, std::vector<View> views) {
+CovarianceRequest full_request(Lights lights, std::vector<View> views) {
   auto request = every_channel(std::move(lights), std::move(views));
   request.kind = CovarianceRequest::Kind::full;
   const std::size_t n = request.channels.size(), entries = n * (n + 1) / 2;
@@ -94,53 +177,54 @@ CovarianceRequest full_request(std::vector<double> lights, std::vector<View> vie
 CovarianceRequest pairs_request(const std::vector<AnglePair>& pairs) {
   CovarianceRequest request;
   request.kind = CovarianceRequest::Kind::pairs;
-  Numbering<double> lights, views;
-  Numbering<std::pair<std::uint32_t, std::uint32_t>> channels;
-  const auto channel = [&](double light_angle, double view_angle) {
-    const auto [light, new_light] = lights.number(light_angle);
-    const auto [view, new_view] = views.number(view_angle);
-    if (new_light) request.lights.push_back(light_angle);
-    if (new_view) request.views.push_back(far_view(view_angle));
-    const auto [number, is_new] = channels.number({light, view});
-    if (is_new) request.channels.push_back({light, view});
-    return number;
-  };
+  ChannelList channels(request);
   for (const auto& pair : pairs) {
-    const auto a = channel(pair.light1, pair.view1);
-    request.entries.push_back({a, channel(pair.light2, pair.view2)});
+    const auto a = channels.number(plane_wave(pair.light1), far_view(pair.view1));
+    request.entries.push_back({a, channels.number(plane_wave(pair.light2), far_view(pair.view2))});
   }
   return request;
 }
 
-CovarianceRequest memory_effect_request(double k, double light, std::vector<double> views,
+CovarianceRequest memory_effect_request(double k, double light, const std::vector<double>& views,
                                         std::vector<double> tilts) {
   CovarianceRequest request;
   request.kind = CovarianceRequest::Kind::memory_effect;
-  request.tilts = std::move(tilts);
-  request.reference_views = views.size();
-  std::vector<std::uint32_t> tilted;  // channels [tilt][view]
-  const auto add_light = [&](double angle, double q_over_k, double tilt) {
-    request.lights.push_back(angle);
-    for (double view : views) {
-      request.views.push_back(far_view(matched_view(view, q_over_k, tilt)));
-      request.channels.push_back(
-          {as_index(request.lights.size() - 1), as_index(request.views.size() - 1)});
-    }
-  };
-  add_light(light, 0, 0);
+  const auto reference_views = far_views(views);
+  set_tilts(request, k, plane_wave(light), std::move(tilts));
+  Moves moves(request, plane_wave(light), reference_views);
+  add_matched(request, moves, plane_wave(light));
+  moves.list_entries();
+  return request;
+}
+
+CovarianceRequest tilt_shift_request(double k, const Light& light, const std::vector<View>& views,
+                                     std::vector<double> tilts, std::vector<double> shifts) {
+  CovarianceRequest request;
+  request.kind = CovarianceRequest::Kind::tilt_shift;
+  request.shifts = std::move(shifts);
+  set_tilts(request, k, light, std::move(tilts));
+  Moves moves(request, light, views);
   for (double tilt : request.tilts) {
-    const double angle = tilted_light(light, tilt);
-    const double q_over_k = tilt == 0 ? 0 : std::sin(angle) - std::sin(light);
-    request.tilt_q.push_back(k * q_over_k);
-    const std::size_t first = tilt == 0 ? 0 : request.channels.size();
-    if (tilt != 0) add_light(angle, q_over_k, tilt);
-    for (std::size_t v = 0; v < views.size(); ++v) tilted.push_back(as_index(first + v));
+    const Light moved = tilted(light, tilt);
+    for (double shift : request.shifts)
+      moves.add(moved, [&](const View& view) {
+        return view.near ? translated(view, shift) : deflected(view, shift / k, "shifts", shift);
+      });
   }
-  for (std::size_t i = 0; i < tilted.size(); ++i)
-    request.entries.push_back({as_index(i % views.size()), tilted[i]});
-  for (std::size_t v = 0; v < views.size(); ++v)
-    request.entries.push_back({as_index(v), as_index(v)});
-  for (auto channel : tilted) request.entries.push_back({channel, channel});
+  if (!views.front().near) add_matched(request, moves, light);
+  moves.list_entries();
+  return request;
+}
+
+CovarianceRequest translation_request(const Light& light, const std::vector<View>& views,
+                                      std::vector<double> shifts) {
+  CovarianceRequest request;
+  request.kind = CovarianceRequest::Kind::translation;
+  request.shifts = std::move(shifts);
+  Moves moves(request, light, views);
+  for (double shift : request.shifts)
+    moves.add(translated(light, shift), [&](const View& view) { return translated(view, shift); });
+  moves.list_entries();
   return request;
 }
 

@@ -6,62 +6,13 @@
 #include <regex>
 
 #include "core/error.h"
+#include "flatland/scene_checks.h"
 
 namespace flatspeckle {
 
 namespace {
 
 using Kind = Scatterer::Kind;
-
-double positive(const std::string& key, double value) {
-  if (!(std::isfinite(value) && value > 0)) throw InputError(key, value, "must be positive");
-  return value;
-}
-
-double positive(const std::string& key, const std::optional<double>& value) {
-  if (!value) throw InputError(key + " is not given: must be positive");
-  return positive(key, *value);
-}
-
-void all_finite(const std::string& key, const std::vector<double>& values) {
-  for (double value : values)
-    if (!std::isfinite(value)) throw InputError(key, value, "must be finite");
-}
-
-/// Whoever writes 45 means degrees.
-void all_radians(const std::string& key, const std::vector<double>& angles) {
-  all_finite(key, angles);
-  for (double angle : angles)
-    if (std::abs(angle) > 2 * std::numbers::pi)
-      throw InputError(key, angle, "angles are in radians, at most 2 pi");
-}
-
-void not_empty(const std::string& key, const std::vector<double>& values) {
-  if (values.empty()) throw InputError(key + " = []: must hold at least one number");
-}
-
-void no_repeats(const std::string& key, std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const auto twice = std::adjacent_find(values.begin(), values.end());
-  if (twice != values.end()) throw InputError(key, *twice, "is given twice");
-}
-
-template <typename Value>
-void only_for(const std::string& key, const std::optional<Value>& value, bool applies,
-              const std::string& what) {
-  if (value && !applies) throw InputError(key, *value, "is a key of " + what + " only");
-}
-
-template <typename Choice>
-Choice choose(const std::string& key, const std::string& word,
-              const std::vector<std::pair<std::string, Choice>>& choices) {
-  std::string accepted = "must be one of";
-  for (const auto& [name, choice] : choices) {
-    if (name == word) return choice;
-    accepted += ' ' + name;
-  }
-  throw InputError(key, word, accepted);
-}
 
 Kind scatterer_kind(const std::string& word) {
   return choose<Kind>("scatterer", word,
@@ -197,66 +148,6 @@ BulkMedium correlated(const SceneSpec& spec, const Scene& scene) {
                                                      : read_structure(structure, disks));
 }
 
-/// The infinite slab has far fields only, lights from below the horizon, and (C18) only entries
-/// whose transverse momenta match.
-void check_slab_request(const CovarianceRequest& request) {
-  for (double light : request.lights)
-    if (std::cos(light) <= 0)
-      throw InputError("light_angles", light, "light enters a slab at z = 0: |angle| < pi/2");
-  for (const auto& view : request.views)
-    if (view.near) throw InputError("near_sensors: a slab has far views only");
-  constexpr double tolerance = 1e-9;
-  const auto momentum = [&](Channel c) {
-    return std::sin(request.lights[c.light]) - std::sin(request.views[c.view].angle);
-  };
-  for (const auto& entry : request.entries) {
-    if (std::abs(momentum(request.channels[entry.a]) - momentum(request.channels[entry.b])) >
-        tolerance)
-      throw InputError(
-          "covariance: on an infinite slab only pairs with sin(light) - sin(view) unchanged "
-          "correlate (the others are exactly 0); use intensity or memory_effect, or a box");
-  }
-}
-
-std::vector<View> far_views(const std::vector<double>& angles) {
-  std::vector<View> views;
-  for (double angle : angles) views.push_back(far_view(angle));
-  return views;
-}
-
-std::vector<View> requested_views(const SceneSpec& spec) {
-  auto views = far_views(spec.view_angles);
-  if (!spec.near_sensors.empty())
-    for (const Vec2& point : read_points(spec.near_sensors)) views.push_back(near_sensor(point));
-  return views;
-}
-
-CovarianceRequest memory_effect(const SceneSpec& spec) {
-  if (spec.light_angles.size() != 1)
-    throw InputError("light_angles", spec.light_angles.size(),
-                     "memory_effect tilts one light: give one angle");
-  if (!spec.near_sensors.empty())
-    throw InputError("near_sensors", spec.near_sensors, "memory_effect has far views only");
-  not_empty("tilts", spec.tilts);
-  no_repeats("tilts", spec.tilts);
-  not_empty("view_angles", spec.view_angles);
-  no_repeats("view_angles", spec.view_angles);
-  return memory_effect_request(2 * std::numbers::pi / spec.wavelength, spec.light_angles[0],
-                               spec.view_angles, spec.tilts);
-}
-
-CovarianceRequest angle_pairs(const SceneSpec& spec) {
-  not_empty("pairs", spec.pairs);
-  all_radians("pairs", spec.pairs);
-  if (spec.pairs.size() % 4 != 0)
-    throw InputError("pairs", spec.pairs.size(),
-                     "numbers; must be light 1, view 1, light 2, view 2 of each pair in turn");
-  std::vector<AnglePair> pairs;
-  for (std::size_t i = 0; i < spec.pairs.size(); i += 4)
-    pairs.push_back({spec.pairs[i], spec.pairs[i + 1], spec.pairs[i + 2], spec.pairs[i + 3]});
-  return pairs_request(pairs);
-}
-
 }  // namespace
 
 Complex parse_complex(const std::string& key, const std::string& text) {
@@ -302,29 +193,6 @@ Scatterer make_scatterer(const SceneSpec& spec) {
     scatterer.phase_shift = *spec.phase_shift;
   }
   return scatterer;
-}
-
-CovarianceRequest make_request(const SceneSpec& spec) {
-  not_empty("light_angles", spec.light_angles);
-  all_radians("light_angles", spec.light_angles);
-  all_radians("view_angles", spec.view_angles);
-  all_radians("tilts", spec.tilts);
-  using Request = CovarianceRequest::Kind;
-  const auto kind = choose<Request>("covariance", spec.covariance,
-                                    {{"intensity", Request::intensity},
-                                     {"pairs", Request::pairs},
-                                     {"memory_effect", Request::memory_effect},
-                                     {"full", Request::full}});
-  if (!spec.tilts.empty() && kind != Request::memory_effect)
-    throw InputError("tilts", spec.tilts.front(), "is a key of covariance = memory_effect only");
-  if (!spec.pairs.empty() && kind != Request::pairs)
-    throw InputError("pairs", spec.pairs.front(), "is a key of covariance = pairs only");
-  if (kind == Request::memory_effect) return memory_effect(spec);
-  if (kind == Request::pairs) return angle_pairs(spec);
-  const auto views = requested_views(spec);
-  if (views.empty()) throw InputError("view_angles = []: must hold at least one number");
-  if (kind == Request::full) return full_request(spec.light_angles, views);
-  return intensity_request(spec.light_angles, views);
 }
 
 Scene make_scene(const SceneSpec& spec) {

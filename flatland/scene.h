@@ -28,9 +28,12 @@ struct SceneSpec {
   std::optional<double> min_gap;
   std::string structure = "none";
   std::vector<double> light_angles{0};
+  std::string near_sources;
+  std::optional<double> beam_waist, beam_depth;
+  std::vector<double> beam_positions{};
   std::vector<double> view_angles{0};
   std::string near_sensors;
-  std::vector<double> tilts{};
+  std::vector<double> tilts{}, shifts{};
   std::string covariance = "intensity";
   std::vector<double> pairs{};
 };
@@ -49,6 +52,9 @@ struct Scene {
 Scatterer make_scatterer(const SceneSpec& spec);
 /// Lights, views and entries alone.
 CovarianceRequest make_request(const SceneSpec& spec);
+/// The infinite slab has far fields only, lights from below the horizon, and (C18) only entries
+/// whose transverse momenta match.
+void check_slab_request(const CovarianceRequest& request);
 /// Checks every key and derives the bulk. Throws InputError naming key, value and what is accepted.
 Scene make_scene(const SceneSpec& spec);
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <compare>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,7 @@ struct View {
   bool near = false;
   double angle = 0;  ///< far view
   Vec2 point;        ///< near sensor
+  auto operator<=>(const View&) const = default;
 };
 
 inline View far_view(double angle) {

@@ -69,6 +69,7 @@ Complex mean_field(const Scene& scene, double light, double view) {
 
 bool has_coherent_field(const Scene& scene) {
   return scene.domain.kind == Domain::Kind::box && scene.medium.has_scatterers &&
+         scene.request.lights.all(Light::Kind::plane) &&
          std::none_of(scene.request.views.begin(), scene.request.views.end(),
                       [](const View& view) { return view.near; });
 }
@@ -77,7 +78,7 @@ std::vector<Complex> coherent_field(const Scene& scene) {
   std::vector<Complex> field;
   for (const auto& [light, view] : scene.request.channels)
     field.push_back(
-        mean_field(scene, scene.request.lights[light], scene.request.views[view].angle));
+        mean_field(scene, scene.request.lights[light].angle, scene.request.views[view].angle));
   return field;
 }
 

@@ -7,8 +7,8 @@
 
 namespace flatspeckle::mc {
 
-/// A box of scatterers with a T-matrix, seen in far views: then the mean field has a closed form
-/// here.
+/// A box of scatterers with a T-matrix in plane waves, seen in far views: then the mean field has a
+/// closed form here.
 bool has_coherent_field(const Scene& scene);
 
 /// Mean far field per channel (C15): every scatterer radiates A under the coherent wave that has

@@ -29,4 +29,14 @@ double diffusion_field_correlation(const BulkMedium& medium, double thickness, d
   return std::exp(log_f(q * q + kappa2) - log_f(kappa2));
 }
 
+double single_scattering_correlation(double light, const std::vector<double>& views,
+                                     double thickness, double q) {
+  Complex sum = 0;
+  for (double view : views) {
+    const double phase = q * thickness * (std::tan(view) - std::tan(light)) / 2;
+    sum += std::polar(1.0, phase) * (phase == 0 ? 1 : std::sin(phase) / phase);
+  }
+  return std::abs(sum) / static_cast<double>(views.size());
+}
+
 }  // namespace flatspeckle::mc

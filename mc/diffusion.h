@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "flatland/medium.h"
 
 namespace flatspeckle::mc {
@@ -9,5 +11,10 @@ namespace flatspeckle::mc {
 /// transport mean free path deep, the extrapolation length is 0.818 transport mean free paths. A
 /// limit for thick slabs and small q, not a reference for thin ones.
 double diffusion_field_correlation(const BulkMedium& medium, double thickness, double q);
+
+/// C_E by single scattering in a slab without attenuation (C21), tilt wavenumber q with matched
+/// views; the sum over equally bright views is taken before the modulus (C19).
+double single_scattering_correlation(double light, const std::vector<double>& views,
+                                     double thickness, double q);
 
 }  // namespace flatspeckle::mc

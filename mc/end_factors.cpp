@@ -23,10 +23,28 @@ Edge edge_along(double w, double low, double high) {
   return {w > 0 ? high : low, 1 / w};
 }
 
+/// The field of a point source is the Green function, exp(i pi/4) / sqrt(8 pi k) outgoing_wave.
+End end_of(const Light& light, double k) {
+  switch (light.kind) {
+    case Light::Kind::plane:
+      break;
+    case Light::Kind::point:
+      return {true,
+              {0, 1},
+              light.point,
+              std::polar(1 / std::sqrt(8 * std::numbers::pi * k), std::numbers::pi / 4),
+              {}};
+    case Light::Kind::beam:
+      return {true, -direction(light.angle), light.point, 1, GaussianBeam(light, k)};
+  }
+  return {false, -direction(light.angle), {}, 1, {}};
+}
+
+constexpr double far_enough = 10;  ///< k r, for the far-field form
+
 }  // namespace
 
 Complex outgoing_wave(double k, double r) {
-  constexpr double far_enough = 10;
   if (k * r > far_enough) return std::polar(1 / std::sqrt(r), k * r);
   const Complex turn = std::polar(std::sqrt(std::numbers::pi * k / 2), std::numbers::pi / 4);
   return turn * Complex(::j0(k * r), ::y0(k * r));
@@ -34,14 +52,14 @@ Complex outgoing_wave(double k, double r) {
 
 std::vector<End> light_ends(const Scene& scene) {
   std::vector<End> ends;
-  for (double angle : scene.request.lights) ends.push_back({false, -direction(angle), {}});
+  for (const Light& light : scene.request.lights) ends.push_back(end_of(light, scene.k));
   return ends;
 }
 
 std::vector<End> view_ends(const Scene& scene) {
   std::vector<End> ends;
   for (const View& view : scene.request.views)
-    ends.push_back({view.near, direction(view.angle), view.point});
+    ends.push_back({view.near, direction(view.angle), view.point, 1, {}});
   return ends;
 }
 
@@ -51,8 +69,10 @@ EndFactors<near, phases>::EndFactors(const Scene& scene, const std::vector<End>&
   const bool box = domain_.kind == Domain::Kind::box;
   for (std::size_t j = 0; j < ends.size(); ++j) {
     const Vec2 w = ends[j].towards;
-    if (ends[j].near) near_.push_back(j);
-    points_.push_back(ends[j].point);
+    if (ends[j].beam)
+      beams_.push_back({j, *ends[j].beam});
+    else if (ends[j].near)
+      points_.push_back({j, ends[j].point, ends[j].strength});
     directions_.set(j, w, angle_of(w));
     const Edge across =
                    box ? edge_along(w.x, -domain_.width / 2, domain_.width / 2) : Edge{never, 1},
@@ -65,6 +85,10 @@ EndFactors<near, phases>::EndFactors(const Scene& scene, const std::vector<End>&
   phase_.resize(size());
   log_magnitude_.resize(size());
   magnitude_.resize(size());
+  point_r_.resize(points_.size());
+  point_phase_.resize(points_.size());
+  point_log_.resize(points_.size());
+  point_wave_.resize(points_.size());
 }
 
 template <bool near, bool phases>
@@ -82,19 +106,44 @@ void EndFactors<near, phases>::attenuate(Vec2 x, std::span<Complex> out) {
     damping(log_magnitude_, magnitude_);
     std::copy(magnitude_.begin(), magnitude_.end(), out.begin());
   }
-  if constexpr (near) attenuate_near(x, out);
+  if constexpr (near) {
+    attenuate_points(x, out);
+    attenuate_beams(x, out);
+  }
 }
 
 template <bool near, bool phases>
-void EndFactors<near, phases>::attenuate_near(Vec2 x, std::span<Complex> out) {
-  for (std::size_t j : near_) {
-    const Vec2 way = points_[j] - x;
-    const double r = length(way);
+void EndFactors<near, phases>::attenuate_points(Vec2 x, std::span<Complex> out) {
+  constexpr double closest = 1e-200;
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    const Vec2 way = points_[i].point - x;
+    const double r = std::max(length(way), closest);
     const Vec2 w = 1 / r * way;
-    directions_.set(j, w, angle_of(w));
+    directions_.set(points_[i].number, w, angle_of(w));
+    point_r_[i] = r;
+    point_phase_[i] = k_ * r;
     const double inside = std::min(domain_.distance_to_edge(x, w), r);
-    log_magnitude_[j] = -mu_t_ * inside / 2;
-    out[j] = std::exp(log_magnitude_[j]) * outgoing_wave(k_, r);
+    point_log_[i] = std::max(-mu_t_ * inside / 2, log_of_nothing);
+    log_magnitude_[points_[i].number] = point_log_[i];
+  }
+  damped_phasors(point_phase_, point_log_, point_wave_);
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    const Complex wave = point_phase_[i] > far_enough
+                             ? point_wave_[i] / std::sqrt(point_r_[i])
+                             : std::exp(point_log_[i]) * outgoing_wave(k_, point_r_[i]);
+    Complex& value = out[points_[i].number];
+    value = product(points_[i].strength, wave);
+    if constexpr (!phases) value = std::abs(value);
+  }
+}
+
+template <bool near, bool phases>
+void EndFactors<near, phases>::attenuate_beams(Vec2 x, std::span<Complex> out) {
+  for (const auto& [j, beam] : beams_) {
+    const Vec2 w = -beam.ray(x);
+    directions_.set(j, w, angle_of(w));
+    log_magnitude_[j] = -mu_t_ * domain_.distance_to_edge(x, w) / 2;
+    out[j] = std::exp(log_magnitude_[j]) * beam.field(x);
     if constexpr (!phases) out[j] = std::abs(out[j]);
   }
 }

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "core/complex.h"
 #include "flatland/scene.h"
+#include "mc/gaussian_beam.h"
 #include "mc/scattering.h"
 
 namespace flatspeckle::mc {
@@ -15,17 +17,20 @@ namespace flatspeckle::mc {
 Complex outgoing_wave(double k, double r);
 
 /// Where light enters a path or leaves it. By reciprocity both are one thing: a far light along w
-/// is a far view towards -w, its amplitude A(i -> w_1) that from -w_1 towards -w.
+/// is a far view towards -w, its amplitude A(i -> w_1) that from -w_1 towards -w; a point source is
+/// a near sensor but for a factor (C13).
 struct End {
-  bool near = false;
-  Vec2 towards;  ///< far: unit vector out of the medium
-  Vec2 point;    ///< near
+  bool near = false;  ///< a point, or a beam: the direction towards it depends on where one stands
+  Vec2 towards;       ///< far: unit vector out of the medium
+  Vec2 point;         ///< near
+  Complex strength = 1;                ///< of a point: its field over outgoing_wave
+  std::optional<GaussianBeam> beam{};  ///< a light
 };
 std::vector<End> light_ends(const Scene& scene);
 std::vector<End> view_ends(const Scene& scene);
 
 /// End factors e of C13 for a list of ends, times the amplitude towards them (C14). Near: some ends
-/// are points. Phases: without them only magnitudes, which is all that intensities need.
+/// are points or beams. Phases: without them only magnitudes, which is all that intensities need.
 template <bool near, bool phases>
 class EndFactors {
  public:
@@ -50,16 +55,28 @@ class EndFactors {
   double log_attenuation(std::size_t j) const { return log_magnitude_[j]; }
 
  private:
-  void attenuate_near(Vec2 x, std::span<Complex> out);
+  void attenuate_points(Vec2 x, std::span<Complex> out);
+  void attenuate_beams(Vec2 x, std::span<Complex> out);
 
   Domain domain_;
   double k_, mu_t_;
-  std::vector<std::size_t> near_;  ///< which ends are points
-  std::vector<Vec2> points_;
+  struct PointEnd {
+    std::size_t number;
+    Vec2 point;
+    Complex strength;
+  };
+  struct BeamEnd {
+    std::size_t number;
+    GaussianBeam beam;
+  };
+  std::vector<PointEnd> points_;
+  std::vector<BeamEnd> beams_;
   Directions directions_;
   // Distance to the edge = min((edge - x) per_cosine) over both axes.
   std::vector<double> edge_x_, edge_z_, per_cosine_x_, per_cosine_z_;
   std::vector<double> phase_, log_magnitude_, magnitude_;
+  std::vector<double> point_r_, point_phase_, point_log_;
+  std::vector<Complex> point_wave_;
 };
 
 }  // namespace flatspeckle::mc

@@ -6,29 +6,31 @@
 #include "core/random.h"
 #include "flatland/scene.h"
 #include "grin/free_flight.h"
+#include "mc/near_rays.h"
 #include "mc/scattering.h"
 
 namespace flatspeckle::mc {
 
 /// Which of the request's lights paths are started for: so many that every light has one whose
 /// attenuation and phase function are close to its own. The rest need no density of their own.
-std::vector<double> representative_lights(const Scene& scene);
+Lights representative_lights(const Scene& scene);
 
-/// Samples a path's first scatterer and first direction by the attenuation and phase function of
-/// the representative lights, all having equal shares, and knows the density of the mixture.
+/// Samples a path's first scatterer and first direction by the attenuation, shape and phase
+/// function of the representative lights, all having equal shares, and knows the density of the
+/// mixture.
 class FirstScatterer {
  public:
-  explicit FirstScatterer(const Scene& scene) : domain_(scene.domain), mu_t_(scene.medium.mu_t) {
-    for (double angle : representative_lights(scene)) lights_.push_back(direction(angle));
-  }
+  explicit FirstScatterer(const Scene& scene);
 
   struct Sample {
     Vec2 x, arrival;
   };
-  /// Uniform across a light's aperture, attenuated along the ray, never outside.
+  /// Plane waves: uniform across the aperture, attenuated along the ray, never outside.
   Sample sample(RandomStream& random) const {
-    const auto count = static_cast<double>(lights_.size());
-    const Vec2 w = lights_[static_cast<std::size_t>(random.uniform() * count)];
+    const auto number = static_cast<std::size_t>(random.uniform() * count_);
+    if (number >= plane_.size()) [[unlikely]]
+      return sample_near(number - plane_.size(), random);
+    const Vec2 w = plane_[number];
     const Vec2 entry = sample_entry(w, random);
     const grin::BoundedFlight flight{mu_t_, domain_.distance_to_edge(entry, w)};
     return {entry + flight.sample(random.uniform()) * w, w};
@@ -37,16 +39,20 @@ class FirstScatterer {
   /// Of the first scatterer alone, per area (per depth of a slab).
   double density(Vec2 x) const {
     double sum = 0;
-    for (Vec2 w : lights_) sum += density(x, w);
-    return sum / static_cast<double>(lights_.size());
+    for (Vec2 w : plane_) sum += density(x, w);
+    if (has_near()) [[unlikely]]
+      sum += near_sum(x, [](Vec2) { return 1.0; });
+    return sum / count_;
   }
 
   /// Of the first scatterer and the direction in which it is left.
   template <typename Scattering>
   double density(Vec2 x, Vec2 start, const Scattering& scattering) const {
     double sum = 0;
-    for (Vec2 w : lights_) sum += density(x, w) * scattering.density(w, start);
-    return sum / static_cast<double>(lights_.size());
+    for (Vec2 w : plane_) sum += density(x, w) * scattering.density(w, start);
+    if (has_near()) [[unlikely]]
+      sum += near_sum(x, [&](Vec2 arrival) { return scattering.density(arrival, start); });
+    return sum / count_;
   }
 
  private:
@@ -54,6 +60,25 @@ class FirstScatterer {
     const double behind = domain_.distance_to_edge(x, -w);
     const double chord = behind + domain_.distance_to_edge(x, w);
     return grin::BoundedFlight{mu_t_, chord}.density(behind) / aperture(w);
+  }
+
+  bool has_near() const { return plane_.size() < static_cast<std::size_t>(count_); }
+
+  /// Out of line: plane waves must not pay for it.
+  template <typename Factor>
+  [[gnu::noinline]] double near_sum(Vec2 x, Factor factor) const {
+    double sum = 0;
+    for (const auto& rays : point_) sum += rays.density(x) * factor(rays.arrival(x));
+    for (const auto& rays : beam_) sum += rays.density(x) * factor(rays.arrival(x));
+    return sum;
+  }
+
+  [[gnu::noinline]] Sample sample_near(std::size_t number, RandomStream& random) const {
+    const auto from = [&](const auto& rays) {
+      const Vec2 x = rays.sample(random);
+      return Sample{x, rays.arrival(x)};
+    };
+    return number < point_.size() ? from(point_[number]) : from(beam_[number - point_.size()]);
   }
 
   /// Length across which the light meets the medium; per unit length of a slab.
@@ -74,7 +99,10 @@ class FirstScatterer {
 
   Domain domain_;
   double mu_t_;
-  std::vector<Vec2> lights_;
+  std::vector<Vec2> plane_;
+  std::vector<PointRays> point_;
+  std::vector<BeamRays> beam_;
+  double count_ = 0;  ///< of all
 };
 
 }  // namespace flatspeckle::mc

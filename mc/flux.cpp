@@ -24,7 +24,7 @@ Batches walks(const std::shared_ptr<const Scene>& scene, const Scattering& scatt
               std::uint64_t seed) {
   return [=](std::uint64_t number, std::span<Complex> sums) {
     RandomStream random(seed, static_cast<std::uint64_t>(Stream::light_paths), number);
-    const auto& lights = scene->request.lights;
+    const auto lights = scene->request.lights.angles();
     const std::size_t size = sums.size() / lights.size();
     for (std::size_t light = 0; light < lights.size(); ++light) {
       const LightEntry entry(scene->domain, lights[light], kappa);
@@ -39,7 +39,7 @@ Batches walks(const std::shared_ptr<const Scene>& scene, const Scattering& scatt
 /// Nothing scatters: what collides is absorbed.
 Batches absorption(const std::shared_ptr<const Scene>& scene) {
   return [scene](std::uint64_t, std::span<Complex> sums) {
-    const auto& lights = scene->request.lights;
+    const auto lights = scene->request.lights.angles();
     for (std::size_t light = 0; light < lights.size(); ++light)
       sums[light * (sums.size() / lights.size()) + absorbed] =
           paths_per_batch * (1 - direct_transmittance(*scene, lights[light]));

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <set>
 
 #include "grin/phase_function.h"
-#include "mc/first_scatterer.h"
 
 namespace flatspeckle::mc {
 
@@ -26,6 +26,8 @@ bool below_root(double albedo, double g, double rate) {
   return 1 - albedo > 2 * s / tail;
 }
 
+constexpr int nodes = 512;  ///< of the table of importance
+
 /// log [sinh(a) / sinh(b)], 0 < a <= b.
 double log_sinh_ratio(double a, double b) {
   return a - b + std::log(std::expm1(-2 * a) / std::expm1(-2 * b));
@@ -35,6 +37,31 @@ double log_sinh_ratio(double a, double b) {
 double about_exp(double x) {
   const double square = (1 + x / 8) * (1 + x / 8), fourth = square * square;
   return 1 / (fourth * fourth);
+}
+
+/// Where the light of the shallowest source is first scattered.
+double first_depth(const Scene& scene) {
+  const double depth = scene.domain.depth,
+               shallow = std::min(scene.medium.mean_free_path(), depth / 2);
+  double first = depth - shallow;
+  for (const Light& light : scene.request.lights) {
+    if (light.kind == Light::Kind::point)
+      first = std::min(first, std::max(light.point.z, shallow));
+    else if (std::cos(light.angle) > 0)
+      first = shallow;
+  }
+  return first;
+}
+
+/// Depths that light has to reach for the views to see it.
+std::set<double> view_depths(const Scene& scene) {
+  std::set<double> depths;
+  const double depth = scene.domain.depth;
+  for (const View& view : scene.request.views) {
+    const double there = std::cos(view.angle) > 0 ? depth : 0;
+    depths.insert(view.near ? std::clamp(view.point.z, 0.0, depth) : there);
+  }
+  return depths;
 }
 
 }  // namespace
@@ -60,44 +87,49 @@ std::vector<double> representatives(const std::vector<double>& angles, double sp
   return chosen;
 }
 
-std::vector<double> representative_lights(const Scene& scene) {
-  return representatives(scene.request.lights,
-                         std::max(0.5 * (1 - std::abs(scene.medium.g)), 0.01));
-}
-
-DepthImportance::DepthImportance(const Scene& scene) : depth_(scene.domain.depth) {
+DepthImportance::DepthImportance(const Scene& scene) : step_(scene.domain.depth / nodes) {
+  const double depth = scene.domain.depth;
   const auto& medium = scene.medium;
   const double beyond = 0.818 * medium.transport_mean_free_path();
   double rate = diffusion_rate(medium.albedo, medium.g) * medium.mu_t;
   if (scene.domain.kind == Domain::Kind::box)  // what leaves by the sides is lost as well
     rate = std::hypot(rate, pi / (scene.domain.width + 2 * beyond));
-  rate = std::max(rate, 1e-8 / depth_);
-  double transmitted = 0, reflected = 0;
-  for (const View& view : scene.request.views)
-    (view.near || std::cos(view.angle) > 0 ? transmitted : reflected) = 1;
-  const auto leaving = [&](double to_edge) {
-    return log_sinh_ratio(rate * (to_edge + beyond), rate * (depth_ + 2 * beyond));
+  rate = std::max(rate, 1e-8 / depth);
+  // Of light from z at a depth, or beyond an edge.
+  const auto log_reaching = [&](double z, double there) {
+    const double way = z < there ? z : depth - z, whole = z < there ? there : depth - there;
+    return log_sinh_ratio(rate * (way + beyond), rate * (whole + beyond));
   };
-  const double first = std::min(medium.mean_free_path(), depth_ / 2);
-  constexpr int nodes = 512;
+  const double first = first_depth(scene);
+  const auto destinations = view_depths(scene);
   for (int i = 0; i <= nodes; ++i) {
-    const double z = depth_ * i / nodes;
-    const double forward = leaving(z) - leaving(first),
-                 backward = leaving(depth_ - z) - leaving(depth_ - first);
-    const double larger = transmitted == 0 ? backward
-                          : reflected == 0 ? forward
-                                           : std::max(forward, backward);
-    log_worth_.push_back(larger + std::log((transmitted * std::exp(forward - larger) +
-                                            reflected * std::exp(backward - larger)) /
-                                           (transmitted + reflected)));
+    std::vector<double> logs;
+    for (double there : destinations)
+      logs.push_back(log_reaching(depth * i / nodes, there) - log_reaching(first, there));
+    const double largest = *std::max_element(logs.begin(), logs.end());
+    double worth = 0;
+    for (double log : logs) worth += std::exp(log - largest);
+    log_worth_.push_back(largest + std::log(worth / static_cast<double>(logs.size())));
   }
+  constexpr double steep = 5;
+  steep_ = *std::max_element(log_worth_.begin(), log_worth_.end()) > steep;
 }
 
 double DepthImportance::log_worth(double z) const {
-  const double position = z / depth_ * static_cast<double>(log_worth_.size() - 1);
-  const auto i = std::min(static_cast<std::size_t>(position), log_worth_.size() - 2);
+  const double position = z / step_;
+  const std::size_t i = interval(z);
   const double t = position - static_cast<double>(i);
   return (1 - t) * log_worth_[i] + t * log_worth_[i + 1];
+}
+
+double DepthImportance::slope(double z) const {
+  if (!steep_) return 0;
+  const std::size_t i = interval(z);
+  return (log_worth_[i + 1] - log_worth_[i]) / step_;
+}
+
+std::size_t DepthImportance::interval(double z) const {
+  return std::min(static_cast<std::size_t>(z / step_), log_worth_.size() - 2);
 }
 
 ExpectedContribution::ExpectedContribution(const Scene& scene, const std::vector<End>& ends)

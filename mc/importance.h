@@ -22,9 +22,15 @@ class DepthImportance {
   explicit DepthImportance(const Scene& scene);
 
   double log_worth(double z) const;
+  /// Its derivative, for stretching flights: 0 where the worth rises so little in all that
+  /// stretched ones cost more than they give.
+  double slope(double z) const;
 
  private:
-  double depth_;
+  std::size_t interval(double z) const;
+
+  double step_;
+  bool steep_ = false;
   std::vector<double> log_worth_;  ///< at equally spaced depths
 };
 

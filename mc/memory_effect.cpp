@@ -50,7 +50,7 @@ std::vector<Complex> field_correlation(const CovarianceRequest& request,
   for (std::size_t v = 0; v < request.reference_views; ++v)
     reference += entries[request.reference_intensity(v)].real();
   std::vector<Complex> correlation;
-  for (std::size_t t = 0; t < request.tilts.size(); ++t) {
+  for (std::size_t t = 0; t < request.moves; ++t) {
     Complex cross = 0;
     double tilted = 0;
     for (std::size_t v = 0; v < request.reference_views; ++v) {
@@ -80,17 +80,19 @@ Range memory_effect_range(const std::vector<double>& tilt_q, std::span<const Com
 
 MemoryEffect memory_effect(const CovarianceRequest& request, const GroupedSums& sums,
                            const Estimator& covariance) {
+  const auto& steps =
+      request.kind == CovarianceRequest::Kind::translation ? request.shifts : request.tilt_q;
   // One jackknife for all: the correlations, then the range.
   const auto estimate = jackknife(sums, [&](double samples, std::span<const Complex> total) {
     auto values = field_correlation(request, covariance(samples, total));
-    values.emplace_back(memory_effect_range(request.tilt_q, values).value);
+    values.emplace_back(memory_effect_range(steps, values).value);
     return values;
   });
   MemoryEffect effect;
-  const std::span correlation(estimate.value.data(), request.tilts.size());
+  const std::span correlation(estimate.value.data(), request.moves);
   for (Complex value : correlation) effect.correlation.push_back(value.real());
   effect.correlation_error.assign(estimate.error.begin(), estimate.error.end() - 1);
-  effect.range = memory_effect_range(request.tilt_q, correlation);
+  effect.range = memory_effect_range(steps, correlation);
   effect.range_error = estimate.error.back();
   return effect;
 }

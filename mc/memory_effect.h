@@ -8,9 +8,9 @@
 
 namespace flatspeckle::mc {
 
-/// C_E per tilt (C19): |sum over views of the covariance of reference and tilted field|, over the
+/// C_E per move (C19): |sum over views of the covariance of reference and moved field|, over the
 /// square root of the product of their intensities summed over the same views. A function of the
-/// covariance entries of a memory_effect request, whichever solver they come from. Where an
+/// covariance entries of a request with moves, whichever solver they come from. Where an
 /// intensity vanishes the correlation is 0.
 std::vector<Complex> field_correlation(const CovarianceRequest& request,
                                        std::span<const Complex> entries);
@@ -29,9 +29,10 @@ struct Range {
 /// nearest tilts.
 Range memory_effect_range(const std::vector<double>& tilt_q, std::span<const Complex> correlation);
 
-/// field_correlation and the range with jackknife errors.
+/// field_correlation and the range with jackknife errors, of a memory_effect or translation
+/// request.
 struct MemoryEffect {
-  std::vector<double> correlation, correlation_error;  ///< per tilt
+  std::vector<double> correlation, correlation_error;  ///< per tilt or shift
   Range range;
   double range_error = 0;
 };

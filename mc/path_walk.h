@@ -107,13 +107,30 @@ class PathWalk {
   /// To the next scatterer; false if there is none.
   bool step(Walker& walker, RandomStream& random) const {
     const Vec2 w = scattering_.sample(walker.arrival, random);
-    const double flight = grin::sample_free_flight(medium_.mu_t, random.uniform());
+    const double flight = sample_flight(walker, w, random);
     if (flight >= domain_.distance_to_edge(walker.x, w)) return false;
     walker.tally.scattering(walker.arrival, w);
     walker.tally.flight(flight);
     walker.x = walker.x + flight * w;
     walker.arrival = w;
     return true;
+  }
+
+  /// Where light dies out with depth, half of the flights towards what is worth more are stretched
+  /// (Dwivedi 1982): else rare long ones would carry most of the result.
+  double sample_flight(Walker& walker, Vec2 w, RandomStream& random) const {
+    const double mu_t = medium_.mu_t;
+    if constexpr (weighted) {
+      if (const double pull = importance_.slope(walker.x.z) * w.z / mu_t; pull > 0) {
+        const double stretched = 1 - std::min(pull, 0.9);
+        const bool stretch = random.uniform() < 0.5;
+        const double flight =
+            grin::sample_free_flight(stretch ? stretched * mu_t : mu_t, random.uniform());
+        walker.weight *= 2 / (1 + stretched * std::exp((1 - stretched) * mu_t * flight));
+        return flight;
+      }
+    }
+    return grin::sample_free_flight(mu_t, random.uniform());
   }
 
   /// The weight window: false if the walker died, or waits as several.

@@ -21,8 +21,9 @@ Plan::Phase phase_of(const Scatterer& scatterer) {
 bool can_see_backscattering(const CovarianceRequest& request) {
   return std::any_of(request.views.begin(), request.views.end(), [&](const View& view) {
     if (view.near) return true;
-    return std::any_of(request.lights.begin(), request.lights.end(), [&](double light) {
-      return dot(direction(light), direction(view.angle)) <= 0;
+    return std::any_of(request.lights.begin(), request.lights.end(), [&](const Light& light) {
+      return light.kind == Light::Kind::point ||
+             dot(direction(light.angle), direction(view.angle)) <= 0;
     });
   });
 }
@@ -48,10 +49,9 @@ Plan make_plan(const Scene& scene, ReversedPaths reversed) {
   plan.phase = phase_of(scene.scatterer);
   plan.reversed = reversed == ReversedPaths::yes ||
                   (reversed == ReversedPaths::automatic && can_see_backscattering(request));
-  for (const auto& view : request.views) {
-    if (!view.near) continue;
-    plan.near = true;
-  }
+  plan.near = !request.lights.all(Light::Kind::plane) ||
+              std::any_of(request.views.begin(), request.views.end(),
+                          [](const View& view) { return view.near; });
   plan.rank_k = request.kind == CovarianceRequest::Kind::full;
   plan.score_level = score_level(scene.medium.g);
   plan.phases = plan.reversed || request.kind != CovarianceRequest::Kind::intensity;
@@ -79,7 +79,7 @@ std::string Plan::describe() const {
   text << "; " << (weighted ? "walkers split and play roulette" : "walkers of equal weight") << "; "
        << (sampled_single ? "" : "single scattering in closed form; ")
        << (phases ? "" : "no phases; ") << (reversed ? "reversed paths" : "no reversed paths")
-       << "; " << (near ? "near and far views" : "far views only") << "; "
+       << "; " << (near ? "near field" : "far field only") << "; "
        << (rank_k ? "full covariance by rank-k updates" : "listed entries only")
        << "; scores promising less than " << score_level << " play roulette; " << paths_per_batch
        << " paths per batch";

@@ -19,7 +19,7 @@ struct Plan {
   Phase phase = Phase::isotropic;
   bool phases = true;          ///< false: magnitudes alone, which is all that intensities need
   bool reversed = false;       ///< paths count walked backwards too
-  bool near = false;           ///< some lights or views are points
+  bool near = false;           ///< some lights or views are points, or beams
   bool weighted = false;       ///< walkers split and play roulette: absorption, depth
   bool rank_k = false;         ///< the full covariance by Hermitian rank-k updates
   bool sampled_single = true;  ///< false: paths of one scatterer by quadrature

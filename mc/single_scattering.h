@@ -21,10 +21,12 @@ template <typename Scattering>
 std::vector<Complex> single_scattering(const Scene& scene, const Scattering& scattering) {
   const auto& request = scene.request;
   std::vector<Complex> entries(request.entries.size());
-  parallel_for(entries.size(), [&](std::size_t e) {
+  constexpr std::size_t many = 100;  // of some ten microseconds to a millisecond each
+  parallel_for(entries.size(), entries.size() > many, [&](std::size_t e) {
     const auto end = [&](std::size_t channel) {
       const Channel c = request.channels[channel];
-      return std::array{direction(request.lights[c.light]), direction(request.views[c.view].angle)};
+      return std::array{direction(request.lights[c.light].angle),
+                        direction(request.views[c.view].angle)};
     };
     const auto [i1, v1] = end(request.entries[e].a);
     const auto [i2, v2] = end(request.entries[e].b);

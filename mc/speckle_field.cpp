@@ -30,7 +30,7 @@ void blas_single_thread() {
 
 }  // namespace
 
-CovarianceRequest field_request(std::vector<double> lights, std::vector<View> views) {
+CovarianceRequest field_request(Lights lights, std::vector<View> views) {
   CovarianceRequest request = intensity_request(std::move(lights), std::move(views));
   request.kind = CovarianceRequest::Kind::full;
   request.entries.clear();

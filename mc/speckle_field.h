@@ -48,7 +48,7 @@ using FieldDraw = std::function<void(std::uint64_t number, std::span<Complex> fi
                                      std::span<double> intensity)>;
 
 /// The channels [light][view] of a scene, for fields: no list of covariance entries.
-CovarianceRequest field_request(std::vector<double> lights, std::vector<View> views);
+CovarianceRequest field_request(Lights lights, std::vector<View> views);
 
 /// A plan that walks all there is to a field: none of it is left to a closed form.
 Plan plan_for_fields(Plan plan);

@@ -30,6 +30,8 @@ SolveOptions batch_options(const Scene& scene, double tolerance) {
   SolveOptions options{.tolerance = tolerance, .sensors = {}, .diagnose = false};
   for (const View& view : scene.request.views)
     if (view.near) options.sensors.push_back(view.point);
+  for (const Light& light : scene.request.lights)
+    if (light.kind == Light::Kind::point) options.sensors.push_back(light.point);
   return options;
 }
 

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <utility>
 
 #include "core/bessel.h"
+#include "core/error.h"
 #include "wave_solver/blas.h"
 
 namespace flatspeckle::wave {
@@ -36,6 +39,53 @@ std::vector<Complex> coefficients(std::span<const double> angles,
   return matrix;
 }
 
+bool is_source(const Light& light) {
+  return light.kind == Light::Kind::point;
+}
+
+LightBasis source_basis(const Lights& lights) {
+  LightBasis basis;
+  for (const Light& light : lights) {
+    if (!is_source(light))
+      throw InputError("near sources and plane waves or beams: solve for one kind at a time");
+    basis.sources.push_back(light.point);
+  }
+  return basis;
+}
+
+// A plane wave of a light.
+struct Wave {
+  double angle;
+  Complex weight;
+};
+struct Part {
+  std::size_t light;
+  Complex weight;
+};
+
+// With the transverse wavenumber q, a beam of waist w has the spectrum
+//   w / (2 sqrt(pi)) exp(-q^2 w^2 / 4)
+// at its focus. Equal steps of q repeat the beam sideways, beyond the circle.
+std::vector<Wave> waves_of(const Light& light, double k, const Circle& circle, double tolerance) {
+  if (light.kind == Light::Kind::plane) return {{light.angle, 1}};
+  const Vec2 way = circle.centre - light.point, axis = direction(light.angle);
+  const double waist = light.waist, reach = length(way) + circle.radius;
+  const double width = waist * std::hypot(1, 2 * reach / (k * waist * waist));
+  constexpr double negligible = 6;  // widths
+  const double aside = std::abs(way.x * axis.z - way.z * axis.x) + circle.radius;
+  const double step = 2 * std::numbers::pi / (aside + negligible * width);
+  const double highest = std::min(0.999 * k, 2 / waist * std::sqrt(std::log(1e3 / tolerance)));
+  const int count = static_cast<int>(highest / step);
+  std::vector<Wave> waves;
+  for (int n = -count; n <= count; ++n) {
+    const double q = n * step, angle = light.angle + std::asin(q / k);
+    const double size =
+        step * waist / (2 * std::sqrt(std::numbers::pi)) * std::exp(-q * q * waist * waist / 4);
+    waves.push_back({angle, std::polar(size, -k * dot(direction(angle), light.point))});
+  }
+  return waves;
+}
+
 }  // namespace
 
 Circle enclosing_circle(const Placement& placement) {
@@ -53,7 +103,7 @@ Circle enclosing_circle(const Placement& placement) {
 
 LightBasis light_basis(std::span<const double> angles, double k, const Circle& circle,
                        double tolerance) {
-  const LightBasis all{{angles.begin(), angles.end()}, {}};
+  const LightBasis all{{angles.begin(), angles.end()}, {}, {}};
   const std::size_t lights = angles.size();
   if (lights <= few) return all;
   const auto sizes = wave_sizes(std::max(k * circle.radius, 1e-6), tolerance);
@@ -85,6 +135,30 @@ LightBasis light_basis(std::span<const double> angles, double k, const Circle& c
       basis.weights[light * rank + j] = weight * phase(light) * std::conj(phase(pivots[j] - 1));
     }
   }
+  return basis;
+}
+
+LightBasis basis_of(const Lights& lights, double k, const Circle& circle, double tolerance) {
+  if (std::any_of(lights.begin(), lights.end(), is_source)) return source_basis(lights);
+  std::vector<double> angles;
+  std::vector<Part> parts;
+  for (std::size_t light = 0; light < lights.size(); ++light) {
+    for (const auto& [angle, weight] : waves_of(lights[light], k, circle, tolerance)) {
+      parts.push_back({light, weight});
+      angles.push_back(angle);
+    }
+  }
+  LightBasis basis = light_basis(angles, k, circle, tolerance);
+  if (lights.all(Light::Kind::plane)) return basis;
+  const std::size_t rank = basis.angles.size();
+  std::vector<Complex> weights(lights.size() * rank);
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    Complex* const row = &weights[parts[p].light * rank];
+    if (basis.weights.empty()) row[p] = parts[p].weight;
+    for (std::size_t j = 0; j < rank && !basis.weights.empty(); ++j)
+      row[j] += parts[p].weight * basis.weights[p * rank + j];
+  }
+  basis.weights = std::move(weights);
   return basis;
 }
 

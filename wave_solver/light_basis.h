@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/complex.h"
+#include "flatland/light.h"
 #include "flatland/placement.h"
 
 namespace flatspeckle::wave {
@@ -13,11 +14,11 @@ namespace flatspeckle::wave {
 struct LightBasis {
   std::vector<double> angles;
   std::vector<Complex> weights;  ///< [light][basis]; empty where every light stands for itself
+  std::vector<Vec2> sources;     ///< point sources, which have no plane waves beside them
 
+  std::size_t size() const { return angles.size() + sources.size(); }
   /// Of the lights that it stands for.
-  std::size_t count() const {
-    return weights.empty() ? angles.size() : weights.size() / angles.size();
-  }
+  std::size_t count() const { return weights.empty() ? size() : weights.size() / size(); }
 };
 
 struct Circle {
@@ -33,5 +34,9 @@ Circle enclosing_circle(const Placement& placement);
 /// little.
 LightBasis light_basis(std::span<const double> angles, double k, const Circle& circle,
                        double tolerance);
+/// Of any lights: a Gaussian beam is the superposition of plane waves that has the beam's field
+/// across its focus, but for what does not propagate. Throws InputError for point sources mixed
+/// with others.
+LightBasis basis_of(const Lights& lights, double k, const Circle& circle, double tolerance);
 
 }  // namespace flatspeckle::wave

@@ -219,6 +219,12 @@ std::vector<Complex> TMatrixSystem::right_sides(std::span<const double> light_an
   return sides;
 }
 
+std::vector<Complex> TMatrixSystem::source_side(Vec2 source) const {
+  auto side = near_row(source);
+  for (Complex& value : side) value *= Complex(0, -0.25);
+  return side;
+}
+
 std::vector<Complex> TMatrixSystem::far_row(double view_angle) const {
   std::vector<Complex> row(unknowns());
   const double size = std::sqrt(2 / (std::numbers::pi * k_));

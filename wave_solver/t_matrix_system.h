@@ -53,6 +53,8 @@ class TMatrixSystem {
 
   /// -sigma a of unit plane waves (C6): [light][unknown].
   std::vector<Complex> right_sides(std::span<const double> light_angles) const;
+  /// The same of a point source, the Green function (C3); by reciprocity -i/4 of near_row().
+  std::vector<Complex> source_side(Vec2 source) const;
   /// What each unknown adds to the far-field amplitude at an angle (C6). By reciprocity a multiple
   /// of the right side of the light that comes from there.
   std::vector<Complex> far_row(double view_angle) const;

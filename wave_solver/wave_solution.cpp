@@ -51,7 +51,7 @@ std::vector<Complex> transposed_product(const std::vector<Complex>& a, const Com
 std::vector<Complex> expanded(const LightBasis& basis, std::vector<Complex> columns,
                               std::size_t n) {
   if (basis.weights.empty() || n == 0) return columns;
-  const auto rank = static_cast<blasint>(basis.angles.size()), rows = static_cast<blasint>(n),
+  const auto rank = static_cast<blasint>(basis.size()), rows = static_cast<blasint>(n),
              lights = static_cast<blasint>(basis.count());
   std::vector<Complex> all(n * basis.count());
   const Complex one = 1, zero = 0;
@@ -77,6 +77,16 @@ std::vector<Complex> view_rows(const TMatrixSystem& system, std::span<const View
     rows.insert(rows.end(), row.begin(), row.end());
   }
   return rows;
+}
+
+// Of the waves and sources of a basis: [basis][unknown].
+std::vector<Complex> right_sides(const TMatrixSystem& system, const LightBasis& basis) {
+  auto sides = system.right_sides(basis.angles);
+  for (const Vec2& source : basis.sources) {
+    const auto side = system.source_side(source);
+    sides.insert(sides.end(), side.begin(), side.end());
+  }
+  return sides;
 }
 
 std::vector<View> far_views(const std::vector<double>& angles) {
@@ -144,9 +154,9 @@ WaveSolution solve(const Placement& placement, double k, const std::vector<doubl
   return solution;
 }
 
-FieldPlan make_field_plan(const std::vector<double>& light_angles, std::vector<View> views,
-                          double k, const Circle& circle, double tolerance) {
-  FieldPlan plan{light_basis(light_angles, k, circle, tolerance), {}, std::move(views)};
+FieldPlan make_field_plan(const Lights& lights, std::vector<View> views, double k,
+                          const Circle& circle, double tolerance) {
+  FieldPlan plan{basis_of(lights, k, circle, tolerance), {}, std::move(views)};
   if (all_far(plan.views)) {
     std::vector<double> angles;
     for (const View& view : plan.views) angles.push_back(view.angle + std::numbers::pi);
@@ -163,8 +173,8 @@ std::vector<Complex> scattered_fields(const Placement& placement, double k, cons
   const std::size_t n = system.unknowns();
   const bool compressed = !plan.far_views.weights.empty();
   const auto views = compressed ? far_views(plan.far_views.angles) : plan.views;
-  const auto rows = view_rows(system, views), sides = system.right_sides(plan.lights.angles);
-  const std::size_t lights = plan.lights.angles.size();
+  const auto rows = view_rows(system, views), sides = right_sides(system, plan.lights);
+  const std::size_t lights = plan.lights.size();
   if (n == 0) return std::vector<Complex>(plan.views.size() * plan.lights.count());
   EquationSolver solver(system, options.method, options.tolerance);
   auto fields = views.size() < lights

@@ -73,8 +73,8 @@ struct FieldPlan {
   LightBasis lights, far_views;
   std::vector<View> views;
 };
-FieldPlan make_field_plan(const std::vector<double>& light_angles, std::vector<View> views,
-                          double k, const Circle& circle, double tolerance);
+FieldPlan make_field_plan(const Lights& lights, std::vector<View> views, double k,
+                          const Circle& circle, double tolerance);
 
 /// Fields of a placement, [light][view], without diagnosis; by reciprocity the equations are solved
 /// for the fewer of lights and views.

@@ -150,7 +150,41 @@ REQUEST_CASES = [
     ("covariance", SLAB, {"near_sensors": "out.csv"}, ["near_sensors", "far views only"]),
     ("sweep", SWEEP, {"near_sensors": "out.csv"}, ["near_sensors", "far views"]),
 ]
-SENSORS = {"out.csv": "x,z\n0,15\n1,15\n", "header.csv": "x,z\n",
+MAP = {"covariance": "tilt_shift", "tilts": [0, 0.01], "shifts": [0, 0.1]}
+MOVE = {"covariance": "translation", "shifts": [0, 0.5]}
+LIGHT_CASES = [
+    ("covariance", BOX, {"near_sources": "out.csv", "light_angles": [0.1]},
+     ["near_sources", "either near_sources or light_angles"]),
+    ("covariance", BOX, {"near_sources": "out.csv", "beam_waist": 2}, ["beam_waist = 2", "either"]),
+    ("covariance", BOX, {"near_sources": "no.csv"}, ["no.csv"]),
+    ("covariance", BOX, {"near_sources": "header.csv"}, ["header.csv", "at least one"]),
+    ("covariance", BOX, {"beam_waist": 0}, ["beam_waist = 0", POSITIVE]),
+    ("covariance", BOX, {"beam_waist": 0.5}, ["beam_waist = 0.5", "wavelength"]),
+    ("covariance", BOX, {"beam_positions": [1]}, ["beam_positions = 1", "beam_waist"]),
+    ("covariance", BOX, {"beam_depth": 1}, ["beam_depth = 1", "beam_waist"]),
+    ("covariance", BOX, {"beam_waist": 2, "beam_positions": ["nan"]}, ["beam_positions = nan"]),
+    ("covariance", BOX, {"beam_waist": 2, "beam_positions": [40]}, ["40", "misses the medium"]),
+    ("covariance", SLAB, {"near_sources": "out.csv"}, ["near_sources", "plane waves only"]),
+    ("covariance", SLAB, {"beam_waist": 2}, ["beam_waist", "plane waves only"]),
+    ("covariance", {**BOX, **TILTS}, {"beam_waist": 2}, ["memory_effect", "tilt_shift"]),
+    ("covariance", {**BOX, **PAIRS}, {"beam_waist": 2}, ["beam_waist", "pairs"]),
+    ("covariance", {**BOX, **PAIRS}, {"near_sources": "out.csv"}, ["near_sources", "pairs"]),
+    ("covariance", BOX, {"shifts": [0.1]}, ["shifts = 0.1", "tilt_shift and translation"]),
+    ("covariance", {**BOX, **MAP}, {"shifts": None}, ["shifts", "at least one"]),
+    ("covariance", {**BOX, **MAP}, {"tilts": [0.1]}, ["tilts = 0.1", "hold 0"]),
+    ("covariance", {**BOX, **MAP}, {"shifts": [0, 0]}, ["shifts = 0", "twice"]),
+    ("covariance", {**BOX, **MAP}, {"shifts": [0, 7]}, ["shifts = 7", "past the horizon"]),
+    ("covariance", {**BOX, **MAP}, {"light_angles": [0, 0.1]}, ["tilt_shift", "one light, not 2"]),
+    ("covariance", {**BOX, **MAP}, {"near_sources": "out.csv"}, ["one light, not 2"]),
+    ("covariance", {**BOX, **MAP}, {"near_sources": "one.csv"}, ["one.csv", "translation"]),
+    ("covariance", {**SLAB, **MAP}, {"depth": 10}, ["tilt_shift", "memory_effect"]),
+    ("covariance", {**BOX, **MAP}, {"gradient": True}, ["gradient", "no tilt_shift"]),
+    ("covariance", BOX, {"gradient": True, "beam_waist": 2}, ["gradient", "plane waves"]),
+    ("covariance", BOX, {"delays": [0], "near_sources": "out.csv"}, ["delays", "plane waves"]),
+    ("covariance", {**BOX, **MOVE}, {"wavelength": 1}, ["translation", "use tilt_shift"]),
+    ("covariance", {**BOX, **MOVE}, {"tilts": [0]}, ["tilts = 0", "memory_effect and tilt_shift"]),
+]
+SENSORS = {"out.csv": "x,z\n0,15\n1,15\n", "header.csv": "x,z\n", "one.csv": "x,z\n0,-3\n",
            "empty.csv": ""}
 REAL_KEYS = [
     ("covariance", BOX, ["width", "depth", "wavelength", "seconds", "target_error"]),
@@ -201,6 +235,7 @@ class Keys(RefusingTest):
         for name, text in SENSORS.items():
             self.write(name, text)
         self.check_cases(REQUEST_CASES)
+        self.check_cases(LIGHT_CASES)
 
     def test_real_numbers(self):
         for subcommand, scene, keys in REAL_KEYS:

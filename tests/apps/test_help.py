@@ -8,6 +8,8 @@ SCATTERER = ["wavelength", "scatterer", "radius", "index", "g", "albedo"]
 MEDIUM = ["domain", "width", "depth", "count", "density", "mean_free_path", "optical_depth",
           "placement", "min_gap"]
 VIEWS = ["light_angles", "view_angles", "near_sensors"]
+REQUEST = ["near_sources", "beam_waist", "beam_positions", "beam_depth", "covariance", "tilts",
+           "shifts", "pairs"]
 RUN = ["seed", "samples", "seconds", "target_error", "threads", "resume"]
 PROGRAM = ["config", "print-config", "out", "help"]
 SCENE = SCATTERER + MEDIUM + VIEWS
@@ -15,9 +17,9 @@ KEYS = {
     "place": ["width", "depth", "radii", "fractions", "count", "packing_fraction", "placement",
               "min_gap", "seed", "structure", "realizations"],
     "solve": SCENE + ["seed"],
-    "covariance": SCENE + ["structure", "tilts", "covariance", "method", "wave_samples"] + RUN,
+    "covariance": SCENE + REQUEST + ["structure", "method", "gradient", "delays", "wave_samples"] + RUN,
     "flux": SCATTERER + MEDIUM + ["light_angles", "angle_bins"] + RUN,
-    "validate": SCENE + ["structure", "tilts", "covariance", "wave_samples"] + RUN,
+    "validate": SCENE + REQUEST + ["structure", "wave_samples"] + RUN,
     "field": SCENE + ["structure", "tilts", "method", "fields", "paths_per_field", "target_error", "seed",
                       "threads"],
     "sweep": SCENE + ["structure", "tilts"] + RUN,

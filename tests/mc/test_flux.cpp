@@ -170,7 +170,7 @@ TEST_CASE("without absorption no share is lost in a slab, walk by walk") {
     const Scene scene = tests::lit_slab(optical_depth, 1, 0.5, {0, 1.0});
     const Estimate sum = total(tests::run_flux(scene, paths(4000), 6));
     for (std::size_t light = 0; light < 2; ++light) {
-      const double scattered = 1 - direct_transmittance(scene, scene.request.lights[light]);
+      const double scattered = 1 - direct_transmittance(scene, scene.request.lights[light].angle);
       CHECK(std::abs(sum.value[light] - scattered) < 1e-11 * scattered);
     }
   }

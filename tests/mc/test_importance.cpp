@@ -28,7 +28,7 @@ void check_slab(double optical_depth, double albedo, const std::vector<double>& 
   const auto found = tests::run(scene, plan, paths, 3).entries();
   const tests::IsotropicSlab theory(k, depth, optical_depth / depth, albedo);
   const auto channel = [&](std::uint32_t c) {
-    return tests::IsotropicSlab::Channel{request.lights[request.channels[c].light],
+    return tests::IsotropicSlab::Channel{request.lights[request.channels[c].light].angle,
                                          request.views[request.channels[c].view].angle};
   };
   for (std::size_t e = 0; e < request.entries.size(); ++e) {
@@ -75,7 +75,7 @@ TEST_CASE("roulette of scores and depth windows change the variance alone") {
 
 TEST_CASE("what crosses deep absorbing media is found and weighs what it should") {
   check_slab(30, 0.9, {0.1}, with(2, true), 80000, 0.1);
-  check_slab(20, 0.5, {0}, with(2, true), 200000, 0.3);
+  check_slab(20, 0.5, {0}, with(2, true), 500000, 0.3);
   check_slab(100, 0.9, {pi - 0.4}, with(2, true), 40000, 0.05);
 }
 

@@ -58,7 +58,7 @@ Complex single_scattering(const Scene& scene, Channel a, Channel b, int nx, int 
   const double width = box ? scene.domain.width : 1, depth = scene.domain.depth;
   const auto field = [&](Channel c, Vec2 x) {
     const View& view = request.views[c.view];
-    const double light = request.lights[c.light];
+    const double light = request.lights[c.light].angle;
     return light_factor(scene, light, x) * phase_amplitude(scene, light, view, x) *
            view_factor(scene, view, x);
   };

@@ -28,7 +28,7 @@ struct Comparison {
 
 Channel channel(const CovarianceRequest& request, std::size_t number) {
   const auto c = request.channels[number];
-  return {request.lights[c.light], request.views[c.view].angle};
+  return {request.lights[c.light].angle, request.views[c.view].angle};
 }
 
 void check_entries(const Comparison& slab, const CovarianceRequest& request, ReversedPaths reversed,

@@ -179,7 +179,7 @@ TEST_CASE("1e4 fields of a thin dark box have the covariance in closed form") {
                     field_request({0, 0.05, -0.02}, tests::far_views({0, 0.7, 0.74, 2.5, -1.2})));
   const auto& request = scene.request;
   const auto momentum = [&](const Channel& c) {
-    return k * (direction(request.lights[c.light]) - direction(request.views[c.view].angle));
+    return k * (direction(request.lights[c.light].angle) - direction(request.views[c.view].angle));
   };
   const auto sinc = [](double x) { return x == 0 ? 1 : std::sin(x) / x; };
   Triangle expected;

@@ -35,7 +35,8 @@ double theoretical_range(const KnownRange& known) {
   for (const auto& entry : request.entries) {
     const auto channel = [&](std::uint32_t number) {
       const auto c = request.channels[number];
-      return tests::IsotropicSlab::Channel{request.lights[c.light], request.views[c.view].angle};
+      return tests::IsotropicSlab::Channel{request.lights[c.light].angle,
+                                           request.views[c.view].angle};
     };
     entries.push_back(slab.without_reversed(channel(entry.a), channel(entry.b)));
   }

@@ -68,7 +68,7 @@ void check_theory(double albedo, bool reversed, std::uint64_t seed) {
   const Estimate found = textbook(scene, reversed, 60000, seed);
   const auto channel = [&](std::size_t number) {
     const auto c = request.channels[number];
-    return Channel{request.lights[c.light], request.views[c.view].angle};
+    return Channel{request.lights[c.light].angle, request.views[c.view].angle};
   };
   for (std::size_t e = 0; e < request.entries.size(); ++e) {
     CAPTURE(e);

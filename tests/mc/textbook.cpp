@@ -106,7 +106,7 @@ class Walker {
         view_first_(request_.views.size()),
         view_last_(request_.views.size()),
         field_(request_.channels.size()) {
-    for (double angle : request_.lights) lights_.push_back(ray(angle));
+    for (const Light& light : request_.lights) lights_.push_back(ray(light.angle));
     for (const View& view : request_.views) views_.push_back(ray(view.angle));
   }
 

@@ -79,7 +79,7 @@ TEST_CASE("Mean and covariance are those of the fields, with the sample mean rem
   for (std::uint64_t number = 0; number < samples; ++number) {
     RandomStream random(1, static_cast<std::uint64_t>(Stream::placement), number);
     const auto placement = draw_placement(scene.domain, scene.scatterer, scene.placement, random);
-    fields.push_back(solve(placement, scene.k, request.lights).fields(request.views));
+    fields.push_back(solve(placement, scene.k, request.lights.angles()).fields(request.views));
   }
   std::vector<Complex> expected_mean(4);
   for (const auto& u : fields)

@@ -1,5 +1,8 @@
+#include <cmath>
+
 #include <doctest/doctest.h>
 
+#include "core/error.h"
 #include "reference.h"
 #include "wave_solver/light_basis.h"
 #include "wave_solver/wave_solution.h"
@@ -88,6 +91,55 @@ TEST_CASE("The circle holds all rims") {
   for (const auto& [position, disk] : placement)
     CHECK(length(position - around.centre) + disk.radius <= around.radius * (1 + 1e-15));
   CHECK(enclosing_circle({}).radius == 0);
+}
+
+TEST_CASE("A beam is the superposition of plane waves that has its field across the focus") {
+  const Circle box{{1, 5}, 11};
+  const double waist = 2;
+  const Lights lights = {gaussian_beam(0.3, {0.5, 2}, waist), gaussian_beam(0.3, {-1, 2}, waist),
+                         plane_wave(1)};
+  const auto basis = basis_of(lights, two_pi, box, 1e-8);
+  REQUIRE(basis.count() == 3);
+  CHECK(basis.sources.empty());
+  const auto field = [&](std::size_t light, Vec2 point) {
+    Complex sum = 0;
+    for (std::size_t j = 0; j < basis.size(); ++j)
+      sum += basis.weights[light * basis.size() + j] *
+             std::polar(1.0, two_pi * dot(direction(basis.angles[j]), point));
+    return sum;
+  };
+  const Vec2 across{std::cos(0.3), -std::sin(0.3)};
+  for (const double t : {-7.0, -2.0, 0.0, 1.0, 6.0}) {
+    const double expected = std::exp(-t * t / (waist * waist));
+    CHECK(std::abs(field(0, lights[0].point + t * across) - expected) < 1e-7);
+    CHECK(std::abs(field(1, lights[1].point + t * across) - expected) < 1e-7);
+    const Vec2 point{t, 5};
+    CHECK(std::abs(field(2, point) - std::polar(1.0, two_pi * dot(direction(1), point))) < 1e-6);
+  }
+}
+
+TEST_CASE("Point sources are the reciprocal of near sensors, and plane waves from far away") {
+  const Placement placement = reference_placement("g1", "TM15");
+  const Circle circle = enclosing_circle(placement);
+  const SolveOptions options{.tolerance = 1e-10, .sensors = {}, .diagnose = false};
+  const auto fields = [&](const Lights& lights, const std::vector<View>& views) {
+    return scattered_fields(placement, two_pi,
+                            make_field_plan(lights, views, two_pi, circle, 1e-10), options);
+  };
+  const Vec2 here = circle.centre + (circle.radius + 2) * direction(0.7),
+             there = circle.centre + (circle.radius + 1) * direction(-2.0);
+  const Complex forth = fields({point_source(here)}, {near_sensor(there)})[0],
+                back = fields({point_source(there)}, {near_sensor(here)})[0];
+  CHECK(std::abs(forth) > 1e-4);
+  CHECK(std::abs(forth - back) < 1e-9);
+  // far view towards v of a source at x = near field at x of the light from v, times e^(i pi/4) /
+  // sqrt(8 pi k)
+  const Complex scale =
+      std::polar(1 / std::sqrt(8 * std::acos(-1.0) * two_pi), std::acos(-1.0) / 4);
+  const Complex far = fields({point_source(here)}, {far_view(0.4)})[0],
+                near = fields({plane_wave(0.4 + std::acos(-1.0))}, {near_sensor(here)})[0];
+  CHECK(std::abs(far - scale * near) < 1e-9);
+  CHECK_THROWS_AS(basis_of({point_source(here), plane_wave(0)}, two_pi, circle, 1e-6), InputError);
 }
 
 }  // namespace flatspeckle::wave

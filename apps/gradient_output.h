@@ -1,0 +1,14 @@
+#pragma once
+
+#include "core/result_file.h"
+#include "flatland/scene.h"
+#include "mc/gradient.h"
+
+namespace flatspeckle::apps {
+
+/// Prints derivatives and writes them in the shapes of the README. The request's axes must have
+/// been written.
+void write_gradient(ResultFile& file, const Scene& scene, const mc::GradientJob& job,
+                    const GroupedSums& sums);
+
+}  // namespace flatspeckle::apps

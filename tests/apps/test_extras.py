@@ -1,0 +1,107 @@
+"""Derivatives and delays beside the covariance."""
+
+import unittest
+
+import h5py
+import numpy as np
+
+from program import BOX, SLAB, TILTS, ProgramTest, datasets
+from test_bad_input import RefusingTest
+
+HG = {"width": 20, "depth": 10, "scatterer": "hg", "optical_depth": 2, "g": 0.5, "albedo": 0.9}
+VIEWS = {"light_angles": [0, 0.3], "view_angles": [0.1, 0.5, 3.0]}
+PAIRS = {"covariance": "pairs", "pairs": [0, 0.1, 0.04, 0.14, 0, 0.5, 0, 0.5]}
+LV = ("light_angle", "view_angle")
+# request -> the shape of one parameter, and whether it is complex
+REQUESTS = {
+    "intensity": (VIEWS, {"gradient": (LV, False)}),
+    "full": ({**VIEWS, "covariance": "full"}, {"gradient": (LV + LV, True)}),
+    "pairs": (PAIRS, {"gradient": (("pair",), True)}),
+    "memory_effect": (TILTS, {"gradient": (("tilt", "view_angle"), True),
+                              "reference_intensity_gradient": (("view_angle",), False),
+                              "tilted_intensity_gradient": (("tilt", "view_angle"), False),
+                              "field_correlation_gradient": (("tilt",), False),
+                              "memory_effect_range_gradient": ((), False)}),
+}
+
+
+class Extras(ProgramTest):
+    def check(self, file, name, axes, is_complex):
+        values, error = file[name], file[name + "_error"]
+        self.assertEqual(values.dtype, np.complex128 if is_complex else np.float64, name)
+        self.assertEqual(values.shape, tuple(len(file[axis]) for axis in axes), name)
+        self.assertEqual(error.shape, values.shape, name)
+        self.assertTrue(np.all(np.isfinite(values[()])) and np.all(error[()] >= 0), name)
+        for number, axis in enumerate(axes):
+            self.assertEqual(values.dims[number][0].name, f"/{axis}", name)
+
+    def test_gradient(self):
+        for request, (keys, wanted) in REQUESTS.items():
+            with self.subTest(request=request):
+                done = self.call("covariance", **HG, **keys, gradient=True, samples=4000,
+                                 out="result.h5")
+                with h5py.File(self.folder / "result.h5") as file:
+                    names = list(file["parameter"].attrs["names"])
+                    self.assertEqual(names, ["mu_t", "g", "albedo", "optical_depth"])
+                    for name, (axes, is_complex) in wanted.items():
+                        self.check(file, name, ("parameter", *axes), is_complex)
+                    gradient = file["gradient"][()]
+                    np.testing.assert_allclose(gradient[3], gradient[0] / HG["depth"], rtol=1e-12)
+                    self.assertIn("derivatives by mu_t g albedo optical_depth",
+                                  file.attrs["plan"])
+                for name in names:
+                    self.assertIn(f"d/d {name}", done.stdout)
+
+    def test_the_covariance_is_the_same_with_a_gradient(self):
+        for name, keys in (("with", {"gradient": True}), ("without", {})):
+            self.call("covariance", **HG, **VIEWS, **keys, samples=4000, out=f"{name}.h5")
+        first, second = (datasets(self.folder / f"{name}.h5") for name in ("with", "without"))
+        np.testing.assert_allclose(first["intensity"], second["intensity"], rtol=1e-12)
+
+    def test_points_have_no_g(self):
+        self.call("covariance", **BOX, **VIEWS, gradient=True, samples=4000, out="result.h5")
+        with h5py.File(self.folder / "result.h5") as file:
+            self.assertEqual(list(file["parameter"].attrs["names"]),
+                             ["mu_t", "albedo", "optical_depth"])
+
+    def test_delays(self):
+        self.call("covariance", **HG, **VIEWS, delays=[0, 0.1, 1], samples=4000, out="result.h5")
+        with h5py.File(self.folder / "result.h5") as file:
+            for name in ("covariance", "field_correlation"):
+                self.check(file, name, ("delay", *LV), False)
+            np.testing.assert_allclose(file["field_correlation"][0], 1, rtol=1e-12)
+            np.testing.assert_allclose(file["covariance"][0], file["intensity"], rtol=1e-12)
+            self.assertTrue(np.all(np.diff(file["field_correlation"][()], axis=0) < 0))
+            self.assertNotIn("diffusion_theory", file)
+        self.call("covariance", **SLAB, delays=[0, 0.1], samples=4000, out="result.h5")
+        with h5py.File(self.folder / "result.h5") as file:
+            self.assertEqual(file["diffusion_theory"].shape, (2,))
+            self.assertAlmostEqual(file["diffusion_theory"][0], 1)
+
+    def test_resumed(self):
+        """In the same numbers, and not with other extras."""
+        for keys in ({"delays": [0.1, 1]}, {"gradient": True}):
+            self.call("covariance", **HG, **VIEWS, **keys, samples=4000, out="whole.h5")
+            self.call("covariance", **HG, **VIEWS, **keys, samples=2000, target_error=1e-9,
+                      status=3, out="part.h5")
+            self.call("covariance", **HG, **VIEWS, delays=[0.3], samples=4000, resume=True,
+                      status=2, out="part.h5")
+            self.call("covariance", **HG, **VIEWS, **keys, samples=4000, resume=True,
+                      out="part.h5")
+            self.assert_same_data("whole.h5", "part.h5")
+
+
+class Refused(RefusingTest):
+    def test_refused(self):
+        for keys, words in (({"gradient": True, "delays": [0.1]}, ["gradient, delays"]),
+                            ({"gradient": True, "method": "wave"}, ["gradient", "method = mc"]),
+                            ({"delays": [0.1], "method": "wave"}, ["delays", "method = mc"]),
+                            ({"delays": [-0.1]}, ["delays = -0.1", "must not be negative"]),
+                            ({"delays": ["nan"]}, ["delays = nan", "must not be negative"]),
+                            ({"delays": [0.1], **TILTS}, ["delays", "covariance = intensity"]),
+                            ({"gradient": True, "count": 0}, ["gradient", "does not scatter"])):
+            self.assert_refused_both_ways("covariance", BOX, keys, words)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,117 @@
+#include <cmath>
+
+#include <doctest/doctest.h>
+
+#include "mc/diffusion.h"
+#include "mc/tilt_shift.h"
+#include "tests/mc/estimates.h"
+
+namespace flatspeckle::mc {
+
+namespace {
+
+using tests::pi;
+
+constexpr double k = 2 * pi, light = 0.1;
+const std::vector<double> views = {0.3, -0.2}, tilts = {0, 0.01, -0.03};
+
+Scene box(const CovarianceRequest& request) {
+  return tests::hg_box(30, 8, {3, 0.4}, request);
+}
+
+/// Shifts that match the tilts, in the same order.
+std::vector<double> matched_shifts() {
+  std::vector<double> shifts;
+  for (double tilt : tilts)
+    shifts.push_back(tilt == 0 ? 0 : k * (std::sin(light + tilt) - std::sin(light)));
+  return shifts;
+}
+
+CovarianceRequest map_request(std::vector<double> shifts) {
+  return tilt_shift_request(k, plane_wave(light), tests::far_views(views), tilts, shifts);
+}
+
+}  // namespace
+
+TEST_CASE("at the matched shifts the map holds the memory effect") {
+  const auto request = map_request(matched_shifts());
+  const auto found = tests::run(box(request), ReversedPaths::automatic, 60000, 1).entries();
+  const auto effect = memory_effect_request(k, light, views, tilts);
+  const auto expected = tests::run(box(effect), ReversedPaths::automatic, 60000, 2).entries();
+  for (std::size_t t = 0; t < 3; ++t) {
+    for (std::size_t v = 0; v < 2; ++v) {
+      const auto on_map = request.tilted_entry(3 * t + t, v),
+                 matched = request.tilted_entry(9 + t, v);
+      CHECK(std::abs(found.value[on_map] - found.value[matched]) <
+            1e-12 * std::abs(found.value[matched]));
+      const auto e = effect.tilted_entry(t, v);
+      CHECK_WITHIN_4_SIGMA(found.value[matched],
+                           std::hypot(found.error[matched], expected.error[e]), expected.value[e],
+                           0.0);
+    }
+  }
+}
+
+TEST_CASE("an infinite slab refuses what does not match; a wide box has next to nothing there") {
+  const auto request = map_request({0, 1.5});
+  const auto run = tests::run(box(request), ReversedPaths::automatic, 60000, 3);
+  const auto map = tilt_shift(request, run.sums, run.job.covariance);
+  REQUIRE(map.correlation.size() == 6);
+  CHECK(map.correlation[0] == doctest::Approx(1).epsilon(1e-12));
+  CHECK(map.correlation[1] < 0.1);  // sinc(1.5 x 30 / 2) and noise
+  CHECK(map.matched[0] == doctest::Approx(1).epsilon(1e-12));
+  CHECK(map.matched[1] > 0.9);
+  CHECK(map.matched_error[1] > 0);
+  CHECK(map.matched_error[1] < 0.02);
+}
+
+TEST_CASE("half-widths of the map's axes are those of its width") {
+  // Along either axis alone the box's width limits: sinc(q W / 2) where the light fills it evenly.
+  std::vector<double> steps, small_tilts;
+  for (int i = 0; i <= 8; ++i) {
+    steps.push_back(0.02 * i);
+    small_tilts.push_back(std::asin(std::sin(light) + 0.02 * i / k) - light);
+  }
+  small_tilts[0] = 0;
+  const auto request =
+      tilt_shift_request(k, plane_wave(light), tests::far_views({0.3}), small_tilts, steps);
+  const auto run =
+      tests::run(tests::hg_box(60, 4, {4, 0.4}, request), ReversedPaths::automatic, 60000, 4);
+  const auto map = tilt_shift(request, run.sums, run.job.covariance);
+  const double expected = 2 * 1.391557 / 60;
+  CHECK(map.along_shifts.range.value == doctest::Approx(expected).epsilon(0.1));
+  CHECK(map.along_tilts.range.value == doctest::Approx(expected).epsilon(0.1));
+  CHECK(map.along_shifts.error < 0.005);
+  CHECK(map.along_matched.range.censored == Range::Censoring::above_value);
+}
+
+TEST_CASE("near sensors shift along x") {
+  const std::vector<View> sensors = {near_sensor({0, 9}), near_sensor({2, 4})};
+  const auto request = tilt_shift_request(k, plane_wave(light), sensors, {0, 0.004}, {0, 0.4});
+  CHECK(request.moves == 4);
+  const auto [a, b] = request.entries[request.tilted_entry(3, 1)];
+  CHECK(request.views[request.channels[a].view].point == Vec2{2, 4});
+  CHECK(request.views[request.channels[b].view].point == Vec2{2.4, 4});
+  CHECK(request.lights[request.channels[b].light].angle == doctest::Approx(light + 0.004));
+  // A shift of 0.4 wavelengths matters where light comes from all around; a tilt that changes the
+  // phase by 0.08 over a mean free path does not.
+  const auto run = tests::run(box(request), ReversedPaths::automatic, 40000, 5);
+  const auto map = tilt_shift(request, run.sums, run.job.covariance);
+  CHECK(map.matched.empty());
+  CHECK(map.correlation[1] < 0.9);
+  CHECK(map.correlation[2] > 0.9);
+}
+
+TEST_CASE("single scattering is C21, with views summed before the modulus") {
+  const double q = 0.7, depth = 5;
+  const auto sinc = [](double a) { return std::sin(a) / a; };
+  const double a = q * depth * (std::tan(0.5) - std::tan(0.1)) / 2,
+               b = q * depth * (std::tan(-0.3) - std::tan(0.1)) / 2;
+  CHECK(single_scattering_correlation(0.1, {0.5}, depth, q) ==
+        doctest::Approx(std::abs(sinc(a))).epsilon(1e-12));
+  CHECK(single_scattering_correlation(0.1, {0.5, -0.3}, depth, q) ==
+        doctest::Approx(std::abs(std::polar(sinc(a), a) + std::polar(sinc(b), b)) / 2));
+  CHECK(single_scattering_correlation(0.1, {0.1}, depth, q) == 1);
+}
+
+}  // namespace flatspeckle::mc
