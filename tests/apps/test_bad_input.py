@@ -372,8 +372,10 @@ class AcceptedScenes(ProgramTest):
 
     def test_shipped_scenes(self):
         for scene in sorted((DATA / "scenes").glob("*.toml")):
-            slab, mapped = "slab" in scene.stem, "\nmap = " in scene.read_text()
-            for subcommand in (("sweep",) if slab else ("solve",) if mapped else
+            text = scene.read_text()
+            slab = "slab" in scene.stem
+            for subcommand in (("sweep",) if slab else ("solve",) if "\nmap = " in text else
+                               ("field",) if "\nfields = " in text else
                                ("validate", "covariance")):
                 with self.subTest(scene=scene.name, subcommand=subcommand):
                     text = self.call(subcommand, "--config", scene, "--print-config").stdout
