@@ -80,6 +80,8 @@ int Session::run(const std::function<void(ResultFile&)>& contents) {
               << "afresh, without --resume)\n";
     return ExitStatus::done;
   }
+  // A sweep's plans, one for each point, are in the file alone.
+  if (runs_.size() <= 2) std::cout << provenance_.plan << '\n' << std::flush;
   for (const auto& run : runs_)
     if (!interrupted_) run_one(run);
   return finish(contents);
