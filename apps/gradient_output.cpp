@@ -1,5 +1,6 @@
 #include "apps/gradient_output.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <functional>
 #include <numeric>
@@ -89,6 +90,9 @@ void write_memory_effect(Gradients& out, const CovarianceRequest& request, const
 }
 
 void print_range(const std::vector<std::string>& parameters, const Estimate& range) {
+  const bool censored = std::all_of(range.value.begin(), range.value.end(),
+                                    [](Complex slope) { return slope == 0.0; });
+  if (censored) return;
   for (std::size_t p = 0; p < parameters.size(); ++p)
     std::printf("d/d %-13s of the range q L at C_I = 1/2: %11.5g +- %.2g\n", parameters[p].c_str(),
                 range.value[p].real(), range.error[p]);

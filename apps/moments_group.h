@@ -51,6 +51,8 @@ class MomentsGroup {
   void mean_field(const Estimate& estimate, const Axes& axes, const std::string& long_name) {
     write("mean_field", estimate.value, estimate.error, axes, field_units_, long_name);
   }
+  /// "" or the group's name and a slash.
+  const std::string& prefix() const { return prefix_; }
   void attribute(const std::string& name, const std::string& key, const Attribute& value) {
     file_.attribute(prefix_ + name, key, value);
   }

@@ -1,5 +1,7 @@
 #include "apps/moments_output.h"
 
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <numeric>
 
@@ -175,13 +177,28 @@ void write_axes(ResultFile& file, const CovarianceRequest& request) {
   write_move_axes(file, request);
 }
 
+bool few_steps(const std::vector<double>& steps, const mc::Range& range) {
+  constexpr std::ptrdiff_t enough = 4;
+  const auto below = std::count_if(steps.begin(), steps.end(), [&](double step) {
+    return std::abs(step) > 0 && std::abs(step) < range.value;
+  });
+  return range.censored == mc::Range::Censoring::none && below < enough;
+}
+
+void note_few_steps() {
+  std::fputs(
+      "note: a range is read off a curve with fewer than four points below it; its error bar does "
+      "not know what the curve does between them\n",
+      stderr);
+}
+
 std::string range_text(const mc::Range& range, double error) {
   using Censoring = mc::Range::Censoring;
   char text[64];
   if (range.censored == Censoring::above_value)
-    std::snprintf(text, sizeof text, "above %.4g, the largest tilt", range.value);
+    std::snprintf(text, sizeof text, "above %.4g, the largest step", range.value);
   else if (range.censored == Censoring::below_value)
-    std::snprintf(text, sizeof text, "below %.4g, the smallest tilt", range.value);
+    std::snprintf(text, sizeof text, "below %.4g, the smallest step", range.value);
   else
     std::snprintf(text, sizeof text, "%.4g +- %.2g", range.value, error);
   return text;

@@ -32,6 +32,10 @@ Estimate unpack_full(const CovarianceRequest& request, const Estimate& triangle)
 /// The axes that a request's datasets stand on.
 void write_axes(ResultFile& file, const CovarianceRequest& request);
 
+/// Whether a range rests on so few steps below it that its error bar, which does not know what the
+/// curve does between them, says too little; and the note that says so on standard error.
+bool few_steps(const std::vector<double>& steps, const mc::Range& range);
+void note_few_steps();
 /// "1.36 +- 0.01", or which tilts are missing.
 std::string range_text(const mc::Range& range, double error);
 

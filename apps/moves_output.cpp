@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "mc/diffusion.h"
 #include "mc/tilt_shift.h"
@@ -17,6 +18,9 @@ void write_range(MomentsGroup& group, const std::string& name, const mc::RangeEs
   group.write<double>(name, {estimate.range.value * scale}, {estimate.error * scale},
                       {std::size_t{1}}, units, long_name);
   group.attribute(name, "censored", static_cast<std::uint64_t>(estimate.range.censored));
+  const std::string shown =
+      range_text({estimate.range.value * scale, estimate.range.censored}, estimate.error * scale);
+  std::printf("%s%s: %s\n", group.prefix().c_str(), long_name.c_str(), shown.c_str());
 }
 
 /// Entries of the moves on a grid of steps, from move `first` on.
@@ -45,6 +49,7 @@ void write_curve(MomentsGroup& group, const FieldJob& job, const Scene& scene,
   group.write("field_correlation", effect.correlation, effect.correlation_error, axes, "1",
               "field correlation C_E, summed over views");
   const mc::RangeEstimate range{effect.range, effect.range_error};
+  if (few_steps(tilts ? request.tilt_q : request.shifts, effect.range)) note_few_steps();
   if (tilts)
     write_range(group, "memory_effect_range", range, scene.domain.depth, "1",
                 "q L at C_I = 1/2, L the depth");

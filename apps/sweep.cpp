@@ -61,6 +61,7 @@ struct SweepTables {
   std::vector<double> correlation, correlation_error, diffusion, range, range_error;
   std::vector<std::uint64_t> censored;  ///< numbers of mc::Range::Censoring
   std::vector<std::string> shown_range;
+  bool few = false;  ///< steps below some range
 
   void add(const SweepPoint& point) {
     const auto effect = mc::memory_effect(point.scene.request, *point.sums, point.job.covariance);
@@ -71,6 +72,7 @@ struct SweepTables {
     for (double q : point.scene.request.tilt_q)
       diffusion.push_back(mc::diffusion_field_correlation(point.scene.medium, depth, q));
     range.push_back(effect.range.value * depth);
+    few = few || few_steps(point.scene.request.tilt_q, effect.range);
     range_error.push_back(effect.range_error * depth);
     shown_range.push_back(range_text({range.back(), effect.range.censored}, range_error.back()));
     censored.push_back(static_cast<std::uint64_t>(effect.range.censored));
@@ -169,6 +171,7 @@ int sweep(const Arguments& arguments) {
     SweepTables tables;
     for (const auto& point : points) tables.add(point);
     print_ranges(points, tables);
+    if (tables.few) note_few_steps();
     write_domain(file, points.front().scene);
     write_tables(file, axes, points, tables);
   });

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <sstream>
 
-#include "core/error.h"
 
 namespace flatspeckle::mc {
 
