@@ -148,6 +148,20 @@ BulkMedium correlated(const SceneSpec& spec, const Scene& scene) {
                                                      : read_structure(structure, disks));
 }
 
+/// Sources and beams so far away, or so wide, that the medium is lost in their rounding.
+void check_reach(const Scene& scene) {
+  const double most = 1e9 * (scene.domain.width + scene.domain.depth);
+  for (const Light& light : scene.request.lights) {
+    if (light.kind == Light::Kind::point && length(light.point) > most)
+      throw InputError("near_sources", length(light.point),
+                       "lies too far from the medium; a light angle does as well");
+    if (light.kind == Light::Kind::beam && (length(light.point) > most || light.waist > most))
+      throw InputError(
+          "beam_waist", light.waist,
+          "is too wide, or its focus too far from the medium; a plane wave does as well");
+  }
+}
+
 }  // namespace
 
 Complex parse_complex(const std::string& key, const std::string& text) {
@@ -208,6 +222,7 @@ Scene make_scene(const SceneSpec& spec) {
   check_packing(scene);
   scene.medium = correlated(spec, scene);
   scene.request = make_request(spec);
+  check_reach(scene);
   if (scene.domain.kind == Domain::Kind::slab) check_slab_request(scene.request);
   return scene;
 }

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <set>
 
 #include "grin/phase_function.h"
+#include "mc/representatives.h"
 
 namespace flatspeckle::mc {
 
@@ -39,18 +41,18 @@ double about_exp(double x) {
   return 1 / (fourth * fourth);
 }
 
-/// Where the light of the shallowest source is first scattered.
-double first_depth(const Scene& scene) {
+/// Where the lights are first scattered.
+std::set<double> first_depths(const Scene& scene) {
   const double depth = scene.domain.depth,
                shallow = std::min(scene.medium.mean_free_path(), depth / 2);
-  double first = depth - shallow;
+  std::set<double> depths;
   for (const Light& light : scene.request.lights) {
     if (light.kind == Light::Kind::point)
-      first = std::min(first, std::max(light.point.z, shallow));
-    else if (std::cos(light.angle) > 0)
-      first = shallow;
+      depths.insert(std::clamp(light.point.z, shallow, depth - shallow));
+    else
+      depths.insert(std::cos(light.angle) > 0 ? shallow : depth - shallow);
   }
-  return first;
+  return depths;
 }
 
 /// Depths that light has to reach for the views to see it.
@@ -76,17 +78,6 @@ double diffusion_rate(double albedo, double g) {
   return low;
 }
 
-std::vector<double> representatives(const std::vector<double>& angles, double spacing) {
-  std::vector<double> chosen;
-  for (double angle : angles) {
-    const bool known = std::any_of(chosen.begin(), chosen.end(), [&](double other) {
-      return std::abs(std::remainder(angle - other, 2 * pi)) <= spacing;
-    });
-    if (!known) chosen.push_back(angle);
-  }
-  return chosen;
-}
-
 DepthImportance::DepthImportance(const Scene& scene) : step_(scene.domain.depth / nodes) {
   const double depth = scene.domain.depth;
   const auto& medium = scene.medium;
@@ -100,12 +91,17 @@ DepthImportance::DepthImportance(const Scene& scene) : step_(scene.domain.depth 
     const double way = z < there ? z : depth - z, whole = z < there ? there : depth - there;
     return log_sinh_ratio(rate * (way + beyond), rate * (whole + beyond));
   };
-  const double first = first_depth(scene);
+  const auto firsts = first_depths(scene);
+  const auto log_usual = [&](double there) {  // of the light that reaches best
+    double best = -std::numeric_limits<double>::infinity();
+    for (double first : firsts) best = std::max(best, log_reaching(first, there));
+    return best;
+  };
   const auto destinations = view_depths(scene);
   for (int i = 0; i <= nodes; ++i) {
     std::vector<double> logs;
     for (double there : destinations)
-      logs.push_back(log_reaching(depth * i / nodes, there) - log_reaching(first, there));
+      logs.push_back(log_reaching(depth * i / nodes, there) - log_usual(there));
     const double largest = *std::max_element(logs.begin(), logs.end());
     double worth = 0;
     for (double log : logs) worth += std::exp(log - largest);
@@ -136,21 +132,26 @@ ExpectedContribution::ExpectedContribution(const Scene& scene, const std::vector
     : domain_(scene.domain), mu_t_(scene.medium.mu_t), g_(scene.medium.g) {
   always_ = std::any_of(ends.begin(), ends.end(), [](const End& end) { return end.near; });
   if (always_) return;
-  constexpr std::size_t few = 8;
-  std::vector<double> angles;
-  for (const End& end : ends) angles.push_back(angle_of(end.towards));
+  constexpr std::size_t few = 16;
   double spacing = std::max(0.5 * (1 - std::abs(g_)), 0.05);
-  auto chosen = representatives(angles, spacing);
-  for (; chosen.size() > few; spacing *= 1.5) chosen = representatives(angles, 1.5 * spacing);
+  const auto choose = [&] {
+    std::vector<Vec2> chosen;  // lights that go where the light leaves, backwards
+    for (const End& end : ends)
+      if (chosen.size() <= few && !reached(scene, -end.towards, chosen, spacing))
+        chosen.push_back(-end.towards);
+    return chosen;
+  };
+  auto chosen = choose();
+  for (; chosen.size() > few && spacing < pi; chosen = choose()) spacing *= 1.5;
   // No sharper than the representatives are spaced.
   g_ = std::copysign(std::min(std::abs(g_), std::max(0.0, 1 - spacing)), g_);
-  for (double angle : chosen) towards_.push_back(flatspeckle::direction(angle));
+  for (Vec2 w : chosen) towards_.push_back(-w);
 }
 
 double ExpectedContribution::operator()(Vec2 x, Vec2 arrival) const {
   if (always_) return 1;
   const grin::HenyeyGreenstein<2> lobe{g_};
-  double largest = 0;
+  double largest = 0.01;  // what no representative sees must not wait for one in a million
   for (Vec2 w : towards_) {
     double value = about_exp(mu_t_ * domain_.distance_to_edge(x, w));
     if (g_ != 0) {

@@ -25,6 +25,7 @@ class DepthImportance {
   /// Its derivative, for stretching flights: 0 where the worth rises so little in all that
   /// stretched ones cost more than they give.
   double slope(double z) const;
+  bool steep() const { return steep_; }
 
  private:
   std::size_t interval(double z) const;
@@ -50,8 +51,5 @@ class ExpectedContribution {
   std::vector<Vec2> towards_;
   bool always_ = false;  ///< near ends: no guess
 };
-
-/// Angles that lie no further than `spacing` (radians) from every one of `angles`.
-std::vector<double> representatives(const std::vector<double>& angles, double spacing);
 
 }  // namespace flatspeckle::mc

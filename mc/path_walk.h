@@ -177,7 +177,8 @@ class PathWalk {
 
   /// Of x relative to where the walk began, so that a deep beginning is not split at once.
   double importance(Vec2 x) const {
-    return std::exp(importance_.log_worth(x.z) - log_worth_first_);
+    constexpr double largest_log = 600;  // exp of it is finite
+    return std::exp(std::min(importance_.log_worth(x.z) - log_worth_first_, largest_log));
   }
 
   /// What a path that ends at x is likely to contribute, for a walker of usual weight there.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "mc/importance.h"
 
 namespace flatspeckle::mc {
 
@@ -34,6 +35,12 @@ double score_level(double g) {
   return 2 * (1 + square) / (1 - square);
 }
 
+/// Whether a box is so narrow that little reaches the views without absorption either.
+bool loses_by_the_sides(const Scene& scene) {
+  return scene.domain.kind == Domain::Kind::box && scene.medium.mu_s > 0 &&
+         DepthImportance(scene).steep();
+}
+
 /// So many that the sums of a batch cost less to merge than to make.
 std::uint64_t paths_per_batch(const Plan& plan, std::size_t channels) {
   return plan.rank_k && channels > 100 ? 2000 : 400;
@@ -54,7 +61,7 @@ Plan make_plan(const Scene& scene, ReversedPaths reversed) {
   plan.rank_k = request.kind == CovarianceRequest::Kind::full;
   plan.score_level = score_level(scene.medium.g);
   plan.phases = plan.reversed || request.kind != CovarianceRequest::Kind::intensity;
-  plan.weighted = scene.medium.albedo < 1 - 1e-12;
+  plan.weighted = scene.medium.albedo < 1 - 1e-12 || loses_by_the_sides(scene);
   constexpr std::size_t few = 20000;  // entries; a millisecond each at the most
   plan.sampled_single = plan.near || plan.rank_k || request.entries.size() > few;
   plan.paths_per_batch = paths_per_batch(plan, request.channels.size());

@@ -103,7 +103,7 @@ TEST_CASE("slab: first depths are sampled by the density that the weight uses") 
 TEST_CASE("several lights: the mixture and first direction have the density that the weight uses") {
   const Scene scene = tests::hg_box(width, depth, {1.5, 0.6},
                                     intensity_request({0, 0.05, 0.4, -1.2}, {far_view(0)}));
-  CHECK(representative_lights(scene) == Lights{0.0, 0.4, -1.2});
+  CHECK(representative_lights(scene) == Lights{0.0, -1.2, 0.4, 0.05});
   const FirstScatterer first(scene);
   std::vector<double> probabilities;
   for (int row = 0; row < rows; ++row)
