@@ -21,8 +21,8 @@ void check(const Scene& scene, const std::vector<double>& delays) {
   if (!scene.medium.structure.independent())
     throw InputError("delays: scatterers at correlated positions do not move independently");
   for (const double delay : delays)
-    if (!(std::isfinite(delay) && delay >= 0))
-      throw InputError("delays", delay, "must not be negative");
+    if (!(delay >= 0 && delay <= 1e100))
+      throw InputError("delays", delay, "must not be negative, nor above 1e100");
 }
 
 /// B = 1 in closed form, [1 + delay][channel].
