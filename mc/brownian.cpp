@@ -28,7 +28,7 @@ void check(const Scene& scene, const std::vector<double>& delays) {
 /// B = 1 in closed form, [1 + delay][channel].
 Values closed_form(const Scene& scene, const Plan& plan, const std::vector<double>& delays) {
   Values all;
-  with_scattering(scene, plan,
+  with_scattering(scene, plan.phase,
                   [&](const auto& scattering) { all = single_scattering(scene, scattering); });
   const auto lights = light_ends(scene), views = view_ends(scene);
   const std::size_t channels = all.size();

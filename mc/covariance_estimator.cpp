@@ -18,13 +18,9 @@ PathBatches batches(const Scene& scene, const Plan& plan, const Scattering& scat
   using Shared = WalkSetup<Scattering, reversed, weighted>;
   const auto setup = std::make_shared<const Shared>(scene, plan, scattering);
   return [setup, seed](std::uint64_t number, Accumulator& accumulator) {
-    RandomStream random(seed, static_cast<std::uint64_t>(Stream::light_paths), number);
-    auto walk = setup->walk;
     PathFields<Scattering, reversed, near, phases> fields(setup->scene, setup->scattering,
                                                           accumulator);
-    walk.begin(random);
-    for (std::uint64_t path = 0; path < setup->plan.paths_per_batch; ++path)
-      walk.walk(random, fields);
+    setup->walk_batch(seed, number, fields);
   };
 }
 
@@ -50,7 +46,7 @@ PathBatches specialise(const Scene& scene, const Plan& plan, const Scattering& s
 Estimator covariance_of(const Scene& scene, const Plan& plan) {
   if (plan.sampled_single || scene.medium.mu_s == 0) return sample_mean;
   std::vector<Complex> single;
-  with_scattering(scene, plan,
+  with_scattering(scene, plan.phase,
                   [&](const auto& scattering) { single = single_scattering(scene, scattering); });
   return [single](double samples, std::span<const Complex> sums) {
     auto values = sample_mean(samples, sums);
@@ -58,8 +54,6 @@ Estimator covariance_of(const Scene& scene, const Plan& plan) {
     return values;
   };
 }
-
-using SummedBatches = std::function<void(std::uint64_t, std::span<Complex>)>;
 
 SummedBatches listed_entries(const CovarianceRequest& request, const PathBatches& batches) {
   return [=](std::uint64_t number, std::span<Complex> sums) {
@@ -81,7 +75,7 @@ SummedBatches whole_matrix(const CovarianceRequest& request, const PathBatches& 
 PathBatches path_batches(const Scene& scene, const Plan& plan, std::uint64_t seed) {
   if (scene.medium.mu_s == 0) return [](std::uint64_t, Accumulator&) {};
   PathBatches chosen;
-  with_scattering(scene, plan, [&](const auto& scattering) {
+  with_scattering(scene, plan.phase, [&](const auto& scattering) {
     chosen = specialise(scene, plan, scattering, seed);
   });
   return chosen;

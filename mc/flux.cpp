@@ -10,6 +10,7 @@
 #include "mc/importance.h"
 #include "mc/plan.h"
 #include "mc/scattering.h"
+#include "mc/walk_setup.h"
 
 namespace flatspeckle::mc {
 
@@ -17,11 +18,9 @@ namespace {
 
 constexpr std::uint64_t paths_per_batch = 200;
 
-using Batches = std::function<void(std::uint64_t, std::span<Complex>)>;
-
 template <typename Scattering>
-Batches walks(const std::shared_ptr<const Scene>& scene, const Scattering& scattering, double kappa,
-              std::uint64_t seed) {
+SummedBatches walks(const std::shared_ptr<const Scene>& scene, const Scattering& scattering,
+                    double kappa, std::uint64_t seed) {
   return [=](std::uint64_t number, std::span<Complex> sums) {
     RandomStream random(seed, static_cast<std::uint64_t>(Stream::light_paths), number);
     const auto lights = scene->request.lights.angles();
@@ -37,7 +36,7 @@ Batches walks(const std::shared_ptr<const Scene>& scene, const Scattering& scatt
 }
 
 /// Nothing scatters: what collides is absorbed.
-Batches absorption(const std::shared_ptr<const Scene>& scene) {
+SummedBatches absorption(const std::shared_ptr<const Scene>& scene) {
   return [scene](std::uint64_t, std::span<Complex> sums) {
     const auto lights = scene->request.lights.angles();
     for (std::size_t light = 0; light < lights.size(); ++light)
@@ -46,17 +45,12 @@ Batches absorption(const std::shared_ptr<const Scene>& scene) {
   };
 }
 
-Batches batches(const std::shared_ptr<const Scene>& scene, double kappa, std::uint64_t seed) {
+SummedBatches batches(const std::shared_ptr<const Scene>& scene, double kappa, std::uint64_t seed) {
   if (scene->medium.mu_s == 0) return absorption(scene);
-  switch (make_plan(*scene, ReversedPaths::no).phase) {
-    case Plan::Phase::isotropic:
-      return walks(scene, IsotropicScattering{}, kappa, seed);
-    case Plan::Phase::henyey_greenstein:
-      return walks(scene, HenyeyGreensteinScattering{{scene->scatterer.g}}, kappa, seed);
-    case Plan::Phase::tabulated:
-      break;
-  }
-  return walks(scene, TabulatedScattering(scene->medium, scene->k), kappa, seed);
+  SummedBatches chosen;
+  with_scattering(*scene, phase_of(scene->scatterer),
+                  [&](const auto& scattering) { chosen = walks(scene, scattering, kappa, seed); });
+  return chosen;
 }
 
 std::string describe(const BulkMedium& medium, double kappa) {

@@ -79,7 +79,7 @@ std::vector<double> amplitude_slopes(const Scene& scene) {
 Values closed_form_gradient(const Scene& scene, const Plan& plan,
                             const std::vector<BulkParameter>& parameters) {
   Values all;
-  with_scattering(scene, plan, [&](const auto& scattering) {
+  with_scattering(scene, plan.phase, [&](const auto& scattering) {
     const auto closed_form = [&](const Scene& any) { return single_scattering(any, scattering); };
     const Values single = closed_form(scene);
     const auto by_g = amplitude_slopes(scene);

@@ -10,12 +10,6 @@ namespace flatspeckle::mc {
 
 namespace {
 
-Plan::Phase phase_of(const Scatterer& scatterer) {
-  if (scatterer.kind == Scatterer::Kind::point) return Plan::Phase::isotropic;
-  if (scatterer.kind != Scatterer::Kind::hg) return Plan::Phase::tabulated;
-  return scatterer.g == 0 ? Plan::Phase::isotropic : Plan::Phase::henyey_greenstein;
-}
-
 /// More than a right angle away from exact backscattering the reversed paths only add terms that
 /// oscillate away, of the order of the 1/(k mean free path) that the method neglects anyway.
 bool can_see_backscattering(const CovarianceRequest& request) {
@@ -47,6 +41,12 @@ std::uint64_t paths_per_batch(const Plan& plan, std::size_t channels) {
 }
 
 }  // namespace
+
+Plan::Phase phase_of(const Scatterer& scatterer) {
+  if (scatterer.kind == Scatterer::Kind::point) return Plan::Phase::isotropic;
+  if (scatterer.kind != Scatterer::Kind::hg) return Plan::Phase::tabulated;
+  return scatterer.g == 0 ? Plan::Phase::isotropic : Plan::Phase::henyey_greenstein;
+}
 
 Plan make_plan(const Scene& scene, ReversedPaths reversed) {
   const auto& request = scene.request;

@@ -31,6 +31,9 @@ struct Plan {
   std::string describe() const;
 };
 
+/// Which form of scattering a scatterer needs.
+Plan::Phase phase_of(const Scatterer& scatterer);
+
 Plan make_plan(const Scene& scene, ReversedPaths reversed);
 
 }  // namespace flatspeckle::mc

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <cstdint>
+#include <functional>
+#include <span>
 #include <type_traits>
 
 #include "flatland/scene.h"
@@ -8,6 +11,9 @@
 #include "mc/scattering.h"
 
 namespace flatspeckle::mc {
+
+/// Adds batch `number` to zeroed sums.
+using SummedBatches = std::function<void(std::uint64_t number, std::span<Complex> sums)>;
 
 /// Calls f with std::true_type or std::false_type.
 template <typename F>
@@ -18,10 +24,10 @@ void with_flag(bool flag, F f) {
     f(std::false_type{});
 }
 
-/// Calls f with the scattering that a plan picks.
+/// Calls f with a scene's scattering in one of its forms.
 template <typename F>
-void with_scattering(const Scene& scene, const Plan& plan, F f) {
-  switch (plan.phase) {
+void with_scattering(const Scene& scene, Plan::Phase phase, F f) {
+  switch (phase) {
     case Plan::Phase::isotropic:
       return f(IsotropicScattering{});
     case Plan::Phase::henyey_greenstein:
@@ -41,6 +47,15 @@ struct WalkSetup {
         scattering(its_scattering),
         walk(scene, plan, scattering, tally) {}
   WalkSetup(const WalkSetup&) = delete;
+
+  /// Gives a scorer the paths of one batch.
+  template <typename Scorer>
+  void walk_batch(std::uint64_t seed, std::uint64_t number, Scorer& scorer) const {
+    RandomStream random(seed, static_cast<std::uint64_t>(Stream::light_paths), number);
+    auto own = walk;
+    own.begin(random);
+    for (std::uint64_t path = 0; path < plan.paths_per_batch; ++path) own.walk(random, scorer);
+  }
 
   const Scene scene;
   const Plan plan;

@@ -63,13 +63,17 @@ Run run(const Scene& scene, ReversedPaths reversed, std::uint64_t paths, std::ui
 
 Run run(const Scene& scene, const Plan& plan, std::uint64_t paths, std::uint64_t seed) {
   Run result{covariance_job(scene, plan, seed), {}};
+  result.sums = summed(result.job.batches, paths);
+  return result;
+}
+
+GroupedSums summed(const BatchJob& job, std::uint64_t samples) {
   RunOptions options;
-  options.stop.samples = paths;
+  options.stop.samples = samples;
   options.threads = 2;
   RunState state;
-  run_batches(result.job.batches, options, state);
-  result.sums = std::move(state.sums);
-  return result;
+  run_batches(job, options, state);
+  return std::move(state.sums);
 }
 
 std::string text(Complex value) {

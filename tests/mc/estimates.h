@@ -33,6 +33,9 @@ struct Run {
   Estimate weighted_sum(const std::vector<double>& weights) const;
 };
 
+/// The sums of so many samples, on two threads.
+GroupedSums summed(const BatchJob& job, std::uint64_t samples);
+
 /// Deterministic: two threads or not.
 Run run(const Scene& scene, const Plan& plan, std::uint64_t paths, std::uint64_t seed);
 /// By the plan of the scene. paths_per_batch = 0 keeps the plan's.

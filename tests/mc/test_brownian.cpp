@@ -26,12 +26,7 @@ struct DelayRun {
 DelayRun diffuse(const Scene& scene, const Plan& plan, const std::vector<double>& delays,
                  std::uint64_t paths, std::uint64_t seed) {
   DelayRun result{delay_job(scene, plan, delays, seed), {}};
-  RunOptions options;
-  options.stop.samples = paths;
-  options.threads = 2;
-  RunState state;
-  run_batches(result.job.field.batches, options, state);
-  result.sums = std::move(state.sums);
+  result.sums = tests::summed(result.job.field.batches, paths);
   return result;
 }
 

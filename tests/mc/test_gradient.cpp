@@ -48,12 +48,7 @@ struct GradientRun {
 GradientRun differentiate(const Scene& scene, const Plan& plan, std::uint64_t paths,
                           std::uint64_t seed) {
   GradientRun result{gradient_job(scene, plan, seed), {}, scene.request.entries.size()};
-  RunOptions options;
-  options.stop.samples = paths;
-  options.threads = 2;
-  RunState state;
-  run_batches(result.job.field.batches, options, state);
-  result.sums = std::move(state.sums);
+  result.sums = tests::summed(result.job.field.batches, paths);
   return result;
 }
 
