@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <sstream>
 
@@ -80,19 +79,21 @@ std::optional<std::string> write_map(ResultFile& file, const wave::WaveSolution&
                      "incident and scattered field, also inside; 0 in soft and hard disks; on a "
                      "point scatterer the field that excites it");
   file.attribute("total_field", "wavelength", 2 * std::numbers::pi / solution.system().k());
-  const auto all = static_cast<std::uint64_t>(grid.nx) * grid.nz;
-  Progress progress("map", {all, std::nullopt, std::nullopt}, "pixels");
+  const double all = static_cast<double>(grid.nx) * static_cast<double>(grid.nz);
+  Progress progress("map", "pixels");
   const Stopwatch clock;
-  double done = 0;
-  constexpr double no_error = std::numeric_limits<double>::infinity();
+  Progress::Figures figures;
   for (const wave::MapTile& tile : map.tiles()) {
     file.write_block("total_field", map.field(tile), {0, tile.iz, tile.ix},
                      {solution.light_angles().size(), tile.nz, tile.nx});
     if (interrupted()) return std::nullopt;
-    done += static_cast<double>(tile.pixels());
-    progress.update(done, done, clock.seconds(), clock.seconds(), no_error);
+    const double wall = clock.seconds();
+    figures.samples += static_cast<double>(tile.pixels());
+    figures.rate = figures.samples / wall;
+    figures.seconds_left = (all - figures.samples) / figures.rate;
+    progress.update(wall, figures);
   }
-  progress.finish(done, clock.seconds(), no_error);
+  progress.finish(clock.seconds(), figures);
   return map.method();
 }
 

@@ -3,57 +3,63 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <limits>
 #include <unistd.h>
+#include <utility>
 
 namespace flatspeckle {
 
 namespace {
 
-void show_error(double error) {
-  if (std::isfinite(error)) std::fprintf(stderr, ", error %.2g %%", 100 * error);
+/// "34 s", "12 min", "5.2 h", "3.1 d".
+std::string duration(double seconds) {
+  struct Unit {
+    double length, most;
+    const char* name;
+    int digits;
+  };
+  constexpr Unit units[] = {
+      {1, 300, "s", 0}, {60, 7200, "min", 0}, {3600, 48 * 3600, "h", 1}, {86400, 0, "d", 1}};
+  const Unit* unit = units;
+  while (unit->most > 0 && seconds >= unit->most) ++unit;
+  char text[64];
+  std::snprintf(text, sizeof text, "%.*f %s", unit->digits, seconds / unit->length, unit->name);
+  return text;
 }
 
 }  // namespace
 
-Progress::Progress(std::string label, const StopRule& stop, std::string unit)
+Progress::Progress(std::string label, std::string unit)
     : label_(std::move(label)),
       unit_(std::move(unit)),
-      stop_(stop),
-      terminal_(isatty(STDERR_FILENO) == 1) {}
+      terminal_(isatty(STDERR_FILENO) == 1),
+      next_(terminal_ ? 0.2 : 10) {}
 
-const char* Progress::line_start() const {
-  return terminal_ ? "\r\033[K" : "";
+bool Progress::due(double wall_s) const {
+  return !label_.empty() && wall_s >= next_;
 }
 
-double Progress::seconds_left(double samples, double rate, double wall, double error) const {
-  double left = std::numeric_limits<double>::infinity();
-  if (stop_.samples) left = std::min(left, (static_cast<double>(*stop_.samples) - samples) / rate);
-  if (stop_.seconds) left = std::min(left, *stop_.seconds - wall);
-  if (stop_.target_error && std::isfinite(error))
-    left = std::min(left, samples * (std::pow(error / *stop_.target_error, 2) - 1) / rate);
-  return std::max(0.0, left);
+void Progress::show(const Figures& figures) const {
+  std::fprintf(stderr, "%s%s: ", terminal_ ? "\r\033[K" : "", label_.c_str());
+  if (!figures.done.empty()) std::fprintf(stderr, "%s, ", figures.done.c_str());
+  std::fprintf(stderr, "%.0f %s", figures.samples, unit_.c_str());
 }
 
-void Progress::update(double samples, double new_samples, double wall, double new_wall,
-                      double error) {
-  const double interval = terminal_ ? 0.2 : 10;
-  if (label_.empty() || new_wall - last_shown_ < interval) return;
-  last_shown_ = new_wall;
-  const double rate = new_samples / new_wall;
-  std::fprintf(stderr, "%s%s: %.0f %s, %.*f/s", line_start(), label_.c_str(), samples,
-               unit_.c_str(), rate < 10 ? 2 : 0, rate);
-  show_error(error);
-  const double left = seconds_left(samples, rate, wall, error);
-  if (std::isfinite(left)) std::fprintf(stderr, ", %.0f s left", left);
+void Progress::update(double wall_s, const Figures& figures) {
+  if (!due(wall_s)) return;
+  next_ = wall_s + (terminal_ ? 0.2 : std::clamp(0.02 * wall_s, 10.0, 600.0));
+  show(figures);
+  std::fprintf(stderr, ", %.*f/s", figures.rate < 10 ? 2 : 0, figures.rate);
+  if (std::isfinite(figures.error)) std::fprintf(stderr, ", error %.2g %%", 100 * figures.error);
+  if (std::isfinite(figures.seconds_left))
+    std::fprintf(stderr, ", %s left", duration(figures.seconds_left).c_str());
   std::fputs(terminal_ ? "" : "\n", stderr);
 }
 
-void Progress::finish(double samples, double wall, double error) {
+void Progress::finish(double wall_s, const Figures& figures) {
   if (label_.empty()) return;
-  std::fprintf(stderr, "%s%s: %.0f %s in %.3g s", line_start(), label_.c_str(), samples,
-               unit_.c_str(), wall);
-  show_error(error);
+  show(figures);
+  std::fprintf(stderr, " in %.3g s", wall_s);
+  if (std::isfinite(figures.error)) std::fprintf(stderr, ", error %.2g %%", 100 * figures.error);
   std::fputs("\n", stderr);
 }
 

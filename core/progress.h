@@ -1,31 +1,35 @@
 #pragma once
 
+#include <limits>
 #include <string>
-
-#include "core/runner.h"
 
 namespace flatspeckle {
 
-/// Says on standard error how a run gets on: a line that renews itself on a terminal, a line every
-/// ten seconds elsewhere. Silent without a label.
+/// Says on standard error how long work gets on: a line that renews itself on a terminal; elsewhere
+/// a line every ten seconds at first, then ever more rarely. Silent without a label.
 class Progress {
  public:
   /// unit: what the samples are called.
-  Progress(std::string label, const StopRule& stop, std::string unit = "samples");
+  explicit Progress(std::string label, std::string unit = "samples");
 
-  /// samples and wall seconds so far, of which `new_samples` in the `new_wall` seconds of this run.
-  void update(double samples, double new_samples, double wall, double new_wall, double error);
-  /// Leaves the end of the run standing on its own line.
-  void finish(double samples, double wall, double error);
+  struct Figures {
+    std::string done;  ///< of the parts, as "3 of 40 points"; empty where there is one
+    double samples = 0, rate = 0;
+    double error = std::numeric_limits<double>::infinity();  ///< relative; infinite: not known
+    double seconds_left = std::numeric_limits<double>::infinity();
+  };
+  /// Whether it is time for another line, `wall_s` seconds after the start.
+  bool due(double wall_s) const;
+  void update(double wall_s, const Figures& figures);
+  /// Leaves the end standing on its own line.
+  void finish(double wall_s, const Figures& figures);
 
  private:
-  const char* line_start() const;
-  double seconds_left(double samples, double rate, double wall, double error) const;
+  void show(const Figures& figures) const;
 
   std::string label_, unit_;
-  StopRule stop_;
   bool terminal_;
-  double last_shown_ = 0;
+  double next_ = 0;
 };
 
 }  // namespace flatspeckle

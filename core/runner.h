@@ -57,6 +57,41 @@ struct RunOptions {
 /// SIGTERM end it after the batches in hand.
 StopReason run_batches(const BatchJob& job, const RunOptions& options, RunState& state);
 
+/// One of many runs, once its turn has come.
+struct OpenRun {
+  BatchJob job;
+  StopRule stop;              ///< `seconds` is not looked at
+  RunState* state = nullptr;  ///< goes on from what it holds; must live until the run has ended
+};
+
+/// Runs that are worked on as one pool, so that no thread is idle while there is anything to do:
+/// begun in the order of their numbers, forgotten one by one as they end.
+struct RunList {
+  std::size_t count = 0;
+  /// Any thread calls these, for different runs at once. What they throw ends the pool.
+  std::function<OpenRun(std::size_t run)> open;
+  std::function<void(std::size_t run, StopReason)> ended;
+  /// Called once in a while, while the state stands still, to save what could be resumed.
+  std::function<void(std::size_t run)> checkpoint;
+};
+
+struct PoolOptions {
+  std::optional<double> seconds;         ///< for all together; every begun run gets two batches
+  int threads = 0;                       ///< 0: as many as there are cores
+  std::string label, run_name = "runs";  ///< for the progress; silent without a label
+};
+
+/// reason: samples where all runs have ended, else why they have not.
+struct PoolEnd {
+  StopReason reason = StopReason::samples;
+  double wall_s = 0, cpu_s = 0;
+};
+
+/// What a run's state holds at its end depends on its own job and stop rule alone. Runs that have
+/// not ended when the pool does can go on from their states later.
+PoolEnd run_pool(const RunList& runs, const PoolOptions& options);
+
+/// Cores that this process may use.
 int default_threads();
 
 }  // namespace flatspeckle
