@@ -5,6 +5,7 @@
 #include <charconv>
 #include <iostream>
 #include <memory>
+#include <sstream>
 
 #include "apps/scene_file.h"
 #include "core/error.h"
@@ -106,25 +107,55 @@ Subcommand::Subcommand(const std::string& name, const std::string& purpose)
   app_.get_formatter()->column_width(34);
 }
 
-bool Subcommand::parse(const Arguments& arguments) {
-  std::vector<std::string> own(arguments.rbegin(), arguments.rend() - 2);
+/// Turns CLI11's complaints into ours; CallForHelp passes.
+void Subcommand::parse_by(const std::function<void()>& parser) {
   for (CLI::Option* option : app_.get_options())
     if (option->get_type_name() == "FLOAT") option->transform(shortest);
   try {
-    app_.parse(own);
+    parser();
   } catch (const CLI::CallForHelp&) {
-    std::cout << app_.help();
-    return false;
+    throw;
   } catch (const CLI::ParseError& error) {
     throw InputError(explain(app_, error));
-  } catch (const InputError& error) {
-    throw InputError(app_.get_config_ptr()->as<std::string>() + ", " + error.what());
   }
   refuse_odd_values(app_);
   refuse_strays(app_.remaining());
+}
+
+bool Subcommand::parse(const Arguments& arguments) {
+  std::vector<std::string> own(arguments.rbegin(), arguments.rend() - 2);
+  const auto parser = [&] {
+    try {
+      app_.parse(own);
+    } catch (const InputError& error) {  // from the scene file
+      throw InputError(app_.get_config_ptr()->as<std::string>() + ", " + error.what());
+    }
+  };
+  try {
+    parse_by(parser);
+  } catch (const CLI::CallForHelp&) {
+    std::cout << app_.help();
+    return false;
+  }
   command_line_ = {app_.config_to_str(), joined(arguments)};
   if (print_config_) std::cout << command_line_.config;
   return !print_config_;
+}
+
+void Subcommand::parse_config(const std::string& config) {
+  std::istringstream text(config);
+  parse_by([&] { app_.parse_from_stream(text); });
+  command_line_.config = app_.config_to_str();
+}
+
+std::string without_keys(const std::string& config, const std::vector<std::string>& keys) {
+  std::istringstream lines(config);
+  std::string kept, line;
+  while (std::getline(lines, line)) {
+    const std::string key = line.substr(0, line.find(" = "));
+    if (std::find(keys.begin(), keys.end(), key) == keys.end()) kept += line + '\n';
+  }
+  return kept;
 }
 
 }  // namespace flatspeckle::apps

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -26,14 +27,21 @@ class Subcommand {
 
   /// Throws InputError for what cannot be parsed. --help and --print-config print and return false.
   bool parse(const Arguments& arguments);
+  /// The same for a resolved configuration alone.
+  void parse_config(const std::string& config);
   const CommandLine& command_line() const { return command_line_; }
   /// Whether a key was given, in the file or as a flag.
   bool given(const std::string& key) const { return app_.get_option("--" + key)->count() > 0; }
 
  private:
+  void parse_by(const std::function<void()>& parser);
+
   CLI::App app_;
   bool print_config_ = false;
   CommandLine command_line_;
 };
+
+/// The lines of a resolved configuration less those of some keys.
+std::string without_keys(const std::string& config, const std::vector<std::string>& keys);
 
 }  // namespace flatspeckle::apps

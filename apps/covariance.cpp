@@ -33,7 +33,10 @@ int covariance(const Arguments& arguments) {
   if (method != "mc" && method != "wave")
     throw InputError("method", method, "must be one of mc wave");
   const Scene scene = make_scene(spec);
-  if (method != "mc") refuse_extras(extras);
+  if (method != "mc") {
+    refuse_extras(extras);
+    note_rounding(scene);
+  }
   const auto [estimation, write_extras] =
       method == "mc" ? extended_estimation(scene, methods, extras, seed_of(settings))
                      : ExtendedEstimation{wave_estimation(scene, methods, seed_of(settings)), {}};

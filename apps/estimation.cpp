@@ -41,6 +41,13 @@ void note_rounding(const Scene& scene) {
             << mean << " asked for\n";
 }
 
+void round_density(SceneSpec& spec) {
+  const Scene scene = make_scene(spec);
+  if (scene.placement.kind == PlacementRule::Kind::poisson || spec.count) return;
+  spec.density = spec.mean_free_path = spec.optical_depth = std::nullopt;
+  spec.count = std::llround(scene.placement.mean_count);
+}
+
 Estimation mc_estimation(const Scene& scene, const MethodSettings& settings, std::uint64_t seed) {
   const auto plan = mc::make_plan(scene, reversed_paths(settings));
   const auto& structure = scene.medium.structure;
@@ -52,7 +59,6 @@ Estimation mc_estimation(const Scene& scene, const MethodSettings& settings, std
 Estimation wave_estimation(const Scene& scene, const MethodSettings& settings, std::uint64_t seed) {
   if (!(settings.wave_tolerance > 0 && settings.wave_tolerance < 1))
     throw InputError("wave_tolerance", settings.wave_tolerance, "must be in (0, 1)");
-  note_rounding(scene);
   std::ostringstream plan;
   plan << "wave: dense T-matrix solutions of " << placement_word(scene.placement.kind)
        << " placements, tolerance " << settings.wave_tolerance << "; sample mean removed";

@@ -33,6 +33,9 @@ struct Estimation {
 /// (conventions, C12).
 void note_rounding(const Scene& scene);
 
+/// Gives the rounded number instead, so that both solvers have the same density.
+void round_density(SceneSpec& spec);
+
 Estimation mc_estimation(const Scene& scene, const MethodSettings& settings, std::uint64_t seed);
 Estimation wave_estimation(const Scene& scene, const MethodSettings& settings, std::uint64_t seed);
 

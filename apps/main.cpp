@@ -24,7 +24,8 @@ const char* const usage =
   covariance   covariance and intensity of the speckle of a scene, by Monte Carlo or exactly
   validate     both methods on one scene, compared entry by entry
   flux         reflected, transmitted and absorbed power, intensity only
-  sweep        memory-effect curves over tilts x g x albedo x optical depth
+  sweep        memory-effect curves over grids or lists of g, albedo, optical depth, radius, index
+  merge        the points of a sweep that ran in shares, as one result
   field        speckle fields drawn with the covariance of a scene, also over tilts of the light
 
   flatspeckle SUBCOMMAND --help lists the keys; flatspeckle --version tells the version.
@@ -34,9 +35,8 @@ const char* const usage =
 
 int run(const Arguments& arguments) {
   static const std::map<std::string, int (*)(const Arguments&)> subcommands = {
-      {"place", place}, {"solve", solve},       {"covariance", covariance},
-      {"flux", flux},   {"validate", validate}, {"sweep", sweep},
-      {"field", field}};
+      {"place", place},       {"solve", solve}, {"covariance", covariance}, {"flux", flux},
+      {"validate", validate}, {"sweep", sweep}, {"field", field},           {"merge", merge}};
   const std::string word = arguments.size() > 1 ? arguments[1] : "--help";
   if (word == "--help" || word == "-h" || word == "help") {
     std::cout << usage;
@@ -49,7 +49,7 @@ int run(const Arguments& arguments) {
   const auto subcommand = subcommands.find(word);
   if (subcommand == subcommands.end())
     throw InputError("subcommand", word,
-                     "must be one of covariance field flux place solve sweep validate");
+                     "must be one of covariance field flux merge place solve sweep validate");
   return subcommand->second(arguments);
 }
 

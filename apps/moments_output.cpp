@@ -14,12 +14,6 @@ namespace {
 
 using Kind = CovarianceRequest::Kind;
 
-std::vector<double> counting(std::size_t n) {
-  std::vector<double> numbers(n);
-  std::iota(numbers.begin(), numbers.end(), 0.0);
-  return numbers;
-}
-
 /// The mean field in the channels that stand on the light and view axes.
 void write_mean(MomentsGroup& group, const CovarianceRequest& request, const Estimate& mean) {
   if (mean.value.empty() || request.kind == Kind::pairs) return;
@@ -51,6 +45,12 @@ void write_pair_axis(ResultFile& file, const CovarianceRequest& request) {
 }
 
 }  // namespace
+
+std::vector<double> counting(std::size_t n) {
+  std::vector<double> numbers(n);
+  std::iota(numbers.begin(), numbers.end(), 0.0);
+  return numbers;
+}
 
 Estimate part(const Estimate& all, std::size_t first, std::size_t count) {
   const auto from = static_cast<std::ptrdiff_t>(first),

@@ -8,7 +8,6 @@ namespace flatspeckle::apps {
 
 namespace {
 
-constexpr double default_target_error = 0.02;
 constexpr int most_threads = 1024;
 
 double positive(const std::string& key, double value) {

@@ -25,6 +25,8 @@ void add_run_options(CLI::App& app, RunSettings& settings);
 /// The number of threads that is meant. Throws InputError.
 int threads_of(const RunSettings& settings);
 
+constexpr double default_target_error = 0.02;
+
 /// Checks the settings; without a stop rule a target error of 2 % is set. Throws InputError.
 StopRule stop_rule(const RunSettings& settings);
 /// The same with a number of samples that has a key of its own.

@@ -1,9 +1,7 @@
 #include "apps/session.h"
 
-#include <algorithm>
 #include <filesystem>
 #include <iostream>
-#include <sstream>
 
 #include "apps/subcommands.h"
 #include "core/atomic_file.h"
@@ -28,24 +26,13 @@ std::string state_group(const std::string& run) {
   return "state/" + (run.empty() ? "run" : run);
 }
 
-/// The lines of a resolved configuration that make two runs the same.
-std::string without_stops(const std::string& config) {
-  std::istringstream lines(config);
-  std::string kept, line;
-  while (std::getline(lines, line)) {
-    const std::string key = line.substr(0, line.find(" = "));
-    if (std::find(keys_of_the_stop.begin(), keys_of_the_stop.end(), key) == keys_of_the_stop.end())
-      kept += line + '\n';
-  }
-  return kept;
-}
-
 }  // namespace
 
 Session::Session(const CommandLine& command_line, const RunSettings& settings, std::string plan,
                  std::vector<PlannedRun> runs, const std::string& inputs)
     : settings_(settings), runs_(std::move(runs)) {
-  identity_ = "flatspeckle " + version() + '\n' + without_stops(command_line.config) + inputs;
+  identity_ = "flatspeckle " + version() + '\n' +
+              without_keys(command_line.config, keys_of_the_stop) + inputs;
   if (settings_.out.empty())
     throw InputError("out is not given: name the result file (--out FILE.h5)");
   check_writable(settings_.out);

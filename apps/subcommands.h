@@ -21,6 +21,7 @@ int covariance(const Arguments& arguments);
 int flux(const Arguments& arguments);
 int validate(const Arguments& arguments);
 int sweep(const Arguments& arguments);
+int merge(const Arguments& arguments);
 int field(const Arguments& arguments);
 
 }  // namespace flatspeckle::apps

@@ -1,180 +1,90 @@
 #include <algorithm>
-#include <cmath>
-#include <cstdio>
+#include <filesystem>
+#include <iostream>
+#include <numeric>
 
-#include "apps/estimation.h"
-#include "apps/moments_output.h"
-#include "apps/scene_options.h"
-#include "apps/session.h"
+#include "apps/shard_folder.h"
 #include "apps/subcommands.h"
+#include "apps/sweep_end.h"
+#include "apps/sweep_plan.h"
+#include "apps/sweep_work.h"
+#include "core/atomic_file.h"
 #include "core/error.h"
-#include "mc/diffusion.h"
-#include "mc/memory_effect.h"
+#include "core/interrupt.h"
 
 namespace flatspeckle::apps {
 
 namespace {
 
-/// The axes of a sweep; an axis that is not swept keeps the scene's one value.
-struct SweepAxes {
-  std::vector<double> optical_depth, g, albedo;
-};
+using Part = ShardFolder::Part;
 
-struct SweepPoint {
-  std::string name;
-  Scene scene;
-  FieldJob job;
-  const GroupedSums* sums = nullptr;
-};
-
-std::vector<std::optional<double>> values_or_none(const std::vector<double>& values) {
-  if (values.empty()) return {std::nullopt};
-  return {values.begin(), values.end()};
+bool is_complete(const SweepPlan& plan) {
+  const std::string& out = plan.settings.out;
+  if (!plan.settings.resume || !std::filesystem::exists(out)) return false;
+  const ResultReader file(out);
+  if (!file.has_attribute("/", "identity") ||
+      file.attribute<std::string>("/", "identity") != plan.identity())
+    throw InputError("resume: " + out + " holds another run; name another result file");
+  return file.attribute<bool>("/", "complete");
 }
 
-/// Scenes in the order [optical_depth][g][albedo]; fills axes that were not given.
-std::vector<Scene> sweep_scenes(const SceneSpec& spec, SweepAxes& axes) {
-  std::vector<Scene> scenes;
-  for (const auto& optical_depth : values_or_none(axes.optical_depth)) {
-    for (const auto& g : values_or_none(axes.g)) {
-      for (const auto& albedo : values_or_none(axes.albedo)) {
-        SceneSpec point = spec;
-        point.optical_depth = optical_depth;
-        point.g = g;
-        point.albedo = albedo;
-        scenes.push_back(make_scene(point));
-        if (scenes.back().medium.mu_s == 0)
-          throw InputError("albedo", scenes.back().medium.albedo,
-                           "what does not scatter has no correlation; must be in (0, 1]");
-      }
-    }
+/// The runs of this process's share, scattered over the grid, so that what has been done at any
+/// time says something about what is left.
+std::vector<std::size_t> share_of_runs(const SweepPlan& plan) {
+  const std::size_t count = plan.runs();
+  std::size_t stride = std::max<std::size_t>(1, count * 618 / 1000);
+  while (std::gcd(stride, count) != 1) ++stride;
+  const SweepShare share = plan.share.value_or(SweepShare{});
+  std::vector<std::size_t> runs;
+  for (std::size_t i = share.number; i < count; i += share.count)
+    runs.push_back(i * stride % count);
+  return runs;
+}
+
+bool is_finished(const SweepPlan& plan, ShardFolder& folder, std::size_t run) {
+  const std::string name = plan.name(run);
+  if (!folder.has(name, Part::finished)) return false;
+  const auto wrong = folder.read(name, Part::finished, plan.identity(run),
+                                 [](const ResultReader& file) { read_point(file); });
+  if (wrong) folder.set_aside(name, Part::finished, *wrong);
+  return !wrong;
+}
+
+/// Runs that are left to do. Throws InputError where an earlier sweep would be overwritten.
+std::vector<std::size_t> left_to_do(const SweepPlan& plan, ShardFolder& folder) {
+  auto runs = share_of_runs(plan);
+  if (plan.settings.resume) {
+    std::erase_if(runs, [&](std::size_t run) { return is_finished(plan, folder, run); });
+    return runs;
   }
-  const Scene& first = scenes.front();
-  if (axes.optical_depth.empty()) axes.optical_depth = {first.medium.mu_t * first.domain.depth};
-  if (axes.g.empty()) axes.g = {first.medium.g};
-  if (axes.albedo.empty()) axes.albedo = {first.medium.albedo};
-  return scenes;
-}
-
-/// Everything the result holds, in the order of the points.
-struct SweepTables {
-  std::vector<double> correlation, correlation_error, diffusion, range, range_error;
-  std::vector<std::uint64_t> censored;  ///< numbers of mc::Range::Censoring
-  std::vector<std::string> shown_range;
-  bool few = false;  ///< steps below some range
-
-  void add(const SweepPoint& point) {
-    const auto effect = mc::memory_effect(point.scene.request, *point.sums, point.job.covariance);
-    const double depth = point.scene.domain.depth;
-    correlation.insert(correlation.end(), effect.correlation.begin(), effect.correlation.end());
-    correlation_error.insert(correlation_error.end(), effect.correlation_error.begin(),
-                             effect.correlation_error.end());
-    for (double q : point.scene.request.tilt_q)
-      diffusion.push_back(mc::diffusion_field_correlation(point.scene.medium, depth, q));
-    range.push_back(effect.range.value * depth);
-    few = few || few_steps(point.scene.request.tilt_q, effect.range);
-    range_error.push_back(effect.range_error * depth);
-    shown_range.push_back(range_text({range.back(), effect.range.censored}, range_error.back()));
-    censored.push_back(static_cast<std::uint64_t>(effect.range.censored));
-  }
-};
-
-/// Diffusion theory is that of transmitted light.
-bool transmission_only(const CovarianceRequest& request) {
-  return std::all_of(request.views.begin(), request.views.end(),
-                     [](const View& view) { return std::cos(view.angle) > 0; });
-}
-
-/// k mean_free_path per optical depth.
-std::vector<double> small_parameter(const SweepAxes& axes, const Scene& scene) {
-  std::vector<double> values;
-  for (double optical_depth : axes.optical_depth)
-    values.push_back(scene.k * scene.domain.depth / optical_depth);
-  return values;
-}
-
-void write_tables(ResultFile& file, const SweepAxes& axes, const std::vector<SweepPoint>& points,
-                  const SweepTables& tables) {
-  const Scene& scene = points.front().scene;
-  file.scale("optical_depth", axes.optical_depth, "1", "optical depth mu_t L");
-  file.scale("g", axes.g, "1", "mean cosine of scattering");
-  file.scale("albedo", axes.albedo, "1", "single-scattering albedo");
-  write_axes(file, scene.request);
-  file.dataset("k_mean_free_path", small_parameter(axes, scene), {"optical_depth"}, "1",
-               "wavenumber times mean free path");
-  const std::vector<Axis> grid = {"optical_depth", "g", "albedo"};
-  const std::vector<Axis> curves = {"optical_depth", "g", "albedo", "tilt"};
-  file.dataset("field_correlation", tables.correlation, curves, "1", "field correlation C_E");
-  file.dataset("field_correlation_error", tables.correlation_error, curves, "1",
-               "standard error: field correlation C_E");
-  if (transmission_only(scene.request))
-    file.dataset("diffusion_theory", tables.diffusion, curves, "1", "C_E in diffusion theory");
-  file.dataset("memory_effect_range", tables.range, grid, "1", "q L at C_I = 1/2");
-  file.dataset("memory_effect_range_error", tables.range_error, grid, "1",
-               "standard error: q L at C_I = 1/2");
-  file.attribute("memory_effect_range", "censored", tables.censored);
-}
-
-void print_ranges(const std::vector<SweepPoint>& points, const SweepTables& tables) {
-  std::printf("%13s %8s %8s  %s\n", "optical depth", "g", "albedo", "range q L at C_I = 1/2");
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const auto& medium = points[i].scene.medium;
-    std::printf("%13.5g %8.4g %8.6g  ", medium.mu_t * points[i].scene.domain.depth, medium.g,
-                medium.albedo);
-    std::puts(tables.shown_range[i].c_str());
-  }
+  for (std::size_t run : runs)
+    if (folder.has(plan.name(run), Part::finished) || folder.has(plan.name(run), Part::unfinished))
+      throw InputError(folder.path().string() +
+                       " holds points of a sweep that has not ended: --resume goes on with them; "
+                       "remove the folder to begin again");
+  return runs;
 }
 
 }  // namespace
 
 int sweep(const Arguments& arguments) {
-  SceneSpec spec;
-  spec.scatterer = "hg";
-  spec.domain = "slab";
-  spec.covariance = "memory_effect";
-  RunSettings settings;
-  MethodSettings methods;
-  SweepAxes axes;
-  Subcommand command("sweep", "Memory-effect curves over tilts x g x albedo x optical depth");
-  auto& options = command.options();
-  add_scatterer_options(options, spec);
-  options.add_option("--g", axes.g, "Mean cosines of hg to sweep");
-  options.add_option("--albedo", axes.albedo, "Albedos to sweep");
-  options.add_option("--optical_depth", axes.optical_depth, "Optical depths to sweep");
-  add_medium_options(options, spec);
-  add_structure_option(options, spec);
-  add_view_options(options, spec);
-  options.add_option("--tilts", spec.tilts, "Rotations of the light, radians");
-  add_mc_options(options, methods);
-  add_run_options(options, settings);
-  if (!command.parse(arguments)) return ExitStatus::done;
-
-  std::vector<SweepPoint> points;
-  std::string plan;
-  for (Scene& scene : sweep_scenes(spec, axes)) {
-    auto estimation = mc_estimation(scene, methods, seed_of(settings));
-    const std::string name = "points/" + std::to_string(points.size());
-    plan += name + ": " + estimation.plan + "\n";
-    points.push_back({name, std::move(scene), std::move(estimation.job), nullptr});
+  const auto plan = sweep_plan(arguments);
+  if (!plan) return ExitStatus::done;
+  const std::string& out = plan->settings.out;
+  if (out.empty()) throw InputError("out is not given: name the result file (--out FILE.h5)");
+  check_writable(out);
+  if (is_complete(*plan)) {
+    std::cout << out << " is complete; nothing to resume\n";
+    return ExitStatus::done;
   }
-  const StopRule stop = stop_rule(settings);
-  std::vector<PlannedRun> runs;
-  for (const auto& point : points) {
-    const std::string label =
-        "point " + std::to_string(runs.size() + 1) + "/" + std::to_string(points.size());
-    runs.push_back({point.name, label, point.job.batches, stop});
-  }
-  Session session(command.command_line(), settings, plan, std::move(runs),
-                  inputs_text(points.front().scene));
-  for (auto& point : points) point.sums = &session.state(point.name).sums;
-  return session.run([&](ResultFile& file) {
-    SweepTables tables;
-    for (const auto& point : points) tables.add(point);
-    print_ranges(points, tables);
-    if (tables.few) note_few_steps();
-    write_domain(file, points.front().scene);
-    write_tables(file, axes, points, tables);
-  });
+  catch_interrupts();
+  ShardFolder folder(shards_of(out));
+  SweepWork work(*plan, folder, left_to_do(*plan, folder));
+  folder.make();
+  const PoolEnd end = run_pool(
+      work.list(), {plan->settings.seconds, threads_of(plan->settings), "sweep", "points"});
+  work.save_unfinished();
+  return end_sweep(*plan, folder, end);
 }
 
 }  // namespace flatspeckle::apps

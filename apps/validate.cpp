@@ -17,15 +17,6 @@ namespace {
 
 using Kind = CovarianceRequest::Kind;
 
-/// Where a placement rounds the number of disks, both solvers are given the rounded density (C12).
-void round_density(SceneSpec& spec) {
-  const Scene scene = make_scene(spec);
-  if (scene.placement.kind == PlacementRule::Kind::poisson || spec.count) return;
-  spec.density = spec.mean_free_path = spec.optical_depth = std::nullopt;
-  note_rounding(scene);
-  spec.count = std::llround(scene.placement.mean_count);
-}
-
 /// What the Monte Carlo method neglects, as a fraction: corrections of order 1/(k mean free path);
 /// the shift of the wavenumber (refraction at the faces, local fields); and correlations, of order
 /// the packing fraction where they are not taken in, of its square where they are (C16). As

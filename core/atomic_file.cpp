@@ -54,7 +54,11 @@ void check_writable(const fs::path& path) {
     throw InputError("cannot write " + path.string() + ": not a regular file");
   const fs::path temporary = temporary_beside(path);
   const int descriptor = create(temporary);
-  if (descriptor < 0) throw InputError("cannot write " + path.string() + ": " + reason());
+  if (descriptor < 0) {
+    const std::string message = "cannot write " + path.string() + ": " + reason();
+    if (errno == ENOENT || errno == ENOTDIR || errno == ENAMETOOLONG) throw InputError(message);
+    throw IoError(message);
+  }
   ::close(descriptor);
   ::unlink(temporary.c_str());
 }

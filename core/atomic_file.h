@@ -8,7 +8,8 @@
 namespace flatspeckle {
 
 /// Makes sure, before long work, that a file can be put at `path`; leaves nothing behind. Throws
-/// InputError where the folder is missing or closed to us, or something that is no file is there.
+/// InputError where the folder is missing or something that is no file is there, IoError where the
+/// folder is closed to us or the disk is full.
 void check_writable(const std::filesystem::path& path);
 
 /// A file that grows beside `path` under a temporary name (.name.tmp-PID), and is removed again

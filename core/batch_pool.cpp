@@ -19,7 +19,7 @@ void BatchPool::look_for_end() {
   if (stopped_) return;
   if (interrupted())
     stopped_ = StopReason::interrupted;
-  else if (options_.seconds && clock_.seconds() >= *options_.seconds)
+  else if (options_.seconds && next_run_ > 0 && clock_.seconds() >= *options_.seconds)
     stopped_ = StopReason::seconds;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cassert>
 #include <cmath>
 #include <functional>
 #include <numeric>
@@ -14,6 +15,7 @@
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/hdf5_handle.h"
+#include "core/sealed_file.h"
 
 namespace flatspeckle {
 
@@ -273,7 +275,6 @@ std::unique_ptr<Hdf5Handle> file_on_disk(FileBeside& place) {
 }  // namespace
 
 ResultFile::ResultFile(std::filesystem::path path, Storage storage) : path_(std::move(path)) {
-  check_writable(path_);
   silence_hdf5();
   if (storage == Storage::disk) beside_ = std::make_unique<FileBeside>(path_);
   file_ = beside_ ? file_on_disk(*beside_) : file_in_memory();
@@ -356,23 +357,35 @@ void ResultFile::write_block(const std::string& name, std::span<const Complex> v
 }
 
 void ResultFile::commit() {
+  if (!beside_) return replace_file(path_, image());
   if (!file_) throw std::logic_error(path_.string() + ": finished twice");
   make_room(0);
   const Hdf5Calls<IoError> call("HDF5 cannot finish " + path_.string());
   call.check(H5Fflush(file_->get(), H5F_SCOPE_GLOBAL));
-  if (beside_) {
-    hsize_t size = 0;
-    call.check(H5Fget_filesize(file_->get(), &size));
-    file_.reset();
-    beside_->truncate(size);
-    beside_->put_in_place();
-    return;
-  }
-  std::vector<std::byte> image(
-      static_cast<std::size_t>(call.check(H5Fget_file_image(file_->get(), nullptr, 0))));
-  call.check(H5Fget_file_image(file_->get(), image.data(), image.size()));
+  hsize_t size = 0;
+  call.check(H5Fget_filesize(file_->get(), &size));
   file_.reset();
-  replace_file(path_, image);
+  beside_->truncate(size);
+  beside_->put_in_place();
+}
+
+void ResultFile::commit_sealed() {
+  assert(!beside_);
+  auto bytes = image();
+  seal(bytes);
+  replace_file(path_, bytes);
+}
+
+/// The bytes of a file in memory, which is closed.
+std::vector<std::byte> ResultFile::image() {
+  if (!file_) throw std::logic_error(path_.string() + ": finished twice");
+  const Hdf5Calls<IoError> call("HDF5 cannot finish " + path_.string());
+  call.check(H5Fflush(file_->get(), H5F_SCOPE_GLOBAL));
+  std::vector<std::byte> bytes(
+      static_cast<std::size_t>(call.check(H5Fget_file_image(file_->get(), nullptr, 0))));
+  call.check(H5Fget_file_image(file_->get(), bytes.data(), bytes.size()));
+  file_.reset();
+  return bytes;
 }
 
 }  // namespace flatspeckle

@@ -36,7 +36,7 @@ class ResultFile {
   /// disk: memory stays bounded; one file in the making per path.
   enum class Storage { memory, disk };
 
-  /// Throws InputError if no file can be put at `path` (check_writable).
+  /// Throws IoError. Where a path may be wrong, check_writable says so before long work.
   explicit ResultFile(std::filesystem::path path, Storage storage = Storage::memory);
   ResultFile(ResultFile&&) noexcept;
   ResultFile& operator=(ResultFile&&) noexcept;
@@ -76,9 +76,12 @@ class ResultFile {
   /// Puts the file at its path, replacing what is there. Throws IoError. Nothing can be written
   /// afterwards.
   void commit();
+  /// The same with a seal (core/sealed_file.h) at its end, for a file made in memory.
+  void commit_sealed();
 
  private:
   void make_room(std::size_t bytes);
+  std::vector<std::byte> image();
 
   std::filesystem::path path_;
   std::unique_ptr<FileBeside> beside_;  // outlives file_

@@ -21,17 +21,6 @@ Trace finite_rows(const Trace& trace) {
   return finite;
 }
 
-Trace read_trace(const ResultReader& file, const std::string& group) {
-  Trace trace{file.dataset<double>(group + "/wall_s"), file.dataset<double>(group + "/cpu_s"),
-              file.dataset<double>(group + "/samples"),
-              file.dataset<double>(group + "/relative_error")};
-  const std::size_t rows = trace.wall_s.size();
-  if (trace.cpu_s.size() != rows || trace.samples.size() != rows ||
-      trace.relative_error.size() != rows)
-    throw InputError(file.path().string() + ": " + group + ": columns of different lengths");
-  return trace;
-}
-
 }  // namespace
 
 void write_trace(ResultFile& file, const std::string& group, const Trace& trace) {
@@ -42,6 +31,17 @@ void write_trace(ResultFile& file, const std::string& group, const Trace& trace)
   file.dataset(group + "/samples", rows.samples, checkpoints, "1", "samples");
   file.dataset(group + "/relative_error", rows.relative_error, checkpoints, "1",
                "RMS standard error relative to the RMS magnitude");
+}
+
+Trace read_trace(const ResultReader& file, const std::string& group) {
+  Trace trace{file.dataset<double>(group + "/wall_s"), file.dataset<double>(group + "/cpu_s"),
+              file.dataset<double>(group + "/samples"),
+              file.dataset<double>(group + "/relative_error")};
+  const std::size_t rows = trace.wall_s.size();
+  if (trace.cpu_s.size() != rows || trace.samples.size() != rows ||
+      trace.relative_error.size() != rows)
+    throw InputError(file.path().string() + ": " + group + ": columns of different lengths");
+  return trace;
 }
 
 void write_state(ResultFile& file, const std::string& group, const RunState& state) {

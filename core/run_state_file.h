@@ -12,6 +12,9 @@ namespace flatspeckle {
 /// a finite error (fewer than two groups of batches) are left out.
 void write_trace(ResultFile& file, const std::string& group, const Trace& trace);
 
+/// The trace that write_trace wrote. Throws InputError.
+Trace read_trace(const ResultReader& file, const std::string& group);
+
 /// A run that can go on: the sums bit for bit, the times, and the trace as write_trace leaves it.
 void write_state(ResultFile& file, const std::string& group, const RunState& state);
 

@@ -29,6 +29,19 @@ double diffusion_field_correlation(const BulkMedium& medium, double thickness, d
   return std::exp(log_f(q * q + kappa2) - log_f(kappa2));
 }
 
+double diffusion_range(const BulkMedium& medium, double thickness) {
+  const auto above = [&](double q) {
+    return std::pow(diffusion_field_correlation(medium, thickness, q), 2) > 0.5;
+  };
+  double low = 0, high = 1 / thickness;
+  while (above(high)) high *= 2;
+  for (int step = 0; step < 60; ++step) {
+    const double middle = (low + high) / 2;
+    (above(middle) ? low : high) = middle;
+  }
+  return (low + high) / 2;
+}
+
 double single_scattering_correlation(double light, const std::vector<double>& views,
                                      double thickness, double q) {
   Complex sum = 0;

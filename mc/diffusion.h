@@ -12,6 +12,9 @@ namespace flatspeckle::mc {
 /// limit for thick slabs and small q, not a reference for thin ones.
 double diffusion_field_correlation(const BulkMedium& medium, double thickness, double q);
 
+/// |q| where C_I = C_E^2 of that falls to 1/2.
+double diffusion_range(const BulkMedium& medium, double thickness);
+
 /// C_E by single scattering in a slab without attenuation (C21), tilt wavenumber q with matched
 /// views; the sum over equally bright views is taken before the modulus (C19).
 double single_scattering_correlation(double light, const std::vector<double>& views,

@@ -44,8 +44,9 @@ def toml(keys):
     return "".join(f"{key} = {show(value)}\n" for key, value in keys.items() if value is not None)
 
 
-def datasets(path, leave_out=("trace", "state")):
-    """Every dataset of a result file by its full name, less those below the groups to leave out."""
+def datasets(path, leave_out=("wall_s", "cpu_s", "state")):
+    """Every dataset of a result file by its full name, less those with such a part in it: times
+    differ from run to run."""
     found = {}
 
     def add(name, item):

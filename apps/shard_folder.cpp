@@ -1,0 +1,76 @@
+#include "apps/shard_folder.h"
+
+#include <iostream>
+
+#include "core/error.h"
+#include "core/sealed_file.h"
+
+namespace flatspeckle::apps {
+
+namespace fs = std::filesystem;
+
+void ShardFolder::make() const {
+  std::error_code failed;
+  fs::create_directory(folder_, failed);
+  if (failed || !fs::is_directory(folder_))
+    throw IoError("cannot make the folder " + folder_.string() + ": " +
+                  (failed ? failed.message() : "something else is there"));
+}
+
+fs::path ShardFolder::file(const std::string& name, Part part) const {
+  return folder_ / (name + (part == Part::finished ? ".h5" : ".part.h5"));
+}
+
+bool ShardFolder::has(const std::string& name, Part part) const {
+  return fs::exists(file(name, part));
+}
+
+std::optional<std::string> ShardFolder::read(
+    const std::string& name, Part part, const std::string& identity,
+    const std::function<void(const ResultReader&)>& reading) {
+  const std::lock_guard lock(mutex_);
+  const fs::path path = file(name, part);
+  if (!is_sealed(path)) return "is damaged";
+  try {
+    const ResultReader reader(path);
+    if (reader.attribute<std::string>("/", "identity") != identity)
+      return "belongs to another sweep";
+    reading(reader);
+    return std::nullopt;
+  } catch (const InputError& error) {
+    return std::string("cannot be used (") + error.what() + ')';
+  }
+}
+
+void ShardFolder::set_aside(const std::string& name, Part part, const std::string& wrong) {
+  const fs::path path = file(name, part);
+  int number = 1;
+  const auto place = [&] { return path.string() + ".aside-" + std::to_string(number); };
+  while (fs::exists(place())) ++number;
+  std::error_code failed;
+  fs::rename(path, place(), failed);
+  if (failed) throw IoError("renaming " + path.string() + " failed: " + failed.message());
+  std::cerr << "warning: " << path.string() << ' ' << wrong << "; set aside as "
+            << fs::path(place()).filename().string() << '\n';
+}
+
+void ShardFolder::write(const std::string& name, Part part, const std::string& identity,
+                        const std::function<void(ResultFile&)>& contents) {
+  const std::lock_guard lock(mutex_);
+  ResultFile result(file(name, part));
+  result.attribute("/", "identity", identity);
+  contents(result);
+  result.commit_sealed();
+  if (part == Part::finished) fs::remove(file(name, Part::unfinished));
+}
+
+void ShardFolder::remove(const std::string& name, Part part) {
+  fs::remove(file(name, part));
+}
+
+void ShardFolder::remove_if_empty() const {
+  std::error_code not_empty;
+  fs::remove(folder_, not_empty);
+}
+
+}  // namespace flatspeckle::apps

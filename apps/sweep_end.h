@@ -1,0 +1,28 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "apps/shard_folder.h"
+#include "apps/sweep_output.h"
+#include "apps/sweep_plan.h"
+#include "core/runner.h"
+
+namespace flatspeckle::apps {
+
+/// The folder beside a sweep's result in which its points gather until all are there.
+std::string shards_of(const std::string& out);
+
+/// What the folders hold of a sweep. Damaged or foreign files are left out, with a word on standard
+/// error.
+SweepResults gather(const SweepPlan& plan, const std::vector<std::string>& folders);
+
+/// Writes the result of what is finished to plan.settings.out and returns the exit status. wall_s:
+/// what the call took that ended the sweep.
+int write_result(const SweepPlan& plan, const SweepResults& results, double wall_s);
+
+/// Ends a sweep after its pool: writes the result and removes what it was made of, or says how to
+/// go on. Returns the exit status.
+int end_sweep(const SweepPlan& plan, ShardFolder& folder, const PoolEnd& end);
+
+}  // namespace flatspeckle::apps

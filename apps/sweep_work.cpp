@@ -1,0 +1,85 @@
+#include "apps/sweep_work.h"
+
+#include <utility>
+
+#include "apps/point_result.h"
+#include "core/provenance.h"
+#include "core/run_state_file.h"
+
+namespace flatspeckle::apps {
+
+using Part = ShardFolder::Part;
+
+SweepWork::SweepWork(const SweepPlan& plan, ShardFolder& folder, std::vector<std::size_t> runs)
+    : plan_(plan), folder_(folder), runs_(std::move(runs)), started_(utc_now()) {}
+
+RunList SweepWork::list() {
+  return {runs_.size(), [this](std::size_t number) { return open(runs_[number]); },
+          [this](std::size_t number, StopReason) { ended(runs_[number]); },
+          [this](std::size_t number) { save(runs_[number]); }};
+}
+
+OpenRun SweepWork::open(std::size_t number) {
+  Scene scene = plan_.scene(number);
+  Estimation estimation = plan_.estimation(number, scene);
+  auto open = std::make_unique<Open>(std::move(scene), std::move(estimation));
+  const BatchJob& job = open->estimation.job.batches;
+  const std::string name = plan_.name(number);
+  if (folder_.has(name, Part::unfinished)) {
+    const auto wrong = folder_.read(
+        name, Part::unfinished, plan_.identity(number),
+        [&](const ResultReader& file) { open->state = read_state(file, "state", job.size); });
+    if (wrong) folder_.set_aside(name, Part::unfinished, *wrong);
+  }
+  const std::lock_guard lock(mutex_);
+  auto& kept = open_[number] = std::move(open);
+  return {job, plan_.stop(number), &kept->state};
+}
+
+SweepWork::Open& SweepWork::find(std::size_t number) {
+  const std::lock_guard lock(mutex_);
+  return *open_.at(number);
+}
+
+/// How it was made.
+void SweepWork::write_made(ResultFile& file, const Open& open, bool converged) const {
+  write_provenance(file, {.command_line = plan_.command.text,
+                          .config = plan_.command.config,
+                          .seed = seed_of(plan_.settings),
+                          .plan = open.estimation.plan,
+                          .threads = threads_of(plan_.settings),
+                          .started = started_,
+                          .wall_s = open.state.wall_s,
+                          .cpu_s = open.state.cpu_s,
+                          .samples = open.state.sums.total_samples(),
+                          .converged = converged});
+}
+
+void SweepWork::ended(std::size_t number) {
+  Open& open = find(number);
+  PointResult point = point_result(open.scene, open.estimation.job, open.state);
+  const auto target = plan_.stop(number).target_error;
+  point.reached = !target || point.relative_error <= *target;
+  folder_.write(plan_.name(number), Part::finished, plan_.identity(number), [&](ResultFile& file) {
+    write_made(file, open, point.reached);
+    write_point(file, point, open.scene.request);
+  });
+  const std::lock_guard lock(mutex_);
+  open_.erase(number);
+}
+
+void SweepWork::save(std::size_t number) {
+  const Open& open = find(number);
+  if (open.state.sums.batches() == 0) return;
+  folder_.write(plan_.name(number), Part::unfinished, plan_.identity(number),
+                [&](ResultFile& file) {
+                  write_made(file, open, false);
+                  write_state(file, "state", open.state);
+                });
+}
+
+void SweepWork::save_unfinished() {
+  for (const auto& [number, open] : open_) save(number);
+}
+
+}  // namespace flatspeckle::apps

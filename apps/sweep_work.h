@@ -1,0 +1,47 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "apps/shard_folder.h"
+#include "apps/sweep_plan.h"
+#include "core/runner.h"
+
+namespace flatspeckle::apps {
+
+/// Runs of a sweep as the runner takes them: each goes on from the unfinished file in the folder,
+/// if there is one, and ends in a finished one.
+class SweepWork {
+ public:
+  /// Those of `runs`, by their numbers in the plan.
+  SweepWork(const SweepPlan& plan, ShardFolder& folder, std::vector<std::size_t> runs);
+
+  RunList list();
+  /// After the pool has stopped.
+  void save_unfinished();
+
+ private:
+  struct Open {
+    Scene scene;
+    Estimation estimation;
+    RunState state;
+  };
+
+  OpenRun open(std::size_t number);
+  void ended(std::size_t number);
+  void save(std::size_t number);
+  Open& find(std::size_t number);
+  void write_made(ResultFile& file, const Open& open, bool converged) const;
+
+  const SweepPlan& plan_;
+  ShardFolder& folder_;
+  std::vector<std::size_t> runs_;
+  std::string started_;
+  std::mutex mutex_;
+  std::map<std::size_t, std::unique_ptr<Open>> open_;
+};
+
+}  // namespace flatspeckle::apps
