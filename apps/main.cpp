@@ -1,12 +1,15 @@
 #include <algorithm>
 #include <cctype>
+#include <chrono>
 #include <exception>
 #include <iostream>
 #include <map>
 #include <new>
+#include <thread>
 
 #include "apps/subcommands.h"
 #include "core/error.h"
+#include "core/ranks.h"
 #include "core/version.h"
 
 namespace {
@@ -50,11 +53,18 @@ int run(const Arguments& arguments) {
   if (subcommand == subcommands.end())
     throw InputError("subcommand", word,
                      "must be one of covariance field flux merge place solve sweep validate");
+  if (word != "sweep" && launched_ranks().size > 1)
+    throw InputError("subcommand", word, "runs as one process; of these, sweep alone takes many");
   return subcommand->second(arguments);
 }
 
-/// One line, whatever a file or flag that the message quotes may hold.
+/// One line, whatever a file or flag that the message quotes may hold. Of processes that all find
+/// the same fault in what they were given, the first speaks for all.
 int fail(std::string what, int status) {
+  if (status == ExitStatus::bad_input && launched_ranks().rank > 0) {
+    std::this_thread::sleep_for(std::chrono::seconds(1));  // or it would be ended before it speaks
+    return status;
+  }
   std::replace_if(
       what.begin(), what.end(), [](unsigned char c) { return std::iscntrl(c); }, '?');
   std::cerr << "flatspeckle: " << what << '\n';

@@ -11,6 +11,8 @@
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/interrupt.h"
+#include "core/ranks.h"
+#include "core/remote_batches.h"
 
 namespace flatspeckle::apps {
 
@@ -41,28 +43,54 @@ std::vector<std::size_t> share_of_runs(const SweepPlan& plan) {
   return runs;
 }
 
-bool is_finished(const SweepPlan& plan, ShardFolder& folder, std::size_t run) {
-  const std::string name = plan.name(run);
-  if (!folder.has(name, Part::finished)) return false;
-  const auto wrong = folder.read(name, Part::finished, plan.identity(run),
-                                 [](const ResultReader& file) { read_point(file); });
-  if (wrong) folder.set_aside(name, Part::finished, *wrong);
-  return !wrong;
-}
-
-/// Runs that are left to do. Throws InputError where an earlier sweep would be overwritten.
-std::vector<std::size_t> left_to_do(const SweepPlan& plan, ShardFolder& folder) {
-  auto runs = share_of_runs(plan);
-  if (plan.settings.resume) {
-    std::erase_if(runs, [&](std::size_t run) { return is_finished(plan, folder, run); });
-    return runs;
-  }
+/// Throws InputError where work of an earlier sweep would be overwritten.
+void refuse_leftovers(const SweepPlan& plan, const ShardFolder& folder,
+                      const std::vector<std::size_t>& runs) {
+  if (plan.settings.resume) return;
   for (std::size_t run : runs)
     if (folder.has(plan.name(run), Part::finished) || folder.has(plan.name(run), Part::unfinished))
       throw InputError(folder.path().string() +
                        " holds points of a sweep that has not ended: --resume goes on with them; "
                        "remove the folder to begin again");
-  return runs;
+}
+
+/// Of this process alone, or of rank 0.
+int lead(const SweepPlan& plan, RankServer* server) {
+  const std::string& out = plan.settings.out;
+  check_writable(out);
+  if (is_complete(plan)) {
+    std::cout << out << " is complete; nothing to resume\n";
+    return ExitStatus::done;
+  }
+  ShardFolder folder(shards_of(out));
+  const auto runs = share_of_runs(plan);
+  refuse_leftovers(plan, folder, runs);
+  folder.make();
+  SweepWork work(plan, folder, runs);
+  const PoolEnd end = run_pool(
+      work.list(), {plan.settings.seconds, threads_of(plan.settings), "sweep", "points", server});
+  work.save_unfinished();
+  return end_sweep(plan, folder, end);
+}
+
+/// With rank 0, and for it.
+void follow(const SweepPlan& plan) {
+  ShardFolder none("");
+  SweepWork work(plan, none, share_of_runs(plan));
+  work_for_rank_0(work.list(), threads_of(plan.settings));
+}
+
+int with_ranks(const SweepPlan& plan) {
+  RankServer server;
+  try {
+    const int status = lead(plan, &server);
+    server.dismiss();
+    return status;
+  } catch (...) {
+    server.dismiss();
+    leave_ranks();
+    throw;
+  }
 }
 
 }  // namespace
@@ -70,21 +98,18 @@ std::vector<std::size_t> left_to_do(const SweepPlan& plan, ShardFolder& folder) 
 int sweep(const Arguments& arguments) {
   const auto plan = sweep_plan(arguments);
   if (!plan) return ExitStatus::done;
-  const std::string& out = plan->settings.out;
-  if (out.empty()) throw InputError("out is not given: name the result file (--out FILE.h5)");
-  check_writable(out);
-  if (is_complete(*plan)) {
-    std::cout << out << " is complete; nothing to resume\n";
-    return ExitStatus::done;
-  }
+  if (plan->settings.out.empty())
+    throw InputError("out is not given: name the result file (--out FILE.h5)");
+  if (!plan->share) join_ranks();
   catch_interrupts();
-  ShardFolder folder(shards_of(out));
-  SweepWork work(*plan, folder, left_to_do(*plan, folder));
-  folder.make();
-  const PoolEnd end = run_pool(
-      work.list(), {plan->settings.seconds, threads_of(plan->settings), "sweep", "points"});
-  work.save_unfinished();
-  return end_sweep(*plan, folder, end);
+  if (ranks().size == 1) return lead(*plan, nullptr);
+  int status = ExitStatus::done;
+  if (ranks().rank == 0)
+    status = with_ranks(*plan);
+  else
+    follow(*plan);
+  leave_ranks();
+  return status;
 }
 
 }  // namespace flatspeckle::apps

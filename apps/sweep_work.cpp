@@ -8,32 +8,43 @@
 
 namespace flatspeckle::apps {
 
-using Part = ShardFolder::Part;
-
 SweepWork::SweepWork(const SweepPlan& plan, ShardFolder& folder, std::vector<std::size_t> runs)
     : plan_(plan), folder_(folder), runs_(std::move(runs)), started_(utc_now()) {}
 
 RunList SweepWork::list() {
-  return {runs_.size(), [this](std::size_t number) { return open(runs_[number]); },
-          [this](std::size_t number, StopReason) { ended(runs_[number]); },
-          [this](std::size_t number) { save(runs_[number]); }};
+  return {.count = runs_.size(),
+          .open = [this](std::size_t number) { return open(runs_[number]); },
+          .ended = [this](std::size_t number, StopReason) { ended(runs_[number]); },
+          .checkpoint = [this](std::size_t number) { save(runs_[number]); },
+          .job =
+              [this](std::size_t number) {
+                const std::size_t run = runs_[number];
+                return plan_.estimation(run, plan_.scene(run)).job.batches;
+              }};
 }
 
-OpenRun SweepWork::open(std::size_t number) {
+/// False where there is nothing, or nothing that can be used.
+bool SweepWork::read_or_set_aside(std::size_t number, Part part,
+                                  const std::function<void(const ResultReader&)>& reading) {
+  const std::string name = plan_.name(number);
+  if (!folder_.has(name, part)) return false;
+  const auto wrong = folder_.read(name, part, plan_.identity(number), reading);
+  if (wrong) folder_.set_aside(name, part, *wrong);
+  return !wrong;
+}
+
+std::optional<OpenRun> SweepWork::open(std::size_t number) {
+  if (read_or_set_aside(number, Part::finished, read_point)) return std::nullopt;
   Scene scene = plan_.scene(number);
   Estimation estimation = plan_.estimation(number, scene);
-  auto open = std::make_unique<Open>(std::move(scene), std::move(estimation));
-  const BatchJob& job = open->estimation.job.batches;
-  const std::string name = plan_.name(number);
-  if (folder_.has(name, Part::unfinished)) {
-    const auto wrong = folder_.read(
-        name, Part::unfinished, plan_.identity(number),
-        [&](const ResultReader& file) { open->state = read_state(file, "state", job.size); });
-    if (wrong) folder_.set_aside(name, Part::unfinished, *wrong);
-  }
+  const BatchJob job = estimation.job.batches;
+  RunState state;
+  read_or_set_aside(number, Part::unfinished,
+                    [&](const ResultReader& file) { state = read_state(file, "state", job.size); });
   const std::lock_guard lock(mutex_);
-  auto& kept = open_[number] = std::move(open);
-  return {job, plan_.stop(number), &kept->state};
+  auto& kept = open_[number];
+  kept = std::make_unique<Open>(std::move(scene), std::move(estimation), std::move(state));
+  return OpenRun{job, plan_.stop(number), &kept->state};
 }
 
 SweepWork::Open& SweepWork::find(std::size_t number) {

@@ -13,7 +13,7 @@
 namespace flatspeckle::apps {
 
 /// Runs of a sweep as the runner takes them: each goes on from the unfinished file in the folder,
-/// if there is one, and ends in a finished one.
+/// if there is one, and ends in a finished one. Those that have one need no work.
 class SweepWork {
  public:
   /// Those of `runs`, by their numbers in the plan.
@@ -30,7 +30,11 @@ class SweepWork {
     RunState state;
   };
 
-  OpenRun open(std::size_t number);
+  using Part = ShardFolder::Part;
+
+  bool read_or_set_aside(std::size_t number, Part part,
+                         const std::function<void(const ResultReader&)>& reading);
+  std::optional<OpenRun> open(std::size_t number);
   void ended(std::size_t number);
   void save(std::size_t number);
   Open& find(std::size_t number);

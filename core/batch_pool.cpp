@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/interrupt.h"
+#include "core/ranks.h"
 
 namespace flatspeckle {
 
@@ -13,13 +14,14 @@ BatchPool::BatchPool(const RunList& runs, const PoolOptions& options, int worker
     : list_(runs),
       options_(options),
       lookahead_(16 * static_cast<std::uint64_t>(workers)),
+      other_ranks_(options.server == nullptr ? 0 : static_cast<std::size_t>(ranks().size - 1)),
       progress_(options.label) {}
 
 void BatchPool::look_for_end() {
   if (stopped_) return;
   if (interrupted())
     stopped_ = StopReason::interrupted;
-  else if (options_.seconds && next_run_ > 0 && clock_.seconds() >= *options_.seconds)
+  else if (options_.seconds && ended_ + runs_.size() > 0 && clock_.seconds() >= *options_.seconds)
     stopped_ = StopReason::seconds;
 }
 
@@ -29,11 +31,23 @@ bool BatchPool::may_take(const Run& run) const {
   return run.next < run.limit && run.next < run.merged + lookahead_;
 }
 
-/// A batch that its run needs whatever the error turns out to be.
-BatchPool::Runs::iterator BatchPool::with_certain_batch() {
-  return std::find_if(runs_.begin(), runs_.end(), [&](const auto& entry) {
-    return entry.second->next < entry.second->certain && may_take(*entry.second);
-  });
+BatchPool::Use BatchPool::use_of(const Run& run, int rank) {
+  if (run.ranks.contains(rank)) return Use::own;
+  return run.ranks.empty() ? Use::nobodys : Use::others;
+}
+
+/// A batch that its run needs whatever the error turns out to be, best of a run that this rank has
+/// worked on, since making its job takes time; at worst one that is used as `worst` says.
+BatchPool::Runs::iterator BatchPool::with_certain_batch(int rank, Use worst) {
+  auto found = runs_.end();
+  for (auto run = runs_.begin(); run != runs_.end(); ++run) {
+    if (run->second->next >= run->second->certain || !may_take(*run->second)) continue;
+    const Use use = use_of(*run->second, rank);
+    if (use > worst || (found != runs_.end() && use >= use_of(*found->second, rank))) continue;
+    found = run;
+    if (use == Use::own) break;
+  }
+  return found;
 }
 
 /// The run that is likely to need most: its batch may turn out not to be needed.
@@ -46,32 +60,67 @@ BatchPool::Runs::iterator BatchPool::with_any_batch() {
   return found;
 }
 
-BatchPool::Batch BatchPool::hand_out(Runs::iterator found) {
+BatchPool::Batch BatchPool::hand_out(Runs::iterator found, int rank) {
   auto& [number, run] = *found;
+  run->ranks.insert(rank);
   return {number, run->next++, run->job};
 }
 
+/// Whether other ranks soon want a run that nobody works on.
+bool BatchPool::should_open() const {
+  const auto in_stock = std::count_if(
+      runs_.begin(), runs_.end(), [](const auto& entry) { return entry.second->ranks.empty(); });
+  return static_cast<std::size_t>(in_stock) + opening_ < other_ranks_;
+}
+
+bool BatchPool::is_over() const {
+  return stopped_ || (next_run_ == list_.count && runs_.empty() && opening_ == 0);
+}
+
 std::optional<BatchPool::Batch> BatchPool::take() {
+  constexpr int here = 0;
   std::unique_lock lock(mutex_);
   while (!error_) {
     look_for_end();
-    if (const auto run = with_certain_batch(); run != runs_.end()) return hand_out(run);
-    if (!stopped_ && next_run_ < list_.count) {
+    const bool fresh = !stopped_ && next_run_ < list_.count;
+    const auto certain = with_certain_batch(here, fresh ? Use::nobodys : Use::others);
+    if (fresh && (certain == runs_.end() || should_open())) {
       open_next(lock);
       continue;
     }
-    if (const auto run = with_any_batch(); run != runs_.end()) return hand_out(run);
-    if (stopped_ || (runs_.empty() && opening_ == 0)) break;
+    if (certain != runs_.end()) return hand_out(certain, here);
+    if (const auto run = with_any_batch(); run != runs_.end()) return hand_out(run, here);
+    if (is_over()) break;
     changed_.wait(lock);
   }
   return std::nullopt;
+}
+
+BatchPool::Offer BatchPool::offer(int rank, Batch& batch) {
+  const std::lock_guard lock(mutex_);
+  if (error_) return Offer::none;
+  look_for_end();
+  const bool fresh = !stopped_ && next_run_ < list_.count;
+  auto run = with_certain_batch(rank, fresh ? Use::nobodys : Use::others);
+  if (run == runs_.end() && !fresh) run = with_any_batch();
+  if (run == runs_.end()) return is_over() ? Offer::none : Offer::later;
+  batch = hand_out(run, rank);
+  return Offer::batch;
 }
 
 void BatchPool::open_next(std::unique_lock<std::mutex>& lock) {
   const std::size_t number = next_run_++;
   ++opening_;
   lock.unlock();
-  auto [job, stop, state] = list_.open(number);
+  auto opened = list_.open(number);
+  if (!opened) {
+    lock.lock();
+    --opening_;
+    ++idle_;
+    changed_.notify_all();
+    return;
+  }
+  auto& [job, stop, state] = *opened;
   auto run = std::make_shared<Run>();
   run->job = std::make_shared<const BatchJob>(std::move(job));
   if (state->sums.size() != run->job->size) state->sums = GroupedSums(run->job->size);
@@ -154,8 +203,8 @@ PoolEnd BatchPool::finish() {
     last_error_ = run->merger->error();
   }
   progress_.finish(clock_.seconds(), figures());
-  return {stopped_ && ended_ < list_.count ? *stopped_ : StopReason::samples, clock_.seconds(),
-          cpu_s_};
+  return {stopped_ && ended_ + idle_ < list_.count ? *stopped_ : StopReason::samples,
+          clock_.seconds(), cpu_s_};
 }
 
 Progress::Figures BatchPool::figures() const {

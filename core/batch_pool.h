@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <set>
 
 #include "core/progress.h"
 #include "core/run_merger.h"
@@ -26,6 +27,10 @@ class BatchPool {
   /// The next batch, for a thread that also opens runs when their turn comes; waits while there is
   /// none. Nothing once all is over.
   std::optional<Batch> take();
+
+  /// The same for a thread of another rank, which must ask again later where none is to be had now.
+  enum class Offer { batch, later, none };
+  Offer offer(int rank, Batch& batch);
 
   /// cpu_s: what the thread has spent since its last delivery. Merges what can be merged.
   void deliver(const Batch& batch, std::vector<Complex> sums, double cpu_s);
@@ -50,14 +55,19 @@ class BatchPool {
     std::map<std::uint64_t, Sums> waiting;
     bool merging = false;
     double cpu_s = 0, cpu_s_left = 0;
+    std::set<int> ranks;  ///< that have had a batch of it, and so its job
   };
   using Runs = std::map<std::size_t, std::shared_ptr<Run>>;
 
   void look_for_end();
   bool may_take(const Run& run) const;
-  Runs::iterator with_certain_batch();
+  enum class Use { own, nobodys, others };
+  static Use use_of(const Run& run, int rank);
+  Runs::iterator with_certain_batch(int rank, Use least);
   Runs::iterator with_any_batch();
-  Batch hand_out(Runs::iterator found);
+  Batch hand_out(Runs::iterator found, int rank);
+  bool should_open() const;
+  bool is_over() const;
   void open_next(std::unique_lock<std::mutex>& lock);
   void merge(std::size_t number, Run& run, std::unique_lock<std::mutex>& lock);
   void save_now_and_then(std::size_t number, Run& run) const;
@@ -68,12 +78,14 @@ class BatchPool {
   const RunList& list_;
   const PoolOptions& options_;
   std::uint64_t lookahead_;
+  std::size_t other_ranks_;
   Stopwatch clock_;
   Progress progress_;
   std::mutex mutex_;
   std::condition_variable changed_;
   Runs runs_;
   std::size_t next_run_ = 0, opening_ = 0, ended_ = 0;
+  std::size_t idle_ = 0;  ///< that needed no work
   double cpu_s_ = 0, ended_cpu_s_ = 0, first_samples_ = 0, new_samples_ = 0, last_error_ = 0;
   std::optional<StopReason> stopped_;
   std::exception_ptr error_;

@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <exception>
+#include <thread>
 
 #include <omp.h>
 
 #include "core/batch_pool.h"
+#include "core/ranks.h"
+#include "core/remote_batches.h"
 #include "core/stopwatch.h"
 
 namespace flatspeckle {
@@ -30,14 +33,17 @@ void work(BatchPool& pool) {
 }  // namespace
 
 int default_threads() {
-  return omp_get_num_procs();
+  return std::max(1, omp_get_num_procs() / ranks().sharers);
 }
 
 PoolEnd run_pool(const RunList& runs, const PoolOptions& options) {
   const int threads = options.threads > 0 ? options.threads : default_threads();
-  BatchPool pool(runs, options, threads);
+  BatchPool pool(runs, options, threads * ranks().size);
+  std::thread server;
+  if (options.server != nullptr) server = std::thread([&] { options.server->serve(pool); });
 #pragma omp parallel num_threads(threads)
   work(pool);
+  if (server.joinable()) server.join();
   return pool.finish();
 }
 
@@ -45,10 +51,11 @@ StopReason run_batches(const BatchJob& job, const RunOptions& options, RunState&
   const auto& [samples, seconds, target_error] = options.stop;
   StopReason ended = StopReason::samples;
   RunList one{1,
-              [&](std::size_t) -> OpenRun {
-                return {job, options.stop, &state};
+              [&](std::size_t) {
+                return OpenRun{job, options.stop, &state};
               },
               [&](std::size_t, StopReason reason) { ended = reason; },
+              {},
               {}};
   if (options.checkpoint) one.checkpoint = [&](std::size_t) { options.checkpoint(state); };
   PoolOptions pool{seconds, options.threads, options.label, ""};

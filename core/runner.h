@@ -69,16 +69,22 @@ struct OpenRun {
 struct RunList {
   std::size_t count = 0;
   /// Any thread calls these, for different runs at once. What they throw ends the pool.
-  std::function<OpenRun(std::size_t run)> open;
+  /// Nothing where the run needs no work.
+  std::function<std::optional<OpenRun>(std::size_t run)> open;
   std::function<void(std::size_t run, StopReason)> ended;
   /// Called once in a while, while the state stands still, to save what could be resumed.
   std::function<void(std::size_t run)> checkpoint;
+  /// The job alone, for other processes; only needed with a server.
+  std::function<BatchJob(std::size_t run)> job = {};
 };
+
+class RankServer;
 
 struct PoolOptions {
   std::optional<double> seconds;         ///< for all together; every begun run gets two batches
   int threads = 0;                       ///< 0: as many as there are cores
   std::string label, run_name = "runs";  ///< for the progress; silent without a label
+  RankServer* server = nullptr;          ///< to other ranks, where they work too
 };
 
 /// reason: samples where all runs have ended, else why they have not.
