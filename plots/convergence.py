@@ -123,6 +123,16 @@ def entries(sweep, coloured, looks):
     yield plt.Line2D([], [], color="black", linewidth=0.7, linestyle=(0, (1, 2))), "slope $-1/2$"
 
 
+def share_limits(axes):
+    """The same decades for both methods."""
+    for axis in axes:
+        style.whole_decades(axis)
+    limits = np.array([(*axis.get_xlim(), *axis.get_ylim()) for axis in axes])
+    for axis in axes:
+        axis.set_xlim(limits[:, 0].min(), limits[:, 1].max())
+        axis.set_ylim(limits[:, 2].min(), limits[:, 3].max())
+
+
 def draw(results, arguments):
     sweep = sweep_file.read(results, arguments)
     coloured = colour_axis(sweep, arguments.colour)
@@ -132,13 +142,13 @@ def draw(results, arguments):
                              f"{MOST_COLOURS} are legible; --colour another or "
                              f"--select {sweep.example(coloured, MOST_COLOURS)}")
     across = len(sweep.prefixes)
-    figure, axes = plt.subplots(1, across, squeeze=False, sharey=True,
-                                figsize=([style.COLUMN, style.PAGE][across - 1], 3))
+    named = max(min(len(missed(sweep, method)), MOST_NAMED + 1) for method in sweep.prefixes)
+    figure, axes = plt.subplots(1, across, squeeze=False,
+                                figsize=([style.COLUMN, style.PAGE][across - 1],
+                                         2.7 + 0.13 * named))
     for axis, method in zip(axes.flat, sweep.prefixes):
         draw_panel(axis, sweep, method, arguments, looks, coloured)
-    for axis in axes.flat:
-        style.whole_decades(axis)
-    axes[0, -1].set_ylabel("relative error" if across == 1 else "")
+    share_limits(axes[0])
     style.legend_above(figure, list(entries(sweep, coloured, looks)))
     return figure
 

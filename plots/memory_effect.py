@@ -71,15 +71,15 @@ def draw_points(axis, sweep, numbered, tilt):
 
 def draw_theory(axis, sweep, numbered, tilt):
     order = np.argsort(tilt)
-    diffusion, single = (sweep.optional(name) for name in ("diffusion_theory", "single_scattering"))
+    diffusion = sweep.optional("diffusion_theory")
     if diffusion is not None:
         for number, row in numbered:
             look = style.look(number)
             axis.plot(tilt[order], diffusion[row][order]**2, color=look["color"], linewidth=0.7,
                       linestyle=look["linestyle"], zorder=1)
-    if single is not None:
-        for curve in np.unique([single[row] for _, row in numbered], axis=0):
-            axis.plot(tilt[order], curve[order]**2, color="0.55", linewidth=1.6, zorder=0.5)
+    if sweep.result.has("single_scattering"):
+        axis.plot(tilt[order], sweep.result.values("single_scattering")[order]**2, color="0.55",
+                  linewidth=1.6, zorder=0.5)
 
 
 def draw_panel(axis, sweep, names, rows, curves, tilt):
@@ -111,7 +111,7 @@ def other_entries(sweep):
     yield from sweep_file.method_entries(sweep)
     if sweep.optional("diffusion_theory") is not None:
         yield plt.Line2D([], [], color="black", linewidth=0.7), "lines: diffusion theory"
-    if sweep.optional("single_scattering") is not None:
+    if sweep.result.has("single_scattering"):
         yield plt.Line2D([], [], color="0.55", linewidth=1.6), "single scattering alone"
 
 

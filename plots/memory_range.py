@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Range of the memory effect, q L at C_I = 1/2, against one axis of a sweep; a second axis as curves,
-a third as panels. Arrows: bounds, where a curve does not cross 1/2 within the tilts."""
+"""Range of the memory effect, q L at C_I = 1/2, against one axis of a sweep; a second axis as
+curves, a third as panels. Arrows: bounds, where a curve does not cross 1/2 within the tilts."""
 
 import style
 
@@ -15,15 +15,18 @@ MOST_CURVES, MOST_PANELS, ACROSS = 7, 12, 3
 ASIDE = {None: 0, "mc": -2.5, "wave": 2.5}  # points of print
 ABOVE = 1  # in range_censored: the curve stays above 1/2
 
+
 def add_options(parser):
-    parser.add_argument("--against", choices=list(range_axes.LABELS), help="horizontal axis (default: the "
-                        "innermost that varies)")
-    parser.add_argument("--curves", choices=list(range_axes.LABELS), help="axis that sets the curves apart")
+    parser.add_argument("--against", choices=list(range_axes.LABELS),
+                        help="horizontal axis (default: the innermost that varies)")
+    parser.add_argument("--curves", choices=list(range_axes.LABELS),
+                        help="axis that sets the curves apart")
     sweep_file.add_select(parser)
 
 
 def carrier(sweep, name):
-    """The axis of the grid that a parameter varies along: itself, or radius where g depends on it."""
+    """The axis of the grid that a parameter varies along: itself, or radius where g depends on
+    it."""
     if name in sweep.axes or sweep.is_list:
         return name
     column = sweep.column(name)[sweep.rows]
@@ -57,7 +60,7 @@ def arrange(sweep, arguments):
                                  f"{', '.join(others) or 'nothing here'}")
         others = [name for name in others if name != arguments.curves] + [arguments.curves]
     if sweep.is_list and others and not share_curves(sweep, others):
-        return against, None, None
+        return against, None, None  # one cloud of points
     if len(others) > 2:
         raise style.Unusable(f"{sweep.path}: besides {against} it varies {', '.join(others)}; "
                              f"try --select {sweep.example(others[0], 1)}")
@@ -89,7 +92,7 @@ def draw_bounds(axis, sweep, method, rows, x, numbers):
 
 
 def moved(axis, method, points):
-    """Places moved sideways by so many points of print; the methods also stand beside each other."""
+    """Places moved sideways by so many points of print; the methods stand beside each other."""
     return offset_copy(axis.transData, axis.figure, x=points + ASIDE[method], units="points")
 
 
@@ -116,14 +119,6 @@ def draw_curve(axis, sweep, method, rows, x, number):
                   transform=moved(axis, method, 0), **sweep_file.curve_look(number, method))
 
 
-def single_scattering(sweep):
-    """Its ranges that the tilts reach: one or none, as it depends on the geometry alone."""
-    if not sweep.result.has("single_scattering_range"):
-        return []
-    known = sweep.table("single_scattering_range_censored")[sweep.rows] == 0
-    return np.unique(np.round(sweep.table("single_scattering_range")[sweep.rows][known], 9))
-
-
 def entries(sweep, curves, single, joined):
     """Legend entries (handle, label)."""
     diffusion = sweep.result.has("diffusion_range")
@@ -140,7 +135,7 @@ def entries(sweep, curves, single, joined):
     if any((sweep.of(method, "range_censored")[sweep.rows] > 0).any() for method in sweep.prefixes):
         yield plt.Line2D([], [], color="black", linestyle="none", marker=r"$\uparrow$",
                          markersize=6), "bound, no error bar"
-    if sweep.result.has("single_scattering_range"):
+    if single is not None:
         note = "" if len(single) else ": beyond the tilts"
         yield (plt.Line2D([], [], color="0.55", linewidth=1.6 if len(single) else 0),
                f"single scattering{note}")
@@ -148,7 +143,7 @@ def entries(sweep, curves, single, joined):
 
 def draw_panel(axis, sweep, rows, against, curves, single):
     x = range_axes.horizontal(sweep, against)
-    for limit in single:
+    for limit in single or []:
         axis.axhline(limit, color="0.55", linewidth=1.6, zorder=0.5)
     numbers = {}
     for curve, part in sweep.groups(curves, rows):
@@ -160,8 +155,8 @@ def draw_panel(axis, sweep, rows, against, curves, single):
             draw_curve(axis, sweep, method, part, x, number)
     for method in sweep.prefixes:
         draw_bounds(axis, sweep, method, rows, x, numbers)
-    range_axes.scale_axis(axis, against, x[sweep.rows])
-    range_axes.scale_range(axis, sweep, single)
+    range_axes.scale_axis(axis, against, x[sweep.rows], sweep.result.attribute("wavelength", 1))
+    range_axes.scale_range(axis, sweep, single or [])
     axis.set_ylabel(r"range $qL$ at $C_I = 1/2$")
 
 
@@ -173,7 +168,7 @@ def draw(results, arguments):
     sweep = sweep_file.read(results, arguments)
     against, curves, panels = arrange(sweep, arguments)
     check_size(sweep, curves, panels)
-    parts, single = sweep.groups(panels, sweep.rows), single_scattering(sweep)
+    parts, single = sweep.groups(panels, sweep.rows), sweep.single_scattering_range()
     across = 2 if len(parts) == 4 else min(ACROSS, len(parts))
     figure, axes = style.page_of_panels(-(-len(parts) // across), across, len(parts))
     for axis, (value, rows) in zip(axes.flat, parts):

@@ -5,8 +5,10 @@ import style
 import numpy as np
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter, NullLocator
 
-LABELS = {"albedo": "absorption 1 \u2212 albedo", "g": "mean cosine $g$", "density": "density",
-          "optical_depth": "optical depth", "radius": "radius", "index": "relative index"}
+LABELS = {"albedo": "absorption 1 \u2212 albedo", "g": "mean cosine $g$",
+          "optical_depth": "optical depth", "index": "relative index",
+          "radius": "radius (wavelength = {:g})",
+          "density": "density (per area, wavelength = {:g})"}
 
 
 def horizontal(sweep, against):
@@ -15,9 +17,9 @@ def horizontal(sweep, against):
     return np.round(1 - column, 12) if against == "albedo" else column
 
 
-def scale_axis(axis, against, x):
+def scale_axis(axis, against, x, wavelength):
     """A logarithm where the values span much; absorption down to none by a linear piece at 0."""
-    axis.set_xlabel(LABELS[against])
+    axis.set_xlabel(LABELS[against].format(wavelength))
     values = np.unique(x)
     least = values[values > 0].min(initial=1)
     if against == "albedo" and len(values) > 2:

@@ -59,6 +59,14 @@ def draw_numbers(axis, values, censored, norm):
                   va="center", fontsize=size, color="white" if dark else "black", bbox=behind)
 
 
+def draw_contours(axis, logarithm, levels):
+    """Between the centres of the cells, whose steps need not be equal; none beyond bounds."""
+    crossed = [level for level in levels if logarithm.min() < level < logarithm.max()]
+    if crossed and min(logarithm.shape) > 1:
+        axis.contour(logarithm, crossed, colors="white", linewidths=1.6)
+        axis.contour(logarithm, crossed, colors="black", linewidths=0.7)
+
+
 def draw_panel(axis, sweep, rows, method, norm):
     values, censored = (table(sweep, rows, sweep.of(method, name))
                         for name in ("memory_effect_range", "range_censored"))
@@ -66,12 +74,9 @@ def draw_panel(axis, sweep, rows, method, norm):
     for row, column in np.argwhere(censored > 0):
         axis.add_patch(plt.Rectangle((column - 0.5, row - 0.5), 1, 1, fill=False, hatch="////",
                                      edgecolor="0.4", linewidth=0))
-    known = np.ma.array(np.log(values), mask=censored > 0)
     levels = [step * 10.0**power for power in range(-3, 4) for step in STEPS
               if norm.vmin < step * 10.0**power < norm.vmax]
-    if levels and min(values.shape) > 1:
-        axis.contour(known, np.log(levels), colors="white", linewidths=1.6)
-        axis.contour(known, np.log(levels), colors="black", linewidths=0.7)
+    draw_contours(axis, np.ma.array(np.log(values), mask=censored > 0), np.log(levels))
     draw_numbers(axis, values, censored, norm)
     for side, name in ((axis.xaxis, "g"), (axis.yaxis, "albedo")):
         side.set_ticks(range(len(sweep.values(name))), style.short(sweep.values(name)))
@@ -103,7 +108,7 @@ def worst_error(sweep):
     return f"standard errors up to {100 * max(errors):.2g} %" if errors else "bounds alone"
 
 
-def add_legend(figure, sweep, levels):
+def add_legend(figure, sweep):
     entries = []
     if any((sweep.of(method, "range_censored")[sweep.rows] > 0).any() for method in sweep.prefixes):
         entries.append((plt.Rectangle((0, 0), 1, 1, fill=False, hatch="////", edgecolor="0.4"),
@@ -121,7 +126,8 @@ def draw(results, arguments):
     figure, axes = style.page_of_panels(-(-len(shown) // across), across, len(shown))
     ranges = np.concatenate([sweep.of(method, "memory_effect_range")[rows]
                              for method, _, rows in shown])
-    norm = LogNorm(ranges.min(), max(ranges.max(), 1.01 * ranges.min()))
+    spread = 1 if ranges.max() > 1.1 * ranges.min() else 1.2  # for a scale with room for marks
+    norm = LogNorm(ranges.min() / spread, ranges.max() * spread)
     for axis, (method, value, rows) in zip(axes.flat, shown):
         image, levels = draw_panel(axis, sweep, rows, method, norm)
         words = [sweep_file.METHODS[method]] if method else []
@@ -129,7 +135,7 @@ def draw(results, arguments):
         axis.set_title(", ".join(words), fontsize=7.5, pad=3)
     style.outer_labels(axes, len(shown))
     colour_bar(figure, axes, image, levels)
-    add_legend(figure, sweep, levels)
+    add_legend(figure, sweep)
     return figure
 
 

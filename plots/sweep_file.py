@@ -1,5 +1,5 @@
-"""Reading of a sweep's result file. A grid and a list of points look alike here: a table with one row
-per point, in row-major order of the grid."""
+"""Reading of a sweep's result file. A grid and a list of points look alike here: a table with one
+row per point, in row-major order of the grid."""
 
 import tomllib
 
@@ -16,8 +16,9 @@ DEFAULT_TARGET = 0.02  # of the program, where a run is given no other stop
 
 
 class Sweep:
-    """One sweep. `columns`: each parameter's value at every point [point]; `axes`: those that the grid
-    varies, outermost first, or for a list of points the parameters that differ."""
+    """One sweep. `columns`: each parameter's value at every point [point]; `axes`: those that the
+    grid varies, outermost first, or for a list of points the parameters that differ; `rows`: the
+    selected points."""
 
     def __init__(self, result):
         self.result, self.path = result, result.path
@@ -26,6 +27,8 @@ class Sweep:
         grid = result.dataset(next(iter(self.prefixes.values())) + "memory_effect_range")
         if result.attribute("format", 1) < 2 or grid.ndim == 0:
             raise style.Unusable(f"{self.path}: not a sweep of this version of the program")
+        if grid.size == 0:
+            raise style.Unusable(f"{self.path}: no point of the sweep is finished")
         scales = dict(self.scale(grid, axis) for axis in range(grid.ndim))
         self.shape = grid.shape
         self.columns = self.read_columns(scales)
@@ -110,6 +113,14 @@ class Sweep:
         """What sets a point apart, in words."""
         return ", ".join(text(name, self.columns[name][row]) for name in names)
 
+    def single_scattering_range(self):
+        """[q L at C_I = 1/2 of single scattering], empty if the tilts do not reach it; None if it
+        is not in the file. It depends on the geometry alone."""
+        if not self.result.has("single_scattering_range"):
+            return None
+        dataset = self.result.dataset("single_scattering_range")
+        return [] if dataset.attrs.get("censored", 0) else [float(dataset[()])]
+
     def target(self):
         """The relative error that the run was to reach, or None where it stops otherwise."""
         config = tomllib.loads(self.result.attribute("config", ""))
@@ -134,7 +145,7 @@ def read(results, arguments):
 
 
 def method_look(method, colour, size=3.5):
-    """Monte Carlo open and large where both methods are drawn, so that the wave solver shows inside."""
+    """Monte Carlo open and large where both methods are drawn: the wave solver shows inside."""
     sizes = {None: size, "mc": 1.6 * size, "wave": 0.7 * size}
     return {"color": colour, "markersize": sizes[method],
             "markerfacecolor": "none" if method == "mc" else colour}
