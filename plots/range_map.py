@@ -70,7 +70,8 @@ def draw_contours(axis, logarithm, levels):
 def draw_panel(axis, sweep, rows, method, norm):
     values, censored = (table(sweep, rows, sweep.of(method, name))
                         for name in ("memory_effect_range", "range_censored"))
-    image = axis.imshow(values, origin="lower", aspect="auto", cmap=MAP, norm=norm)
+    edges = [np.arange(count + 1) - 0.5 for count in reversed(values.shape)]
+    image = axis.pcolormesh(*edges, values, cmap=MAP, norm=norm, edgecolors="face", linewidth=0.2)
     for row, column in np.argwhere(censored > 0):
         axis.add_patch(plt.Rectangle((column - 0.5, row - 0.5), 1, 1, fill=False, hatch="////",
                                      edgecolor="0.4", linewidth=0))
