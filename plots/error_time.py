@@ -8,14 +8,13 @@ import style
 import h5py
 import matplotlib.pyplot as plt
 import numpy as np
-from matplotlib.ticker import NullFormatter
 
 MOST_LABELS = 7
 
 
 def traces_of(result):
-    """Names of the groups that hold a trace: trace, mc/trace, points/3/trace. Those of state/, kept
-    to resume a run, say the same again."""
+    """Names of the groups that hold a trace: trace, mc/trace. Those of state/, kept to resume a run,
+    say the same again."""
     names = []
 
     def visit(name, item):
@@ -26,17 +25,27 @@ def traces_of(result):
     result.file.visititems(visit)
     if not names:
         raise style.Unusable(f"{result.path}: has no trace")
-    return sorted(names, key=lambda name: [(len(part), part) for part in name.split("/")])
+    return sorted(names)
 
 
-def read_trace(result, name):
+def read_traces(result, name):
+    """(label, processor seconds, errors) of a trace, or of each point of a sweep's."""
+    columns = np.array([result.values(f"{name}/{column}")
+                        for column in ("cpu_s", "samples", "relative_error")])
+    method = name.split("/")[0] if "/" in name else ""
+    if not result.has(f"{name}/point"):
+        return [(method, *shown(*columns))]
+    point = result.values(f"{name}/point")
+    return [(f"{method} point {number}".strip(), *shown(*columns[:, point == number]))
+            for number in np.unique(point)]
+
+
+def shown(cpu, samples, error):
     """Processor seconds and relative errors, from four times the samples of the first checkpoint on:
     the error of a handful of batches says little. Rows without an error cannot be shown on log axes.
     """
-    cpu, samples, error = (result.values(f"{name}/{column}")
-                           for column in ("cpu_s", "samples", "relative_error"))
-    shown = (cpu > 0) & (error > 0) & (samples >= 4 * samples.min(initial=np.inf))
-    return cpu[shown], error[shown]
+    rows = (cpu > 0) & (error > 0) & (samples >= 4 * samples.min(initial=np.inf))
+    return cpu[rows], error[rows]
 
 
 def slope(cpu, error):
@@ -48,11 +57,9 @@ def read_all(results):
     traces = []
     for result in results:
         for name in traces_of(result):
-            parts = [pathlib.Path(result.path).stem] if len(results) > 1 else []
-            parts += name.split("/")[:-1]
-            cpu, error = read_trace(result, name)
-            if len(cpu) > 0:
-                traces.append((" ".join(parts) or "run", cpu, error))
+            stem = pathlib.Path(result.path).stem if len(results) > 1 else ""
+            traces += [(f"{stem} {label}".strip() or "run", cpu, error)
+                       for label, cpu, error in read_traces(result, name) if len(cpu) > 0]
     if not traces:
         raise style.Unusable(f"{results[0].path}: no trace has a checkpoint with an error")
     return traces
@@ -64,16 +71,6 @@ def draw_guide(axis, traces):
     level = min(np.min(error * np.sqrt(times)) for _, times, error in traces)
     axis.plot(cpu, 0.6 * level / np.sqrt(cpu), color=style.GREY, linewidth=0.7,
               linestyle=(0, (4, 2)), label="guide: slope $-1/2$", zorder=0)
-
-
-def whole_decades(axis):
-    """Limits at powers of ten, so that each axis has at least two labels."""
-    for low_high, limit in ((axis.dataLim.intervalx, axis.set_xlim),
-                            (axis.dataLim.intervaly, axis.set_ylim)):
-        low, high = np.log10(low_high)
-        limit(10 ** np.floor(low - 0.03), 10 ** np.ceil(high + 0.03))
-    axis.xaxis.set_minor_formatter(NullFormatter())
-    axis.yaxis.set_minor_formatter(NullFormatter())
 
 
 def draw(results):
@@ -91,7 +88,7 @@ def draw(results):
         middle = f", median slope ${np.median(fitted):.2f}$" if fitted else ""
         axis.plot([], [], color=style.COLOURS[0], alpha=0.35, label=f"{len(traces)} runs{middle}")
     draw_guide(axis, traces)
-    whole_decades(axis)
+    style.whole_decades(axis)
     axis.set_xlabel("processor time (s)")
     axis.set_ylabel("relative error")
     axis.legend()

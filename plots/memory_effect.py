@@ -2,213 +2,149 @@
 """Memory effect: intensity correlation against tilt, from one sweep, or from any number of
 memory_effect results of `covariance` and `validate`, compared in one panel."""
 
-import pathlib
-from dataclasses import dataclass
-
 import style
+
+import correlation_panel
+import covariance_curves
+import sweep_file
 
 import matplotlib.pyplot as plt
 import numpy as np
 
-METHODS = {"mc": "Monte Carlo", "wave": "wave solver"}
-
-
-@dataclass
-class Series:
-    """One method's field correlation [tilt], of one result file."""
-
-    label: str
-    tilt: np.ndarray  # mrad
-    correlation: np.ndarray
-    error: np.ndarray
-    look: dict
-
-
-def read_curves(result):
-    """Field correlation, error and diffusion theory (or None): [optical_depth, g, albedo, tilt]."""
-    names = ["field_correlation", "field_correlation_error"]
-    if result.has("diffusion_theory"):
-        names.append("diffusion_theory")
-    curves = [np.real(result.values(name)) for name in names]
-    return curves + [None] * (3 - len(curves))
+MOST_ROWS, MOST_COLUMNS, MOST_CURVES = 5, 4, 7
+MOST_SYMBOLS = 18  # per curve in a panel; tilts between them are left to the lines
 
 
 def is_sweep(result):
-    return result.has("field_correlation") and result.dataset("field_correlation").ndim == 4
+    return any(result.has(f"{prefix}field_correlation")
+               and result.dataset(f"{prefix}field_correlation").ndim > 1 for prefix in ("", "mc/"))
 
 
-def read_groups(result):
-    """(method, prefix of its datasets): both groups of a `validate` result, the root of others."""
-    if result.has("mc/field_correlation"):
-        return [(method, f"{method}/") for method in METHODS]
-    if not result.has("field_correlation"):
-        raise style.Unusable(f"{result.path}: has no field_correlation; needs a sweep, or "
-                             'covariance = "memory_effect"')
-    method = str(result.attribute("plan", "")).split(":")[0]
-    if method not in METHODS:
-        raise style.Unusable(f"{result.path}: attribute plan names neither method, mc nor wave")
-    return [(method, "")]
+def arrange(sweep):
+    """Axes of (rows, columns, curves), None where one is not needed."""
+    if sweep.is_list:
+        return None, None, "point"
+    axes = sweep.varying()
+    if len(axes) > 3:
+        raise style.Unusable(f"{sweep.path}: varies {', '.join(axes)}, rows, columns and curves "
+                             f"show three; try --select {sweep.example(axes[0], 1)}")
+    return [None] * (3 - len(axes)) + axes
 
 
-def method_marker(method, number):
-    """A colour and symbol per file; Monte Carlo large and open, so that the wave solver's shows."""
-    look = style.look(number)
-    is_mc = method == "mc"
-    return {"color": look["color"], "marker": look["marker"], "markersize": 5.5 if is_mc else 2.5,
-            "markerfacecolor": "none" if is_mc else look["color"]}
+def check_size(sweep, rows, columns, curves):
+    """Refuses what a page cannot hold legibly."""
+    limits = {rows: MOST_ROWS, columns: MOST_COLUMNS, curves: MOST_CURVES}
+    if rows is None:
+        limits[columns] = MOST_ROWS * MOST_COLUMNS
+    counts = {name: len(sweep.values(name)) for name in limits if name}
+    beyond = [name for name, count in counts.items() if count > limits[name]]
+    if beyond:
+        shape = " x ".join(f"{count} {name}" for name, count in counts.items())
+        advice = " ".join(sweep.example(name, min(3, limits[name])) for name in beyond)
+        raise style.Unusable(f"{sweep.path}: {shape} do not fit a page of {MOST_ROWS} x "
+                             f"{MOST_COLUMNS} panels of {MOST_CURVES} curves; "
+                             f"try --select {advice}")
 
 
-def read_series(results):
-    series = []
-    for number, result in enumerate(results):
-        for method, prefix in read_groups(result):
-            name = f"{prefix}field_correlation"
-            if result.dataset(name).ndim != 1:
-                raise style.Unusable(f"{result.path}: {name} is not a curve over tilts")
-            series.append(Series(f"{pathlib.Path(result.path).stem}, {METHODS[method]}",
-                                 1000 * result.axis(name, 0), np.real(result.values(name)),
-                                 result.values(f"{name}_error"), method_marker(method, number)))
-    return series
+def panels(sweep, rows, columns):
+    """[row][column]: the names of the axes that the panel fixes, and its points; a single axis of
+    panels is wrapped."""
+    names = [name for name in (rows, columns) if name]
+    table = [[(names, part) for _, part in sweep.groups(columns, group)]
+             for _, group in sweep.groups(rows, sweep.rows)]
+    if rows is None and len(table[0]) > MOST_COLUMNS:
+        line = table[0]
+        across = -(-len(line) // -(-len(line) // MOST_COLUMNS))
+        table = [line[start:start + across] for start in range(0, len(line), across)]
+    return table
 
 
-def shared(results, name):
-    """An attribute that all files agree on, else None."""
-    values = {result.attribute(name) for result in results}
-    return values.pop() if len(values) == 1 else None
+def draw_points(axis, sweep, numbered, tilt):
+    """Symbols of every method and curve of a panel, at not too many tilts."""
+    some = np.argsort(tilt)[::-(-len(tilt) // MOST_SYMBOLS)]
+    for method in sweep.prefixes:
+        field, error = (sweep.of(method, f"field_correlation{end}") for end in ("", "_error"))
+        for number, row in numbered:
+            correlation_panel.draw_curve(axis, tilt[some], np.abs(field[row])[some],
+                                         error[row][some], sweep_file.curve_look(number, method))
 
 
-def share_q(results):
-    """Whether a tilt is the same q L in all files."""
-    if shared(results, "depth") is None or not all(result.has("tilt_q") for result in results):
-        return False
-    scales = [(result.axis("tilt_q", 0), result.values("tilt_q")) for result in results]
-    return all(np.array_equal(scales[0], other) for other in scales)
-
-
-def add_q_axis(axis, result, tilt):
-    """Top axis q L; q is nearly but not quite proportional to the tilt."""
-    depth = result.attribute("depth")
-    if depth is None or not result.has("tilt_q"):
-        return
+def draw_theory(axis, sweep, numbered, tilt):
     order = np.argsort(tilt)
-    x, q_depth = tilt[order], result.values("tilt_q")[order] * depth
-    if len(x) < 2 or np.any(np.diff(q_depth) <= 0):
-        return
-    margin = x[-1] - x[0]  # on each side, along the outermost slopes
-    slopes = np.diff(q_depth)[[0, -1]] / np.diff(x)[[0, -1]]
-    q_depth = np.concatenate([[q_depth[0] - margin * slopes[0]], q_depth,
-                              [q_depth[-1] + margin * slopes[1]]])
-    x = np.concatenate([[x[0] - margin], x, [x[-1] + margin]])
-    top = axis.secondary_xaxis("top", functions=(lambda t: np.interp(t, x, q_depth),
-                                                 lambda q: np.interp(q, q_depth, x)))
-    top.set_xlabel(r"$qL$")
-    axis.tick_params(top=False)
-
-
-def title(**values):
-    names = {"optical_depth": "OD", "g": "$g$", "albedo": "albedo"}
-    return "\n".join(f"{names[key]} = {value:.3g}" for key, value in values.items()
-                     if value is not None)
-
-
-def marker(number):
-    """Colour and symbol of one albedo; every other one is open, for prints without colour."""
-    look = style.look(number)
-    return {"color": look["color"], "marker": look["marker"],
-            "markerfacecolor": "white" if number % 2 else look["color"]}
-
-
-def draw_curve(axis, tilt, field, error, look):
-    """C_I = C_E^2 with its error bars."""
-    return axis.errorbar(tilt, field**2, 2 * np.abs(field) * error, linestyle="none",
-                         elinewidth=0.7, **look)
-
-
-def prepare(axis):
-    axis.axhline(0.5, color=style.GREY, linewidth=0.6, linestyle=(0, (1, 2)), zorder=0)
-    axis.set_ylim(-0.03, 1.08)
-
-
-def draw_panel(axis, tilt, correlation, error, theory):
-    order = np.argsort(tilt)
-    prepare(axis)
-    for number, field in enumerate(correlation):
-        draw_curve(axis, tilt, field, error[number], marker(number))
-        if theory is not None:
+    diffusion = sweep.optional("diffusion_theory")
+    if diffusion is not None:
+        for number, row in numbered:
             look = style.look(number)
-            axis.plot(tilt[order], theory[number][order]**2, color=look["color"], linewidth=0.7,
+            axis.plot(tilt[order], diffusion[row][order]**2, color=look["color"], linewidth=0.7,
                       linestyle=look["linestyle"], zorder=1)
+    if sweep.result.has("single_scattering"):
+        axis.plot(tilt[order], sweep.result.values("single_scattering")[order]**2, color="0.55",
+                  linewidth=1.6, zorder=0.5)
 
 
-def write_title(axis, text, curves):
-    """In the corner that the curves leave free."""
-    falls = all(curve[-1]**2 < 0.6 for curve in curves)
-    place = (0.95, 0.95, "right", "top") if falls else (0.06, 0.05, "left", "bottom")
-    axis.text(*place[:2], text, ha=place[2], va=place[3], transform=axis.transAxes)
+def draw_panel(axis, sweep, names, rows, curves, tilt):
+    """Of the points `rows`; the axes `names` are the same for them all."""
+    numbers = list(sweep.values(curves)) if curves else [None]
+    column = sweep.columns[curves] if curves else None
+    numbered = [(numbers.index(column[row]) if curves else 0, row) for row in rows]
+    correlation_panel.prepare(axis)
+    draw_theory(axis, sweep, numbered, tilt)
+    draw_points(axis, sweep, numbered, tilt)
+    axis.set_title(sweep.label(names, rows[0]), fontsize=7.5, pad=3)
 
 
-def add_legend(figure, albedos, has_theory):
-    handles = [plt.Line2D([], [], linewidth=0.7, **marker(number),
-                          linestyle=style.look(number)["linestyle"] if has_theory else "none")
-               for number in range(len(albedos))]
-    labels = [f"albedo {albedo}" for albedo in style.short(albedos)]
-    if has_theory:
-        handles.append(plt.Line2D([], [], linestyle="none"))
-        labels.append("(lines: diffusion theory)")
-    figure.legend(handles, labels, loc="lower center", bbox_to_anchor=(0.5, 1.0),
-                  ncol=len(labels) if figure.get_figwidth() > style.COLUMN else 2)
+def curve_entries(sweep, curves):
+    """Legend entries of the curves: (handle, label)."""
+    method = "wave" if len(sweep.prefixes) > 1 else None
+    line = sweep.optional("diffusion_theory") is not None
+    for number, value in enumerate(sweep.values(curves) if curves else []):
+        row = sweep.rows[sweep.columns[curves][sweep.rows] == value][0]
+        names = sweep.varying() if sweep.is_list else [curves]
+        look = {**sweep_file.curve_look(number, method), "markersize": 3}
+        yield plt.Line2D([], [], linewidth=0.7, **look,
+                         linestyle=style.look(number)["linestyle"] if line else "none"), \
+            sweep.label(names, row) or sweep_file.text("point", value)
 
 
-def draw_series(results):
-    series = read_series(results)
-    figure, axis = plt.subplots(figsize=(style.COLUMN, 2.6))
-    prepare(axis)
-    handles = [draw_curve(axis, s.tilt, s.correlation, s.error, s.look) for s in series]
-    text = title(**{name: shared(results, name) for name in ("optical_depth", "g", "albedo")})
-    write_title(axis, text, [s.correlation for s in series])
-    if share_q(results):
-        add_q_axis(axis, results[0], series[0].tilt)
-    axis.set_xlabel("tilt (mrad)")
-    axis.set_ylabel(r"intensity correlation $C_I$")
-    figure.legend(handles, [s.label for s in series], loc="lower center",
-                  bbox_to_anchor=(0.5, 1.0), ncol=2)
-    return figure
+def other_entries(sweep):
+    """Legend entries of what all curves share."""
+    yield from sweep_file.method_entries(sweep)
+    if sweep.optional("diffusion_theory") is not None:
+        yield plt.Line2D([], [], color="black", linewidth=0.7), "lines: diffusion theory"
+    if sweep.result.has("single_scattering"):
+        yield plt.Line2D([], [], color="0.55", linewidth=1.6), "single scattering alone"
 
 
-def draw_sweep(result):
-    correlation, error, theory = read_curves(result)
-    depths, anisotropies, albedos, tilt = (result.axis("field_correlation", axis)
-                                           for axis in range(4))
-    tilt = 1000 * tilt
-    rows, columns = len(depths), len(anisotropies)
-    single = rows == columns == 1
-    width = style.COLUMN if single else min(style.PAGE, max(style.COLUMN, 2.4 * columns))
-    height = min(2.1, 1.3 * width / columns)
-    figure, axes = plt.subplots(rows, columns, squeeze=False, sharex=True, sharey=True,
-                                figsize=(width, 0.5 + height * rows))
-    for i, j in np.ndindex(rows, columns):
-        draw_panel(axes[i, j], tilt, correlation[i, j], error[i, j],
-                   None if theory is None else theory[i, j])
-        text = title(optical_depth=depths[i], g=anisotropies[j])
-        write_title(axes[i, j], text, correlation[i, j])
-    for axis in axes[0]:
-        add_q_axis(axis, result, tilt)
-    for axis in axes[-1]:
+def add_legend(figure, sweep, curves):
+    style.legend_above(figure, [*curve_entries(sweep, curves), *other_entries(sweep)])
+
+
+def draw_sweep(sweep):
+    rows, columns, curves = arrange(sweep)
+    check_size(sweep, rows, columns, curves)
+    table = panels(sweep, rows, columns)
+    down, across = len(table), len(table[0])
+    figure, axes = style.page_of_panels(down, across, sum(map(len, table)))
+    tilt = 1000 * sweep.result.values("tilt")
+    for axis, panel in zip(axes.flat, sum(table, [])):
+        draw_panel(axis, sweep, *panel, curves, tilt)
         axis.set_xlabel("tilt (mrad)")
-    for axis in axes[:, 0]:
         axis.set_ylabel(r"intensity correlation $C_I$")
-    add_legend(figure, albedos, theory is not None)
+    style.outer_labels(axes, sum(map(len, table)))
+    for axis in axes[0]:
+        correlation_panel.add_q_axis(axis, sweep.result, tilt)
+    add_legend(figure, sweep, curves)
     return figure
 
 
-def draw(results):
+def draw(results, arguments):
     if not any(is_sweep(result) for result in results):
-        return draw_series(results)
+        return covariance_curves.draw(results)
     if len(results) > 1:
         raise style.Unusable("a sweep is drawn alone: give one sweep, or several covariance or "
                              "validate results")
-    return draw_sweep(results[0])
+    return draw_sweep(sweep_file.read(results, arguments))
 
 
 if __name__ == "__main__":
-    style.main(draw, __doc__, several=True)
+    style.main(draw, __doc__, several=True, add_options=sweep_file.add_select)

@@ -19,13 +19,14 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.ticker import NullFormatter
 
 # Okabe and Ito 2008: told apart by the colour blind, and in grey by marker and line style besides.
 COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000"]
 MARKERS = ["o", "s", "^", "D", "v", "P", "X"]
 LINES = ["-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (7, 2)), (0, (1, 1))]
 GREY = "0.5"
-COLUMN, PAGE = 3.4, 7.0  # widths of a journal's column and page, inches
+COLUMN, PAGE, PAGE_HEIGHT = 3.4, 7.0, 8.6  # of a journal, inches
 
 plt.rcParams.update({
     "font.size": 8, "axes.labelsize": 8, "axes.titlesize": 8, "legend.fontsize": 7,
@@ -108,6 +109,50 @@ def angle_axis(axis, angles, label):
     axis.set_xticks([n * np.pi / 2 for n in shown], [names[n] for n in shown])
 
 
+def whole_decades(axis):
+    """Limits at powers of ten, so that each axis has at least two labels."""
+    for low_high, limit in ((axis.dataLim.intervalx, axis.set_xlim),
+                            (axis.dataLim.intervaly, axis.set_ylim)):
+        low, high = np.log10(low_high)
+        limit(10 ** np.floor(low - 0.03), 10 ** np.ceil(high + 0.03))
+    axis.xaxis.set_minor_formatter(NullFormatter())
+    axis.yaxis.set_minor_formatter(NullFormatter())
+
+
+def page_of_panels(down, across, count):
+    """Figure and axes [down, across] of a page or, for one panel across, of a column; those after
+    `count` are left out."""
+    width = COLUMN if across == 1 else min(PAGE, 2.4 * across)
+    height = min(2.1, 1.3 * width / across, (PAGE_HEIGHT - 0.5) / down)
+    figure, axes = plt.subplots(down, across, squeeze=False, sharex=True, sharey=True,
+                                figsize=(width, 0.5 + down * height))
+    for axis in axes.flat[count:]:
+        axis.remove()
+    return figure, axes
+
+
+def outer_labels(axes, count):
+    """Labels at the left and beneath the lowest panel of each column alone."""
+    for (row, column), axis in np.ndenumerate(axes):
+        lowest = (row + 1) * axes.shape[1] + column >= count
+        axis.tick_params(labelbottom=lowest, labelleft=column == 0)
+        axis.xaxis.label.set_visible(lowest)
+        axis.yaxis.label.set_visible(column == 0)
+
+
+def legend_above(figure, entries):
+    """A legend of (handle, label) over the figure, in as many columns as its width holds."""
+    if not entries:
+        return
+    handles, labels = zip(*entries)
+    sizes = [len(label.replace("$", "")) + 9 for label in labels]
+    width = lambda columns: sum(max(part) for part in np.array_split(sizes, columns))
+    most = max(n for n in range(1, len(labels) + 1)
+               if n == 1 or width(n) <= 17 * figure.get_figwidth())
+    figure.legend(handles, labels, loc="lower center", bbox_to_anchor=(0.5, 1.0),
+                  ncol=-(-len(labels) // -(-len(labels) // most)))
+
+
 def save(figure, prefix):
     for ending in ("png", "pdf"):
         dates = {"CreationDate": None} if ending == "pdf" else None
@@ -115,17 +160,21 @@ def save(figure, prefix):
         print(f"wrote {prefix}.{ending}")
 
 
-def main(draw, description, several=False):
-    """Runs draw(results) -> figure on the command line's files; exits 2 if they lack something."""
+def main(draw, description, several=False, add_options=None):
+    """Runs draw(results) -> figure on the command line's files; exits 2 if they lack something.
+    With add_options(parser) it runs draw(results, arguments)."""
     parser = argparse.ArgumentParser(description=description)
     parser.add_argument("results", metavar="RESULT.h5", nargs="+" if several else 1)
     parser.add_argument("--out", metavar="PREFIX", help="writes PREFIX.png and PREFIX.pdf "
                         "(default: beside the first result, named after it and this plot)")
+    if add_options:
+        add_options(parser)
     arguments = parser.parse_args()
     first = pathlib.Path(arguments.results[0])
     prefix = arguments.out or str(first.with_suffix("")) + "_" + pathlib.Path(sys.argv[0]).stem
     try:
-        save(draw([Result(path) for path in arguments.results]), prefix)
+        results = [Result(path) for path in arguments.results]
+        save(draw(results, arguments) if add_options else draw(results), prefix)
     except (Unusable, OSError) as problem:
         print(problem, file=sys.stderr)
         sys.exit(2)

@@ -1,0 +1,157 @@
+#!/usr/bin/env python3
+"""Convergence of a sweep: relative error of every point against its processor time or samples, with
+the target, and the points that missed it (also printed)."""
+
+import style
+
+import sweep_file
+
+import matplotlib.pyplot as plt
+import numpy as np
+
+MOST_NAMED, MOST_COLOURS = 6, 8
+X_AXES = {"cpu": ("cpu_s", "processor time (s)"), "samples": ("samples", "samples")}
+MAP = plt.get_cmap("viridis")
+SHADES = 0.82  # of the map's range; its lightest end is lost on paper
+
+
+def add_options(parser):
+    parser.add_argument("--against", choices=list(X_AXES), default="cpu")
+    parser.add_argument("--colour", choices=list(sweep_file.PARAMETERS),
+                        help="axis that colours the curves (default: the outermost that varies)")
+    sweep_file.add_select(parser)
+
+
+def colour_axis(sweep, asked):
+    axes = sweep.varying()
+    if asked and asked not in axes:
+        raise style.Unusable(f"{sweep.path}: {asked} does not vary; --colour one of "
+                             f"{', '.join(axes) or 'nothing here'}")
+    return asked or (axes[0] if axes else None)
+
+
+def colours(sweep, axis):
+    """Colour, from dark to light, and line style of every value of an axis."""
+    values = sweep.values(axis) if axis else [None]
+    steps = np.linspace(0, SHADES, len(values)) if len(values) > 1 else [0.3]
+    return {value: {"color": MAP(step), "linestyle": style.LINES[number % 4]}
+            for number, (value, step) in enumerate(zip(values, steps))}
+
+
+def traces(sweep, method, column):
+    """{point: (x, relative error)} of the selected points; rows without an error cannot be shown on
+    log axes."""
+    prefix = sweep.prefixes[method] + "trace/"
+    point, x, error = (sweep.result.values(prefix + name)
+                       for name in ("point", column, "relative_error"))
+    if not len(point) == len(x) == len(error):
+        raise style.Unusable(f"{sweep.path}: columns of {prefix} differ in length")
+    shown = (x > 0) & (error > 0)
+    return {row: (x[shown & (point == row)], error[shown & (point == row)]) for row in sweep.rows}
+
+
+def missed(sweep, method):
+    """Points that ended above the target or without an error, the worst first."""
+    target = sweep.target()
+    if target is None:
+        return []
+    error = sweep.of(method, "relative_error")[sweep.rows]
+    late = sweep.rows[(error > target) | (error == 0)]
+    return sorted(late, key=lambda row: -sweep.of(method, "relative_error")[row])
+
+
+def describe(sweep, method, row):
+    names = sweep.varying() or ["optical_depth"]
+    error = sweep.of(method, "relative_error")[row]
+    reached = f"{100 * error:.2g} %" if error > 0 else "no estimate"
+    return f"{sweep.label([n for n in names if n in sweep.columns], row)}: {reached}"
+
+
+def draw_guide(axis, curves):
+    """Slope -1/2, below the lowest curve."""
+    x, error = min(curves, key=lambda curve: np.min(curve[1] * np.sqrt(curve[0])))
+    ends = np.array([x.min(), x.max()])
+    axis.plot(ends, 0.6 * np.min(error * np.sqrt(x)) / np.sqrt(ends), color="black", linewidth=0.7,
+              linestyle=(0, (1, 2)), zorder=0)
+
+
+def draw_panel(axis, sweep, method, arguments, looks, coloured):
+    curves = traces(sweep, method, X_AXES[arguments.against][0])
+    shown = {row: curve for row, curve in curves.items() if len(curve[0]) > 0}
+    if not shown:
+        raise style.Unusable(f"{sweep.path}: no trace has a checkpoint with an error")
+    thin = 0.9 if len(shown) < 30 else 0.5
+    late = missed(sweep, method)
+    for row, (x, error) in shown.items():
+        look = looks[sweep.columns[coloured][row] if coloured else None]
+        axis.plot(x, error, linewidth=thin, alpha=0.9, **look)
+        axis.plot(x[-1], error[-1], color=look["color"], zorder=3,
+                  **({"marker": "X", "markersize": 6, "markeredgecolor": "black",
+                      "markeredgewidth": 0.6} if row in late else
+                     {"marker": "o", "markersize": 1.8}))
+    if sweep.target():
+        axis.axhline(sweep.target(), color=style.GREY, linewidth=0.8, zorder=0)
+    draw_guide(axis, list(shown.values()))
+    axis.set(xscale="log", yscale="log", xlabel=X_AXES[arguments.against][1],
+             ylabel="relative error")
+    name_missed(axis, sweep, method, late, len(shown))
+
+
+def name_missed(axis, sweep, method, late, count):
+    """Above the panel: its method, and which points missed the target."""
+    head = f"{sweep_file.METHODS[method]}: " if method else ""
+    if sweep.target() is None:
+        axis.set_title(f"{head}{count} points, no target", fontsize=7)
+        return
+    lines = [f"{head}{len(late)} of {len(sweep.rows)} points missed {100 * sweep.target():g} %"]
+    lines += [describe(sweep, method, row) for row in late[:MOST_NAMED]]
+    if len(late) > MOST_NAMED:
+        lines.append(f"and {len(late) - MOST_NAMED} more")
+    axis.set_title("\n".join(lines), fontsize=7, loc="left")
+    for row in late:
+        print(f"{head}missed the target: {describe(sweep, method, row)}".replace("$", ""))
+
+
+def entries(sweep, coloured, looks):
+    for value, look in looks.items() if coloured else []:
+        yield plt.Line2D([], [], **look), sweep_file.text(coloured, value)
+    if sweep.target():
+        yield plt.Line2D([], [], color=style.GREY, linewidth=0.8), "target"
+    if any(missed(sweep, method) for method in sweep.prefixes):
+        yield plt.Line2D([], [], color="0.8", linestyle="none", marker="X", markersize=6,
+                         markeredgecolor="black", markeredgewidth=0.6), "missed the target"
+    yield plt.Line2D([], [], color="black", linewidth=0.7, linestyle=(0, (1, 2))), "slope $-1/2$"
+
+
+def share_limits(axes):
+    """The same decades for both methods."""
+    for axis in axes:
+        style.whole_decades(axis)
+    limits = np.array([(*axis.get_xlim(), *axis.get_ylim()) for axis in axes])
+    for axis in axes:
+        axis.set_xlim(limits[:, 0].min(), limits[:, 1].max())
+        axis.set_ylim(limits[:, 2].min(), limits[:, 3].max())
+
+
+def draw(results, arguments):
+    sweep = sweep_file.read(results, arguments)
+    coloured = colour_axis(sweep, arguments.colour)
+    looks = colours(sweep, coloured)
+    if len(looks) > MOST_COLOURS:
+        raise style.Unusable(f"{sweep.path}: {len(looks)} values of {coloured}, at most "
+                             f"{MOST_COLOURS} are legible; --colour another or "
+                             f"--select {sweep.example(coloured, MOST_COLOURS)}")
+    across = len(sweep.prefixes)
+    named = max(min(len(missed(sweep, method)), MOST_NAMED + 1) for method in sweep.prefixes)
+    figure, axes = plt.subplots(1, across, squeeze=False,
+                                figsize=([style.COLUMN, style.PAGE][across - 1],
+                                         2.7 + 0.13 * named))
+    for axis, method in zip(axes.flat, sweep.prefixes):
+        draw_panel(axis, sweep, method, arguments, looks, coloured)
+    share_limits(axes[0])
+    style.legend_above(figure, list(entries(sweep, coloured, looks)))
+    return figure
+
+
+if __name__ == "__main__":
+    style.main(draw, __doc__, add_options=add_options)

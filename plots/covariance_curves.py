@@ -1,0 +1,91 @@
+"""Memory-effect curves of any number of results of `covariance` and `validate` in one panel."""
+
+import pathlib
+from dataclasses import dataclass
+
+import correlation_panel
+import style
+from sweep_file import METHODS, method_look
+
+import matplotlib.pyplot as plt
+import numpy as np
+
+
+@dataclass
+class Series:
+    """One method's field correlation [tilt], of one result file."""
+
+    label: str
+    tilt: np.ndarray  # mrad
+    correlation: np.ndarray
+    error: np.ndarray
+    look: dict
+
+
+def read_groups(result):
+    """(method, prefix of its datasets): both groups of a `validate` result, the root of others."""
+    if result.has("mc/field_correlation"):
+        return [(method, f"{method}/") for method in METHODS]
+    if not result.has("field_correlation"):
+        raise style.Unusable(f"{result.path}: has no field_correlation; needs a sweep, or "
+                             'covariance = "memory_effect"')
+    method = str(result.attribute("plan", "")).split(":")[0]
+    if method not in METHODS:
+        raise style.Unusable(f"{result.path}: attribute plan names neither method, mc nor wave")
+    return [(method, "")]
+
+
+def file_look(method, number):
+    """A colour and symbol per file."""
+    look = style.look(number)
+    return {"marker": look["marker"], **method_look(method, look["color"])}
+
+
+def read_series(results):
+    series = []
+    for number, result in enumerate(results):
+        for method, prefix in read_groups(result):
+            name = f"{prefix}field_correlation"
+            if result.dataset(name).ndim != 1:
+                raise style.Unusable(f"{result.path}: {name} is not a curve over tilts")
+            series.append(Series(f"{pathlib.Path(result.path).stem}, {METHODS[method]}",
+                                 1000 * result.axis(name, 0), np.real(result.values(name)),
+                                 result.values(f"{name}_error"), file_look(method, number)))
+    return series
+
+
+def shared(results, name):
+    """An attribute that all files agree on, else None."""
+    values = {result.attribute(name) for result in results}
+    return values.pop() if len(values) == 1 else None
+
+
+def share_q(results):
+    """Whether a tilt is the same q L in all files."""
+    if shared(results, "depth") is None or not all(result.has("tilt_q") for result in results):
+        return False
+    scales = [(result.axis("tilt_q", 0), result.values("tilt_q")) for result in results]
+    return all(np.array_equal(scales[0], other) for other in scales)
+
+
+def title(results):
+    names = {"optical_depth": "OD", "g": "$g$", "albedo": "albedo"}
+    values = {name: shared(results, name) for name in names}
+    return "\n".join(f"{names[name]} = {value:.3g}" for name, value in values.items()
+                     if value is not None)
+
+
+def draw(results):
+    series = read_series(results)
+    figure, axis = plt.subplots(figsize=(style.COLUMN, 2.6))
+    correlation_panel.prepare(axis)
+    handles = [correlation_panel.draw_curve(axis, s.tilt, s.correlation, s.error, s.look)
+               for s in series]
+    correlation_panel.write_title(axis, title(results), [s.correlation for s in series])
+    if share_q(results):
+        correlation_panel.add_q_axis(axis, results[0], series[0].tilt)
+    axis.set_xlabel("tilt (mrad)")
+    axis.set_ylabel(r"intensity correlation $C_I$")
+    figure.legend(handles, [s.label for s in series], loc="lower center",
+                  bbox_to_anchor=(0.5, 1.0), ncol=2)
+    return figure

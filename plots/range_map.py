@@ -1,0 +1,144 @@
+#!/usr/bin/env python3
+"""Map of the memory-effect range, q L at C_I = 1/2, over (g, albedo) of a sweep, one panel per
+optical depth (and method). Hatched: bounds, where a curve does not cross 1/2 within the tilts."""
+
+import style
+
+import sweep_file
+
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.colors import LogNorm
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
+MOST_PANELS, MOST_CELLS = 12, 16
+MAP = plt.get_cmap("cividis")  # even steps of lightness, so that it survives in grey
+STEPS = (1, 1.5, 2, 3, 5, 7)  # contours and marks of the scale, in every decade
+SIGNS = {0: "", 1: ">", 2: "<"}
+
+
+def check(sweep):
+    """The axis of the panels, or None; refuses what is no map."""
+    for name in ("g", "albedo"):
+        if sweep.is_list or name not in sweep.axes or len(sweep.values(name)) < 2:
+            raise style.Unusable(f"{sweep.path}: a map needs a grid with at least two values of g "
+                                 "and of albedo")
+        if len(sweep.values(name)) > MOST_CELLS:
+            raise style.Unusable(f"{sweep.path}: {len(sweep.values(name))} values of {name}, at "
+                                 f"most {MOST_CELLS} are legible; "
+                                 f"try --select {sweep.example(name, MOST_CELLS)}")
+    others = [name for name in sweep.varying() if name not in ("g", "albedo")]
+    panels = others[-1] if others else None
+    if len(others) > 1:
+        raise style.Unusable(f"{sweep.path}: besides g, albedo and {panels} it varies {others[0]}; "
+                             f"try --select {sweep.example(others[0], 1)}")
+    if panels and len(sweep.values(panels)) * len(sweep.prefixes) > MOST_PANELS:
+        raise style.Unusable(f"{sweep.path}: more than {MOST_PANELS} panels do not fit a page; "
+                             f"try --select {sweep.example(panels, 4)}")
+    return panels
+
+
+def table(sweep, rows, values):
+    """Values of a panel's points as [albedo, g], albedo rising; they are a part of a grid."""
+    order = np.lexsort((sweep.columns["g"][rows], sweep.columns["albedo"][rows]))
+    return values[rows[order]].reshape(len(sweep.values("albedo")), len(sweep.values("g")))
+
+
+def number(value):
+    """Three digits, the same decimals for all of a magnitude."""
+    return f"{value:.{max(0, 2 - int(np.log10(max(value, 1))))}f}"
+
+
+def draw_numbers(axis, values, censored, norm):
+    size = min(6.5, 37 / values.shape[1])
+    for (row, column), value in np.ndenumerate(values):
+        kind = censored[row, column]
+        dark = norm(value) < 0.55
+        behind = {"facecolor": MAP(norm(value)), "edgecolor": "none", "pad": 0.4}
+        axis.text(column, row, f"{SIGNS[kind]}{value:.3g}" if kind else number(value), ha="center",
+                  va="center", fontsize=size, color="white" if dark else "black", bbox=behind)
+
+
+def draw_contours(axis, logarithm, levels):
+    """Between the centres of the cells, whose steps need not be equal; none beyond bounds."""
+    crossed = [level for level in levels if logarithm.min() < level < logarithm.max()]
+    if crossed and min(logarithm.shape) > 1:
+        axis.contour(logarithm, crossed, colors="white", linewidths=1.6)
+        axis.contour(logarithm, crossed, colors="black", linewidths=0.7)
+
+
+def draw_panel(axis, sweep, rows, method, norm):
+    values, censored = (table(sweep, rows, sweep.of(method, name))
+                        for name in ("memory_effect_range", "range_censored"))
+    edges = [np.arange(count + 1) - 0.5 for count in reversed(values.shape)]
+    image = axis.pcolormesh(*edges, values, cmap=MAP, norm=norm, edgecolors="face", linewidth=0.2)
+    for row, column in np.argwhere(censored > 0):
+        axis.add_patch(plt.Rectangle((column - 0.5, row - 0.5), 1, 1, fill=False, hatch="////",
+                                     edgecolor="0.4", linewidth=0))
+    levels = [step * 10.0**power for power in range(-3, 4) for step in STEPS
+              if norm.vmin < step * 10.0**power < norm.vmax]
+    draw_contours(axis, np.ma.array(np.log(values), mask=censored > 0), np.log(levels))
+    draw_numbers(axis, values, censored, norm)
+    for side, name in ((axis.xaxis, "g"), (axis.yaxis, "albedo")):
+        side.set_ticks(range(len(sweep.values(name))), style.short(sweep.values(name)))
+    axis.tick_params(length=0)
+    axis.set_xlabel("mean cosine $g$")
+    axis.set_ylabel("albedo")
+    return image, levels
+
+
+def colour_bar(figure, axes, image, levels):
+    bar = figure.colorbar(image, ax=[axis for axis in axes.flat if axis.figure], aspect=35,
+                          pad=0.015, fraction=0.05)
+    bar.ax.yaxis.set_major_locator(LogLocator(subs=STEPS))
+    bar.ax.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    bar.ax.yaxis.set_minor_formatter(NullFormatter())
+    for level in levels:
+        bar.ax.axhline(level, color="white", linewidth=1.6)
+        bar.ax.axhline(level, color="black", linewidth=0.7)
+    bar.set_label(r"range $qL$ at $C_I = 1/2$, lines: contours")
+
+
+def worst_error(sweep):
+    """Largest relative error of a range that is no bound, in words."""
+    errors = []
+    for method in sweep.prefixes:
+        known = sweep.rows[sweep.of(method, "range_censored")[sweep.rows] == 0]
+        errors += list(sweep.of(method, "memory_effect_range_error")[known]
+                       / sweep.of(method, "memory_effect_range")[known])
+    return f"standard errors up to {100 * max(errors):.2g} %" if errors else "bounds alone"
+
+
+def add_legend(figure, sweep):
+    entries = []
+    if any((sweep.of(method, "range_censored")[sweep.rows] > 0).any() for method in sweep.prefixes):
+        entries.append((plt.Rectangle((0, 0), 1, 1, fill=False, hatch="////", edgecolor="0.4"),
+                        "bound: no crossing of 1/2 within the tilts"))
+    entries.append((plt.Line2D([], [], linestyle="none"), worst_error(sweep)))
+    style.legend_above(figure, entries)
+
+
+def draw(results, arguments):
+    sweep = sweep_file.read(results, arguments)
+    panels = check(sweep)
+    shown = [(method, value, rows) for method in sweep.prefixes
+             for value, rows in sweep.groups(panels, sweep.rows)]
+    across = min(3, len(shown) // len(sweep.prefixes) if len(shown) != 4 else 2)
+    figure, axes = style.page_of_panels(-(-len(shown) // across), across, len(shown))
+    ranges = np.concatenate([sweep.of(method, "memory_effect_range")[rows]
+                             for method, _, rows in shown])
+    spread = 1 if ranges.max() > 1.1 * ranges.min() else 1.2  # for a scale with room for marks
+    norm = LogNorm(ranges.min() / spread, ranges.max() * spread)
+    for axis, (method, value, rows) in zip(axes.flat, shown):
+        image, levels = draw_panel(axis, sweep, rows, method, norm)
+        words = [sweep_file.METHODS[method]] if method else []
+        words += [sweep_file.text(panels, value)] if panels else []
+        axis.set_title(", ".join(words), fontsize=7.5, pad=3)
+    style.outer_labels(axes, len(shown))
+    colour_bar(figure, axes, image, levels)
+    add_legend(figure, sweep)
+    return figure
+
+
+if __name__ == "__main__":
+    style.main(draw, __doc__, add_options=sweep_file.add_select)
