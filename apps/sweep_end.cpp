@@ -6,6 +6,7 @@
 
 #include "apps/subcommands.h"
 #include "core/provenance.h"
+#include "core/ranks.h"
 
 namespace flatspeckle::apps {
 
@@ -74,6 +75,9 @@ int write_result(const SweepPlan& plan, const SweepResults& results, double wall
   file.attribute("/", "identity", plan.identity());
   file.attribute("/", "format", std::uint64_t{2});
   file.attribute("/", "complete", is_whole(results));
+  file.attribute("/", "ranks", std::int64_t{ranks().size});
+  if (const auto target = plan.stop(0).target_error)
+    file.attribute("/", "target_error", *target);
   write_sweep(file, plan, results);
   file.commit();
   std::cout << "wrote " << plan.settings.out << " (" << count_text(plan, results) << ")\n";

@@ -1,8 +1,6 @@
 """Reading of a sweep's result file. A grid and a list of points look alike here: a table with one
 row per point, in row-major order of the grid."""
 
-import tomllib
-
 import style
 
 import matplotlib.pyplot as plt
@@ -12,7 +10,6 @@ METHODS = {"mc": "Monte Carlo", "wave": "wave solver"}
 PARAMETERS = ("density", "radius", "index", "optical_depth", "g", "albedo")
 NAMES = {"density": "density", "radius": "radius", "index": "index", "optical_depth": "OD",
          "g": "$g$", "albedo": "albedo", "point": "point"}
-DEFAULT_TARGET = 0.02  # of the program, where a run is given no other stop
 
 
 class Sweep:
@@ -123,9 +120,7 @@ class Sweep:
 
     def target(self):
         """The relative error that the run was to reach, or None where it stops otherwise."""
-        config = tomllib.loads(self.result.attribute("config", ""))
-        default = None if {"samples", "seconds"} & config.keys() else DEFAULT_TARGET
-        return config.get("target_error", default)
+        return self.result.attribute("target_error")
 
 
 def text(name, value):

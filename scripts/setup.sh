@@ -37,12 +37,21 @@ install_build_packages() {
     libfftw3-dev libcli11-dev librandom123-dev doctest-dev libboost-dev python3-h5py
 }
 
+# What is tested where it is there.
+install_test_packages() {
+  install_missing libopenmpi-dev openmpi-bin python3-xarray python3-h5netcdf
+}
+
+has_mpi() {
+  command -v mpicxx >/dev/null && command -v mpirun >/dev/null
+}
+
 install_plot_packages() {
   install_missing python3-h5py python3-matplotlib
 }
 
-# build_release TARGET: into build/release.
+# build_release TARGET OPTION...: into build/release.
 build_release() {
-  cmake --preset release
+  cmake --preset release "${@:2}"
   cmake --build --preset release --parallel "$jobs" --target "$1"
 }

@@ -5,6 +5,7 @@ set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
 
 install_build_packages
-build_release all
+install_test_packages
+build_release all "-DFLATSPECKLE_MPI=$(has_mpi && echo ON || echo OFF)"
 ctest --preset release --parallel "$jobs"
 echo "All tests passed in $SECONDS s."
