@@ -22,18 +22,12 @@ def own_datasets(group):
     return {name: item for name, item in group.items() if isinstance(item, h5py.Dataset)}
 
 
-def has_bare_axis(dataset):
-    return not is_scale(dataset) and any(len(axis) == 0 for axis in dataset.dims)
-
-
 class Xarray(ResultsTest):
     def open(self, path, group="/"):
         """The recipe of docs/format.md: coordinates of a group come from the root."""
         import xarray
-        with h5py.File(path) as file:
-            bare = any(map(has_bare_axis, own_datasets(file[group]).values()))
-        dataset = xarray.open_dataset(path, engine="h5netcdf", group=group,
-                                      **({"phony_dims": "sort"} if bare else {}))
+        keys = {"phony_dims": "sort"} if group.startswith("/state") else {}
+        dataset = xarray.open_dataset(path, engine="h5netcdf", group=group, **keys)
         self.addCleanup(dataset.close)
         if group == "/":
             return dataset
