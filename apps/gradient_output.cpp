@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <functional>
-#include <numeric>
 
 #include "apps/moments_output.h"
 #include "apps/moments_table.h"
@@ -34,9 +33,8 @@ ByParameter each(ByParameter parts, const std::function<Estimate(const Estimate&
 class Gradients {
  public:
   Gradients(ResultFile& file, const std::vector<std::string>& parameters) : file_(file) {
-    std::vector<double> numbers(parameters.size());
-    std::iota(numbers.begin(), numbers.end(), 0.0);
-    file_.scale("parameter", numbers, "1", "what derivatives are by: see the attribute names");
+    file_.numbered_scale("parameter", parameters.size(),
+                         "what derivatives are by: see the attribute names");
     file_.attribute("parameter", "names", parameters);
   }
 
@@ -117,7 +115,7 @@ void write_gradient(ResultFile& file, const Scene& scene, const mc::GradientJob&
       return out.complex(
           "gradient",
           each(parts, [&](const Estimate& triangle) { return unpack_full(request, triangle); }),
-          {channel[0], channel[1], channel[0], channel[1]}, "covariance of the fields");
+          matrix_axes(request), "covariance of the fields");
     case Kind::tilt_shift:
     case Kind::translation:
       return;  // refused before the run

@@ -6,7 +6,7 @@
 
 namespace flatspeckle::apps {
 
-/// Prints derivatives and writes them in the shapes of the README. The request's axes must have
+/// Prints derivatives and writes them in the shapes of docs/format.md. The request's axes must have
 /// been written.
 void write_gradient(ResultFile& file, const Scene& scene, const mc::GradientJob& job,
                     const GroupedSums& sums);

@@ -32,7 +32,7 @@ void write_mean(MomentsGroup& group, const CovarianceRequest& request, const Est
 }
 
 void write_pair_axis(ResultFile& file, const CovarianceRequest& request) {
-  file.scale("pair", counting(request.entries.size()), "1", "requested pair");
+  file.numbered_scale("pair", request.entries.size(), "requested pair");
   std::vector<double> angles[4];
   for (const auto& [a, b] : request.entries) {
     angles[0].push_back(request.lights[request.channels[a].light].angle);
@@ -42,6 +42,21 @@ void write_pair_axis(ResultFile& file, const CovarianceRequest& request) {
   }
   const char* names[] = {"pair_light_1", "pair_view_1", "pair_light_2", "pair_view_2"};
   for (std::size_t i = 0; i < 4; ++i) file.dataset(names[i], angles[i], {"pair"}, "rad", "angle");
+}
+
+/// The second half of matrix_axes.
+void write_second_axes(ResultFile& file, const CovarianceRequest& request) {
+  const std::string light = light_axis(request) + "_2", view = view_axis(request) + "_2";
+  if (light == "light_angle_2")
+    file.scale(light, request.lights.angles(), "rad", "direction of the second light");
+  else
+    file.numbered_scale(light, request.lights.size(), "second light");
+  std::vector<double> angles;
+  for (const View& seen : request.views) angles.push_back(seen.angle);
+  if (view == "view_angle_2")
+    file.scale(view, angles, "rad", "direction of the second view");
+  else
+    file.numbered_scale(view, request.views.size(), "second near-field sensor");
 }
 
 }  // namespace
@@ -65,6 +80,12 @@ std::string light_axis(const CovarianceRequest& request) {
 
 std::string view_axis(const CovarianceRequest& request) {
   return request.views.front().near ? "sensor" : "view_angle";
+}
+
+// Each axis has a scale of its own: xarray cannot tell two axes of one name apart.
+std::vector<Axis> matrix_axes(const CovarianceRequest& request) {
+  const std::string light = light_axis(request), view = view_axis(request);
+  return {light, view, light + "_2", view + "_2"};
 }
 
 std::string covariance_units(const Scene& scene) {
@@ -123,7 +144,7 @@ void write_view_axis(ResultFile& file, const std::vector<View>& views) {
     file.scale("view_angle", angle, "rad", "direction of view, from +z towards +x");
     return;
   }
-  file.scale("sensor", counting(views.size()), "1", "near-field sensor");
+  file.numbered_scale("sensor", views.size(), "near-field sensor");
   file.dataset("sensor_x", x, {"sensor"}, "length", "transverse position");
   file.dataset("sensor_z", z, {"sensor"}, "length", "depth");
 }
@@ -141,7 +162,7 @@ void write_light_axis(ResultFile& file, const Lights& lights) {
     return;
   }
   const bool beams = lights.all(Light::Kind::beam);
-  file.scale("light", counting(lights.size()), "1", beams ? "Gaussian beam" : "point source");
+  file.numbered_scale("light", lights.size(), beams ? "Gaussian beam" : "point source");
   file.dataset("light_x", x, {"light"}, "length", "transverse position of the focus or source");
   file.dataset("light_z", z, {"light"}, "length", "depth of the focus or source");
   if (!beams) return;
@@ -175,6 +196,7 @@ void write_axes(ResultFile& file, const CovarianceRequest& request) {
   write_light_axis(file, lights);
   write_view_axis(file, views);
   write_move_axes(file, request);
+  if (request.kind == Kind::full) write_second_axes(file, request);
 }
 
 bool few_steps(const std::vector<double>& steps, const mc::Range& range) {
@@ -218,8 +240,8 @@ void write_moments(ResultFile& file, const std::string& group_name, const FieldJ
       group.covariance("covariance", moments.covariance, {"pair"}, "covariance of the pair");
       break;
     case Kind::full:
-      group.covariance("covariance", unpack_full(request, moments.covariance),
-                       {light, view, light, view}, "covariance of the fields");
+      group.covariance("covariance", unpack_full(request, moments.covariance), matrix_axes(request),
+                       "covariance of the fields");
       break;
     case Kind::memory_effect:
     case Kind::tilt_shift:

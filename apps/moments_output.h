@@ -23,6 +23,8 @@ void write_view_axis(ResultFile& file, const std::vector<View>& views);
 /// The names of the axes of lights and views.
 std::string light_axis(const CovarianceRequest& request);
 std::string view_axis(const CovarianceRequest& request);
+/// Of a full covariance: light, view, and once more with _2 after their names.
+std::vector<Axis> matrix_axes(const CovarianceRequest& request);
 /// Of a covariance: in the square of the field's units. Far fields are lengths^(1/2), and a slab's
 /// covariance counts per unit length.
 std::string covariance_units(const Scene& scene);
@@ -42,8 +44,8 @@ void note_few_steps();
 /// "1.36 +- 0.01", or which tilts are missing.
 std::string range_text(const mc::Range& range, double error);
 
-/// Mean field and covariance in the shapes of the README, each with its standard error; `group` is
-/// empty for the root. Axes must have been written; moments are those of job and sums.
+/// Mean field and covariance in the shapes of docs/format.md, each with its standard error; `group`
+/// is empty for the root. Axes must have been written; moments are those of job and sums.
 void write_moments(ResultFile& file, const std::string& group, const FieldJob& job,
                    const Scene& scene, const GroupedSums& sums, const FieldMoments& moments);
 

@@ -15,8 +15,8 @@ using Kind = CovarianceRequest::Kind;
 
 void write_range(MomentsGroup& group, const std::string& name, const mc::RangeEstimate& estimate,
                  double scale, const std::string& units, const std::string& long_name) {
-  group.write<double>(name, {estimate.range.value * scale}, {estimate.error * scale},
-                      {std::size_t{1}}, units, long_name);
+  group.write<double>(name, {estimate.range.value * scale}, {estimate.error * scale}, {}, units,
+                      long_name);
   group.attribute(name, "censored", static_cast<std::uint64_t>(estimate.range.censored));
   const std::string shown =
       range_text({estimate.range.value * scale, estimate.range.censored}, estimate.error * scale);

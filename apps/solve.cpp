@@ -75,7 +75,8 @@ void write_placement(ResultFile& file, const wave::WaveSolution& solution) {
     z.push_back(position.z);
     radius.push_back(scatterer.disk_radius());
   }
-  const std::vector<Axis> axes = {placement.size()};
+  file.numbered_scale("scatterer", placement.size(), "number of the scatterer");
+  const std::vector<Axis> axes = {"scatterer"};
   file.dataset("placement/x", x, axes, "length", "transverse position");
   file.dataset("placement/z", z, axes, "length", "depth");
   file.dataset("placement/radius", radius, axes, "length", "radius, 0 for a point");
@@ -228,7 +229,10 @@ int solve(const Arguments& arguments) {
   write_diagnosis(file, solution.diagnosis());
   write_solve_provenance(file, command.command_line(), keys.settings, started, solution, map_method,
                          clock);
-  if (is_placement_rule(keys.spec)) write_medium(file, make_scene(keys.spec));
+  if (is_placement_rule(keys.spec))
+    write_medium(file, make_scene(keys.spec));
+  else
+    file.attribute("/", "wavelength", keys.spec.wavelength);
   file.commit();
   print_summary(solution);
   if (grid) std::printf("%s\n", map_method.c_str());

@@ -96,7 +96,8 @@ void write_comparison(ResultFile& file, const Comparison& comparison) {
   const std::size_t entries = comparison.wave.value.size();
   std::vector<double> deviation;
   for (std::size_t e = 0; e < entries; ++e) deviation.push_back(comparison.deviation(e));
-  file.dataset("deviation", deviation, {entries}, "1",
+  file.numbered_scale("entry", entries, "number of the entry");
+  file.dataset("deviation", deviation, {"entry"}, "1",
                "|mc - wave| in combined standard errors, per entry in the order of the request");
   file.attribute("/", "bias_allowance", comparison.bias);
 }

@@ -313,6 +313,13 @@ void ResultFile::scale(const std::string& name, std::span<const double> values,
   writer.describe(units, long_name);
 }
 
+void ResultFile::numbered_scale(const std::string& name, std::size_t count,
+                                const std::string& long_name) {
+  std::vector<double> numbers(count);
+  std::iota(numbers.begin(), numbers.end(), 0.0);
+  scale(name, numbers, "1", long_name);
+}
+
 void ResultFile::dataset(const std::string& name, std::span<const double> values,
                          const std::vector<Axis>& axes, const std::string& units,
                          const std::string& long_name) {

@@ -51,6 +51,8 @@ class ResultFile {
   /// values have no unit.
   void scale(const std::string& name, std::span<const double> values, const std::string& units,
              const std::string& long_name);
+  /// An axis of things that are only counted: 0, 1, ...
+  void numbered_scale(const std::string& name, std::size_t count, const std::string& long_name);
 
   /// Values in row-major order (last axis fastest). No axes: one scalar.
   void dataset(const std::string& name, std::span<const double> values,

@@ -25,7 +25,9 @@ Trace finite_rows(const Trace& trace) {
 
 void write_trace(ResultFile& file, const std::string& group, const Trace& trace) {
   const Trace rows = finite_rows(trace);
-  const std::vector<Axis> checkpoints{rows.wall_s.size()};
+  const std::string checkpoint = group + "/checkpoint";
+  file.numbered_scale(checkpoint, rows.wall_s.size(), "number of the checkpoint");
+  const std::vector<Axis> checkpoints{checkpoint};
   file.dataset(group + "/wall_s", rows.wall_s, checkpoints, "s", "elapsed time");
   file.dataset(group + "/cpu_s", rows.cpu_s, checkpoints, "s", "processor time, all threads");
   file.dataset(group + "/samples", rows.samples, checkpoints, "1", "samples");

@@ -8,8 +8,8 @@
 
 namespace flatspeckle {
 
-/// Writes group/wall_s, cpu_s [s], samples and relative_error, one row per checkpoint. Rows without
-/// a finite error (fewer than two groups of batches) are left out.
+/// Writes group/wall_s, cpu_s [s], samples and relative_error on the scale group/checkpoint. Rows
+/// without a finite error (fewer than two groups of batches) are left out.
 void write_trace(ResultFile& file, const std::string& group, const Trace& trace);
 
 /// The trace that write_trace wrote. Throws InputError.

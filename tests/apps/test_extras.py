@@ -12,10 +12,11 @@ HG = {"width": 20, "depth": 10, "scatterer": "hg", "optical_depth": 2, "g": 0.5,
 VIEWS = {"light_angles": [0, 0.3], "view_angles": [0.1, 0.5, 3.0]}
 PAIRS = {"covariance": "pairs", "pairs": [0, 0.1, 0.04, 0.14, 0, 0.5, 0, 0.5]}
 LV = ("light_angle", "view_angle")
+MATRIX = (*LV, "light_angle_2", "view_angle_2")
 # request -> the shape of one parameter, and whether it is complex
 REQUESTS = {
     "intensity": (VIEWS, {"gradient": (LV, False)}),
-    "full": ({**VIEWS, "covariance": "full"}, {"gradient": (LV + LV, True)}),
+    "full": ({**VIEWS, "covariance": "full"}, {"gradient": (MATRIX, True)}),
     "pairs": (PAIRS, {"gradient": (("pair",), True)}),
     "memory_effect": (TILTS, {"gradient": (("tilt", "view_angle"), True),
                               "reference_intensity_gradient": (("view_angle",), False),
