@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <numeric>
 
 #include "apps/moments_group.h"
 #include "apps/moves_output.h"
@@ -60,12 +59,6 @@ void write_second_axes(ResultFile& file, const CovarianceRequest& request) {
 }
 
 }  // namespace
-
-std::vector<double> counting(std::size_t n) {
-  std::vector<double> numbers(n);
-  std::iota(numbers.begin(), numbers.end(), 0.0);
-  return numbers;
-}
 
 Estimate part(const Estimate& all, std::size_t first, std::size_t count) {
   const auto from = static_cast<std::ptrdiff_t>(first),

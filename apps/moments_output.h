@@ -9,9 +9,6 @@
 
 namespace flatspeckle::apps {
 
-/// 0, 1, ... n - 1.
-std::vector<double> counting(std::size_t n);
-
 /// Root attributes: wavelength and extent of the medium.
 void write_domain(ResultFile& file, const Scene& scene);
 /// Those and the bulk properties.

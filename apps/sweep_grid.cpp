@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "apps/moments_output.h"
-
 namespace flatspeckle::apps {
 
 namespace {
@@ -66,7 +64,10 @@ std::vector<Axis> write_sweep_grid(ResultFile& file, const SweepPlan& plan,
     grid.emplace_back(quantity.name);
   };
   std::vector<Quantity> beside;
-  if (as_list) add_axis({"point", "1", "number of the point", {}}, counting(scenes.size()));
+  if (as_list) {
+    file.numbered_scale("point", scenes.size(), "number of the point");
+    grid.emplace_back("point");
+  }
   for (const Quantity& quantity : settings) {
     const auto swept = swept_values(plan, quantity.name);
     if (swept.size() < 2) continue;

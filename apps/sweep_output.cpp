@@ -142,7 +142,7 @@ class SweepWriter {
         (all.*column).insert((all.*column).end(), (own.*column).begin(), (own.*column).end());
     }
     write_trace(file_, prefix.substr(0, prefix.size() - 1), all);
-    file_.dataset(prefix + "point", point, {prefix + "checkpoint"}, "1",
+    file_.dataset(prefix + "of_point", point, {prefix + "checkpoint"}, "1",
                   "number of the point, in the order of the grid");
   }
 

@@ -43,7 +43,7 @@ def traces(sweep, method, column):
     log axes."""
     prefix = sweep.prefixes[method] + "trace/"
     point, x, error = (sweep.result.values(prefix + name)
-                       for name in ("point", column, "relative_error"))
+                       for name in ("of_point", column, "relative_error"))
     if not len(point) == len(x) == len(error):
         raise style.Unusable(f"{sweep.path}: columns of {prefix} differ in length")
     shown = (x > 0) & (error > 0)

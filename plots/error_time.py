@@ -33,9 +33,9 @@ def read_traces(result, name):
     columns = np.array([result.values(f"{name}/{column}")
                         for column in ("cpu_s", "samples", "relative_error")])
     method = name.split("/")[0] if "/" in name else ""
-    if not result.has(f"{name}/point"):
+    if not result.has(f"{name}/of_point"):
         return [(method, *shown(*columns))]
-    point = result.values(f"{name}/point")
+    point = result.values(f"{name}/of_point")
     return [(f"{method} point {number}".strip(), *shown(*columns[:, point == number]))
             for number in np.unique(point)]
 

@@ -269,7 +269,7 @@ class Sweep(ResultTest):
         self.check_scales(file)
         self.check_provenance(file, [], "sweep")
         self.check_finite(file)
-        self.assertEqual(set(file["trace/point"][()]), set(range(12)))
+        self.assertEqual(set(file["trace/of_point"][()]), set(range(12)))
         self.check_again("sweep")
 
     def test_a_point_is_what_covariance_gives(self):
