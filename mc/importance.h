@@ -25,6 +25,8 @@ class DepthImportance {
   /// Its derivative, for stretching flights: 0 where the worth rises so little in all that
   /// stretched ones cost more than they give.
   double slope(double z) const;
+  /// The mean slope.
+  double rise() const;
   bool steep() const { return steep_; }
 
  private:

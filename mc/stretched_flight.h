@@ -1,0 +1,38 @@
+#pragma once
+
+#include "grin/free_flight.h"
+
+namespace flatspeckle::mc {
+
+/// A flight that stays inside. Where the worth grows along it as exp(pull mu_t s), half of them are
+/// stretched (Dwivedi 1982): else long ones, rare and worth all the more, carry the result, and
+/// from a pull of 1/2 on its variance has no bound but the depth of the medium.
+class StretchedFlight {
+ public:
+  static constexpr double most_pull = 0.9;
+
+  StretchedFlight(double mu_t, double longest, double pull)
+      : plain_{mu_t, longest},
+        stretched_{(1 - (pull < most_pull ? pull : most_pull)) * mu_t, longest},
+        stretches_(pull > 0) {}
+
+  double sample(double u) const {
+    if (!stretches_) return plain_.sample(u);
+    return u < 0.5 ? stretched_.sample(2 * u) : plain_.sample(2 * u - 1);
+  }
+  double density(double distance) const {
+    if (!stretches_) return plain_.density(distance);
+    return (plain_.density(distance) + stretched_.density(distance)) / 2;
+  }
+  /// Of a flight so long: the density of all flights over that of those sampled.
+  double weight(double distance) const {
+    if (!stretches_) return plain_.probability();
+    return plain_.probability() * plain_.density(distance) / density(distance);
+  }
+
+ private:
+  grin::BoundedFlight plain_, stretched_;
+  bool stretches_;
+};
+
+}  // namespace flatspeckle::mc
