@@ -77,7 +77,8 @@ class PathWalk {
     const double length = flight.sample(random.uniform());
     Tally tally = tally_;
     tally.flight(length);
-    follow({x + length * path_.start, path_.start, flight.weight(length), 1, tally}, random, scorer);
+    follow({x + length * path_.start, path_.start, flight.weight(length), 1, tally}, random,
+           scorer);
     while (!waiting_.empty()) {
       Walker walker = waiting_.back();
       if (--waiting_.back().copies == 0) waiting_.pop_back();

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+
 #include "grin/free_flight.h"
 
 namespace flatspeckle::mc {
@@ -11,28 +13,29 @@ class StretchedFlight {
  public:
   static constexpr double most_pull = 0.9;
 
-  StretchedFlight(double mu_t, double longest, double pull)
-      : plain_{mu_t, longest},
-        stretched_{(1 - (pull < most_pull ? pull : most_pull)) * mu_t, longest},
-        stretches_(pull > 0) {}
+  StretchedFlight(double mu_t, double longest, double pull) : plain_{mu_t, longest}, pull_(pull) {}
 
   double sample(double u) const {
-    if (!stretches_) return plain_.sample(u);
-    return u < 0.5 ? stretched_.sample(2 * u) : plain_.sample(2 * u - 1);
+    if (pull_ <= 0) return plain_.sample(u);
+    return u < 0.5 ? stretched().sample(2 * u) : plain_.sample(2 * u - 1);
   }
   double density(double distance) const {
-    if (!stretches_) return plain_.density(distance);
-    return (plain_.density(distance) + stretched_.density(distance)) / 2;
+    if (pull_ <= 0) return plain_.density(distance);
+    return (plain_.density(distance) + stretched().density(distance)) / 2;
   }
   /// Of a flight so long: the density of all flights over that of those sampled.
   double weight(double distance) const {
-    if (!stretches_) return plain_.probability();
+    if (pull_ <= 0) return plain_.probability();
     return plain_.probability() * plain_.density(distance) / density(distance);
   }
 
  private:
-  grin::BoundedFlight plain_, stretched_;
-  bool stretches_;
+  grin::BoundedFlight stretched() const {
+    return {(1 - std::min(pull_, most_pull)) * plain_.mu_t, plain_.longest};
+  }
+
+  grin::BoundedFlight plain_;
+  double pull_;
 };
 
 }  // namespace flatspeckle::mc

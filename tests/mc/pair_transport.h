@@ -24,8 +24,8 @@ class PairTransport {
   struct Pair {
     double first, second;
   };
-  /// All pairs must share one k (sin first - sin second). `panels` of 10 nodes per quadrant: forward
-  /// peaks of width 1 - g want 0.8 / (1 - g) of them.
+  /// All pairs must share one k (sin first - sin second). `panels` of 10 nodes per quadrant:
+  /// forward peaks of width 1 - g want 0.8 / (1 - g) of them.
   PairTransport(const Medium& medium, const std::vector<Pair>& lights,
                 const std::vector<Pair>& views, int panels);
 

@@ -72,9 +72,8 @@ TEST_CASE("pair transport: isotropic slabs, oblique and tilted, as by the integr
   for (const double light : {0.0, 0.4}) {
     for (const double tilt : {0.0, 1.0, -5.0, 20.0}) {  // q L
       const double q = tilt / depth, optical_depth = 3, view = -0.2;
-      const PairTransport transport(
-          {k, depth, optical_depth / depth, 0.9, henyey_greenstein(0)},
-          {{light, tilted(light, q)}}, {{view, tilted(view, q)}}, 4);
+      const PairTransport transport({k, depth, optical_depth / depth, 0.9, henyey_greenstein(0)},
+                                    {{light, tilted(light, q)}}, {{view, tilted(view, q)}}, 4);
       const tests::IsotropicSlab theory(k, depth, optical_depth / depth, 0.9);
       const Complex expected =
           theory.without_reversed({light, view}, {tilted(light, q), tilted(view, q)});
