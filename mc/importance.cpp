@@ -125,7 +125,9 @@ double DepthImportance::slope(double z) const {
 }
 
 double DepthImportance::rise() const {
-  return steep_ ? (log_worth_.back() - log_worth_.front()) / (step_ * nodes) : 0;
+  constexpr double worthwhile = 1;
+  const double whole = log_worth_.back() - log_worth_.front();
+  return std::abs(whole) > worthwhile ? whole / (step_ * nodes) : 0;
 }
 
 std::size_t DepthImportance::interval(double z) const {

@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <numbers>
 #include <stdexcept>
 
 #include <cblas.h>
+#define lapack_complex_double std::complex<double>
+#define lapack_complex_float std::complex<float>
 #include <lapacke.h>
 
 #include "tests/mc/estimates.h"
@@ -131,8 +134,7 @@ PairTransport::Matrix PairTransport::solve_one_minus(Matrix a, Matrix b) const {
   for (std::size_t i = 0; i < n; ++i) a[i * n + i] += 1;
   const auto size = static_cast<lapack_int>(n);
   std::vector<lapack_int> pivots(n);
-  const auto data = [](Matrix& m) { return reinterpret_cast<lapack_complex_double*>(m.data()); };
-  if (LAPACKE_zgesv(LAPACK_ROW_MAJOR, size, size, data(a), size, pivots.data(), data(b), size))
+  if (LAPACKE_zgesv(LAPACK_ROW_MAJOR, size, size, a.data(), size, pivots.data(), b.data(), size))
     throw std::runtime_error("singular");
   return b;
 }
