@@ -45,8 +45,8 @@ Lights representative_lights(const Scene& scene) {
   return chosen;
 }
 
-FirstScatterer::FirstScatterer(const Scene& scene)
-    : domain_(scene.domain), mu_t_(scene.medium.mu_t) {
+FirstScatterer::FirstScatterer(const Scene& scene, double rise)
+    : domain_(scene.domain), mu_t_(scene.medium.mu_t), pull_(rise / scene.medium.mu_t) {
   for (const Light& light : representative_lights(scene)) {
     switch (light.kind) {
       case Light::Kind::plane:

@@ -5,9 +5,9 @@
 
 #include "core/random.h"
 #include "flatland/scene.h"
-#include "grin/free_flight.h"
 #include "mc/near_rays.h"
 #include "mc/scattering.h"
+#include "mc/stretched_flight.h"
 
 namespace flatspeckle::mc {
 
@@ -17,10 +17,11 @@ Lights representative_lights(const Scene& scene);
 
 /// Samples a path's first scatterer and first direction by the attenuation, shape and phase
 /// function of the representative lights, all having equal shares, and knows the density of the
-/// mixture.
+/// mixture. Plane waves reach deeper than their attenuation where depth is worth it.
 class FirstScatterer {
  public:
-  explicit FirstScatterer(const Scene& scene);
+  /// rise: of the logarithm of what a place is worth, per depth; 0 samples plain attenuation.
+  explicit FirstScatterer(const Scene& scene, double rise = 0);
 
   struct Sample {
     Vec2 x, arrival;
@@ -32,8 +33,8 @@ class FirstScatterer {
       return sample_near(number - plane_.size(), random);
     const Vec2 w = plane_[number];
     const Vec2 entry = sample_entry(w, random);
-    const grin::BoundedFlight flight{mu_t_, domain_.distance_to_edge(entry, w)};
-    return {entry + flight.sample(random.uniform()) * w, w};
+    const double chord = domain_.distance_to_edge(entry, w);
+    return {entry + flight(w, chord).sample(random.uniform()) * w, w};
   }
 
   /// Of the first scatterer alone, per area (per depth of a slab).
@@ -59,8 +60,10 @@ class FirstScatterer {
   double density(Vec2 x, Vec2 w) const {
     const double behind = domain_.distance_to_edge(x, -w);
     const double chord = behind + domain_.distance_to_edge(x, w);
-    return grin::BoundedFlight{mu_t_, chord}.density(behind) / aperture(w);
+    return flight(w, chord).density(behind) / aperture(w);
   }
+
+  StretchedFlight flight(Vec2 w, double chord) const { return {mu_t_, chord, pull_ * w.z}; }
 
   bool has_near() const { return plane_.size() < static_cast<std::size_t>(count_); }
 
@@ -98,7 +101,7 @@ class FirstScatterer {
   }
 
   Domain domain_;
-  double mu_t_;
+  double mu_t_, pull_;
   std::vector<Vec2> plane_;
   std::vector<PointRays> point_;
   std::vector<BeamRays> beam_;

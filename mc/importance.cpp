@@ -124,6 +124,12 @@ double DepthImportance::slope(double z) const {
   return (log_worth_[i + 1] - log_worth_[i]) / step_;
 }
 
+double DepthImportance::rise() const {
+  constexpr double worthwhile = 1;
+  const double whole = log_worth_.back() - log_worth_.front();
+  return std::abs(whole) > worthwhile ? whole / (step_ * nodes) : 0;
+}
+
 std::size_t DepthImportance::interval(double z) const {
   return std::min(static_cast<std::size_t>(z / step_), log_worth_.size() - 2);
 }

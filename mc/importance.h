@@ -25,6 +25,9 @@ class DepthImportance {
   /// Its derivative, for stretching flights: 0 where the worth rises so little in all that
   /// stretched ones cost more than they give.
   double slope(double z) const;
+  /// The mean slope, for stretching the light's flight to the first scatterer: 0 where that gains
+  /// nothing.
+  double rise() const;
   bool steep() const { return steep_; }
 
  private:

@@ -55,8 +55,8 @@ class PathWalk {
         domain_(scene.domain),
         medium_(scene.medium),
         scattering_(scattering),
-        first_(scene),
         importance_(scene),
+        first_(scene, weighted ? importance_.rise() : 0),
         expected_view_(scene, view_ends(scene)),
         tally_(tally) {}
 
@@ -72,11 +72,13 @@ class PathWalk {
     log_worth_first_ = std::max(importance_.log_worth(x.z), 0.0);
     if constexpr (reversed) expected_first_ = expected(x, -path_.start);
     // The first flight stays inside: else most walks of a thin medium would find nothing.
-    const grin::BoundedFlight flight{medium_.mu_t, domain_.distance_to_edge(x, path_.start)};
+    const StretchedFlight flight{medium_.mu_t, domain_.distance_to_edge(x, path_.start),
+                                 pull(x, path_.start)};
     const double length = flight.sample(random.uniform());
     Tally tally = tally_;
     tally.flight(length);
-    follow({x + length * path_.start, path_.start, flight.probability(), 1, tally}, random, scorer);
+    follow({x + length * path_.start, path_.start, flight.weight(length), 1, tally}, random,
+           scorer);
     while (!waiting_.empty()) {
       Walker walker = waiting_.back();
       if (--waiting_.back().copies == 0) waiting_.pop_back();
@@ -121,8 +123,8 @@ class PathWalk {
   double sample_flight(Walker& walker, Vec2 w, RandomStream& random) const {
     const double mu_t = medium_.mu_t;
     if constexpr (weighted) {
-      if (const double pull = importance_.slope(walker.x.z) * w.z / mu_t; pull > 0) {
-        const double stretched = 1 - std::min(pull, 0.9);
+      if (const double gain = pull(walker.x, w); gain > 0) {
+        const double stretched = 1 - std::min(gain, StretchedFlight::most_pull);
         const bool stretch = random.uniform() < 0.5;
         const double flight =
             grin::sample_free_flight(stretch ? stretched * mu_t : mu_t, random.uniform());
@@ -131,6 +133,12 @@ class PathWalk {
       }
     }
     return grin::sample_free_flight(mu_t, random.uniform());
+  }
+
+  /// How fast the worth grows in a direction, per mean free path.
+  double pull(Vec2 x, Vec2 w) const {
+    if constexpr (weighted) return importance_.slope(x.z) * w.z / medium_.mu_t;
+    return 0;
   }
 
   /// The weight window: false if the walker died, or waits as several.
@@ -198,8 +206,8 @@ class PathWalk {
   Domain domain_;
   const BulkMedium& medium_;
   const Scattering& scattering_;
-  FirstScatterer first_;
   DepthImportance importance_;
+  FirstScatterer first_;
   ExpectedContribution expected_view_;
   std::vector<Walker> waiting_;
   [[no_unique_address]] Tally tally_;

@@ -53,6 +53,11 @@ TEST_CASE("optical depth 100, g = 0.99: a hundred turns, one transport mean free
   check_slab(100, 0.99, 1, 300, 100000, 0.1);
 }
 
+TEST_CASE("what crosses deep slabs that absorb strongly: one part in 1e9 and less") {
+  check_slab(30, 0, 0.7, 60, 200000, 0.05);
+  check_slab(40, 0.3, 0.6, 60, 200000, 0.05);
+}
+
 TEST_CASE("optical depth 100, isotropic, albedo 1") {
   check_slab(100, 0, 1, 40, 100000, 0.1);
 }

@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include "mc/memory_effect.h"
+#include "tests/mc/discrete_ordinates.h"
 #include "tests/mc/estimates.h"
 
 namespace flatspeckle::mc {
@@ -55,6 +56,25 @@ TEST_CASE("error bars are honest: estimates of many seeds spread as they say") {
     });
     for (const double ratio : ratios) CHECK(ratio == doctest::Approx(1).epsilon(0.15));
   }
+}
+
+TEST_CASE("error bars are honest behind deep slabs that absorb strongly") {
+  // Where rare paths carry the result, most runs miss them: too low, and too sure.
+  const double optical_depth = 30, albedo = 0.6;
+  const Scene scene =
+      tests::hg_slab(10, {10 / optical_depth, 0, albedo}, intensity_request({0}, {far_view(0)}));
+  const tests::SlabTransport theory({optical_depth, albedo, tests::henyey_greenstein(0)}, {0}, 60);
+  const double expected = theory.covariance_without_reversed(0, 0);
+  constexpr int runs = 200;
+  int within = 0;
+  double sum = 0;
+  for (int i = 0; i < runs; ++i) {
+    const auto found = tests::run(scene, ReversedPaths::no, 12800, i, 100).entries();
+    within += std::abs(found.value[0] - expected) < 2 * found.error[0];
+    sum += found.value[0].real() / runs;
+  }
+  CHECK(within > 0.9 * runs);
+  CHECK(sum == doctest::Approx(expected).epsilon(0.02));
 }
 
 TEST_CASE("error bars of the memory effect and its range are honest") {

@@ -100,6 +100,29 @@ TEST_CASE("slab: first depths are sampled by the density that the weight uses") 
   }
 }
 
+TEST_CASE("first scatterers that reach deeper are sampled by the density that the weight uses") {
+  std::uint64_t seed = 200;
+  for (const double rise : {0.4, -0.4, 3.0}) {
+    for (const double light : {0.3, 2.9}) {
+      CAPTURE(rise);
+      CAPTURE(light);
+      const Scene scene =
+          tests::hg_box(width, depth, {1}, intensity_request({light}, {far_view(0)}));
+      const FirstScatterer first(scene, rise);
+      std::vector<double> probabilities;
+      for (int row = 0; row < rows; ++row)
+        for (int column = 0; column < columns; ++column)
+          probabilities.push_back(cell_probability(first, column, row));
+      flatspeckle::tests::check_chi_square(counts_per_cell(scene, first, ++seed), probabilities);
+    }
+  }
+  // towards what is worth more, and not away from it
+  const Scene scene = tests::hg_slab(10, {1}, intensity_request({0}, {far_view(0)}));
+  const double plain = FirstScatterer(scene).density({0, 8});
+  CHECK(FirstScatterer(scene, 0.5).density({0, 8}) > 10 * plain);
+  CHECK(FirstScatterer(scene, -0.5).density({0, 8}) == plain);
+}
+
 TEST_CASE("several lights: the mixture and first direction have the density that the weight uses") {
   const Scene scene = tests::hg_box(width, depth, {1.5, 0.6},
                                     intensity_request({0, 0.05, 0.4, -1.2}, {far_view(0)}));
