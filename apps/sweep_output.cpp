@@ -33,7 +33,10 @@ class SweepWriter {
  public:
   SweepWriter(ResultFile& file, const SweepPlan& plan, const SweepResults& results)
       : file_(file), plan_(plan), results_(results), points_(finished_points(plan, results)) {
-    for (std::size_t point : points_) scenes_.push_back(plan.scene(point));
+    for (std::size_t point : points_) {
+      scenes_.push_back(plan.scene(point));
+      if (scenes_.size() > 1) scenes_.back().request = {};  // the same at all points, and large
+    }
   }
 
   void write() {
