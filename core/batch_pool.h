@@ -63,7 +63,7 @@ class BatchPool {
   bool may_take(const Run& run) const;
   enum class Use { own, nobodys, others };
   static Use use_of(const Run& run, int rank);
-  Runs::iterator with_certain_batch(int rank, Use least);
+  Runs::iterator with_certain_batch(int rank, Use worst);
   Runs::iterator with_any_batch();
   Batch hand_out(Runs::iterator found, int rank);
   bool should_open() const;
