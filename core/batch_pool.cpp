@@ -175,8 +175,8 @@ void BatchPool::merge(std::size_t number, Run& run, std::unique_lock<std::mutex>
 }
 
 void BatchPool::save_now_and_then(std::size_t number, Run& run) const {
-  constexpr double seconds_between_saves = 60;
-  if (!list_.checkpoint || run.merger->seconds_since_saved() < seconds_between_saves) return;
+  if (!list_.checkpoint || run.merger->seconds_since_saved() < options_.seconds_between_saves)
+    return;
   run.merger->note_saved();
   list_.checkpoint(number);
 }

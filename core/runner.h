@@ -85,6 +85,7 @@ struct PoolOptions {
   int threads = 0;                       ///< 0: as many as there are cores
   std::string label, run_name = "runs";  ///< for the progress; silent without a label
   RankServer* server = nullptr;          ///< to other ranks, where they work too
+  double seconds_between_saves = 60;     ///< of each run, by its checkpoint()
 };
 
 /// reason: samples where all runs have ended, else why they have not.
