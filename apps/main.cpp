@@ -2,6 +2,7 @@
 #include <cctype>
 #include <chrono>
 #include <exception>
+#include <filesystem>
 #include <iostream>
 #include <map>
 #include <new>
@@ -79,6 +80,8 @@ int main(int argc, char** argv) {
   } catch (const InputError& error) {
     return fail(error.what(), ExitStatus::bad_input);
   } catch (const IoError& error) {
+    return fail(error.what(), ExitStatus::io_failed);
+  } catch (const std::filesystem::filesystem_error& error) {
     return fail(error.what(), ExitStatus::io_failed);
   } catch (const std::bad_alloc&) {
     return fail("this scene needs more memory than there is", ExitStatus::bad_input);
