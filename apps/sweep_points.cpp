@@ -11,14 +11,27 @@ namespace flatspeckle::apps {
 
 namespace {
 
+/// One text for one number: the points of a sweep are known by their texts.
 std::string text_of(double value) {
   char digits[32];
+  value += 0.0;  // -0 is 0
   return {digits, std::to_chars(digits, digits + sizeof digits, value).ptr};
+}
+
+std::string text_of(Complex value) {
+  if (value.imag() == 0) return text_of(value.real());
+  return text_of(value.real()) + (value.imag() > 0 ? "+" : "") + text_of(value.imag()) + 'i';
 }
 
 std::vector<std::string> texts_of(std::span<const double> values) {
   std::vector<std::string> texts;
   for (double value : values) texts.push_back(text_of(value));
+  return texts;
+}
+
+std::vector<std::string> texts_of_indices(const std::vector<std::string>& values) {
+  std::vector<std::string> texts;
+  for (const std::string& value : values) texts.push_back(text_of(parse_complex("index", value)));
   return texts;
 }
 
@@ -41,7 +54,7 @@ void set(SceneSpec& spec, const std::string& key, const std::string& value) {
 std::vector<SweepAxis> given_axes(const SweepLists& lists) {
   std::vector<SweepAxis> axes{{"density", texts_of(lists.density)},
                               {"radius", texts_of(lists.radius)},
-                              {"index", lists.index},
+                              {"index", texts_of_indices(lists.index)},
                               {"optical_depth", texts_of(lists.optical_depth)},
                               {"g", texts_of(lists.g)},
                               {"albedo", texts_of(lists.albedo)}};
@@ -68,10 +81,9 @@ std::vector<SweepPoint> product(const std::vector<SweepAxis>& axes) {
 void add_column(const Table& table, const std::string& key, std::vector<SweepAxis>& axes) {
   SweepAxis axis{key, texts_of(table.column(key))};
   if (key == "index" && table.has("index_imaginary")) {
-    const auto imaginary = table.column("index_imaginary");
-    for (std::size_t row = 0; row < imaginary.size(); ++row)
-      if (imaginary[row] != 0)
-        axis.values[row] += (imaginary[row] > 0 ? "+" : "") + text_of(imaginary[row]) + "i";
+    const auto real = table.column("index"), imaginary = table.column("index_imaginary");
+    for (std::size_t row = 0; row < real.size(); ++row)
+      axis.values[row] = text_of(Complex(real[row], imaginary[row]));
   }
   axes.push_back(std::move(axis));
 }
