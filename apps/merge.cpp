@@ -1,5 +1,8 @@
+#include <algorithm>
 #include <filesystem>
 #include <iostream>
+#include <set>
+#include <sstream>
 
 #include "apps/subcommands.h"
 #include "apps/sweep_end.h"
@@ -18,15 +21,44 @@ bool is_shard(const fs::path& path) {
   return path.extension() == ".h5" && path.stem().extension() != ".part" && is_sealed(path);
 }
 
-/// The configuration of the sweep that the folders hold points of.
-std::string config_of(const std::vector<std::string>& folders) {
+/// The configurations of the sweeps that the folders hold points of, each once.
+std::set<std::string> configs_of(const std::vector<std::string>& folders) {
+  std::set<std::string> configs;
   for (const std::string& folder : folders) {
     if (!fs::is_directory(folder)) throw InputError("shards", folder, "is not a folder");
     for (const auto& entry : fs::directory_iterator(folder))
       if (is_shard(entry.path()))
-        return ResultReader(entry.path()).attribute<std::string>("/", "config");
+        configs.insert(without_keys_of_the_work(
+            ResultReader(entry.path()).attribute<std::string>("/", "config")));
   }
-  throw InputError("shards", folders.front(), "holds no finished points of a sweep");
+  if (configs.empty())
+    throw InputError("shards", folders.front(), "holds no finished points of a sweep");
+  return configs;
+}
+
+/// A sweep and what the folders hold of it.
+struct Found {
+  SweepPlan plan;
+  SweepResults results;
+  std::string warnings;
+
+  auto points() const {
+    return std::count_if(results.begin(), results.end(), [](const auto& point) { return point; });
+  }
+};
+
+/// The sweep that most points are of: strays may lie among them, and points of a smaller grid that
+/// has grown.
+Found most_of(const std::vector<std::string>& folders) {
+  std::optional<Found> most;
+  for (const std::string& config : configs_of(folders)) {
+    Found found{sweep_plan_of(config), {}, {}};
+    std::ostringstream warnings;
+    found.results = gather(found.plan, folders, warnings);
+    found.warnings = warnings.str();
+    if (!most || found.points() > most->points()) most = std::move(found);
+  }
+  return *std::move(most);
 }
 
 void require_all(const SweepPlan& plan, const SweepResults& results) {
@@ -56,10 +88,10 @@ int merge(const Arguments& arguments) {
   check_writable(settings.out);
   if (folders.empty()) folders = {shards_of(settings.out)};
 
-  SweepPlan plan = sweep_plan_of(config_of(folders));
+  auto [plan, results, warnings] = most_of(folders);
+  std::cerr << warnings;
   plan.command.text = command.command_line().text;
   plan.settings.out = settings.out;
-  const SweepResults results = gather(plan, folders);
   if (!partial) require_all(plan, results);
   if (finished_points(plan, results).empty())
     throw InputError("shards", folders.front(), "no point is finished by every method");

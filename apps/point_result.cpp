@@ -21,6 +21,7 @@ PointResult point_result(const Scene& scene, const FieldJob& job, const RunState
           .wall_s = state.wall_s,
           .reached = true,
           .plan = {},
+          .started = {},
           .trace = state.trace};
 }
 
@@ -55,6 +56,7 @@ PointResult read_point(const ResultReader& file) {
           .wall_s = attribute("wall_s"),
           .reached = file.attribute<bool>("/", "reached"),
           .plan = file.attribute<std::string>("/", "plan"),
+          .started = file.attribute<std::string>("/", "started"),
           .trace = read_trace(file, "trace")};
 }
 

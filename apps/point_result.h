@@ -18,7 +18,7 @@ struct PointResult {
   std::uint64_t range_censored = 0;                    ///< mc::Range::Censoring
   double relative_error = 0, samples = 0, cpu_s = 0, wall_s = 0;
   bool reached = true;  ///< the target error, if there was one
-  std::string plan;
+  std::string plan, started;
   Trace trace;
 };
 

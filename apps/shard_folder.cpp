@@ -1,6 +1,7 @@
 #include "apps/shard_folder.h"
 
 #include <iostream>
+#include <vector>
 
 #include "core/error.h"
 #include "core/sealed_file.h"
@@ -8,6 +9,20 @@
 namespace flatspeckle::apps {
 
 namespace fs = std::filesystem;
+
+namespace {
+
+/// Whose file it is, finished, unfinished or in the making (core/atomic_file.h); empty for others.
+std::string name_of(const fs::path& path) {
+  std::string text = path.filename().string();
+  if (const auto making = text.rfind(".tmp-"); text.starts_with('.') && making != text.npos)
+    text = text.substr(1, making - 1);
+  for (const std::string ending : {".part.h5", ".h5"})
+    if (text.ends_with(ending)) return text.substr(0, text.size() - ending.size());
+  return "";
+}
+
+}  // namespace
 
 void ShardFolder::make() const {
   std::error_code failed;
@@ -64,11 +79,16 @@ void ShardFolder::write(const std::string& name, Part part, const std::string& i
   if (part == Part::finished) fs::remove(file(name, Part::unfinished));
 }
 
-void ShardFolder::remove(const std::string& name, Part part) {
-  fs::remove(file(name, part));
-}
-
-void ShardFolder::remove_if_empty() const {
+void ShardFolder::remove(const std::set<std::string>& names) const {
+  if (!fs::is_directory(folder_)) return;
+  std::vector<fs::path> ours;
+  for (const auto& entry : fs::directory_iterator(folder_))
+    if (names.contains(name_of(entry.path()))) ours.push_back(entry.path());
+  for (const fs::path& path : ours) {
+    std::error_code failed;
+    if (!fs::remove(path, failed) && failed)
+      throw IoError("removing " + path.string() + " failed: " + failed.message());
+  }
   std::error_code not_empty;
   fs::remove(folder_, not_empty);
 }

@@ -4,6 +4,7 @@
 #include <functional>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 
 #include "core/result_file.h"
@@ -36,9 +37,9 @@ class ShardFolder {
   void write(const std::string& name, Part part, const std::string& identity,
              const std::function<void(ResultFile&)>& contents);
 
-  void remove(const std::string& name, Part part);
-  /// Removes the folder if nothing is left in it.
-  void remove_if_empty() const;
+  /// Removes the files of these names, those that a killed process was writing as well, and the
+  /// folder if nothing is left in it. Throws IoError.
+  void remove(const std::set<std::string>& names) const;
 
  private:
   std::filesystem::path file(const std::string& name, Part part) const;

@@ -20,14 +20,28 @@ namespace {
 
 using Part = ShardFolder::Part;
 
-bool is_complete(const SweepPlan& plan) {
+/// Whether the folder holds anything of this sweep.
+bool has_begun(const SweepPlan& plan, ShardFolder& folder) {
+  for (std::size_t run = 0; run < plan.runs(); ++run)
+    for (Part part : {Part::finished, Part::unfinished})
+      if (folder.has(plan.name(run), part) &&
+          !folder.read(plan.name(run), part, plan.identity(run), [](const ResultReader&) {}))
+        return true;
+  return false;
+}
+
+/// Whether the result is there. Throws InputError where it is that of another run, unless this sweep
+/// was begun to replace it.
+bool is_complete(const SweepPlan& plan, ShardFolder& folder) {
   const std::string& out = plan.settings.out;
   if (!plan.settings.resume || !std::filesystem::exists(out)) return false;
   const ResultReader file(out);
-  if (!file.has_attribute("/", "identity") ||
-      file.attribute<std::string>("/", "identity") != plan.identity())
+  if (file.has_attribute("/", "identity") &&
+      file.attribute<std::string>("/", "identity") == plan.identity())
+    return file.attribute<bool>("/", "complete");
+  if (!has_begun(plan, folder))
     throw InputError("resume: " + out + " holds another run; name another result file");
-  return file.attribute<bool>("/", "complete");
+  return false;
 }
 
 /// The runs of this process's share, scattered over the grid, so that what has been done at any
@@ -38,8 +52,8 @@ std::vector<std::size_t> share_of_runs(const SweepPlan& plan) {
   while (std::gcd(stride, count) != 1) ++stride;
   const SweepShare share = plan.share.value_or(SweepShare{});
   std::vector<std::size_t> runs;
-  for (std::size_t i = share.number; i < count; i += share.count)
-    runs.push_back(i * stride % count);
+  for (std::size_t i = 0; i < count; ++i)
+    if (i % share.count == share.number) runs.push_back(i * stride % count);
   return runs;
 }
 
@@ -58,11 +72,12 @@ void refuse_leftovers(const SweepPlan& plan, const ShardFolder& folder,
 int lead(const SweepPlan& plan, RankServer* server) {
   const std::string& out = plan.settings.out;
   check_writable(out);
-  if (is_complete(plan)) {
+  ShardFolder folder(shards_of(out));
+  if (is_complete(plan, folder)) {
     std::cout << out << " is complete; nothing to resume\n";
+    remove_points(plan, gather(plan, {shards_of(out)}, std::cerr), folder);
     return ExitStatus::done;
   }
-  ShardFolder folder(shards_of(out));
   const auto runs = share_of_runs(plan);
   refuse_leftovers(plan, folder, runs);
   folder.make();

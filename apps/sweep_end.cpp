@@ -29,6 +29,7 @@ Provenance made_of(const SweepPlan& plan, const SweepResults& results, double wa
     made.converged = made.converged && result && result->reached;
     if (!result) continue;
     plans.insert(result->plan);
+    made.started = std::min(made.started, result->started);
     made.cpu_s += result->cpu_s;
     made.samples += result->samples;
   }
@@ -51,7 +52,8 @@ std::string shards_of(const std::string& out) {
   return out + ".shards";
 }
 
-SweepResults gather(const SweepPlan& plan, const std::vector<std::string>& folders) {
+SweepResults gather(const SweepPlan& plan, const std::vector<std::string>& folders,
+                    std::ostream& warnings) {
   SweepResults results(plan.runs());
   for (const std::string& path : folders) {
     ShardFolder folder(path);
@@ -61,7 +63,7 @@ SweepResults gather(const SweepPlan& plan, const std::vector<std::string>& folde
       const auto wrong =
           folder.read(name, Part::finished, plan.identity(run),
                       [&](const ResultReader& file) { results[run] = read_point(file); });
-      if (wrong) std::cerr << "warning: " << path << ": " << name << ' ' << *wrong << '\n';
+      if (wrong) warnings << "warning: " << path << ": " << name << ' ' << *wrong << '\n';
     }
   }
   return results;
@@ -84,9 +86,16 @@ int write_result(const SweepPlan& plan, const SweepResults& results, double wall
   return made.converged ? ExitStatus::done : ExitStatus::error_not_reached;
 }
 
+void remove_points(const SweepPlan& plan, const SweepResults& results, const ShardFolder& folder) {
+  std::set<std::string> names;
+  for (std::size_t run = 0; run < results.size(); ++run)
+    if (results[run]) names.insert(plan.name(run));
+  folder.remove(names);
+}
+
 int end_sweep(const SweepPlan& plan, ShardFolder& folder, const PoolEnd& end) {
   const std::string place = folder.path().string();
-  const SweepResults results = gather(plan, {place});
+  const SweepResults results = gather(plan, {place}, std::cerr);
   if (plan.share || end.reason == StopReason::interrupted) {
     const bool interrupted = end.reason == StopReason::interrupted;
     std::cout << (interrupted ? "interrupted; " : "") << place << " holds "
@@ -100,9 +109,7 @@ int end_sweep(const SweepPlan& plan, ShardFolder& folder, const PoolEnd& end) {
   int status = ExitStatus::error_not_reached;
   if (!finished_points(plan, results).empty()) status = write_result(plan, results, end.wall_s);
   if (is_whole(results)) {
-    for (std::size_t run = 0; run < plan.runs(); ++run)
-      folder.remove(plan.name(run), Part::finished);
-    folder.remove_if_empty();
+    remove_points(plan, results, folder);
   } else {
     std::cout << place << " holds " << count_text(plan, results) << "; --resume goes on\n";
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <iosfwd>
 #include <string>
 #include <vector>
 
@@ -13,9 +14,11 @@ namespace flatspeckle::apps {
 /// The folder beside a sweep's result in which its points gather until all are there.
 std::string shards_of(const std::string& out);
 
-/// What the folders hold of a sweep. Damaged or foreign files are left out, with a word on standard
-/// error.
-SweepResults gather(const SweepPlan& plan, const std::vector<std::string>& folders);
+/// What the folders hold of a sweep. Damaged or foreign files are left out, with a warning.
+SweepResults gather(const SweepPlan& plan, const std::vector<std::string>& folders,
+                    std::ostream& warnings);
+/// Removes from the folder what these results were read from.
+void remove_points(const SweepPlan& plan, const SweepResults& results, const ShardFolder& folder);
 
 /// Writes the result of what is finished to plan.settings.out and returns the exit status. wall_s:
 /// what the call took that ended the sweep.

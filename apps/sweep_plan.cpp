@@ -83,6 +83,7 @@ void check_points(const SweepPlan& plan) {
     if (scene.medium.mu_s == 0)
       throw InputError("albedo", scene.medium.albedo,
                        "what does not scatter has no correlation; must be in (0, 1]");
+    plan.stop(run);  // checks
     if (plan.method(run) == "wave") note_rounding(scene);
     if (plan.method(run) == "wave" || run == 0) plan.estimation(run, scene);
   }
@@ -132,10 +133,14 @@ std::string SweepPlan::identity(std::size_t run) const {
 }
 
 std::string SweepPlan::identity() const {
-  std::string text = header() + without_keys(command.config, keys_of_the_work);
+  std::string text = header() + without_keys_of_the_work(command.config);
   if (points.is_list)
     for (const SweepPoint& point : points.points) text += points.name(point) + '\n';
   return text;
+}
+
+std::string without_keys_of_the_work(const std::string& config) {
+  return without_keys(config, keys_of_the_work);
 }
 
 std::optional<SweepPlan> sweep_plan(const Arguments& arguments) {

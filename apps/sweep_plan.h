@@ -45,6 +45,8 @@ struct SweepPlan {
 /// From the command line. Nothing if there is nothing to run (--help). Throws InputError for
 /// whatever is wrong, with any of the points too.
 std::optional<SweepPlan> sweep_plan(const Arguments& arguments);
+/// A configuration without the keys that change no number of any run.
+std::string without_keys_of_the_work(const std::string& config);
 /// From a resolved configuration.
 SweepPlan sweep_plan_of(const std::string& config);
 
