@@ -63,6 +63,13 @@ def attributes(path):
         return dict(file.attrs)
 
 
+def catches(process, number):
+    """Whether the process has a handler for this signal by now."""
+    with open(f"/proc/{process.pid}/status") as status:
+        caught = next(line for line in status if line.startswith("SigCgt"))
+    return int(caught.split()[1], 16) >> (number - 1) & 1
+
+
 class ProgramTest(unittest.TestCase):
     """Each test has a folder of its own, in which the program runs."""
 

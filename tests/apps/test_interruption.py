@@ -8,7 +8,7 @@ import unittest
 import h5py
 import numpy as np
 
-from program import BOX, TILTS, ProgramTest, attributes, datasets
+from program import BOX, TILTS, ProgramTest, attributes, catches, datasets
 
 # Each runs for half a second or more on two threads.
 LONG = {
@@ -19,13 +19,6 @@ LONG = {
 }
 SHORT = {**BOX, **TILTS, "samples": 20_000, "threads": 2}
 NEVER = 1e-9  # a target error that is not reached
-
-
-def catches(process, number):
-    """Whether the process has a handler for this signal by now."""
-    with open(f"/proc/{process.pid}/status") as status:
-        caught = next(line for line in status if line.startswith("SigCgt"))
-    return int(caught.split()[1], 16) >> (number - 1) & 1
 
 
 class Interruption(ProgramTest):

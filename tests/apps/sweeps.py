@@ -1,0 +1,102 @@
+"""Sweeps as the tests run them, and what lies in their folders of points."""
+
+import itertools
+import os
+import signal
+import time
+
+import h5py
+import numpy as np
+
+from program import ProgramTest, catches, datasets
+
+# 2 x 2 x 2 points.
+SWEEP = {"depth": 100, "optical_depth": [1, 2], "g": [0, 0.5], "albedo": [1, 0.9],
+         "tilts": [0, 0.001, 0.01], "samples": 4000, "threads": 2}
+# 40 points.
+MANY = {**SWEEP, "optical_depth": [1, 2, 3, 4, 5], "g": [0, 0.3, 0.5, 0.7]}
+# Each of its points takes some tenths of a second of one thread.
+SLOW = {**SWEEP, "g": [0.5], "albedo": [1], "optical_depth": [1, 2, 3], "samples": 600_000}
+NEVER = 1e-9  # a target error that is not reached
+
+
+def names_of(grid, method="mc"):
+    """The names of the points of a grid, in the order of the result."""
+    axes = [[f"{key}={value}" for value in grid[key]]
+            for key in ("optical_depth", "g", "albedo") if key in grid]
+    return ["_".join((method, *point)) for point in itertools.product(*axes)]
+
+
+def cpu_seconds(process):
+    """That it has used by now."""
+    with open(f"/proc/{process.pid}/stat") as stat:
+        fields = stat.read().rpartition(") ")[2].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
+class SweepTest(ProgramTest):
+    def points(self, out="sweep.h5", folder=None):
+        """The folder of a sweep's points."""
+        return (folder or self.folder) / f"{out}.shards"
+
+    def shards(self, out="sweep.h5", folder=None):
+        """What lies there by name, less what is being written just now."""
+        place = self.points(out, folder)
+        return {path.name: path.read_bytes()
+                for path in (sorted(place.iterdir()) if place.is_dir() else [])
+                if not path.name.startswith(".")}
+
+    def finished(self, out="sweep.h5", folder=None):
+        return {name: data for name, data in self.shards(out, folder).items()
+                if name.endswith(".h5") and not name.endswith(".part.h5")}
+
+    def all_points(self, keys, out="sweep.h5"):
+        """Leaves every point finished in the folder and no result yet."""
+        self.call("sweep", **keys, shard="0/1", out=out)
+
+    def wait_until(self, process, condition):
+        """Until it holds, while the process runs."""
+        deadline = time.monotonic() + 60
+        while not condition():
+            time.sleep(0.002)
+            self.assertIsNone(process.poll(), "the sweep ended before")
+            self.assertLess(time.monotonic(), deadline)
+
+    def interrupted(self, number=signal.SIGINT, cpu_s=0.15, **keys):
+        """Signals a sweep after so much work, in the midst of its points, and checks how it ends."""
+        process = self.start("sweep", **keys)
+        self.wait_until(process, lambda: catches(process, number))
+        self.wait_until(process, lambda: cpu_seconds(process) >= cpu_s)
+        process.send_signal(number)
+        status = process.wait(timeout=60)
+        self.assertEqual(status, 75, process.stderr.read())
+
+    def assert_points_equal(self, points, whole, prefix=""):
+        """Each point of a list is found in the whole grid with the same numbers."""
+        points, whole = (datasets(self.folder / path) for path in (points, whole))
+        axes = ("optical_depth", "g", "albedo")
+        for i in range(len(points["point"])):
+            at = tuple(int(np.flatnonzero(whole[key] == points[key][i])[0]) for key in axes)
+            flat = np.ravel_multi_index(at, [len(whole[key]) for key in axes])
+            for name in ("field_correlation", "field_correlation_error", "memory_effect_range",
+                         "memory_effect_range_error", "relative_error", "samples",
+                         "range_censored"):
+                np.testing.assert_array_equal(points[prefix + name][i], whole[prefix + name][at])
+            for name in ("trace/samples", "trace/relative_error"):
+                np.testing.assert_array_equal(
+                    points[prefix + name][points[prefix + "trace/point"] == i],
+                    whole[prefix + name][whole[prefix + "trace/point"] == flat])
+
+    def assert_one_line(self, error, *words):
+        """One line that says why it ended; warnings may come before it."""
+        lines = [line for line in error.splitlines()
+                 if not line.startswith(("warning: ", "note: ", "sweep: "))]
+        self.assertEqual(len(lines), 1, error)
+        self.assertTrue(lines[0].startswith("flatspeckle: "), lines[0])
+        for word in words:
+            self.assertIn(word, lines[0])
+
+
+def is_complete(path):
+    with h5py.File(path) as file:
+        return bool(file.attrs["complete"])

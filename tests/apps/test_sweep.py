@@ -1,0 +1,448 @@
+"""What a sweep gives: the same numbers in one process, in shares and from a list; and bad input."""
+
+import time
+import unittest
+
+import h5py
+import numpy as np
+
+from program import SLAB, attributes, datasets
+from sweeps import MANY, NEVER, SLOW, SWEEP, SweepTest, is_complete, names_of
+
+BOTH = {"domain": "box", "width": 10, "depth": 10, "scatterer": "point", "density": [0.2, 0.4],
+        "tilts": [0, 0.1], "method": "both", "samples": 6000, "wave_samples": 30, "threads": 2}
+DISKS = {"domain": "box", "width": 10, "depth": 10, "scatterer": "tm", "tilts": [0, 0.1],
+         "samples": 3000, "threads": 2}
+
+
+def csv(keys, rows):
+    return "".join(",".join(map(str, row)) + "\n" for row in (keys, *rows))
+
+
+class Shares(SweepTest):
+    def test_threads(self):
+        for keys in (SWEEP, {**SWEEP, "samples": None, "target_error": 0.05}):
+            for threads in (1, 2, 4):
+                self.call("sweep", **{**keys, "threads": threads}, out=f"{threads}.h5")
+            self.assert_same_data("1.h5", "2.h5")
+            self.assert_same_data("1.h5", "4.h5")
+
+    def test_one_after_the_other(self):
+        self.call("sweep", **SWEEP, out="whole.h5")
+        for number in range(3):
+            self.assertEqual(len(self.finished()), (0, 3, 6)[number])
+            done = self.call("sweep", **SWEEP, shard=f"{number}/3", out="sweep.h5")
+            self.assertFalse((self.folder / "sweep.h5").exists())
+        self.assertIn("8 of 8", done.stdout)
+        self.assertEqual(set(self.finished()), {f"{name}.h5" for name in names_of(SWEEP)})
+        self.call("merge", out="sweep.h5")
+        self.assert_same_data("sweep.h5", "whole.h5")
+        self.check_attributes("sweep.h5", "whole.h5")
+
+    def check_attributes(self, merged, whole):
+        merged, whole = attributes(self.folder / merged), attributes(self.folder / whole)
+        for key in ("identity", "seed", "samples", "plan", "complete", "converged", "version"):
+            self.assertEqual(merged[key], whole[key], key)
+        self.assertIn("merge", merged["command_line"])
+
+    def test_began_when_the_first_share_did(self):
+        self.call("sweep", **SWEEP, shard="1/2", out="sweep.h5")
+        began = {attributes(self.points() / name)["started"] for name in self.finished()}
+        time.sleep(1.1)
+        self.call("sweep", **SWEEP, shard="0/2", out="sweep.h5")
+        self.call("merge", out="sweep.h5")
+        self.assertEqual({attributes(self.folder / "sweep.h5")["started"]}, began)
+
+    def test_at_the_same_time(self):
+        self.call("sweep", **MANY, out="whole.h5")
+        for out in (["sweep.h5"] * 3, ["a.h5", "b.h5", "c.h5"]):
+            shares = [self.start("sweep", **MANY, shard=f"{number}/3", out=name)
+                      for number, name in enumerate(out)]
+            for share in shares:
+                self.assertEqual(share.wait(timeout=60), 0, share.stderr.read())
+            self.call("merge", shards=[f"{name}.shards" for name in sorted(set(out))],
+                      out="merged.h5")
+            self.assert_same_data("merged.h5", "whole.h5")
+
+    def test_more_shares_than_points(self):
+        self.call("sweep", **SWEEP, shard="9/10", out="sweep.h5")
+        self.assertEqual(self.finished(), {})
+
+    def test_shares_of_several_numbers(self):
+        """Each point is some share's, and no other's."""
+        for count in (1, 2, 5, 7, 8):
+            names = []
+            for number in range(count):
+                out = f"{count}-{number}.h5"
+                self.call("sweep", **{**SWEEP, "samples": 100}, shard=f"{number}/{count}", out=out)
+                names += self.finished(out)
+            self.assertEqual(sorted(names), sorted(f"{name}.h5" for name in names_of(SWEEP)))
+
+    def test_whole_after_shares(self):
+        """Without a merge: the sweep itself finds what is there."""
+        self.call("sweep", **SWEEP, out="whole.h5")
+        self.call("sweep", **SWEEP, shard="1/3", out="sweep.h5")
+        self.call("sweep", "--resume", **SWEEP, out="sweep.h5")
+        self.assert_same_data("sweep.h5", "whole.h5")
+        self.assertFalse(self.points().exists())
+
+    def test_overlapping_folders(self):
+        self.call("sweep", **SWEEP, out="whole.h5")
+        self.call("sweep", **SWEEP, shard="0/1", out="a.h5")
+        self.call("sweep", **SWEEP, shard="1/2", out="b.h5")
+        self.call("merge", shards=["b.h5.shards", "a.h5.shards"], out="merged.h5")
+        self.assert_same_data("merged.h5", "whole.h5")
+
+
+class Lists(SweepTest):
+    ROWS = [[2, 0.5, 0.9], [1, 0, 0.9], [2, 0, 1]]
+
+    def listed(self, **changes):
+        axes = {"optical_depth": None, "g": None, "albedo": None}
+        return {**SWEEP, **axes, "points": "points.csv", **changes}
+
+    def test_gives_the_numbers_of_the_grid(self):
+        self.call("sweep", **SWEEP, out="whole.h5")
+        self.write("points.csv", csv(["g", "albedo", "optical_depth"],
+                                     [[g, albedo, depth] for depth, g, albedo in self.ROWS]))
+        self.call("sweep", **self.listed(), out="list.h5")
+        with h5py.File(self.folder / "list.h5") as file:
+            rows = np.column_stack([file[key][()] for key in ("optical_depth", "g", "albedo")])
+            np.testing.assert_array_equal(rows, self.ROWS)
+            self.assertEqual(file["field_correlation"].dims[0][0].name, "/point")
+        self.assert_points_equal("list.h5", "whole.h5")
+
+    def test_one_value_beside_the_table(self):
+        self.call("sweep", **SWEEP, out="whole.h5")
+        self.write("points.csv", csv(["g", "optical_depth"], [[0.5, 2], [0, 1]]))
+        self.call("sweep", **self.listed(albedo=0.9), out="list.h5")
+        self.assert_points_equal("list.h5", "whole.h5")
+
+    def test_goes_on_with_points_of_a_grid(self):
+        """Equal points are equal, however they were asked for."""
+        self.call("sweep", **SWEEP, shard="0/1", out="sweep.h5")
+        self.write("points.csv", csv(["optical_depth", "g", "albedo"], self.ROWS))
+        before = self.finished()
+        self.call("sweep", **self.listed(), shard="0/1", resume=True, out="sweep.h5")
+        self.assertEqual(self.finished(), before)
+
+    def test_in_shares(self):
+        self.write("points.csv", csv(["optical_depth", "g", "albedo"], self.ROWS))
+        self.call("sweep", **self.listed(), out="whole.h5")
+        for number in (1, 0):
+            self.call("sweep", **self.listed(), shard=f"{number}/2", out="sweep.h5")
+        self.call("merge", out="sweep.h5")
+        self.assert_same_data("sweep.h5", "whole.h5")
+
+    def test_complex_index(self):
+        self.write("points.csv", csv(["index", "index_imaginary", "radius", "density"],
+                                     [[1.5, 0.1, 0.1, 0.3], [1.2, 0, 0.16, 0.2]]))
+        self.call("sweep", **DISKS, points="points.csv", out="list.h5")
+        list_ = datasets(self.folder / "list.h5")
+        for name, values in (("index", [1.5, 1.2]), ("index_imaginary", [0.1, 0]),
+                             ("radius", [0.1, 0.16]), ("density", [0.3, 0.2])):
+            np.testing.assert_array_equal(list_[name], values)
+        for i, (index, radius, density) in enumerate((("1.5+0.1i", 0.1, 0.3), ("1.2", 0.16, 0.2))):
+            self.call("covariance", **DISKS, covariance="memory_effect", index=index,
+                      radius=radius, density=density, out="point.h5")
+            point = datasets(self.folder / "point.h5")
+            np.testing.assert_array_equal(list_["field_correlation"][i],
+                                          point["field_correlation"])
+
+    def test_another_table_under_the_same_name(self):
+        """A result that was made of other points is not taken for the one asked for."""
+        self.write("points.csv", csv(["optical_depth", "g", "albedo"], self.ROWS))
+        self.call("sweep", **self.listed(), out="sweep.h5")
+        self.write("points.csv", csv(["optical_depth", "g", "albedo"], self.ROWS[:2]))
+        self.call("sweep", **self.listed(), resume=True, out="sweep.h5", status=2)
+
+
+class Axes(SweepTest):
+    def check_axis(self, key, values, **keys):
+        """Each point of an axis is what covariance gives of that scene."""
+        self.call("sweep", **keys, **{key: values}, out="sweep.h5")
+        sweep = datasets(self.folder / "sweep.h5")
+        for i, value in enumerate(values):
+            self.call("covariance", **{"covariance": "memory_effect", **keys, key: value},
+                      out="point.h5")
+            point = datasets(self.folder / "point.h5")
+            for name in ("field_correlation", "field_correlation_error"):
+                at = sweep[name].reshape(len(values), -1)[i]
+                np.testing.assert_array_equal(at, point[name], f"{key} = {value}")
+        return sweep
+
+    def test_radius(self):
+        sweep = self.check_axis("radius", [0.1, 0.2], **DISKS, index="1.4", density=0.3)
+        np.testing.assert_array_equal(sweep["radius"], [0.1, 0.2])
+
+    def test_density(self):
+        sweep = self.check_axis("density", [0.1, 0.3], **{**DISKS, "scatterer": "point"})
+        np.testing.assert_array_equal(sweep["density"], [0.1, 0.3])
+
+    def test_index(self):
+        sweep = self.check_axis("index", ["1.3", "1.5+0.01i"], **DISKS, radius=0.1, density=0.3)
+        np.testing.assert_array_equal(sweep["index"], [1.3, 1.5])
+        np.testing.assert_array_equal(sweep["index_imaginary"].ravel(), [0, 0.01])
+
+    def test_many_axes(self):
+        self.call("sweep", **DISKS, radius=[0.1, 0.2], index=["1.3", "1.5"], density=[0.1, 0.2, 0.3],
+                  out="sweep.h5")
+        with h5py.File(self.folder / "sweep.h5") as file:
+            curves = file["field_correlation"]
+            scales = [axis[0].name for axis in curves.dims if len(axis)]
+            self.assertEqual(scales[:3], ["/density", "/radius", "/index"])
+            self.assertEqual(curves.shape[:3], (3, 2, 2))
+            self.assertEqual(curves.size, 3 * 2 * 2 * 2)
+
+
+class BothMethods(SweepTest):
+    def test_the_same_as_each_alone(self):
+        self.call("sweep", **BOTH, out="both.h5")
+        both = datasets(self.folder / "both.h5")
+        for method in ("mc", "wave"):
+            self.call("sweep", **{**BOTH, "method": method}, out="one.h5")
+            one = datasets(self.folder / "one.h5")
+            for name in ("field_correlation", "field_correlation_error", "samples",
+                         "memory_effect_range", "trace/relative_error", "trace/point"):
+                np.testing.assert_array_equal(both[f"{method}/{name}"], one[name])
+        error = np.hypot(*(both[f"{method}/field_correlation_error"] for method in ("mc", "wave")))
+        difference = both["mc/field_correlation"] - both["wave/field_correlation"]
+        np.testing.assert_allclose(both["deviation"][..., 1], difference[..., 1] / error[..., 1])
+        np.testing.assert_array_equal(both["deviation"][..., 0], 0)
+
+    def test_in_shares(self):
+        self.call("sweep", **BOTH, out="whole.h5")
+        for number in range(3):
+            self.call("sweep", **BOTH, shard=f"{number}/3", out="sweep.h5")
+        self.assertEqual(len(self.finished()), 4)
+        self.call("merge", out="sweep.h5")
+        self.assert_same_data("sweep.h5", "whole.h5")
+
+    def test_a_point_with_one_method_missing(self):
+        """Counts as missing, by the name of the method."""
+        self.call("sweep", **BOTH, shard="0/1", out="sweep.h5")
+        (self.points() / "wave_density=0.2.h5").unlink()
+        done = self.call("merge", out="sweep.h5", status=2)
+        self.assert_one_line(done.stderr, "1 of 4", "wave_density=0.2")
+        self.call("merge", "--partial", out="sweep.h5", status=3)
+        self.assertEqual(list(datasets(self.folder / "sweep.h5")["density"]), [0.4])
+        (self.points() / "mc_density=0.4.h5").unlink()
+        (self.folder / "sweep.h5").unlink()
+        done = self.call("merge", "--partial", out="sweep.h5", status=2)
+        self.assert_one_line(done.stderr, "every method")
+
+
+class Stops(SweepTest):
+    def test_samples_before_the_target(self):
+        keys = {**SWEEP, "target_error": NEVER}
+        done = self.call("sweep", **keys, out="sweep.h5", status=3)
+        self.assertIn("target error", done.stdout)
+        self.assertFalse(self.points().exists())
+        root = attributes(self.folder / "sweep.h5")
+        self.assertEqual((root["complete"], root["converged"]), (1, 0))
+        self.call("sweep", **SWEEP, out="whole.h5")
+        self.assert_same_data("sweep.h5", "whole.h5")
+
+    def test_target(self):
+        self.call("sweep", **{**SWEEP, "samples": None}, target_error=0.04, out="sweep.h5")
+        sweep = datasets(self.folder / "sweep.h5")
+        self.assertTrue((sweep["relative_error"] <= 0.04).all())
+        self.assertEqual(attributes(self.folder / "sweep.h5")["converged"], 1)
+        for i in range(8):
+            errors = sweep["trace/relative_error"][sweep["trace/point"] == i]
+            self.assertEqual(errors[-1], sweep["relative_error"].ravel()[i])
+
+    def test_target_missed_in_a_share(self):
+        """Each share is done; the whole tells."""
+        keys = {**SWEEP, "target_error": NEVER}
+        for number in (0, 1):
+            self.call("sweep", **keys, shard=f"{number}/2", out="sweep.h5")
+        self.call("merge", out="sweep.h5", status=3)
+        self.assertTrue(is_complete(self.folder / "sweep.h5"))
+
+    def test_seconds(self):
+        self.call("sweep", **SLOW, out="whole.h5")
+        done = self.call("sweep", **SLOW, seconds=0.1, out="sweep.h5", status=3)
+        self.assertIn("--resume", done.stdout)
+        self.assertTrue(set(self.shards()) - set(self.finished()))
+        partial = 0
+        while self.points().exists():
+            if (self.folder / "sweep.h5").exists():
+                self.assertFalse(is_complete(self.folder / "sweep.h5"))
+                self.assert_points_equal("sweep.h5", "whole.h5")
+                partial += 1
+            process = self.start("sweep", "--resume", **SLOW, seconds=0.1, out="sweep.h5")
+            self.assertIn(process.wait(timeout=60), (0, 3))
+        self.assertGreater(partial, 0)
+        self.assertTrue(is_complete(self.folder / "sweep.h5"))
+        self.assert_same_data("sweep.h5", "whole.h5")
+
+    def test_seconds_that_are_too_short_for_a_point(self):
+        keys = {**SLOW, "samples": 10_000_000}
+        self.call("sweep", **keys, seconds=0.01, out="sweep.h5", status=3)
+        self.assertFalse((self.folder / "sweep.h5").exists())
+        self.assertTrue(self.shards())
+
+    def test_seconds_of_a_share(self):
+        self.call("sweep", **SLOW, out="whole.h5")
+        self.call("sweep", **SLOW, shard="0/2", seconds=0.05, out="sweep.h5", status=3)
+        self.assertFalse((self.folder / "sweep.h5").exists())
+        self.call("sweep", "--resume", **SLOW, out="sweep.h5")
+        self.assert_same_data("sweep.h5", "whole.h5")
+
+
+class Resume(SweepTest):
+    def test_of_nothing(self):
+        self.call("sweep", "--resume", **SWEEP, out="sweep.h5")
+        self.call("sweep", **SWEEP, out="whole.h5")
+        self.assert_same_data("sweep.h5", "whole.h5")
+
+    def test_of_a_complete_one(self):
+        self.call("sweep", **SWEEP, out="sweep.h5")
+        before = self.listing()
+        for changes in ({}, {"threads": 1}, {"seconds": 9}):
+            done = self.call("sweep", "--resume", **{**SWEEP, **changes}, out="sweep.h5")
+            self.assertIn("complete", done.stdout)
+            self.assertEqual(self.listing(), before)
+
+    def test_of_another_one(self):
+        self.call("sweep", **SWEEP, out="sweep.h5")
+        self.call("covariance", **SLAB, samples=100, out="covariance.h5")
+        (self.folder / "text.h5").write_text("not HDF5")
+        before = self.listing()
+        for changes in ({"seed": 2}, {"g": [0, 0.6]}, {"depth": 101}, {"samples": 4001},
+                        {"method": "both"}, {"out": "covariance.h5"}, {"out": "text.h5"}):
+            keys = {**SWEEP, "out": "sweep.h5", **changes}
+            if "method" in changes:
+                keys |= {"domain": "box", "width": 10, "scatterer": "point", "g": None,
+                         "albedo": None}
+            with self.subTest(changes=changes):
+                done = self.call("sweep", "--resume", **keys, status=2)
+                self.assert_one_line(done.stderr, keys["out"])
+                self.assertEqual(self.listing(), before)
+                self.assertFalse(self.points(keys["out"]).exists())
+
+    def test_missing_where_points_lie(self):
+        """Nothing is touched."""
+        self.call("sweep", **SWEEP, shard="0/2", out="sweep.h5")
+        before = self.shards()
+        for changes in ({}, {"shard": "0/2"}, {"seed": 2}):
+            done = self.call("sweep", **SWEEP, **changes, out="sweep.h5", status=2)
+            self.assert_one_line(done.stderr, "sweep.h5.shards", "--resume")
+            self.assertEqual(self.shards(), before)
+            self.assertEqual(self.listing(), {})
+
+    def test_missing_where_unfinished_points_lie(self):
+        self.interrupted(**{**SLOW, "samples": 5_000_000}, out="sweep.h5")
+        before = self.shards()
+        self.assertTrue(before)
+        self.call("sweep", **SLOW, out="sweep.h5", status=2)
+        self.assertEqual(self.shards(), before)
+
+    def test_missing_where_a_result_lies(self):
+        """It is replaced."""
+        self.call("sweep", **SWEEP, seed=2, out="sweep.h5")
+        self.call("sweep", **SWEEP, out="sweep.h5")
+        self.call("sweep", **SWEEP, out="whole.h5")
+        self.assert_same_data("sweep.h5", "whole.h5")
+
+    def test_with_more_points(self):
+        """A larger grid takes over the points that are there."""
+        self.call("sweep", **SWEEP, shard="0/1", out="sweep.h5")
+        before = self.finished()
+        keys = {**SWEEP, "g": [0, 0.3, 0.5]}
+        self.call("sweep", **keys, shard="0/1", resume=True, out="sweep.h5")
+        self.assertLess(before.items(), self.finished().items())
+        self.call("merge", out="merged.h5", shards="sweep.h5.shards")
+        self.call("sweep", **keys, out="whole.h5")
+        self.assert_same_data("merged.h5", "whole.h5")
+
+    def test_something_else_in_the_place_of_the_folder(self):
+        self.write("sweep.h5.shards", "a file")
+        done = self.call("sweep", **SWEEP, out="sweep.h5", status=4)
+        self.assert_one_line(done.stderr, "sweep.h5.shards")
+        self.assertEqual((self.folder / "sweep.h5.shards").read_text(), "a file")
+
+
+class BadInput(SweepTest):
+    def check(self, *words, **changes):
+        keys = {**SWEEP, "out": "sweep.h5", **changes}
+        before = self.listing()
+        done = self.call("sweep", **keys, status=2)
+        self.assert_one_line(done.stderr, *words)
+        self.assertEqual(self.listing(), before)
+        self.assertFalse(self.points().exists())
+
+    def test_shard(self):
+        for text in ("3/3", "1", "1/", "/3", "-1/3", "+1/3", "1/-3", "0/0", "1/3/5", "1 /3", "a/b",
+                     "0.5/3", "0x1/3", "1/3 ", "0/99999999999999999999999"):
+            self.check(f"shard = {text}", "i/n", shard=text)
+
+    def test_shard_of_absurdly_many(self):
+        self.call("sweep", **SWEEP, shard=f"5/{2**64 - 1}", out="sweep.h5")
+        self.assertEqual(list(self.finished()), list(self.finished())[:1])
+
+    def test_method(self):
+        self.check("method = exact", "mc wave both", method="exact")
+        self.check("slab", "box", method="wave")
+        self.check("slab", "box", method="both")
+
+    def check_points(self, text, *words, **changes):
+        self.write("points.csv", text)
+        without = {key: None for key in ("optical_depth", "g", "albedo")}
+        self.check(*words, **{**without, "points": "points.csv", **changes})
+
+    def test_points(self):
+        two = "optical_depth,g\n1,0\n2,0.5\n"
+        self.check_points("optical_depth,colour\n1,2\n", "points.csv", "colour", "optical_depth")
+        self.check_points("optical_depth,index_imaginary\n1,2\n", "index_imaginary", "index")
+        self.check_points("optical_depth,depth\n1,2\n", "points.csv", "column depth")
+        self.check_points("optical_depth,g\n1,0\n2,0.5\n1,0\n", "optical_depth=1_g=0", "twice")
+        self.check_points("optical_depth,g\n1,0\n1.0,0e3\n", "optical_depth=1_g=0", "twice")
+        self.check_points(two, "g = 0.5", "column", "both", g=0.5)
+        self.check_points(two, "albedo = 0.9", "one value", albedo=[1, 0.9])
+        self.check_points("optical_depth,g\n", "points.csv", "row")
+        self.check_points("", "points.csv", "empty")
+        self.check_points("optical_depth,g\n1\n", "points.csv", "line 2")
+        self.check_points("optical_depth,g\n1,x\n", "points.csv", "line 2", "g")
+        self.check_points("optical_depth,g\n1,0\n1,nan\n", "points.csv", "line 3", "finite")
+        self.check_points("optical_depth,g\n1,0\n1,1\n", "g = 1")
+        self.check_points("optical_depth,g\n1,0\n-1,0\n", "optical_depth = -1")
+        self.check("none.csv", points="none.csv", optical_depth=None, g=None, albedo=None)
+
+    def test_points_given_twice_on_a_grid(self):
+        self.check("g=0.5", "twice", g=[0.5, 0, 0.5])
+        disks = {"scatterer": "tm", "g": None, "albedo": None, "optical_depth": None,
+                 "density": 0.1, "radius": 0.1}
+        self.check("index=", "twice", **disks, index=["1.5", "1.50"])
+        self.check("index=", "twice", **disks, index=["1.5+0.1i", "1.5+0.10i"])
+
+    def test_a_point_that_makes_no_scene(self):
+        """Before any other has begun."""
+        disks = {"scatterer": "tm", "g": None, "albedo": None, "optical_depth": None}
+        self.check("radius = -0.1", **disks, density=0.1, radius=[0.1, -0.1])
+        self.check("index", "1.5+", **disks, density=0.1, radius=0.1, index=["1.5", "1.5+"])
+        self.check("packing fraction", **disks, density=[0.1, 30], radius=0.1)
+        self.check("does not scatter", **disks, density=0.1, radius=0.1, index=["1.5", "1"])
+
+    def test_stops(self):
+        self.check("samples = 0", samples=0)
+        self.check("seconds = -1", seconds=-1)
+        self.check("wave_samples = 0", domain="box", width=10, scatterer="point", g=None,
+                   albedo=None, method="both", wave_samples=0)
+
+    def test_merge(self):
+        (self.folder / "empty").mkdir()
+        (self.folder / "strange").mkdir()
+        (self.folder / "strange" / "mc_g=0.h5").write_bytes(b"no HDF5")
+        for keys, word in (({"out": None}, "out"), ({}, "m.h5.shards"), ({"shards": "none"}, "none"),
+                           ({"shards": ["empty", "none"]}, "none"), ({"shards": "empty"}, "empty"),
+                           ({"shards": "strange"}, "strange"), ({"out": "no/m.h5"}, "no/m.h5"),
+                           ({"seed": 2}, "seed")):
+            done = self.call("merge", **{"out": "m.h5", **keys}, status=2)
+            self.assert_one_line(done.stderr, word)
+        self.assertEqual(self.listing(), {})
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,242 @@
+"""Sweeps whose disk fills, closes or goes away: one clear line, status 4, nothing lost."""
+
+import contextlib
+import os
+import pathlib
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+from sweeps import MANY, SLOW, SWEEP, SweepTest
+
+# About two seconds of one thread.
+STEADY = {**MANY, "samples": 50_000}
+
+
+def mounts_allowed():
+    """Whether this process may mount; tells by an exit status of 0."""
+    try:
+        done = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=64k", "tmpfs", "/mnt"],
+                              capture_output=True, timeout=10)
+    except (OSError, subprocess.TimeoutExpired):
+        return False
+    if done.returncode == 0:
+        subprocess.run(["umount", "/mnt"], check=True)
+    return done.returncode == 0
+
+
+def go_where_mounts_are_allowed():
+    """Begins again in a mount namespace of its own, if the system grants one: its mounts end with
+    it, and no one else sees them."""
+    if os.environ.get("IN_OWN_NAMESPACE"):
+        return
+    for flags in (["--mount"], ["--map-root-user", "--mount"]):
+        try:
+            granted = subprocess.run(["unshare", *flags, "true"], capture_output=True).returncode
+        except OSError:
+            return
+        if granted == 0:
+            os.environ["IN_OWN_NAMESPACE"] = "1"
+            os.execvp("unshare", ["unshare", *flags, sys.executable, "-B", *sys.argv])
+
+
+class DiskTest(SweepTest):
+    """The program runs on a disk of its own, as large as each test says."""
+
+    def setUp(self):
+        super().setUp()
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.aside = pathlib.Path(folder.name)
+
+    def mount(self, size, folder=None):
+        """Puts a disk of so many KiB there."""
+        folder = folder or self.folder
+        if not mounts_allowed():
+            self.skipTest("mounting is not allowed here")
+        subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={size}k", "tmpfs", folder], check=True)
+        self.addCleanup(subprocess.run, ["umount", "--lazy", folder], check=True)
+
+    def remount(self, option, folder=None):
+        """Tries until no file is open for writing."""
+        for _ in range(1000):
+            if subprocess.run(["mount", "-o", f"remount,{option}", folder or self.folder],
+                              capture_output=True).returncode == 0:
+                return
+            time.sleep(0.001)
+        self.fail(f"remount,{option}")
+
+    def fill(self, left=0):
+        """Leaves so many bytes of the disk."""
+        with open(self.folder / "filler", "wb", buffering=0) as file, \
+                contextlib.suppress(OSError):
+            while True:
+                file.write(b"\0" * 4096)
+        size = (self.folder / "filler").stat().st_size
+        os.truncate(self.folder / "filler", max(0, size - left))
+
+    def check_stopped(self, process, *words):
+        """Status 4, one line, and no result."""
+        error = process.communicate(timeout=60)[1]
+        self.assertEqual(process.returncode, 4, error)
+        self.assert_one_line(error, *words)
+        self.assertFalse((self.folder / "sweep.h5").exists())
+
+    def check_goes_on(self, keys, kept=None):
+        """The finished points stay as they are, and the end is as if nothing had been."""
+        if kept is not None:
+            self.assertEqual(self.finished(), kept)
+            self.call("sweep", "--resume", **keys, shard="0/1", out="sweep.h5")
+            self.assertLessEqual(kept.items(), self.finished().items())
+        done = self.call("sweep", "--resume", **keys, out="sweep.h5")
+        self.assertNotIn("warning", done.stderr)
+        self.assertEqual(sorted(path.name for path in self.folder.iterdir()), ["sweep.h5"])
+        self.call("sweep", **keys, out=self.aside / "whole.h5")
+        self.assert_same_data("sweep.h5", self.aside / "whole.h5")
+
+
+class Full(DiskTest):
+    def test_while_points_end(self):
+        self.mount(300)
+        self.check_stopped(self.start("sweep", **MANY, out="sweep.h5"), "No space left", ".shards/")
+        kept = self.finished()
+        self.assertGreater(len(kept), 5)
+        self.assertLess(len(kept), 40)
+        self.assertEqual(set(self.shards()), set(kept))
+        self.check_stopped(self.start("sweep", "--resume", **MANY, out="sweep.h5"), "No space left")
+        self.remount("size=4m")
+        self.check_goes_on(MANY, {**kept, **self.finished()})
+
+    def test_while_unfinished_points_are_saved(self):
+        self.mount(1000)
+        process = self.start("sweep", **SLOW, out="sweep.h5")
+        self.wait_until(process, lambda: self.finished())
+        process.send_signal(signal.SIGSTOP)
+        self.fill()
+        process.send_signal(signal.SIGINT)
+        process.send_signal(signal.SIGCONT)
+        self.check_stopped(process, "No space left", ".part.h5")
+        kept = self.finished()
+        (self.folder / "filler").unlink()
+        self.check_goes_on(SLOW, kept)
+
+    def test_while_the_result_is_written(self):
+        self.mount(2000)
+        self.all_points(SWEEP)
+        kept = self.finished()
+        for left in (0, 4096, 20480):
+            self.fill(left)
+            process = self.start("sweep", "--resume", **SWEEP, out="sweep.h5")
+            self.check_stopped(process, "No space left", "sweep.h5")
+            self.assertEqual(self.shards(), kept)
+            self.check_stopped(self.start("merge", out="sweep.h5"), "No space left", "sweep.h5")
+            self.assertEqual(self.shards(), kept)
+        (self.folder / "filler").unlink()
+        self.check_goes_on(SWEEP, kept)
+
+    def test_from_the_beginning(self):
+        self.mount(100)
+        self.fill()
+        self.check_stopped(self.start("sweep", **SWEEP, out="sweep.h5"), "No space left")
+        (self.folder / "filler").unlink()
+        self.remount("size=4m")
+        self.check_goes_on(SWEEP)
+
+    def test_an_older_result_stays(self):
+        self.mount(2000)
+        self.call("sweep", **SWEEP, seed=2, out="sweep.h5")
+        older = (self.folder / "sweep.h5").read_bytes()
+        self.all_points(SWEEP)
+        self.fill(20480)
+        self.call("sweep", "--resume", **SWEEP, out="sweep.h5", status=4)
+        self.assertEqual((self.folder / "sweep.h5").read_bytes(), older)
+        (self.folder / "filler").unlink()
+        self.check_goes_on(SWEEP)
+
+
+class ReadOnly(DiskTest):
+    def test_from_the_beginning(self):
+        self.mount(2000)
+        self.call("sweep", **SWEEP, shard="0/2", out="sweep.h5")
+        kept = self.finished()
+        self.remount("ro")
+        for words in (["sweep"], ["sweep", "--resume"]):
+            self.check_stopped(self.start(*words, **SWEEP, out="sweep.h5"), "Read-only", "sweep.h5")
+        self.check_stopped(self.start("merge", out="sweep.h5"), "Read-only", "sweep.h5")
+        self.remount("rw")
+        self.check_goes_on(SWEEP, kept)
+
+    def test_while_points_end(self):
+        self.mount(4000)
+        process = self.start("sweep", **STEADY, out="sweep.h5")
+        self.wait_until(process, lambda: len(self.finished()) > 3)
+        self.remount("ro")
+        self.check_stopped(process, "Read-only", ".shards/")
+        kept = self.finished()
+        self.remount("rw")
+        self.check_goes_on(STEADY, kept)
+
+    def test_the_folder_of_points_alone(self):
+        """All of them are there, but cannot be removed: the result is written nevertheless."""
+        self.all_points(SWEEP)
+        self.points().rename(self.folder / "points")
+        self.points().mkdir()
+        self.mount(2000, self.points())
+        for path in (self.folder / "points").iterdir():
+            shutil.copy(path, self.points())
+        shutil.rmtree(self.folder / "points")
+        self.remount("ro", self.points())
+        done = self.call("sweep", "--resume", **SWEEP, out="sweep.h5", status=4)
+        self.assert_one_line(done.stderr, "sweep.h5.shards", "Read-only")
+        self.call("sweep", **SWEEP, out=self.aside / "whole.h5")
+        self.assert_same_data("sweep.h5", self.aside / "whole.h5")
+
+
+class Vanished(DiskTest):
+    def begin(self):
+        process = self.start("sweep", **STEADY, out="sweep.h5")
+        self.wait_until(process, lambda: len(self.finished()) > 3)
+        return process
+
+    def test_folder_of_points(self):
+        process = self.begin()
+        self.points().rename(self.aside / "points")
+        self.check_stopped(process, ".shards/", "No such file")
+        self.check_goes_on(STEADY)
+
+    def test_folder_of_points_that_comes_back(self):
+        process = self.begin()
+        self.points().rename(self.aside / "points")
+        self.check_stopped(process, ".shards/", "No such file")
+        shutil.move(self.aside / "points", self.points())
+        self.check_goes_on(STEADY, self.finished())
+
+    def test_folder_of_the_result(self):
+        place = self.folder / "place"
+        place.mkdir()
+        process = self.start("sweep", **STEADY, out="place/sweep.h5")
+        self.wait_until(process, lambda: len(self.finished("place/sweep.h5")) > 3)
+        place.rename(self.folder / "elsewhere")
+        self.check_stopped(process, "place/", "No such file")
+        for path in (self.folder / "elsewhere").iterdir():
+            path.rename(self.folder / path.name)
+        (self.folder / "elsewhere").rmdir()
+        self.check_goes_on(STEADY, self.finished())
+
+    def test_at_an_interrupt(self):
+        process = self.begin()
+        process.send_signal(signal.SIGSTOP)
+        self.points().rename(self.aside / "points")
+        process.send_signal(signal.SIGINT)
+        process.send_signal(signal.SIGCONT)
+        self.check_stopped(process, ".shards/", "No such file")
+        self.check_goes_on(STEADY)
+
+
+if __name__ == "__main__":
+    go_where_mounts_are_allowed()
+    unittest.main()
