@@ -30,8 +30,8 @@ bool has_begun(const SweepPlan& plan, ShardFolder& folder) {
   return false;
 }
 
-/// Whether the result is there. Throws InputError where it is that of another run, unless this sweep
-/// was begun to replace it.
+/// Whether the result is there. Throws InputError where another run's is, unless this sweep was
+/// begun to replace it.
 bool is_complete(const SweepPlan& plan, ShardFolder& folder) {
   const std::string& out = plan.settings.out;
   if (!plan.settings.resume || !std::filesystem::exists(out)) return false;

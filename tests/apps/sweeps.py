@@ -63,7 +63,7 @@ class SweepTest(ProgramTest):
             self.assertLess(time.monotonic(), deadline)
 
     def interrupted(self, number=signal.SIGINT, cpu_s=0.15, **keys):
-        """Signals a sweep after so much work, in the midst of its points, and checks how it ends."""
+        """Signals a sweep after so much work, in the midst of its points; it ends resumable."""
         process = self.start("sweep", **keys)
         self.wait_until(process, lambda: catches(process, number))
         self.wait_until(process, lambda: cpu_seconds(process) >= cpu_s)

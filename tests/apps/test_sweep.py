@@ -185,8 +185,8 @@ class Axes(SweepTest):
         np.testing.assert_array_equal(sweep["index_imaginary"].ravel(), [0, 0.01])
 
     def test_many_axes(self):
-        self.call("sweep", **DISKS, radius=[0.1, 0.2], index=["1.3", "1.5"], density=[0.1, 0.2, 0.3],
-                  out="sweep.h5")
+        self.call("sweep", **DISKS, radius=[0.1, 0.2], index=["1.3", "1.5"],
+                  density=[0.1, 0.2, 0.3], out="sweep.h5")
         with h5py.File(self.folder / "sweep.h5") as file:
             curves = file["field_correlation"]
             scales = [axis[0].name for axis in curves.dims if len(axis)]
@@ -435,8 +435,9 @@ class BadInput(SweepTest):
         (self.folder / "empty").mkdir()
         (self.folder / "strange").mkdir()
         (self.folder / "strange" / "mc_g=0.h5").write_bytes(b"no HDF5")
-        for keys, word in (({"out": None}, "out"), ({}, "m.h5.shards"), ({"shards": "none"}, "none"),
-                           ({"shards": ["empty", "none"]}, "none"), ({"shards": "empty"}, "empty"),
+        for keys, word in (({"out": None}, "out"), ({}, "m.h5.shards"),
+                           ({"shards": "none"}, "none"), ({"shards": "empty"}, "empty"),
+                           ({"shards": ["empty", "none"]}, "none"),
                            ({"shards": "strange"}, "strange"), ({"out": "no/m.h5"}, "no/m.h5"),
                            ({"seed": 2}, "seed")):
             done = self.call("merge", **{"out": "m.h5", **keys}, status=2)

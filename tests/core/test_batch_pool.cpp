@@ -114,8 +114,7 @@ void check_same(const std::vector<Task>& a, const std::vector<Task>& b) {
 }
 
 std::vector<Task> one_by_one(std::vector<Task> tasks) {
-  for (Task& task : tasks)
-    task.reason = run_batches(task.job, {task.stop, 1, "", {}}, task.state);
+  for (Task& task : tasks) task.reason = run_batches(task.job, {task.stop, 1, "", {}}, task.state);
   return tasks;
 }
 
