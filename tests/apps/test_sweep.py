@@ -266,7 +266,9 @@ class Stops(SweepTest):
         self.assertIn("--resume", done.stdout)
         self.assertTrue(set(self.shards()) - set(self.finished()))
         partial = 0
+        deadline = time.monotonic() + 60
         while self.points().exists():
+            self.assertLess(time.monotonic(), deadline)
             if (self.folder / "sweep.h5").exists():
                 self.assertFalse(is_complete(self.folder / "sweep.h5"))
                 self.assert_points_equal("sweep.h5", "whole.h5")

@@ -118,6 +118,8 @@ class Interruption(SweepTest):
         self.call("sweep", **SLOW, shard="1/2", out="sweep.h5")
         self.call("sweep", **SLOW, shard="0/2", out="sweep.h5", status=2)
         self.call("sweep", "--resume", **SLOW, shard="0/2", out="sweep.h5")
+        self.assertEqual(len(self.finished()), 3)
+        self.assertEqual(self.shards(), self.finished())
         self.call("merge", out="sweep.h5")
         self.assert_same_data("sweep.h5", "whole.h5")
 
