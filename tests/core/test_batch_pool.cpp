@@ -164,6 +164,19 @@ TEST_CASE("a run that had ended before ends again, without another batch") {
   for (const Task& task : tasks) CHECK(task.endings == 1);
 }
 
+TEST_CASE("runs that need no work are passed over") {
+  for (std::size_t every : {1, 2, 5}) {
+    auto tasks = mixed_tasks();
+    RunList list = list_of(tasks);
+    list.open = [every, open = list.open](std::size_t run) {
+      return run % every == 0 ? std::nullopt : open(run);
+    };
+    CHECK(run_pool(list, with_threads(3)).reason == StopReason::samples);
+    for (std::size_t run = 0; run < tasks.size(); ++run)
+      CHECK(tasks[run].endings == (run % every == 0 ? 0 : 1));
+  }
+}
+
 TEST_CASE("what is done when a run ends may take its state away") {
   auto tasks = mixed_tasks();
   std::vector<std::unique_ptr<RunState>> states(tasks.size());
