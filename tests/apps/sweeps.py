@@ -84,8 +84,8 @@ class SweepTest(ProgramTest):
                 np.testing.assert_array_equal(points[prefix + name][i], whole[prefix + name][at])
             for name in ("trace/samples", "trace/relative_error"):
                 np.testing.assert_array_equal(
-                    points[prefix + name][points[prefix + "trace/point"] == i],
-                    whole[prefix + name][whole[prefix + "trace/point"] == flat])
+                    points[prefix + name][points[prefix + "trace/of_point"] == i],
+                    whole[prefix + name][whole[prefix + "trace/of_point"] == flat])
 
     def assert_one_line(self, error, *words):
         """One line that says why it ended; warnings may come before it."""

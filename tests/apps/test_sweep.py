@@ -203,7 +203,7 @@ class BothMethods(SweepTest):
             self.call("sweep", **{**BOTH, "method": method}, out="one.h5")
             one = datasets(self.folder / "one.h5")
             for name in ("field_correlation", "field_correlation_error", "samples",
-                         "memory_effect_range", "trace/relative_error", "trace/point"):
+                         "memory_effect_range", "trace/relative_error", "trace/of_point"):
                 np.testing.assert_array_equal(both[f"{method}/{name}"], one[name])
         error = np.hypot(*(both[f"{method}/field_correlation_error"] for method in ("mc", "wave")))
         difference = both["mc/field_correlation"] - both["wave/field_correlation"]
@@ -249,7 +249,7 @@ class Stops(SweepTest):
         self.assertTrue((sweep["relative_error"] <= 0.04).all())
         self.assertEqual(attributes(self.folder / "sweep.h5")["converged"], 1)
         for i in range(8):
-            errors = sweep["trace/relative_error"][sweep["trace/point"] == i]
+            errors = sweep["trace/relative_error"][sweep["trace/of_point"] == i]
             self.assertEqual(errors[-1], sweep["relative_error"].ravel()[i])
 
     def test_target_missed_in_a_share(self):
