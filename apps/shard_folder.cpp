@@ -65,8 +65,9 @@ void ShardFolder::set_aside(const std::string& name, Part part, const std::strin
   std::error_code failed;
   fs::rename(path, place(), failed);
   if (failed) throw IoError("renaming " + path.string() + " failed: " + failed.message());
-  std::cerr << "warning: " << path.string() << ' ' << wrong << "; set aside as "
-            << fs::path(place()).filename().string() << '\n';
+  // In one piece: other threads may have something to say as well.
+  std::cerr << "warning: " + path.string() + ' ' + wrong + "; set aside as " +
+                   fs::path(place()).filename().string() + '\n';
 }
 
 void ShardFolder::write(const std::string& name, Part part, const std::string& identity,
