@@ -41,6 +41,13 @@ void note_rounding(const Scene& scene) {
             << mean << " asked for\n";
 }
 
+void note_small_parameter(double k_mean_free_path) {
+  constexpr double small = 10;
+  if (k_mean_free_path < small)
+    std::cerr << "note: k x mean free path is only " << k_mean_free_path
+              << "; the Monte Carlo method neglects terms of order 1 over that\n";
+}
+
 void round_density(SceneSpec& spec) {
   const Scene scene = make_scene(spec);
   if (scene.placement.kind == PlacementRule::Kind::poisson || spec.count) return;

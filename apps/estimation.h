@@ -33,6 +33,10 @@ struct Estimation {
 /// (conventions, C12).
 void note_rounding(const Scene& scene);
 
+/// Says so on standard error where k times the mean free path is so small that the Monte Carlo
+/// method neglects much.
+void note_small_parameter(double k_mean_free_path);
+
 /// Gives the rounded number instead, so that both solvers have the same density.
 void round_density(SceneSpec& spec);
 

@@ -61,6 +61,29 @@ Found most_of(const std::vector<std::string>& folders) {
   return *std::move(most);
 }
 
+/// Tells of points that are left out because this sweep has no such points.
+void tell_of_strangers(const SweepPlan& plan, const std::vector<std::string>& folders) {
+  std::set<std::string> own;
+  for (std::size_t run = 0; run < plan.runs(); ++run) own.insert(plan.name(run));
+  for (const std::string& folder : folders) {
+    const auto strangers = std::count_if(
+        fs::directory_iterator(folder), fs::directory_iterator{}, [&](const auto& entry) {
+          return is_shard(entry.path()) && !own.contains(entry.path().stem().string());
+        });
+    if (strangers > 0)
+      std::cerr << "warning: " << folder << ": " << strangers
+                << " points of another sweep are left out\n";
+  }
+}
+
+/// A part must not take the place of a whole.
+void refuse_to_shrink(const std::string& out) {
+  if (!fs::exists(out)) return;
+  const ResultReader file(out);
+  if (file.has_attribute("/", "complete") && file.attribute<bool>("/", "complete"))
+    throw InputError("out", out, "holds a complete sweep; --partial does not replace one");
+}
+
 void require_all(const SweepPlan& plan, const SweepResults& results) {
   std::size_t missing = 0, first = 0;
   for (std::size_t run = results.size(); run-- > 0;)
@@ -86,10 +109,12 @@ int merge(const Arguments& arguments) {
   if (settings.out.empty())
     throw InputError("out is not given: name the result file (--out FILE.h5)");
   check_writable(settings.out);
+  if (partial) refuse_to_shrink(settings.out);
   if (folders.empty()) folders = {shards_of(settings.out)};
 
   auto [plan, results, warnings] = most_of(folders);
   std::cerr << warnings;
+  tell_of_strangers(plan, folders);
   plan.command.text = command.command_line().text;
   plan.settings.out = settings.out;
   if (!partial) require_all(plan, results);

@@ -192,12 +192,15 @@ void write_axes(ResultFile& file, const CovarianceRequest& request) {
   if (request.kind == Kind::full) write_second_axes(file, request);
 }
 
-bool few_steps(const std::vector<double>& steps, const mc::Range& range) {
-  constexpr std::ptrdiff_t enough = 4;
-  const auto below = std::count_if(steps.begin(), steps.end(), [&](double step) {
+std::size_t steps_below(const std::vector<double>& steps, const mc::Range& range) {
+  return static_cast<std::size_t>(std::count_if(steps.begin(), steps.end(), [&](double step) {
     return std::abs(step) > 0 && std::abs(step) < range.value;
-  });
-  return range.censored == mc::Range::Censoring::none && below < enough;
+  }));
+}
+
+bool few_steps(const std::vector<double>& steps, const mc::Range& range) {
+  constexpr std::size_t enough = 4;
+  return range.censored == mc::Range::Censoring::none && steps_below(steps, range) < enough;
 }
 
 void note_few_steps() {

@@ -34,6 +34,8 @@ Estimate unpack_full(const CovarianceRequest& request, const Estimate& triangle)
 /// The axes that a request's datasets stand on.
 void write_axes(ResultFile& file, const CovarianceRequest& request);
 
+/// Steps between 0 and a range.
+std::size_t steps_below(const std::vector<double>& steps, const mc::Range& range);
 /// Whether a range rests on so few steps below it that its error bar, which does not know what the
 /// curve does between them, says too little; and the note that says so on standard error.
 bool few_steps(const std::vector<double>& steps, const mc::Range& range);

@@ -1,9 +1,10 @@
 #include "apps/point_result.h"
 
+#include <cmath>
+
 #include "apps/moments_output.h"
 #include "core/error.h"
 #include "core/run_state_file.h"
-#include "mc/memory_effect.h"
 
 namespace flatspeckle::apps {
 
@@ -23,6 +24,21 @@ PointResult point_result(const Scene& scene, const FieldJob& job, const RunState
           .plan = {},
           .started = {},
           .trace = state.trace};
+}
+
+mc::Range range_in_q(const Scene& scene, const PointResult& point) {
+  return {point.range / scene.domain.depth, mc::Range::Censoring(point.range_censored)};
+}
+
+std::vector<double> deviation(const PointResult& mc, const PointResult& wave) {
+  constexpr double rounding = 1e-12;
+  std::vector<double> deviation;
+  for (std::size_t t = 0; t < mc.correlation.size(); ++t) {
+    const double difference = mc.correlation[t] - wave.correlation[t];
+    const double error = std::hypot(mc.correlation_error[t], wave.correlation_error[t]);
+    deviation.push_back(error < rounding ? 0 : difference / error);
+  }
+  return deviation;
 }
 
 void write_point(ResultFile& file, const PointResult& point, const CovarianceRequest& request) {

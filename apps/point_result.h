@@ -8,6 +8,7 @@
 #include "core/runner.h"
 #include "flatland/field_moments.h"
 #include "flatland/scene.h"
+#include "mc/memory_effect.h"
 
 namespace flatspeckle::apps {
 
@@ -24,6 +25,13 @@ struct PointResult {
 
 /// Of a run that has ended.
 PointResult point_result(const Scene& scene, const FieldJob& job, const RunState& state);
+
+/// The range as its curve is stepped through: in q.
+mc::Range range_in_q(const Scene& scene, const PointResult& point);
+
+/// Difference of the curves of two methods in combined standard errors, per tilt; 0 where both are
+/// exact, as at tilt 0.
+std::vector<double> deviation(const PointResult& mc, const PointResult& wave);
 
 /// The datasets of a shard, under the names that they have in the result of a sweep.
 void write_point(ResultFile& file, const PointResult& point, const CovarianceRequest& request);

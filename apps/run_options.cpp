@@ -56,6 +56,8 @@ StopRule stop_rule(const RunSettings& settings, const std::string& samples_key,
   }
   if (settings.seconds) stop.seconds = positive("seconds", *settings.seconds);
   if (settings.target_error) stop.target_error = positive("target_error", *settings.target_error);
+  if (stop.target_error.value_or(0) >= 1)
+    throw InputError("target_error", *stop.target_error, "must be below 1; 2 % is 0.02");
   if (!stop.samples && !stop.seconds && !stop.target_error)
     stop.target_error = default_target_error;
   return stop;

@@ -1,6 +1,7 @@
 #include "apps/shard_folder.h"
 
 #include <iostream>
+#include <sstream>
 #include <vector>
 
 #include "core/error.h"
@@ -20,6 +21,16 @@ std::string name_of(const fs::path& path) {
   for (const std::string ending : {".part.h5", ".h5"})
     if (text.ends_with(ending)) return text.substr(0, text.size() - ending.size());
   return "";
+}
+
+/// The first line of one text that the other does not have.
+std::string first_difference(const std::string& there, const std::string& here) {
+  std::istringstream ours(here), lines(there);
+  std::set<std::string> known;
+  for (std::string line; std::getline(ours, line);) known.insert(line);
+  for (std::string line; std::getline(lines, line);)
+    if (!known.contains(line)) return line;
+  return "fewer keys";
 }
 
 }  // namespace
@@ -48,8 +59,9 @@ std::optional<std::string> ShardFolder::read(
   if (!is_sealed(path)) return "is damaged";
   try {
     const ResultReader reader(path);
-    if (reader.attribute<std::string>("/", "identity") != identity)
-      return "belongs to another sweep";
+    const auto found = reader.attribute<std::string>("/", "identity");
+    if (found != identity)
+      return "belongs to another sweep (" + first_difference(found, identity) + ')';
     reading(reader);
     return std::nullopt;
   } catch (const InputError& error) {

@@ -57,6 +57,26 @@ std::vector<std::size_t> share_of_runs(const SweepPlan& plan) {
   return runs;
 }
 
+/// Throws InputError where the points that are there are all of another sweep: rather a slip in the
+/// keys than strays.
+void refuse_foreign_folder(const SweepPlan& plan, ShardFolder& folder,
+                           const std::vector<std::size_t>& runs) {
+  constexpr int few = 2, enough = 16;
+  int seen = 0;
+  std::string wrong;
+  for (std::size_t run : runs) {
+    if (seen == enough || !folder.has(plan.name(run), Part::finished)) continue;
+    const auto complaint =
+        folder.read(plan.name(run), Part::finished, plan.identity(run), [](const ResultReader&) {});
+    if (!complaint || !complaint->starts_with("belongs")) return;
+    wrong = *complaint;
+    ++seen;
+  }
+  if (seen > few)
+    throw InputError("resume: what " + folder.path().string() + " holds " + wrong +
+                     "; name another result file, or remove the folder");
+}
+
 /// Throws InputError where work of an earlier sweep would be overwritten.
 void refuse_leftovers(const SweepPlan& plan, const ShardFolder& folder,
                       const std::vector<std::size_t>& runs) {
@@ -64,8 +84,8 @@ void refuse_leftovers(const SweepPlan& plan, const ShardFolder& folder,
   for (std::size_t run : runs)
     if (folder.has(plan.name(run), Part::finished) || folder.has(plan.name(run), Part::unfinished))
       throw InputError(folder.path().string() +
-                       " holds points of a sweep that has not ended: --resume goes on with them; "
-                       "remove the folder to begin again");
+                       " holds points of an earlier sweep: --resume goes on with them; remove the "
+                       "folder to begin again");
 }
 
 /// Of this process alone, or of rank 0.
@@ -80,6 +100,7 @@ int lead(const SweepPlan& plan, RankServer* server) {
   }
   const auto runs = share_of_runs(plan);
   refuse_leftovers(plan, folder, runs);
+  refuse_foreign_folder(plan, folder, runs);
   folder.make();
   SweepWork work(plan, folder, runs);
   const PoolEnd end = run_pool(

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "apps/subcommands.h"
+#include "apps/sweep_table.h"
 #include "core/provenance.h"
 #include "core/ranks.h"
 
@@ -78,7 +79,6 @@ int write_result(const SweepPlan& plan, const SweepResults& results, double wall
   file.attribute("/", "format", std::uint64_t{2});
   file.attribute("/", "complete", is_whole(results));
   file.attribute("/", "ranks", std::int64_t{ranks().size});
-  if (const auto target = plan.stop(0).target_error) file.attribute("/", "target_error", *target);
   write_sweep(file, plan, results);
   file.commit();
   std::cout << "wrote " << plan.settings.out << " (" << count_text(plan, results) << ")\n";

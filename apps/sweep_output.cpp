@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <functional>
 
 #include "apps/moments_output.h"
@@ -102,6 +101,13 @@ class SweepWriter {
   }
 
   void write_method(std::size_t method, const std::string& prefix) {
+    write_curves(method, prefix);
+    write_ranges(method, prefix);
+    write_costs(method, prefix);
+    write_traces(method, prefix + "trace");
+  }
+
+  void write_curves(std::size_t method, const std::string& prefix) {
     const auto curve = [&](const char* name, auto member, const char* long_name) {
       std::vector<double> values;
       for (std::size_t i = 0; i < points_.size(); ++i) {
@@ -110,32 +116,70 @@ class SweepWriter {
       }
       file_.dataset(prefix + name, values, with(grid_, "tilt"), "1", long_name);
     };
-    const auto scalar = [&](const char* name, double PointResult::*member, const char* units,
-                            const char* long_name) {
-      file_.dataset(prefix + name, per_point(method, std::mem_fn(member)), grid_, units, long_name);
-    };
     curve("field_correlation", &PointResult::correlation, "field correlation C_E");
     curve("field_correlation_error", &PointResult::correlation_error,
           "standard error: field correlation C_E");
-    scalar("memory_effect_range", &PointResult::range, "1", "q L at C_I = 1/2");
-    scalar("memory_effect_range_error", &PointResult::range_error, "1",
-           "standard error: q L at C_I = 1/2");
-    scalar("relative_error", &PointResult::relative_error, "1",
-           "RMS standard error of the covariances relative to their RMS magnitude");
-    scalar("samples", &PointResult::samples, "1", "samples");
-    scalar("cpu_s", &PointResult::cpu_s, "s", "processor time, all threads");
-    scalar("wall_s", &PointResult::wall_s, "s",
-           "time from the first batch to the last, other points' included");
-    std::vector<std::uint64_t> censored;
-    for (std::size_t i = 0; i < points_.size(); ++i)
-      censored.push_back(result(method, i).range_censored);
+  }
+
+  /// One number per point.
+  void write_member(std::size_t method, const std::string& name, double PointResult::*member,
+                    const char* units, const char* long_name) {
+    file_.dataset(name, per_point(method, std::mem_fn(member)), grid_, units, long_name);
+  }
+
+  void write_ranges(std::size_t method, const std::string& prefix) {
+    write_member(method, prefix + "memory_effect_range", &PointResult::range, "1",
+                 "q L at C_I = 1/2");
+    write_member(method, prefix + "memory_effect_range_error", &PointResult::range_error, "1",
+                 "standard error: q L at C_I = 1/2");
+    std::vector<std::uint64_t> censored, steps;
+    const Scene& scene = scenes_.front();
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      const PointResult& point = result(method, i);
+      censored.push_back(point.range_censored);
+      steps.push_back(steps_below(scene.request.tilt_q, range_in_q(scene, point)));
+    }
     file_.dataset(prefix + "range_censored", censored, grid_, "1",
                   "0: range found; 1: C_I stays above 1/2, a lower bound; 2: it is below at the "
                   "first step, an upper bound");
-    write_traces(method, prefix + "trace/");
+    file_.dataset(prefix + "range_steps", steps, grid_, "1",
+                  "tilts between 0 and the range: fewer than 4 are too few to trust its error");
+    write_angles(method, prefix);
   }
 
-  void write_traces(std::size_t method, const std::string& prefix) {
+  void write_costs(std::size_t method, const std::string& prefix) {
+    write_member(method, prefix + "relative_error", &PointResult::relative_error, "1",
+                 "RMS standard error of the covariances relative to their RMS magnitude");
+    write_member(method, prefix + "samples", &PointResult::samples, "1", "samples");
+    write_member(method, prefix + "cpu_s", &PointResult::cpu_s, "s", "processor time, all threads");
+    write_member(method, prefix + "wall_s", &PointResult::wall_s, "s",
+                 "time from the first batch to the last, other points' included");
+    if (const auto target = plan_.stop(plan_.run(method, 0)).target_error)
+      file_.attribute(prefix.empty() ? "/" : plan_.method_words[method], "target_error", *target);
+  }
+
+  /// The ranges as rotations of the light, to the side on which they were read off.
+  void write_angles(std::size_t method, const std::string& prefix) {
+    const Scene& scene = scenes_.front();
+    const auto& q = scene.request.tilt_q;
+    const bool positive = std::any_of(q.begin(), q.end(), [](double each) { return each > 0; });
+    const double light = scene.request.lights.front().angle;
+    const double per_range = 1 / (scene.domain.depth * scene.k);
+    std::vector<double> angles, errors;
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      const PointResult& point = result(method, i);
+      const double sine = std::sin(light) + (positive ? 1 : -1) * point.range * per_range;
+      const double turned = std::asin(std::clamp(sine, -1.0, 1.0));
+      angles.push_back(std::abs(turned - light));
+      errors.push_back(point.range_error * per_range / std::cos(turned));
+    }
+    file_.dataset(prefix + "memory_effect_angle", angles, grid_, "rad",
+                  "rotation of the light at C_I = 1/2");
+    file_.dataset(prefix + "memory_effect_angle_error", errors, grid_, "rad",
+                  "standard error: rotation of the light at C_I = 1/2");
+  }
+
+  void write_traces(std::size_t method, const std::string& group) {
     std::vector<std::uint64_t> point;
     Trace all;
     for (std::size_t i = 0; i < points_.size(); ++i) {
@@ -144,23 +188,18 @@ class SweepWriter {
       for (auto column : {&Trace::wall_s, &Trace::cpu_s, &Trace::samples, &Trace::relative_error})
         (all.*column).insert((all.*column).end(), (own.*column).begin(), (own.*column).end());
     }
-    write_trace(file_, prefix.substr(0, prefix.size() - 1), all);
-    file_.dataset(prefix + "of_point", point, {prefix + "checkpoint"}, "1",
+    write_trace(file_, group, all);
+    file_.dataset(group + "/of_point", point, {group + "/checkpoint"}, "1",
                   "number of the point, in the order of the grid");
   }
 
   void write_deviation() {
-    constexpr double rounding = 1e-12;  // at tilt 0 both are 1
-    std::vector<double> deviation;
+    std::vector<double> all;
     for (std::size_t i = 0; i < points_.size(); ++i) {
-      const PointResult &mc = result(0, i), &wave = result(1, i);
-      for (std::size_t t = 0; t < mc.correlation.size(); ++t) {
-        const double difference = mc.correlation[t] - wave.correlation[t];
-        const double error = std::hypot(mc.correlation_error[t], wave.correlation_error[t]);
-        deviation.push_back(error < rounding ? 0 : difference / error);
-      }
+      const auto own = deviation(result(0, i), result(1, i));
+      all.insert(all.end(), own.begin(), own.end());
     }
-    file_.dataset("deviation", deviation, with(grid_, "tilt"), "1",
+    file_.dataset("deviation", all, with(grid_, "tilt"), "1",
                   "mc less wave, in combined standard errors");
   }
 
@@ -171,38 +210,6 @@ class SweepWriter {
   std::vector<Scene> scenes_;
   Axes grid_;
 };
-
-void print_header(const SweepPlan& plan) {
-  for (const SweepAxis& axis : plan.points.axes)
-    if (axis.values.size() > 1) std::printf("%13s ", axis.key.c_str());
-  for (const std::string& method : plan.method_words)
-    std::printf(" %-24s", plan.method_words.size() > 1 ? ("range, " + method).c_str()
-                                                       : "range q L at C_I = 1/2");
-  std::puts("");
-}
-
-void print_row(const SweepPlan& plan, const SweepResults& results, std::size_t point) {
-  for (std::size_t i = 0; i < plan.points.axes.size(); ++i)
-    if (plan.points.axes[i].values.size() > 1)
-      std::printf("%13s ", plan.points.points[point].values[i].c_str());
-  for (std::size_t method = 0; method < plan.method_words.size(); ++method) {
-    const PointResult& result = *results[plan.run(method, point)];
-    const mc::Range range{result.range, mc::Range::Censoring(result.range_censored)};
-    std::printf(" %-24s", range_text(range, result.range_error).c_str());
-  }
-  std::puts("");
-}
-
-bool rests_on_few_steps(const SweepPlan& plan, const SweepResults& results, std::size_t point) {
-  const Scene scene = plan.scene(point);
-  for (std::size_t method = 0; method < plan.method_words.size(); ++method) {
-    const PointResult& result = *results[plan.run(method, point)];
-    if (few_steps(scene.request.tilt_q,
-                  {result.range / scene.domain.depth, mc::Range::Censoring(result.range_censored)}))
-      return true;
-  }
-  return false;
-}
 
 }  // namespace
 
@@ -219,17 +226,6 @@ std::vector<std::size_t> finished_points(const SweepPlan& plan, const SweepResul
 
 void write_sweep(ResultFile& file, const SweepPlan& plan, const SweepResults& results) {
   SweepWriter(file, plan, results).write();
-}
-
-void print_ranges(const SweepPlan& plan, const SweepResults& results) {
-  constexpr std::size_t most = 60;
-  const auto points = finished_points(plan, results);
-  if (std::any_of(points.begin(), points.end(),
-                  [&](std::size_t point) { return rests_on_few_steps(plan, results, point); }))
-    note_few_steps();
-  if (points.size() > most) return;
-  print_header(plan);
-  for (std::size_t point : points) print_row(plan, results, point);
 }
 
 }  // namespace flatspeckle::apps

@@ -19,7 +19,4 @@ std::vector<std::size_t> finished_points(const SweepPlan& plan, const SweepResul
 /// on the sweep's own axes where all are there, else as a list. There must be one at least.
 void write_sweep(ResultFile& file, const SweepPlan& plan, const SweepResults& results);
 
-/// A table of ranges, if there are not too many.
-void print_ranges(const SweepPlan& plan, const SweepResults& results);
-
 }  // namespace flatspeckle::apps

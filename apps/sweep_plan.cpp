@@ -1,6 +1,9 @@
 #include "apps/sweep_plan.h"
 
+#include <algorithm>
 #include <charconv>
+#include <cmath>
+#include <limits>
 
 #include "apps/scene_options.h"
 #include "core/error.h"
@@ -76,17 +79,43 @@ std::vector<std::string> methods_of(const std::string& word) {
   return {word};
 }
 
-/// Every point must make a scene that the method can take.
-void check_points(const SweepPlan& plan) {
+/// Both transmission and reflection: their sum says nothing.
+bool mixes_sides(const CovarianceRequest& request) {
+  return std::any_of(request.views.begin(), request.views.end(), [&](const View& view) {
+    return std::cos(view.angle) * std::cos(request.views.front().angle) < 0;
+  });
+}
+
+void check_scene(const SweepPlan& plan, std::size_t run, const Scene& scene) {
+  plan.stop(run);  // checks
+  if (scene.medium.mu_s == 0)
+    throw InputError("albedo", scene.medium.albedo,
+                     "what does not scatter has no correlation; must be in (0, 1]");
+  if (mixes_sides(scene.request))
+    throw InputError(
+        "view_angles: C_E is of all views together: give those in transmission or those in "
+        "reflection");
+  if (plan.method(run) == "wave") note_rounding(scene);
+  if (plan.method(run) == "wave" || run == 0) plan.estimation(run, scene);
+}
+
+/// Every point must make a scene that the method can take. Where they come from a table, says which
+/// row does not.
+void check_points(const SweepPlan& plan, const std::string& table) {
+  double small_parameter = std::numeric_limits<double>::infinity();
   for (std::size_t run = 0; run < plan.runs(); ++run) {
-    const Scene scene = plan.scene(run);
-    if (scene.medium.mu_s == 0)
-      throw InputError("albedo", scene.medium.albedo,
-                       "what does not scatter has no correlation; must be in (0, 1]");
-    plan.stop(run);  // checks
-    if (plan.method(run) == "wave") note_rounding(scene);
-    if (plan.method(run) == "wave" || run == 0) plan.estimation(run, scene);
+    try {
+      const Scene scene = plan.scene(run);
+      check_scene(plan, run, scene);
+      if (plan.method(run) == "mc")
+        small_parameter = std::min(small_parameter, scene.k * scene.medium.mean_free_path());
+    } catch (const InputError& error) {
+      if (table.empty()) throw;
+      const std::size_t row = run % plan.points.points.size() + 1;
+      throw InputError(table + ", row " + std::to_string(row) + ": " + error.what());
+    }
   }
+  note_small_parameter(small_parameter);
 }
 
 SweepPlan SweepParser::plan() {
@@ -96,7 +125,7 @@ SweepPlan SweepParser::plan() {
   if (!share_.empty()) plan_.share = share_of(share_);
   seed_of(plan_.settings);
   stop_rule(plan_.settings);
-  check_points(plan_);
+  check_points(plan_, lists_.points);
   return plan_;
 }
 

@@ -359,11 +359,61 @@ class Resume(SweepTest):
         self.call("sweep", **keys, out="whole.h5")
         self.assert_same_data("merged.h5", "whole.h5")
 
+    def test_with_other_keys(self):
+        """All points are of another sweep: that is a slip, and nothing is touched."""
+        self.all_points({**SWEEP, "target_error": 0.5})
+        before = self.shards()
+        done = self.call("sweep", **SWEEP, target_error=0.4, resume=True, out="sweep.h5", status=2)
+        self.assert_one_line(done.stderr, "another sweep", "target_error = 0.5")
+        self.assertEqual(self.shards(), before)
+
     def test_something_else_in_the_place_of_the_folder(self):
         self.write("sweep.h5.shards", "a file")
         done = self.call("sweep", **SWEEP, out="sweep.h5", status=4)
         self.assert_one_line(done.stderr, "sweep.h5.shards")
         self.assertEqual((self.folder / "sweep.h5.shards").read_text(), "a file")
+
+
+class Ranges(SweepTest):
+    def test_as_angles_and_on_how_many_tilts(self):
+        keys = {**SWEEP, "light_angles": 0.3, "view_angles": 0.2, "tilts": [0, 0.001, 0.002, 0.02]}
+        done = self.call("sweep", **keys, out="sweep.h5")
+        with h5py.File(self.folder / "sweep.h5") as file:
+            read = file["range_censored"][()] == 0
+            self.assertTrue(read.any())
+            turned = np.arcsin(np.sin(0.3) + file["memory_effect_range"][()] /
+                               (2 * np.pi * keys["depth"]))
+            np.testing.assert_allclose(file["memory_effect_angle"][()], turned - 0.3, rtol=1e-9)
+            np.testing.assert_allclose(
+                file["memory_effect_angle_error"][()],
+                file["memory_effect_range_error"][()] / (2 * np.pi * keys["depth"]) /
+                np.cos(turned), rtol=1e-9)
+            below = file["tilt_q"][()][:, None, None, None] * keys["depth"] < (
+                file["memory_effect_range"][()])
+            np.testing.assert_array_equal(file["range_steps"][()], below.sum(0) - 1)
+            few = int((read & (file["range_steps"][()] < 4)).sum())
+        self.assertIn(f"note: {few} of 8 ranges", done.stderr)
+        self.assertEqual(done.stdout.count(" *\n"), few)
+
+    def test_a_dense_medium_is_told_of(self):
+        done = self.call("sweep", **{**SWEEP, "depth": 1}, out="sweep.h5")
+        self.assertIn("mean free path is only 3.14", done.stderr)
+
+
+class Strangers(SweepTest):
+    def test_points_of_another_sweep_are_told_of(self):
+        self.all_points(SWEEP, "one.h5")
+        self.all_points({**SWEEP, "g": [0.7]}, "other.h5")
+        done = self.call("merge", out="m.h5", shards=["one.h5.shards", "other.h5.shards"])
+        self.assertIn("other.h5.shards: 4 points of another sweep", done.stderr)
+
+    def test_a_part_does_not_replace_a_whole(self):
+        self.call("sweep", **SWEEP, out="m.h5")
+        before = (self.folder / "m.h5").read_bytes()
+        self.call("sweep", **SWEEP, shard="0/2", out="m2.h5")
+        done = self.call("merge", "--partial", out="m.h5", shards="m2.h5.shards", status=2)
+        self.assert_one_line(done.stderr, "complete")
+        self.assertEqual((self.folder / "m.h5").read_bytes(), before)
 
 
 class BadInput(SweepTest):
@@ -408,7 +458,7 @@ class BadInput(SweepTest):
         self.check_points("optical_depth,g\n1\n", "points.csv", "line 2")
         self.check_points("optical_depth,g\n1,x\n", "points.csv", "line 2", "g")
         self.check_points("optical_depth,g\n1,0\n1,nan\n", "points.csv", "line 3", "finite")
-        self.check_points("optical_depth,g\n1,0\n1,1\n", "g = 1")
+        self.check_points("optical_depth,g\n1,0\n1,1\n", "points.csv, row 2", "g = 1")
         self.check_points("optical_depth,g\n1,0\n-1,0\n", "optical_depth = -1")
         self.check("none.csv", points="none.csv", optical_depth=None, g=None, albedo=None)
 
@@ -432,6 +482,13 @@ class BadInput(SweepTest):
         self.check("seconds = -1", seconds=-1)
         self.check("wave_samples = 0", domain="box", width=10, scatterer="point", g=None,
                    albedo=None, method="both", wave_samples=0)
+
+    def test_views_on_both_sides(self):
+        self.check("view_angles", "transmission", "reflection", view_angles=[0, 3])
+        self.call("sweep", **SWEEP, view_angles=[2.9, 3], out="one_side.h5")
+
+    def test_a_target_in_percent(self):
+        self.check("target_error = 2", "0.02", target_error=2)
 
     def test_merge(self):
         (self.folder / "empty").mkdir()
