@@ -6,7 +6,7 @@ import unittest
 import h5py
 import numpy as np
 
-from program import SLAB, attributes, datasets
+from program import DATA, SLAB, attributes, datasets
 from sweeps import MANY, NEVER, SLOW, SWEEP, SweepTest, is_complete, names_of
 
 BOTH = {"domain": "box", "width": 10, "depth": 10, "scatterer": "point", "density": [0.2, 0.4],
@@ -398,6 +398,34 @@ class Ranges(SweepTest):
     def test_a_dense_medium_is_told_of(self):
         done = self.call("sweep", **{**SWEEP, "depth": 1}, out="sweep.h5")
         self.assertIn("mean free path is only 3.14", done.stderr)
+
+
+class Gallery(unittest.TestCase):
+    """The sweep that data/ ships."""
+
+    # q L at C_I = 1/2, optical depth 10: g, albedo, value, error; of an integral equation (g = 0,
+    # albedo 1 and 0.99) and of an independent Monte Carlo program.
+    KNOWN = ((0, 1, 1.3688, 0), (0, 0.99, 1.4893, 0), (0, 0.95, 1.833, 0.002),
+             (0, 0.9, 2.156, 0.002), (0, 0.8, 2.700, 0.004), (0.5, 1, 1.294, 0.002),
+             (0.8, 1, 1.383, 0.003), (0.9, 1, 2.587, 0.009), (0.9, 0.99, 2.825, 0.010),
+             (0.95, 1, 7.89, 0.02))
+
+    def setUp(self):
+        self.file = h5py.File(DATA / "gallery.h5")
+        self.addCleanup(self.file.close)
+
+    def test_every_point_is_there_and_precise(self):
+        self.assertEqual(self.file.attrs["complete"], 1)
+        self.assertEqual(self.file["relative_error"].size, 448)
+        self.assertLessEqual(self.file["relative_error"][()].max(), 0.02)
+
+    def test_known_ranges(self):
+        g, albedo = self.file["g"][()], self.file["albedo"][()]
+        depth = list(self.file["optical_depth"]).index(10)
+        for at_g, at_albedo, known, known_error in self.KNOWN:
+            at = depth, list(g).index(at_g), list(albedo).index(at_albedo)
+            error = np.hypot(self.file["memory_effect_range_error"][at], known_error)
+            self.assertLess(abs(self.file["memory_effect_range"][at] - known), 4 * error, at)
 
 
 class Strangers(SweepTest):
