@@ -16,7 +16,7 @@ SHADES = 0.82  # of the map's range; its lightest end is lost on paper
 def add_options(parser):
     parser.add_argument("--against", choices=list(X_AXES), default="cpu")
     parser.add_argument("--colour", choices=list(sweep_file.PARAMETERS),
-                        help="axis that colours the curves (default: the outermost that varies)")
+                        help="axis that colours the curves (default: the outermost with few values)")
     sweep_file.add_select(parser)
 
 
@@ -25,7 +25,8 @@ def colour_axis(sweep, asked):
     if asked and asked not in axes:
         raise style.Unusable(f"{sweep.path}: {asked} does not vary; --colour one of "
                              f"{', '.join(axes) or 'nothing here'}")
-    return asked or (axes[0] if axes else None)
+    few = [name for name in axes if len(sweep.values(name)) <= MOST_COLOURS]
+    return asked or (few or [None])[0]
 
 
 def colours(sweep, axis):

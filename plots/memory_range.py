@@ -11,6 +11,7 @@ from matplotlib.transforms import offset_copy
 
 MOST_CURVES, MOST_PANELS, ACROSS = 7, 12, 3
 ASIDE = {None: 0, "mc": -2.5, "wave": 2.5}  # points of print
+DASH = {"marker": "_", "markersize": 9, "markeredgewidth": 0.7}  # diffusion theory of one point
 ABOVE = 1  # in range_censored: the curve stays above 1/2
 
 
@@ -73,7 +74,7 @@ def draw_bounds(axis, sweep, method, rows, x, numbers):
         peers = bounds[x[bounds] == position]
         for rank, row in enumerate(peers):
             look = curve_looks.curve_look(numbers[row], method)
-            place = moved(axis, method, (7 if method else 3) * (rank - (len(peers) - 1) / 2))
+            place = moved(axis, method, (6 if method else 3) * (rank - (len(peers) - 1) / 2))
             axis.plot(position, value[row], linestyle="none", transform=place, **look)
             axis.annotate("", (position, value[row]), xycoords=place, textcoords="offset points",
                           xytext=(0, 11 if censored[row] == ABOVE else -11), zorder=1,
@@ -107,7 +108,7 @@ def entries(sweep, curves, single):
                sweep_file.text(curves, value))
     yield from curve_looks.method_entries(sweep)
     if theory:
-        yield plt.Line2D([], [], color="black", linewidth=0.7), "lines: diffusion theory"
+        yield plt.Line2D([], [], color="black", linewidth=0.7), "lines, dashes: diffusion theory"
     yield from curve_looks.range_entries(sweep)
     if single:
         yield plt.Line2D([], [], color="0.55", linewidth=1.6), "single scattering"
@@ -124,7 +125,8 @@ def draw_panel(axis, sweep, rows, against, curves, single):
         part = part[np.argsort(x[part], kind="stable")]
         if diffusion is not None:
             look = {name: style.look(number)[name] for name in ("color", "linestyle")}
-            axis.plot(x[part], diffusion[part], linewidth=0.7, zorder=1, **look)
+            axis.plot(x[part], diffusion[part], linewidth=0.7, zorder=1, **look,
+                      **(DASH if len(part) == 1 else {}))
         for method in sweep.prefixes:
             draw_curve(axis, sweep, method, part, x, number)
     for method in sweep.prefixes:

@@ -4,6 +4,7 @@ from lib import style
 
 import numpy as np
 
+FEW_DECADES = 50  # highest over lowest tilt
 BELIEVED = 3  # standard errors of C_E, a magnitude, below which its noise lifts it
 
 
@@ -23,7 +24,10 @@ def prepare(axis, tilt, lowest, arguments):
         if not (tilt > 0).any():
             raise style.Unusable("--log: there is no tilt above 0")
         axis.set_xscale("log")
-        axis.set_xlim(tilt[tilt > 0].min() / 1.2, tilt.max() * 1.2)
+        low, high = tilt[tilt > 0].min() / 1.2, tilt.max() * 1.2
+        axis.set_xlim(low, high)
+        if high < FEW_DECADES * low:
+            style.few_decades(axis.xaxis)
     else:
         margin = 0.05 * max(np.ptp(tilt), 1e-3)
         axis.set_xlim(tilt.min() - margin, tilt.max() + margin)
@@ -101,6 +105,8 @@ def add_q_axis(axis, result, tilt):
     top = axis.secondary_xaxis("top", functions=(lambda t: np.interp(t, x, q_depth),
                                                  lambda q: np.interp(q, q_depth, x)))
     top.set_xlabel(r"$qL$")
+    if axis.get_xscale() == "log" and np.divide(*reversed(axis.get_xlim())) < FEW_DECADES:
+        style.few_decades(top.xaxis)
     axis.tick_params(which="both", top=False)
 
 

@@ -3,7 +3,7 @@
 from lib import style
 
 import numpy as np
-from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter, NullLocator
+from matplotlib.ticker import NullLocator
 
 LABELS = {"albedo": "absorption 1 \u2212 albedo", "g": "mean cosine $g$",
           "optical_depth": "optical depth", "index": "relative index",
@@ -42,6 +42,7 @@ def scale_axis(axis, against, x, wavelength):
     elif against in ("density", "radius", "optical_depth") and values[-1] > 4 * values[0] > 0:
         axis.set_xscale("log")
     else:
+        axis.margins(x=0.1)
         return
     if len(values) <= 7:
         axis.set_xticks(values, numbers_apart(axis, values))
@@ -70,9 +71,7 @@ def scale_range(axis, sweep, single, vertical=True):
     side = axis.yaxis if vertical else axis.xaxis
     if logarithmic:
         (axis.set_yscale if vertical else axis.set_xscale)("log")
-        side.set_major_locator(LogLocator(subs=(1, 2, 5)))
-        side.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-        side.set_minor_formatter(NullFormatter())
+        style.few_decades(side)
     (axis.set_ylim if vertical else axis.set_xlim)(low, high)
 
 

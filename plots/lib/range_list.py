@@ -26,8 +26,10 @@ def draw_method(axis, sweep, method, places):
         "memory_effect_range", "memory_effect_range_error", "range_censored"))
     look = {"marker": "o", **curve_looks.method_look(method, style.COLOURS[0])}
     place = offset_copy(axis.transData, axis.figure, y=ASIDE[method], units="points")
-    axis.errorbar(value, places, xerr=np.where(censored > 0, 0, error), linestyle="none",
-                  elinewidth=0.7, transform=place, **look)
+    axis.plot(value, places, linestyle="none", transform=place, **look)
+    known = censored == 0
+    axis.errorbar(value[known], places[known], xerr=error[known], fmt="none", elinewidth=0.7,
+                  ecolor=look["color"], transform=place)
     draw_bounds(axis, places, value, censored, place, look["color"])
     few = sweep.few_steps(method)[sweep.rows]
     axis.plot(value[few], places[few], transform=place, **curve_looks.RING)

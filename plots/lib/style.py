@@ -18,7 +18,7 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
-from matplotlib.ticker import NullFormatter
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from lib.result_file import Result, Unusable
 
@@ -82,6 +82,13 @@ def whole_decades(axis):
         limit(10 ** np.floor(low - 0.03), 10 ** np.ceil(high + 0.03))
     axis.xaxis.set_minor_formatter(NullFormatter())
     axis.yaxis.set_minor_formatter(NullFormatter())
+
+
+def few_decades(side):
+    """Numbers 1, 2, 5 of every decade on a logarithmic axis that spans few."""
+    side.set_major_locator(LogLocator(subs=(1, 2, 5)))
+    side.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    side.set_minor_formatter(NullFormatter())
 
 
 def save(figure, prefix):
