@@ -16,7 +16,7 @@ SHADES = 0.82  # of the map's range; its lightest end is lost on paper
 def add_options(parser):
     parser.add_argument("--against", choices=list(X_AXES), default="cpu")
     parser.add_argument("--colour", choices=list(sweep_file.PARAMETERS),
-                        help="axis that colours the curves (default: the outermost with few values)")
+                        help="axis that colours the curves (default: the outermost of few values)")
     sweep_file.add_select(parser)
 
 
@@ -149,7 +149,7 @@ def draw(results, arguments):
     for axis, method in zip(axes.flat, sweep.prefixes):
         draw_panel(axis, sweep, method, arguments, looks, coloured)
     share_limits(axes[0])
-    page.legend_outside(figure, list(entries(sweep, coloured, looks)), sweep.unfinished())
+    page.legend_outside(figure, list(entries(sweep, coloured, looks)), sweep.notes())
     return figure
 
 

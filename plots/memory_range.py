@@ -98,7 +98,13 @@ def draw_curve(axis, sweep, method, rows, x, number):
     axis.plot(x[rows][few], value[few], transform=place, **curve_looks.RING)
 
 
-def entries(sweep, curves, single):
+def has_lone_points(sweep, names):
+    """Whether a curve, of constant `names`, has one point alone."""
+    constants = [sweep.columns[name][sweep.rows] for name in names if name]
+    return bool(constants) and 1 in np.unique(constants, axis=1, return_counts=True)[1]
+
+
+def entries(sweep, curves, panels, single):
     """Legend entries (handle, label)."""
     theory = range_axes.diffusion_in_view(sweep, single)[1]
     for number, value in enumerate(sweep.values(curves) if curves else []):
@@ -108,7 +114,8 @@ def entries(sweep, curves, single):
                sweep_file.text(curves, value))
     yield from curve_looks.method_entries(sweep)
     if theory:
-        yield plt.Line2D([], [], color="black", linewidth=0.7), "lines, dashes: diffusion theory"
+        marks = "lines and dashes" if has_lone_points(sweep, (curves, panels)) else "lines"
+        yield plt.Line2D([], [], color="black", linewidth=0.7), f"{marks}: diffusion theory"
     yield from curve_looks.range_entries(sweep)
     if single:
         yield plt.Line2D([], [], color="0.55", linewidth=1.6), "single scattering"
@@ -139,7 +146,7 @@ def draw_panel(axis, sweep, rows, against, curves, single):
 def draw(results, arguments):
     sweep = sweep_file.read(results, arguments)
     single = sweep.single_scattering_range()
-    notes = [*sweep.unfinished(), *range_axes.notes(sweep, single)]
+    notes = [*sweep.notes(), *range_axes.notes(sweep, single)]
     if sweep.is_list and len(sweep.varying()) > 1 and not (arguments.against or arguments.curves):
         return range_list.draw(sweep, single or [], notes)
     against, curves, panels = arrange(sweep, arguments)
@@ -152,7 +159,7 @@ def draw(results, arguments):
         if panels:
             axis.set_title(sweep_file.text(panels, value), fontsize=7.5, pad=3)
     page.outer_labels(axes, len(parts))
-    page.legend_outside(figure, list(entries(sweep, curves, single or [])), notes)
+    page.legend_outside(figure, list(entries(sweep, curves, panels, single or [])), notes)
     return figure
 
 

@@ -160,7 +160,7 @@ def draw(results, arguments):
     page.outer_labels(axes, len(shown))
     colour_bar(figure, axes, image, levels)
     page.legend_outside(figure, list(entries(sweep, holes)),
-                        [*sweep.unfinished(), worst_error(sweep)])
+                        [*sweep.notes(), worst_error(sweep)])
     return figure
 
 

@@ -4,7 +4,7 @@ from lib import style
 
 import numpy as np
 
-FEW_DECADES = 50  # highest over lowest tilt
+FEW_DECADES = 50  # highest over lowest value of an axis
 BELIEVED = 3  # standard errors of C_E, a magnitude, below which its noise lifts it
 
 
@@ -34,6 +34,8 @@ def prepare(axis, tilt, lowest, arguments):
     if arguments.log_correlation:
         axis.set_yscale("log")
         axis.set_ylim(lowest / 2, 1.6)
+        if 1.6 < FEW_DECADES * lowest / 2:
+            style.few_decades(axis.yaxis)
     else:
         axis.set_ylim(-0.03, 1.08)
 

@@ -110,5 +110,5 @@ class Drawing:
                 f"deviation of $C_E$: $\\pm${BAND} standard errors"
 
     def notes(self):
-        return [*self.sweep.unfinished(),
+        return [*self.sweep.notes(),
                 *correlation_panel.notes(self.left_out, self.arguments)]

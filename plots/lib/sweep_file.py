@@ -66,8 +66,14 @@ class Sweep:
         fills = points >= LEAST_FILLED * np.prod(counts)
         return "points" not in self.scene or (fills and (len(counts) < 2 or max(counts) < points))
 
+    def notes(self):
+        """What every picture has to say: points that are missing, and what all that it shows have
+        in common."""
+        common = [name for name in self.axes or self.given() if len(self.values(name)) == 1]
+        return [*self.unfinished(), *([self.label(common, self.rows[0])] if common else [])]
+
     def unfinished(self):
-        """A sentence on points that are missing; none in a list of no sentences."""
+        """[A sentence on points that are missing, if any]."""
         if self.result.attribute("complete", 1):
             return []
         lists = [self.scene.get(name, "").count(",") + 1 for name in PARAMETERS]
