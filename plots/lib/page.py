@@ -8,7 +8,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 LETTERS = 17  # of a legend, to an inch
-MOST_ROWS = 3  # of a legend over a single panel
+MOST_ROWS = 3  # of a legend and its notes over a single panel
 
 
 def page_of_panels(down, across, count, beneath=0):
@@ -57,7 +57,8 @@ def legend_outside(figure, entries, notes=()):
     letters = LETTERS * figure.get_figwidth()
     sizes = [len(label.replace("$", "")) + 9 for label in labels] or [0]
     columns = columns_that_fit(sizes, letters)
-    beside = figure.get_figwidth() <= style.COLUMN and len(labels) > MOST_ROWS * columns
+    rows = len(notes) + -(-len(labels) // columns)
+    beside = labels and figure.get_figwidth() <= style.COLUMN and rows > MOST_ROWS
     place = {"loc": "center left", "bbox_to_anchor": (1.0, 0.5), "ncol": 1} if beside else \
         {"loc": "lower center", "bbox_to_anchor": (0.5, 1.0), "ncol": columns}
     wrapped = [textwrap.fill(note, 40 if beside else int(letters)) for note in notes]
