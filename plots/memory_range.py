@@ -9,7 +9,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.transforms import offset_copy
 
-MOST_CURVES, MOST_PANELS, ACROSS = 7, 12, 3
+MOST_CURVES, MOST_PANELS, ACROSS = 8, 12, 3
 ASIDE = {None: 0, "mc": -2.5, "wave": 2.5}  # points of print
 DASH = {"marker": "_", "markersize": 9, "markeredgewidth": 0.7}  # diffusion theory of one point
 ABOVE = 1  # in range_censored: the curve stays above 1/2

@@ -13,7 +13,8 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 MOST_PANELS, MOST_CELLS = 12, 16
 LEAST_CONTOURED = 6  # cells across and down: contours of fewer are all corners
 MAP = plt.get_cmap("cividis")  # even steps of lightness, so that it survives in grey
-STEPS = (1, 1.5, 2, 3, 5, 7)  # contours and marks of the scale, in every decade
+STEPS = (1, 1.5, 2, 3, 5, 7)  # marks of the scale, in every decade, and contours
+FEW_STEPS, WIDE = (1, 2, 5), 20  # contours where the ranges span more than this factor
 SIGNS = {0: "", 1: ">", 2: "<"}
 DAGGER = "\u2020"
 
@@ -73,7 +74,8 @@ def contour_levels(sweep, norm, holes):
     """Levels of the contours; none of a map of few cells or with holes."""
     if holes or min(len(sweep.values(name)) for name in ("g", "albedo")) < LEAST_CONTOURED:
         return []
-    levels = [step * 10.0**power for power in range(-3, 4) for step in STEPS]
+    steps = FEW_STEPS if norm.vmax > WIDE * norm.vmin else STEPS
+    levels = [step * 10.0**power for power in range(-3, 4) for step in steps]
     return [level for level in levels if norm.vmin < level < norm.vmax]
 
 

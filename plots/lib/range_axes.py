@@ -10,6 +10,7 @@ LABELS = {"albedo": "absorption 1 \u2212 albedo", "g": "mean cosine $g$",
           "radius": "radius (wavelength = {:g})",
           "density": "density (per area, wavelength = {:g})"}
 RANGE = r"range $qL$ at $C_I = 1/2$"
+MOST_TICKS = 16  # at the values themselves
 CLOSE = 0.13  # of an axis: two numbers nearer than this run into each other
 
 
@@ -44,7 +45,7 @@ def scale_axis(axis, against, x, wavelength):
     else:
         axis.margins(x=0.1)
         return
-    if len(values) <= 7:
+    if len(values) <= MOST_TICKS:
         axis.set_xticks(values, numbers_apart(axis, values))
     axis.xaxis.set_minor_locator(NullLocator())
 
@@ -60,7 +61,7 @@ def limits(sweep, single):
         shown = diffusion[sweep.rows][diffusion[sweep.rows] >= low / 2]
         low, high = np.min(shown, initial=low), np.max(shown, initial=high)
     if high > 4 * low:
-        return low / 1.15, high * 1.45, True
+        return low / 1.15, high * max(1.45, (high / low)**0.12), True  # with room for arrows
     spread = max(high - low, 0.3 * high)
     return max(0, low - 0.15 * spread), high + 0.2 * spread, False
 
