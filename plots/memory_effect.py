@@ -5,8 +5,6 @@ compared in one panel."""
 
 from lib import correlation_panel, covariance_curves, page, style, sweep_curves, sweep_file
 
-import numpy as np
-
 MOST_ROWS, MOST_COLUMNS, MOST_CURVES = 5, 4, 8
 BENEATH = 0.35  # height of a panel of deviations, of the one above it
 
