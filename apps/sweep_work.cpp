@@ -43,7 +43,7 @@ std::optional<OpenRun> SweepWork::open(std::size_t number) {
                     [&](const ResultReader& file) { state = read_state(file, "state", job.size); });
   const std::lock_guard lock(mutex_);
   auto& kept = open_[number];
-  kept = std::make_unique<Open>(std::move(scene), std::move(estimation), std::move(state));
+  kept = std::make_unique<Open>(Open{std::move(scene), std::move(estimation), std::move(state)});
   return OpenRun{job, plan_.stop(number), &kept->state};
 }
 
