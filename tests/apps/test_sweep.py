@@ -1,4 +1,4 @@
-"""What a sweep gives: the same numbers in one process, in shares and from a list; and bad input."""
+"""What a sweep gives: the same numbers in one process, in shares and from a list."""
 
 import time
 import unittest
