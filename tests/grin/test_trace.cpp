@@ -194,7 +194,7 @@ TEST_CASE("A step through two surfaces ends at the first") {
                                              Box{{-1, -1, 0.32}, {1, 1, 0.33}}};
   FixedSteps<Leapfrog> steps{0.1};  // 0.15 long
   RayState ray = start_ray(guide, {0, 0, 0}, Vec3::UnitZ());
-  for (const auto& [surface, z] : {std::pair(1, 0.32), {1, 0.33}, {0, 0.42}}) {
+  for (const auto& [surface, z] : {std::pair(1, 0.32), std::pair(1, 0.33), std::pair(0, 0.42)}) {
     CHECK(trace(guide, plate_and_plane, far, steps, ray).surface == surface);
     CHECK(std::abs(ray.x[2] - z) < 1e-11);
   }
