@@ -75,7 +75,8 @@ class ConnectionTrial {
   struct Shot {
     RayState end;
     RayTangent tangent;
-    bool inside = true;
+    bool inside = true;   // what the region says
+    bool uniform = true;  // steps
     Vec3 error;
     double miss;
   };
@@ -130,7 +131,7 @@ class ConnectionTrial {
   }
 
   Shot shoot(const Aim& aim, ConnectionStatistics& statistics) const {
-    Shot shot{start_ray(field_, from_, aim.direction), {}, true, {}, 0};
+    Shot shot{start_ray(field_, from_, aim.direction), {}, true, true, {}, 0};
     const double h = aim.sigma / aim.steps;
     for (int i = 0; i < aim.steps; ++i) {
       if (i > 0 && !region_(shot.end.x)) shot.inside = false;
@@ -162,15 +163,16 @@ class ConnectionTrial {
     for (int i = 0; i < options_.max_iterations && !damped.stuck(); ++i) {
       if (shot.miss <= tolerance_) {
         const int steps = steps_for(aim.sigma);
-        if (steps == aim.steps || (raised && steps < aim.steps))
+        if ((steps == aim.steps && shot.uniform) || (raised && steps < aim.steps))
           return judge(aim, shot, statistics);
         raised = steps > aim.steps;
         aim.steps = steps;
         shot = shoot(aim, statistics);
       }
-      const Aim next = moved(aim, shot, damped);
-      const Shot tried = shoot(next, statistics);
+      Aim next = moved(aim, shot, damped);
+      Shot tried = shoot(next, statistics);
       ++statistics.iterations;
+      if (tried.miss >= shot.miss / 2) next.sigma += draw_near(tried, next.sigma);
       if (tried.miss < shot.miss) {
         damped.succeeded(tried.miss / shot.miss);
         aim = next;
@@ -180,6 +182,19 @@ class ConnectionTrial {
       }
     }
     return {judge_failure(aim, shot, statistics), {}};
+  }
+
+  /// Moves the end along its ray to where it comes closest to Q: a turned ray may pass closer
+  /// though it ends farther, as at a focus, where the directions agree in optical path and not in
+  /// sigma. Returns the change of sigma.
+  double draw_near(Shot& shot, double sigma) const {
+    const double wanted = -shot.error.dot(shot.end.v) / shot.end.v.squaredNorm();
+    const double change = std::clamp(wanted, -sigma / 2, sigma / 2);
+    Step::step(field_, shot.end, shot.tangent, change);
+    shot.error = shot.end.x - to_;
+    shot.miss = shot.error.norm();
+    shot.uniform = false;
+    return change;
   }
 
   /// Near the end the number of steps stays, which would move the end.
