@@ -24,8 +24,12 @@ std::uint64_t ConnectionStatistics::trials() const {
 double ConnectionStatistics::success_rate() const {
   return ratio(count(TrialOutcome::converged), trials());
 }
-double ConnectionStatistics::iterations_per_trial() const { return ratio(iterations, trials()); }
-double ConnectionStatistics::mean_refind() const { return ratio(refind, found); }
+double ConnectionStatistics::iterations_per_trial() const {
+  return ratio(iterations, trials());
+}
+double ConnectionStatistics::mean_refind() const {
+  return ratio(refind, found);
+}
 
 void ConnectionStatistics::record_refind(std::uint64_t further_trials) {
   refind += further_trials;
@@ -42,6 +46,7 @@ ConnectionStatistics& ConnectionStatistics::operator+=(const ConnectionStatistic
   add(refind_counts, other.refind_counts);
   iterations += other.iterations;
   guess_steps += other.guess_steps;
+  rough_steps += other.rough_steps;
   tangent_steps += other.tangent_steps;
   pairs += other.pairs;
   found += other.found;

@@ -19,6 +19,13 @@ struct WholeSpace {
   bool operator()(const Vec3&) const { return true; }
 };
 
+/// The inside of a surface: surface.distance(x) <= 0.
+template <class S>
+struct Inside {
+  S surface;
+  bool operator()(const Vec3& x) const { return surface.distance(x) <= 0; }
+};
+
 /// A ray that joins P and Q.
 struct Connection {
   Vec3 start_direction, end_direction;  ///< unit tangents, both along the way from P to Q
@@ -31,33 +38,41 @@ struct Connection {
 };
 
 struct ConnectionOptions {
-  double step;                  ///< largest step in sigma: length at index 1
-  double max_length;            ///< longer curves do not count; arc length
-  StartDirections start = {};   ///< of the trials
-  int max_iterations = 40;      ///< after that a trial has failed
-  double tolerance = 1e-10;     ///< distance from Q at the end, in units of |PQ|
-  double same = 1e-5;           ///< two curves are one if they start and last alike to this; rad
-  double caustic = 1e-5;        ///< Q is on one where a beam from P is narrower than this times
-                                ///< its widest
-  double roulette_after = 512;  ///< trials in search of a curve before roulette begins
+  double step;                 ///< largest step in sigma: length at index 1
+  double max_length;           ///< longer curves do not count; arc length
+  StartDirections start = {};  ///< of the trials
+  int max_iterations = 40;     ///< after that a trial has failed
+  double tolerance = 1e-10;    ///< distance from Q at the end, in units of |PQ|
+  double same = 1e-5;          ///< two curves are one if they start and last alike to this; rad
+  double caustic = 1e-5;       ///< Q is on one where a beam from P is narrower than this times
+                               ///< its widest
+  std::uint64_t roulette_after = 512;  ///< trials in search of a curve before roulette begins
 };
 
 /// How a trial ended. `degenerate`: Q lies on a caustic, where curves merge, or on the focus of a
 /// continuum of them (or on P): |J| = 0 to tolerance, and no curve stands for itself.
-enum class TrialOutcome { converged, no_approach, not_converged, left_region, too_long, degenerate };
+enum class TrialOutcome {
+  converged,
+  no_approach,
+  not_converged,
+  left_region,
+  too_long,
+  degenerate
+};
 inline constexpr int trial_outcomes = 6;
 
 /// What the search cost. Integers, so that sums do not depend on the order.
 struct ConnectionStatistics {
   std::array<std::uint64_t, trial_outcomes> outcomes{};  ///< trials, by TrialOutcome
   std::uint64_t iterations = 0;                          ///< Gauss-Newton steps tried, all trials
-  std::uint64_t guess_steps = 0;                         ///< integrator steps without a tangent map
-  std::uint64_t tangent_steps = 0;                       ///< and with one
-  std::uint64_t pairs = 0;       ///< calls of connect that ran a trial
-  std::uint64_t found = 0;       ///< of these, those whose first trial converged
-  std::uint64_t refind = 0;      ///< further trials of these (the sum of K where no roulette)
-  std::uint64_t refind_max = 0;  ///< the largest number of further trials of one pair
-  std::uint64_t roulette_ends = 0;               ///< searches that roulette ended
+  std::uint64_t guess_steps = 0;    ///< of Leapfrog, in search of closest approaches
+  std::uint64_t rough_steps = 0;    ///< of Leapfrog with a tangent map, far from Q
+  std::uint64_t tangent_steps = 0;  ///< of the integrator proper with a tangent map
+  std::uint64_t pairs = 0;          ///< calls of connect that ran a trial
+  std::uint64_t found = 0;          ///< of these, those whose first trial converged
+  std::uint64_t refind = 0;         ///< further trials of these (the sum of K where no roulette)
+  std::uint64_t refind_max = 0;     ///< the largest number of further trials of one pair
+  std::uint64_t roulette_ends = 0;  ///< searches that roulette ended
   std::array<std::uint64_t, 32> refind_counts{};  ///< pairs with K in [2^i, 2^(i+1))
 
   std::uint64_t trials() const;

@@ -11,12 +11,13 @@ inline constexpr double refind_survival = 0.25;
 
 /// Independent trials until `curve` is found again, failures counted: K of C26, unbiased for one
 /// over the curve's chance. After roulette_after trials the search goes on by Russian roulette: K
-/// is the sum over j of [not found in j trials], and each term is divided by the chance to get there.
+/// is the sum over j of [not found in j trials], and each term is divided by the chance to get
+/// there.
 template <IndexField F, Region R, class Step>
 double trials_to_refind(const ConnectionTrial<F, R, Step>& trial, const Connection& curve,
                         RandomStream& random, ConnectionStatistics& statistics) {
   double expected = 0, weight = 1;
-  double roulette_at = trial.options().roulette_after;
+  std::uint64_t roulette_at = trial.options().roulette_after;
   std::uint64_t tried = 0;
   for (bool again = false; !again; ++tried) {
     if (tried >= roulette_at) {
@@ -29,29 +30,31 @@ double trials_to_refind(const ConnectionTrial<F, R, Step>& trial, const Connecti
     }
     expected += weight;
     const auto [outcome, found] = trial.run(random, statistics);
-    again = outcome == TrialOutcome::converged &&
-            same_curve(curve, found, trial.options().same);
+    again = outcome == TrialOutcome::converged && same_curve(curve, found, trial.options().same);
   }
   statistics.record_refind(tried);
   return expected;
 }
 
-/// One random curve with its multiplicity (C26). In a homogeneous field it is the straight line
-/// and no trial runs.
+/// One random curve with its multiplicity (C26).
 template <IndexField F, Region R, class Step>
 ConnectionEstimate connect(const ConnectionTrial<F, R, Step>& trial, RandomStream& random,
                            ConnectionStatistics& statistics) {
-  if constexpr (HomogeneousField<F>) {
-    const auto [outcome, line] = trial.straight();
-    if (outcome != TrialOutcome::converged) return {outcome, std::nullopt, 0};
-    return {outcome, line, 1};
-  }
   ++statistics.pairs;
   const auto [outcome, curve] = trial.run(random, statistics);
   if (outcome != TrialOutcome::converged) return {outcome, std::nullopt, 0};
   ++statistics.found;
   const double multiplicity = trials_to_refind(trial, curve, random, statistics);
   return {outcome, trial.with_caustics(curve, statistics), multiplicity};
+}
+
+/// In a homogeneous field the curve is the straight line, and no trial runs.
+template <IndexField F, Region R, class Step>
+requires HomogeneousField<F> ConnectionEstimate connect(const ConnectionTrial<F, R, Step>& trial,
+                                                        RandomStream&, ConnectionStatistics&) {
+  const auto [outcome, line] = trial.straight();
+  if (outcome != TrialOutcome::converged) return {outcome, std::nullopt, 0};
+  return {outcome, line, 1};
 }
 
 /// Every curve that so many trials find, by optical path, caustics counted. A curve of chance p is
@@ -61,11 +64,6 @@ std::vector<FoundConnection> all_connections(const ConnectionTrial<F, R, Step>& 
                                              std::uint64_t trials, RandomStream& random,
                                              ConnectionStatistics& statistics) {
   std::vector<FoundConnection> all;
-  if constexpr (HomogeneousField<F>) {
-    const auto [outcome, line] = trial.straight();
-    if (outcome == TrialOutcome::converged) all.push_back({line, trials});
-    return all;
-  }
   for (std::uint64_t i = 0; i < trials; ++i) {
     const auto [outcome, curve] = trial.run(random, statistics);
     if (outcome != TrialOutcome::converged) continue;
@@ -81,6 +79,15 @@ std::vector<FoundConnection> all_connections(const ConnectionTrial<F, R, Step>& 
     return a.curve.optical_path < b.curve.optical_path;
   });
   return all;
+}
+
+template <IndexField F, Region R, class Step>
+requires HomogeneousField<F> std::vector<FoundConnection> all_connections(
+    const ConnectionTrial<F, R, Step>& trial, std::uint64_t trials, RandomStream&,
+    ConnectionStatistics&) {
+  const auto [outcome, line] = trial.straight();
+  if (outcome != TrialOutcome::converged) return {};
+  return {{line, trials}};
 }
 
 }  // namespace flatspeckle::grin

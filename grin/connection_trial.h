@@ -14,20 +14,24 @@ namespace flatspeckle::grin {
 /// Curves from P to Q through a field, inside a region, with an integrator of ray_step.h. One trial
 /// (conventions, C26) draws a start direction, follows its ray, picks one of the points where the
 /// ray comes closest to Q, and mends direction and length from there by damped Gauss-Newton steps
-/// on the distance from Q.
+/// on the distance from Q. As long as the end is far from Q, rays go by Leapfrog, which is cheaper.
 ///
 /// A curve consists of equal steps, their number given by its sigma alone, so that the way back is
 /// the same curve.
 template <IndexField F, Region R, class Step = Sharma>
 class ConnectionTrial {
  public:
-  /// Refers to field and region. Coincident points are legal; every trial is degenerate then.
+  /// Refers to the field. Coincident points are legal; every trial is degenerate then.
   ConnectionTrial(const F& field, const R& region, const Vec3& from, const Vec3& to,
                   const ConnectionOptions& options)
-      : field_(field), region_(region), from_(from), to_(to), options_(options),
-        n_from_(index(field, from)), gap_((to - from).norm()),
-        tolerance_(std::max(options.tolerance * gap_,
-                            rounding * std::max(from.norm(), to.norm()))) {}
+      : field_(field),
+        region_(region),
+        from_(from),
+        to_(to),
+        options_(options),
+        n_from_(index(field, from)),
+        gap_((to - from).norm()),
+        rounding_(1e-15 * std::max(from.norm(), to.norm())) {}
 
   struct Result {
     TrialOutcome outcome;
@@ -54,40 +58,39 @@ class ConnectionTrial {
 
   /// Caustics counted along the curve.
   Connection with_caustics(Connection curve, ConnectionStatistics& statistics) const {
-    curve.caustics = follow(aim_of(curve), statistics).count();
+    curve.caustics = follow({curve.start_direction, curve.sigma, curve.steps}, statistics).count();
     return curve;
   }
 
   const ConnectionOptions& options() const { return options_; }
 
  private:
-  static constexpr double rounding = 1e-13;     // of the points' coordinates, along a curve
-  static constexpr double suspicious = 1e-2;    // narrow against length: look closer
-  static constexpr double near = 1e-2;          // of Q, in gaps
-  static constexpr double longest_turn = 0.7;   // rad, of one Gauss-Newton step
-  static constexpr int most_steps = 1 << 20;    // of a ray that creeps where the index is near 0
+  static constexpr double suspicious = 1e-2;   // narrow against length: look closer
+  static constexpr double near = 1e-2;         // of Q, in units of |PQ|
+  static constexpr double longest_turn = 0.7;  // rad, of one Gauss-Newton step
+  static constexpr int most_steps = 1 << 20;   // of a ray that creeps where the index is near 0
 
   struct Aim {
     Vec3 direction;  // unit
     double sigma;
     int steps;
+    bool precise = std::same_as<Step, Leapfrog>;
+    bool raised = false;  // the number of steps, at the last change
   };
   struct Shot {
     RayState end;
-    RayTangent tangent;
+    RayTangent tangent = {};
     bool inside = true;   // what the region says
     bool uniform = true;  // steps
-    Vec3 error;
-    double miss;
+    Vec3 error = {};      // of the end, and its length
+    double miss = 0;
   };
 
-  bool coincident() const { return gap_ <= 10 * rounding * std::max(from_.norm(), to_.norm()); }
+  bool coincident() const { return gap_ <= 1e3 * rounding_; }
 
   int steps_for(double sigma) const {
-    return std::max(1, static_cast<int>(std::ceil(std::min<double>(sigma / options_.step, most_steps))));
-  }
-  Aim aim_of(const Connection& curve) const {
-    return {curve.start_direction, curve.sigma, curve.steps};
+    const double steps = std::ceil(sigma / options_.step);
+    return steps < most_steps ? std::max(1, static_cast<int>(steps)) : most_steps;
   }
 
   Result search(RandomStream& random, ConnectionStatistics& statistics) const {
@@ -114,7 +117,7 @@ class ConnectionTrial {
     for (int i = 0; i < most_steps; ++i) {
       const RayState before = ray;
       const double was_nearing = nearing;
-      Step::step(field_, ray, h);
+      Leapfrog::step(field_, ray, h);
       ++statistics.guess_steps;
       if (!(ray.arc_length > before.arc_length)) break;  // no ray: the index is not positive
       nearing = (to_ - ray.x).dot(ray.v);
@@ -131,16 +134,23 @@ class ConnectionTrial {
   }
 
   Shot shoot(const Aim& aim, ConnectionStatistics& statistics) const {
-    Shot shot{start_ray(field_, from_, aim.direction), {}, true, true, {}, 0};
-    const double h = aim.sigma / aim.steps;
-    for (int i = 0; i < aim.steps; ++i) {
+    return aim.precise ? shoot_by<Step>(aim, statistics.tangent_steps)
+                       : shoot_by<Leapfrog>(aim, statistics.rough_steps);
+  }
+
+  template <class Integrator>
+  Shot shoot_by(const Aim& aim, std::uint64_t& steps_made) const {
+    Shot shot{.end = start_ray(field_, from_, aim.direction)};
+    const double h = aim.sigma / aim.steps, longest = 2 * options_.max_length;
+    int i = 0;
+    for (; i < aim.steps && shot.end.arc_length <= longest; ++i) {
       if (i > 0 && !region_(shot.end.x)) shot.inside = false;
-      Step::step(field_, shot.end, shot.tangent, h);
-      if (!(shot.end.arc_length <= 2 * options_.max_length)) break;
+      Integrator::step(field_, shot.end, shot.tangent, h);
     }
-    statistics.tangent_steps += aim.steps;
+    steps_made += i;
     shot.error = shot.end.x - to_;
-    shot.miss = shot.end.arc_length <= 2 * options_.max_length ? shot.error.norm() : NAN;
+    // NaN where there is no ray, or one far too long
+    shot.miss = shot.end.arc_length <= longest ? shot.error.norm() : std::nan("");
     return shot;
   }
 
@@ -159,14 +169,15 @@ class ConnectionTrial {
   Result refine(Aim aim, ConnectionStatistics& statistics) const {
     Shot shot = shoot(aim, statistics);
     DampedStep damped;
-    bool raised = false;
     for (int i = 0; i < options_.max_iterations && !damped.stuck(); ++i) {
-      if (shot.miss <= tolerance_) {
-        const int steps = steps_for(aim.sigma);
-        if ((steps == aim.steps && shot.uniform) || (raised && steps < aim.steps))
-          return judge(aim, shot, statistics);
-        raised = steps > aim.steps;
-        aim.steps = steps;
+      if (!aim.precise && shot.miss <= near * gap_) {
+        aim.precise = true;
+        shot = shoot(aim, statistics);
+      }
+      if (arrived(aim, shot)) {
+        if (shot.uniform && has_its_steps(aim)) return judge(aim, shot, statistics);
+        aim.raised = steps_for(aim.sigma) > aim.steps;
+        aim.steps = steps_for(aim.sigma);
         shot = shoot(aim, statistics);
       }
       Aim next = moved(aim, shot, damped);
@@ -182,6 +193,20 @@ class ConnectionTrial {
       }
     }
     return {judge_failure(aim, shot, statistics), {}};
+  }
+
+  /// The end is at Q, and so well that the direction is known.
+  bool arrived(const Aim& aim, const Shot& shot) const {
+    const double rounding = rounding_ * std::sqrt(aim.steps);
+    if (!aim.precise || !(shot.miss <= std::max(rounding, options_.tolerance * gap_))) return false;
+    return shot.miss <= std::max(rounding, options_.same / 10 * end_widths(aim, shot).narrow);
+  }
+
+  /// Where sigma is a multiple of the step to rounding, both numbers of steps may ask for the other
+  /// one: the larger stays.
+  bool has_its_steps(const Aim& aim) const {
+    const int steps = steps_for(aim.sigma);
+    return steps == aim.steps || (aim.raised && steps < aim.steps);
   }
 
   /// Moves the end along its ray to where it comes closest to Q: a turned ray may pass closer
@@ -219,12 +244,12 @@ class ConnectionTrial {
   Result judge(const Aim& aim, const Shot& shot, ConnectionStatistics& statistics) const {
     if (!shot.inside) return {TrialOutcome::left_region, {}};
     if (shot.end.arc_length > options_.max_length) return {TrialOutcome::too_long, {}};
-    const auto [narrow, wide] = end_widths(aim, shot);
-    if (narrow < suspicious * shot.end.arc_length &&
-        narrow < options_.caustic * follow(aim, statistics).widest())
+    const double narrow = end_widths(aim, shot).narrow;
+    if (shot.miss > options_.same / 10 * narrow ||
+        (narrow < suspicious * shot.end.arc_length &&
+         narrow < options_.caustic * follow(aim, statistics).widest()))
       return {TrialOutcome::degenerate, {}};
-    const double spreading =
-        signed_spreading(shot.tangent, n_from_, aim.direction, shot.end.v);
+    const double spreading = signed_spreading(shot.tangent, n_from_, aim.direction, shot.end.v);
     return {TrialOutcome::converged,
             {aim.direction, shot.end.v.normalized(), aim.sigma, shot.end.arc_length,
              shot.end.optical_path, std::abs(spreading), spreading < 0 ? -1 : 1, aim.steps}};
@@ -245,11 +270,12 @@ class ConnectionTrial {
                                  frame_across(shot.end.v)));
   }
 
-  F const& field_;
-  R const& region_;
+  const F& field_;
+  R region_;
   Vec3 from_, to_;
   ConnectionOptions options_;
-  double n_from_, gap_, tolerance_;
+  double n_from_, gap_;
+  double rounding_;  ///< of the points' coordinates in a step
 };
 
 }  // namespace flatspeckle::grin

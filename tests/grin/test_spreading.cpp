@@ -1,11 +1,12 @@
 #include <numbers>
 
-#include <doctest/doctest.h>
-
 #include <Eigen/Geometry>
+#include <doctest/doctest.h>
 
 #include "core/random.h"
 #include "grin/geometric_spreading.h"
+#include "grin/guides.h"
+#include "grin/lenses.h"
 #include "grin/ray_step.h"
 #include "grin/start_directions.h"
 #include "tests/grin/closed_fields.h"
@@ -13,9 +14,9 @@
 namespace flatspeckle::grin {
 
 using std::numbers::pi;
-using tests::BlobSum;
-using tests::Fisheye;
 using tests::HarmonicBall;
+using tests::random_direction;
+using tests::random_point;
 
 namespace {
 
@@ -38,13 +39,6 @@ Traced traced(const F& field, RayState ray, double sigma, int steps) {
   return {ray, signed_spreading(tangent, n_start, start.v, ray.v), caustics.count()};
 }
 
-Vec3 random_direction(RandomStream& random) {
-  return StartDirections{.chord_share = 0}.sample(Vec3::UnitX(), random);
-}
-Vec3 random_point(RandomStream& random, double radius) {
-  return radius * std::cbrt(random.uniform()) * random_direction(random);
-}
-
 /// Signed J of C27: n0^2 sin^2 sigma (v0hat . vfhat).
 double harmonic_spreading(const Vec3& x0, const Vec3& v0, double sigma) {
   const Vec3 v = -std::sin(sigma) * x0 + std::cos(sigma) * v0;
@@ -53,7 +47,7 @@ double harmonic_spreading(const Vec3& x0, const Vec3& v0, double sigma) {
 
 template <class Step>
 void check_harmonic(int steps, double tolerance) {
-  const HarmonicBall field;
+  const HarmonicBall field{{}};
   RandomStream random(61, 0, 0);
   for (int i = 0; i < 200; ++i) {
     const RayState start = start_ray(field, random_point(random, 1), random_direction(random));
@@ -68,6 +62,19 @@ void check_harmonic(int steps, double tolerance) {
   }
 }
 
+/// There, and back from where that ended, at the speed of the index there.
+template <IndexField F>
+void check_reciprocal(const F& field, RandomStream& random, int steps) {
+  const RayState start = start_ray(field, random_point(random, 0.5), random_direction(random));
+  const Traced there = traced<Yoshida4>(field, start, 1, steps);
+  const RayState turned = start_ray(field, there.end.x, -there.end.v);
+  const Traced back = traced<Yoshida4>(field, turned, 1, steps);
+  CHECK((back.end.x - start.x).norm() < 1e-8);
+  CHECK(back.spreading / turned.v.squaredNorm() ==
+        doctest::Approx(there.spreading / start.v.squaredNorm()).epsilon(1e-8).scale(0));
+  CHECK(back.caustics == there.caustics);
+}
+
 }  // namespace
 
 TEST_CASE("spreading in Luneburg's ball is the closed form, through and past the caustics") {
@@ -77,7 +84,7 @@ TEST_CASE("spreading in Luneburg's ball is the closed form, through and past the
 }
 
 TEST_CASE("spreading in the fisheye is the closed form, through and past the focus") {
-  const Fisheye field{1.7, 0.8};
+  const Fisheye field({.centre_excess = 0.7, .radius = 0.8});
   const double radius = 1.7 * 0.8 / 2;
   RandomStream random(62, 0, 0);
   for (int i = 0; i < 100; ++i) {
@@ -94,16 +101,15 @@ TEST_CASE("spreading in the fisheye is the closed form, through and past the foc
 }
 
 TEST_CASE("a quarter pitch down a guide the spreading is (2/pi)^2 of the length squared") {
-  const tests::ParabolicGuide guide{1.5, 0.3};
+  const ParabolicGuide guide({.axis_excess = 0.5, .alpha = 0.3});
   const RayState start = start_ray(guide, Vec3::Zero(), Vec3::UnitZ());
   const Traced ray = traced<Sharma>(guide, start, pi / (2 * 0.3), 200);
   CHECK(ray.end.arc_length == doctest::Approx(1.5 * pi / 0.6).epsilon(1e-9));
-  CHECK(ray.spreading ==
-        doctest::Approx(std::pow(2 / pi * ray.end.arc_length, 2)).epsilon(1e-6));
+  CHECK(ray.spreading == doctest::Approx(std::pow(2 / pi * ray.end.arc_length, 2)).epsilon(1e-6));
 }
 
 TEST_CASE("caustics in Luneburg's ball: line foci once, point foci twice") {
-  const HarmonicBall field;
+  const HarmonicBall field{{}};
   RandomStream random(63, 0, 0);
   for (int i = 0; i < 200; ++i) {
     const RayState start = start_ray(field, random_point(random, 1), random_direction(random));
@@ -117,8 +123,8 @@ TEST_CASE("caustics in Luneburg's ball: line foci once, point foci twice") {
     if (start.x.cross(start.v).norm() < 0.6) continue;
     CAPTURE(sigma);
     CAPTURE(line);
-    const int expected = 2 * static_cast<int>(sigma / pi) +
-                         static_cast<int>(std::floor((sigma - line) / pi) + 1);
+    const int expected =
+        2 * static_cast<int>(sigma / pi) + static_cast<int>(std::floor((sigma - line) / pi) + 1);
     for (const int steps : {60, 1000})
       CHECK(traced<Yoshida4>(field, start, sigma, steps).caustics == expected);
   }
@@ -127,17 +133,8 @@ TEST_CASE("caustics in Luneburg's ball: line foci once, point foci twice") {
 TEST_CASE("spreading there and back is one: n_P^2 / |J_PQ| = n_Q^2 / |J_QP|") {
   for (int i = 0; i < 50; ++i) {
     RandomStream random(64, 0, i);
-    const BlobSum field(random, 12, 0.3);
-    const RayState start = start_ray(field, random_point(random, 1), random_direction(random));
-    const Traced there = traced<Yoshida4>(field, start, 2, 400);
-    const RayState back_start{there.end.x, -there.end.v};
-    const Traced back = traced<Yoshida4>(field, back_start, 2, 400);
-    CHECK((back.end.x - start.x).norm() < 1e-9);
-    const double n_there = start.v.norm();
-    const double n_back = back_start.v.norm();
-    CHECK(back.spreading / (n_back * n_back) ==
-          doctest::Approx(there.spreading / (n_there * n_there)).epsilon(1e-8).scale(0));
-    CHECK(back.caustics == there.caustics);
+    check_reciprocal(tests::random_blobs(random, 0.3), random, 400);
+    check_reciprocal(tests::random_spline(random, 0.1), random, 1600);
   }
 }
 
