@@ -6,12 +6,13 @@
 
 namespace flatspeckle::grin {
 
-/// Luneburg 1944: n^2 = 2 - r^2/a^2 up to the rim, 1 outside. The gradient jumps at the rim, where
-/// a ray should be stopped and started again; a point within `landing` of it, relative, is still
-/// inside, so that a ray may start there.
+/// Luneburg 1944: n^2 = 2 - r^2/a^2 up to the rim, 1 outside. The gradient jumps at the rim, where a
+/// ray should be stopped and started again. `beyond`: how far past the rim, relative, the formula
+/// goes on: a hair, so that a ray may start from the rim; up to 0.4 where rays are stopped there
+/// anyhow and steps that reach past it should stay smooth.
 struct LuneburgProfile {
-  static constexpr double landing = 1e-9;
   double radius = 1;
+  double beyond = 1e-9;
 
   double excess(double u) const {
     const double q = u / (radius * radius);
@@ -25,7 +26,7 @@ struct LuneburgProfile {
   }
 
  private:
-  static bool is_inside(double q) { return q <= 1 + 2 * landing; }
+  bool is_inside(double q) const { return q <= (1 + beyond) * (1 + beyond); }
 };
 using Luneburg = RadialField<LuneburgProfile, 3>;
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <concepts>
+#include <numbers>
 
 #include "grin/ray.h"
 
@@ -18,11 +18,18 @@ namespace flatspeckle::grin {
 //
 // The second overload also carries the exact derivative of the discrete step.
 
-/// A straight ray, exactly.
+/// A straight ray, exactly; what it accumulates by Gauss's two points.
 template <class Ray>
 void straight_step(const Homogeneous& field, Ray& ray, double h) {
-  ray.accumulate(ray.x, 1 + field.n_excess, h);
+  const double n = 1 + field.n_excess;
+  for (const double at : {0.5 - std::numbers::inv_sqrt3 / 2, 0.5 + std::numbers::inv_sqrt3 / 2})
+    ray.accumulate(ray.x + at * h * ray.v, n, h / 2);
   ray.x += h * ray.v;
+}
+template <class Ray>
+void straight_step(const Homogeneous& field, Ray& ray, RayTangent& tangent, double h) {
+  straight_step(field, ray, h);
+  tangent.dx += h * tangent.dv;
 }
 
 /// n grad n and its derivative grad n grad n^T + n Hess n.
@@ -51,13 +58,14 @@ struct Leapfrog {
 
   template <IndexField F, class Ray>
   static void step(const F& field, Ray& ray, RayTangent& tangent, double h) {
+    if constexpr (HomogeneousField<F>) return straight_step(field, ray, tangent, h);
     tangent.dx += h / 2 * tangent.dv;
     ray.x += h / 2 * ray.v;
     const IndexHessian at = field.hessian(ray.x);
     ray.accumulate(ray.x, 1 + at.excess, h);
     ray.v += h * ray_force(at);
     ray.x += h / 2 * ray.v;
-    if constexpr (!HomogeneousField<F>) tangent.dv += h * ray_force_derivative(at) * tangent.dx;
+    tangent.dv += h * ray_force_derivative(at) * tangent.dx;
     tangent.dx += h / 2 * tangent.dv;
   }
 };
@@ -75,6 +83,7 @@ struct Yoshida4 {
 
   template <IndexField F, class Ray>
   static void step(const F& field, Ray& ray, RayTangent& tangent, double h) {
+    if constexpr (HomogeneousField<F>) return straight_step(field, ray, tangent, h);
     for (const double part : {outer, inner, outer}) Leapfrog::step(field, ray, tangent, part * h);
   }
 };
@@ -97,6 +106,7 @@ struct Sharma {
 
   template <IndexField F, class Ray>
   static void step(const F& field, Ray& ray, RayTangent& tangent, double h) {
+    if constexpr (HomogeneousField<F>) return straight_step(field, ray, tangent, h);
     const IndexHessian a = field.hessian(ray.x);
     const Mat3 da = ray_force_derivative(a) * tangent.dx;
     const Vec3 middle = ray.x + h / 2 * ray.v + h * h / 8 * ray_force(a);

@@ -1,9 +1,12 @@
 #include <cmath>
+#include <filesystem>
 #include <limits>
 
 #include <doctest/doctest.h>
 
 #include "core/error.h"
+#include "core/result_file.h"
+#include "grin/field_file.h"
 #include "grin/spline_field.h"
 #include "tests/grin/derivatives.h"
 
@@ -116,6 +119,34 @@ TEST_CASE("Bad grids are refused") {
   CHECK_THROWS_AS(SplineField(grid, values), InputError);
   values[5] = std::numeric_limits<double>::quiet_NaN();
   CHECK_THROWS_AS(SplineField(grid, values), InputError);
+}
+
+TEST_CASE("A spline field from a file") {
+  const auto path = std::filesystem::temp_directory_path() / "flatspeckle_field.h5";
+  const FieldGrid grid{{-1, 2, 0.5}, {0.3, 0.2, 0.1}, {4, 6, 9}};
+  const auto values = samples(grid, wavy);
+  const auto write = [&](const std::vector<double>& spacing, std::vector<Axis> axes) {
+    ResultFile file(path);
+    file.dataset("excess", values, axes, "1", "");
+    file.attribute("excess", "origin", std::vector<double>{-1, 2, 0.5});
+    file.attribute("excess", "spacing", spacing);
+    file.commit();
+  };
+  using Size = std::size_t;
+  const std::vector<Axis> axes{Size{4}, Size{6}, Size{9}};
+  write({0.3, 0.2, 0.1}, axes);
+  const Vec3 x(-0.7, 2.33, 0.91);
+  CHECK(read_spline_field(path).excess(x) == SplineField(grid, values).excess(x));
+  write({0.3, 0.2}, axes);
+  CHECK_THROWS_AS(read_spline_field(path), InputError);
+  write({0.3, 0.2, 0}, axes);
+  CHECK_THROWS_AS(read_spline_field(path), InputError);
+  write({0.3, 0.2, 0.1}, {Size{4}, Size{54}});
+  CHECK_THROWS_AS(read_spline_field(path), InputError);
+  write({0.3, 0.2, 0.1}, {Size{24}, Size{3}, Size{3}});
+  CHECK_THROWS_AS(read_spline_field(path), InputError);
+  std::filesystem::remove(path);
+  CHECK_THROWS_AS(read_spline_field(path), InputError);
 }
 
 }  // namespace flatspeckle::grin
