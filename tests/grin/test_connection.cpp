@@ -142,6 +142,42 @@ TEST_CASE("curves there are the curves back: same length and path, n_P^2/|J_PQ| 
   CHECK(curves >= 12);
 }
 
+TEST_CASE("between two lenses curves come in mirrored pairs, of one length but not the same") {
+  const GaussianBlobs lenses({{{0, 0.7, 0}, 1, 0.5}, {{0, -0.7, 0}, 1, 0.5}});
+  const Listed list =
+      listed(lenses, everywhere, {-2, 0, 0}, {2, 0, 0}, {.step = 0.05, .max_length = 7}, 1000, 1);
+  REQUIRE(list.curves.size() == 7);
+  for (const FoundConnection& one : list.curves) {
+    const Vec3 mirrored = one.curve.start_direction.cwiseProduct(Vec3(1, -1, -1));
+    const auto partner =
+        std::find_if(list.curves.begin(), list.curves.end(), [&](const FoundConnection& other) {
+          return (other.curve.start_direction - mirrored).norm() < 1e-6;
+        });
+    REQUIRE(partner != list.curves.end());
+    CHECK(partner->curve.arc_length == doctest::Approx(one.curve.arc_length).epsilon(1e-8));
+    CHECK(partner->curve.spreading == doctest::Approx(one.curve.spreading).epsilon(1e-5));
+  }
+}
+
+TEST_CASE("none is missing: among lenses the orientations of all curves add up to 1") {
+  // The end points of long rays cover space once, counted with the sign of J, as the straight ones
+  // do (the odd number of images of gravitational lenses).
+  std::size_t most = 0;
+  for (int i = 0; i < 10; ++i) {
+    RandomStream random(79, 0, i);
+    std::vector<GaussianBlob> lenses;
+    for (int k = 0; k < 4; ++k) lenses.push_back({random_point(random, 1), 0.8, 0.4});
+    const Vec3 p = 2.5 * random_direction(random), q = -p + random_point(random, 0.3);
+    const Listed list =
+        listed(GaussianBlobs(lenses), everywhere, p, q, {.step = 0.05, .max_length = 9}, 2000, i);
+    int sum = 0;
+    for (const FoundConnection& one : list.curves) sum += one.curve.orientation;
+    CHECK(sum == 1);
+    most = std::max(most, list.curves.size());
+  }
+  CHECK(most >= 5);
+}
+
 TEST_CASE("a continuum of curves is degenerate: nothing is found and nothing runs for ever") {
   const Fisheye field({.centre_excess = 0.7, .radius = 0.8});
   const Vec3 p(0.3, 0.2, -0.4);
