@@ -34,7 +34,7 @@ install_missing() {
 # For the program and its tests.
 install_build_packages() {
   install_missing g++ cmake ninja-build pkg-config libhdf5-dev liblapacke-dev libopenblas-dev \
-    libfftw3-dev libcli11-dev librandom123-dev doctest-dev libboost-dev python3-h5py
+    libfftw3-dev libeigen3-dev libcli11-dev librandom123-dev doctest-dev libboost-dev python3-h5py
 }
 
 # What is tested where it is there.

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cmath>
+#include <vector>
+
+namespace flatspeckle::grin {
+
+/// g_m(u) = J_m(x) / x^m with u = x^2: entire in u, so that J_m(x) cos(m phi) = g_m(u) Re (x e^{i
+/// phi})^m is smooth on the axis for every m. By u, g_m' = -g_{m+1}/2.
+///
+/// A table of polynomials in u over equal steps in x, up to x = reach; beyond, the series of
+/// core/bessel, slowly. Errors, relative to the envelope of J_m: value 1e-15, slope 1e-13.
+class BesselProfile {
+ public:
+  static constexpr int max_order = 64;
+
+  /// Throws InputError for an order outside 0 .. max_order or a reach that is not in (0, 1e5].
+  BesselProfile(int order, double reach);
+
+  int order() const { return order_; }
+  double reach() const { return reach_; }
+
+  struct Jet {
+    double value, slope;
+  };
+  double value(double u) const { return jet(u).value; }
+  /// g_m and its derivative by u.
+  Jet jet(double u) const {
+    const double cell = std::floor(std::sqrt(u) * cells_per_unit);
+    if (!(cell < cells_)) return far_jet(u);
+    const double delta = u - centre(cell);
+    return polynomial(table_[static_cast<std::size_t>(cell)], delta);
+  }
+  /// Second derivative by u.
+  double bend(double u) const;
+
+ private:
+  static constexpr int degree = 7;
+  static constexpr double cells_per_unit = 8;
+  struct alignas(64) Cell {
+    double c[degree + 1];
+  };
+
+  /// Of the cell in u.
+  static double centre(double cell) {
+    return (cell * (cell + 1) + 0.5) / (cells_per_unit * cells_per_unit);
+  }
+  /// Estrin's scheme: a short chain of dependent operations.
+  static Jet polynomial(const Cell& cell, double t) {
+    const double* c = cell.c;
+    const double t2 = t * t, t4 = t2 * t2;
+    const double value = ((c[0] + c[1] * t) + (c[2] + c[3] * t) * t2) +
+                         ((c[4] + c[5] * t) + (c[6] + c[7] * t) * t2) * t4;
+    const double slope = ((c[1] + 2 * c[2] * t) + (3 * c[3] + 4 * c[4] * t) * t2) +
+                         ((5 * c[5] + 6 * c[6] * t) + 7 * c[7] * t2) * t4;
+    return {value, slope};
+  }
+  static Cell fit(int order, double cell);
+  Jet far_jet(double u) const;
+
+  int order_;
+  double reach_, cells_;
+  std::vector<Cell> table_;
+};
+
+}  // namespace flatspeckle::grin

@@ -1,0 +1,93 @@
+#pragma once
+
+#include "grin/connection_trial.h"
+
+namespace flatspeckle::grin {
+
+/// Survives each doubling of the number of trials with this probability. Below 1/2, the expected
+/// number of trials is finite even for a curve that is never found again; and the weight grows as
+/// a power of the number of trials only, so that its variance is finite for every curve.
+inline constexpr double refind_survival = 0.25;
+
+/// Independent trials until `curve` is found again, failures counted: K of C26, unbiased for one
+/// over the curve's chance. After roulette_after trials the search goes on by Russian roulette: K
+/// is the sum over j of [not found in j trials], and each term is divided by the chance to get
+/// there.
+template <IndexField F, Region R, class Step>
+double trials_to_refind(const ConnectionTrial<F, R, Step>& trial, const Connection& curve,
+                        RandomStream& random, ConnectionStatistics& statistics) {
+  double expected = 0, weight = 1;
+  std::uint64_t roulette_at = trial.options().roulette_after;
+  std::uint64_t tried = 0;
+  for (bool again = false; !again; ++tried) {
+    if (tried >= roulette_at) {
+      if (random.uniform() > refind_survival) {
+        ++statistics.roulette_ends;
+        break;
+      }
+      weight /= refind_survival;
+      roulette_at *= 2;
+    }
+    expected += weight;
+    const auto [outcome, found] = trial.run(random, statistics);
+    again = outcome == TrialOutcome::converged && same_curve(curve, found, trial.options().same);
+  }
+  statistics.record_refind(tried);
+  return expected;
+}
+
+/// One random curve with its multiplicity (C26).
+template <IndexField F, Region R, class Step>
+ConnectionEstimate connect(const ConnectionTrial<F, R, Step>& trial, RandomStream& random,
+                           ConnectionStatistics& statistics) {
+  ++statistics.pairs;
+  const auto [outcome, curve] = trial.run(random, statistics);
+  if (outcome != TrialOutcome::converged) return {outcome, std::nullopt, 0};
+  ++statistics.found;
+  const double multiplicity = trials_to_refind(trial, curve, random, statistics);
+  return {outcome, trial.with_caustics(curve, statistics), multiplicity};
+}
+
+/// In a homogeneous field the curve is the straight line, and no trial runs.
+template <IndexField F, Region R, class Step>
+requires HomogeneousField<F> ConnectionEstimate connect(const ConnectionTrial<F, R, Step>& trial,
+                                                        RandomStream&, ConnectionStatistics&) {
+  const auto [outcome, line] = trial.straight();
+  if (outcome != TrialOutcome::converged) return {outcome, std::nullopt, 0};
+  return {outcome, line, 1};
+}
+
+/// Every curve that so many trials find, by optical path, caustics counted. A curve of chance p is
+/// missed with probability (1-p)^trials. Trials that end on caustics are in the statistics only.
+template <IndexField F, Region R, class Step>
+std::vector<FoundConnection> all_connections(const ConnectionTrial<F, R, Step>& trial,
+                                             std::uint64_t trials, RandomStream& random,
+                                             ConnectionStatistics& statistics) {
+  std::vector<FoundConnection> all;
+  for (std::uint64_t i = 0; i < trials; ++i) {
+    const auto [outcome, curve] = trial.run(random, statistics);
+    if (outcome != TrialOutcome::converged) continue;
+    const auto known = std::find_if(all.begin(), all.end(), [&](const FoundConnection& one) {
+      return same_curve(one.curve, curve, trial.options().same);
+    });
+    if (known == all.end())
+      all.push_back({trial.with_caustics(curve, statistics), 1});
+    else
+      ++known->found;
+  }
+  std::sort(all.begin(), all.end(), [](const FoundConnection& a, const FoundConnection& b) {
+    return a.curve.optical_path < b.curve.optical_path;
+  });
+  return all;
+}
+
+template <IndexField F, Region R, class Step>
+requires HomogeneousField<F> std::vector<FoundConnection> all_connections(
+    const ConnectionTrial<F, R, Step>& trial, std::uint64_t trials, RandomStream&,
+    ConnectionStatistics&) {
+  const auto [outcome, line] = trial.straight();
+  if (outcome != TrialOutcome::converged) return {};
+  return {{line, trials}};
+}
+
+}  // namespace flatspeckle::grin

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <filesystem>
+
+#include "grin/spline_field.h"
+
+namespace flatspeckle::grin {
+
+/// A grid of n - 1 from an HDF5 file: dataset "excess" with axes x, y, z, and on it the attributes
+/// "origin" and "spacing", three numbers each. Throws InputError naming the file where something is
+/// missing, of another shape, or not a field (SplineField says what is).
+SplineField read_spline_field(const std::filesystem::path& path);
+
+}  // namespace flatspeckle::grin

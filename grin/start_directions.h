@@ -1,0 +1,26 @@
+#pragma once
+
+#include "core/random.h"
+#include "grin/vec3.h"
+
+namespace flatspeckle::grin {
+
+/// Where the trials of a connection start. A share of them is uniform in a cone about the chord,
+/// where the curve of a weak field lies; the rest is uniform over the sphere, so that every curve
+/// has a chance. The density per solid angle at angle t from the chord is
+///   chord_share [cos t > cos cone] / (2 pi (1 - cos cone)) + (1 - chord_share) / (4 pi).
+/// The estimate of a sum over curves is unbiased for any values with chord_share < 1
+/// (conventions, C26); they only set how many trials it takes.
+struct StartDirections {
+  double chord_share = 0.5;  ///< in [0, 1)
+  double cosine = 0.9;       ///< of the cone's half angle
+
+  /// A unit vector; the chord must be one too.
+  Vec3 sample(const Vec3& chord, RandomStream& random) const;
+  double density(double cos_from_chord) const;
+};
+
+/// At this cosine from the axis (a unit vector) and this azimuth.
+Vec3 direction_about(const Vec3& axis, double cosine, double azimuth);
+
+}  // namespace flatspeckle::grin

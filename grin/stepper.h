@@ -1,0 +1,103 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "grin/ray_step.h"
+
+namespace flatspeckle::grin {
+
+// What trace() goes by: advance(field, ray, tangent...) makes one step and returns its length h in
+// sigma; step(field, h, ray, tangent...) repeats one, or a part of one, from the same start.
+
+template <class Integrator>
+struct FixedSteps {
+  double h;
+
+  template <IndexField F, class Ray, class... Tangent>
+  static void step(const F& field, double h, Ray& ray, Tangent&... tangent) {
+    Integrator::step(field, ray, tangent..., h);
+  }
+  template <IndexField F, class Ray, class... Tangent>
+  double advance(const F& field, Ray& ray, Tangent&... tangent) const {
+    step(field, h, ray, tangent...);
+    return h;
+  }
+};
+
+/// |v| = n(x) again, which steps keep to their order only. Where n falls by a factor q on the way,
+/// what was lost of v^2 - n^2 before weighs q^-2 times as much.
+template <IndexField F>
+void restore_index(const F& field, RayState& ray) {
+  if constexpr (!HomogeneousField<F>) ray.v *= index(field, ray.x) / ray.v.norm();
+}
+/// The same with its exact derivative.
+template <IndexField F>
+void restore_index(const F& field, RayState& ray, RayTangent& tangent) {
+  if constexpr (!HomogeneousField<F>) {
+    const IndexGradient at = field.gradient(ray.x);
+    const double length = ray.v.norm(), scale = (1 + at.excess) / length;
+    const Vec3 along = ray.v / length;
+    tangent.dv = (scale * (tangent.dv - along * (along.transpose() * tangent.dv)) +
+                  along * (at.gradient.transpose() * tangent.dx))
+                     .eval();
+    ray.v *= scale;
+  }
+}
+
+/// Two half steps, judged by one whole step: the error of the two, estimated as their difference /
+/// (2^order - 1), is held below `tolerance`, in position relative to the step's length and in
+/// direction as an angle, so that the error at the end of a ray is about tolerance times its
+/// length. The two half steps are kept, and |v| = n restored; a tangent is the exact derivative of
+/// that, for the step lengths that this ray took.
+template <class Integrator>
+struct ControlledSteps {
+  double tolerance;
+  double h;        ///< of the next step; start anywhere
+  double longest;  ///< steps grow no longer, so that nothing is jumped over
+
+  template <IndexField F, class Ray, class... Tangent>
+  static void step(const F& field, double h, Ray& ray, Tangent&... tangent) {
+    Integrator::step(field, ray, tangent..., h / 2);
+    Integrator::step(field, ray, tangent..., h / 2);
+    restore_index(field, ray, tangent...);
+  }
+
+  /// A ray that no step suits becomes NaN.
+  template <IndexField F, class Ray, class... Tangent>
+  double advance(const F& field, Ray& ray, Tangent&... tangent) {
+    for (int trial = 0; trial < 50; ++trial) {
+      Ray halves = ray;
+      const double tried = h, error = tried_error(field, ray, halves);
+      // NaN shortens the step too.
+      const double factor = error <= tolerance * 1e9
+                                ? 0.9 * std::pow(error / tolerance, -1.0 / Integrator::order)
+                                : 0;
+      h = std::min(longest, tried * std::clamp(factor, 0.2, 4.0));
+      if (!(error <= tolerance)) continue;
+      if constexpr (sizeof...(tangent) == 0)
+        ray = halves;
+      else
+        step(field, tried, ray, tangent...);
+      return tried;
+    }
+    ray.x.setConstant(std::numeric_limits<double>::quiet_NaN());
+    ray.arc_length = std::numeric_limits<double>::quiet_NaN();
+    return h;
+  }
+
+ private:
+  template <IndexField F, class Ray>
+  double tried_error(const F& field, const Ray& ray, Ray& halves) const {
+    Ray whole = ray;
+    Integrator::step(field, whole, h);
+    restore_index(field, whole);
+    step(field, h, halves);
+    const double index = ray.v.norm();
+    return ((whole.x - halves.x).norm() / (index * h) + (whole.v - halves.v).norm() / index) /
+           ((1 << Integrator::order) - 1);
+  }
+};
+
+}  // namespace flatspeckle::grin

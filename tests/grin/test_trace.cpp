@@ -1,0 +1,243 @@
+#include <cmath>
+
+#include <doctest/doctest.h>
+
+#include "core/error.h"
+#include "grin/guides.h"
+#include "grin/interface.h"
+#include "grin/ramps.h"
+#include "grin/ray_invariants.h"
+#include "grin/trace.h"
+#include "tests/grin/ray_tests.h"
+#include "tests/statistics.h"
+
+namespace flatspeckle::grin {
+
+using tests::pi;
+
+namespace {
+
+const Luneburg lens{LuneburgProfile{1, 0.3}};
+const TraceLimits far{1e3, 1e-11};
+
+template <class Integrator>
+ControlledSteps<Integrator> controlled(double tolerance, double longest = 1) {
+  return {tolerance, 0.01, longest};
+}
+
+}  // namespace
+
+TEST_CASE("Straight rays meet spheres, planes and boxes") {
+  const Homogeneous plain{0.5};
+  FixedSteps<Leapfrog> steps{0.1};
+  const std::vector<Surface> surfaces{Sphere{{0, 0, 5}, 1}, Plane{{0, 0, 20}, Vec3::UnitZ()},
+                                      Box{{-1, 9, -1}, {1, 11, 1}}};
+  RayState up = start_ray(plain, {0.6, 0, 0}, Vec3::UnitZ());
+  const TraceEnd first = trace(plain, surfaces, far, steps, up);
+  CHECK(first.stop == Stop::surface);
+  CHECK(first.surface == 0);
+  CHECK(std::abs(up.x[2] - 4.2) < 1e-11);
+  CHECK(up.optical_path == doctest::Approx(1.5 * 4.2));
+  CHECK(trace(plain, surfaces, far, steps, up).surface == 0);  // out again on the other side
+  CHECK(std::abs(up.x[2] - 5.8) < 1e-10);
+  CHECK(trace(plain, surfaces, far, steps, up).surface == 1);
+  CHECK(std::abs(up.x[2] - 20) < 1e-10);
+  RayState aside = start_ray(plain, {0.5, 0, 0.25}, {0, 1, 0.01});
+  CHECK(trace(plain, surfaces, far, steps, aside).surface == 2);
+  CHECK(std::abs(aside.x[1] - 9) < 1e-11);
+  CHECK(normal(surfaces[2], aside.x) == Vec3(0, -1, 0));
+  RayState away = start_ray(plain, {0.5, 0, 0}, -Vec3::UnitX());
+  const TraceEnd none = trace(plain, surfaces, far, steps, away);
+  CHECK(none.stop == Stop::length);
+  CHECK(away.arc_length == doctest::Approx(1e3).epsilon(1e-13));
+  CHECK_THROWS_AS(trace(plain, std::vector<Surface>(65), far, steps, up), InputError);
+}
+
+TEST_CASE("Box: distance and normal") {
+  const Box box{{-1, -2, -3}, {1, 2, 3}};
+  CHECK(box.distance({0, 0, 0}) == -1);
+  CHECK(box.distance({0.5, 1.8, 0}) == doctest::Approx(-0.2));
+  CHECK(box.distance({4, 6, 0}) == 5);
+  CHECK(box.distance({0, 0, -5}) == 2);
+  CHECK(box.normal({0.3, 0.1, -3}) == Vec3(0, 0, -1));
+}
+
+TEST_CASE_TEMPLATE("A Luneburg lens in air, from the plane of a beam to its focus", I, Leapfrog,
+                   Yoshida4, Sharma) {
+  const std::vector<Surface> rim{Sphere{}};
+  auto steps = controlled<I>(I::order == 2 ? 1e-7 : 1e-12);
+  FixedSteps<Leapfrog> none{1};
+  const double tolerance = I::order == 2 ? 1e-5 : 1e-10;
+  for (const double height : {0.0, 0.2, 0.7, 0.99}) {
+    RayState ray = start_ray(Homogeneous{}, {-1, height, 0}, Vec3::UnitX());
+    if (height > 0) CHECK(trace(Homogeneous{}, rim, far, none, ray).stop == Stop::surface);
+    CHECK(std::abs(ray.x.norm() - 1) < 1e-11);
+    CHECK(trace(lens, rim, far, steps, ray).surface == 0);
+    CHECK(std::abs(ray.x.norm() - 1) < 1e-11);
+    CHECK((ray.x - Vec3::UnitX()).norm() < tolerance);
+    CHECK(std::abs(ray.optical_path - (pi / 2 + 1)) < tolerance);
+  }
+}
+
+TEST_CASE("Controlled steps: the error follows the tolerance") {
+  const tests::LuneburgRay exact{{-0.6, 0.3, 0.2}, start_ray(lens, {-0.6, 0.3, 0.2}, {1, 1, 0}).v};
+  const auto speed = [&](double s) { return index(lens, exact.x(s)); };
+  double sigma = 1;  // where the arc is 1
+  for (int i = 0; i < 10; ++i)
+    sigma -= (flatspeckle::tests::integral(speed, 0, sigma) - 1) / speed(sigma);
+  long before = 0;
+  for (const double tolerance : {1e-5, 1e-7, 1e-9, 1e-11}) {
+    auto steps = controlled<Sharma>(tolerance);
+    RayState ray{exact.x0, exact.v0};
+    const TraceEnd end = trace(lens, std::vector<Surface>{}, {1, 1e-12}, steps, ray);
+    CHECK(end.stop == Stop::length);
+    CHECK(std::abs(ray.arc_length - 1) < 1e-12);
+    CHECK((ray.x - exact.x(sigma)).norm() < 2 * tolerance);
+    CHECK(end.steps > before);
+    before = end.steps;
+    CHECK(std::abs(ray_invariants(lens, ray).index_mismatch) < 4 * tolerance);
+  }
+}
+
+TEST_CASE("A fisheye images every point, also by way of regions where n is nearly 0") {
+  const Fisheye eye(FisheyeProfile{0.5, 1});
+  auto steps = controlled<Sharma>(1e-12, 1e9);
+  const Vec3 start = Vec3(1, 2, 2) / 3, across = Vec3(2, 1, -2) / 3;
+  for (const double angle : {1.2, 0.3, 0.02, 0.002}) {
+    // A circle of radius 1/sin(angle) through the start and its image; n is about sin^2(angle)/4
+    // of n0 at its far end.
+    RayState ray = start_ray(eye, start, std::cos(angle) * start + std::sin(angle) * across);
+    const double arc = 2 * (pi - angle) / std::sin(angle);
+    const RayInvariants first = ray_invariants(eye, ray);
+    const TraceEnd end = trace(eye, std::vector<Surface>{}, {arc, 1e-11 * arc}, steps, ray);
+    CAPTURE(angle);
+    CAPTURE(end.steps);
+    CHECK(end.stop == Stop::length);
+    CHECK((ray.x + start).norm() < 1e-9 / angle);
+    CHECK(std::abs(ray.optical_path - pi * 1.5 / 2) < 1e-9 / angle);
+    CHECK((ray_invariants(eye, ray).angular_momentum - first.angular_momentum).norm() < 1e-10);
+    CHECK(std::abs(ray_invariants(eye, ray).index_mismatch) < 1e-10);
+  }
+}
+
+TEST_CASE("Modal dispersion over a guide: none in sech, that of C27 in the parabolic one") {
+  const double n0 = 1.5, alpha = 0.6;
+  const SechGuide sech(SechProfile{n0 - 1, alpha});
+  const ParabolicGuide parabolic(ParabolicProfile{n0 - 1, alpha});
+  auto steps = controlled<Yoshida4>(1e-12);
+  for (const double slope : {0.0, 0.05, 0.3, 0.8}) {
+    const Vec3 direction(slope * 0.6, slope * 0.8, 1);
+    for (const bool quadratic : {false, true}) {
+      CAPTURE(slope);
+      CAPTURE(quadratic);
+      RayState ray = start_ray(Homogeneous{n0 - 1}, Vec3::Zero(), direction);
+      const double beta = ray.v[2];
+      // Five half periods.
+      const double length = 5 * pi / alpha * (quadratic ? beta : 1);
+      const std::vector<Surface> end{Plane{{0, 0, length}, Vec3::UnitZ()}};
+      const TraceEnd stop = quadratic ? trace(parabolic, end, {1e3, 1e-11}, steps, ray)
+                                      : trace(sech, end, {1e3, 1e-11}, steps, ray);
+      CHECK(stop.stop == Stop::surface);
+      CHECK(std::hypot(ray.x[0], ray.x[1]) < 1e-9);
+      const double per_length = quadratic ? (n0 * n0 + beta * beta) / (2 * beta) : n0;
+      CHECK(std::abs(ray.optical_path / length - per_length) < 1e-9);
+    }
+  }
+}
+
+TEST_CASE("A steep ramp turns rays beyond Snell's critical angle, and only those") {
+  const double n1 = 1.5, n2 = 1.2;
+  const std::vector<Surface> ends{Plane{{0, 0, -1}, -Vec3::UnitZ()},
+                                  Plane{{0, 0, 1}, Vec3::UnitZ()}};
+  for (const double width : {0.1, 1e-3}) {
+    const TanhRamp ramp{n1 - 1, n2 - 1, width};
+    auto steps = controlled<Sharma>(1e-11, width);
+    const auto passes = [&](double sine) {
+      RayState ray = start_ray(ramp, {0, 0, -0.9}, {sine, 0, std::sqrt(1 - sine * sine)});
+      const TraceEnd end = trace(ramp, ends, {1e4, 1e-9}, steps, ray);
+      CHECK(end.stop == Stop::surface);
+      return end.surface == 1;
+    };
+    const double critical = n2 / n1;
+    CHECK(passes(critical * (1 - 1e-8)));
+    CHECK(!passes(critical * (1 + 1e-8)));
+    RayState ray = start_ray(ramp, {0, 0, -0.9}, {0.5, 0, std::sqrt(0.75)});
+    trace(ramp, ends, far, steps, ray);
+    CHECK(ray.v[0] / ray.v.norm() == doctest::Approx(0.5 * n1 / n2).epsilon(1e-8));
+  }
+}
+
+TEST_CASE("A step that dips behind a surface and comes back ends at the first crossing") {
+  const ParabolicGuide guide(ParabolicProfile{0.5, 1});
+  const RayState start = start_ray(guide, {0, 0, 0}, {0.3, 0, 1});
+  const double amplitude = start.v[0];
+  for (const double depth : {0.1, 1e-2, 1e-3, 1e-4}) {
+    const std::vector<Surface> wall{Plane{{amplitude * (1 - depth), 0, 0}, Vec3::UnitX()}};
+    FixedSteps<Yoshida4> steps{2 * pi / 40};
+    RayState ray = start;
+    CHECK(trace(guide, wall, far, steps, ray).surface == 0);
+    const double sigma = std::asin(1 - depth);
+    CHECK(std::abs(ray.x[0] - amplitude * (1 - depth)) < 1e-11);
+    CHECK(ray.x[2] == doctest::Approx(start.v[2] * sigma).epsilon(1e-4 / std::sqrt(depth)));
+  }
+  const std::vector<Surface> beyond{Plane{{amplitude * 1.001, 0, 0}, Vec3::UnitX()}};
+  FixedSteps<Yoshida4> steps{2 * pi / 40};
+  RayState ray = start;
+  CHECK(trace(guide, beyond, {100, 1e-11}, steps, ray).stop == Stop::length);
+}
+
+TEST_CASE("Far from a surface it is not looked at") {
+  const ParabolicGuide guide(ParabolicProfile{0.5, 1});
+  const std::vector<Surface> far_wall{Plane{{0, 0, 1000}, Vec3::UnitZ()}};
+  FixedSteps<Leapfrog> steps{0.1};
+  RayState ray = start_ray(guide, {0.3, 0, 0}, {0.1, 0, 1});
+  const TraceEnd end = trace(guide, far_wall, {1e4, 1e-9}, steps, ray);
+  CHECK(end.stop == Stop::surface);
+  CHECK(end.steps > 6000);
+  CHECK(end.looks < 100);
+}
+
+TEST_CASE("A tangent ends with its ray") {
+  const std::vector<Surface> rim{Sphere{}};
+  const RayState start = start_ray(lens, {-0.6, 0.3, 0.2}, {1, 0.2, 0.1});
+  const auto exit = [&](const Vec3& v0) {
+    auto steps = controlled<Sharma>(1e-12);
+    RayState ray = start;
+    ray.v = v0;
+    trace(lens, rim, far, steps, ray);
+    return ray.x;
+  };
+  auto steps = controlled<Sharma>(1e-12);
+  RayState ray = start;
+  RayTangent tangent;
+  CHECK(trace(lens, rim, far, steps, ray, tangent).surface == 0);
+  CHECK((ray.x - exit(start.v)).norm() < 1e-12);
+  for (int axis = 0; axis < 3; ++axis) {
+    const Vec3 shift = 1e-4 * Vec3::Unit(axis);
+    const Vec3 moved = (exit(start.v + shift) - exit(start.v - shift)) / 2e-4;
+    const Vec3 at_fixed_sigma = tangent.dx.col(axis);
+    const Vec3 out = ray.x.normalized();
+    const Vec3 on_rim = at_fixed_sigma - ray.v * out.dot(at_fixed_sigma) / out.dot(ray.v);
+    CHECK((moved - on_rim).norm() < 1e-6);
+  }
+}
+
+TEST_CASE("Rays are lost, not bent, where there is no index") {
+  const LinearRamp ramp{0, {0, 0, -1}};  // n = 1 - z
+  FixedSteps<Leapfrog> fixed{0.05};
+  // Straight up it creeps towards z = 1 and never gets there; across, a step jumps over it.
+  RayState ray = start_ray(ramp, {0, 0, 0.99}, Vec3::UnitZ());
+  fixed.h = 10;
+  CHECK(trace(ramp, std::vector<Surface>{}, far, fixed, ray).stop == Stop::lost);
+  const ParabolicGuide guide(ParabolicProfile{0.5, 1});  // no index beyond rho = 1.5
+  FixedSteps<Sharma> wide{2};
+  RayState out{{1, 0, 0}, {3, 0, 1}};
+  CHECK(trace(guide, std::vector<Surface>{}, far, wide, out).stop == Stop::lost);
+  // A wall before that point stops the ray all the same.
+  const std::vector<Surface> wall{Plane{{1.2, 0, 0}, Vec3::UnitX()}};
+  RayState stopped{{1, 0, 0}, {3, 0, 1}};
+  CHECK(trace(guide, wall, far, wide, stopped).surface == 0);
+  CHECK(std::abs(stopped.x[0] - 1.2) < 1e-11);
+}
+
+}  // namespace flatspeckle::grin
