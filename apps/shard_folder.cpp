@@ -83,12 +83,12 @@ void ShardFolder::set_aside(const std::string& name, Part part, const std::strin
 }
 
 void ShardFolder::write(const std::string& name, Part part, const std::string& identity,
-                        const std::function<void(ResultFile&)>& contents) {
+                        Durable durable, const std::function<void(ResultFile&)>& contents) {
   const std::lock_guard lock(mutex_);
   ResultFile result(file(name, part));
   result.attribute("/", "identity", identity);
   contents(result);
-  result.commit_sealed();
+  result.commit_sealed(durable);
   if (part == Part::finished) fs::remove(file(name, Part::unfinished));
 }
 

@@ -34,7 +34,7 @@ class ShardFolder {
 
   /// Writes the file as a whole: its identity and what `contents` adds. A finished one takes the
   /// place of the unfinished. Throws IoError.
-  void write(const std::string& name, Part part, const std::string& identity,
+  void write(const std::string& name, Part part, const std::string& identity, Durable durable,
              const std::function<void(ResultFile&)>& contents);
 
   /// Removes the files of these names, those that a killed process was writing as well, and the

@@ -43,7 +43,7 @@ std::optional<OpenRun> SweepWork::open(std::size_t number) {
                     [&](const ResultReader& file) { state = read_state(file, "state", job.size); });
   const std::lock_guard lock(mutex_);
   auto& kept = open_[number];
-  kept = std::make_unique<Open>(std::move(scene), std::move(estimation), std::move(state));
+  kept = std::make_unique<Open>(Open{std::move(scene), std::move(estimation), std::move(state)});
   return OpenRun{job, plan_.stop(number), &kept->state};
 }
 
@@ -71,10 +71,14 @@ void SweepWork::ended(std::size_t number) {
   PointResult point = point_result(open.scene, open.estimation.job, open.state);
   const auto target = plan_.stop(number).target_error;
   point.reached = !target || point.relative_error <= *target;
-  folder_.write(plan_.name(number), Part::finished, plan_.identity(number), [&](ResultFile& file) {
-    write_made(file, open, point.reached);
-    write_point(file, point, open.scene.request);
-  });
+  // To wait for the disk at each of many quick points would take longer than they do.
+  constexpr double quick = 1;
+  const Durable durable = open.state.cpu_s > quick ? Durable::yes : Durable::no;
+  folder_.write(plan_.name(number), Part::finished, plan_.identity(number), durable,
+                [&](ResultFile& file) {
+                  write_made(file, open, point.reached);
+                  write_point(file, point, open.scene.request);
+                });
   const std::lock_guard lock(mutex_);
   open_.erase(number);
 }
@@ -82,7 +86,7 @@ void SweepWork::ended(std::size_t number) {
 void SweepWork::save(std::size_t number) {
   const Open& open = find(number);
   if (open.state.sums.batches() == 0) return;
-  folder_.write(plan_.name(number), Part::unfinished, plan_.identity(number),
+  folder_.write(plan_.name(number), Part::unfinished, plan_.identity(number), Durable::yes,
                 [&](ResultFile& file) {
                   write_made(file, open, false);
                   write_state(file, "state", open.state);

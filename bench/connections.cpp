@@ -5,6 +5,7 @@
 // A connection is one unbiased estimate: a first trial and, if it found a curve, the further trials
 // until that is found again. The time of the three kinds of steps is measured apart, along rays of
 // the same field; what is left is the solver itself.
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -82,7 +83,7 @@ void print_row(const std::string& name, const F& field, double radius,
               statistics.mean_refind(), static_cast<unsigned long long>(statistics.refind_max),
               static_cast<double>(statistics.guess_steps + statistics.rough_steps +
                                   statistics.tangent_steps) /
-                  static_cast<double>(statistics.trials()),
+                  std::max(1.0, static_cast<double>(statistics.trials())),
               share(statistics.guess_steps, guess), share(statistics.rough_steps, rough),
               share(statistics.tangent_steps, precise));
 }

@@ -1,14 +1,16 @@
-// Errors and measured orders of the ray integrators against closed forms, and what they keep over
-// long guides. usage: bench_ray_orders
+// Errors and measured orders of the ray integrators against closed forms, what they keep over long
+// guides, and extreme cases: n nearly 0, the critical angle of a steep ramp, modal dispersion.
+// usage: bench_ray_orders
 #include <algorithm>
 #include <cmath>
 #include <complex>
 #include <cstdio>
 #include <numbers>
-#include <string>
+#include <vector>
 
 #include "grin/guides.h"
 #include "grin/lenses.h"
+#include "grin/ramps.h"
 #include "grin/ray_invariants.h"
 #include "grin/trace.h"
 
@@ -94,6 +96,39 @@ void print_far_fisheye(double angle) {
               std::abs(ray.optical_path - 0.75 * pi));
 }
 
+// Which sine of the angle in n = 1.5 still passes a ramp to n = 1.2, by bisection; Snell: 0.8.
+void print_ramp(double width) {
+  const TanhRamp ramp{0.5, 0.2, width};
+  const std::vector<Surface> ends{Plane{{0, 0, -20 * width}, -Vec3::UnitZ()},
+                                  Plane{{0, 0, 20 * width}, Vec3::UnitZ()}};
+  double passes = 0.7, turns = 0.9;
+  long steps_made = 0;
+  while (turns - passes > 1e-12) {
+    const double sine = (passes + turns) / 2;
+    RayState ray = start_ray(ramp, {0, 0, -19 * width}, {sine, 0, std::sqrt(1 - sine * sine)});
+    ControlledSteps<Sharma> steps{1e-12, width / 10, width};
+    const TraceEnd end = trace(ramp, ends, {1e6 * width, 1e-9 * width}, steps, ray);
+    steps_made = end.steps;
+    (end.surface == 1 ? passes : turns) = sine;
+  }
+  std::printf("%9.1e   %8ld   %9.2e\n", width, steps_made, std::abs(passes / 0.8 - 1));
+}
+
+// Optical path over five half periods, per length, for a meridional ray at this slope on the axis.
+template <IndexField F>
+void print_dispersion(const char* name, const F& guide, double slope) {
+  RayState ray = start_ray(guide, Vec3::Zero(), {slope * 0.6, slope * 0.8, 1});
+  const bool is_parabolic = std::same_as<F, ParabolicGuide>;
+  const double n0 = 1.5, alpha = 0.6, beta = ray.v[2];
+  const double length = 5 * pi / alpha * (is_parabolic ? beta : 1);
+  const std::vector<Surface> end{Plane{{0, 0, length}, Vec3::UnitZ()}};
+  ControlledSteps<Yoshida4> steps{1e-12, 1e-3, 1};
+  trace(guide, end, {1e3, 1e-12}, steps, ray);
+  const double exact = is_parabolic ? (n0 * n0 + beta * beta) / (2 * beta) : n0;
+  std::printf("%-10s %6.2f   %13.10f   %9.2e\n", name, slope, ray.optical_path / length,
+              std::abs(ray.optical_path / length - exact));
+}
+
 }  // namespace
 
 int main() {
@@ -118,4 +153,15 @@ int main() {
   std::puts("\nFisheye far out, controlled Sharma at 1e-12: from a point to its image");
   std::puts("far radius     least n      steps    position        path");
   for (const double angle : {1.0, 0.1, 0.01, 0.001}) print_far_fisheye(angle);
+
+  std::puts("\nCritical angle of a tanh ramp from n = 1.5 to 1.2, controlled Sharma at 1e-12");
+  std::puts("    width      steps   off Snell, relative");
+  for (const double width : {1e-1, 1e-2, 1e-3}) print_ramp(width);
+
+  std::puts("\nOptical path per length of guides, n0 = 1.5, controlled Yoshida4 at 1e-12");
+  std::puts("guide       slope      path/length       error");
+  for (const double slope : {0.0, 0.05, 0.3, 0.8})
+    print_dispersion("sech", SechGuide(SechProfile{0.5, 0.6}), slope);
+  for (const double slope : {0.0, 0.05, 0.3, 0.8})
+    print_dispersion("parabolic", ParabolicGuide(ParabolicProfile{0.5, 0.6}), slope);
 }

@@ -11,7 +11,9 @@
 
 #include "core/random.h"
 #include "core/stopwatch.h"
+#include "grin/focused_sound.h"
 #include "grin/ray_step.h"
+#include "grin/spline_field.h"
 #include "grin/ultrasound.h"
 
 using namespace flatspeckle;
@@ -42,6 +44,14 @@ struct LibraryField {
   }
   IndexHessian hessian(const Vec3&) const { return {}; }
 };
+
+SplineField spline() {
+  const FieldGrid grid{Vec3(-2, -2, -1), Vec3::Constant(0.1), {41, 41, 81}};
+  RandomStream random(1, 2, 0);
+  std::vector<double> values(grid.size());
+  for (double& value : values) value = 0.33 + 0.01 * random.uniform();
+  return SplineField(grid, values);
+}
 
 template <IndexField F>
 std::vector<RayState> bundle(const F& field) {
@@ -105,6 +115,9 @@ int main(int argc, char** argv) {
     enter(contest, "sound, J_" + std::to_string(m),
           StandingWave(0.33, 0.01, m, wavenumber, 4 * radius));
   enter(contest, "J_0 of the C library", LibraryField{});
+  enter(contest, "focused sound, 16 waves",
+        FocusedSound(0.33, 0.01, wavenumber, arc_directions(16, 0.5), Vec3::UnitZ()));
+  enter(contest, "spline grid", spline());
   for (int round = 0; round < rounds; ++round) {
     for (Contestant& entry : contest) {
       const double before = thread_cpu_seconds();

@@ -96,16 +96,19 @@ void FileBeside::truncate(std::uintmax_t bytes) {
   if (::ftruncate(descriptor_, static_cast<::off_t>(bytes)) != 0) fail(errno);
 }
 
-void FileBeside::put_in_place() {
-  if (::fsync(descriptor_) != 0 || ::rename(temporary_.c_str(), path_.c_str()) != 0) fail(errno);
+void FileBeside::put_in_place(Durable durable) {
+  const bool sync = durable == Durable::yes;
+  if ((sync && ::fsync(descriptor_) != 0) || ::rename(temporary_.c_str(), path_.c_str()) != 0)
+    fail(errno);
   // From here on it is no longer ours to remove.
-  if (::close(std::exchange(descriptor_, -1)) != 0 || !sync_folder(folder_of(path_))) fail(errno);
+  if (::close(std::exchange(descriptor_, -1)) != 0 || (sync && !sync_folder(folder_of(path_))))
+    fail(errno);
 }
 
-void replace_file(const fs::path& path, std::span<const std::byte> bytes) {
+void replace_file(const fs::path& path, std::span<const std::byte> bytes, Durable durable) {
   FileBeside file(path);
   file.write(bytes);
-  file.put_in_place();
+  file.put_in_place(durable);
 }
 
 }  // namespace flatspeckle

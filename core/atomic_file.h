@@ -12,6 +12,10 @@ namespace flatspeckle {
 /// folder is closed to us or the disk is full.
 void check_writable(const std::filesystem::path& path);
 
+/// Whether a file that is in place must survive a failure of the machine, which takes some
+/// milliseconds of waiting for the disk, or only that of this process.
+enum class Durable { yes, no };
+
 /// A file that grows beside `path` under a temporary name (.name.tmp-PID), and is removed again
 /// unless it was put in place.
 class FileBeside {
@@ -28,8 +32,8 @@ class FileBeside {
   void reserve(std::uintmax_t bytes);
   /// Ends the file there, giving back what was reserved beyond.
   void truncate(std::uintmax_t bytes);
-  /// Syncs it and puts it at `path`, replacing what is there. Throws IoError.
-  void put_in_place();
+  /// Puts it at `path`, replacing what is there. Throws IoError.
+  void put_in_place(Durable durable = Durable::yes);
 
  private:
   [[noreturn]] void fail(int error) const;
@@ -39,8 +43,9 @@ class FileBeside {
 };
 
 /// Puts `bytes` at `path` as a whole or not at all, also when the machine stops in between: written
-/// by way of a FileBeside. Throws IoError, having
-/// removed the temporary file and left what was at `path` before.
-void replace_file(const std::filesystem::path& path, std::span<const std::byte> bytes);
+/// by way of a FileBeside. Throws IoError, having removed the temporary file and left what was at
+/// `path` before.
+void replace_file(const std::filesystem::path& path, std::span<const std::byte> bytes,
+                  Durable durable = Durable::yes);
 
 }  // namespace flatspeckle

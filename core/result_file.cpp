@@ -12,7 +12,6 @@
 
 #include <hdf5_hl.h>
 
-#include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/hdf5_handle.h"
 #include "core/sealed_file.h"
@@ -376,11 +375,11 @@ void ResultFile::commit() {
   beside_->put_in_place();
 }
 
-void ResultFile::commit_sealed() {
+void ResultFile::commit_sealed(Durable durable) {
   assert(!beside_);
   auto bytes = image();
   seal(bytes);
-  replace_file(path_, bytes);
+  replace_file(path_, bytes, durable);
 }
 
 /// The bytes of a file in memory, which is closed.

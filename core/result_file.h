@@ -8,11 +8,11 @@
 #include <variant>
 #include <vector>
 
+#include "core/atomic_file.h"
 #include "core/complex.h"
 
 namespace flatspeckle {
 
-class FileBeside;
 class Hdf5Handle;
 
 /// One axis of a dataset: the name of a scale written before, or a plain extent.
@@ -79,7 +79,7 @@ class ResultFile {
   /// afterwards.
   void commit();
   /// The same with a seal (core/sealed_file.h) at its end, for a file made in memory.
-  void commit_sealed();
+  void commit_sealed(Durable durable);
 
  private:
   void make_room(std::size_t bytes);

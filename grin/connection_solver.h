@@ -65,13 +65,13 @@ std::vector<FoundConnection> all_connections(const ConnectionTrial<F, R, Step>& 
                                              ConnectionStatistics& statistics) {
   std::vector<FoundConnection> all;
   for (std::uint64_t i = 0; i < trials; ++i) {
-    const auto [outcome, curve] = trial.run(random, statistics);
-    if (outcome != TrialOutcome::converged) continue;
+    const auto result = trial.run(random, statistics);
+    if (result.outcome != TrialOutcome::converged) continue;
     const auto known = std::find_if(all.begin(), all.end(), [&](const FoundConnection& one) {
-      return same_curve(one.curve, curve, trial.options().same);
+      return same_curve(one.curve, result.curve, trial.options().same);
     });
     if (known == all.end())
-      all.push_back({trial.with_caustics(curve, statistics), 1});
+      all.push_back({trial.with_caustics(result.curve, statistics), 1});
     else
       ++known->found;
   }

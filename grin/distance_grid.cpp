@@ -112,8 +112,8 @@ double DistanceGrid::distance(const Vec3& x) const {
   const Vec3 nearest = x.cwiseMax(low_).cwiseMin(high());
   const double outside = (x - nearest).norm();
   if (outside == 0) return interpolated(x);
-  // The mesh is at least the margin inside the grid.
-  return std::max(interpolated(nearest) - outside, outside + margin / 2 * spacing_);
+  // The mesh is the margin inside the grid, the zero level within a cell of it.
+  return std::max(interpolated(nearest) - outside, outside + (margin - 1) * spacing_);
 }
 
 Vec3 DistanceGrid::normal(const Vec3& x) const {

@@ -6,7 +6,7 @@ import argparse
 import csv
 import pathlib
 
-import style
+from lib import style
 
 import matplotlib.pyplot as plt
 import numpy as np

@@ -5,7 +5,7 @@ relative L2 error against each and exits 1 where one is above the limit."""
 import argparse
 import sys
 
-import style
+from lib import style
 
 import numpy as np
 

@@ -2,9 +2,7 @@
 """Convergence of a sweep: relative error of every point against its processor time or samples, with
 the target, and the points that missed it (also printed)."""
 
-import style
-
-import sweep_file
+from lib import page, style, sweep_file
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -18,7 +16,7 @@ SHADES = 0.82  # of the map's range; its lightest end is lost on paper
 def add_options(parser):
     parser.add_argument("--against", choices=list(X_AXES), default="cpu")
     parser.add_argument("--colour", choices=list(sweep_file.PARAMETERS),
-                        help="axis that colours the curves (default: the outermost that varies)")
+                        help="axis that colours the curves (default: the outermost of few values)")
     sweep_file.add_select(parser)
 
 
@@ -27,7 +25,8 @@ def colour_axis(sweep, asked):
     if asked and asked not in axes:
         raise style.Unusable(f"{sweep.path}: {asked} does not vary; --colour one of "
                              f"{', '.join(axes) or 'nothing here'}")
-    return asked or (axes[0] if axes else None)
+    few = [name for name in axes if len(sweep.values(name)) <= MOST_COLOURS]
+    return asked or (few or [None])[0]
 
 
 def colours(sweep, axis):
@@ -52,7 +51,7 @@ def traces(sweep, method, column):
 
 def missed(sweep, method):
     """Points that ended above the target or without an error, the worst first."""
-    target = sweep.target()
+    target = sweep.target(method)
     if target is None:
         return []
     error = sweep.of(method, "relative_error")[sweep.rows]
@@ -89,21 +88,22 @@ def draw_panel(axis, sweep, method, arguments, looks, coloured):
                   **({"marker": "X", "markersize": 6, "markeredgecolor": "black",
                       "markeredgewidth": 0.6} if row in late else
                      {"marker": "o", "markersize": 1.8}))
-    if sweep.target():
-        axis.axhline(sweep.target(), color=style.GREY, linewidth=0.8, zorder=0)
+    if sweep.target(method):
+        axis.axhline(sweep.target(method), color=style.GREY, linewidth=0.8, zorder=0)
     draw_guide(axis, list(shown.values()))
     axis.set(xscale="log", yscale="log", xlabel=X_AXES[arguments.against][1],
              ylabel="relative error")
-    name_missed(axis, sweep, method, late, len(shown))
+    name_missed(axis, sweep, method, late)
 
 
-def name_missed(axis, sweep, method, late, count):
+def name_missed(axis, sweep, method, late):
     """Above the panel: its method, and which points missed the target."""
     head = f"{sweep_file.METHODS[method]}: " if method else ""
-    if sweep.target() is None:
-        axis.set_title(f"{head}{count} points, no target", fontsize=7)
+    if sweep.target(method) is None:
+        axis.set_title(f"{head}{len(sweep.rows)} points, no target", fontsize=7)
         return
-    lines = [f"{head}{len(late)} of {len(sweep.rows)} points missed {100 * sweep.target():g} %"]
+    count, goal = len(sweep.rows), 100 * sweep.target(method)
+    lines = [f"{head}{len(late)} of {count} points missed {goal:g} %"]
     lines += [describe(sweep, method, row) for row in late[:MOST_NAMED]]
     if len(late) > MOST_NAMED:
         lines.append(f"and {len(late) - MOST_NAMED} more")
@@ -115,7 +115,7 @@ def name_missed(axis, sweep, method, late, count):
 def entries(sweep, coloured, looks):
     for value, look in looks.items() if coloured else []:
         yield plt.Line2D([], [], **look), sweep_file.text(coloured, value)
-    if sweep.target():
+    if any(sweep.target(method) for method in sweep.prefixes):
         yield plt.Line2D([], [], color=style.GREY, linewidth=0.8), "target"
     if any(missed(sweep, method) for method in sweep.prefixes):
         yield plt.Line2D([], [], color="0.8", linestyle="none", marker="X", markersize=6,
@@ -149,7 +149,7 @@ def draw(results, arguments):
     for axis, method in zip(axes.flat, sweep.prefixes):
         draw_panel(axis, sweep, method, arguments, looks, coloured)
     share_limits(axes[0])
-    style.legend_above(figure, list(entries(sweep, coloured, looks)))
+    page.legend_outside(figure, list(entries(sweep, coloured, looks)), sweep.notes())
     return figure
 
 

@@ -2,7 +2,7 @@
 """Diffusing-wave spectroscopy: field correlation against delay in transmission through slabs, from
 any number of `covariance --delays` results."""
 
-import style
+from lib import style
 
 import matplotlib.pyplot as plt
 import numpy as np

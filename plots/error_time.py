@@ -3,7 +3,7 @@
 
 import pathlib
 
-import style
+from lib import style
 
 import h5py
 import matplotlib.pyplot as plt

@@ -3,7 +3,7 @@
 with the outlines of the disks. Light of angle 0 travels to the right. The highest 0.1 % of the
 amplitudes share one colour."""
 
-import style
+from lib import style
 
 import matplotlib.pyplot as plt
 import numpy as np

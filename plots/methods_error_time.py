@@ -7,7 +7,7 @@ import csv
 import sys
 from collections import defaultdict
 
-import style
+from lib import style
 
 import matplotlib.pyplot as plt
 import numpy as np

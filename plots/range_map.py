@@ -1,10 +1,9 @@
 #!/usr/bin/env python3
 """Map of the memory-effect range, q L at C_I = 1/2, over (g, albedo) of a sweep, one panel per
-optical depth (and method). Hatched: bounds, where a curve does not cross 1/2 within the tilts."""
+optical depth (and method). Hatched: bounds, where a curve does not cross 1/2 within the tilts.
+White: points that are not finished."""
 
-import style
-
-import sweep_file
+from lib import curve_looks, page, style, sweep_file
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -12,17 +11,20 @@ from matplotlib.colors import LogNorm
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 MOST_PANELS, MOST_CELLS = 12, 16
+LEAST_CONTOURED = 6  # cells across and down: contours of fewer are all corners
 MAP = plt.get_cmap("cividis")  # even steps of lightness, so that it survives in grey
-STEPS = (1, 1.5, 2, 3, 5, 7)  # contours and marks of the scale, in every decade
+STEPS = (1, 1.5, 2, 3, 5, 7)  # marks of the scale, in every decade, and contours
+FEW_STEPS, WIDE = (1, 2, 5), 20  # contours where the ranges span more than this factor
 SIGNS = {0: "", 1: ">", 2: "<"}
+DAGGER = "\u2020"
 
 
 def check(sweep):
     """The axis of the panels, or None; refuses what is no map."""
     for name in ("g", "albedo"):
-        if sweep.is_list or name not in sweep.axes or len(sweep.values(name)) < 2:
+        if sweep.is_list or name not in sweep.varying():
             raise style.Unusable(f"{sweep.path}: a map needs a grid with at least two values of g "
-                                 "and of albedo")
+                                 "and of albedo; memory_range.py draws ranges of other sweeps")
         if len(sweep.values(name)) > MOST_CELLS:
             raise style.Unusable(f"{sweep.path}: {len(sweep.values(name))} values of {name}, at "
                                  f"most {MOST_CELLS} are legible; "
@@ -39,9 +41,12 @@ def check(sweep):
 
 
 def table(sweep, rows, values):
-    """Values of a panel's points as [albedo, g], albedo rising; they are a part of a grid."""
-    order = np.lexsort((sweep.columns["g"][rows], sweep.columns["albedo"][rows]))
-    return values[rows[order]].reshape(len(sweep.values("albedo")), len(sweep.values("g")))
+    """Values of a panel's points as [albedo, g], albedo rising; masked where there is no point."""
+    axes = [sweep.values(name) for name in ("albedo", "g")]
+    cells = np.ma.masked_all([len(axis) for axis in axes], values.dtype)
+    cells[tuple(np.searchsorted(axis, sweep.columns[name][rows])
+                for axis, name in zip(axes, ("albedo", "g")))] = values[rows]
+    return cells
 
 
 def number(value):
@@ -49,42 +54,57 @@ def number(value):
     return f"{value:.{max(0, 2 - int(np.log10(max(value, 1))))}f}"
 
 
-def draw_numbers(axis, values, censored, norm):
+def draw_numbers(axis, values, censored, few, norm):
     size = min(6.5, 37 / values.shape[1])
-    for (row, column), value in np.ndenumerate(values):
-        kind = censored[row, column]
-        dark = norm(value) < 0.55
+    for row, column in np.argwhere(~np.ma.getmaskarray(values)):
+        value, kind, doubt = (cells[row, column] for cells in (values, censored, few))
+        words = (f"{SIGNS[kind]}{value:.3g}" if kind else number(value)) + DAGGER * int(doubt)
         behind = {"facecolor": MAP(norm(value)), "edgecolor": "none", "pad": 0.4}
-        axis.text(column, row, f"{SIGNS[kind]}{value:.3g}" if kind else number(value), ha="center",
-                  va="center", fontsize=size, color="white" if dark else "black", bbox=behind)
+        axis.text(column, row, words, ha="center", va="center",
+                  fontsize=size, color="white" if norm(value) < 0.55 else "black", bbox=behind)
 
 
-def draw_contours(axis, logarithm, levels):
+def has_holes(sweep, parts):
+    """Whether a panel lacks points."""
+    cells = len(sweep.values("g")) * len(sweep.values("albedo"))
+    return any(len(rows) < cells for _, _, rows in parts)
+
+
+def contour_levels(sweep, norm, holes):
+    """Levels of the contours; none of a map of few cells or with holes."""
+    if holes or min(len(sweep.values(name)) for name in ("g", "albedo")) < LEAST_CONTOURED:
+        return []
+    steps = FEW_STEPS if norm.vmax > WIDE * norm.vmin else STEPS
+    levels = [step * 10.0**power for power in range(-3, 4) for step in steps]
+    return [level for level in levels if norm.vmin < level < norm.vmax]
+
+
+def draw_contours(axis, values, censored, levels):
     """Between the centres of the cells, whose steps need not be equal; none beyond bounds."""
-    crossed = [level for level in levels if logarithm.min() < level < logarithm.max()]
-    if crossed and min(logarithm.shape) > 1:
+    logarithm = np.ma.array(np.ma.log(values), mask=(censored > 0).filled(True))
+    crossed = [np.log(level) for level in levels
+               if logarithm.min() < np.log(level) < logarithm.max()]
+    if crossed:
         axis.contour(logarithm, crossed, colors="white", linewidths=1.6)
         axis.contour(logarithm, crossed, colors="black", linewidths=0.7)
 
 
-def draw_panel(axis, sweep, rows, method, norm):
+def draw_panel(axis, sweep, rows, method, norm, levels):
     values, censored = (table(sweep, rows, sweep.of(method, name))
                         for name in ("memory_effect_range", "range_censored"))
     edges = [np.arange(count + 1) - 0.5 for count in reversed(values.shape)]
     image = axis.pcolormesh(*edges, values, cmap=MAP, norm=norm, edgecolors="face", linewidth=0.2)
-    for row, column in np.argwhere(censored > 0):
+    for row, column in np.argwhere((censored > 0).filled(False)):
         axis.add_patch(plt.Rectangle((column - 0.5, row - 0.5), 1, 1, fill=False, hatch="////",
                                      edgecolor="0.4", linewidth=0))
-    levels = [step * 10.0**power for power in range(-3, 4) for step in STEPS
-              if norm.vmin < step * 10.0**power < norm.vmax]
-    draw_contours(axis, np.ma.array(np.log(values), mask=censored > 0), np.log(levels))
-    draw_numbers(axis, values, censored, norm)
+    draw_contours(axis, values, censored, levels)
+    draw_numbers(axis, values, censored, table(sweep, rows, sweep.few_steps(method)), norm)
     for side, name in ((axis.xaxis, "g"), (axis.yaxis, "albedo")):
         side.set_ticks(range(len(sweep.values(name))), style.short(sweep.values(name)))
     axis.tick_params(length=0)
     axis.set_xlabel("mean cosine $g$")
     axis.set_ylabel("albedo")
-    return image, levels
+    return image
 
 
 def colour_bar(figure, axes, image, levels):
@@ -96,7 +116,7 @@ def colour_bar(figure, axes, image, levels):
     for level in levels:
         bar.ax.axhline(level, color="white", linewidth=1.6)
         bar.ax.axhline(level, color="black", linewidth=0.7)
-    bar.set_label(r"range $qL$ at $C_I = 1/2$, lines: contours")
+    bar.set_label(r"range $qL$ at $C_I = 1/2$" + (", lines: contours" if levels else ""))
 
 
 def worst_error(sweep):
@@ -109,13 +129,16 @@ def worst_error(sweep):
     return f"standard errors up to {100 * max(errors):.2g} %" if errors else "bounds alone"
 
 
-def add_legend(figure, sweep):
-    entries = []
+def entries(sweep, holes):
+    """Legend entries (handle, label)."""
     if any((sweep.of(method, "range_censored")[sweep.rows] > 0).any() for method in sweep.prefixes):
-        entries.append((plt.Rectangle((0, 0), 1, 1, fill=False, hatch="////", edgecolor="0.4"),
-                        "bound: no crossing of 1/2 within the tilts"))
-    entries.append((plt.Line2D([], [], linestyle="none"), worst_error(sweep)))
-    style.legend_above(figure, entries)
+        yield (plt.Rectangle((0, 0), 1, 1, fill=False, hatch="////", edgecolor="0.4"),
+               "bound: no crossing of 1/2 within the tilts")
+    if any(sweep.few_steps(method)[sweep.rows].any() for method in sweep.prefixes):
+        yield (plt.Line2D([], [], linestyle="none", marker=r"$\dagger$", color="black"),
+               curve_looks.FEW_STEPS)
+    if holes:
+        yield plt.Rectangle((0, 0), 1, 1, fill=False, edgecolor="0.4"), "no point"
 
 
 def draw(results, arguments):
@@ -124,19 +147,22 @@ def draw(results, arguments):
     shown = [(method, value, rows) for method in sweep.prefixes
              for value, rows in sweep.groups(panels, sweep.rows)]
     across = min(3, len(shown) // len(sweep.prefixes) if len(shown) != 4 else 2)
-    figure, axes = style.page_of_panels(-(-len(shown) // across), across, len(shown))
+    figure, axes = page.page_of_panels(-(-len(shown) // across), across, len(shown))
     ranges = np.concatenate([sweep.of(method, "memory_effect_range")[rows]
                              for method, _, rows in shown])
     spread = 1 if ranges.max() > 1.1 * ranges.min() else 1.2  # for a scale with room for marks
     norm = LogNorm(ranges.min() / spread, ranges.max() * spread)
+    holes = has_holes(sweep, shown)
+    levels = contour_levels(sweep, norm, holes)
     for axis, (method, value, rows) in zip(axes.flat, shown):
-        image, levels = draw_panel(axis, sweep, rows, method, norm)
+        image = draw_panel(axis, sweep, rows, method, norm, levels)
         words = [sweep_file.METHODS[method]] if method else []
         words += [sweep_file.text(panels, value)] if panels else []
         axis.set_title(", ".join(words), fontsize=7.5, pad=3)
-    style.outer_labels(axes, len(shown))
+    page.outer_labels(axes, len(shown))
     colour_bar(figure, axes, image, levels)
-    add_legend(figure, sweep)
+    page.legend_outside(figure, list(entries(sweep, holes)),
+                        [*sweep.notes(), worst_error(sweep)])
     return figure
 
 

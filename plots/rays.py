@@ -2,7 +2,8 @@
 """Rays or curves of `flatspeckle trace` (with path_points) over the index map; of rays with different
 optical paths also how these are spread over the angles or heights at which the rays start."""
 
-import style
+from lib import style
+from lib.result_file import Unusable
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -73,7 +74,7 @@ def draw_spread(axis, result, up):
 def draw(results):
     result = results[0]
     if not result.has("path/z"):
-        raise style.Unusable(f"{result.path}: holds no paths; trace with --path_points")
+        raise Unusable(f"{result.path}: holds no paths; trace with --path_points")
     up = transverse(result)
     of_rays = result.has("ray")
     figure, axes = plt.subplots(1, 2 if of_rays else 1, squeeze=False,

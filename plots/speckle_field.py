@@ -4,7 +4,7 @@
 moves speckles; the histogram of all intensities; and their autocorrelation over the first light's
 views."""
 
-import style
+from lib import style
 
 import matplotlib.pyplot as plt
 import numpy as np

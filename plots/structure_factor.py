@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Structure factor of drawn placements, from any number of `place --structure` results."""
 
-import style
+from lib import style
 
 import matplotlib.pyplot as plt
 import numpy as np

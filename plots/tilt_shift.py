@@ -5,7 +5,7 @@ with theory."""
 
 import pathlib
 
-import style
+from lib import style
 
 import matplotlib.pyplot as plt
 import numpy as np

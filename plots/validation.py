@@ -3,7 +3,7 @@
 
 from dataclasses import dataclass
 
-import style
+from lib import style
 
 import matplotlib.pyplot as plt
 import numpy as np

@@ -104,8 +104,13 @@ class Rays(TraceTest):
                               stop_plane=[0, 0, quarter, 0, 0, 1])
         self.assertGreater(opposite["exit/x"][2], 2e-3)  # half a period later it spreads
 
+    def test_time(self):
+        found = self.scene("ultrasound")  # in mm
+        np.testing.assert_allclose(found["time"], found["optical_path"] / 1000 / LIGHT_SPEED,
+                                   rtol=1e-14)
+
     def test_linear_ramp(self):
-        """n = 1 + z/10, ray along x: n^2 force makes a catenary, cosh(x/10) of the index."""
+        """In n = 1 + z/10 a ray along x is a catenary: n = cosh(x/10)."""
         found = self.trace(field="linear", slope=[0, 0, 0.1], light="line", ray_count=1,
                            direction=[1, 0, 0], across=[0, 0, 1], max_length=100, tolerance=1e-12,
                            stop_plane=[5, 0, 0, 1, 0, 0])

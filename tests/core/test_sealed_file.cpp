@@ -117,7 +117,7 @@ TEST_CASE("a sealed result file is read as any other, and replaces what was ther
   ResultFile file(folder.file());
   file.attribute("/", "name", "value");
   file.dataset("numbers", std::vector{1.0, 2.0, 3.0}, {std::size_t{3}}, "1", "");
-  file.commit_sealed();
+  file.commit_sealed(Durable::no);
   CHECK(is_sealed(folder.file()));
   const ResultReader reader(folder.file());
   CHECK(reader.attribute<std::string>("/", "name") == "value");

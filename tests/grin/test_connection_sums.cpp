@@ -100,7 +100,7 @@ TEST_CASE("without the rim f K has the mean of the sum of f over all curves") {
   std::erase_if(exact, [&](const HarmonicCurve& c) { return c.arc_length() > longest; });
   REQUIRE(exact.size() == 4);
   const ConnectionTrial trial(field, everywhere, from, to,
-                              {.step = 0.1, .max_length = longest, .start = {.chord_share = 0.1}});
+                              {.step = 0.15, .max_length = longest, .start = {.chord_share = 0.1}});
   const int estimates = 600000;
   const Moments moments = estimated(trial, estimates, 82);
   check_sums(moments, estimates, exact, 0.002);
@@ -113,8 +113,8 @@ TEST_CASE("roulette leaves the mean alone") {
   std::erase_if(exact, [&](const HarmonicCurve& c) { return c.arc_length() > longest; });
   const ConnectionTrial trial(
       field, everywhere, from, to,
-      {.step = 0.1, .max_length = longest, .start = {.chord_share = 0.1}, .roulette_after = 4});
-  const int estimates = 200000;
+      {.step = 0.2, .max_length = longest, .start = {.chord_share = 0.1}, .roulette_after = 4});
+  const int estimates = 100000;
   const Moments moments = estimated(trial, estimates, 83);
   check_sums(moments, estimates, exact, 0.02);
   CHECK(moments.statistics.roulette_ends > estimates / 20);

@@ -4,14 +4,7 @@
 
 #include "core/bessel.h"
 #include "core/error.h"
-#include "core/random.h"
-#include "grin/field_sum.h"
-#include "grin/focused_sound.h"
-#include "grin/gaussian_blobs.h"
-#include "grin/guides.h"
-#include "grin/lenses.h"
-#include "grin/ramps.h"
-#include "grin/ultrasound.h"
+#include "grin/any_index_field.h"
 #include "tests/grin/derivatives.h"
 
 namespace flatspeckle::grin {
@@ -163,6 +156,18 @@ TEST_CASE("Sums of fields") {
     check_derivatives(sum, x, 0.2, 1);
     CHECK(sum.excess(x) == doctest::Approx(0.3 + 2 * ramp.excess(x) + blobs.excess(x)));
   }
+}
+
+TEST_CASE("A field chosen at run time") {
+  AnySum sum;
+  sum.add(ParabolicGuide(ParabolicProfile{0.5, 0.7})).add(StandingWave(0, 0.02, 1, 7, 1));
+  const std::vector<AnyIndexField> fields{Homogeneous{0.2}, SechGuide(SechProfile{0.5, 0.5}), sum};
+  for (const AnyIndexField& any : fields)
+    std::visit([](const auto& field) { check_derivatives(field, points[4], 0.2, 1); }, any);
+  const Vec3 x = points[4];
+  CHECK(std::get<AnySum>(fields[2]).excess(x) ==
+        doctest::Approx(ParabolicGuide(ParabolicProfile{0.5, 0.7}).excess(x) +
+                        StandingWave(0, 0.02, 1, 7, 1).excess(x)));
 }
 
 }  // namespace flatspeckle::grin

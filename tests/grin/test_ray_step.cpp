@@ -104,6 +104,10 @@ TEST_CASE_TEMPLATE("A homogeneous medium has straight rays", I, INTEGRATORS) {
   CHECK((ray.v - Vec3(0, 0.9, 1.2)).norm() < 1e-15);
   CHECK(ray.arc_length == doctest::Approx(3));
   CHECK(ray.optical_path == doctest::Approx(4.5));
+  const SlantedExtinction mu_t;
+  AttenuatedRay dimmed(start_ray(plain, {1, 2, 3}, {0, 3, 4}), mu_t);
+  I::step(plain, dimmed, 2);
+  CHECK(dimmed.optical_depth == doctest::Approx(3 + (54.872 - 8) / 3.6));  // mu_t is quadratic
 }
 
 TEST_CASE_TEMPLATE("Symplectic steps run backwards", I, Leapfrog, Yoshida4) {

@@ -1,6 +1,8 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <string>
+#include <unistd.h>
 
 #include <doctest/doctest.h>
 
@@ -122,7 +124,8 @@ TEST_CASE("Bad grids are refused") {
 }
 
 TEST_CASE("A spline field from a file") {
-  const auto path = std::filesystem::temp_directory_path() / "flatspeckle_field.h5";
+  const auto path = std::filesystem::temp_directory_path() /
+                    ("flatspeckle-field-" + std::to_string(::getpid()) + ".h5");
   const FieldGrid grid{{-1, 2, 0.5}, {0.3, 0.2, 0.1}, {4, 6, 9}};
   const auto values = samples(grid, wavy);
   const auto write = [&](const std::vector<double>& spacing, std::vector<Axis> axes) {

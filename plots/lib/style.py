@@ -1,5 +1,5 @@
-"""What the plots share: their look, how they read result files, and their command line. To be
-imported before the packages that it looks for."""
+"""What the plots share: their look and their command line. To be imported before the packages that
+it looks for."""
 
 import argparse
 import importlib
@@ -13,18 +13,19 @@ for package in ("matplotlib", "h5py", "numpy"):
         print(f"this python has no {package}; on Debian use /usr/bin/python3", file=sys.stderr)
         sys.exit(2)
 
-import h5py
 import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
-from matplotlib.ticker import NullFormatter
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
+from lib.result_file import Result, Unusable
 
 # Okabe and Ito 2008: told apart by the colour blind, and in grey by marker and line style besides.
-COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000"]
-MARKERS = ["o", "s", "^", "D", "v", "P", "X"]
-LINES = ["-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (7, 2)), (0, (1, 1))]
+COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#8C510A"]
+MARKERS = ["o", "s", "^", "D", "v", "P", "X", "p"]
+LINES = ["-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (7, 2)), (0, (1, 1)), (0, (3, 1, 1, 1))]
 GREY = "0.5"
 COLUMN, PAGE, PAGE_HEIGHT = 3.4, 7.0, 8.6  # of a journal, inches
 
@@ -38,42 +39,6 @@ plt.rcParams.update({
     "pdf.fonttype": 42, "savefig.dpi": 300, "figure.constrained_layout.use": True,
     "savefig.bbox": "tight", "savefig.pad_inches": 0.02,
 })
-
-
-class Unusable(Exception):
-    """A result file without what the plot needs; the message says which file and what."""
-
-
-class Result:
-    """A result file, with one clear complaint about whatever is missing."""
-
-    def __init__(self, path):
-        self.path = path
-        try:
-            self.file = h5py.File(path, "r")
-        except OSError:
-            raise Unusable(f"{path}: not a readable result file")
-
-    def has(self, name):
-        return name in self.file
-
-    def dataset(self, name):
-        if not isinstance(self.file.get(name), h5py.Dataset):
-            raise Unusable(f"{self.path}: has no dataset {name}")
-        return self.file[name]
-
-    def values(self, name):
-        return self.dataset(name)[...]
-
-    def axis(self, name, number):
-        """Values of the scale of one axis of a dataset."""
-        dimension = self.dataset(name).dims[number]
-        if len(dimension) == 0:
-            raise Unusable(f"{self.path}: axis {number} of {name} has no scale")
-        return dimension[0][...]
-
-    def attribute(self, name, default=None):
-        return self.file.attrs.get(name, default)
 
 
 def look(number):
@@ -119,38 +84,11 @@ def whole_decades(axis):
     axis.yaxis.set_minor_formatter(NullFormatter())
 
 
-def page_of_panels(down, across, count):
-    """Figure and axes [down, across] of a page or, for one panel across, of a column; those after
-    `count` are left out."""
-    width = COLUMN if across == 1 else min(PAGE, 2.4 * across)
-    height = min(2.1, 1.3 * width / across, (PAGE_HEIGHT - 0.5) / down)
-    figure, axes = plt.subplots(down, across, squeeze=False, sharex=True, sharey=True,
-                                figsize=(width, 0.5 + down * height))
-    for axis in axes.flat[count:]:
-        axis.remove()
-    return figure, axes
-
-
-def outer_labels(axes, count):
-    """Labels at the left and beneath the lowest panel of each column alone."""
-    for (row, column), axis in np.ndenumerate(axes):
-        lowest = (row + 1) * axes.shape[1] + column >= count
-        axis.tick_params(labelbottom=lowest, labelleft=column == 0)
-        axis.xaxis.label.set_visible(lowest)
-        axis.yaxis.label.set_visible(column == 0)
-
-
-def legend_above(figure, entries):
-    """A legend of (handle, label) over the figure, in as many columns as its width holds."""
-    if not entries:
-        return
-    handles, labels = zip(*entries)
-    sizes = [len(label.replace("$", "")) + 9 for label in labels]
-    width = lambda columns: sum(max(part) for part in np.array_split(sizes, columns))
-    most = max(n for n in range(1, len(labels) + 1)
-               if n == 1 or width(n) <= 17 * figure.get_figwidth())
-    figure.legend(handles, labels, loc="lower center", bbox_to_anchor=(0.5, 1.0),
-                  ncol=-(-len(labels) // -(-len(labels) // most)))
+def few_decades(side):
+    """Numbers 1, 2, 5 of every decade on a logarithmic axis that spans few."""
+    side.set_major_locator(LogLocator(subs=(1, 2, 5)))
+    side.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    side.set_minor_formatter(NullFormatter())
 
 
 def save(figure, prefix):
@@ -158,6 +96,17 @@ def save(figure, prefix):
         dates = {"CreationDate": None} if ending == "pdf" else None
         figure.savefig(f"{prefix}.{ending}", metadata=dates)
         print(f"wrote {prefix}.{ending}")
+
+
+def output_prefix(arguments):
+    """PREFIX of --out, also if it ends like one of the files; beside the first result without."""
+    if not arguments.out:
+        first = pathlib.Path(arguments.results[0])
+        return f"{first.with_suffix('')}_{pathlib.Path(sys.argv[0]).stem}"
+    out = pathlib.Path(arguments.out)
+    if not out.parent.is_dir():
+        raise Unusable(f"--out {out}: there is no folder {out.parent}")
+    return out.with_suffix("") if out.suffix in (".png", ".pdf") else out
 
 
 def main(draw, description, several=False, add_options=None):
@@ -170,11 +119,14 @@ def main(draw, description, several=False, add_options=None):
     if add_options:
         add_options(parser)
     arguments = parser.parse_args()
-    first = pathlib.Path(arguments.results[0])
-    prefix = arguments.out or str(first.with_suffix("")) + "_" + pathlib.Path(sys.argv[0]).stem
     try:
+        prefix = output_prefix(arguments)
         results = [Result(path) for path in arguments.results]
         save(draw(results, arguments) if add_options else draw(results), prefix)
-    except (Unusable, OSError) as problem:
+    except Unusable as problem:
         print(problem, file=sys.stderr)
+        sys.exit(2)
+    except OSError as problem:
+        print(f"{problem.filename}: {problem.strerror}" if problem.filename else problem,
+              file=sys.stderr)
         sys.exit(2)

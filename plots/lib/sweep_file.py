@@ -1,21 +1,22 @@
-"""Reading of a sweep's result file. A grid and a list of points look alike here: a table with one
-row per point, in row-major order of the grid."""
+"""Reading of a sweep's result file. A grid, a grid with holes and a list of points look alike
+here: a table with one row per point."""
 
-import style
+from lib import style
 
-import matplotlib.pyplot as plt
 import numpy as np
 
 METHODS = {"mc": "Monte Carlo", "wave": "wave solver"}
 PARAMETERS = ("density", "radius", "index", "optical_depth", "g", "albedo")
 NAMES = {"density": "density", "radius": "radius", "index": "index", "optical_depth": "OD",
-         "g": "$g$", "albedo": "albedo", "point": "point"}
+         "g": "$g$", "albedo": "albedo"}
+LEAST_FILLED = 0.25  # of a product of values, for its points to be shown as a grid with holes
+LEAST_STEPS = 4  # tilts up to the range, for its error to be trusted
 
 
 class Sweep:
-    """One sweep. `columns`: each parameter's value at every point [point]; `axes`: those that the
-    grid varies, outermost first, or for a list of points the parameters that differ; `rows`: the
-    selected points."""
+    """One sweep. `columns`: each parameter's value at every point [point]; `axes`: those that vary
+    and do not follow from others, outermost first; `is_list`: the points are not (part of) a grid;
+    `rows`: the selected points."""
 
     def __init__(self, result):
         self.result, self.path = result, result.path
@@ -27,12 +28,12 @@ class Sweep:
         if grid.size == 0:
             raise style.Unusable(f"{self.path}: no point of the sweep is finished")
         scales = dict(self.scale(grid, axis) for axis in range(grid.ndim))
-        self.shape = grid.shape
+        self.shape, self.rows = grid.shape, np.arange(grid.size)
+        self.scene = read_scene(result.attribute("config", ""))
         self.columns = self.read_columns(scales)
-        self.is_list = "point" in scales
-        self.axes = [name for name in (PARAMETERS if self.is_list else scales)
-                     if name in self.columns and len(np.unique(self.columns[name])) > 1]
-        self.rows = np.arange(grid.size)
+        self.axes = [name for name in (self.given() if "point" in scales else scales)
+                     if len(self.values(name)) > 1]
+        self.is_list = "point" in scales and not self.has_part_of_grid()
 
     def scale(self, grid, axis):
         """Name and values of one axis of the grid."""
@@ -49,6 +50,38 @@ class Sweep:
                 columns[name] = self.table(name)
         return columns
 
+    def given(self):
+        """The parameters that a list gives; those of scatterers follow from their radius and index,
+        the optical depth from a density."""
+        scatterer = self.scene.get("scatterer")
+        known = {"g": scatterer == '"hg"', "albedo": scatterer in ('"hg"', '"point"'),
+                 "optical_depth": "density" not in self.columns and
+                 not self.scene.keys() & {"density", "count", "mean_free_path"}}
+        return [name for name in PARAMETERS if name in self.columns and known.get(name, True)]
+
+    def has_part_of_grid(self):
+        """Whether a list is an unfinished grid, or fills a fair part of the product of its values;
+        where one of several values is another at each point, there is nothing to join."""
+        counts, points = [len(self.values(name)) for name in self.axes], self.shape[0]
+        fills = points >= LEAST_FILLED * np.prod(counts)
+        return "points" not in self.scene or (fills and (len(counts) < 2 or max(counts) < points))
+
+    def notes(self):
+        """What every picture has to say: points that are missing, and what all that it shows have
+        in common."""
+        common = [name for name in self.axes or self.given() if len(self.values(name)) == 1]
+        return [*self.unfinished(), *([self.label(common, self.rows[0])] if common else [])]
+
+    def unfinished(self):
+        """[A sentence on points that are missing, if any]."""
+        if self.result.attribute("complete", 1):
+            return []
+        lists = [self.scene.get(name, "").count(",") + 1 for name in PARAMETERS]
+        identity = self.result.attribute("identity", "").splitlines()
+        total = np.prod(lists) if "points" not in self.scene else \
+            sum("=" in line and " = " not in line for line in identity)  # a line for each point
+        return [f"unfinished: {self.shape[0]} of {total} points"]
+
     def table(self, name):
         """A dataset [grid, ...] as [point, ...]."""
         values = self.result.values(name)
@@ -62,9 +95,9 @@ class Sweep:
     def of(self, method, name):
         return self.table(self.prefixes[method] + name)
 
-    def values(self, name, rows=None):
-        """The different values of a parameter among the points."""
-        return np.unique(self.columns[name][self.rows if rows is None else rows])
+    def values(self, name):
+        """The different values of a parameter among the selected points."""
+        return np.unique(self.columns[name][self.rows])
 
     def example(self, name, count):
         """An example of --select that keeps `count` values of an axis."""
@@ -110,6 +143,13 @@ class Sweep:
         """What sets a point apart, in words."""
         return ", ".join(text(name, self.columns[name][row]) for name in names)
 
+    def few_steps(self, method):
+        """Whether so few tilts lead to a point's range that its error is not to be trusted."""
+        steps = self.optional(f"{self.prefixes[method]}range_steps")
+        if steps is None:
+            return np.zeros(self.columns["g"].shape, bool)
+        return (steps < LEAST_STEPS) & (self.of(method, "range_censored") == 0)
+
     def single_scattering_range(self):
         """[q L at C_I = 1/2 of single scattering], empty if the tilts do not reach it; None if it
         is not in the file. It depends on the geometry alone."""
@@ -118,13 +158,19 @@ class Sweep:
         dataset = self.result.dataset("single_scattering_range")
         return [] if dataset.attrs.get("censored", 0) else [float(dataset[()])]
 
-    def target(self):
-        """The relative error that the run was to reach, or None where it stops otherwise."""
-        return self.result.attribute("target_error")
+    def target(self, method):
+        """The relative error that a method was to reach, or None where it stops otherwise."""
+        return self.result.attribute("target_error", self.result.attribute("target_error"),
+                                     group=self.prefixes[method].rstrip("/") or "/")
+
+
+def read_scene(text):
+    """{key: value as text} of a resolved scene, which has one key a line."""
+    return {key: value for key, _, value in (line.partition(" = ") for line in text.splitlines())}
 
 
 def text(name, value):
-    return f"{NAMES[name]} {value:g}" if name == "point" else f"{NAMES[name]} = {value:.4g}"
+    return f"{NAMES[name]} = {value:.4g}"
 
 
 def add_select(parser):
@@ -137,26 +183,3 @@ def read(results, arguments):
     sweep = Sweep(results[0])
     sweep.select(arguments.select)
     return sweep
-
-
-def method_look(method, colour, size=3.5):
-    """Monte Carlo open and large where both methods are drawn: the wave solver shows inside."""
-    sizes = {None: size, "mc": 1.6 * size, "wave": 0.7 * size}
-    return {"color": colour, "markersize": sizes[method],
-            "markerfacecolor": "none" if method == "mc" else colour}
-
-
-def curve_look(number, method):
-    """Colour and symbol of one curve; for one method every other one is open, for prints without
-    colour."""
-    look = style.look(number)
-    fill = {} if method or number % 2 == 0 else {"markerfacecolor": "white"}
-    return {"marker": look["marker"], **method_look(method, look["color"], 3), **fill}
-
-
-def method_entries(sweep):
-    """Legend entries (handle, label) of both methods, where a file holds both."""
-    if len(sweep.prefixes) > 1:
-        for method, name in METHODS.items():
-            yield plt.Line2D([], [], linestyle="none", marker="o",
-                             **method_look(method, "black")), name

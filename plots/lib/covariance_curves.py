@@ -3,9 +3,9 @@
 import pathlib
 from dataclasses import dataclass
 
-import correlation_panel
-import style
-from sweep_file import METHODS, method_look
+from lib import correlation_panel, page, style
+from lib.curve_looks import method_look
+from lib.sweep_file import METHODS
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -75,17 +75,19 @@ def title(results):
                      if value is not None)
 
 
-def draw(results):
+def draw(results, arguments):
     series = read_series(results)
     figure, axis = plt.subplots(figsize=(style.COLUMN, 2.6))
-    correlation_panel.prepare(axis)
-    handles = [correlation_panel.draw_curve(axis, s.tilt, s.correlation, s.error, s.look)
-               for s in series]
+    correlation_panel.prepare(
+        axis, np.concatenate([s.tilt for s in series]),
+        correlation_panel.lowest([s.correlation for s in series], [s.error for s in series]),
+        arguments)
+    left_out = sum(correlation_panel.draw_curve(axis, s.tilt, s.correlation, s.error, s.look)
+                   for s in series)
     correlation_panel.write_title(axis, title(results), [s.correlation for s in series])
     if share_q(results):
         correlation_panel.add_q_axis(axis, results[0], series[0].tilt)
-    axis.set_xlabel("tilt (mrad)")
-    axis.set_ylabel(r"intensity correlation $C_I$")
-    figure.legend(handles, [s.label for s in series], loc="lower center",
-                  bbox_to_anchor=(0.5, 1.0), ncol=2)
+    handles = [plt.Line2D([], [], linestyle="none", **s.look) for s in series]
+    page.legend_outside(figure, list(zip(handles, [s.label for s in series])),
+                        list(correlation_panel.notes(left_out, arguments)))
     return figure

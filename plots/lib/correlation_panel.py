@@ -1,0 +1,119 @@
+"""A panel with C_I = C_E^2 against tilt: what all plots of memory-effect curves share."""
+
+from lib import style
+
+import numpy as np
+
+FEW_DECADES = 50  # highest over lowest value of an axis
+BELIEVED = 3  # standard errors of C_E, a magnitude, below which its noise lifts it
+
+
+def add_options(parser):
+    parser.add_argument("--log", action="store_true",
+                        help="logarithmic tilts; those up to 0 are left out")
+    parser.add_argument("--log_correlation", action="store_true", help="logarithmic C_I; left out "
+                        f"where C_E, a magnitude, is below {BELIEVED} standard errors")
+
+
+def prepare(axis, tilt, lowest, arguments):
+    """Scales and limits for tilts in mrad and, on a logarithm, C_I down to `lowest`."""
+    axis.axhline(0.5, color=style.GREY, linewidth=0.6, linestyle=(0, (1, 2)), zorder=0)
+    axis.set_xlabel("tilt (mrad)")
+    axis.set_ylabel(r"intensity correlation $C_I$")
+    if arguments.log:
+        if not (tilt > 0).any():
+            raise style.Unusable("--log: there is no tilt above 0")
+        axis.set_xscale("log")
+        low, high = tilt[tilt > 0].min() / 1.2, tilt.max() * 1.2
+        axis.set_xlim(low, high)
+        if high < FEW_DECADES * low:
+            style.few_decades(axis.xaxis)
+    else:
+        margin = 0.05 * max(np.ptp(tilt), 1e-3)
+        axis.set_xlim(tilt.min() - margin, tilt.max() + margin)
+    if arguments.log_correlation:
+        axis.set_yscale("log")
+        axis.set_ylim(lowest / 2, 1.6)
+        if 1.6 < FEW_DECADES * lowest / 2:
+            style.few_decades(axis.yaxis)
+    else:
+        axis.set_ylim(-0.03, 1.08)
+
+
+def believed(field, error):
+    """Where a magnitude stands out of its noise."""
+    return np.abs(field) > BELIEVED * error
+
+
+def lowest(fields, errors):
+    """Least C_I that a logarithmic axis shows."""
+    return min(np.min(field[believed(field, error)]**2, initial=1)
+               for field, error in zip(fields, errors))
+
+
+def in_scale(axis, tilt, field, error):
+    """Which points the scales of the axes can show."""
+    shown = np.ones(len(tilt), bool)
+    if axis.get_xscale() == "log":
+        shown &= tilt > 0
+    if axis.get_yscale() == "log":
+        shown &= believed(field, error)
+    return shown
+
+
+def apart(axis, x, y, size):
+    """Points of a curve, the last first, of which no symbol of that size covers the one before."""
+    places = axis.transData.transform(np.column_stack([x, y])) * 72 / axis.figure.dpi
+    kept = []
+    for number in reversed(range(len(x))):
+        if not kept or np.hypot(*(places[number] - places[kept[-1]])) >= size:
+            kept.append(number)
+    return kept
+
+
+def draw_curve(axis, tilt, field, error, look):
+    """C_I = C_E^2 with its error bars; returns how many symbols were left out for room."""
+    order = np.argsort(tilt)
+    tilt, field, error = (values[order] for values in (tilt, field, error))
+    shown = np.flatnonzero(in_scale(axis, tilt, field, error))
+    kept = shown[apart(axis, tilt[shown], field[shown]**2, look["markersize"])]
+    axis.errorbar(tilt[kept], field[kept]**2, 2 * np.abs(field[kept]) * error[kept],
+                  linestyle="none", elinewidth=0.7, **look)
+    return len(shown) - len(kept)
+
+
+def notes(left_out, arguments):
+    """What is to be said of points that are not drawn."""
+    if left_out:
+        yield "symbols that would cover each other are left out"
+    if arguments.log_correlation:
+        yield f"$C_E$ below {BELIEVED} standard errors is left out"
+
+
+def add_q_axis(axis, result, tilt):
+    """Top axis q L over tilts in mrad; q is nearly but not quite proportional to the tilt."""
+    depth = result.attribute("depth")
+    if depth is None or not result.has("tilt_q"):
+        return
+    order = np.argsort(tilt)
+    x, q_depth = tilt[order], result.values("tilt_q")[order] * depth
+    if len(x) < 2 or np.any(np.diff(q_depth) <= 0):
+        return
+    margin = x[-1] - x[0]  # on each side, along the outermost slopes
+    slopes = np.diff(q_depth)[[0, -1]] / np.diff(x)[[0, -1]]
+    q_depth = np.concatenate([[q_depth[0] - margin * slopes[0]], q_depth,
+                              [q_depth[-1] + margin * slopes[1]]])
+    x = np.concatenate([[x[0] - margin], x, [x[-1] + margin]])
+    top = axis.secondary_xaxis("top", functions=(lambda t: np.interp(t, x, q_depth),
+                                                 lambda q: np.interp(q, q_depth, x)))
+    top.set_xlabel(r"$qL$")
+    if axis.get_xscale() == "log" and np.divide(*reversed(axis.get_xlim())) < FEW_DECADES:
+        style.few_decades(top.xaxis)
+    axis.tick_params(which="both", top=False)
+
+
+def write_title(axis, text, curves):
+    """In the corner that the curves leave free."""
+    falls = all(curve[-1]**2 < 0.6 for curve in curves) and axis.get_yscale() == "linear"
+    place = (0.95, 0.95, "right", "top") if falls else (0.06, 0.05, "left", "bottom")
+    axis.text(*place[:2], text, ha=place[2], va=place[3], transform=axis.transAxes)

@@ -1,0 +1,42 @@
+"""Symbols of curves and points of sweeps, and their legend entries (handle, label)."""
+
+from lib import style
+from lib.sweep_file import LEAST_STEPS, METHODS
+
+import matplotlib.pyplot as plt
+
+RING = {"color": "black", "linestyle": "none", "marker": "o", "markersize": 8,
+        "markerfacecolor": "none", "markeredgewidth": 0.6}
+FEW_STEPS = f"fewer than {LEAST_STEPS} tilts up to the range"
+
+
+def method_look(method, colour, size=3.5):
+    """Monte Carlo open and large where both methods are drawn: the wave solver shows inside."""
+    sizes = {None: size, "mc": 1.6 * size, "wave": 0.7 * size}
+    return {"color": colour, "markersize": sizes[method],
+            "markerfacecolor": "none" if method == "mc" else colour}
+
+
+def curve_look(number, method):
+    """Colour and symbol of one curve; for one method every other one is open, for prints without
+    colour."""
+    look = style.look(number)
+    fill = {} if method or number % 2 == 0 else {"markerfacecolor": "white"}
+    return {"marker": look["marker"], **method_look(method, look["color"], 3), **fill}
+
+
+def method_entries(sweep):
+    """Of both methods, where a file holds both."""
+    if len(sweep.prefixes) > 1:
+        for method, name in METHODS.items():
+            yield plt.Line2D([], [], linestyle="none", marker="o",
+                             **method_look(method, "black")), name
+
+
+def range_entries(sweep):
+    """Of bounds and doubtful ranges, as far as there are any."""
+    if any((sweep.of(method, "range_censored")[sweep.rows] > 0).any() for method in sweep.prefixes):
+        yield plt.Line2D([], [], color="black", linestyle="none", marker=r"$\uparrow$",
+                         markersize=6), "bound, no error bar"
+    if any(sweep.few_steps(method)[sweep.rows].any() for method in sweep.prefixes):
+        yield plt.Line2D([], [], **RING), FEW_STEPS

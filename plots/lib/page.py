@@ -1,0 +1,66 @@
+"""A page of panels with one legend outside of them."""
+
+import textwrap
+
+from lib import style
+
+import matplotlib.pyplot as plt
+import numpy as np
+
+LETTERS = 17  # of a legend, to an inch
+MOST_ROWS = 3  # of a legend and its notes over a single panel
+
+
+def page_of_panels(down, across, count, beneath=0):
+    """Figure and axes [down, across] of a page or, for one panel across, of a column; those after
+    `count` are left out. With `beneath`, a share of a panel's height, also the axes [down, across]
+    of narrow panels beneath these."""
+    width = style.COLUMN if across == 1 else min(style.PAGE, 2.4 * across)
+    height = min(min(2.1, 1.3 * width / across) * (1 + beneath), (style.PAGE_HEIGHT - 0.5) / down)
+    heights = [1, beneath] * down if beneath else [1] * down
+    figure, rows = plt.subplots(len(heights), across, squeeze=False, sharex=True,
+                                figsize=(width, 0.5 + down * height),
+                                gridspec_kw={"height_ratios": heights})
+    kinds = [rows[0::2], rows[1::2]] if beneath else [rows]
+    for axes in kinds:
+        for axis in axes.flat[1:]:
+            axis.sharey(axes[0, 0])
+        for axis in axes.flat[count:]:
+            axis.remove()
+    return figure, *kinds
+
+
+def outer_labels(axes, count):
+    """Labels at the left and beneath the lowest panel of each column alone."""
+    for (row, column), axis in np.ndenumerate(axes):
+        lowest = (row + 1) * axes.shape[1] + column >= count
+        label_sides(axis, column == 0, lowest)
+
+
+def label_sides(axis, left, bottom):
+    axis.tick_params(labelbottom=bottom, labelleft=left)
+    axis.xaxis.label.set_visible(bottom)
+    axis.yaxis.label.set_visible(left)
+
+
+def columns_that_fit(sizes, letters):
+    """Into how many columns entries of these sizes go, all columns about equally long."""
+    width = lambda columns: sum(max(part) for part in np.array_split(sizes, columns))
+    most = max(n for n in range(1, len(sizes) + 1) if n == 1 or width(n) <= letters)
+    return -(-len(sizes) // -(-len(sizes) // most))
+
+
+def legend_outside(figure, entries, notes=()):
+    """A legend of (handle, label), headed by notes: over the figure, or beside a single panel if it
+    would be higher than a few rows."""
+    handles, labels = zip(*entries) if entries else ((), ())
+    letters = LETTERS * figure.get_figwidth()
+    sizes = [len(label.replace("$", "")) + 9 for label in labels] or [0]
+    columns = columns_that_fit(sizes, letters)
+    rows = len(notes) + -(-len(labels) // columns)
+    beside = labels and figure.get_figwidth() <= style.COLUMN and rows > MOST_ROWS
+    place = {"loc": "center left", "bbox_to_anchor": (1.0, 0.5), "ncol": 1} if beside else \
+        {"loc": "lower center", "bbox_to_anchor": (0.5, 1.0), "ncol": columns}
+    wrapped = [textwrap.fill(note, 40 if beside else int(letters)) for note in notes]
+    if labels or notes:
+        figure.legend(handles, labels, title="\n".join(wrapped) or None, title_fontsize=7, **place)

@@ -1,0 +1,53 @@
+"""Reading of result files, with one clear complaint about whatever is missing."""
+
+import pathlib
+
+import h5py
+
+
+class Unusable(Exception):
+    """A result file without what the plot needs; the message says which file and what."""
+
+
+def complaint(path):
+    """Why there is no result at a path."""
+    path = path.rstrip("/")
+    folder = path if path.endswith(".shards") else f"{path}.shards"
+    if pathlib.Path(path).is_file():
+        return f"{path}: not a readable result file"
+    if pathlib.Path(folder).is_dir():
+        return (f"{path}: {'no file' if path == folder else 'no such file'}; flatspeckle merge "
+                f"--partial --out NOW.h5 --shards {folder} makes a file of the points so far")
+    return f"{path}: {'a folder' if pathlib.Path(path).is_dir() else 'no such file'}"
+
+
+class Result:
+    """A result file."""
+
+    def __init__(self, path):
+        self.path = path
+        try:
+            self.file = h5py.File(path, "r")
+        except OSError:
+            raise Unusable(complaint(path))
+
+    def has(self, name):
+        return name in self.file
+
+    def dataset(self, name):
+        if not isinstance(self.file.get(name), h5py.Dataset):
+            raise Unusable(f"{self.path}: has no dataset {name}")
+        return self.file[name]
+
+    def values(self, name):
+        return self.dataset(name)[...]
+
+    def axis(self, name, number):
+        """Values of the scale of one axis of a dataset."""
+        dimension = self.dataset(name).dims[number]
+        if len(dimension) == 0:
+            raise Unusable(f"{self.path}: axis {number} of {name} has no scale")
+        return dimension[0][...]
+
+    def attribute(self, name, default=None, group="/"):
+        return self.file[group].attrs.get(name, default)

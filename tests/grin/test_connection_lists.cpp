@@ -1,0 +1,91 @@
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <Eigen/Geometry>
+#include <doctest/doctest.h>
+
+#include "tests/grin/closed_fields.h"
+#include "tests/grin/connection_lists.h"
+
+namespace flatspeckle::grin {
+
+using std::numbers::pi;
+using tests::check_all_found;
+using tests::everywhere;
+using tests::HarmonicBall;
+using tests::HarmonicCurve;
+using tests::Listed;
+using tests::listed;
+using tests::random_direction;
+using tests::random_point;
+
+TEST_CASE("without the rim two ellipses join two points, each both ways round, again and again") {
+  const HarmonicBall field{{}};
+  RandomStream random(72, 0, 0);
+  int pairs = 0;
+  for (int i = 0; pairs < 20 && i < 1000; ++i) {
+    const Vec3 p = random_point(random, 1), q = random_point(random, 1);
+    std::vector<HarmonicCurve> exact = tests::harmonic_curves(p, q, 6 * pi);
+    const double longest = 8;
+    // the index is 0 at r = sqrt 2, where steps of this length end; and curves as long as the
+    // longest may count or not
+    const auto awkward = [&](const HarmonicCurve& curve) {
+      return curve.x0.cross(curve.v0).norm() < 0.5 || curve.spreading() < 1e-3 ||
+             std::abs(curve.arc_length() - longest) < 1e-3;
+    };
+    if (std::any_of(exact.begin(), exact.end(), awkward)) continue;
+    ++pairs;
+    std::erase_if(exact, [&](const HarmonicCurve& c) { return c.arc_length() > longest; });
+    CHECK(exact.size() >= 4);
+    check_all_found(listed(field, everywhere, p, q, {.step = 0.02, .max_length = longest}, 500, i),
+                    exact);
+  }
+  CHECK(pairs == 20);
+}
+
+TEST_CASE("curves there are the curves back: same length and path, n_P^2/|J_PQ| = n_Q^2/|J_QP|") {
+  int curves = 0;
+  for (int i = 0; i < 12; ++i) {
+    RandomStream random(74, 0, i);
+    const SplineField field = tests::random_spline(random, 0.15);
+    const Inside<tests::Ball> ball{{1.2}};
+    const Vec3 p = random_point(random, 0.9), q = random_point(random, 0.9);
+    const ConnectionOptions options{.step = 2e-3, .max_length = 4};
+    const Listed there = listed<Yoshida4>(field, ball, p, q, options, 60, 2 * i);
+    const Listed back = listed<Yoshida4>(field, ball, q, p, options, 60, 2 * i + 1);
+    REQUIRE(there.curves.size() == back.curves.size());
+    const double ratio = std::pow(index(field, p) / index(field, q), 2);
+    for (std::size_t k = 0; k < there.curves.size(); ++k) {
+      const Connection &a = there.curves[k].curve, &b = back.curves[k].curve;
+      CHECK((a.start_direction + b.end_direction).norm() < 1e-7);
+      CHECK((a.end_direction + b.start_direction).norm() < 1e-7);
+      CHECK(a.optical_path == doctest::Approx(b.optical_path).epsilon(1e-9));
+      CHECK(a.spreading == doctest::Approx(ratio * b.spreading).epsilon(1e-8).scale(0));
+      CHECK(a.caustics == b.caustics);
+      ++curves;
+    }
+  }
+  CHECK(curves >= 12);
+}
+
+TEST_CASE("none is missing: among lenses the orientations of all curves add up to 1") {
+  // The end points of long rays cover space once, counted with the sign of J, as the straight ones
+  // do (the odd number of images of gravitational lenses).
+  std::size_t most = 0;
+  for (int i = 0; i < 10; ++i) {
+    RandomStream random(79, 0, i);
+    std::vector<GaussianBlob> lenses;
+    for (int k = 0; k < 4; ++k) lenses.push_back({random_point(random, 1), 0.8, 0.4});
+    const Vec3 p = 2.5 * random_direction(random), q = -p + random_point(random, 0.3);
+    const Listed list =
+        listed(GaussianBlobs(lenses), everywhere, p, q, {.step = 0.05, .max_length = 9}, 2000, i);
+    int sum = 0;
+    for (const FoundConnection& one : list.curves) sum += one.curve.orientation;
+    CHECK(sum == 1);
+    most = std::max(most, list.curves.size());
+  }
+  CHECK(most >= 5);
+}
+
+}  // namespace flatspeckle::grin
