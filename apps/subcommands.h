@@ -23,5 +23,6 @@ int validate(const Arguments& arguments);
 int sweep(const Arguments& arguments);
 int merge(const Arguments& arguments);
 int field(const Arguments& arguments);
+int trace(const Arguments& arguments);
 
 }  // namespace flatspeckle::apps

@@ -4,7 +4,7 @@ import dataclasses
 import re
 
 DATASETS, ATTRIBUTES, ROOT_ATTRIBUTES = "dataset", "object", "attribute"  # by their first column
-ALTERNATIVES = {"LIGHT": {"light_angle", "light"}, "VIEW": {"view_angle", "sensor"},
+ALTERNATIVES = {"THING": {"ray", "curve"}, "LIGHT": {"light_angle", "light"}, "VIEW": {"view_angle", "sensor"},
                 "LIGHT_2": {"light_angle_2", "light_2"}, "VIEW_2": {"view_angle_2", "sensor_2"}}
 GRID = ["density", "radius", "index", "optical_depth", "g", "albedo"]
 

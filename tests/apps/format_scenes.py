@@ -123,6 +123,21 @@ def other_subcommands():
     }
 
 
+def traces():
+    rays = {"ray_count": 3, "max_length": 5}
+    fields = {
+        "ball": {"field": "luneburg", "origin": [0, 0, -2], "beam_radius": 0.5, "path_points": 5},
+        "guide": {"field": "sech", "alpha": 1, "light": "fan", "across": [0, 1, 0],
+                  "path_points": 5},
+        "ramp": {"field": "linear", "slope": [0, 0, 0.1], "stop_plane": [0, 0, 2, 0, 0, 1]},
+    }
+    connect = {"connect": [0, 0, 0, 0.3, 0, 3], "max_length": 5, "trials": 100, "path_points": 5,
+               "field": "parabolic", "alpha": 0.5, "index": 1.5}
+    return {**{f"trace_{name}": Run("trace", ["trace"], {**rays, **keys})
+               for name, keys in fields.items()},
+            "trace_connect": Run("trace", ["trace"], connect)}
+
+
 def unfinished():
     never = {"target_error": 1e-9}
     state = "Unfinished results"
@@ -186,7 +201,7 @@ class ResultsTest(ProgramTest):
         maker.setUp()
         cls.addClassCleanup(maker.doCleanups)
         cls.results = maker.folder
-        cls.runs = {**covariances(), **extras(), **other_subcommands(), **unfinished(), **sweeps()}
+        cls.runs = {**covariances(), **extras(), **other_subcommands(), **traces(), **unfinished(), **sweeps()}
         for name, text in FILES.items():
             maker.write(name, text)
         for name, run in cls.runs.items():

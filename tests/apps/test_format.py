@@ -15,7 +15,7 @@ OF_HDF5 = {"CLASS", "NAME", "DIMENSION_LIST", "DIMENSION_LABELS", "REFERENCE_LIS
 TYPES = {np.dtype("float64"): "float64", np.dtype("complex128"): "complex",
          np.dtype("uint64"): "uint64"}
 NUMBERED = {"light", "sensor", "pair", "parameter", "checkpoint", "point", "realization", "entry",
-            "scatterer"}
+            "scatterer", "ray", "curve", "path_point"}
 SMALL, CHUNK = 4096, 1 << 20  # bytes
 ALWAYS_CHUNKED = {"field", "total_field"}
 

@@ -22,6 +22,12 @@ KEYS = {
     "validate": SCENE + REQUEST + ["structure", "wave_samples"] + RUN,
     "field": SCENE + ["structure", "tilts", "method", "fields", "paths_per_field", "target_error", "seed",
                       "threads"],
+    "trace": ["field", "index", "radius", "alpha", "centre", "slope", "index_low", "index_high",
+              "ramp_width", "ramp_axis", "blobs", "amplitude", "sound_wavenumber", "sound_order",
+              "sound_phase", "emitters", "aperture", "focusing", "grid", "rays", "light",
+              "ray_count", "origin", "direction", "across", "beam_radius", "half_angle",
+              "stop_plane", "stop_sphere", "stop_box", "max_length", "integrator", "step",
+              "tolerance", "connect", "trials", "path_points", "length_unit", "seed", "threads"],
     "sweep": SCENE + ["structure", "tilts"] + RUN,
 }
 

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "grin/vec3.h"
+
+namespace flatspeckle::apps {
+
+// Values of keys, checked; what cannot be used throws InputError naming key and value.
+
+double positive(const std::string& key, double value);
+std::vector<double> finite(const std::string& key, const std::vector<double>& values);
+/// Three finite numbers.
+grin::Vec3 vector_of(const std::string& key, const std::vector<double>& values);
+/// The same, not all 0, made of length 1.
+grin::Vec3 direction_of(const std::string& key, const std::vector<double>& values);
+
+/// "1 2 3", for messages.
+std::string listed(const std::vector<double>& values);
+std::string listed(const grin::Vec3& x);
+
+}  // namespace flatspeckle::apps

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "apps/ray_stops.h"
+#include "apps/scene_field.h"
+#include "grin/connection.h"
+
+namespace flatspeckle::apps {
+
+struct ConnectSpec {
+  std::vector<double> connect;
+  std::int64_t trials = 1000;
+};
+
+void add_connect_options(CLI::App& app, ConnectSpec& spec);
+
+struct FoundConnections {
+  std::vector<grin::FoundConnection> curves;  ///< by optical path
+  grin::ConnectionStatistics statistics;
+};
+
+/// Curves that stay on the side of every stop surface, and within the ball or grid, that both
+/// points are on. Throws InputError.
+FoundConnections find_connections(const SceneField& scene, const RayStops& stops, double step,
+                                  const ConnectSpec& spec, std::uint64_t seed);
+
+}  // namespace flatspeckle::apps

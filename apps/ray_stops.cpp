@@ -1,0 +1,97 @@
+#include "apps/ray_stops.h"
+
+#include <algorithm>
+
+#include "apps/key_values.h"
+#include "core/error.h"
+#include "grin/watch.h"
+
+namespace flatspeckle::apps {
+
+namespace {
+
+using grin::Vec3;
+
+/// The numbers of a key, so many for each surface.
+std::vector<std::vector<double>> parts(const std::string& key, const std::vector<double>& values,
+                                       std::size_t size, const std::string& what) {
+  finite(key, values);
+  if (values.size() % size != 0)
+    throw InputError(key, listed(values),
+                     "must be " + std::to_string(size) + " numbers for each: " + what);
+  std::vector<std::vector<double>> all;
+  for (std::size_t i = 0; i < values.size(); i += size)
+    all.emplace_back(values.begin() + i, values.begin() + i + size);
+  return all;
+}
+
+Vec3 three(const std::vector<double>& values, std::size_t first) {
+  return {values[first], values[first + 1], values[first + 2]};
+}
+
+std::vector<grin::Surface> surfaces_of(const RayStopSpec& spec) {
+  std::vector<grin::Surface> surfaces;
+  for (const auto& plane : parts("stop_plane", spec.planes, 6, "a point and the normal outwards"))
+    surfaces.push_back(grin::Plane{
+        three(plane, 0), direction_of("stop_plane, normal", {plane[3], plane[4], plane[5]})});
+  for (const auto& sphere : parts("stop_sphere", spec.spheres, 4, "centre and radius"))
+    surfaces.push_back(grin::Sphere{three(sphere, 0), positive("stop_sphere, radius", sphere[3])});
+  for (const auto& box :
+       parts("stop_box", spec.boxes, 6, "two opposite corners, the low one first")) {
+    const grin::Box corners{three(box, 0), three(box, 3)};
+    if (!((corners.high - corners.low).minCoeff() > 0))
+      throw InputError("stop_box", listed(box), "must have its low corner first");
+    surfaces.push_back(corners);
+  }
+  return surfaces;
+}
+
+}  // namespace
+
+void add_ray_stop_options(CLI::App& app, RayStopSpec& spec) {
+  app.add_option("--stop_plane", spec.planes,
+                 "x y z nx ny nz: rays end on this plane; n points away from them");
+  app.add_option("--stop_sphere", spec.spheres, "x y z radius: rays end on it, inside or outside");
+  app.add_option("--stop_box", spec.boxes, "x y z x y z of two corners: rays end on it");
+  app.add_option("--max_length", spec.max_length, "Rays end at this arc length at the latest");
+  app.add_option("--integrator", spec.integrator, "sharma (default), yoshida4 or leapfrog");
+  app.add_option(
+      "--step", spec.step,
+      "Equal steps, length at index 1; with a tolerance, or for curves, the longest step");
+  app.add_option("--tolerance", spec.tolerance,
+                 "Error of a ray per length (default 1e-10, unless a step is given)");
+}
+
+double max_length_of(const RayStopSpec& spec) {
+  if (!spec.max_length) throw InputError("max_length is not given: rays need an end");
+  return positive("max_length", *spec.max_length);
+}
+
+RayStops make_ray_stops(const RayStopSpec& spec, double scale) {
+  RayStops stops{surfaces_of(spec), max_length_of(spec), 0};
+  constexpr std::size_t seams = 2;  // the rim of a ball and the box of a grid
+  constexpr auto most = grin::Watch::max_surfaces - seams;
+  if (stops.surfaces.size() > most)
+    throw InputError("stop surfaces", stops.surfaces.size(),
+                     "must be at most " + std::to_string(most));
+  const double finest = scale > 0 ? std::min(scale, stops.max_length) : stops.max_length;
+  stops.location = std::max(1e-10 * finest, 1e-14 * stops.max_length);
+  return stops;
+}
+
+RaySteps make_ray_steps(const RayStopSpec& spec, double scale) {
+  if (spec.integrator != "sharma" && spec.integrator != "yoshida4" && spec.integrator != "leapfrog")
+    throw InputError("integrator", spec.integrator, "must be one of leapfrog sharma yoshida4");
+  RaySteps steps{spec.integrator, 0, {}};
+  const double length = max_length_of(spec);
+  steps.longest =
+      spec.step ? positive("step", *spec.step) : std::min(length / 16, scale > 0 ? scale : length);
+  if (spec.tolerance || !spec.step) {
+    steps.tolerance = positive("tolerance", spec.tolerance.value_or(1e-10));
+    if (*steps.tolerance < 1e-14 || *steps.tolerance > 0.1)
+      throw InputError("tolerance", *steps.tolerance, "must be from 1e-14 to 0.1");
+  }
+  return steps;
+}
+
+}  // namespace flatspeckle::apps

@@ -1,0 +1,205 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <sstream>
+
+#include <omp.h>
+
+#include "apps/key_values.h"
+#include "apps/ray_connections.h"
+#include "apps/ray_tracing.h"
+#include "apps/run_options.h"
+#include "apps/subcommands.h"
+#include "apps/trace_output.h"
+#include "core/atomic_file.h"
+#include "core/error.h"
+#include "core/provenance.h"
+#include "core/stopwatch.h"
+
+namespace flatspeckle::apps {
+
+namespace {
+
+/// What the user asks.
+struct TraceKeys {
+  IndexFieldSpec field;
+  RayStartSpec starts;
+  RayStopSpec stops;
+  ConnectSpec connect;
+  std::int64_t path_points = 0;
+  double length_unit = 1;
+  RunSettings run;
+};
+
+void add_options(CLI::App& app, TraceKeys& keys) {
+  add_index_field_options(app, keys.field);
+  add_ray_start_options(app, keys.starts);
+  add_ray_stop_options(app, keys.stops);
+  add_connect_options(app, keys.connect);
+  app.add_option("--path_points", keys.path_points,
+                 "Points of each ray in the file, to be drawn; also an index map (default 0: none)")
+      ->capture_default_str();
+  app.add_option("--length_unit", keys.length_unit, "Metres in a unit of length, for times")
+      ->capture_default_str();
+  app.add_option("--seed", keys.run.seed, "Seed of the trials of connect")->capture_default_str();
+  add_thread_option(app, keys.run);
+  add_output_option(app, keys.run);
+}
+
+void check(const Subcommand& command, const TraceKeys& keys) {
+  constexpr std::int64_t most_points = 100'000;
+  if (keys.path_points != 0 && (keys.path_points < 2 || keys.path_points > most_points))
+    throw InputError("path_points", keys.path_points,
+                     "must be 0 or from 2 to " + std::to_string(most_points));
+  positive("length_unit", keys.length_unit);
+  seed_of(keys.run);
+  threads_of(keys.run);
+  const bool connects = command.given("connect");
+  for (const char* key : {"rays", "light", "ray_count", "origin", "direction", "across",
+                          "beam_radius", "half_angle", "integrator", "tolerance"})
+    if (connects && command.given(key))
+      throw InputError(std::string(key) + ": connect has no use for it");
+  if (!connects && command.given("trials"))
+    throw InputError("trials", keys.connect.trials, "needs connect");
+  if (keys.run.out.empty())
+    throw InputError("out is not given: name the result file (--out FILE.h5)");
+  check_writable(keys.run.out);
+}
+
+/// How far from the z axis a ray may come.
+double reach_of(const TraceKeys& keys, const std::vector<RayStart>& starts) {
+  double reach = max_length_of(keys.stops);
+  const auto& ends = keys.connect.connect;
+  for (std::size_t i = 0; i + 1 < ends.size(); i += 3)
+    reach = std::max(reach, std::hypot(ends[i], ends[i + 1]));
+  for (const auto& start : starts) reach = std::max(reach, std::hypot(start.x[0], start.x[1]));
+  return reach;
+}
+
+struct Outcome {
+  std::string plan, summary;
+  double samples;
+};
+
+std::size_t path_points(const TraceKeys& keys) {
+  return static_cast<std::size_t>(keys.path_points);
+}
+
+std::string plan_of(const RaySteps& steps) {
+  std::ostringstream text;
+  text << steps.integrator;
+  if (steps.tolerance)
+    text << ", tolerance " << *steps.tolerance << ", steps up to " << steps.longest;
+  else
+    text << ", step " << steps.longest;
+  return text.str();
+}
+
+std::string ends_of(const std::vector<TracedRay>& rays) {
+  std::size_t ends[3] = {};
+  for (const auto& ray : rays) ++ends[static_cast<std::size_t>(ray.status)];
+  std::ostringstream text;
+  text << rays.size() << " rays: " << ends[0] << " on a stop surface, " << ends[1]
+       << " at max_length";
+  if (ends[2] > 0) text << ", " << ends[2] << " at the edge of the grid";
+  const auto [least, most] =
+      std::minmax_element(rays.begin(), rays.end(), [](const TracedRay& a, const TracedRay& b) {
+        return a.end.optical_path < b.end.optical_path;
+      });
+  text.precision(12);
+  text << "\noptical path " << least->end.optical_path << " to " << most->end.optical_path;
+  text.precision(3);
+  text << ", spread " << most->end.optical_path - least->end.optical_path;
+  return text.str();
+}
+
+Outcome trace_light(const Subcommand& command, const TraceKeys& keys, ResultFile& file) {
+  const auto starts = make_ray_starts(command, keys.starts);
+  const SceneField scene = make_index_field(command, keys.field, reach_of(keys, starts));
+  const RayStops stops = make_ray_stops(keys.stops, scene.scale);
+  const RaySteps steps = make_ray_steps(keys.stops, scene.scale);
+  const auto rays = trace_rays(scene, stops, steps, starts, path_points(keys));
+  write_rays(file, scene, starts, rays, keys.length_unit);
+  if (keys.path_points > 0) write_paths(file, scene, "ray", rays);
+  return {std::to_string(rays.size()) + " rays: " + plan_of(steps), ends_of(rays),
+          static_cast<double>(rays.size())};
+}
+
+std::string table_of(const FoundConnections& found) {
+  std::ostringstream text;
+  text << found.curves.size() << (found.curves.size() == 1 ? " curve" : " curves") << '\n';
+  if (!found.curves.empty())
+    text << "  optical path     arc length            |J|  caustics   found\n";
+  for (const auto& [curve, times] : found.curves) {
+    char line[160];
+    std::snprintf(line, sizeof line, "%14.10g %14.10g %14.8g %9d %7llu\n", curve.optical_path,
+                  curve.arc_length, curve.spreading, curve.caustics,
+                  static_cast<unsigned long long>(times));
+    text << line;
+  }
+  text << found.statistics.trials() << " trials, " << 100 * found.statistics.success_rate()
+       << " % converged, " << found.statistics.iterations_per_trial() << " iterations each";
+  return text.str();
+}
+
+/// Each curve as a ray of its length, for its points.
+std::vector<TracedRay> curve_rays(const SceneField& scene, const TraceKeys& keys,
+                                  const FoundConnections& found, double step) {
+  const auto& ends = keys.connect.connect;
+  std::vector<TracedRay> rays;
+  for (const auto& [curve, times] : found.curves) {
+    const RayStops stops{{}, curve.arc_length, 1e-12 * curve.arc_length};
+    const RayStart start{{ends[0], ends[1], ends[2]}, curve.start_direction};
+    rays.push_back(trace_rays(scene, stops, {"sharma", step, {}}, {start}, path_points(keys))[0]);
+  }
+  return rays;
+}
+
+Outcome trace_curves(const Subcommand& command, const TraceKeys& keys, ResultFile& file) {
+  SceneField scene = make_index_field(command, keys.field, reach_of(keys, {}));
+  const RayStops stops = make_ray_stops(keys.stops, scene.scale);
+  const double step = make_ray_steps(keys.stops, scene.scale / 100).longest;
+  const auto found = find_connections(scene, stops, step, keys.connect, seed_of(keys.run));
+  write_connections(file, found, keys.length_unit);
+  scene.rim.reset();  // curves stay inside
+  if (keys.path_points > 0 && !found.curves.empty())
+    write_paths(file, scene, "curve", curve_rays(scene, keys, found, step));
+  std::ostringstream plan;
+  plan << keys.connect.trials << " trials: sharma, step " << step;
+  return {plan.str(), table_of(found), static_cast<double>(keys.connect.trials)};
+}
+
+void write_trace_provenance(ResultFile& file, const CommandLine& command_line,
+                            const RunSettings& run, const std::string& started,
+                            const Outcome& outcome, const Stopwatch& clock) {
+  Provenance provenance{command_line.text, command_line.config, seed_of(run),
+                        outcome.plan,      threads_of(run),     started};
+  provenance.wall_s = clock.seconds();
+  provenance.cpu_s = process_cpu_seconds();
+  provenance.samples = outcome.samples;
+  provenance.converged = true;
+  write_provenance(file, provenance);
+}
+
+}  // namespace
+
+int trace(const Arguments& arguments) {
+  const Stopwatch clock;
+  const std::string started = utc_now();
+  TraceKeys keys;
+  Subcommand command("trace", "Rays and the curves between two points in a gradient-index field");
+  add_options(command.options(), keys);
+  if (!command.parse(arguments)) return ExitStatus::done;
+  check(command, keys);
+  omp_set_num_threads(threads_of(keys.run));
+  ResultFile file(keys.run.out);
+  const Outcome outcome = command.given("connect") ? trace_curves(command, keys, file)
+                                                   : trace_light(command, keys, file);
+  write_trace_provenance(file, command.command_line(), keys.run, started, outcome, clock);
+  file.commit();
+  std::printf("%s\n%s\nwrote %s\n", outcome.plan.c_str(), outcome.summary.c_str(),
+              keys.run.out.c_str());
+  return ExitStatus::done;
+}
+
+}  // namespace flatspeckle::apps

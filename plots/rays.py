@@ -1,0 +1,95 @@
+#!/usr/bin/env python3
+"""Rays or curves of `flatspeckle trace` (with path_points) over the index map; of rays with different
+optical paths also how these are spread over the angles or heights at which the rays start."""
+
+from lib import style
+from lib.result_file import Unusable
+
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.colors import LinearSegmentedColormap
+from matplotlib.ticker import MaxNLocator
+
+MOST_DRAWN = 60
+SAME = 1e-9  # relative spread of optical paths below which they count as equal
+INDEX = LinearSegmentedColormap.from_list("index", ["white", "#56B4E9", "#00456b"])
+
+
+def transverse(result):
+    """Name of the index map's axis across z."""
+    return result.dataset("index_map").dims[0].label.removeprefix("map_")
+
+
+def draw_map(figure, axis, result, up):
+    index, z = result.values("index_map"), result.values("map_z")
+    across = result.values(f"map_{up}")
+    shown = np.ma.masked_equal(index, 0)
+    axis.set_facecolor("0.85")
+    low, high = shown.min(), shown.max()
+    low = min(low, high - 1e-3 * abs(high))
+    mesh = axis.pcolormesh(z, across, shown, cmap=INDEX, vmin=low, vmax=high + (high - low),
+                           rasterized=True, shading="nearest")
+    bar = figure.colorbar(mesh, ax=axis, label="index $n$", pad=0.02)
+    bar.ax.set_ylim(low, high)
+    bar.ax.yaxis.set_major_locator(MaxNLocator(5))
+
+
+def draw_paths(axis, result, up):
+    across, z = result.values(f"path/{up}"), result.values("path/z")
+    chosen = np.unique(np.linspace(0, len(z) - 1, min(len(z), MOST_DRAWN)).round().astype(int))
+    for n in chosen:
+        axis.plot(z[n], across[n], color=style.COLOURS[1], linewidth=0.6)
+    axis.plot(z[chosen, 0], across[chosen, 0], "o", color="black", markersize=1.5)
+    axis.plot(z[chosen, -1], across[chosen, -1], "o", color="black", markersize=1.5)
+    height, width = np.ptp(axis.get_ylim()), np.ptp(axis.get_xlim())
+    if 0.25 < height / width < 4:
+        axis.set_aspect("equal")
+
+
+def start(result, up):
+    """What tells the rays apart at their start: height, or else angle. With its label."""
+    heights = result.values(f"start/{up}")
+    if np.ptp(heights) > 0:
+        return heights, f"${up}$ at the start"
+    return (np.arctan2(result.values(f"start/d{up}"), result.values("start/dz")),
+            "angle at the start (rad)")
+
+
+def draw_spread(axis, result, up):
+    paths = result.values("optical_path")
+    mean = paths.mean()
+    where, label = start(result, up)
+    spread = np.ptp(paths) / mean
+    axis.set_xlabel(label)
+    axis.set_ylabel(r"optical path$/$mean $-\ 1$")
+    axis.plot(where, paths / mean - 1, "o", color=style.COLOURS[0])
+    if spread < SAME:
+        axis.set_ylim(-SAME, SAME)
+    axis.text(0.5, 0.95, f"spread {spread:.2g} of {mean:.6g}", ha="center", va="top",
+              transform=axis.transAxes)
+    axis.margins(y=0.25)
+    axis.xaxis.set_major_locator(MaxNLocator(4))
+
+
+def draw(results):
+    result = results[0]
+    if not result.has("path/z"):
+        raise Unusable(f"{result.path}: holds no paths; trace with --path_points")
+    up = transverse(result)
+    of_rays = result.has("ray")
+    figure, axes = plt.subplots(1, 2 if of_rays else 1, squeeze=False,
+                                figsize=(style.PAGE if of_rays else 4.5, 2.5),
+                                width_ratios=[2, 1] if of_rays else [1])
+    axis = axes[0, 0]
+    draw_map(figure, axis, result, up)
+    draw_paths(axis, result, up)
+    axis.set(xlabel="$z$", ylabel=f"${up}$", xlim=result.values("map_z")[[0, -1]],
+             ylim=result.values(f"map_{up}")[[0, -1]])
+    axis.tick_params(direction="out", top=False, right=False)
+    if of_rays:
+        draw_spread(axes[0, 1], result, up)
+    return figure
+
+
+if __name__ == "__main__":
+    style.main(draw, __doc__)
