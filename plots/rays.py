@@ -26,12 +26,16 @@ def draw_map(figure, axis, result, up):
     shown = np.ma.masked_equal(index, 0)
     axis.set_facecolor("0.85")
     low, high = shown.min(), shown.max()
-    low = min(low, high - 1e-3 * abs(high))
+    if high - low < SAME * high:
+        axis.pcolormesh(z, across, shown, cmap=INDEX, vmin=0, vmax=4 * high, rasterized=True)
+        axis.set_title(f"index $n = {high:.6g}$", loc="right")
+        return
     mesh = axis.pcolormesh(z, across, shown, cmap=INDEX, vmin=low, vmax=high + (high - low),
                            rasterized=True, shading="nearest")
     bar = figure.colorbar(mesh, ax=axis, label="index $n$", pad=0.02)
     bar.ax.set_ylim(low, high)
     bar.ax.yaxis.set_major_locator(MaxNLocator(5))
+    bar.formatter.set_useOffset(False)
 
 
 def draw_paths(axis, result, up):
@@ -60,14 +64,14 @@ def draw_spread(axis, result, up):
     mean = paths.mean()
     where, label = start(result, up)
     spread = np.ptp(paths) / mean
+    decade = int(np.floor(np.log10(max(spread, SAME))))
     axis.set_xlabel(label)
-    axis.set_ylabel(r"optical path$/$mean $-\ 1$")
-    axis.plot(where, paths / mean - 1, "o", color=style.COLOURS[0])
+    axis.set_ylabel(f"(optical path$/$mean $-\\ 1) / 10^{{{decade}}}$")
+    axis.plot(where, (paths / mean - 1) / 10.0**decade, "o", color=style.COLOURS[0])
     if spread < SAME:
-        axis.set_ylim(-SAME, SAME)
-    axis.text(0.5, 0.95, f"spread {spread:.2g} of {mean:.6g}", ha="center", va="top",
-              transform=axis.transAxes)
-    axis.margins(y=0.25)
+        axis.set_ylim(-1, 1)
+    axis.set_title(f"spread {spread:.2g} of {mean:.6g}", loc="right")
+    axis.margins(y=0.1)
     axis.xaxis.set_major_locator(MaxNLocator(4))
 
 

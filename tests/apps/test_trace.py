@@ -166,6 +166,29 @@ class Rays(TraceTest):
         np.testing.assert_array_equal(found["surface"], [0, 1, 1, 1])
         np.testing.assert_allclose(found["arc_length"], [1.2, 1, 0.5, 1.25], rtol=1e-9)
 
+    def test_rays_leave_a_grid_where_the_index_slopes(self):
+        """In n = 1 + x/10 + y/20, which the spline is exactly, also beyond its box, a ray across
+        the slope is a catenary; equal steps keep their order to the very edge."""
+        nodes = np.linspace(-1, 1, 9)
+        x, y, _ = np.meshgrid(nodes, nodes, nodes, indexing="ij")
+        write_grid(self.folder / "grid.h5", x / 10 + y / 20)
+        slope = np.array([0.1, 0.05, 0])
+        steepness = np.linalg.norm(slope)
+        keys = {"field": "grid", "grid": "grid.h5", "light": "line", "ray_count": 1,
+                "origin": [0.98, 0.3, -0.9], "max_length": 5}
+        n = 1 + slope @ keys["origin"]
+        z = n / steepness * np.arccosh(1 + 0.02 * steepness**2 / slope[0] / n)  # where x = 1
+        for steps in ({"tolerance": 1e-10}, {"tolerance": 1e-12, "integrator": "yoshida4"},
+                      {"step": 0.1}):
+            found = self.trace(**keys, **steps)
+            np.testing.assert_array_equal(found["status"], 2)
+            np.testing.assert_allclose(vectors(found, "exit/"), [[1, 0.31, z - 0.9]], atol=2e-8,
+                                       err_msg=str(steps))
+
+    def test_time_is_shown_in_units(self):
+        self.scene("ultrasound")
+        self.assertRegex(self.output, r"time 4\.\d+e-10 to 4\.\d+e-10 s, spread")
+
     def test_lights(self):
         keys = {"max_length": 2, "ray_count": 400, "origin": [1, 2, 3], "direction": [0, 1, 0]}
         disk = self.trace(light="disk", beam_radius=0.5, **keys)
@@ -255,6 +278,12 @@ class Connections(TraceTest):
         self.assertNotIn("found", found)
         self.assertIn("0 curves", self.output)
 
+    def test_image_point(self):
+        found = self.trace(field="fisheye", connect=[0, 0, -0.5, 0, 0, 2], trials=50, max_length=8)
+        self.assertNotIn("found", found)
+        self.assertGreater(found["trials/degenerate"], 0)
+        self.assertIn("image point", self.output)
+
     def test_paths_end_at_the_point(self):
         q = [0.5, 0.2, 6]
         found = self.trace(field="parabolic", **FIBRE, connect=[0, 0.3, 0] + q, trials=300,
@@ -283,7 +312,7 @@ class Refused(TraceTest):
         self.refuse("index = 0", index=0)
         self.refuse("index = -1", field="fisheye", index=-1)
         self.refuse("radius = 0", field="luneburg", radius=0)
-        self.refuse("alpha", "no use", field="luneburg", alpha=1)
+        self.refuse("alpha", "no use", "parabolic sech", field="luneburg", alpha=1)
         self.refuse("alpha is not given", field="sech")
         self.refuse("blobs is not given", field="blobs")
         self.refuse("blobs = none.csv", "no blobs", field="blobs", blobs="none.csv")
@@ -302,8 +331,8 @@ class Refused(TraceTest):
         with h5py.File(self.folder / "empty.h5", "w"):
             pass
         for name, what in (("flat", "axes"), ("small", "3"), ("low", "-1"), ("empty", "excess"),
-                           ("absent", "absent.h5")):
-            self.refuse(f"grid = {name}.h5", what, field="grid", grid=f"{name}.h5")
+                           ("absent", "no such file")):
+            self.refuse("grid", f"{name}.h5", what, field="grid", grid=f"{name}.h5")
         self.refuse("grid is not given", field="grid")
         self.refuse("ray 0", "outside of the grid", field="grid", grid="good.h5", origin=[0, 0, 2])
 
@@ -320,7 +349,7 @@ class Refused(TraceTest):
         self.write("short.csv", "x,y,z\n0,0,0\n")
         self.refuse("ray_count = 0", ray_count=0)
         self.refuse("light = laser", light="laser")
-        self.refuse("half_angle", "no use", half_angle=0.1)
+        self.refuse("half_angle", "no use", "cone fan", half_angle=0.1)
         self.refuse("half_angle = 0", light="fan", half_angle=0)
         self.refuse("beam_radius = -1", beam_radius=-1)
         self.refuse("direction = 0 0 0", direction=[0, 0, 0])
