@@ -115,7 +115,7 @@ void add_index_field_options(CLI::App& app, IndexFieldSpec& spec) {
   app.add_option("--focusing", spec.focusing,
                  "focused_sound: cone (on a point, default) or arc (on a line)");
   app.add_option("--grid", spec.grid,
-                 "HDF5 with excess[x, y, z] and its attributes origin, spacing");
+                 "HDF5 with excess[x, y, z] = n - 1 and its attributes origin, spacing");
 }
 
 }  // namespace flatspeckle::apps

@@ -124,8 +124,8 @@ Outcome trace_light(const Subcommand& command, const TraceKeys& keys, ResultFile
   const auto rays = trace_rays(scene, stops, steps, starts, path_points(keys));
   write_rays(file, scene, starts, rays, keys.length_unit);
   if (keys.path_points > 0) write_paths(file, scene, "ray", rays);
-  return {std::to_string(rays.size()) + " rays: " + plan_of(steps), ends_of(rays, keys.length_unit),
-          static_cast<double>(rays.size())};
+  return {std::to_string(rays.size()) + (rays.size() == 1 ? " ray: " : " rays: ") + plan_of(steps),
+          ends_of(rays, keys.length_unit), static_cast<double>(rays.size())};
 }
 
 /// How the trials ended, and what the user should know of that.

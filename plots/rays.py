@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Rays or curves of `flatspeckle trace` (with path_points) over the index map; of rays with different
-optical paths also how these are spread over the angles or heights at which the rays start."""
+optical paths also how these are spread over the angles or heights at which the rays start; where
+some end on a stop surface, only of those."""
 
 from lib import style
 from lib.result_file import Unusable
@@ -51,23 +52,30 @@ def draw_paths(axis, result, up):
 
 
 def start(result, up):
-    """What tells the rays apart at their start: height, or else angle. With its label."""
-    heights = result.values(f"start/{up}")
-    if np.ptp(heights) > 0:
-        return heights, f"${up}$ at the start"
-    return (np.arctan2(result.values(f"start/d{up}"), result.values("start/dz")),
-            "angle at the start (rad)")
+    """What tells the rays apart at their start: height, or else angle; of rays that fill a disk or a
+    cone, from the z axis. With its label."""
+    x, y, dx, dy, dz = (result.values(f"start/{name}") for name in ("x", "y", "dx", "dy", "dz"))
+    if max(np.ptp(x), np.ptp(y)) > 0:
+        if min(np.ptp(x), np.ptp(y)) > SAME * max(np.ptp(x), np.ptp(y)):
+            return np.hypot(x, y), "distance from $z$ axis at start"
+        return (x if up == "x" else y), f"${up}$ at the start"
+    if min(np.ptp(dx), np.ptp(dy)) > SAME:
+        return np.arctan2(np.hypot(dx, dy), dz), "angle to $z$ at the start (rad)"
+    return np.arctan2(dx if up == "x" else dy, dz), "angle at the start (rad)"
 
 
 def draw_spread(axis, result, up):
-    paths = result.values("optical_path")
+    stopped = result.values("status") == 0
+    shown = stopped if stopped.any() else np.full(len(stopped), True)
+    paths = result.values("optical_path")[shown]
     mean = paths.mean()
     where, label = start(result, up)
     spread = np.ptp(paths) / mean
     decade = int(np.floor(np.log10(max(spread, SAME))))
     axis.set_xlabel(label)
-    axis.set_ylabel(f"(optical path$/$mean $-\\ 1) / 10^{{{decade}}}$")
-    axis.plot(where, (paths / mean - 1) / 10.0**decade, "o", color=style.COLOURS[0])
+    power = f" / 10^{{{decade}}}" if decade else ""
+    axis.set_ylabel(f"(optical path$/$mean $-\\ 1){power}$")
+    axis.plot(where[shown], (paths / mean - 1) / 10.0**decade, "o", color=style.COLOURS[0])
     if spread < SAME:
         axis.set_ylim(-1, 1)
     axis.set_title(f"spread {spread:.2g} of {mean:.6g}", loc="right")
