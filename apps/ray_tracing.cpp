@@ -134,9 +134,9 @@ class Tracer {
                         name(number) + " takes more than " + std::to_string(most_steps) +
                             " steps; they may be longer");
     const std::string where = ray.x.allFinite() ? ", near " + listed(ray.x) : "";
-    return InputError(name(number) +
-                      " comes to where the index is not above 0, or changes too fast for any step" +
-                      where);
+    return InputError(
+        name(number) +
+        " comes to where the index is not above 0, or changes too fast for the tolerance" + where);
   }
 
   const F& field_;

@@ -78,7 +78,7 @@ def draw_spread(axis, result, up):
     axis.plot(where[shown], (paths / mean - 1) / 10.0**decade, "o", color=style.COLOURS[0])
     if spread < SAME:
         axis.set_ylim(-1, 1)
-    axis.set_title(f"spread {spread:.2g} of {mean:.6g}", loc="right")
+    axis.set_title(f"relative spread {spread:.2g}, mean {mean:.6g}", loc="right")
     axis.margins(y=0.1)
     axis.xaxis.set_major_locator(MaxNLocator(4))
 
