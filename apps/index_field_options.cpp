@@ -48,6 +48,13 @@ std::string only_medium(const IndexFieldSpec& spec) {
   return medium;
 }
 
+std::string kinds_with(const std::string& key) {
+  std::string names;
+  for (const auto& [kind, keys] : keys_of_kind)
+    if (keys.contains(key)) names += ' ' + kind;
+  return names;
+}
+
 void refuse_unused(const Subcommand& command, const IndexFieldSpec& spec) {
   std::set<std::string> all, used;
   std::string names;
@@ -59,7 +66,8 @@ void refuse_unused(const Subcommand& command, const IndexFieldSpec& spec) {
   }
   for (const auto& key : all)
     if (command.given(key) && !used.contains(key))
-      throw InputError(key + ": the field (" + names + ") has no use for it");
+      throw InputError(key + ": the field (" + names + ") has no use for it; it is a key of" +
+                       kinds_with(key));
 }
 
 }  // namespace
@@ -107,7 +115,7 @@ void add_index_field_options(CLI::App& app, IndexFieldSpec& spec) {
   app.add_option("--focusing", spec.focusing,
                  "focused_sound: cone (on a point, default) or arc (on a line)");
   app.add_option("--grid", spec.grid,
-                 "HDF5 with excess[x, y, z] and its attributes origin, spacing");
+                 "HDF5 with excess[x, y, z] = n - 1 and its attributes origin, spacing");
 }
 
 }  // namespace flatspeckle::apps

@@ -26,12 +26,20 @@ const std::map<std::string, std::set<std::string>> keys_of_light = {
     {"fan", {"across", "half_angle"}},
     {"cone", {"across", "half_angle"}}};
 
+std::string lights_with(const std::string& key) {
+  std::string names;
+  for (const auto& [light, keys] : keys_of_light)
+    if (keys.contains(key)) names += ' ' + light;
+  return names;
+}
+
 void check_keys(const Subcommand& command, const RayStartSpec& spec) {
   if (!keys_of_light.contains(spec.light))
     throw InputError("light", spec.light, "must be one of line disk beam fan cone");
   for (const char* key : {"across", "beam_radius", "half_angle"})
     if (command.given(key) && !keys_of_light.at(spec.light).contains(key))
-      throw InputError(std::string(key) + ": the light (" + spec.light + ") has no use for it");
+      throw InputError(std::string(key) + ": the light (" + spec.light +
+                       ") has no use for it; it is a key of" + lights_with(key));
   if (spec.ray_count < 1 || spec.ray_count > 100'000'000)
     throw InputError("ray_count", spec.ray_count, "must be from 1 to 100000000");
 }

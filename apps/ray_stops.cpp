@@ -53,7 +53,8 @@ void add_ray_stop_options(CLI::App& app, RayStopSpec& spec) {
                  "x y z nx ny nz: rays end on this plane; n points away from them");
   app.add_option("--stop_sphere", spec.spheres, "x y z radius: rays end on it, inside or outside");
   app.add_option("--stop_box", spec.boxes, "x y z x y z of two corners: rays end on it");
-  app.add_option("--max_length", spec.max_length, "Rays end at this arc length at the latest");
+  app.add_option("--max_length", spec.max_length,
+                 "Rays and curves end at this arc length at the latest; always needed");
   app.add_option("--integrator", spec.integrator, "sharma (default), yoshida4 or leapfrog");
   app.add_option(
       "--step", spec.step,

@@ -135,8 +135,8 @@ class Tracer {
                             " steps; they may be longer");
     const std::string where = ray.x.allFinite() ? ", near " + listed(ray.x) : "";
     return InputError(
-        "field", name(number),
-        "comes to where the index is not above 0, or changes too fast for any step" + where);
+        name(number) +
+        " comes to where the index is not above 0, or changes too fast for the tolerance" + where);
   }
 
   const F& field_;

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <iomanip>
 #include <sstream>
 
 #include <omp.h>
@@ -95,21 +96,23 @@ std::string plan_of(const RaySteps& steps) {
   return text.str();
 }
 
-std::string ends_of(const std::vector<TracedRay>& rays) {
+std::string ends_of(const std::vector<TracedRay>& rays, double length_unit) {
   std::size_t ends[3] = {};
   for (const auto& ray : rays) ++ends[static_cast<std::size_t>(ray.status)];
   std::ostringstream text;
-  text << rays.size() << " rays: " << ends[0] << " on a stop surface, " << ends[1]
-       << " at max_length";
+  text << "ended: " << ends[0] << " on a stop surface, " << ends[1] << " at max_length";
   if (ends[2] > 0) text << ", " << ends[2] << " at the edge of the grid";
   const auto [least, most] =
       std::minmax_element(rays.begin(), rays.end(), [](const TracedRay& a, const TracedRay& b) {
         return a.end.optical_path < b.end.optical_path;
       });
-  text.precision(12);
-  text << "\noptical path " << least->end.optical_path << " to " << most->end.optical_path;
-  text.precision(3);
-  text << ", spread " << most->end.optical_path - least->end.optical_path;
+  const auto range = [&](const char* what, double unit, const char* name) {
+    const double low = unit * least->end.optical_path, high = unit * most->end.optical_path;
+    text << '\n' << what << std::setprecision(12) << low << " to " << high << name;
+    text << std::setprecision(3) << ", spread " << high - low << name;
+  };
+  range("optical path ", 1, "");
+  if (length_unit != 1) range("time ", length_unit / light_speed, " s");
   return text.str();
 }
 
@@ -121,8 +124,27 @@ Outcome trace_light(const Subcommand& command, const TraceKeys& keys, ResultFile
   const auto rays = trace_rays(scene, stops, steps, starts, path_points(keys));
   write_rays(file, scene, starts, rays, keys.length_unit);
   if (keys.path_points > 0) write_paths(file, scene, "ray", rays);
-  return {std::to_string(rays.size()) + " rays: " + plan_of(steps), ends_of(rays),
-          static_cast<double>(rays.size())};
+  return {std::to_string(rays.size()) + (rays.size() == 1 ? " ray: " : " rays: ") + plan_of(steps),
+          ends_of(rays, keys.length_unit), static_cast<double>(rays.size())};
+}
+
+/// How the trials ended, and what the user should know of that.
+std::string trials_of(const FoundConnections& found) {
+  static constexpr const char* ends[grin::trial_outcomes] = {
+      "converged",       "came nowhere near",    "did not converge",
+      "left the region", "grew over max_length", "met a caustic"};
+  const auto& statistics = found.statistics;
+  if (statistics.trials() == 0) return "a straight line, no trials needed";
+  std::string text;
+  for (int i = 0; i < grin::trial_outcomes; ++i)
+    if (const auto count = statistics.outcomes[i]; count > 0)
+      text += (text.empty() ? "trials: " : ", ") + std::to_string(count) + ' ' + ends[i];
+  if (statistics.count(grin::TrialOutcome::degenerate) > 0)
+    text += "\nnote: curves that meet in a caustic or image point at the end are not listed";
+  constexpr std::uint64_t few = 5;
+  if (std::ranges::any_of(found.curves, [](const auto& curve) { return curve.found < few; }))
+    text += "\nnote: some curves were found less than 5 times; more trials may find others";
+  return text;
 }
 
 std::string table_of(const FoundConnections& found) {
@@ -137,9 +159,7 @@ std::string table_of(const FoundConnections& found) {
                   static_cast<unsigned long long>(times));
     text << line;
   }
-  text << found.statistics.trials() << " trials, " << 100 * found.statistics.success_rate()
-       << " % converged, " << found.statistics.iterations_per_trial() << " iterations each";
-  return text.str();
+  return text.str() + trials_of(found);
 }
 
 /// Each curve as a ray of its length, for its points.

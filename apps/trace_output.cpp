@@ -8,8 +8,6 @@ namespace {
 
 using grin::Vec3;
 
-constexpr double light_speed = 299'792'458;  // m/s
-
 /// One column of a table over the things of an axis.
 class Columns {
  public:
@@ -113,14 +111,17 @@ MapPlane plane_of(const std::vector<TracedRay>& rays) {
     }
   const Vec3 size = high - low;
   const int up = size[0] >= size[1] ? 0 : 1, out = 1 - up;
-  const double margin = 0.05 * std::max(size[up], 0.1 * size.maxCoeff());
-  const double rim = 0.02 * size.maxCoeff();
+  const double length = size.maxCoeff(), rim = 0.02 * length;
+  // a thin bundle with as much again on either side; a straight ray, with a twentieth of its length
+  const double margin = size[up] > 1e-6 * length
+                            ? std::clamp(0.015 * length, 0.15 * size[up], 0.5 * size[up])
+                            : 0.05 * length;
   return {up,
           out,
           low[2] - rim,
           high[2] + rim,
-          low[up] - 3 * margin,
-          high[up] + 3 * margin,
+          low[up] - margin,
+          high[up] + margin,
           (low[out] + high[out]) / 2};
 }
 

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Rays or curves of `flatspeckle trace` (with path_points) over the index map; of rays with different
-optical paths also how these are spread over the angles or heights at which the rays start."""
+optical paths also how these are spread over the angles or heights at which the rays start; where
+some end on a stop surface, only of those."""
 
 from lib import style
 from lib.result_file import Unusable
@@ -26,12 +27,16 @@ def draw_map(figure, axis, result, up):
     shown = np.ma.masked_equal(index, 0)
     axis.set_facecolor("0.85")
     low, high = shown.min(), shown.max()
-    low = min(low, high - 1e-3 * abs(high))
+    if high - low < SAME * high:
+        axis.pcolormesh(z, across, shown, cmap=INDEX, vmin=0, vmax=4 * high, rasterized=True)
+        axis.set_title(f"index $n = {high:.6g}$", loc="right")
+        return
     mesh = axis.pcolormesh(z, across, shown, cmap=INDEX, vmin=low, vmax=high + (high - low),
                            rasterized=True, shading="nearest")
     bar = figure.colorbar(mesh, ax=axis, label="index $n$", pad=0.02)
     bar.ax.set_ylim(low, high)
     bar.ax.yaxis.set_major_locator(MaxNLocator(5))
+    bar.formatter.set_useOffset(False)
 
 
 def draw_paths(axis, result, up):
@@ -47,27 +52,34 @@ def draw_paths(axis, result, up):
 
 
 def start(result, up):
-    """What tells the rays apart at their start: height, or else angle. With its label."""
-    heights = result.values(f"start/{up}")
-    if np.ptp(heights) > 0:
-        return heights, f"${up}$ at the start"
-    return (np.arctan2(result.values(f"start/d{up}"), result.values("start/dz")),
-            "angle at the start (rad)")
+    """What tells the rays apart at their start: height, or else angle; of rays that fill a disk or a
+    cone, from the z axis. With its label."""
+    x, y, dx, dy, dz = (result.values(f"start/{name}") for name in ("x", "y", "dx", "dy", "dz"))
+    if max(np.ptp(x), np.ptp(y)) > 0:
+        if min(np.ptp(x), np.ptp(y)) > SAME * max(np.ptp(x), np.ptp(y)):
+            return np.hypot(x, y), "distance from $z$ axis at start"
+        return (x if up == "x" else y), f"${up}$ at the start"
+    if min(np.ptp(dx), np.ptp(dy)) > SAME:
+        return np.arctan2(np.hypot(dx, dy), dz), "angle to $z$ at the start (rad)"
+    return np.arctan2(dx if up == "x" else dy, dz), "angle at the start (rad)"
 
 
 def draw_spread(axis, result, up):
-    paths = result.values("optical_path")
+    stopped = result.values("status") == 0
+    shown = stopped if stopped.any() else np.full(len(stopped), True)
+    paths = result.values("optical_path")[shown]
     mean = paths.mean()
     where, label = start(result, up)
     spread = np.ptp(paths) / mean
+    decade = int(np.floor(np.log10(max(spread, SAME))))
     axis.set_xlabel(label)
-    axis.set_ylabel(r"optical path$/$mean $-\ 1$")
-    axis.plot(where, paths / mean - 1, "o", color=style.COLOURS[0])
+    power = f" / 10^{{{decade}}}" if decade else ""
+    axis.set_ylabel(f"(optical path$/$mean $-\\ 1){power}$")
+    axis.plot(where[shown], (paths / mean - 1) / 10.0**decade, "o", color=style.COLOURS[0])
     if spread < SAME:
-        axis.set_ylim(-SAME, SAME)
-    axis.text(0.5, 0.95, f"spread {spread:.2g} of {mean:.6g}", ha="center", va="top",
-              transform=axis.transAxes)
-    axis.margins(y=0.25)
+        axis.set_ylim(-1, 1)
+    axis.set_title(f"relative spread {spread:.2g}, mean {mean:.6g}", loc="right")
+    axis.margins(y=0.1)
     axis.xaxis.set_major_locator(MaxNLocator(4))
 
 

@@ -166,6 +166,32 @@ class Rays(TraceTest):
         np.testing.assert_array_equal(found["surface"], [0, 1, 1, 1])
         np.testing.assert_allclose(found["arc_length"], [1.2, 1, 0.5, 1.25], rtol=1e-9)
 
+    def test_rays_leave_a_grid_where_the_index_slopes(self):
+        """In n = 1 + s.x, which the spline is exactly, n = n0 cosh(|s| sigma) + v0.s/|s| sinh(|s|
+        sigma) to the very edge, and nothing is lost there."""
+        nodes = np.linspace(-1, 1, 9)
+        x, y, _ = np.meshgrid(nodes, nodes, nodes, indexing="ij")
+        write_grid(self.folder / "grid.h5", 0.5 * x + 0.25 * y)
+        slope = np.array([0.5, 0.25, 0])
+        steep = np.linalg.norm(slope)
+        start = np.array([0.3, 0.3, -0.9])
+        n0 = 1 + slope @ start
+        for steps in ({"tolerance": 1e-10}, {"tolerance": 1e-12, "integrator": "yoshida4"},
+                      {"step": 0.01}):
+            found = self.trace(field="grid", grid="grid.h5", light="fan", half_angle=1,
+                               ray_count=41, origin=[*start], max_length=5, **steps)
+            np.testing.assert_array_equal(found["status"], 2)
+            end = vectors(found, "exit/")
+            np.testing.assert_allclose(abs(end).max(axis=1), 1, atol=1e-9)
+            sigma = (end[:, 2] - start[2]) / (n0 * found["start/dz"])
+            along = n0 * vectors(found, "start/d") @ slope / steep
+            exact = n0 * np.cosh(steep * sigma) + along * np.sinh(steep * sigma)
+            np.testing.assert_allclose(1 + end @ slope, exact, rtol=1e-8, err_msg=str(steps))
+
+    def test_time_is_shown_in_units(self):
+        self.scene("ultrasound")
+        self.assertRegex(self.output, r"time 4\.\d+e-10 to 4\.\d+e-10 s, spread")
+
     def test_lights(self):
         keys = {"max_length": 2, "ray_count": 400, "origin": [1, 2, 3], "direction": [0, 1, 0]}
         disk = self.trace(light="disk", beam_radius=0.5, **keys)
@@ -255,6 +281,12 @@ class Connections(TraceTest):
         self.assertNotIn("found", found)
         self.assertIn("0 curves", self.output)
 
+    def test_image_point(self):
+        found = self.trace(field="fisheye", connect=[0, 0, -0.5, 0, 0, 2], trials=50, max_length=8)
+        self.assertNotIn("found", found)
+        self.assertGreater(found["trials/degenerate"], 0)
+        self.assertIn("image point", self.output)
+
     def test_paths_end_at_the_point(self):
         q = [0.5, 0.2, 6]
         found = self.trace(field="parabolic", **FIBRE, connect=[0, 0.3, 0] + q, trials=300,
@@ -283,7 +315,7 @@ class Refused(TraceTest):
         self.refuse("index = 0", index=0)
         self.refuse("index = -1", field="fisheye", index=-1)
         self.refuse("radius = 0", field="luneburg", radius=0)
-        self.refuse("alpha", "no use", field="luneburg", alpha=1)
+        self.refuse("alpha", "no use", "parabolic sech", field="luneburg", alpha=1)
         self.refuse("alpha is not given", field="sech")
         self.refuse("blobs is not given", field="blobs")
         self.refuse("blobs = none.csv", "no blobs", field="blobs", blobs="none.csv")
@@ -302,8 +334,8 @@ class Refused(TraceTest):
         with h5py.File(self.folder / "empty.h5", "w"):
             pass
         for name, what in (("flat", "axes"), ("small", "3"), ("low", "-1"), ("empty", "excess"),
-                           ("absent", "absent.h5")):
-            self.refuse(f"grid = {name}.h5", what, field="grid", grid=f"{name}.h5")
+                           ("absent", "no such file")):
+            self.refuse("grid", f"{name}.h5", what, field="grid", grid=f"{name}.h5")
         self.refuse("grid is not given", field="grid")
         self.refuse("ray 0", "outside of the grid", field="grid", grid="good.h5", origin=[0, 0, 2])
 
@@ -320,7 +352,7 @@ class Refused(TraceTest):
         self.write("short.csv", "x,y,z\n0,0,0\n")
         self.refuse("ray_count = 0", ray_count=0)
         self.refuse("light = laser", light="laser")
-        self.refuse("half_angle", "no use", half_angle=0.1)
+        self.refuse("half_angle", "no use", "cone fan", half_angle=0.1)
         self.refuse("half_angle = 0", light="fan", half_angle=0)
         self.refuse("beam_radius = -1", beam_radius=-1)
         self.refuse("direction = 0 0 0", direction=[0, 0, 0])
