@@ -20,37 +20,6 @@ void require_text(const std::string& key, const std::string& value, const std::s
   if (value.empty()) throw InputError(key + " is not given: " + what);
 }
 
-/// n - 1 at a place in cells, at most one of them outside of the grid along each axis: there by the
-/// cubic of the last two cells (the spline is not-a-knot), from four points of them.
-double continued(const grin::SplineField& field, const Vec3& cells, int axis = 0) {
-  const grin::FieldGrid& grid = field.grid();
-  if (axis == 3) return field.excess(grid.origin + cells.cwiseProduct(grid.spacing));
-  const double inside = std::clamp(cells[axis], 0.0, grid.nodes[axis] - 1.0);
-  const double outwards = cells[axis] - inside;
-  if (outwards == 0) return continued(field, cells, axis + 1);
-  constexpr double weights[] = {6.5625, -11.8125, 8.4375, -2.1875};  // of 0, 2/3, 4/3, 2, at -1
-  double sum = 0;
-  for (int i = 0; i < 4; ++i) {
-    Vec3 at = cells;
-    at[axis] = inside - outwards * i / 1.5;
-    sum += weights[i] * continued(field, at, axis + 1);
-  }
-  return sum;
-}
-
-/// The same spline with a margin of one cell where it goes on as it is: no step that reaches past
-/// the box meets a jump of the gradient. As it was where n in the margin were not above 0.
-grin::SplineField with_margin(const grin::SplineField& field) {
-  const grin::FieldGrid& grid = field.grid();
-  const auto [x, y, z] = grid.nodes;
-  std::vector<double> excess;
-  for (int i = -1; i <= x; ++i)
-    for (int j = -1; j <= y; ++j)
-      for (int k = -1; k <= z; ++k) excess.push_back(continued(field, Vec3(i, j, k)));
-  if (!(*std::ranges::min_element(excess) > -1)) return field;
-  return {{grid.origin - grid.spacing, grid.spacing, {x + 2, y + 2, z + 2}}, excess};
-}
-
 /// One kind after the other, with the excess that it stands on.
 class Builder {
  public:
@@ -215,7 +184,7 @@ class Builder {
   grin::SplineField grid() {
     require_text("grid", spec_.grid, "an HDF5 file with dataset excess, n - 1 on a grid");
     if (!std::filesystem::exists(spec_.grid)) throw InputError("grid", spec_.grid, "no such file");
-    const grin::SplineField field = [&] {
+    grin::SplineField field = [&] {
       try {
         return grin::read_spline_field(spec_.grid);
       } catch (const InputError& error) {
@@ -224,7 +193,7 @@ class Builder {
     }();
     vary(2 * field.grid().spacing.minCoeff(), Symmetry::none);
     scene_.grid = grin::Box{field.grid().origin, field.grid().end()};
-    return with_margin(field);
+    return field;
   }
 
   const Subcommand& command_;

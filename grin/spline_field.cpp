@@ -10,6 +10,8 @@ namespace flatspeckle::grin {
 
 namespace {
 
+constexpr double margin = 1;  // in cells
+
 void check(const FieldGrid& grid, std::span<const double> excess) {
   for (int a = 0; a < 3; ++a) {
     if (grid.nodes[a] < 4) throw InputError("nodes of a field grid", grid.nodes[a], "at least 4");
@@ -80,10 +82,9 @@ template <int Derivatives>
 SplineField::Axis SplineField::axis(const Vec3& x, int which) const {
   const double scale = 1 / grid_.spacing[which], cells = grid_.nodes[which] - 1;
   const double position = (x[which] - grid_.origin[which]) * scale;
-  const double held = std::clamp(position, 0.0, cells);
-  // A ray that was stopped on the box is still inside.
-  const bool inside = std::abs(position - held) < 1e-9;
-  const double cell = std::min(std::floor(held), cells - 1);
+  const double held = std::clamp(position, -margin, cells + margin);
+  const bool inside = position == held;
+  const double cell = std::clamp(std::floor(held), 0.0, cells - 1);
   const double t = held - cell, s = 1 - t;
   Axis result{static_cast<int>(cell), {}, {}, {}};
   result.w = {s * s * s / 6, 2 / 3. - t * t * (2 - t) / 2, 2 / 3. - s * s * (2 - s) / 2,

@@ -20,8 +20,9 @@ struct FieldGrid {
 };
 
 /// The tensor-product cubic spline through samples of n - 1, not-a-knot at the ends: it reproduces
-/// cubics, and has two continuous derivatives. Outside the grid the index is that of the grid's
-/// nearest point, and its gradient jumps: a ray should be stopped on the grid's box.
+/// cubics, and has two continuous derivatives. It goes on as it is for one cell beyond the grid, so
+/// that the steps of a ray that is stopped on the grid's box stay smooth; farther out the index is
+/// that of the nearest point there.
 class SplineField {
  public:
   /// Throws InputError for fewer than 4 nodes along an axis, a spacing <= 0, another number of

@@ -96,15 +96,19 @@ TEST_CASE("A spline field: derivatives within a cell, and the same from both sid
   CHECK((below.hessian - above.hessian).norm() < 1e-10);
 }
 
-TEST_CASE("Beyond its grid a spline field stays constant; the edge itself belongs to the grid") {
+TEST_CASE("One cell beyond its grid a spline field is smooth, farther out it stays constant") {
   const FieldGrid grid = unit_grid(6);
   const SplineField field(grid, samples(grid, wavy));
-  const Vec3 edge(1, 0.3, 0.4);
-  CHECK(field.excess(edge + Vec3(0.5, 0, 0)) == field.excess(edge));
-  CHECK(field.gradient(edge + Vec3(0.5, 0, 0)).gradient[0] == 0);
-  CHECK(field.gradient(edge + Vec3(1e-12, 0, 0)).gradient[0] ==
-        doctest::Approx(field.gradient(edge).gradient[0]));
+  const Vec3 edge(1, 0.3, 0.4), cell(0.2, 0, 0);
+  for (const double cells : {-0.1, 0.1, 0.9})
+    tests::check_derivatives(field, edge + cells * cell, 0.01, 1, 1e-10);
   CHECK(std::abs(field.gradient(edge).gradient[0]) > 0.05);
+  const IndexHessian inside = field.hessian(edge - 1e-13 * cell);
+  const IndexHessian outside = field.hessian(edge + 1e-13 * cell);
+  CHECK((inside.gradient - outside.gradient).norm() < 1e-11);
+  CHECK((inside.hessian - outside.hessian).norm() < 1e-10);
+  CHECK(field.excess(edge + 3 * cell) == field.excess(edge + 2 * cell));
+  CHECK(field.gradient(edge + 2 * cell).gradient[0] == 0);
 }
 
 TEST_CASE("Bad grids are refused") {
