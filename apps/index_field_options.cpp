@@ -48,7 +48,8 @@ std::string only_medium(const IndexFieldSpec& spec) {
   return medium;
 }
 
-void refuse_unused(const Subcommand& command, const IndexFieldSpec& spec) {
+void refuse_unused(const Subcommand& command, const IndexFieldSpec& spec,
+                   const std::string& medium) {
   std::set<std::string> all, used;
   std::string names;
   for (const auto& [kind, keys] : keys_of_kind) all.insert(keys.begin(), keys.end());
@@ -57,6 +58,8 @@ void refuse_unused(const Subcommand& command, const IndexFieldSpec& spec) {
     used.insert(keys.begin(), keys.end());
     names += (names.empty() ? "" : " ") + kind;
   }
+  // In a sum it is the medium's.
+  if (!medium.empty() && !keys_of_kind.at(medium).contains("index")) used.erase("index");
   for (const auto& key : all)
     if (command.given(key) && !used.contains(key))
       throw InputError(key + ": the field (" + names + ") has no use for it");
@@ -66,7 +69,7 @@ void refuse_unused(const Subcommand& command, const IndexFieldSpec& spec) {
 
 std::string medium_of(const Subcommand& command, const IndexFieldSpec& spec) {
   const std::string medium = only_medium(spec);
-  refuse_unused(command, spec);
+  refuse_unused(command, spec, medium);
   return medium;
 }
 

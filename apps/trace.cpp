@@ -76,6 +76,14 @@ double reach_of(const TraceKeys& keys, const std::vector<RayStart>& starts) {
   return reach;
 }
 
+/// The largest coordinate where rays or curves start or end.
+double farthest_of(const TraceKeys& keys, const std::vector<RayStart>& starts) {
+  double farthest = 0;
+  for (double x : keys.connect.connect) farthest = std::max(farthest, std::abs(x));
+  for (const auto& start : starts) farthest = std::max(farthest, start.x.cwiseAbs().maxCoeff());
+  return farthest;
+}
+
 struct Outcome {
   std::string plan, summary;
   double samples;
@@ -116,7 +124,7 @@ std::string ends_of(const std::vector<TracedRay>& rays) {
 Outcome trace_light(const Subcommand& command, const TraceKeys& keys, ResultFile& file) {
   const auto starts = make_ray_starts(command, keys.starts);
   const SceneField scene = make_index_field(command, keys.field, reach_of(keys, starts));
-  const RayStops stops = make_ray_stops(keys.stops, scene.scale);
+  const RayStops stops = make_ray_stops(keys.stops, scene.scale, farthest_of(keys, starts));
   const RaySteps steps = make_ray_steps(keys.stops, scene.scale);
   const auto rays = trace_rays(scene, stops, steps, starts, path_points(keys));
   write_rays(file, scene, starts, rays, keys.length_unit);
@@ -157,8 +165,9 @@ std::vector<TracedRay> curve_rays(const SceneField& scene, const TraceKeys& keys
 
 Outcome trace_curves(const Subcommand& command, const TraceKeys& keys, ResultFile& file) {
   SceneField scene = make_index_field(command, keys.field, reach_of(keys, {}));
-  const RayStops stops = make_ray_stops(keys.stops, scene.scale);
-  const double step = make_ray_steps(keys.stops, scene.scale / 100).longest;
+  const RayStops stops = make_ray_stops(keys.stops, scene.scale, farthest_of(keys, {}));
+  double step = make_ray_steps(keys.stops, scene.scale / 100).longest;
+  if (!keys.stops.step) step /= largest_index(scene, keys.connect);
   const auto found = find_connections(scene, stops, step, keys.connect, seed_of(keys.run));
   write_connections(file, found, keys.length_unit);
   scene.rim.reset();  // curves stay inside

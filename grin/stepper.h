@@ -4,8 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include <Eigen/Geometry>
-
 #include "grin/ray_step.h"
 
 namespace flatspeckle::grin {
@@ -29,10 +27,14 @@ struct FixedSteps {
 };
 
 /// |v| = n(x) again, which steps keep to their order only. Where n falls by a factor q on the way,
-/// what was lost of v^2 - n^2 before weighs q^-2 times as much.
+/// what was lost of v^2 - n^2 before weighs q^-2 times as much. NaN where the index is not positive.
 template <IndexField F>
 void restore_index(const F& field, RayState& ray) {
-  if constexpr (!HomogeneousField<F>) ray.v *= index(field, ray.x) / ray.v.norm();
+  if constexpr (!HomogeneousField<F>) {
+    const double n = index(field, ray.x);
+    if (!(n > 0)) ray.x.setConstant(std::numeric_limits<double>::quiet_NaN());
+    ray.v *= n / ray.v.norm();
+  }
 }
 /// The same with its exact derivative.
 template <IndexField F>
@@ -92,6 +94,7 @@ struct ControlledSteps {
   }
 
  private:
+  /// NaN for a step so short that coordinates cannot tell it.
   template <IndexField F, class Ray>
   static double tried_error(const F& field, double h, const Ray& ray, Ray& halves) {
     Ray whole = ray;
@@ -99,9 +102,11 @@ struct ControlledSteps {
     restore_index(field, whole);
     step(field, h, halves);
     const double rounding = 4 * std::numeric_limits<double>::epsilon() * halves.x.norm();
+    const double length = ray.v.norm() * h;
+    if (!(length > rounding)) return std::numeric_limits<double>::quiet_NaN();
     const double apart = std::max((whole.x - halves.x).norm() - rounding, 0.0);  // NaN stays
-    const double angle = whole.v.cross(halves.v).norm() / (whole.v.norm() * halves.v.norm());
-    return (apart / (ray.v.norm() * h) + angle) / ((1 << Integrator::order) - 1);
+    const double angle = (whole.v.normalized() - halves.v.normalized()).norm();
+    return (apart / length + angle) / ((1 << Integrator::order) - 1);
   }
 };
 

@@ -273,6 +273,9 @@ TEST_CASE("Rays are lost, not bent, where there is no index") {
   RayState ray = start_ray(ramp, {0, 0, 0.99}, Vec3::UnitZ());
   fixed.h = 10;
   CHECK(trace(ramp, std::vector<Surface>{}, far, fixed, ray).stop == Stop::lost);
+  auto careful = controlled<Sharma>(1e-10);
+  RayState creeping = start_ray(ramp, {0, 0, 0}, Vec3::UnitZ());
+  CHECK(trace(ramp, std::vector<Surface>{}, far, careful, creeping).stop == Stop::lost);
   const ParabolicGuide guide(ParabolicProfile{0.5, 1});  // no index beyond rho = 1.5
   FixedSteps<Sharma> wide{2};
   RayState out{{1, 0, 0}, {3, 0, 1}};
