@@ -93,7 +93,7 @@ void add_index_field_options(CLI::App& app, IndexFieldSpec& spec) {
   app.add_option("--index_low", spec.index_low,
                  "tanh: index far behind; in a sum the ramp adds their difference");
   app.add_option("--index_high", spec.index_high, "tanh: index far along the axis");
-  app.add_option("--ramp_width", spec.ramp_width, "tanh: of tanh(2 distance/width) (default 1)");
+  app.add_option("--ramp_width", spec.ramp_width, "tanh: of tanh(distance/width) (default 1)");
   app.add_option("--ramp_axis", spec.ramp_axis, "tanh: direction (default 0 0 1)");
   app.add_option("--blobs", spec.blobs,
                  "CSV with columns x, y, z, height, width: height exp(-r^2/(2 width^2))");

@@ -27,7 +27,7 @@ struct FixedSteps {
 };
 
 /// |v| = n(x) again, which steps keep to their order only. Where n falls by a factor q on the way,
-/// what was lost of v^2 - n^2 before weighs q^-2 times as much. NaN where the index is not positive.
+/// what was lost of v^2 - n^2 before weighs q^-2 times as much. NaN where the index is not above 0.
 template <IndexField F>
 void restore_index(const F& field, RayState& ray) {
   if constexpr (!HomogeneousField<F>) {

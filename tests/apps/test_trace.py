@@ -117,6 +117,14 @@ class Rays(TraceTest):
         np.testing.assert_allclose(found["exit/z"], 10 * (np.cosh(0.5) - 1), rtol=1e-9)
         np.testing.assert_allclose(found["invariants/transverse_momentum"], 1, rtol=1e-12)
 
+    def test_tanh_ramp(self):
+        """n = low + (high - low)/2 (1 + tanh(z/width)), straight through, as --help has it."""
+        found = self.trace(field="tanh", index_low=1, index_high=1.5, ramp_width=0.4, ray_count=1,
+                           stop_plane=[0, 0, 1, 0, 0, 1], max_length=5)
+        exact = 1 + 0.25 * (1 + 0.4 * np.log(np.cosh(2.5)))
+        np.testing.assert_allclose(found["optical_path"], exact, rtol=1e-9)
+        self.assertIn("tanh(distance/width)", self.call("trace", help=True).stdout)
+
     def test_integrators_agree(self):
         keys = {"config": SCENES / "trace_parabolic_fibre.toml"}
         reference = self.trace(**keys)
