@@ -13,6 +13,7 @@
 #include "apps/trace_output.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "core/memory.h"
 #include "core/provenance.h"
 #include "core/stopwatch.h"
 
@@ -46,11 +47,26 @@ void add_options(CLI::App& app, TraceKeys& keys) {
   add_output_option(app, keys.run);
 }
 
+/// Of a light's rays: starts, ends and columns, and points twice, as rays and as columns.
+void check_memory(const Subcommand& command, const TraceKeys& keys) {
+  if (command.given("connect") || !keys.starts.rays.empty()) return;
+  constexpr double ray = 600, point = 2 * sizeof(grin::Vec3);
+  const double points = static_cast<double>(keys.path_points);
+  const double bytes = static_cast<double>(keys.starts.ray_count) * (ray + point * points);
+  const double memory = physical_memory();
+  if (bytes > 0.8 * memory)
+    throw InputError("ray_count", keys.starts.ray_count,
+                     "with path_points = " + std::to_string(keys.path_points) + " needs " +
+                         std::to_string(bytes / 1e9) + " GB of memory; there are " +
+                         std::to_string(memory / 1e9));
+}
+
 void check(const Subcommand& command, const TraceKeys& keys) {
   constexpr std::int64_t most_points = 100'000;
   if (keys.path_points != 0 && (keys.path_points < 2 || keys.path_points > most_points))
     throw InputError("path_points", keys.path_points,
                      "must be 0 or from 2 to " + std::to_string(most_points));
+  check_memory(command, keys);
   positive("length_unit", keys.length_unit);
   seed_of(keys.run);
   threads_of(keys.run);

@@ -400,6 +400,7 @@ class Refused(TraceTest):
         self.write("still.csv", "x,y,z,dx,dy,dz\n0,0,0,0,0,0\n")
         self.write("short.csv", "x,y,z\n0,0,0\n")
         self.refuse("ray_count = 0", ray_count=0)
+        self.refuse("ray_count = 100000000", "memory", ray_count=100000000, path_points=100000)
         self.refuse("light = laser", light="laser")
         self.refuse("half_angle", "no use", half_angle=0.1)
         self.refuse("half_angle = 0", light="fan", half_angle=0)
