@@ -55,7 +55,8 @@ std::string kinds_with(const std::string& key) {
   return names;
 }
 
-void refuse_unused(const Subcommand& command, const IndexFieldSpec& spec) {
+void refuse_unused(const Subcommand& command, const IndexFieldSpec& spec,
+                   const std::string& medium) {
   std::set<std::string> all, used;
   std::string names;
   for (const auto& [kind, keys] : keys_of_kind) all.insert(keys.begin(), keys.end());
@@ -64,6 +65,8 @@ void refuse_unused(const Subcommand& command, const IndexFieldSpec& spec) {
     used.insert(keys.begin(), keys.end());
     names += (names.empty() ? "" : " ") + kind;
   }
+  // In a sum it is the medium's.
+  if (!medium.empty() && !keys_of_kind.at(medium).contains("index")) used.erase("index");
   for (const auto& key : all)
     if (command.given(key) && !used.contains(key))
       throw InputError(key + ": the field (" + names + ") has no use for it; it is a key of" +
@@ -74,7 +77,7 @@ void refuse_unused(const Subcommand& command, const IndexFieldSpec& spec) {
 
 std::string medium_of(const Subcommand& command, const IndexFieldSpec& spec) {
   const std::string medium = only_medium(spec);
-  refuse_unused(command, spec);
+  refuse_unused(command, spec, medium);
   return medium;
 }
 
@@ -98,7 +101,7 @@ void add_index_field_options(CLI::App& app, IndexFieldSpec& spec) {
   app.add_option("--index_low", spec.index_low,
                  "tanh: index far behind; in a sum the ramp adds their difference");
   app.add_option("--index_high", spec.index_high, "tanh: index far along the axis");
-  app.add_option("--ramp_width", spec.ramp_width, "tanh: of tanh(2 distance/width) (default 1)");
+  app.add_option("--ramp_width", spec.ramp_width, "tanh: of tanh(distance/width) (default 1)");
   app.add_option("--ramp_axis", spec.ramp_axis, "tanh: direction (default 0 0 1)");
   app.add_option("--blobs", spec.blobs,
                  "CSV with columns x, y, z, height, width: height exp(-r^2/(2 width^2))");

@@ -36,8 +36,8 @@ grin::Vec3 vector_of(const std::string& key, const std::vector<double>& values) 
 
 grin::Vec3 direction_of(const std::string& key, const std::vector<double>& values) {
   const grin::Vec3 direction = vector_of(key, values);
-  if (!(direction.norm() > 0)) throw InputError(key, listed(values), "must not be 0");
-  return direction.normalized();
+  if (direction.isZero(0)) throw InputError(key, listed(values), "must not be 0");
+  return direction.stableNormalized();
 }
 
 }  // namespace flatspeckle::apps

@@ -21,6 +21,9 @@ struct FoundConnections {
   grin::ConnectionStatistics statistics;
 };
 
+/// On the straight line between the points, as far as there is an index. Throws InputError.
+double largest_index(const SceneField& scene, const ConnectSpec& spec);
+
 /// Curves that stay on the side of every stop surface, and within the ball or grid, that both
 /// points are on. Throws InputError.
 FoundConnections find_connections(const SceneField& scene, const RayStops& stops, double step,

@@ -46,6 +46,20 @@ std::vector<grin::Surface> surfaces_of(const RayStopSpec& spec) {
   return surfaces;
 }
 
+/// The largest number that distances from it are differences of.
+double size(const grin::Sphere& sphere) {
+  return sphere.centre.cwiseAbs().maxCoeff() + sphere.radius;
+}
+double size(const grin::Plane& plane) {
+  return plane.point.cwiseAbs().maxCoeff();
+}
+double size(const grin::Box& box) {
+  return box.low.cwiseAbs().cwiseMax(box.high.cwiseAbs()).maxCoeff();
+}
+double size(const grin::DistanceGrid& grid) {
+  return size(grin::Box{grid.low(), grid.high()});
+}
+
 }  // namespace
 
 void add_ray_stop_options(CLI::App& app, RayStopSpec& spec) {
@@ -68,15 +82,17 @@ double max_length_of(const RayStopSpec& spec) {
   return positive("max_length", *spec.max_length);
 }
 
-RayStops make_ray_stops(const RayStopSpec& spec, double scale) {
+RayStops make_ray_stops(const RayStopSpec& spec, double scale, double farthest) {
   RayStops stops{surfaces_of(spec), max_length_of(spec), 0};
   constexpr std::size_t seams = 2;  // the rim of a ball and the box of a grid
   constexpr auto most = grin::Watch::max_surfaces - seams;
   if (stops.surfaces.size() > most)
     throw InputError("stop surfaces", stops.surfaces.size(),
                      "must be at most " + std::to_string(most));
-  const double finest = scale > 0 ? std::min(scale, stops.max_length) : stops.max_length;
-  stops.location = std::max(1e-10 * finest, 1e-14 * stops.max_length);
+  for (const auto& surface : stops.surfaces)
+    farthest = std::max(farthest, std::visit([](const auto& s) { return size(s); }, surface));
+  const double rounding = std::max(1e-14 * stops.max_length, 4e-15 * farthest);
+  stops.location = std::max(1e-10 * std::min(scale, stops.max_length), rounding);
   return stops;
 }
 

@@ -32,8 +32,9 @@ struct RaySteps {
 
 void add_ray_stop_options(CLI::App& app, RayStopSpec& spec);
 
-/// All throw InputError.
-RayStops make_ray_stops(const RayStopSpec& spec, double scale);
+/// All throw InputError. scale: over which the index varies, 0: nowhere; farthest: the largest
+/// coordinate of where rays start, which sets their rounding.
+RayStops make_ray_stops(const RayStopSpec& spec, double scale, double farthest);
 double max_length_of(const RayStopSpec& spec);
 RaySteps make_ray_steps(const RayStopSpec& spec, double scale);
 

@@ -100,6 +100,7 @@ class Tracer {
   grin::TraceEnd follow(std::size_t number, WatchedSteps<Steps>& steps, RayState& ray,
                         std::uint64_t& made) const {
     constexpr int most_rims = 100'000;
+    if (leaves_grid(ray)) return {.stop = grin::Stop::surface, .surface = numbers_of_stops()};
     for (int i = 0; i < most_rims; ++i) {
       const auto go = [&](const auto& field) { return segment(field, steps, ray); };
       const grin::TraceEnd end = is_outside(ray) ? std::visit(go, scene_.outside) : go(field_);
@@ -118,6 +119,12 @@ class Tracer {
     if (steps.keeps_path) steps.path.end_with(ray);
     steps.look(field, ray);
     return end;
+  }
+
+  /// From its edge.
+  bool leaves_grid(const RayState& ray) const {
+    return scene_.grid && scene_.grid->distance(ray.x) >= -stops_.location &&
+           ray.v.dot(scene_.grid->normal(ray.x)) >= 0;
   }
 
   bool is_outside(const RayState& ray) const {

@@ -14,6 +14,7 @@
 #include "apps/trace_output.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "core/memory.h"
 #include "core/provenance.h"
 #include "core/stopwatch.h"
 
@@ -47,11 +48,26 @@ void add_options(CLI::App& app, TraceKeys& keys) {
   add_output_option(app, keys.run);
 }
 
+/// Of a light's rays: starts, ends and columns, and points twice, as rays and as columns.
+void check_memory(const Subcommand& command, const TraceKeys& keys) {
+  if (command.given("connect") || !keys.starts.rays.empty()) return;
+  constexpr double ray = 600, point = 2 * sizeof(grin::Vec3);
+  const double points = static_cast<double>(keys.path_points);
+  const double bytes = static_cast<double>(keys.starts.ray_count) * (ray + point * points);
+  const double memory = physical_memory();
+  if (bytes > 0.8 * memory)
+    throw InputError("ray_count", keys.starts.ray_count,
+                     "with path_points = " + std::to_string(keys.path_points) + " needs " +
+                         std::to_string(bytes / 1e9) + " GB of memory; there are " +
+                         std::to_string(memory / 1e9));
+}
+
 void check(const Subcommand& command, const TraceKeys& keys) {
   constexpr std::int64_t most_points = 100'000;
   if (keys.path_points != 0 && (keys.path_points < 2 || keys.path_points > most_points))
     throw InputError("path_points", keys.path_points,
                      "must be 0 or from 2 to " + std::to_string(most_points));
+  check_memory(command, keys);
   positive("length_unit", keys.length_unit);
   seed_of(keys.run);
   threads_of(keys.run);
@@ -75,6 +91,14 @@ double reach_of(const TraceKeys& keys, const std::vector<RayStart>& starts) {
     reach = std::max(reach, std::hypot(ends[i], ends[i + 1]));
   for (const auto& start : starts) reach = std::max(reach, std::hypot(start.x[0], start.x[1]));
   return reach;
+}
+
+/// The largest coordinate where rays or curves start or end.
+double farthest_of(const TraceKeys& keys, const std::vector<RayStart>& starts) {
+  double farthest = 0;
+  for (double x : keys.connect.connect) farthest = std::max(farthest, std::abs(x));
+  for (const auto& start : starts) farthest = std::max(farthest, start.x.cwiseAbs().maxCoeff());
+  return farthest;
 }
 
 struct Outcome {
@@ -119,7 +143,7 @@ std::string ends_of(const std::vector<TracedRay>& rays, double length_unit) {
 Outcome trace_light(const Subcommand& command, const TraceKeys& keys, ResultFile& file) {
   const auto starts = make_ray_starts(command, keys.starts);
   const SceneField scene = make_index_field(command, keys.field, reach_of(keys, starts));
-  const RayStops stops = make_ray_stops(keys.stops, scene.scale);
+  const RayStops stops = make_ray_stops(keys.stops, scene.scale, farthest_of(keys, starts));
   const RaySteps steps = make_ray_steps(keys.stops, scene.scale);
   const auto rays = trace_rays(scene, stops, steps, starts, path_points(keys));
   write_rays(file, scene, starts, rays, keys.length_unit);
@@ -177,8 +201,9 @@ std::vector<TracedRay> curve_rays(const SceneField& scene, const TraceKeys& keys
 
 Outcome trace_curves(const Subcommand& command, const TraceKeys& keys, ResultFile& file) {
   SceneField scene = make_index_field(command, keys.field, reach_of(keys, {}));
-  const RayStops stops = make_ray_stops(keys.stops, scene.scale);
-  const double step = make_ray_steps(keys.stops, scene.scale / 100).longest;
+  const RayStops stops = make_ray_stops(keys.stops, scene.scale, farthest_of(keys, {}));
+  double step = make_ray_steps(keys.stops, scene.scale / 100).longest;
+  if (!keys.stops.step) step /= largest_index(scene, keys.connect);
   const auto found = find_connections(scene, stops, step, keys.connect, seed_of(keys.run));
   write_connections(file, found, keys.length_unit);
   scene.rim.reset();  // curves stay inside

@@ -86,7 +86,8 @@ class ConnectionTrial {
     double miss = 0;
   };
 
-  bool coincident() const { return gap_ <= 1e3 * rounding_; }
+  /// Or so close that no direction is known well enough to tell whether two curves are one.
+  bool coincident() const { return gap_ * std::min(options_.same, 1e-3) <= rounding_; }
 
   int steps_for(double sigma) const {
     const double steps = std::ceil(sigma / options_.step);
@@ -179,6 +180,7 @@ class ConnectionTrial {
         aim.raised = steps_for(aim.sigma) > aim.steps;
         aim.steps = steps_for(aim.sigma);
         shot = shoot(aim, statistics);
+        continue;  // as a rule it is still there, and rounding lets no move mend it
       }
       Aim next = moved(aim, shot, damped);
       Shot tried = shoot(next, statistics);

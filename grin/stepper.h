@@ -27,10 +27,14 @@ struct FixedSteps {
 };
 
 /// |v| = n(x) again, which steps keep to their order only. Where n falls by a factor q on the way,
-/// what was lost of v^2 - n^2 before weighs q^-2 times as much.
+/// what was lost of v^2 - n^2 before weighs q^-2 times as much. NaN where the index is not above 0.
 template <IndexField F>
 void restore_index(const F& field, RayState& ray) {
-  if constexpr (!HomogeneousField<F>) ray.v *= index(field, ray.x) / ray.v.norm();
+  if constexpr (!HomogeneousField<F>) {
+    const double n = index(field, ray.x);
+    if (!(n > 0)) ray.x.setConstant(std::numeric_limits<double>::quiet_NaN());
+    ray.v *= n / ray.v.norm();
+  }
 }
 /// The same with its exact derivative.
 template <IndexField F>
@@ -49,13 +53,14 @@ void restore_index(const F& field, RayState& ray, RayTangent& tangent) {
 /// Two half steps, judged by one whole step: the error of the two, estimated as their difference /
 /// (2^order - 1), is held below `tolerance`, in position relative to the step's length and in
 /// direction as an angle, so that the error at the end of a ray is about tolerance times its
-/// length. The two half steps are kept, and |v| = n restored; a tangent is the exact derivative of
-/// that, for the step lengths that this ray took.
+/// length; what is below the rounding of the coordinates is none. The two half steps are kept, and
+/// |v| = n restored; a tangent is the exact derivative of that, for the step lengths that this ray
+/// took.
 template <class Integrator>
 struct ControlledSteps {
   double tolerance;
   double h;        ///< of the next step; start anywhere
-  double longest;  ///< steps grow no longer, so that nothing is jumped over
+  double longest;  ///< arc: steps grow no longer, so that nothing is jumped over
 
   template <IndexField F, class Ray, class... Tangent>
   static void step(const F& field, double h, Ray& ray, Tangent&... tangent) {
@@ -67,14 +72,15 @@ struct ControlledSteps {
   /// A ray that no step suits becomes NaN.
   template <IndexField F, class Ray, class... Tangent>
   double advance(const F& field, Ray& ray, Tangent&... tangent) {
+    const double longest_h = longest / ray.v.norm();
     for (int trial = 0; trial < 50; ++trial) {
       Ray halves = ray;
-      const double tried = h, error = tried_error(field, ray, halves);
+      const double tried = std::min(h, longest_h), error = tried_error(field, tried, ray, halves);
       // NaN shortens the step too.
       const double factor = error <= tolerance * 1e9
                                 ? 0.9 * std::pow(error / tolerance, -1.0 / Integrator::order)
                                 : 0;
-      h = std::min(longest, tried * std::clamp(factor, 0.2, 4.0));
+      h = tried * std::clamp(factor, 0.2, 4.0);
       if (!(error <= tolerance)) continue;
       if constexpr (sizeof...(tangent) == 0)
         ray = halves;
@@ -88,15 +94,19 @@ struct ControlledSteps {
   }
 
  private:
+  /// NaN for a step so short that coordinates cannot tell it.
   template <IndexField F, class Ray>
-  double tried_error(const F& field, const Ray& ray, Ray& halves) const {
+  static double tried_error(const F& field, double h, const Ray& ray, Ray& halves) {
     Ray whole = ray;
     Integrator::step(field, whole, h);
     restore_index(field, whole);
     step(field, h, halves);
-    const double index = ray.v.norm();
-    return ((whole.x - halves.x).norm() / (index * h) + (whole.v - halves.v).norm() / index) /
-           ((1 << Integrator::order) - 1);
+    const double rounding = 4 * std::numeric_limits<double>::epsilon() * halves.x.norm();
+    const double length = ray.v.norm() * h;
+    if (!(length > rounding)) return std::numeric_limits<double>::quiet_NaN();
+    const double apart = std::max((whole.x - halves.x).norm() - rounding, 0.0);  // NaN stays
+    const double angle = (whole.v.normalized() - halves.v.normalized()).norm();
+    return (apart / length + angle) / ((1 << Integrator::order) - 1);
   }
 };
 

@@ -117,6 +117,14 @@ class Rays(TraceTest):
         np.testing.assert_allclose(found["exit/z"], 10 * (np.cosh(0.5) - 1), rtol=1e-9)
         np.testing.assert_allclose(found["invariants/transverse_momentum"], 1, rtol=1e-12)
 
+    def test_tanh_ramp(self):
+        """n = low + (high - low)/2 (1 + tanh(z/width)), straight through, as --help has it."""
+        found = self.trace(field="tanh", index_low=1, index_high=1.5, ramp_width=0.4, ray_count=1,
+                           stop_plane=[0, 0, 1, 0, 0, 1], max_length=5)
+        exact = 1 + 0.25 * (1 + 0.4 * np.log(np.cosh(2.5)))
+        np.testing.assert_allclose(found["optical_path"], exact, rtol=1e-9)
+        self.assertIn("tanh(distance/width)", self.call("trace", help=True).stdout)
+
     def test_integrators_agree(self):
         keys = {"config": SCENES / "trace_parabolic_fibre.toml"}
         reference = self.trace(**keys)
@@ -223,6 +231,55 @@ class Rays(TraceTest):
         middle = found["index_map"][100, 100]
         self.assertAlmostEqual(middle, np.sqrt(2), delta=0.01)
 
+    def test_far_from_the_origin(self):
+        """Ends are found to the rounding of the coordinates, which tells nothing of lost rays."""
+        for far in (1e6, 1e9):
+            found = self.trace(field="luneburg", centre=[far, far, far], origin=[far, far, far - 1],
+                               light="line", ray_count=21, beam_radius=0.9, max_length=5,
+                               stop_plane=[far, far, far + 1, 0, 0, 1])
+            np.testing.assert_array_equal(found["status"], 0)
+            np.testing.assert_allclose(found["optical_path"], np.pi / 2 + 1,
+                                       atol=1e-8 + 1e-14 * far)
+
+    def test_long_ways(self):
+        """Tight tolerances where the coordinates are large, and ends that no max_length blurs."""
+        found = self.trace(field="parabolic", **FIBRE, light="fan", half_angle=0.2, ray_count=3,
+                           stop_plane=[0, 0, 1000, 0, 0, 1], max_length=2000, tolerance=1e-13)
+        sigma = 1000 / (1.5 * np.cos(0.2))
+        exact = 1.5 * np.sin(0.2) / 0.5 * np.sin(0.5 * sigma)
+        np.testing.assert_allclose(found["exit/x"], [-exact, 0, exact], atol=1e-8)
+        found = self.trace(max_length=1e6, ray_count=1, stop_sphere=[0, 0, 3, 1])
+        np.testing.assert_allclose(found["exit/z"], 2, atol=1e-8)
+
+    def test_large_and_small_index(self):
+        """Nothing is jumped over where the index is large, nothing creeps where it is small."""
+        self.write("blobs.csv", "x,y,z,height,width\n0.05,0,50,10,0.1\n")
+        keys = {"field": "blobs", "blobs": "blobs.csv", "index": 100, "ray_count": 1,
+                "max_length": 200, "stop_plane": [0, 0, 100, 0, 0, 1]}
+        found, fine = self.trace(**keys), self.trace(**keys, step=1e-4)
+        self.assertGreater(fine["exit/x"][0], 1)
+        np.testing.assert_allclose(found["exit/x"], fine["exit/x"], rtol=1e-7)
+        # n = 2/(1 + r^2) along r: 2 atan r
+        found = self.trace(field="fisheye", origin=[0, 0, -1000], ray_count=1, max_length=5000,
+                           stop_plane=[0, 0, 1, 0, 0, 1])
+        np.testing.assert_allclose(found["optical_path"], 2 * (np.arctan(1000) + np.arctan(1)),
+                                   rtol=1e-8)
+
+    def test_edge_of_the_grid(self):
+        """A ray that leaves the grid where it starts has no way to go."""
+        write_grid(self.folder / "grid.h5", np.zeros((9, 9, 9)))
+        self.write("rays.csv", "x,y,z,dx,dy,dz\n0,0,1,0,0,1\n0,0,1,0,0,-1\n0,0,-1,0.1,0,-1\n"
+                   "0.5,1,0,0,1,1\n")
+        found = self.trace(field="grid", grid="grid.h5", rays="rays.csv", max_length=10)
+        np.testing.assert_array_equal(found["status"], 2)
+        np.testing.assert_allclose(found["arc_length"], [0, 2, 0, 0], atol=1e-9)
+
+    def test_directions_of_any_length(self):
+        for length in (1e-200, 1e200):
+            found = self.trace(direction=[0, 0, length], ray_count=1, max_length=2)
+            np.testing.assert_allclose(vectors(found, "exit/d"), [[0, 0, 1]])
+            np.testing.assert_allclose(found["exit/z"], 2)
+
     def test_threads_do_not_matter(self):
         for threads in (1, 3):
             self.scene("ultrasound", name=f"{threads}.h5", threads=threads)
@@ -287,6 +344,28 @@ class Connections(TraceTest):
         self.assertGreater(found["trials/degenerate"], 0)
         self.assertIn("image point", self.output)
 
+    def test_small_obstacles(self):
+        """Surfaces between the steps of a curve stop it too."""
+        ends = {"connect": [0, 0, -2, 0, 0, 2], "max_length": 100, "trials": 50}
+        fibre = {"field": "parabolic", "index": 1.5, "alpha": 1e-3, "step": 0.5}
+        for field in ({}, fibre):
+            free = self.trace(**field, **ends, stop_sphere=[0, 0.06, 0.1, 0.05])
+            self.assertEqual(len(free["found"]), 1)
+            found = self.trace(**field, **ends, stop_sphere=[0, 0.04, 0.1, 0.05])
+            self.assertNotIn("found", found)
+        self.assertEqual(found["trials/converged"], 0)
+        self.assertEqual(found["trials/left_region"], free["trials/converged"])
+
+    def test_any_index(self):
+        """Of the fisheye the curves do not depend on n0; optical paths are proportional to it."""
+        ends = {"connect": [0.3, 0.1, -0.6, -0.2, 0.7, 0.9], "max_length": 8, "trials": 100}
+        usual = self.trace(field="fisheye", **ends)
+        for index in (1e-3, 100):
+            found = self.trace(field="fisheye", index=index, **ends)
+            np.testing.assert_allclose(found["optical_path"], usual["optical_path"] * index / 2,
+                                       rtol=1e-7)
+            np.testing.assert_allclose(found["spreading"], usual["spreading"], rtol=1e-6)
+
     def test_paths_end_at_the_point(self):
         q = [0.5, 0.2, 6]
         found = self.trace(field="parabolic", **FIBRE, connect=[0, 0.3, 0] + q, trials=300,
@@ -318,6 +397,8 @@ class Refused(TraceTest):
         self.refuse("alpha", "no use", "parabolic sech", field="luneburg", alpha=1)
         self.refuse("alpha is not given", field="sech")
         self.refuse("blobs is not given", field="blobs")
+        self.write("one.csv", "x,y,z,height,width\n0,0,0,1,1\n")
+        self.refuse("index", "no use", field=["luneburg", "blobs"], blobs="one.csv", index=1.3)
         self.refuse("blobs = none.csv", "no blobs", field="blobs", blobs="none.csv")
         self.refuse("thin.csv, width = 0", field="blobs", blobs="thin.csv")
         self.refuse("sound_wavenumber = -1", field="ultrasound", sound_wavenumber=-1, amplitude=1)
@@ -351,6 +432,7 @@ class Refused(TraceTest):
         self.write("still.csv", "x,y,z,dx,dy,dz\n0,0,0,0,0,0\n")
         self.write("short.csv", "x,y,z\n0,0,0\n")
         self.refuse("ray_count = 0", ray_count=0)
+        self.refuse("ray_count = 100000000", "memory", ray_count=100000000, path_points=100000)
         self.refuse("light = laser", light="laser")
         self.refuse("half_angle", "no use", "cone fan", half_angle=0.1)
         self.refuse("half_angle = 0", light="fan", half_angle=0)

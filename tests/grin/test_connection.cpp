@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "grin/connection_solver.h"
+#include "grin/gaussian_blobs.h"
 #include "grin/guides.h"
 #include "grin/lenses.h"
 #include "tests/grin/closed_fields.h"
@@ -122,6 +123,8 @@ TEST_CASE("points that coincide, or nearly, from a scene of metres down to micro
       CHECK((curve.start_direction - to).norm() < 1e-5 + gap);
     }
     CHECK(joined({-0.1, 0.5, 0.2}).curves.size() == 1);
+    for (const double gap : {3e-12, 3e-11, 3e-10})  // never one by many names
+      CHECK(joined(p + gap * Vec3::UnitX()).curves.size() <= 1);
   }
 }
 
@@ -166,6 +169,16 @@ TEST_CASE("an almost invisible field bends by as much as it should") {
   };
   CHECK(bend(strong) > 1e-5);
   CHECK(bend(weak) == doctest::Approx(1e-3 * bend(strong)).epsilon(0.02).scale(0));
+}
+
+TEST_CASE("a trial converges whatever its number of steps, down to their rounding") {
+  const GaussianBlobs blob({{{0.05, 0, 5}, 0.005, 0.1}}, 0);
+  const auto not_converged = [&](double step) {
+    const ConnectionOptions options{.step = step, .max_length = 20};
+    return listed(blob, everywhere, {0, 0, 0}, {0, 0, 10}, options, 30, 5)
+        .statistics.count(TrialOutcome::not_converged);
+  };
+  CHECK(not_converged(5e-4) == not_converged(5e-3));
 }
 
 TEST_CASE("walls and lengths: a curve that leaves the region or is too long is none") {

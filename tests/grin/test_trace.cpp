@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include "core/error.h"
+#include "grin/gaussian_blobs.h"
 #include "grin/guides.h"
 #include "grin/interface.h"
 #include "grin/ramps.h"
@@ -96,6 +97,35 @@ TEST_CASE("Controlled steps: the error follows the tolerance") {
     CHECK(end.steps > before);
     before = end.steps;
     CHECK(std::abs(ray_invariants(lens, ray).index_mismatch) < 4 * tolerance);
+  }
+}
+
+TEST_CASE("Controlled steps far from the origin: what is below rounding is no error") {
+  const ParabolicGuide guide(ParabolicProfile{0.5, 1});
+  for (const double start : {1e3, 1e6, 1e8}) {
+    CAPTURE(start);
+    const std::vector<Surface> end{Plane{{0, 0, start + 10}, Vec3::UnitZ()}};
+    auto steps = controlled<Sharma>(1e-11);
+    RayState ray = start_ray(guide, {0, 0, start}, {0.2, 0, 1});
+    const Vec3 v0 = ray.v;
+    CHECK(trace(guide, end, {20, 1e-14 * start}, steps, ray).surface == 0);
+    const double sigma = 10 / v0[2];
+    CHECK(std::abs(ray.x[0] - v0[0] * std::sin(sigma)) < 1e-9 + 1e-14 * start);
+  }
+}
+
+TEST_CASE("Controlled steps are no longer than they may be, whatever the index") {
+  for (const double background : {0.0, 99.0}) {
+    CAPTURE(background);
+    const double height = 0.1 * (1 + background);
+    const GaussianBlobs blob({{{0.05, 0, 50}, height, 0.1}}, background);
+    RayState ray = start_ray(blob, {0, 0, 0}, Vec3::UnitZ()), exact = ray;
+    auto steps = controlled<Sharma>(1e-9, 0.1);
+    FixedSteps<Sharma> fine{1e-3 / (1 + background)};
+    trace(blob, std::vector<Surface>{}, {100, 1e-9}, steps, ray);
+    trace(blob, std::vector<Surface>{}, {100, 1e-9}, fine, exact);
+    CHECK((ray.x - exact.x).norm() < 1e-6);
+    CHECK(std::abs(ray.x[0]) > 1);
   }
 }
 
@@ -243,6 +273,9 @@ TEST_CASE("Rays are lost, not bent, where there is no index") {
   RayState ray = start_ray(ramp, {0, 0, 0.99}, Vec3::UnitZ());
   fixed.h = 10;
   CHECK(trace(ramp, std::vector<Surface>{}, far, fixed, ray).stop == Stop::lost);
+  auto careful = controlled<Sharma>(1e-10);
+  RayState creeping = start_ray(ramp, {0, 0, 0}, Vec3::UnitZ());
+  CHECK(trace(ramp, std::vector<Surface>{}, far, careful, creeping).stop == Stop::lost);
   const ParabolicGuide guide(ParabolicProfile{0.5, 1});  // no index beyond rho = 1.5
   FixedSteps<Sharma> wide{2};
   RayState out{{1, 0, 0}, {3, 0, 1}};
