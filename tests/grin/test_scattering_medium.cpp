@@ -5,6 +5,7 @@
 #include <doctest/doctest.h>
 
 #include "core/error.h"
+#include "grin/geometric_spreading.h"
 #include "grin/part_medium.h"
 #include "grin/stage.h"
 #include "tests/grin/space_stages.h"
@@ -38,7 +39,7 @@ double angle_at(double t, double g) {
 TEST_CASE("phase functions integrate to 1, and their mean cosine is g") {
   for (const SpacePhaseFunction& phase : phases) {
     const auto moment = [&](int power) {
-      return tests::integral(
+      return flatspeckle::tests::integral(
           [&](double t) {
             const double c = std::cos(t);
             return 2 * pi * phase.density(c) * std::pow(c, power) * std::sin(t);
@@ -71,8 +72,8 @@ TEST_CASE("scattered directions follow the phase function in angle and azimuth")
     const auto ring = [&](double t) { return 2 * pi * phase.density(std::cos(t)) * std::sin(t); };
     for (int i = 0; i < polar; ++i)
       for (int k = 0; k < around; ++k)
-        probabilities.push_back(tests::integral(ring, edges[i], edges[i + 1]) / around);
-    tests::check_chi_square(counts, probabilities);
+        probabilities.push_back(flatspeckle::tests::integral(ring, edges[i], edges[i + 1]) / around);
+    flatspeckle::tests::check_chi_square(counts, probabilities);
   }
 }
 
