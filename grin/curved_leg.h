@@ -41,7 +41,8 @@ class CurvedLeg {
       const RayState& start = std::get<0>(before);
       Sharma::step(field_, ray, tangent..., step_);
       const bool is_lost = !(ray.arc_length > start.arc_length);
-      const double arc = is_lost ? 3 * start.v.norm() * step_ : 1.1 * (ray.arc_length - start.arc_length);
+      const double arc =
+          is_lost ? 3 * start.v.norm() * step_ : 1.1 * (ray.arc_length - start.arc_length);
       clearance -= arc;
       double part = 1;
       bool on_way_out = false;
@@ -67,7 +68,8 @@ class CurvedLeg {
           return Stop::collision;
         }
       }
-      if (on_way_out) return Stop::surface;
+      if (on_way_out)
+        return put_back - distance(surface_, ray.x) <= tolerance_ ? Stop::surface : Stop::lost;
     }
     return Stop::lost;
   }

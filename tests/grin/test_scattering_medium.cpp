@@ -65,14 +65,16 @@ TEST_CASE("scattered directions follow the phase function in angle and azimuth")
       REQUIRE(d.squaredNorm() == doctest::Approx(1).epsilon(1e-14));
       const Eigen::Vector2d part = across.transpose() * d;
       const double angle = std::atan2(part.norm(), d.dot(axis));
-      const auto bin = std::upper_bound(edges.begin() + 1, edges.end() - 1, angle) - edges.begin() - 1;
+      const auto bin =
+          std::upper_bound(edges.begin() + 1, edges.end() - 1, angle) - edges.begin() - 1;
       const double turn = (std::atan2(part[1], part[0]) / pi + 1) / 2;
       ++counts[bin * around + std::min(around - 1, static_cast<int>(turn * around))];
     }
     const auto ring = [&](double t) { return 2 * pi * phase.density(std::cos(t)) * std::sin(t); };
     for (int i = 0; i < polar; ++i)
       for (int k = 0; k < around; ++k)
-        probabilities.push_back(flatspeckle::tests::integral(ring, edges[i], edges[i + 1]) / around);
+        probabilities.push_back(flatspeckle::tests::integral(ring, edges[i], edges[i + 1]) /
+                                around);
     flatspeckle::tests::check_chi_square(counts, probabilities);
   }
 }
