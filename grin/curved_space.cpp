@@ -26,6 +26,7 @@ CurvedSetup::CurvedSetup(const Stage& of, const CurvedSpaceOptions& with)
       options(with),
       connection{.step = with.step,
                  .max_length = with.max_length,
+                 .start = {.chord_share = 0.2},
                  .tolerance = 1e-8,
                  .count_caustics = false} {}
 
