@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/runner.h"
+#include "grin/any_index_field.h"
+#include "grin/connection.h"
+#include "grin/film.h"
+#include "grin/light.h"
+#include "grin/sensor.h"
+#include "grin/stage.h"
+
+namespace flatspeckle::grin {
+
+/// Everything that light meets.
+struct RenderScene {
+  AnyIndexField field;
+  double step;        ///< of rays in sigma (length at index 1); no use in a homogeneous field
+  double max_length;  ///< arc length of one flight or join; longer ones are lost
+  bool random_phase = false;  ///< of a StandingWave: each path meets its own (C28)
+  Stage stage;
+  std::vector<Light> lights;
+  Sensor sensor;
+  TimeBins bins = {};
+};
+
+enum class RenderMethod { path, light, bidirectional, photon_map };
+
+struct RenderRequest {
+  RenderMethod method = RenderMethod::bidirectional;
+  int max_scatterings = 0;   ///< 0: no limit
+  double photon_radius = 0;  ///< of photon_map; 0: chosen from the scene
+};
+
+/// samples: camera paths and as many light paths.
+struct RenderJob {
+  BatchJob batches;
+  PixelGrid pixels;
+  TimeBins bins;
+  std::string plan;  ///< what is left out and what is not
+  /// Of all batches that ran here.
+  std::shared_ptr<const ConnectionStatistics> connections;
+};
+
+/// Throws InputError.
+RenderJob render_job(const RenderScene& scene, const RenderRequest& request, std::uint64_t seed);
+
+/// Value and standard error of [pixel][bin], and of the sum over the bins.
+struct RenderedPicture {
+  Estimate bins, steady;
+};
+RenderedPicture rendered_picture(const RenderJob& job, const GroupedSums& sums);
+
+}  // namespace flatspeckle::grin

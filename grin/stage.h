@@ -1,0 +1,31 @@
+#pragma once
+
+#include <optional>
+
+#include "grin/scattering_medium.h"
+#include "grin/signed_distance.h"
+
+namespace flatspeckle::grin {
+
+/// A thing in the stage, with its own index and medium. At its surface light is refracted and
+/// reflected by Fresnel's laws where the index jumps.
+struct Body {
+  Surface surface;
+  ScatteringMedium medium = {};
+};
+
+/// Where light goes. Light that reaches the boundary leaves the scene: nothing is reflected there.
+/// With a body the index field is the body's, and around it the index is 1 + excess_around
+/// everywhere; without one the field fills the stage.
+struct Stage {
+  Surface boundary;              ///< closed; light is inside of it
+  ScatteringMedium medium = {};  ///< of the stage, but for the body
+  std::optional<Body> body = {};
+  double excess_around = 0;
+};
+
+/// Throws InputError for bad media, an index around that is not positive, a boundary or a body that
+/// is not closed or has no size, and a body that is not within the boundary.
+void check(const Stage& stage);
+
+}  // namespace flatspeckle::grin
