@@ -12,10 +12,10 @@ namespace {
 using std::numbers::pi;
 
 BoundaryPoint centre_on(const Surface& boundary, const Vec3& centre) {
-  require_finite("sensor_position", centre);
+  require_finite("sensor_at", centre);
   const auto at = boundary_point(boundary, centre);
   if (!at)
-    throw InputError("sensor_position", centre.transpose(),
+    throw InputError("sensor_at", centre.transpose(),
                      "must be on the boundary of the stage, a sphere or a box");
   return *at;
 }
@@ -39,7 +39,7 @@ AreaDetectorEnd::AreaDetectorEnd(const AreaDetector& detector, const Stage& stag
     : face_(rectangle(detector)),
       boundary_(stage.boundary),
       centre_(centre_on(stage.boundary, detector.centre).x),
-      view_("sensor_position", centre_on(stage.boundary, detector.centre).inward, detector.up),
+      view_("sensor_at", -centre_on(stage.boundary, detector.centre).inward, detector.up),
       sine_squared_(sine_squared_of_acceptance(detector.acceptance)),
       body_(body_surface(stage)) {
   require_in_stage(stage, centre_);
@@ -59,14 +59,14 @@ AreaDetectorEnd::AreaDetectorEnd(const AreaDetector& detector, const Stage& stag
 
 Vec3 AreaDetectorEnd::inward(const Vec3& x) const {
   if (const auto* sphere = std::get_if<Sphere>(&boundary_)) return -sphere->normal(x);
-  return view_.forward;
+  return -view_.forward;
 }
 
 EndPosition AreaDetectorEnd::on_face(const Vec3& x, int pixel) const {
   const Vec3 normal = inward(x);
   return {.point = {x, part_at(body_, x)},
           .inward = normal,
-          .position_density = normal.dot(view_.forward) / face_.area(),
+          .position_density = -normal.dot(view_.forward) / face_.area(),
           .pixel = pixel};
 }
 
@@ -76,13 +76,13 @@ EndPosition AreaDetectorEnd::sample_position(double stratum, RandomStream& rando
   if (const auto* sphere = std::get_if<Sphere>(&boundary_)) {
     // u^2 + v^2 = s (2 R - s), s the depth below the tangent plane
     const double squared = at.u * at.u + at.v * at.v, r = sphere->radius;
-    x += squared / (r + std::sqrt(r * r - squared)) * view_.forward;
+    x -= squared / (r + std::sqrt(r * r - squared)) * view_.forward;
   }
   return on_face(x, at.pixel);
 }
 
 std::optional<EndPosition> AreaDetectorEnd::position_at(const Vec3& x) const {
-  if (!(inward(x).dot(view_.forward) > 0)) return std::nullopt;
+  if (!(inward(x).dot(view_.forward) < 0)) return std::nullopt;
   const Vec3 from_centre = x - centre_;
   const int pixel = face_.pixel_at(from_centre.dot(view_.right), from_centre.dot(view_.up));
   if (pixel < 0) return std::nullopt;

@@ -10,7 +10,8 @@ namespace flatspeckle::grin {
 
 /// A rectangle on a face of a box boundary, or the part of a sphere's boundary in front of a
 /// rectangle in the tangent plane: irradiance averaged over each pixel of the rectangle, of light
-/// that arrives within `acceptance` of the outward normal. As one sees it from outside.
+/// that arrives within `acceptance` of the outward normal. Columns along outward normal x up: as
+/// light sees it that arrives.
 struct AreaDetector {
   Vec3 centre, up;
   double width, height;
@@ -38,7 +39,7 @@ class AreaDetectorEnd {
   PixelRectangle face_;
   Surface boundary_;
   Vec3 centre_;
-  Orientation view_;     ///< forward is the inward normal at the centre
+  Orientation view_;     ///< forward is the outward normal at the centre
   double sine_squared_;  ///< of the acceptance
   std::optional<Surface> body_;
 };

@@ -27,8 +27,8 @@ CameraEnd::CameraEnd(const Camera& camera, const Stage& stage)
 }
 
 void CameraEnd::place_lens(const Camera& camera, const Stage& stage) {
-  require_finite("sensor_position", centre_);
-  lens_.emplace(stage.boundary, centre_, camera.lens_radius, "sensor_position", "lens_radius");
+  require_finite("sensor_at", centre_);
+  lens_.emplace(stage.boundary, centre_, camera.lens_radius, "sensor_at", "lens_radius");
   centre_ = boundary_point(stage.boundary, centre_)->x;
   if (!(camera.focus_distance > camera.lens_radius && std::isfinite(camera.focus_distance)))
     throw InputError("focus_distance", camera.focus_distance, "must be more than lens_radius");

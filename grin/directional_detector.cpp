@@ -10,7 +10,7 @@ namespace {
 PixelRectangle picture(const DirectionalDetector& detector) {
   constexpr double right_angle = std::numbers::pi / 2;
   if (!(detector.half_angle > 0 && detector.half_angle <= right_angle * (1 + 1e-12)))
-    throw InputError("acceptance", detector.half_angle, "must be in (0, pi/2]");
+    throw InputError("half_angle", detector.half_angle, "must be in (0, pi/2]");
   const double sine = std::sin(std::min(detector.half_angle, right_angle));
   return {detector.pixels, sine, sine};
 }

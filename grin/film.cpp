@@ -8,10 +8,10 @@
 namespace flatspeckle::grin {
 
 void require_usable(const TimeBins& bins) {
-  if (bins.count < 1) throw InputError("time_bins", bins.count, "must be at least 1");
+  if (bins.count < 1) throw InputError("path_bins", bins.count, "must be at least 1");
   if (bins.count == 1) return;
   if (!(std::isfinite(bins.first) && std::isfinite(bins.last) && bins.first < bins.last))
-    throw InputError("time_bins from", bins.first, "must be finite and before their end");
+    throw InputError("start of path_bins", bins.first, "must be finite and before their end");
 }
 
 Film::Film(int pixels, const TimeBins& bins, std::span<Complex> sums)

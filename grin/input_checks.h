@@ -25,11 +25,11 @@ inline Vec3 unit_direction(const char* key, const Vec3& direction) {
 }
 /// Of a sensor's place: inside the stage or on its boundary, and not in the body.
 inline void require_in_stage(const Stage& stage, const Vec3& x) {
-  require_finite("sensor_position", x);
+  require_finite("sensor_at", x);
   if (!(distance(stage.boundary, x) <= 1e-9 * x.norm()))
-    throw InputError("sensor_position", x.transpose(), "must be inside the stage");
+    throw InputError("sensor_at", x.transpose(), "must be inside the stage");
   if (stage.body && !(distance(stage.body->surface, x) >= 0))
-    throw InputError("sensor_position", x.transpose(), "must not be inside the body");
+    throw InputError("sensor_at", x.transpose(), "must not be inside the body");
 }
 
 }  // namespace flatspeckle::grin

@@ -39,43 +39,47 @@ void require_inside(const BeamLight& beam, const Stage& stage) {
   for (int i = 0; i < rim_points; ++i)
     if (!(distance(stage.boundary, on_disk(beam, beam.radius, 2 * pi * i / rim_points)) <=
           tolerance))
-      throw InputError("light_radius", beam.radius, "the beam's disk must be inside the stage");
+      throw InputError("radius of a beam_light", beam.radius,
+                       "the beam's disk must be inside the stage");
   if (distance(stage.boundary, beam.centre) >= -tolerance &&
       !(beam.direction.dot(normal(stage.boundary, beam.centre)) < 0))
-    throw InputError("light_direction", beam.direction.transpose(), "must point into the stage");
+    throw InputError("direction of a beam_light", beam.direction.transpose(),
+                     "must point into the stage");
 }
 
 }  // namespace
 
 Lights::Source Lights::source(const PointLight& light, const Stage& stage, const Index&) {
-  require_finite("light_position", light.x);
-  require_positive("light_power", light.power);
+  require_finite("position of a point_light", light.x);
+  require_positive("power of a point_light", light.power);
   if (!(distance(stage.boundary, light.x) < 0))
-    throw InputError("light_position", light.x.transpose(), "must be inside the stage");
+    throw InputError("position of a point_light", light.x.transpose(), "must be inside the stage");
   return {.light = light, .power = light.power};
 }
 
 Lights::Source Lights::source(const BeamLight& light, const Stage& stage, const Index&) {
   BeamLight beam = light;
-  beam.direction = unit_direction("light_direction", light.direction);
-  require_finite("light_position", beam.centre);
-  require_positive("light_radius", beam.radius);
-  require_positive("light_power", beam.power);
+  beam.direction = unit_direction("direction of a beam_light", light.direction);
+  require_finite("position of a beam_light", beam.centre);
+  require_positive("radius of a beam_light", beam.radius);
+  require_positive("power of a beam_light", beam.power);
   require_inside(beam, stage);
   return {
       .light = beam, .power = beam.power, .position_density = 1 / (pi * beam.radius * beam.radius)};
 }
 
 Lights::Source Lights::source(const FaceLight& light, const Stage& stage, const Index& index) {
-  require_positive("light_power", light.radiance);
   const bool everywhere = light.radius == INFINITY;
-  if (!everywhere) require_finite("light_position", light.centre);
-  BoundaryPatch patch = everywhere ? BoundaryPatch(stage.boundary, "light")
-                                   : BoundaryPatch(stage.boundary, light.centre, light.radius,
-                                                   "light_position", "light_radius");
+  require_positive(everywhere ? "radiance of environment" : "radiance of a face_light",
+                   light.radiance);
+  if (!everywhere) require_finite("centre of a face_light", light.centre);
+  BoundaryPatch patch = everywhere
+                            ? BoundaryPatch(stage.boundary, "environment")
+                            : BoundaryPatch(stage.boundary, light.centre, light.radius,
+                                            "centre of a face_light", "radius of a face_light");
   const double n_squared = mean_index_squared(patch, body_surface(stage), index);
   if (!(n_squared > 0 && std::isfinite(n_squared)))
-    throw InputError("light: the index of refraction is not positive and finite all over it");
+    throw InputError("face_light: the index of refraction is not positive and finite all over it");
   return {.light = light,
           .power = pi * n_squared * patch.area() * light.radiance,
           .position_density = 1 / patch.area(),
@@ -94,6 +98,9 @@ Lights::Lights(std::vector<Light> lights, const Stage& stage, const Index& index
   for (Source& s : source_) {
     s.chance = s.power / power_;
     s.position_density *= s.chance;
+    if (!(s.position_density > 0 && std::isfinite(s.position_density)))
+      throw InputError("light", &s - source_.data() + 1,
+                       "has a size or a share of the power too small or too large for numbers");
     so_far += s.chance;
     s.chance_so_far = so_far;
   }

@@ -40,9 +40,9 @@ class Lights {
  public:
   using Index = std::function<double(const PathPoint&)>;
 
-  /// The index is that of the powers. Throws InputError naming the key (light, light_position,
-  /// light_direction, light_radius, light_power) for no lights, a light that is not inside the
-  /// stage, a beam that leaves it at once, and sizes or powers that are not positive and finite.
+  /// The index is that of the powers. Throws InputError naming the light for no lights, a light
+  /// that is not inside the stage, a beam that leaves it at once, and sizes or powers that are not
+  /// positive and finite.
   Lights(std::vector<Light> lights, const Stage& stage, const Index& index);
 
   template <class S>

@@ -17,9 +17,9 @@ using Sensor = std::variant<Camera, AreaDetector, DirectionalDetector>;
 /// uniform stratum.
 class SensorEnd {
  public:
-  /// Throws InputError naming the key (sensor_position, sensor_direction, sensor_up, field_of_view,
-  /// pixels, lens_radius, focus_distance, sensor_size, acceptance) for a sensor outside the stage
-  /// or inside the body, and for sizes that are not positive.
+  /// Throws InputError naming the key (sensor_at, sensor_direction, sensor_up, field_of_view,
+  /// pixels, lens_radius, focus_distance, sensor_size, acceptance, half_angle) for a sensor outside
+  /// the stage or inside the body, and for sizes that are not positive.
   SensorEnd(const Sensor& sensor, const Stage& stage);
 
   PixelGrid pixels() const {
