@@ -91,8 +91,8 @@ std::optional<EndPosition> AreaDetectorEnd::position_at(const Vec3& x) const {
 
 EndDirection AreaDetectorEnd::sample_direction(const EndPosition& at, double,
                                                RandomStream& random) const {
-  const double cosine = std::sqrt(1 - sine_squared_ * random.uniform());
-  return towards(at, direction_about(at.inward, cosine, 2 * pi * random.uniform()));
+  const double squared = sine_squared_ * random.uniform();
+  return towards(at, random_turn(at.inward, squared / (1 + std::sqrt(1 - squared)), random));
 }
 
 EndDirection AreaDetectorEnd::towards(const EndPosition& at, const Vec3& direction) const {
