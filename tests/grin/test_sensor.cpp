@@ -269,6 +269,8 @@ TEST_CASE("under a uniform environment: cameras read L/n^2, detectors pi n^2 sin
     const auto irradiance = [&](int) { return pi * n * n * sine * sine; };
     check_in_environment(test_box, area_on_box(acceptance), true, irradiance, 4);
     check_in_environment(test_sphere, area_on_sphere(acceptance), true, irradiance, 5);
+    AreaDetector whole_face{Vec3(0.5, -0.5, 3), Vec3(0, 1, 0), 3, 3, {2, 3}, acceptance};
+    check_in_environment(test_box, whole_face, true, irradiance, 6);
   }
 }
 
