@@ -82,8 +82,8 @@ EndPosition AreaDetectorEnd::sample_position(double stratum, RandomStream& rando
 }
 
 std::optional<EndPosition> AreaDetectorEnd::position_at(const Vec3& x) const {
-  const double tilt = normal(boundary_, x).dot(view_.forward);
-  if (!(tilt > 0)) return std::nullopt;  // the far side, or another face
+  if (!(normal(boundary_, x).dot(view_.forward) > 0))
+    return std::nullopt;  // the far side, or another face
   const Vec3 from_centre = x - centre_;
   const int pixel = face_.pixel_at(from_centre.dot(view_.right), from_centre.dot(view_.up));
   if (pixel < 0) return std::nullopt;
