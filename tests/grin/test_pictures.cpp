@@ -1,8 +1,10 @@
+#include <memory>
 #include <numeric>
 
 #include <Eigen/Geometry>
 #include <doctest/doctest.h>
 
+#include "grin/curved_space.h"
 #include "grin/light.h"
 #include "tests/grin/example_sensors.h"
 
@@ -56,16 +58,24 @@ class Picture {
 
 constexpr int paths = 200000;
 
-/// A light and a sensor in an empty stage of constant index.
+/// A light and a sensor in an empty stage, of constant index or with a field.
 struct Pair {
   Surface boundary;
   Light light;
   Sensor sensor;
   double n = 1.3;
+  std::shared_ptr<const CurvedSpace> field = {};
 
-  UniformSpace space() const { return {n}; }
+  double index(const PathPoint& p) const { return field ? field->index(p) : n; }
+  /// Where light leaves the stage, and along what.
+  std::pair<Vec3, Vec3> leave(const PathPoint& from, const Vec3& d, RandomStream& random) const {
+    if (!field) return {exit_point(boundary, from.x, d), d};
+    const Flight flight = field->fly(from, d, random);
+    CHECK(flight.end == Flight::End::boundary);
+    return {flight.point.x, flight.direction};
+  }
   Lights lights() const {
-    return {{light}, empty_stage(boundary), [this](const PathPoint&) { return n; }};
+    return {{light}, empty_stage(boundary), [this](const PathPoint& p) { return index(p); }};
   }
   SensorEnd end() const { return {sensor, empty_stage(boundary)}; }
 };
@@ -78,12 +88,12 @@ Picture seen_from_sensor(const Pair& pair, std::uint64_t seed) {
   RandomStream random(seed, 91, 0);
   for (int i = 0; i < paths; ++i) {
     picture.begin_path();
-    const EndPosition at = sensor.sample_position(pair.space(), random);
+    const EndPosition at = sensor.sample_position(pair, random);
     const EndDirection to = sensor.sample_direction(at, random);
     if (to.strength == 0) continue;
     const double weight = to.strength / (at.position_density * to.density);
-    lights.hit(pair.space(), exit_point(pair.boundary, at.point.x, to.direction), to.direction,
-               [&](const EndHit& hit) { picture.add(to.pixel, weight * hit.value); });
+    const auto [x, d] = pair.leave(at.point, to.direction, random);
+    lights.hit(pair, x, d, [&](const EndHit& hit) { picture.add(to.pixel, weight * hit.value); });
   }
   return picture;
 }
@@ -96,10 +106,11 @@ Picture thrown_by_light(const Pair& pair, std::uint64_t seed) {
   RandomStream random(seed, 92, 0);
   for (int i = 0; i < paths; ++i) {
     picture.begin_path();
-    const EndPosition at = lights.sample_position(pair.space(), random);
+    const EndPosition at = lights.sample_position(pair, random);
     const EndDirection to = lights.sample_direction(at, random);
     const double weight = to.strength / (at.position_density * to.density);
-    sensor.hit(pair.space(), exit_point(pair.boundary, at.point.x, to.direction), to.direction,
+    const auto [x, d] = pair.leave(at.point, to.direction, random);
+    sensor.hit(pair, x, d,
                [&](const EndHit& hit) { picture.add(hit.direction.pixel, weight * hit.value); });
   }
   return picture;
@@ -113,8 +124,8 @@ Picture joined(const Pair& pair, std::uint64_t seed) {
   RandomStream random(seed, 93, 0);
   for (int i = 0; i < paths; ++i) {
     picture.begin_path();
-    const EndPosition y = lights.sample_position(pair.space(), random);
-    const EndPosition z = sensor.sample_position(pair.space(), random);
+    const EndPosition y = lights.sample_position(pair, random);
+    const EndPosition z = sensor.sample_position(pair, random);
     const Vec3 line = z.point.x - y.point.x, d = line.normalized();
     const EndDirection from_light = lights.towards(y, d), to_sensor = sensor.towards(z, -d);
     if (to_sensor.pixel >= 0)
@@ -256,6 +267,29 @@ TEST_CASE("lenses: by sensor, by light and by joins the same picture") {
   wide.focus_distance = 1.2;
   wide.field_of_view = 0.4;
   check({test_sphere, PointLight{test_sphere.centre, 2}, wide}, 4);
+}
+
+TEST_CASE(
+    "in a field: from the sensor and from the light the same, and n^2 is the one at the end") {
+  // bends light by some 15 degrees on its way across
+  const Vec3 slope(0.1, -0.07, 0.05);
+  const auto space = [&](const Surface& boundary) -> std::shared_ptr<const CurvedSpace> {
+    return make_curved_space(LinearRamp{0.4, slope}, empty_stage(boundary), {0.2, 100, false});
+  };
+  const auto n_squared = [&](const Vec3& x) { return std::pow(1.4 + slope.dot(x), 2); };
+  const AreaDetector area = area_on_box();
+  const Vec3 up = area.up.normalized(), right = Vec3::UnitZ().cross(up);
+  const Pair box{test_box, environment(), area, 0, space(test_box)};
+  thrown_by_light(box, 1).check([&](int pixel) {
+    return pixel_mean(area.pixels, pixel, 0.8, 0.6, [&](double u, double v) {
+      return pi * n_squared(area.centre + u * right + v * up);
+    });
+  });
+  const Pair sphere{test_sphere, environment(), lens_on_sphere(), 0, space(test_sphere)};
+  thrown_by_light(sphere, 2).check([](int) { return 1.0; });
+
+  const Pair disk{test_box, disk_light(), area, 0, space(test_box)};
+  seen_from_sensor(disk, 3).check_like(thrown_by_light(disk, 4));
 }
 
 }  // namespace flatspeckle::grin
