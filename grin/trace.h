@@ -6,6 +6,7 @@
 
 #include "grin/first_crossing.h"
 #include "grin/stepper.h"
+#include "grin/straight_way.h"
 #include "grin/watch.h"
 
 namespace flatspeckle::grin {
@@ -23,21 +24,23 @@ struct TraceEnd {
   long looks = 0;  ///< times that surfaces were asked for their distance
 };
 
-/// What trace() does in a homogeneous medium: no steps, from clearance to clearance.
+/// What trace() does in a homogeneous medium: no steps, but the way to each surface.
 template <class... Tangent>
 TraceEnd trace_straight(const Homogeneous& field, std::span<const Surface> surfaces,
                         const TraceLimits& limits, RayState& ray, Tangent&... tangent) {
   const Watch watch(surfaces, limits, ray);
-  const double n = 1 + field.n_excess, least = limits.tolerance / 4;
-  for (long i = 0; i < limits.max_steps; ++i) {
-    const double clearance = watch.clearance(ray);
-    if (!(clearance > least)) {
-      const int surface = watch.nearest(ray);
-      return {surface < 0 ? Stop::length : Stop::surface, surface, i, i + 1};
-    }
-    Leapfrog::step(field, ray, tangent..., (clearance - least / 2) / n);
+  const Vec3 direction = ray.v.normalized();
+  double way = limits.max_arc_length;
+  int surface = -1;
+  for (std::size_t i = 0; i < surfaces.size(); ++i) {
+    const double here = watch.is_inside(i) ? way_out(surfaces[i], ray.x, direction)
+                                           : way_in(surfaces[i], ray.x, direction);
+    if (here >= way) continue;
+    way = here;
+    surface = static_cast<int>(i);
   }
-  return {Stop::lost, -1, limits.max_steps, limits.max_steps};
+  Leapfrog::step(field, ray, tangent..., way / (1 + field.n_excess));
+  return {surface < 0 ? Stop::length : Stop::surface, surface, 0, 1};
 }
 
 namespace trace_parts {

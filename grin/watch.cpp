@@ -24,7 +24,7 @@ Watch::Watch(std::span<const Surface> surfaces, const TraceLimits& limits, const
 /// as rays end within the last quarter before a surface, they always end within the tolerance.
 double Watch::clearance(std::size_t i, const Vec3& x) const {
   const double d = distance(surfaces_[i], x);
-  return (inside_ >> i & 1 ? -d : d) + (on_surface_ >> i & 1 ? 0.75 * tolerance_ : 0);
+  return (is_inside(i) ? -d : d) + (on_surface_ >> i & 1 ? 0.75 * tolerance_ : 0);
 }
 
 double Watch::clearance(const RayState& ray) const {

@@ -24,6 +24,9 @@ class Watch {
   /// tolerance of the surface. Throws InputError for too many surfaces.
   Watch(std::span<const Surface> surfaces, const TraceLimits& limits, const RayState& start);
 
+  /// The side of a surface that the ray is on, or goes to.
+  bool is_inside(std::size_t surface) const { return inside_ >> surface & 1; }
+
   /// Positive until the first crossing, and no more than the arc that is left to it.
   double clearance(const RayState& ray) const;
 

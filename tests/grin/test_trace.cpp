@@ -241,6 +241,17 @@ TEST_CASE("Far from a surface it is not looked at") {
   CHECK(end.looks < 100);
 }
 
+TEST_CASE("Straight rays go beside a face, however close, and along it") {
+  const std::vector<Surface> faces{Plane{{0, 0, 1}, Vec3::UnitZ()}, Box{{-2, -2, -2}, {2, 2, 1}}};
+  FixedSteps<Leapfrog> steps{1};
+  for (const double off : {0.0, 1e-12, 1e-7, 1e-3}) {
+    RayState ray{{0, 0, 1 - off}, Vec3::UnitX()};
+    const TraceEnd end = trace(Homogeneous{}, faces, {100, 1e-9}, steps, ray);
+    CHECK(end.surface == (off < 1e-9 ? -1 : 1));
+    CHECK(ray.x[0] == doctest::Approx(off < 1e-9 ? 100 : 2));
+  }
+}
+
 TEST_CASE("A tangent ends with its ray") {
   const std::vector<Surface> rim{Sphere{}};
   const RayState start = start_ray(lens, {-0.6, 0.3, 0.2}, {1, 0.2, 0.1});
