@@ -81,7 +81,7 @@ class StageMaker {
   FilledStage make(const IndexFieldSpec& field) {
     SceneField filled = make_index_field(command_, field, reach_of(region()));
     settle_rim(filled);
-    if (body_ && overhang(*body_, stage_.boundary) >= 0)
+    if (body_ && !fits(*body_, stage_.boundary))
       throw InputError("body: must be inside of the stage");
     if (filled.grid && !fits(region(), *filled.grid))
       throw InputError("grid: ends inside of the " + name() + ", and light needs a field in all of it");
