@@ -41,10 +41,9 @@ const char* const usage =
 
 int run(const Arguments& arguments) {
   static const std::map<std::string, int (*)(const Arguments&)> subcommands = {
-      {"place", place}, {"solve", solve},       {"covariance", covariance},
-      {"flux", flux},   {"validate", validate}, {"sweep", sweep},
-      {"field", field}, {"merge", merge},       {"trace", trace},
-      {"render", render}};
+      {"place", place},       {"solve", solve},  {"covariance", covariance}, {"flux", flux},
+      {"validate", validate}, {"sweep", sweep},  {"field", field},           {"merge", merge},
+      {"trace", trace},       {"render", render}};
   const std::string word = arguments.size() > 1 ? arguments[1] : "--help";
   if (word == "--help" || word == "-h" || word == "help") {
     std::cout << usage;

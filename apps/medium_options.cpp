@@ -62,8 +62,7 @@ grin::ScatteringMedium make_space_medium(const Subcommand& command, const Medium
     if (command.given(prefix + key) && !command.given(prefix + "mu_s") &&
         !command.given(prefix + "mu_a"))
       throw InputError(prefix + key + ": without " + prefix + "mu_s there is no use for it");
-  if (!spec.density.empty())
-    medium.density = read_density(prefix + "density", spec.density);
+  if (!spec.density.empty()) medium.density = read_density(prefix + "density", spec.density);
   return medium;
 }
 

@@ -12,7 +12,8 @@ namespace {
 
 std::vector<grin::Surface> surfaces_of(const RayStopSpec& spec) {
   std::vector<grin::Surface> surfaces;
-  for (const auto& plane : parts_of("stop_plane", spec.planes, 6, "a point and the normal outwards"))
+  for (const auto& plane :
+       parts_of("stop_plane", spec.planes, 6, "a point and the normal outwards"))
     surfaces.push_back(grin::Plane{
         three(plane, 0), direction_of("stop_plane, normal", {plane[3], plane[4], plane[5]})});
   for (const auto& sphere : spheres_of("stop_sphere", spec.spheres)) surfaces.push_back(sphere);

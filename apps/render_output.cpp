@@ -64,10 +64,11 @@ class Writer {
     for (double path : paths) times.push_back(path * length_unit.value_or(0) / light_speed);
     if (length_unit)
       file_.dataset("time", times, {"optical_path"}, "s", "optical path over the speed of light");
-    estimate("transient", result.picture.bins, {"row", "column", "optical_path"},
-             axes_.image_units, axes_.image_name + ", in the bin");
-    estimate("pulse", result.pulse, {"optical_path"}, result.total ? "1" : axes_.image_units,
-             result.total ? "power on the detector, in the bin" : "mean over the pixels, in the bin");
+    estimate("transient", result.picture.bins, {"row", "column", "optical_path"}, axes_.image_units,
+             axes_.image_name + ", in the bin");
+    estimate(
+        "pulse", result.pulse, {"optical_path"}, result.total ? "1" : axes_.image_units,
+        result.total ? "power on the detector, in the bin" : "mean over the pixels, in the bin");
   }
 
  private:
@@ -111,14 +112,14 @@ void print_render(const grin::RenderScene& scene, const grin::RenderJob& job,
                   const RenderResult& result) {
   const SensorAxes axes = axes_of(scene.sensor);
   const auto& image = result.picture.steady;
-  const auto brightest = std::max_element(
-      image.value.begin(), image.value.end(),
-      [](const Complex& a, const Complex& b) { return a.real() < b.real(); });
+  const auto brightest =
+      std::max_element(image.value.begin(), image.value.end(),
+                       [](const Complex& a, const Complex& b) { return a.real() < b.real(); });
   std::printf("%-16s %-13s %-10s\n", "", "value", "error");
   if (result.total) print_row("total power", *result.total, 0, "");
   print_row("mean of pixels", result.mean, 0, axes.image_units);
-  print_row("brightest pixel", image,
-            static_cast<std::size_t>(brightest - image.value.begin()), axes.image_units);
+  print_row("brightest pixel", image, static_cast<std::size_t>(brightest - image.value.begin()),
+            axes.image_units);
   std::printf("pixels: relative error %.2g %%\n", 100 * relative_error(image));
   if (!has_trials(job)) return;
   const auto& curves = *job.connections;

@@ -10,9 +10,9 @@ namespace flatspeckle::apps {
 /// What a run has found, in the shapes of docs/format.md.
 struct RenderResult {
   grin::RenderedPicture picture;
-  Estimate mean;                 ///< over the pixels
-  std::optional<Estimate> total; ///< power on an area detector
-  Estimate pulse;                ///< mean over the pixels by bin; empty in a steady state
+  Estimate mean;                  ///< over the pixels
+  std::optional<Estimate> total;  ///< power on an area detector
+  Estimate pulse;                 ///< mean over the pixels by bin; empty in a steady state
 };
 
 RenderResult render_result(const grin::RenderScene& scene, const grin::RenderJob& job,

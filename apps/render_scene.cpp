@@ -30,8 +30,7 @@ void check_size(const grin::Sensor& sensor, const grin::TimeBins& bins) {
   constexpr double most = 1e8;
   const int pixels = std::visit([](const auto& kind) { return kind.pixels.count(); }, sensor);
   const double size = static_cast<double>(pixels) * bins.count;
-  if (size > most)
-    throw InputError("pixels x path_bins", size, "must be at most 100000000");
+  if (size > most) throw InputError("pixels x path_bins", size, "must be at most 100000000");
 }
 
 /// Of sound that each path meets at a random time.
@@ -39,8 +38,7 @@ void check_random_phase(const Subcommand& command, const SceneField& field) {
   if (!std::holds_alternative<grin::StandingWave>(field.field) &&
       !std::holds_alternative<grin::FocusedSound>(field.field))
     throw InputError("random_phase: needs the field ultrasound or focused_sound, and it alone");
-  if (command.given("sound_phase"))
-    throw InputError("sound_phase: random_phase has no use for it");
+  if (command.given("sound_phase")) throw InputError("sound_phase: random_phase has no use for it");
 }
 
 double step_of(const RenderSpec& spec, double scale, double size) {

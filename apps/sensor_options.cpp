@@ -19,8 +19,7 @@ using grin::Vec3;
 constexpr double right_angle = std::numbers::pi / 2;
 
 const std::map<std::string, std::set<std::string>> keys_of_sensor = {
-    {"camera",
-     {"sensor_at", "sensor_direction", "field_of_view", "lens_radius", "focus_distance"}},
+    {"camera", {"sensor_at", "sensor_direction", "field_of_view", "lens_radius", "focus_distance"}},
     {"area", {"sensor_at", "sensor_size", "acceptance"}},
     {"directional", {"sensor_direction", "half_angle"}}};
 
@@ -87,8 +86,7 @@ grin::Camera camera(const Subcommand& command, const SensorSpec& spec) {
     return camera;
   }
   camera.lens_radius = positive("lens_radius", *spec.lens_radius);
-  if (!spec.focus_distance)
-    throw InputError("focus_distance is not given: a lens needs it");
+  if (!spec.focus_distance) throw InputError("focus_distance is not given: a lens needs it");
   camera.focus_distance = positive("focus_distance", *spec.focus_distance);
   return camera;
 }

@@ -26,10 +26,10 @@ grin::Sensor make_sensor(const Subcommand& command, const SensorSpec& spec);
 /// Centres of the pixels along rows and columns, and what they measure.
 struct SensorAxes {
   std::vector<double> row, column;
-  std::string units;                     ///< of row and column
-  std::string row_name, column_name;     ///< in words
-  std::string image_units, image_name;   ///< of a pixel, for lights of power 1
-  std::optional<double> area = {};       ///< over which an irradiance adds up to a power
+  std::string units;                    ///< of row and column
+  std::string row_name, column_name;    ///< in words
+  std::string image_units, image_name;  ///< of a pixel, for lights of power 1
+  std::optional<double> area = {};      ///< over which an irradiance adds up to a power
 };
 SensorAxes axes_of(const grin::Sensor& sensor);
 

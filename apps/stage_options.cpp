@@ -84,7 +84,8 @@ class StageMaker {
     if (body_ && !fits(*body_, stage_.boundary))
       throw InputError("body: must be inside of the stage");
     if (filled.grid && !fits(region(), *filled.grid))
-      throw InputError("grid: ends inside of the " + name() + ", and light needs a field in all of it");
+      throw InputError("grid: ends inside of the " + name() +
+                       ", and light needs a field in all of it");
     check_index(filled, region(), name());
     stage_.medium = make_space_medium(command_, spec_.medium, "");
     add_body();
