@@ -32,7 +32,7 @@ class Bidirectional {
     vertices_.clear();
     const EndPosition end = transport_.lights.sample_position(space_, random_);
     is_beam_ = end.is_beam;
-    const PathVertex start = end_vertex(end, space_.index(end.point));
+    const PathVertex start = end_vertex(end);
     join_to_sensor(start);
     const EndDirection first = transport_.lights.sample_direction(end, random_);
     const auto left = [&](const PathVertex& last) {
@@ -50,7 +50,7 @@ class Bidirectional {
   void walk_from_sensor(double stratum) {
     if (transport_.strategies.most_sensor < 2) return;
     const EndPosition end = transport_.sensor.sample_position(space_, random_, stratum);
-    const PathVertex start = end_vertex(end, space_.index(end.point));
+    const PathVertex start = end_vertex(end);
     const EndDirection first = transport_.sensor.sample_direction(end, random_, stratum);
     pixel_ = first.pixel;
     const auto left = [&](const PathVertex& last) {
@@ -79,13 +79,13 @@ class Bidirectional {
 
   void join_to_sensor(const PathVertex& y) {
     const EndPosition end = transport_.sensor.sample_position(space_, random_);
-    const PathVertex z = end_vertex(end, space_.index(end.point));
+    const PathVertex z = end_vertex(end);
     join_to_end(y, z, is_beam_);
   }
   void join_to_light(const PathVertex& z) {
     const EndPosition end = transport_.lights.sample_position(space_, random_);
     if (end.is_beam) return;
-    const PathVertex y = end_vertex(end, space_.index(end.point));
+    const PathVertex y = end_vertex(end);
     join_to_end(y, z, false);
   }
 

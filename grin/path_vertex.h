@@ -53,10 +53,10 @@ struct PathVertex {
   }
 };
 
-inline PathVertex end_vertex(const EndPosition& end, double index) {
+inline PathVertex end_vertex(const EndPosition& end) {
   PathVertex vertex;
   vertex.point = end.point;
-  vertex.index = index;
+  vertex.index = end.index;
   vertex.weight = 1 / end.position_density;
   vertex.end = &end;
   vertex.density = end.position_density;
