@@ -1,5 +1,6 @@
 #pragma once
 
+#include "grin/film.h"
 #include "grin/light_vertices.h"
 #include "grin/path_join.h"
 #include "grin/subpath.h"
@@ -71,8 +72,8 @@ class Bidirectional {
     ends.hit(space_, last.point.x, last.arrived, [&](const EndHit& hit) {
       PathVertex here = last;
       here.density *= std::abs(hit.position.inward.dot(last.arrived));
-      const double others = fewer_of_ours(here, hit.position.position_density,
-                                          hit.direction.density, more);
+      const double others =
+          fewer_of_ours(here, hit.position.position_density, hit.direction.density, more);
       add(pixel(hit), here.weight * hit.value / (1 + others), here.optical_path);
     });
   }
@@ -139,8 +140,8 @@ class Bidirectional {
     EndDirection way = leaving(transport_, ends, vertex, direction);
     if constexpr (plan.curved)
       if (vertex.end)
-        way.strength = std::max(
-            way.strength, elsewhere * ends.sample_direction(*vertex.end, random_).strength);
+        way.strength = std::max(way.strength,
+                                elsewhere * ends.sample_direction(*vertex.end, random_).strength);
     return way;
   }
 

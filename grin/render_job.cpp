@@ -78,7 +78,8 @@ double level_of_joins(const Tracer& tracer, const RenderScene& scene, double joi
   std::vector<double> promises;
   tracer.transport->join_level = std::numeric_limits<double>::infinity();
   tracer.kernel(paths, random, film, counts, &promises);
-  return join_level(promises, std::max(1.0, joins_per_flight * static_cast<double>(counts.flights)));
+  return join_level(promises,
+                    std::max(1.0, joins_per_flight * static_cast<double>(counts.flights)));
 }
 
 int paths_per_batch(std::size_t sums) {
@@ -111,8 +112,8 @@ RenderJob render_job(const RenderScene& scene, const RenderRequest& request, std
   require_usable(scene, request);
   check(scene.stage);
   const RenderPlan plan = render_plan(scene);
-  const Tracer tracer = plan.curved ? curved_tracer(scene, request, plan)
-                                    : straight_tracer(scene, request, plan);
+  const Tracer tracer =
+      plan.curved ? curved_tracer(scene, request, plan) : straight_tracer(scene, request, plan);
   tracer.transport->join_level = level_of_joins(
       tracer, scene, plan.curved ? joins_per_curved_flight : joins_per_straight_flight);
 
