@@ -22,6 +22,7 @@ class DensityGrid {
 
  private:
   FieldGrid grid_;
+  Vec3 per_spacing_;
   std::vector<double> density_;
   double largest_ = 0, mean_ = 0;
 };

@@ -7,31 +7,55 @@ namespace flatspeckle::grin {
 
 namespace {
 
-Vec3 read_vector(const ResultReader& file, const std::string& name) {
-  const auto values = file.attribute<std::vector<double>>("excess", name);
-  if (values.size() != 3) throw InputError("numbers in " + name, values.size(), "must be 3");
-  return {values[0], values[1], values[2]};
-}
+/// A dataset over x, y and z, and where its nodes lie.
+class GridDataset {
+ public:
+  GridDataset(const ResultReader& file, std::string name) : file_(file), name_(std::move(name)) {}
 
-SplineField read(const ResultReader& file) {
-  const std::vector<std::size_t> shape = file.shape("excess");
-  if (shape.size() != 3) throw InputError("axes of excess", shape.size(), "must be 3: x, y, z");
-  FieldGrid grid{read_vector(file, "origin"), read_vector(file, "spacing"), {}};
-  for (int a = 0; a < 3; ++a) grid.nodes[a] = static_cast<int>(shape[a]);
-  return SplineField(grid, file.dataset<double>("excess"));
-}
+  FieldGrid grid() const {
+    const std::vector<std::size_t> shape = file_.shape(name_);
+    if (shape.size() != 3)
+      throw InputError("axes of " + name_, shape.size(), "must be 3: x, y, z");
+    FieldGrid grid{vector("origin"), vector("spacing"), {}};
+    for (int a = 0; a < 3; ++a) grid.nodes[a] = static_cast<int>(shape[a]);
+    return grid;
+  }
+  std::vector<double> values() const { return file_.dataset<double>(name_); }
 
-}  // namespace
+ private:
+  Vec3 vector(const std::string& attribute) const {
+    const auto values = file_.attribute<std::vector<double>>(name_, attribute);
+    if (values.size() != 3)
+      throw InputError("numbers in " + attribute, values.size(), "must be 3");
+    return {values[0], values[1], values[2]};
+  }
 
-SplineField read_spline_field(const std::filesystem::path& path) {
+  const ResultReader& file_;
+  std::string name_;
+};
+
+/// Every InputError names the file.
+template <class Grid>
+Grid read_grid(const std::filesystem::path& path, const std::string& name) {
   const ResultReader file(path);
   try {
-    return read(file);
+    const GridDataset dataset(file, name);
+    return Grid(dataset.grid(), dataset.values());
   } catch (const InputError& error) {
     const std::string message = error.what();
     if (message.find(path.string()) != std::string::npos) throw;
     throw InputError(path.string() + ": " + message);
   }
+}
+
+}  // namespace
+
+SplineField read_spline_field(const std::filesystem::path& path) {
+  return read_grid<SplineField>(path, "excess");
+}
+
+DensityGrid read_density_grid(const std::filesystem::path& path) {
+  return read_grid<DensityGrid>(path, "density");
 }
 
 }  // namespace flatspeckle::grin

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "grin/density_grid.h"
 #include "grin/spline_field.h"
 
 namespace flatspeckle::grin {
@@ -10,5 +11,8 @@ namespace flatspeckle::grin {
 /// "origin" and "spacing", three numbers each. Throws InputError naming the file where something is
 /// missing, of another shape, or not a field (SplineField says what is).
 SplineField read_spline_field(const std::filesystem::path& path);
+
+/// A relative density in the same form, dataset "density".
+DensityGrid read_density_grid(const std::filesystem::path& path);
 
 }  // namespace flatspeckle::grin

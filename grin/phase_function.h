@@ -46,10 +46,13 @@ struct HenyeyGreenstein {
   double sample(double u) const {
     if constexpr (Dimension == 2)
       return 2 * std::atan((1 - g) / (1 + g) * std::tan(std::numbers::pi * (u - 0.5)));
-    // 1 - cos of the usual inverse, written so that nothing is divided by g or cancels
+    return 2 * std::asin(std::sqrt(sample_one_minus_cosine(u) / 2));
+  }
+  /// Of the angle that sample(u) returns.
+  double sample_one_minus_cosine(double u) const requires(Dimension == 3) {
+    // the usual inverse, written so that nothing is divided by g or cancels
     const double s = 1 - g + 2 * g * u;
-    const double one_minus_cosine = 2 * (1 - g) * (1 - g) * (1 - u) * (1 + g * u) / (s * s);
-    return 2 * std::asin(std::sqrt(std::min(1.0, one_minus_cosine / 2)));
+    return std::min(2.0, 2 * (1 - g) * (1 - g) * (1 - u) * (1 + g * u) / (s * s));
   }
 };
 

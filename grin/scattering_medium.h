@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 
 #include "core/random.h"
 #include "grin/density_grid.h"
@@ -29,5 +30,9 @@ struct ScatteringMedium {
   double mu_t() const { return mu_s + mu_a; }
   double albedo() const { return mu_s > 0 ? mu_s / mu_t() : 0; }
 };
+
+/// Throws InputError for coefficients that are negative or not finite, or |g| >= 1; the keys named
+/// begin with `prefix`.
+void check(const ScatteringMedium& medium, const std::string& prefix);
 
 }  // namespace flatspeckle::grin

@@ -24,4 +24,8 @@ struct Stage {
   double excess_around = 0;
 };
 
+/// Throws InputError for bad media, an index around that is not positive, a boundary or a body that
+/// is not closed or has no size, and a body that is not within the boundary.
+void check(const Stage& stage);
+
 }  // namespace flatspeckle::grin

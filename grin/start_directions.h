@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cmath>
+
 #include "core/random.h"
 #include "grin/vec3.h"
 
@@ -22,5 +24,25 @@ struct StartDirections {
 
 /// At this cosine from the axis (a unit vector) and this azimuth.
 Vec3 direction_about(const Vec3& axis, double cosine, double azimuth);
+
+/// At this 1 - cosine from the axis (a unit vector) and a random azimuth, without trigonometry:
+/// the azimuth is that of a random point in a disk.
+inline Vec3 random_turn(const Vec3& axis, double one_minus_cosine, RandomStream& random) {
+  double a, b, square;
+  do {
+    a = 2 * random.uniform() - 1;
+    b = 2 * random.uniform() - 1;
+    square = a * a + b * b;
+  } while (square > 1);
+  const double sine = std::sqrt(one_minus_cosine * (2 - one_minus_cosine) / square);
+  a *= sine;
+  b *= sine;
+  // Duff et al. 2017, Building an orthonormal basis, revisited
+  const double sign = std::copysign(1.0, axis[2]), c = -1 / (sign + axis[2]);
+  const double t = sign * axis[0] * a + axis[1] * b;
+  const Vec3 turned = (1 - one_minus_cosine) * axis +
+                      Vec3(a + axis[0] * c * t, sign * b + axis[1] * c * t, -t);
+  return (1.5 - 0.5 * turned.squaredNorm()) * turned;  // lengths of long walks do not drift
+}
 
 }  // namespace flatspeckle::grin

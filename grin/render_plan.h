@@ -1,0 +1,37 @@
+#pragma once
+
+#include <string>
+
+namespace flatspeckle::grin {
+
+struct RenderScene;
+
+/// What light transport in a scene has to do. A constant of the compiler: an estimator or a space
+/// made for a plan has no code for what the plan leaves out, and leaving it out never changes a
+/// result beyond rounding. Each `false` is a promise about the scene.
+struct RenderPlan {
+  bool curved = true;    ///< the index changes from point to point, not only at the body's surface
+  bool scatters = true;  ///< some medium does
+  bool absorbs = true;   ///< some medium does; all that scatters is lossless without
+  bool gridded = true;   ///< some medium's density is a grid
+  bool body = true;
+  bool timed = true;  ///< more than one bin of optical path
+
+  bool operator==(const RenderPlan&) const = default;
+
+  /// For people, and for the result file.
+  std::string describe() const;
+};
+
+/// The least plan that a scene allows.
+RenderPlan render_plan(const RenderScene& scene);
+
+/// The plan that is compiled for it: estimators in curved space leave out scattering and time bins
+/// only (the rest is the space's, behind the call of a flight), and a grid keeps absorption.
+constexpr RenderPlan compiled_plan(RenderPlan plan) {
+  if (plan.curved) plan.absorbs = plan.gridded = plan.body = true;
+  if (plan.gridded) plan.scatters = plan.absorbs = true;
+  return plan;
+}
+
+}  // namespace flatspeckle::grin
