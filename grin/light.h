@@ -1,12 +1,12 @@
 #pragma once
 
 #include <functional>
-#include <span>
 #include <variant>
 #include <vector>
 
+#include "core/random.h"
+#include "grin/boundary_patch.h"
 #include "grin/path_end.h"
-#include "grin/stage.h"
 
 namespace flatspeckle::grin {
 
@@ -24,7 +24,8 @@ struct BeamLight {
 };
 
 /// The part of the boundary within `radius` of `centre`, Lambertian inwards: L/n^2 = radiance. An
-/// infinite radius is the environment. Sphere and box boundaries only.
+/// infinite radius is the environment. Sphere and box boundaries only, see BoundaryPatch. Its power
+/// is radiance pi times the integral of n^2 over the part.
 struct FaceLight {
   Vec3 centre = Vec3::Zero();
   double radius;
@@ -33,27 +34,58 @@ struct FaceLight {
 
 using Light = std::variant<PointLight, BeamLight, FaceLight>;
 
-/// All lights of a scene; one of them is drawn for each path, by its power.
+/// All lights of a scene; one of them is drawn for each path, by its power. `space` in the calls is
+/// asked for space.index(PathPoint) alone.
 class Lights {
  public:
   using Index = std::function<double(const PathPoint&)>;
 
-  /// Throws InputError naming the light's key for no lights, a light outside the stage, a power
-  /// that is not positive.
-  Lights(std::vector<Light> lights, const Stage& stage, Index index);
+  /// The index is that of the powers. Throws InputError naming the light for no lights, a light
+  /// that is not inside the stage, a beam that leaves it at once, and sizes or powers that are not
+  /// positive and finite.
+  Lights(std::vector<Light> lights, const Stage& stage, const Index& index);
 
-  EndPosition sample_position(RandomStream& random) const;
+  template <class S>
+  EndPosition sample_position(const S& space, RandomStream& random) const {
+    EndPosition at = draw_position(random);
+    at.index = space.index(at.point);
+    return at;
+  }
   EndDirection sample_direction(const EndPosition& at, RandomStream& random) const;
   /// Towards a given direction, for joins.
   EndDirection towards(const EndPosition& at, const Vec3& direction) const;
+
   /// A path arrives on the boundary at x along `direction`: calls use(EndHit) for each light there.
-  template <class Use>
-  void hit(const Vec3& x, const Vec3& direction, const Use& use) const;
+  template <class S, class Use>
+  void hit(const S& space, const Vec3& x, const Vec3& direction, const Use& use) const {
+    for (const int light : faces_) {
+      if (!source_[light].patch->contains(x)) continue;
+      EndPosition at = position(light, {x, source_[light].patch->inward(x)});
+      at.index = space.index(at.point);
+      use_hit(at, towards(at, -direction), use);
+    }
+  }
 
   double power() const { return power_; }
 
  private:
-  std::vector<Light> lights_;
+  struct Source {
+    Light light;  ///< directions of beams are unit vectors
+    double power = 0;
+    double chance = 0;         ///< to be drawn
+    double chance_so_far = 0;  ///< this and all before
+    double position_density = 1;
+    std::optional<BoundaryPatch> patch = {};  ///< of a face
+  };
+  EndPosition draw_position(RandomStream& random) const;
+  EndPosition position(int light, const BoundaryPoint& at) const;
+  static Source source(const PointLight& light, const Stage& stage, const Index& index);
+  static Source source(const BeamLight& light, const Stage& stage, const Index& index);
+  static Source source(const FaceLight& light, const Stage& stage, const Index& index);
+
+  std::vector<Source> source_;
+  std::vector<int> faces_;
+  std::optional<Surface> body_;
   double power_ = 0;
 };
 

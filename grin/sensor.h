@@ -1,66 +1,62 @@
 #pragma once
 
-#include <array>
-#include <functional>
-#include <optional>
 #include <variant>
 
-#include "grin/path_end.h"
-#include "grin/stage.h"
+#include "grin/area_detector.h"
+#include "grin/camera.h"
+#include "grin/directional_detector.h"
 
 namespace flatspeckle::grin {
-
-/// Pixels, row 0 on top; pixel number = row columns + column.
-struct PixelGrid {
-  int columns = 1, rows = 1;
-  int count() const { return columns * rows; }
-};
-
-/// A camera that looks along `forward`: L/n^2 averaged over each pixel of its film.
-struct Camera {
-  Vec3 x, forward, up;
-  double field_of_view;  ///< across the columns, full angle, rad, < pi
-  PixelGrid pixels;
-  double lens_radius = 0;     ///< 0: pinhole. A lens lies on the boundary (its plane face, or flat
-                              ///< to the order of radius^2) and can be hit
-  double focus_distance = 1;  ///< of the lens
-};
-
-/// A rectangle on a face of a box boundary, or on the tangent plane of a sphere's: irradiance,
-/// power per area of each pixel, of light that arrives within `acceptance` of the outward normal.
-struct AreaDetector {
-  Vec3 centre, up;
-  double width, height;
-  PixelGrid pixels;
-  double acceptance;  ///< half angle, rad, up to pi/2
-};
-
-/// All light that leaves the stage through its boundary, by direction: power per solid angle in
-/// pixels of the sines of the angles from `forward` (orthographic): column along forward x up.
-struct DirectionalDetector {
-  Vec3 forward, up;
-  double half_angle;  ///< of the square's half side, its sine; up to pi/2
-  PixelGrid pixels;
-};
 
 using Sensor = std::variant<Camera, AreaDetector, DirectionalDetector>;
 
 /// The sensor of a scene as an end of paths; same interface as Lights.
+///
+/// `stratum`, the same number in (0, 1) for the position and the direction, picks the pixel: evenly
+/// spread numbers share the paths of a batch evenly among the pixels. Densities are those of a
+/// uniform stratum.
 class SensorEnd {
  public:
-  using Index = std::function<double(const PathPoint&)>;
+  /// Throws InputError naming the key (sensor_at, sensor_direction, sensor_up, field_of_view,
+  /// pixels, lens_radius, focus_distance, sensor_size, acceptance, half_angle) for a sensor outside
+  /// the stage or inside the body, and for sizes that are not positive.
+  SensorEnd(const Sensor& sensor, const Stage& stage);
 
-  /// Throws InputError for a sensor outside the stage or inside the body's wall, and for sizes that
-  /// are not positive.
-  SensorEnd(Sensor sensor, const Stage& stage, Index index);
+  PixelGrid pixels() const {
+    return std::visit([](const auto& end) { return end.pixels(); }, end_);
+  }
 
-  PixelGrid pixels() const;
-  EndPosition sample_position(RandomStream& random) const;
-  EndDirection sample_direction(const EndPosition& at, RandomStream& random) const;
+  template <class S>
+  EndPosition sample_position(const S& space, RandomStream& random, double stratum) const {
+    EndPosition at =
+        std::visit([&](const auto& end) { return end.sample_position(stratum, random); }, end_);
+    at.index = space.index(at.point);
+    return at;
+  }
+  EndDirection sample_direction(const EndPosition& at, RandomStream& random, double stratum) const;
+  template <class S>
+  EndPosition sample_position(const S& space, RandomStream& random) const {
+    return sample_position(space, random, random.uniform());
+  }
+  EndDirection sample_direction(const EndPosition& at, RandomStream& random) const {
+    return sample_direction(at, random, random.uniform());
+  }
   /// pixel -1 and strength 0 where the sensor does not look.
   EndDirection towards(const EndPosition& at, const Vec3& direction) const;
-  template <class Use>
-  void hit(const Vec3& x, const Vec3& direction, const Use& use) const;
+
+  /// A path arrives on the boundary at x along `direction`: calls use(EndHit) if the sensor sees
+  /// it.
+  template <class S, class Use>
+  void hit(const S& space, const Vec3& x, const Vec3& direction, const Use& use) const {
+    auto at = std::visit([&](const auto& end) { return end.position_at(x); }, end_);
+    if (!at) return;
+    at->index = space.index(at->point);
+    use_hit(*at, towards(*at, -direction), use);
+  }
+
+ private:
+  using End = std::variant<CameraEnd, AreaDetectorEnd, DirectionalEnd>;
+  End end_;
 };
 
 }  // namespace flatspeckle::grin

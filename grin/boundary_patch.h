@@ -1,0 +1,60 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <variant>
+
+#include "core/random.h"
+#include "grin/signed_distance.h"
+
+namespace flatspeckle::grin {
+
+struct BoundaryPoint {
+  Vec3 x, inward;
+};
+
+/// The point of a sphere's or a box's surface next to x, where x is on it to 1e-6 of its size.
+std::optional<BoundaryPoint> boundary_point(const Surface& boundary, const Vec3& x);
+
+/// A part of a sphere's or a box's surface, sampled uniformly by its area.
+class BoundaryPatch {
+ public:
+  /// All of it. Throws InputError naming `key` for another boundary.
+  BoundaryPatch(const Surface& boundary, const char* key);
+
+  /// What is within `radius` of `centre`, a point of the surface: a cap of a sphere, a disk on one
+  /// face of a box; both have area pi radius^2. A sphere's cap may be all of it. Throws InputError
+  /// for another boundary, a centre that is not on it, a radius that is not positive, and a disk
+  /// that is not within one face.
+  BoundaryPatch(const Surface& boundary, const Vec3& centre, double radius, const char* centre_key,
+                const char* radius_key);
+
+  double area() const { return area_; }
+  BoundaryPoint sample(RandomStream& random) const;
+  /// Of points on the surface.
+  bool contains(const Vec3& x) const;
+  Vec3 inward(const Vec3& x) const;
+
+ private:
+  struct Cap {
+    Sphere sphere;
+    Vec3 centre, axis;  ///< axis: from the sphere's centre, unit
+    double chord;       ///< from the centre to the rim
+  };
+  struct Disk {
+    Vec3 centre, inward;
+    double radius;
+  };
+  struct Faces {
+    Box box;
+    std::array<double, 3> pair_chance;  ///< of the two faces across each axis
+  };
+  static BoundaryPoint sample(const Cap& cap, RandomStream& random);
+  static BoundaryPoint sample(const Disk& disk, RandomStream& random);
+  static BoundaryPoint sample(const Faces& faces, RandomStream& random);
+
+  std::variant<Cap, Disk, Faces> shape_;
+  double area_;
+};
+
+}  // namespace flatspeckle::grin

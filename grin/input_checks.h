@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cmath>
+
+#include "core/error.h"
+#include "grin/stage.h"
+
+namespace flatspeckle::grin {
+
+/// Checks of scene keys; all throw InputError.
+
+inline void require_finite(const char* key, const Vec3& x) {
+  if (!x.allFinite()) throw InputError(key, x.transpose(), "must be finite");
+}
+inline void require_positive(const char* key, double value) {
+  if (!(value > 0 && std::isfinite(value)))
+    throw InputError(key, value, "must be positive and finite");
+}
+inline Vec3 unit_direction(const char* key, const Vec3& direction) {
+  require_finite(key, direction);
+  const Vec3 unit = direction.stableNormalized();
+  if (!(std::abs(unit.norm() - 1) < 1e-9))
+    throw InputError(key, direction.transpose(), "must not be 0");
+  return unit;
+}
+/// Of a sensor's place: inside the stage or on its boundary, and not in the body.
+inline void require_in_stage(const Stage& stage, const Vec3& x) {
+  require_finite("sensor_at", x);
+  if (!(distance(stage.boundary, x) <= 1e-9 * x.norm()))
+    throw InputError("sensor_at", x.transpose(), "must be inside the stage");
+  if (stage.body && !(distance(stage.body->surface, x) >= 0))
+    throw InputError("sensor_at", x.transpose(), "must not be inside the body");
+}
+
+}  // namespace flatspeckle::grin

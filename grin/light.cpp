@@ -1,0 +1,162 @@
+#include "grin/light.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "grin/geometric_spreading.h"
+#include "grin/input_checks.h"
+#include "grin/start_directions.h"
+
+namespace flatspeckle::grin {
+
+namespace {
+
+using std::numbers::pi;
+
+/// Of n^2 over a patch: exact where n is constant.
+double mean_index_squared(const BoundaryPatch& patch, const std::optional<Surface>& body,
+                          const Lights::Index& index) {
+  constexpr int points = 4096;
+  RandomStream random(0, 0, 0);
+  double mean = 0;
+  for (int i = 0; i < points; ++i) {
+    const Vec3 x = patch.sample(random).x;
+    const double n = index({x, part_at(body, x)});
+    mean += (n * n - mean) / (i + 1);
+  }
+  return mean;
+}
+
+Vec3 on_disk(const BeamLight& beam, double r, double azimuth) {
+  const Frame across = frame_across(beam.direction);
+  return beam.centre + r * (std::cos(azimuth) * across.col(0) + std::sin(azimuth) * across.col(1));
+}
+
+/// The disk has no point outside the stage, as far as its rim tells, and light goes into it.
+void require_inside(const BeamLight& beam, const Stage& stage) {
+  constexpr int rim_points = 64;
+  const double tolerance = 1e-9 * (beam.radius + std::abs(distance(stage.boundary, beam.centre)));
+  for (int i = 0; i < rim_points; ++i)
+    if (!(distance(stage.boundary, on_disk(beam, beam.radius, 2 * pi * i / rim_points)) <=
+          tolerance))
+      throw InputError("radius of a beam_light", beam.radius,
+                       "the beam's disk must be inside the stage");
+  if (distance(stage.boundary, beam.centre) >= -tolerance &&
+      !(beam.direction.dot(normal(stage.boundary, beam.centre)) < 0))
+    throw InputError("direction of a beam_light", beam.direction.transpose(),
+                     "must point into the stage");
+}
+
+}  // namespace
+
+Lights::Source Lights::source(const PointLight& light, const Stage& stage, const Index&) {
+  require_finite("position of a point_light", light.x);
+  require_positive("power of a point_light", light.power);
+  if (!(distance(stage.boundary, light.x) < 0))
+    throw InputError("position of a point_light", light.x.transpose(), "must be inside the stage");
+  return {.light = light, .power = light.power};
+}
+
+Lights::Source Lights::source(const BeamLight& light, const Stage& stage, const Index&) {
+  BeamLight beam = light;
+  beam.direction = unit_direction("direction of a beam_light", light.direction);
+  require_finite("position of a beam_light", beam.centre);
+  require_positive("radius of a beam_light", beam.radius);
+  require_positive("power of a beam_light", beam.power);
+  require_inside(beam, stage);
+  return {
+      .light = beam, .power = beam.power, .position_density = 1 / (pi * beam.radius * beam.radius)};
+}
+
+Lights::Source Lights::source(const FaceLight& light, const Stage& stage, const Index& index) {
+  const bool everywhere = light.radius == INFINITY;
+  require_positive(everywhere ? "radiance of environment" : "radiance of a face_light",
+                   light.radiance);
+  if (!everywhere) require_finite("centre of a face_light", light.centre);
+  BoundaryPatch patch = everywhere
+                            ? BoundaryPatch(stage.boundary, "environment")
+                            : BoundaryPatch(stage.boundary, light.centre, light.radius,
+                                            "centre of a face_light", "radius of a face_light");
+  const double n_squared = mean_index_squared(patch, body_surface(stage), index);
+  if (!(n_squared > 0 && std::isfinite(n_squared)))
+    throw InputError("face_light: the index of refraction is not positive and finite all over it");
+  return {.light = light,
+          .power = pi * n_squared * patch.area() * light.radiance,
+          .position_density = 1 / patch.area(),
+          .patch = patch};
+}
+
+Lights::Lights(std::vector<Light> lights, const Stage& stage, const Index& index)
+    : body_(body_surface(stage)) {
+  if (lights.empty()) throw InputError("light: the scene needs at least one");
+  for (const Light& light : lights) {
+    source_.push_back(std::visit([&](const auto& l) { return source(l, stage, index); }, light));
+    if (source_.back().patch) faces_.push_back(static_cast<int>(source_.size()) - 1);
+    power_ += source_.back().power;
+  }
+  double so_far = 0;
+  for (Source& s : source_) {
+    s.chance = s.power / power_;
+    s.position_density *= s.chance;
+    if (!(s.position_density > 0 && std::isfinite(s.position_density)))
+      throw InputError("light", &s - source_.data() + 1,
+                       "has a size or a share of the power too small or too large for numbers");
+    so_far += s.chance;
+    s.chance_so_far = so_far;
+  }
+}
+
+EndPosition Lights::position(int light, const BoundaryPoint& at) const {
+  return {.point = {at.x, part_at(body_, at.x)},
+          .inward = at.inward,
+          .position_density = source_[light].position_density,
+          .light = light};
+}
+
+EndPosition Lights::draw_position(RandomStream& random) const {
+  const double u = random.uniform();
+  int light = 0;
+  while (light + 1 < static_cast<int>(source_.size()) && u >= source_[light].chance_so_far) ++light;
+  const Source& from = source_[light];
+  if (from.patch) return position(light, from.patch->sample(random));
+  if (const auto* point = std::get_if<PointLight>(&from.light)) {
+    EndPosition at = position(light, {point->x, Vec3::Zero()});
+    at.is_point = true;
+    return at;
+  }
+  const auto& beam = std::get<BeamLight>(from.light);
+  const double r = beam.radius * std::sqrt(random.uniform());
+  EndPosition at = position(light, {on_disk(beam, r, 2 * pi * random.uniform()), beam.direction});
+  at.is_beam = true;
+  return at;
+}
+
+EndDirection Lights::sample_direction(const EndPosition& at, RandomStream& random) const {
+  const Source& from = source_[at.light];
+  if (at.is_beam)
+    return {.direction = at.inward,
+            .density = 1,
+            .strength = from.power * from.position_density / from.chance};
+  if (at.is_point) {
+    const double cosine = 2 * random.uniform() - 1;
+    return towards(at, direction_about(Vec3::UnitZ(), cosine, 2 * pi * random.uniform()));
+  }
+  const double cosine = std::sqrt(random.uniform());
+  return towards(at, direction_about(at.inward, cosine, 2 * pi * random.uniform()));
+}
+
+EndDirection Lights::towards(const EndPosition& at, const Vec3& direction) const {
+  const Source& from = source_[at.light];
+  EndDirection to{.direction = direction};
+  if (at.is_point) {
+    to.density = 1 / (4 * pi);
+    to.strength = from.power / (4 * pi);
+  } else if (!at.is_beam) {
+    const double cosine = std::max(0.0, direction.dot(at.inward));
+    to.density = cosine / pi;
+    to.strength = at.index * at.index * cosine * std::get<FaceLight>(from.light).radiance;
+  }
+  return to;
+}
+
+}  // namespace flatspeckle::grin
