@@ -1,5 +1,6 @@
 #pragma once
 
+#include "grin/film.h"
 #include "grin/light_vertices.h"
 #include "grin/path_join.h"
 #include "grin/subpath.h"
@@ -32,7 +33,7 @@ class Bidirectional {
     vertices_.clear();
     const EndPosition end = transport_.lights.sample_position(space_, random_);
     is_beam_ = end.is_beam;
-    const PathVertex start = end_vertex(end, space_.index(end.point));
+    const PathVertex start = end_vertex(end);
     join_to_sensor(start);
     const EndDirection first = transport_.lights.sample_direction(end, random_);
     const auto left = [&](const PathVertex& last) {
@@ -50,7 +51,7 @@ class Bidirectional {
   void walk_from_sensor(double stratum) {
     if (transport_.strategies.most_sensor < 2) return;
     const EndPosition end = transport_.sensor.sample_position(space_, random_, stratum);
-    const PathVertex start = end_vertex(end, space_.index(end.point));
+    const PathVertex start = end_vertex(end);
     const EndDirection first = transport_.sensor.sample_direction(end, random_, stratum);
     pixel_ = first.pixel;
     const auto left = [&](const PathVertex& last) {
@@ -71,21 +72,21 @@ class Bidirectional {
     ends.hit(space_, last.point.x, last.arrived, [&](const EndHit& hit) {
       PathVertex here = last;
       here.density *= std::abs(hit.position.inward.dot(last.arrived));
-      const double others = fewer_of_ours(here, hit.position.position_density,
-                                          hit.direction.density, more);
+      const double others =
+          fewer_of_ours(here, hit.position.position_density, hit.direction.density, more);
       add(pixel(hit), here.weight * hit.value / (1 + others), here.optical_path);
     });
   }
 
   void join_to_sensor(const PathVertex& y) {
     const EndPosition end = transport_.sensor.sample_position(space_, random_);
-    const PathVertex z = end_vertex(end, space_.index(end.point));
+    const PathVertex z = end_vertex(end);
     join_to_end(y, z, is_beam_);
   }
   void join_to_light(const PathVertex& z) {
     const EndPosition end = transport_.lights.sample_position(space_, random_);
     if (end.is_beam) return;
-    const PathVertex y = end_vertex(end, space_.index(end.point));
+    const PathVertex y = end_vertex(end);
     join_to_end(y, z, false);
   }
 
@@ -139,8 +140,8 @@ class Bidirectional {
     EndDirection way = leaving(transport_, ends, vertex, direction);
     if constexpr (plan.curved)
       if (vertex.end)
-        way.strength = std::max(
-            way.strength, elsewhere * ends.sample_direction(*vertex.end, random_).strength);
+        way.strength = std::max(way.strength,
+                                elsewhere * ends.sample_direction(*vertex.end, random_).strength);
     return way;
   }
 

@@ -23,8 +23,7 @@ template <class End>
 EndDirection leaving(const Transport& transport, const End& end, const PathVertex& vertex,
                      const Vec3& direction) {
   if (vertex.end) return end.towards(*vertex.end, direction);
-  const double p =
-      transport.medium(vertex.point.part).phase.density(vertex.arrived.dot(direction));
+  const double p = transport.medium(vertex.point.part).phase.density(vertex.arrived.dot(direction));
   return {direction, p, p};
 }
 
@@ -37,8 +36,8 @@ inline JoinedPath joined_path(const Strategies& strategies, const PathVertex& y,
   if (!(value > 0)) return {};
   const double attenuation = bounded_attenuation(curve.optical_depth);
   const double turned = z.index / y.index * (z.index / y.index);
-  const double y_from_z = from_z.density * attenuation / (curve.spreading * turned) *
-                          y.cosine(curve.start_direction);
+  const double y_from_z =
+      from_z.density * attenuation / (curve.spreading * turned) * y.cosine(curve.start_direction);
   const double z_from_y =
       from_y.density * attenuation / curve.spreading * z.cosine(curve.end_direction);
   const double others =

@@ -7,6 +7,7 @@
 #include "core/random.h"
 #include "grin/curved_space.h"
 #include "grin/render_plan.h"
+#include "grin/film.h"
 #include "grin/transport.h"
 
 namespace flatspeckle::grin {

@@ -3,8 +3,7 @@
 namespace flatspeckle::grin {
 
 PathKernel straight_kernel_without_body(const RenderPlan& plan,
-                                        std::shared_ptr<const Transport> transport,
-                                        double excess) {
+                                        std::shared_ptr<const Transport> transport, double excess) {
   return straight_kernel_of_body<false>(plan, transport, excess);
 }
 

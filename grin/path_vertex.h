@@ -36,7 +36,7 @@ struct PathVertex {
   double index = 1;
   double weight = 1;  ///< of the subpath, without the direction in which it goes on
   double optical_path = 0;
-  int vertices = 1;                ///< of the subpath, this one included
+  int vertices = 1;                  ///< of the subpath, this one included
   const EndPosition* end = nullptr;  ///< at our end
 
   double density = 1;  ///< with which it was made
@@ -53,10 +53,10 @@ struct PathVertex {
   }
 };
 
-inline PathVertex end_vertex(const EndPosition& end, double index) {
+inline PathVertex end_vertex(const EndPosition& end) {
   PathVertex vertex;
   vertex.point = end.point;
-  vertex.index = index;
+  vertex.index = end.index;
   vertex.weight = 1 / end.position_density;
   vertex.end = &end;
   vertex.density = end.position_density;
@@ -101,9 +101,9 @@ inline PathVertex arrived(const PathVertex& here, const Flight& flight, double d
 /// Which strategies are in use, by the numbers of vertices made from either end.
 struct Strategies {
   static constexpr int unlimited = std::numeric_limits<int>::max() / 2;
-  int most_light = unlimited;       ///< 1: path tracing
+  int most_light = unlimited;          ///< 1: path tracing
   int most_light_of_beam = unlimited;  ///< 2: path tracing; the first collision is the light
-  int most_sensor = unlimited;      ///< 1: light tracing
+  int most_sensor = unlimited;         ///< 1: light tracing
 
   int most_of_light(bool is_beam) const { return is_beam ? most_light_of_beam : most_light; }
 };

@@ -18,7 +18,7 @@ void walk(const Transport& transport, const S& space, const PathVertex& start,
   PathVertex here = start;
   here.weight *= first.strength / first.density;
   Vec3 direction = first.direction;
-  double density = start.end->is_beam ? 1 : first.density;
+  double density = first.density;
   double throughput = 1;
   while (here.vertices < most && here.weight > 0) {
     const Flight flight = space.fly(here.point, direction, random);
