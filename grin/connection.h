@@ -47,6 +47,7 @@ struct ConnectionOptions {
   double caustic = 1e-5;       ///< Q is on one where a beam from P is narrower than this times
                                ///< its widest
   std::uint64_t roulette_after = 512;  ///< trials in search of a curve before roulette begins
+  bool count_caustics = true;          ///< of a curve found: one more trace along it
 };
 
 /// How a trial ended. `degenerate`: Q lies on a caustic, where curves merge, or on the focus of a

@@ -45,7 +45,9 @@ ConnectionEstimate connect(const ConnectionTrial<F, R, Step>& trial, RandomStrea
   if (outcome != TrialOutcome::converged) return {outcome, std::nullopt, 0};
   ++statistics.found;
   const double multiplicity = trials_to_refind(trial, curve, random, statistics);
-  return {outcome, trial.with_caustics(curve, statistics), multiplicity};
+  return {outcome,
+          trial.options().count_caustics ? trial.with_caustics(curve, statistics) : curve,
+          multiplicity};
 }
 
 /// In a homogeneous field the curve is the straight line, and no trial runs.

@@ -31,6 +31,9 @@ class PartMedium {
     return !grid_ || random.uniform() * largest_ < (*grid_)(x);
   }
 
+  /// The share of tentative collisions that is none.
+  double lacking(const Vec3& x) const { return 1 - (*grid_)(x) / largest_; }
+
   /// The arc length to the next collision along a path x(s), from Woodcock's tentative collisions;
   /// infinity if it would be beyond `longest`.
   template <RenderPlan plan, class Path>
@@ -60,7 +63,7 @@ class PartMedium {
     double left = 1;
     for (double s = sample_free_flight(majorant(), random.uniform()); s < length && left > 0;
          s += sample_free_flight(majorant(), random.uniform()))
-      left *= 1 - (*grid_)(x(s)) / largest_;
+      left *= lacking(x(s));
     return left;
   }
 

@@ -1,0 +1,8 @@
+#include "grin/curved_space_of.h"
+
+namespace flatspeckle::grin {
+
+template class CurvedSpaceOf<ParabolicGuide>;
+template class CurvedSpaceOf<SechGuide>;
+
+}  // namespace flatspeckle::grin

@@ -1,0 +1,147 @@
+#pragma once
+
+#include <tuple>
+
+#include "grin/first_crossing.h"
+#include "grin/part_medium.h"
+#include "grin/ray_step.h"
+#include "grin/signed_distance.h"
+#include "grin/step_curve.h"
+
+namespace flatspeckle::grin {
+
+/// The part of a flight that lies in an index field, inside a surface: equal steps of Sharma, and a
+/// shorter one at the end. As trace() it does not ask for the distance from the surface where that
+/// is far away; places within a step are found on its StepCurve.
+template <IndexField F>
+class CurvedLeg {
+ public:
+  enum class Stop { collision, surface, lost };
+
+  CurvedLeg(const F& field, const Surface& surface, const PartMedium& medium, double step)
+      : field_(field),
+        surface_(surface),
+        medium_(medium),
+        step_(step),
+        tolerance_(1e-9 * step),
+        has_collisions_(medium.scatters() || medium.grid()) {}
+
+  /// Goes on from a state inside the surface, or on it and on the way in, at arc length 0. weight:
+  /// of light that is absorbed and not scattered, is multiplied by an estimate of what is left.
+  /// Tangent: nothing or a RayTangent, which becomes that of a fixed last step.
+  template <class... Tangent>
+  Stop go(double longest, double& weight, RandomStream& random, RayState& ray,
+          Tangent&... tangent) const {
+    const double start_distance = distance(surface_, ray.x);
+    const bool on_surface = start_distance >= -tolerance_;
+    const double put_back = on_surface ? std::max(0.0, start_distance) + 0.75 * tolerance_ : 0;
+    double clearance = put_back - start_distance, collision = next_collision(0, random);
+    for (int steps = 0; steps < most_steps && ray.arc_length <= longest; ++steps) {
+      const std::tuple<RayState, Tangent...> before(ray, tangent...);
+      const RayState& start = std::get<0>(before);
+      Sharma::step(field_, ray, tangent..., step_);
+      const bool is_lost = !(ray.arc_length > start.arc_length);
+      const double arc = is_lost ? 3 * start.v.norm() * step_ : 1.1 * (ray.arc_length - start.arc_length);
+      clearance -= arc;
+      double part = 1;
+      bool on_way_out = false;
+      if (is_lost || !(clearance > 0)) {
+        const auto exit = way_out(start, ray, put_back, arc, is_lost);
+        if (!exit && is_lost) return Stop::lost;
+        on_way_out = exit.has_value();
+        clearance = put_back - distance(surface_, ray.x);
+        if (exit) part = *exit;
+      }
+      const auto go_back = [&](double theta) {
+        std::tie(ray, tangent...) = before;
+        Sharma::step(field_, ray, tangent..., theta * step_);
+      };
+      if (on_way_out) go_back(part);
+      if (collision <= ray.arc_length) {
+        const RayState end = ray;
+        const StepCurve curve(start, end, part * step_);
+        for (; collision <= end.arc_length; collision = next_collision(collision, random)) {
+          const double theta = curve.theta_at(collision);
+          if (!collides(curve.x(theta), weight, random)) continue;
+          go_back(theta * part);
+          return Stop::collision;
+        }
+      }
+      if (on_way_out) return Stop::surface;
+    }
+    return Stop::lost;
+  }
+
+  /// Estimates the transmittance of a curve of so many equal steps by ratio tracking.
+  double ratio_tracked(RayState ray, double sigma, int steps, RandomStream& random) const {
+    double left = 1, collision = next_collision(0, random);
+    for (int i = 0; i < steps && left > 0; ++i) {
+      const RayState start = ray;
+      Sharma::step(field_, ray, sigma / steps);
+      const StepCurve curve(start, ray, sigma / steps);
+      for (; collision < ray.arc_length; collision = next_collision(collision, random))
+        left *= medium_.lacking(curve.x(curve.theta_at(collision)));
+    }
+    return left;
+  }
+
+ private:
+  static constexpr int most_steps = 1 << 20;
+
+  double next_collision(double after, RandomStream& random) const {
+    if (!has_collisions_) return std::numeric_limits<double>::infinity();
+    return after + sample_free_flight(medium_.majorant(), random.uniform());
+  }
+  bool collides(const Vec3& x, double& weight, RandomStream& random) const {
+    if (medium_.scatters()) return medium_.accepts(x, random);
+    weight *= medium_.lacking(x);
+    return false;
+  }
+
+  /// The part of a step that ends on the surface, within the last quarter of the tolerance before
+  /// it; nothing where the step does not reach it.
+  std::optional<double> way_out(const RayState& start, const RayState& end, double put_back,
+                                double arc, bool is_lost) const {
+    const auto exact = [&](double theta) {
+      RayState ray = start;
+      Sharma::step(field_, ray, theta * step_);
+      return put_back - distance(surface_, ray.x);
+    };
+    if (is_lost) return search(exact, arc);
+    const StepCurve curve(start, end, step_);
+    const auto close = [&](double theta) { return put_back - distance(surface_, curve.x(theta)); };
+    const auto guess = search(close, arc);
+    if (!guess) return std::nullopt;
+    const auto mended = mend(exact, *guess, close);
+    return mended ? mended : search(exact, arc);
+  }
+
+  template <class Function>
+  std::optional<double> search(const Function& clearance, double arc) const {
+    const auto bracket = first_change(clearance, {0, 1, clearance(0), clearance(1)}, arc);
+    if (!bracket) return std::nullopt;
+    return zero(clearance, *bracket, tolerance_ / 4);
+  }
+
+  /// Newton steps with the slope of the close curve.
+  template <class Exact, class Close>
+  std::optional<double> mend(const Exact& exact, double theta, const Close& close) const {
+    const double aim = tolerance_ / 8, apart = 1e-3;
+    const double slope = (close(theta + apart) - close(theta - apart)) / (2 * apart);
+    for (int i = 0; i < 4; ++i) {
+      const double off = exact(theta) - aim;
+      if (std::abs(off) < aim) return theta;
+      theta -= off / slope;
+      if (!(theta > 0 && theta <= 1.01)) return std::nullopt;
+    }
+    return std::nullopt;
+  }
+
+  const F& field_;
+  const Surface& surface_;
+  const PartMedium& medium_;
+  double step_, tolerance_;
+  bool has_collisions_;
+};
+
+}  // namespace flatspeckle::grin
