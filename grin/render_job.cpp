@@ -10,6 +10,7 @@
 #include "grin/curved_space.h"
 #include "grin/join_level.h"
 #include "grin/path_kernels.h"
+#include "grin/photon_map.h"
 
 namespace flatspeckle::grin {
 
@@ -26,8 +27,12 @@ Strategies strategies(RenderMethod method) {
   return all;
 }
 
-std::shared_ptr<const CurvedSpace> curved_space(const RenderScene& scene) {
-  return make_curved_space(scene.field, scene.stage, {scene.step, scene.max_length});
+bool is_photon_map(const RenderRequest& request) {
+  return request.method == RenderMethod::photon_map;
+}
+
+double photon_radius(const RenderScene& scene, const RenderRequest& request) {
+  return request.photon_radius > 0 ? request.photon_radius : default_photon_radius(scene.stage);
 }
 
 /// Lights, sensor and kernel of a scene.
@@ -55,14 +60,21 @@ Tracer straight_tracer(const RenderScene& scene, const RenderRequest& request,
   const auto transport = transport_in(scene, request, [&](const PathPoint& p) {
     return 1 + (p.part == Part::body ? excess : around);
   });
-  return {transport, straight_kernel(plan, transport, excess)};
+  return {transport, is_photon_map(request) ? photon_kernel(plan.timed, transport, excess,
+                                                            photon_radius(scene, request))
+                                            : straight_kernel(plan, transport, excess)};
 }
 
 Tracer curved_tracer(const RenderScene& scene, const RenderRequest& request,
                      const RenderPlan& plan) {
-  const std::shared_ptr<const CurvedSpace> space = curved_space(scene);
+  const std::shared_ptr<const CurvedSpace> space =
+      make_curved_space(scene.field, scene.stage,
+                        {scene.step, scene.max_length, .spreading = !is_photon_map(request)});
   const auto transport =
       transport_in(scene, request, [&](const PathPoint& p) { return space->index(p); });
+  if (is_photon_map(request))
+    return {transport, photon_kernel(plan.timed, transport, space, scene.random_phase,
+                                     photon_radius(scene, request))};
   return {transport, curved_kernel(plan, transport, space, scene.random_phase)};
 }
 
@@ -114,15 +126,17 @@ RenderJob render_job(const RenderScene& scene, const RenderRequest& request, std
   const RenderPlan plan = render_plan(scene);
   const Tracer tracer =
       plan.curved ? curved_tracer(scene, request, plan) : straight_tracer(scene, request, plan);
-  tracer.transport->join_level = level_of_joins(
-      tracer, scene, plan.curved ? joins_per_curved_flight : joins_per_straight_flight);
+  if (!is_photon_map(request))
+    tracer.transport->join_level = level_of_joins(
+        tracer, scene, plan.curved ? joins_per_curved_flight : joins_per_straight_flight);
 
   RenderJob job;
   job.pixels = tracer.transport->sensor.pixels();
   job.bins = scene.bins;
   job.plan = plan.describe();
   job.batches.size = static_cast<std::size_t>(job.pixels.count()) * scene.bins.count;
-  const int paths = paths_per_batch(job.batches.size);
+  const int paths =
+      is_photon_map(request) ? photon_paths_per_batch : paths_per_batch(job.batches.size);
   job.batches.samples_per_batch = paths;
   const auto counts = std::make_shared<TransportCounts>();
   job.counts = counts;
