@@ -69,7 +69,7 @@ Tracer curved_tracer(const RenderScene& scene, const RenderRequest& request,
                      const RenderPlan& plan) {
   const std::shared_ptr<const CurvedSpace> space =
       make_curved_space(scene.field, scene.stage,
-                        {scene.step, scene.max_length, .spreading = !is_photon_map(request)});
+                        {scene.step, scene.max_length, !is_photon_map(request)});
   const auto transport =
       transport_in(scene, request, [&](const PathPoint& p) { return space->index(p); });
   if (is_photon_map(request))
