@@ -116,6 +116,9 @@ void require_usable(const RenderScene& scene, const RenderRequest& request) {
     throw InputError("max_scatterings", request.max_scatterings, "must be 0 (no limit) or more");
   if (!(request.photon_radius >= 0) || !std::isfinite(request.photon_radius))
     throw InputError("photon_radius", request.photon_radius, "must be 0 (automatic) or positive");
+  if (scene.random_phase && !std::holds_alternative<StandingWave>(scene.field) &&
+      !std::holds_alternative<FocusedSound>(scene.field))
+    throw InputError("random_phase", "true", "needs a field of sound");
 }
 
 }  // namespace
