@@ -253,14 +253,9 @@ PhotonSource lambertian_source(const Vec3& centre, const Vec3& half_u, const Vec
   };
 }
 
-double PhotonCounts::share(std::size_t bin) const {
-  return static_cast<double>(counts_[bin]) / static_cast<double>(photons_);
-}
-
-double PhotonCounts::error(std::size_t bin) const {
-  const double p = share(bin);
-  return std::sqrt(std::max(p, 1 / static_cast<double>(photons_)) * (1 - p) /
-                   static_cast<double>(photons_));
+double PhotonTally::error(std::size_t bin) const {
+  const double m = mean(bin);
+  return std::sqrt(std::max(0.0, squares_[bin] / photons_ - m * m) / photons_);
 }
 
 }  // namespace flatspeckle::grin::tests

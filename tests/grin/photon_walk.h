@@ -77,18 +77,24 @@ PhotonSource beam_source(const Vec3& centre, const Vec3& direction, double radiu
 /// Lambertian from the rectangle centre + [-1, 1] half_u + [-1, 1] half_v.
 PhotonSource lambertian_source(const Vec3& centre, const Vec3& half_u, const Vec3& half_v);
 
-/// Photons in bins, each photon in one at the most: the errors are binomial.
-class PhotonCounts {
+/// What photons are worth to a detector, per photon sent out. A photon adds to a bin no more than
+/// once, so that the squares of its shares tell the errors.
+class PhotonTally {
  public:
-  PhotonCounts(std::size_t bins, std::uint64_t photons) : counts_(bins), photons_(photons) {}
-  void add(std::size_t bin) { ++counts_[bin]; }
-  std::size_t size() const { return counts_.size(); }
-  double share(std::size_t bin) const;
+  PhotonTally(std::size_t bins, std::uint64_t photons)
+      : sum_(bins), squares_(bins), photons_(static_cast<double>(photons)) {}
+
+  void add(std::size_t bin, double worth = 1) {
+    sum_[bin] += worth;
+    squares_[bin] += worth * worth;
+  }
+  std::size_t size() const { return sum_.size(); }
+  double mean(std::size_t bin) const { return sum_[bin] / photons_; }
   double error(std::size_t bin) const;
 
  private:
-  std::vector<std::uint64_t> counts_;
-  std::uint64_t photons_;
+  std::vector<double> sum_, squares_;
+  double photons_;
 };
 
 }  // namespace flatspeckle::grin::tests

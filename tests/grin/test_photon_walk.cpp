@@ -22,8 +22,8 @@ WalkScene slab(double thickness, double half_width, const WalkMedium& medium) {
 }
 
 /// Bins: reflected, transmitted.
-PhotonCounts slab_counts(const WalkScene& scene, std::uint64_t photons) {
-  PhotonCounts counts(2, photons);
+PhotonTally slab_counts(const WalkScene& scene, std::uint64_t photons) {
+  PhotonTally counts(2, photons);
   walk_photons(scene, beam_source({0, 0, 0}, {0, 0, 1}, 0), photons, 7, [&](const Photon& p) {
     if (p.x.z() < 1e-9) counts.add(0);
     if (p.x.z() > scene.boundary.high.z() - 1e-9) counts.add(1);
@@ -31,10 +31,10 @@ PhotonCounts slab_counts(const WalkScene& scene, std::uint64_t photons) {
   return counts;
 }
 
-void check_share(const PhotonCounts& counts, std::size_t bin, double expected) {
-  CAPTURE(counts.share(bin));
+void check_share(const PhotonTally& counts, std::size_t bin, double expected) {
+  CAPTURE(counts.mean(bin));
   CAPTURE(counts.error(bin));
-  CHECK(std::abs(counts.share(bin) - expected) < 4 * counts.error(bin));
+  CHECK(std::abs(counts.mean(bin) - expected) < 4 * counts.error(bin));
 }
 
 }  // namespace
@@ -57,11 +57,11 @@ TEST_CASE("Peierls' slab grows into Chandrasekhar's half-space") {
 TEST_CASE("analog photons in a slab: van de Hulst, and Peierls") {
   const WalkScene hulst =
       slab(0.02, 3, {.mu_s = 90, .mu_a = 10, .law = WalkMedium::Law::henyey_greenstein, .g = 0.75});
-  const PhotonCounts counts = slab_counts(hulst, 1000000);
+  const PhotonTally counts = slab_counts(hulst, 1000000);
   check_share(counts, 0, 0.09739);
   check_share(counts, 1, 0.66096);
   for (double albedo : {0.6, 0.95}) {
-    const PhotonCounts shares =
+    const PhotonTally shares =
         slab_counts(slab(2, 200, {.mu_s = albedo, .mu_a = 1 - albedo}), 300000);
     const SlabShares exact = isotropic_slab(2, albedo);
     check_share(shares, 0, exact.reflected);
@@ -93,7 +93,7 @@ TEST_CASE("analog photons are reciprocal where the index varies: n^2 weighs the 
                            [](const Vec3&) { return Vec3(0, 0, 0.25); }, 0.02};
   const std::uint64_t photons = 40000;
   // Lambertian light from top to bottom and back: n_top^2 share(top -> bottom) = the other way.
-  PhotonCounts down(1, photons), up(1, photons);
+  PhotonTally down(1, photons), up(1, photons);
   walk_photons(scene, lambertian_source({0, 0, 1}, {0, 1, 0}, {1, 0, 0}), photons, 5,
                [&](const Photon& p) {
                  if (p.x.z() < -1 + 1e-9) down.add(0);
@@ -104,8 +104,8 @@ TEST_CASE("analog photons are reciprocal where the index varies: n^2 weighs the 
                });
   const double top = 1.5 * 1.5, bottom = 1;
   const double error = std::hypot(top * down.error(0), bottom * up.error(0));
-  CAPTURE(top * down.share(0));
-  CAPTURE(bottom * up.share(0));
-  CHECK(std::abs(top * down.share(0) - bottom * up.share(0)) < 4 * error);
-  CHECK(std::abs(down.share(0) - up.share(0)) > 10 * error);
+  CAPTURE(top * down.mean(0));
+  CAPTURE(bottom * up.mean(0));
+  CHECK(std::abs(top * down.mean(0) - bottom * up.mean(0)) < 4 * error);
+  CHECK(std::abs(down.mean(0) - up.mean(0)) > 10 * error);
 }
