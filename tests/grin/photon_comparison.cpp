@@ -6,7 +6,7 @@
 #include <Eigen/Geometry>
 #include <doctest/doctest.h>
 
-#include "tests/grin/rendered.h"
+#include "tests/grin/render_tests.h"
 
 namespace flatspeckle::grin::tests {
 
@@ -25,7 +25,6 @@ Vec3 upright(const Vec3& up, const Vec3& forward) {
   return (up - up.dot(forward) * forward).normalized();
 }
 
-/// Sums over pixels of what a picture holds, for its total.
 double total_of(const std::vector<double>& values) {
   double sum = 0;
   for (double value : values) sum += value;
@@ -120,23 +119,20 @@ PhotonPicture photon_picture(const TwoScenes& scenes, std::uint64_t photons, std
 
 void check_against(const PhotonPicture& photons, const TwoScenes& scenes,
                    const RenderRequest& request, std::uint64_t samples, double precision) {
-  CAPTURE(static_cast<int>(request.method));
+  CAPTURE(name(request.method));
   const RenderJob job = render_job(scenes.scene, request, 11);
-  RunState state{GroupedSums(job.batches.size), {}};
-  run_batches(job.batches, {.stop = {.samples = samples}, .threads = 1}, state);
+  const RunState state = run_render(job, static_cast<double>(samples));
   const RenderedPicture picture = rendered_picture(job, state.sums);
   check_all(picture.bins.value, picture.bins.error, photons.value, photons.error);
   if (scenes.scene.bins.count > 1)
     check_all(picture.steady.value, picture.steady.error, photons.steady_value,
               photons.steady_error);
-  const Estimate total = jackknife(state.sums, [](double n, std::span<const Complex> sums) {
-    Complex sum = 0;
-    for (Complex s : sums) sum += s / n;
-    return std::vector{sum};
-  });
+  const Estimate mean = pixel_mean(state);
   double error = 0;
   for (double e : photons.steady_error) error = std::hypot(error, e);
-  const Compared c{total.value[0].real(), total.error[0], total_of(photons.steady_value), error};
+  const auto entries = static_cast<double>(photons.value.size());
+  const Compared c{mean.value[0].real() * entries, mean.error[0] * entries,
+                   total_of(photons.steady_value), error};
   CAPTURE(c.a);
   CAPTURE(c.a_error);
   CAPTURE(c.b);
