@@ -77,7 +77,7 @@ class Writer {
 };
 
 bool has_trials(const grin::RenderJob& job) {
-  return job.connections && job.connections->pairs > 0;
+  return job.counts && job.counts->connections.pairs > 0;
 }
 
 void print_row(const char* name, const Estimate& estimate, std::size_t entry,
@@ -104,8 +104,8 @@ void write_render(ResultFile& file, const grin::RenderScene& scene, const grin::
   writer.steady(result);
   if (job.bins.count > 1) writer.timed(result, job.bins, length_unit);
   if (!has_trials(job)) return;
-  write_trials(file, *job.connections);
-  write_pairs(file, *job.connections);
+  write_trials(file, job.counts->connections);
+  write_pairs(file, job.counts->connections);
 }
 
 void print_render(const grin::RenderScene& scene, const grin::RenderJob& job,
@@ -122,7 +122,7 @@ void print_render(const grin::RenderScene& scene, const grin::RenderJob& job,
             axes.image_units);
   std::printf("pixels: relative error %.2g %%\n", 100 * relative_error(image));
   if (!has_trials(job)) return;
-  const auto& curves = *job.connections;
+  const auto& curves = job.counts->connections;
   std::printf("curves: %llu pairs, %.3g %% of trials converged, %.3g further trials each\n",
               static_cast<unsigned long long>(curves.pairs), 100 * curves.success_rate(),
               curves.mean_refind());

@@ -1,0 +1,130 @@
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <doctest/doctest.h>
+
+#include "grin/photon_map.h"
+#include "tests/grin/render_tests.h"
+#include "tests/statistics.h"
+
+using namespace flatspeckle;
+using namespace flatspeckle::grin;
+using namespace flatspeckle::grin::tests;
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+constexpr double everywhere = std::numeric_limits<double>::infinity();
+
+/// Looks along +z, one pixel.
+Camera pinhole(const Vec3& x) {
+  return {.x = x, .forward = {0, 0, 1}, .up = {0, 1, 0}, .field_of_view = 0.5, .pixels = {}};
+}
+
+RenderScene furnace(const AnyIndexField& field, const ScatteringMedium& medium) {
+  return {.field = field,
+          .step = 0.02,
+          .max_length = 100,
+          .stage = {.boundary = Sphere{}, .medium = medium},
+          .lights = {FaceLight{.radius = everywhere}},
+          .sensor = pinhole(Vec3::Zero())};
+}
+
+/// In a furnace L/n^2 = 1, so all that the blur does is to lose photons beyond the wall and to
+/// mix places of another index: expectation of the camera in the centre of the unit sphere.
+template <class Index>
+double blurred_furnace(const Index& n, double mu, double radius) {
+  const auto gathered = [&](double s) {
+    // shells of the ball about a point at distance s from the centre, and their polar angles
+    const auto shell = [&](double r) {
+      const auto ring = [&](double cosine) {
+        const double from_centre = std::sqrt(s * s + r * r + 2 * s * r * cosine);
+        const double ratio = n(from_centre) / n(s);
+        return from_centre < 1 ? ratio * ratio : 0;
+      };
+      // up to the wall, so that the integrand is smooth
+      const double wall = std::clamp((1 - s * s - r * r) / (2 * s * r), -1.0, 1.0);
+      return 2 * pi * r * r * flatspeckle::tests::integral(ring, -1, wall);
+    };
+    return flatspeckle::tests::integral(shell, 0, radius) / (4 * pi / 3 * std::pow(radius, 3));
+  };
+  const auto collided = [&](double s) { return mu * std::exp(-mu * s) * gathered(s); };
+  return std::exp(-mu) + flatspeckle::tests::integral(collided, 1e-9, 1 - radius) +
+         flatspeckle::tests::integral(collided, 1 - radius, 1);
+}
+
+void check_value(const Rendered& picture, double expected) {
+  const double value = picture.value(), error = picture.error();
+  CAPTURE(value);
+  CAPTURE(error);
+  CAPTURE(expected);
+  CHECK(error < 0.01 * expected);
+  CHECK(std::abs(value - expected) < 4 * error);
+}
+
+}  // namespace
+
+TEST_CASE("the grid finds the points within the radius, each once") {
+  RandomStream random(3, 9, 0);
+  const auto anywhere = [&](double scale) {
+    return Vec3(scale * (random.uniform() - 0.5), scale * (random.uniform() - 0.5),
+                scale * (random.uniform() - 0.5));
+  };
+  for (const double scale : {0.05, 1.0, 30.0}) {
+    std::vector<GatherPoint> points(500);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      points[i].x = anywhere(scale);
+      points[i].pixel = static_cast<int>(i);
+    }
+    const double radius = 0.3;
+    const GatherGrid grid(points, radius);
+    for (int trial = 0; trial < 200; ++trial) {
+      const Vec3 x = trial % 2 ? anywhere(1.2 * scale) : Vec3(points[trial].x + anywhere(0.4));
+      std::vector<int> expected, found;
+      for (const GatherPoint& p : points)
+        if ((p.x - x).norm() < radius) expected.push_back(p.pixel);
+      grid.near(x, [&](const GatherPoint& p) { found.push_back(p.pixel); });
+      std::sort(found.begin(), found.end());
+      CHECK(found == expected);
+    }
+  }
+}
+
+TEST_CASE("the photon map of a furnace is 1, but for the photons missing beyond the wall") {
+  const double mu = 1.5, n = 1.4;
+  const RenderScene scene =
+      furnace(Homogeneous{n - 1},
+              {.mu_s = mu, .phase = {SpacePhaseFunction::Kind::henyey_greenstein, 0.6}});
+  for (const double radius : {0.4, 0.1}) {
+    const double expected = blurred_furnace([&](double) { return n; }, mu, radius);
+    CHECK(expected < 1 - 0.1 * radius);
+    check_value(rendered(scene, {RenderMethod::photon_map, 0, radius}, 300000), expected);
+  }
+}
+
+TEST_CASE("the photon map in curved space counts L/n^2") {
+  const double mu = 1.5, radius = 0.4;
+  const RenderScene scene = furnace(Fisheye({.centre_excess = 1, .radius = 1}),
+                                    {.mu_s = mu, .phase = {SpacePhaseFunction::Kind::rayleigh}});
+  const double expected = blurred_furnace([](double r) { return 2 / (1 + r * r); }, mu, radius);
+  CHECK(std::abs(expected - blurred_furnace([](double) { return 1; }, mu, radius)) > 0.02);
+  check_value(rendered(scene, {RenderMethod::photon_map, 0, radius}, 200000), expected);
+}
+
+TEST_CASE("photons of another part are not counted") {
+  // Fog around an absorbing ball: the camera looks past it at fog only; photons inside the ball,
+  // none of which leaves, must not show.
+  const auto scene_of = [](double mu_s_of_ball) {
+    RenderScene scene = furnace(Homogeneous{}, {.mu_s = 0.5});
+    scene.stage.body =
+        Body{Sphere{{0, 0, 0.5}, 0.3}, {.mu_s = mu_s_of_ball, .mu_a = 1000 - mu_s_of_ball}};
+    return scene;
+  };
+  const RenderRequest request{RenderMethod::photon_map, 0, 0.2};
+  const Rendered black = rendered(scene_of(0), request, 200000);
+  const Rendered dark = rendered(scene_of(1e-6), request, 200000, 2);
+  const double error = std::hypot(black.error(), dark.error());
+  CHECK(std::abs(black.value() - dark.value()) < 4 * error);
+  CHECK(error < 0.02 * black.value());
+}
