@@ -18,7 +18,7 @@ int render(const Arguments& arguments) {
   const grin::RenderScene scene = make_render_scene(command, spec);
   const auto length_unit = length_unit_of(spec);
   const grin::RenderJob job = render_job(scene, make_render_request(spec), seed_of(settings));
-  Session session(command.command_line(), settings, "render: " + job.plan,
+  Session session(command.command_line(), settings, "render: " + spec.method + ": " + job.plan,
                   {{"", "render", job.batches, stop_rule(settings)}}, inputs_text(spec));
   return session.run([&](ResultFile& file) {
     const RenderResult result = render_result(scene, job, session.state("").sums);

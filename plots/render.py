@@ -1,0 +1,69 @@
+#!/usr/bin/env python3
+"""Picture of `flatspeckle render` with tone mapping, and its relative standard error beside it; of
+several results a row each, with one scale where they measure the same. The brightest 0.1 % of the
+pixels share one colour."""
+
+from lib import style
+from lib import pictures
+
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.colors import LogNorm
+from matplotlib.ticker import MaxNLocator, PercentFormatter
+
+plt.rcParams["savefig.dpi"] = 150  # pictures without white paper make large files
+LEAST, MOST = 1e-3, 1.0  # of relative errors
+
+
+def relative_error(result):
+    """1 where there is no light."""
+    value, error = result.values("image"), result.values("image_error")
+    lit = value > 0
+    return np.where(lit, np.divide(error, value, where=lit, out=np.ones_like(value)), 1.0)
+
+
+def panel(figure, axis, result, picture, label, extend, **look):
+    image = pictures.show(axis, result, picture, **look)
+    axis.tick_params(direction="out", top=False, right=False)
+    axis.xaxis.set_major_locator(MaxNLocator(5))
+    axis.yaxis.set_major_locator(MaxNLocator(5))
+    return figure.colorbar(image, ax=axis, label=label, extend=extend, shrink=0.95, pad=0.02)
+
+
+def draw_row(figure, axes, result, norm):
+    panel(figure, axes[0], result, result.values("image"), pictures.quantity(result), "max",
+          cmap="inferno", norm=norm)
+    bar = panel(figure, axes[1], result, np.clip(relative_error(result), LEAST, MOST),
+                "standard error, relative", "both", cmap="cividis", norm=LogNorm(LEAST, MOST))
+    bar.ax.yaxis.set_major_formatter(PercentFormatter(1, decimals=None))
+    across, up = pictures.axis_names(result)
+    axes[0].set_ylabel(up)
+    for axis in axes:
+        axis.set_xlabel(across)
+
+
+def norms(results, arguments):
+    """One for all that measure the same."""
+    by_quantity = {}
+    for result in results:
+        by_quantity.setdefault(pictures.quantity(result), []).append(result.values("image"))
+    shared = {name: pictures.tone(images, arguments.tone, arguments.decades)
+              for name, images in by_quantity.items()}
+    return [shared[pictures.quantity(result)] for result in results]
+
+
+def draw(results, arguments):
+    left, right, bottom, top = pictures.extent(results[0])
+    height = np.clip((top - bottom) / (right - left), 0.2, 2) * 0.36 * style.PAGE + 0.4
+    figure, axes = plt.subplots(len(results), 2, squeeze=False,
+                                figsize=(style.PAGE, len(results) * height))
+    for row, result, norm in zip(axes, results, norms(results, arguments)):
+        draw_row(figure, row, result, norm)
+        if len(results) > 1:
+            row[0].set_title(result.path)
+    return figure
+
+
+if __name__ == "__main__":
+    style.main(draw, __doc__, several=True,
+               add_options=lambda parser: pictures.add_tone_options(parser, "root"))
