@@ -9,10 +9,10 @@ from lib import pictures
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.colors import LogNorm
-from matplotlib.ticker import MaxNLocator, PercentFormatter
+from matplotlib.ticker import FuncFormatter, MaxNLocator, NullFormatter
 
 plt.rcParams["savefig.dpi"] = 150  # pictures without white paper make large files
-LEAST, MOST = 1e-3, 1.0  # of relative errors
+MOST = 1.0  # of relative errors
 
 
 def relative_error(result):
@@ -30,12 +30,28 @@ def panel(figure, axis, result, picture, label, extend, **look):
     return figure.colorbar(image, ax=axis, label=label, extend=extend, shrink=0.95, pad=0.02)
 
 
+def draw_image(figure, axis, result, norm):
+    bar = panel(figure, axis, result, result.values("image"), pictures.quantity(result), "max",
+                cmap="inferno", norm=norm)
+    if not isinstance(norm, LogNorm):
+        bar.ax.yaxis.set_major_locator(MaxNLocator(5))
+        bar.ax.yaxis.get_offset_text().set_ha("left")
+        bar.formatter.set_powerlimits((-2, 4))
+
+
+def draw_error(figure, axis, result):
+    error = relative_error(result)
+    least = 10 ** np.floor(np.log10(np.quantile(error, 0.01)))
+    norm = LogNorm(min(least, MOST / 10), MOST, clip=True)
+    bar = panel(figure, axis, result, error, "relative standard error", "both", cmap="cividis",
+                norm=norm)
+    bar.ax.yaxis.set_major_formatter(FuncFormatter(lambda share, _: f"{100 * share:g} %"))
+    bar.ax.yaxis.set_minor_formatter(NullFormatter())
+
+
 def draw_row(figure, axes, result, norm):
-    panel(figure, axes[0], result, result.values("image"), pictures.quantity(result), "max",
-          cmap="inferno", norm=norm)
-    bar = panel(figure, axes[1], result, np.clip(relative_error(result), LEAST, MOST),
-                "standard error, relative", "both", cmap="cividis", norm=LogNorm(LEAST, MOST))
-    bar.ax.yaxis.set_major_formatter(PercentFormatter(1, decimals=None))
+    draw_image(figure, axes[0], result, norm)
+    draw_error(figure, axes[1], result)
     across, up = pictures.axis_names(result)
     axes[0].set_ylabel(up)
     for axis in axes:

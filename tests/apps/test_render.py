@@ -198,7 +198,7 @@ class SameNumbers(RenderTest):
             with self.subTest(scene=name):
                 self.scene(name, samples=200, pixels=[3, 2])
                 self.write("again.toml", attributes(self.folder / "render.h5")["config"])
-                self.render("again.h5", config="again.toml")
+                self.render("again.h5", config="again.toml", samples=200)
                 self.assert_same("render.h5", "again.h5")
 
     def test_seeds_differ(self):
@@ -212,7 +212,7 @@ class Refused(RenderTest):
     def refuse(self, *words, **keys):
         """One line that holds the words, status 2, and nothing written."""
         before = self.listing()
-        done = self.call("render", status=2, out="bad.h5", **{**self.GOOD, **keys})
+        done = self.call("render", status=2, **{"out": "bad.h5", **self.GOOD, **keys})
         self.assertEqual(done.stdout, "")
         self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
         for word in words:
