@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/Geometry>
+
 #include "core/random.h"
 #include "grin/input_checks.h"
 #include "grin/vec3.h"

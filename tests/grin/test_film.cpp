@@ -1,0 +1,99 @@
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include "core/error.h"
+#include "core/random.h"
+#include "grin/film.h"
+
+namespace flatspeckle::grin {
+
+namespace {
+
+struct Pictures {
+  TimeBins bins;
+  std::vector<Complex> timed, steady;
+
+  double of_bin(int pixel, int bin) const { return timed[pixel * bins.count + bin].real(); }
+  double sum(int pixel) const {
+    double result = 0;
+    for (int bin = 0; bin < bins.count; ++bin) result += of_bin(pixel, bin);
+    return result;
+  }
+  /// Of value times the bin's centre.
+  double moment(int pixel) const {
+    const double width = (bins.last - bins.first) / bins.count;
+    double result = 0;
+    for (int bin = 0; bin < bins.count; ++bin)
+      result += of_bin(pixel, bin) * (bins.first + (bin + 0.5) * width);
+    return result;
+  }
+};
+
+Pictures one(const TimeBins& bins, double optical_path) {
+  Pictures pictures{bins, std::vector<Complex>(bins.count), std::vector<Complex>(1)};
+  Film(1, bins, pictures.timed).add(0, 1, optical_path);
+  return pictures;
+}
+
+std::string complaint(const TimeBins& bins) {
+  try {
+    require_usable(bins);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+}  // namespace
+
+TEST_CASE("film: the sum over the bins is the steady picture, wherever the light arrives") {
+  constexpr int pixels = 3;
+  for (const int count : {1, 2, 7}) {
+    const TimeBins bins{2, 5, count};
+    Pictures pictures{bins, std::vector<Complex>(pixels * count), std::vector<Complex>(pixels)};
+    Film timed(pixels, bins, pictures.timed), steady(pixels, {}, pictures.steady);
+    RandomStream random(1, 90, count);
+    for (int i = 0; i < 10000; ++i) {
+      const int pixel = i % pixels;
+      const double value = (pixel + 1) * random.uniform();
+      timed.add(pixel, value, 1 + 5 * random.uniform());
+      steady.add(pixel, value);
+    }
+    for (int pixel = 0; pixel < pixels; ++pixel) {
+      CHECK(pictures.steady[pixel].real() == doctest::Approx((pixel + 1) * 5000 / 3.).epsilon(0.1));
+      CHECK(pictures.sum(pixel) == doctest::Approx(pictures.steady[pixel].real()).epsilon(1e-12));
+    }
+  }
+}
+
+TEST_CASE("film: a contribution keeps its optical path between the first and last centre") {
+  const TimeBins bins{-1, 3, 8};  // centres at -0.75, -0.25 ... 2.75
+  for (const double path : {-0.75, -0.7, -0.25, 0.1, 1.0, 2.74, 2.75}) {
+    CAPTURE(path);
+    CHECK(one(bins, path).sum(0) == doctest::Approx(1).epsilon(1e-14));
+    CHECK(one(bins, path).moment(0) == doctest::Approx(path).epsilon(1e-14));
+  }
+  const Pictures shared = one(bins, 0.1);  // between 0 - 0.25 and 0 + 0.25
+  CHECK(shared.of_bin(0, 1) == doctest::Approx(0.3).epsilon(1e-12));
+  CHECK(shared.of_bin(0, 2) == doctest::Approx(0.7).epsilon(1e-12));
+}
+
+TEST_CASE("film: what comes before or after stays in the first or last bin") {
+  const TimeBins bins{-1, 3, 8};
+  for (const double path : {-1e300, -5.0, -1.0, -0.8, std::nan("")})
+    CHECK(one(bins, path).of_bin(0, 0) == 1);
+  for (const double path : {2.8, 3.0, 40.0, 1e300, double{INFINITY}})
+    CHECK(one(bins, path).of_bin(0, 7) == 1);
+}
+
+TEST_CASE("film: bins that cannot be are refused") {
+  CHECK(complaint({}).empty());
+  CHECK(complaint({0, 1, 5}).empty());
+  CHECK(complaint({0, 1, 0}).find("path_bins = 0") != std::string::npos);
+  CHECK(complaint({1, 1, 2}).find("path_bins") != std::string::npos);
+  CHECK(complaint({0, std::nan(""), 2}).find("path_bins") != std::string::npos);
+  CHECK(complaint({-double{INFINITY}, 1, 2}).find("path_bins") != std::string::npos);
+}
+
+}  // namespace flatspeckle::grin
