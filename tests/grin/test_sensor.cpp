@@ -1,3 +1,4 @@
+#include <array>
 #include <numeric>
 
 #include <Eigen/Geometry>
@@ -244,6 +245,41 @@ TEST_CASE("a directional detector up to the horizon samples by its density what 
   CHECK(integral / 1e5 == doctest::Approx(pi / 4).epsilon(0.02));
 }
 
+TEST_CASE("sensors sample points of the boundary by their density") {
+  const auto check = [](const Surface& boundary, const Sensor& sensor, std::uint64_t seed) {
+    CAPTURE(seed);
+    const SensorEnd end(sensor, empty_stage(boundary));
+    const BoundaryPatch all(boundary, "boundary");
+    RandomStream random(seed, 99, 0);
+    // moments of the place, sampled and as integrals of the density over the boundary
+    const auto moments = [](const Vec3& x) {
+      return std::array{1.0, x.x(), x.y(), x.z(), x.x() * x.y(), x.y() * x.z(), x.x() * x.x()};
+    };
+    std::array<Average, 7> difference;
+    bool on_boundary = true;
+    for (int i = 0; i < 100000; ++i) {
+      const Vec3 x = end.sample_position(UniformSpace{}, random).point.x;
+      on_boundary = on_boundary && std::abs(distance(boundary, x)) < 1e-12;
+      const BoundaryPoint at = all.sample(random);
+      double density = 0;
+      end.hit(UniformSpace{}, at.x, -at.inward,
+              [&](const EndHit& hit) { density = hit.position.position_density; });
+      for (std::size_t k = 0; k < difference.size(); ++k)
+        difference[k].add(moments(x)[k] - all.area() * density * moments(at.x)[k]);
+    }
+    CHECK(on_boundary);
+    for (const Average& d : difference) d.check(0);
+  };
+  Camera lens = lens_on_box();
+  lens.forward = -Vec3::UnitZ();
+  check(test_box, lens, 1);
+  lens = lens_on_sphere();
+  lens.field_of_view = 2;  // so that light along the normals is seen all over it
+  check(test_sphere, lens, 2);
+  check(test_box, area_on_box(), 3);
+  check(test_sphere, area_on_sphere(), 4);
+}
+
 TEST_CASE("a sensor that is hit is the sensor that is sampled") {
   const auto check = [](const Surface& boundary, const Sensor& sensor, std::uint64_t seed) {
     CAPTURE(seed);
@@ -269,6 +305,8 @@ TEST_CASE("under a uniform environment: cameras read L/n^2, detectors pi n^2 sin
     const auto irradiance = [&](int) { return pi * n * n * sine * sine; };
     check_in_environment(test_box, area_on_box(acceptance), true, irradiance, 4);
     check_in_environment(test_sphere, area_on_sphere(acceptance), true, irradiance, 5);
+    AreaDetector whole_face{Vec3(0.5, -0.5, 3), Vec3(0, 1, 0), 3, 3, {2, 3}, acceptance};
+    check_in_environment(test_box, whole_face, true, irradiance, 6);
   }
 }
 
