@@ -82,7 +82,8 @@ EndPosition AreaDetectorEnd::sample_position(double stratum, RandomStream& rando
 }
 
 std::optional<EndPosition> AreaDetectorEnd::position_at(const Vec3& x) const {
-  if (!(inward(x).dot(view_.forward) < 0)) return std::nullopt;
+  if (!(normal(boundary_, x).dot(view_.forward) > 0))
+    return std::nullopt;  // the far side, or another face
   const Vec3 from_centre = x - centre_;
   const int pixel = face_.pixel_at(from_centre.dot(view_.right), from_centre.dot(view_.up));
   if (pixel < 0) return std::nullopt;
@@ -91,8 +92,8 @@ std::optional<EndPosition> AreaDetectorEnd::position_at(const Vec3& x) const {
 
 EndDirection AreaDetectorEnd::sample_direction(const EndPosition& at, double,
                                                RandomStream& random) const {
-  const double cosine = std::sqrt(1 - sine_squared_ * random.uniform());
-  return towards(at, direction_about(at.inward, cosine, 2 * pi * random.uniform()));
+  const double squared = sine_squared_ * random.uniform();
+  return towards(at, random_turn(at.inward, squared / (1 + std::sqrt(1 - squared)), random));
 }
 
 EndDirection AreaDetectorEnd::towards(const EndPosition& at, const Vec3& direction) const {

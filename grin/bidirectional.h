@@ -19,11 +19,12 @@ class Bidirectional {
                 TransportCounts& counts)
       : transport_(transport), space_(space), random_(random), film_(film), counts_(counts) {}
 
-  /// Collects what joins promise, for the choice of a join level.
-  void record(std::vector<double>& promises) { promises_ = &promises; }
+  /// What the last pair of paths promised: its joins, made or not, and what it hit.
+  double promised() const { return promised_; }
 
   /// One light path and one path from the sensor; `stratum` in (0, 1) says through which pixel.
   void add(double stratum) {
+    promised_ = 0;
     walk_from_light();
     walk_from_sensor(stratum);
   }
@@ -32,37 +33,35 @@ class Bidirectional {
   void walk_from_light() {
     vertices_.clear();
     const EndPosition end = transport_.lights.sample_position(space_, random_);
-    is_beam_ = end.is_beam;
     const PathVertex start = end_vertex(end);
     join_to_sensor(start);
     const EndDirection first = transport_.lights.sample_direction(end, random_);
     const auto left = [&](const PathVertex& last) {
-      const int more = transport_.strategies.most_sensor;
+      const int more = transport_.strategies.most_sensor();
       arrive(transport_.sensor, last, more, [&](const EndHit& hit) { return hit.direction.pixel; });
     };
     const auto collided = [&](const PathVertex& vertex) {
       join_to_sensor(vertex);
       vertices_.offer(vertex, random_);
     };
-    walk<plan>(transport_, space_, start, first, transport_.strategies.most_of_light(is_beam_),
-               random_, counts_, collided, left);
+    walk<plan>(transport_, space_, start, first, transport_.strategies.short_light, random_,
+               counts_, collided, left);
   }
 
   void walk_from_sensor(double stratum) {
-    if (transport_.strategies.most_sensor < 2) return;
     const EndPosition end = transport_.sensor.sample_position(space_, random_, stratum);
     const PathVertex start = end_vertex(end);
     const EndDirection first = transport_.sensor.sample_direction(end, random_, stratum);
     pixel_ = first.pixel;
     const auto left = [&](const PathVertex& last) {
-      const int more = transport_.strategies.most_of_light(false);
+      const int more = transport_.strategies.most_light();
       arrive(transport_.lights, last, more, [&](const EndHit&) { return pixel_; });
     };
     const auto collided = [&](const PathVertex& vertex) {
       join_to_light(vertex);
       join_to_light_path(vertex);
     };
-    walk<plan>(transport_, space_, start, first, transport_.strategies.most_sensor, random_,
+    walk<plan>(transport_, space_, start, first, transport_.strategies.short_sensor, random_,
                counts_, collided, left);
   }
 
@@ -74,24 +73,26 @@ class Bidirectional {
       here.density *= std::abs(hit.position.inward.dot(last.arrived));
       const double others =
           fewer_of_ours(here, hit.position.position_density, hit.direction.density, more);
-      add(pixel(hit), here.weight * hit.value / (1 + others), here.optical_path);
+      const double value = here.weight * hit.value / (1 + others);
+      promised_ += value;
+      add(pixel(hit), value, here.optical_path);
     });
   }
 
   void join_to_sensor(const PathVertex& y) {
     const EndPosition end = transport_.sensor.sample_position(space_, random_);
     const PathVertex z = end_vertex(end);
-    join_to_end(y, z, is_beam_);
+    join_to_end(y, z);
   }
   void join_to_light(const PathVertex& z) {
     const EndPosition end = transport_.lights.sample_position(space_, random_);
     if (end.is_beam) return;
     const PathVertex y = end_vertex(end);
-    join_to_end(y, z, false);
+    join_to_end(y, z);
   }
 
-  void join_to_end(const PathVertex& y, const PathVertex& z, bool is_beam) {
-    if (can_join(y, z, is_beam)) join(y, z, promise(y, z, is_beam), is_beam);
+  void join_to_end(const PathVertex& y, const PathVertex& z) {
+    if (can_join(y, z)) join(y, z, promise(y, z));
   }
 
   /// One of the kept vertices stands for all, drawn by what they promise.
@@ -99,27 +100,27 @@ class Bidirectional {
     const std::span<const PathVertex> all = vertices_.kept();
     double sum = 0;
     for (std::size_t i = 0; i < all.size(); ++i) {
-      promised_[i] = can_join(all[i], z, is_beam_) ? promise(all[i], z, is_beam_) : 0;
-      sum += promised_[i];
+      of_each_[i] = can_join(all[i], z) ? promise(all[i], z) : 0;
+      sum += of_each_[i];
     }
     if (!(sum > 0)) return;
     double rest = sum * random_.uniform();
     std::size_t i = 0;
-    while (i + 1 < all.size() && rest >= promised_[i]) rest -= promised_[i++];
-    if (!(promised_[i] > 0)) return;
+    while (i + 1 < all.size() && rest >= of_each_[i]) rest -= of_each_[i++];
+    if (!(of_each_[i] > 0)) return;
     PathVertex y = all[i];
-    const double stands_for = vertices_.each_stands_for() * sum / promised_[i];
+    const double stands_for = vertices_.each_stands_for() * sum / of_each_[i];
     y.weight *= stands_for;
-    join(y, z, stands_for * promised_[i], is_beam_);
+    join(y, z, stands_for * of_each_[i]);
   }
 
-  bool can_join(const PathVertex& y, const PathVertex& z, bool is_beam) const {
-    return y.point.part == z.point.part && !(y.end && is_beam) &&
+  bool can_join(const PathVertex& y, const PathVertex& z) const {
+    return y.point.part == z.point.part && !(y.end && y.end->is_beam) &&
            y.vertices + z.vertices - 2 <= transport_.max_scatterings;
   }
 
   /// Of the path that the straight line would make.
-  double promise(const PathVertex& y, const PathVertex& z, bool is_beam) {
+  double promise(const PathVertex& y, const PathVertex& z) {
     ++counts_.joins_weighed;
     const Vec3 way = z.point.x - y.point.x;
     const double length = way.norm();
@@ -128,7 +129,7 @@ class Bidirectional {
     const JoiningCurve line{direction, direction, length * length, depth};
     const JoinedPath path =
         joined_path(transport_.strategies, y, facing(transport_.lights, y, direction), z,
-                    facing(transport_.sensor, z, -direction), line, is_beam);
+                    facing(transport_.sensor, z, -direction), line);
     return path.value * path.weight * std::exp(-depth);
   }
 
@@ -145,8 +146,8 @@ class Bidirectional {
     return way;
   }
 
-  void join(const PathVertex& y, const PathVertex& z, double promised, bool is_beam) {
-    if (promises_) promises_->push_back(promised);
+  void join(const PathVertex& y, const PathVertex& z, double promised) {
+    promised_ += promised;
     const double chance = std::min(1.0, promised / transport_.join_level);
     if (!(chance > 0) || random_.uniform() >= chance) return;
     ++counts_.joins;
@@ -156,8 +157,7 @@ class Bidirectional {
     const EndDirection from_z = leaving(transport_, transport_.sensor, z, -curve->end_direction);
     const JoiningCurve as_weighed{curve->start_direction, curve->end_direction, curve->spreading,
                                   curve->optical_depth};
-    const JoinedPath path =
-        joined_path(transport_.strategies, y, from_y, z, from_z, as_weighed, is_beam);
+    const JoinedPath path = joined_path(transport_.strategies, y, from_y, z, from_z, as_weighed);
     add(z.end ? path.pixel : pixel_,
         path.value * path.weight * curve->transmittance * curve->multiplicity / chance,
         y.optical_path + curve->optical_path + z.optical_path);
@@ -181,10 +181,9 @@ class Bidirectional {
   Film& film_;
   TransportCounts& counts_;
   LightVertices vertices_;
-  std::array<double, LightVertices::capacity> promised_{};
-  bool is_beam_ = false;  ///< the light path's light
-  int pixel_ = -1;        ///< of the sensor's path
-  std::vector<double>* promises_ = nullptr;
+  std::array<double, LightVertices::capacity> of_each_{};
+  int pixel_ = -1;  ///< of the sensor's path
+  double promised_ = 0;
 };
 
 }  // namespace flatspeckle::grin

@@ -4,7 +4,6 @@
 #include <numbers>
 
 #include "core/error.h"
-#include "grin/geometric_spreading.h"
 #include "grin/start_directions.h"
 
 namespace flatspeckle::grin {
@@ -85,24 +84,18 @@ BoundaryPatch::BoundaryPatch(const Surface& boundary, const Vec3& centre, double
   if (sphere)
     shape_ = Cap{*sphere, at->x, -at->inward, radius};
   else
-    shape_ = Disk{at->x, at->inward, radius};
+    shape_ = FlatDisk(at->x, at->inward, radius);
 }
 
 BoundaryPoint BoundaryPatch::sample(const Cap& cap, RandomStream& random) {
   // areas of caps grow as the squares of their chords
   const double ratio = cap.chord / cap.sphere.radius;
-  const double cosine = 1 - ratio * ratio * random.uniform() / 2;
-  const Vec3 outward = direction_about(cap.axis, cosine, 2 * pi * random.uniform());
+  const Vec3 outward = random_turn(cap.axis, ratio * ratio * random.uniform() / 2, random);
   return {cap.sphere.centre + cap.sphere.radius * outward, -outward};
 }
 
-BoundaryPoint BoundaryPatch::sample(const Disk& disk, RandomStream& random) {
-  const double r = disk.radius * std::sqrt(random.uniform());
-  const double azimuth = 2 * pi * random.uniform();
-  const Frame across = frame_across(disk.inward);
-  const Vec3 x =
-      disk.centre + r * (std::cos(azimuth) * across.col(0) + std::sin(azimuth) * across.col(1));
-  return {x, disk.inward};
+BoundaryPoint BoundaryPatch::sample(const FlatDisk& disk, RandomStream& random) {
+  return {disk.sample(random), disk.normal()};
 }
 
 BoundaryPoint BoundaryPatch::sample(const Faces& faces, RandomStream& random) {
@@ -125,14 +118,13 @@ BoundaryPoint BoundaryPatch::sample(RandomStream& random) const {
 bool BoundaryPatch::contains(const Vec3& x) const {
   if (const auto* cap = std::get_if<Cap>(&shape_))
     return cap->chord >= 2 * cap->sphere.radius || (x - cap->centre).norm() <= cap->chord;
-  if (const auto* disk = std::get_if<Disk>(&shape_))
-    return (x - disk->centre).norm() <= disk->radius;
+  if (const auto* disk = std::get_if<FlatDisk>(&shape_)) return disk->reaches(x);
   return true;
 }
 
 Vec3 BoundaryPatch::inward(const Vec3& x) const {
   if (const auto* cap = std::get_if<Cap>(&shape_)) return -cap->sphere.normal(x);
-  if (const auto* disk = std::get_if<Disk>(&shape_)) return disk->inward;
+  if (const auto* disk = std::get_if<FlatDisk>(&shape_)) return disk->normal();
   return -std::get<Faces>(shape_).box.normal(x);
 }
 

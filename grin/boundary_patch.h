@@ -5,12 +5,41 @@
 #include <variant>
 
 #include "core/random.h"
+#include "grin/geometric_spreading.h"
 #include "grin/signed_distance.h"
 
 namespace flatspeckle::grin {
 
 struct BoundaryPoint {
   Vec3 x, inward;
+};
+
+/// A disk in space, and its points, uniformly by area.
+class FlatDisk {
+ public:
+  FlatDisk(const Vec3& centre, const Vec3& normal, double radius)
+      : centre_(centre), normal_(normal), radius_(radius), across_(frame_across(normal)) {}
+
+  const Vec3& normal() const { return normal_; }
+  Vec3 rim(double azimuth) const {
+    return at(std::cos(azimuth) * radius_, std::sin(azimuth) * radius_);
+  }
+  Vec3 sample(RandomStream& random) const {
+    double a, b;
+    do {
+      a = 2 * random.uniform() - 1;
+      b = 2 * random.uniform() - 1;
+    } while (a * a + b * b > 1);
+    return at(a * radius_, b * radius_);
+  }
+  bool reaches(const Vec3& x) const { return (x - centre_).norm() <= radius_; }
+
+ private:
+  Vec3 at(double a, double b) const { return centre_ + a * across_.col(0) + b * across_.col(1); }
+
+  Vec3 centre_, normal_;
+  double radius_;
+  Frame across_;
 };
 
 /// The point of a sphere's or a box's surface next to x, where x is on it to 1e-6 of its size.
@@ -41,19 +70,16 @@ class BoundaryPatch {
     Vec3 centre, axis;  ///< axis: from the sphere's centre, unit
     double chord;       ///< from the centre to the rim
   };
-  struct Disk {
-    Vec3 centre, inward;
-    double radius;
-  };
+
   struct Faces {
     Box box;
     std::array<double, 3> pair_chance;  ///< of the two faces across each axis
   };
   static BoundaryPoint sample(const Cap& cap, RandomStream& random);
-  static BoundaryPoint sample(const Disk& disk, RandomStream& random);
+  static BoundaryPoint sample(const FlatDisk& disk, RandomStream& random);
   static BoundaryPoint sample(const Faces& faces, RandomStream& random);
 
-  std::variant<Cap, Disk, Faces> shape_;
+  std::variant<Cap, FlatDisk, Faces> shape_;
   double area_;
 };
 

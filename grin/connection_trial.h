@@ -44,6 +44,19 @@ class ConnectionTrial {
     return result;
   }
 
+  /// The trial that starts along the chord and goes for the first closest approach: no chance in it.
+  Result along_chord(ConnectionStatistics& statistics) const {
+    const Result result = search_along_chord(statistics);
+    ++statistics.outcomes[static_cast<int>(result.outcome)];
+    return result;
+  }
+
+  /// Of a curve: it is hardly bent, and neighbours spread about as straight rays do.
+  bool is_nearly_straight(const Connection& curve) const {
+    const double spread = curve.spreading / (gap_ * gap_);
+    return curve.start_direction.dot(to_ - from_) > 0.9 * gap_ && spread > 0.3 && spread < 3;
+  }
+
   /// The straight line, exactly.
   Result straight() const requires HomogeneousField<F> {
     if (coincident()) return {TrialOutcome::degenerate, {}};
@@ -101,36 +114,56 @@ class ConnectionTrial {
     return refine({direction, sigma, steps_for(sigma)}, statistics);
   }
 
+  Result search_along_chord(ConnectionStatistics& statistics) const {
+    if (coincident()) return {TrialOutcome::degenerate, {}};
+    const Vec3 direction = (to_ - from_) / gap_;
+    double first = 0;
+    each_approach(direction, statistics, [&](double sigma, double) {
+      first = sigma;
+      return false;
+    });
+    if (!(first > 0)) return {TrialOutcome::no_approach, {}};
+    return refine({direction, first, steps_for(first)}, statistics);
+  }
+
   /// The sigma of one of the points where the ray comes closest to Q, drawn with weights
   /// 1 / distance^2; where it ends while still approaching, the end is one. 0 if there is none.
   double draw_approach(const Vec3& direction, RandomStream& random,
                        ConnectionStatistics& statistics) const {
-    const double h = options_.step;
-    RayState ray = start_ray(field_, from_, direction);
     double drawn = 0, total = 0;
-    const auto offer = [&](double sigma, double distance_squared) {
+    each_approach(direction, statistics, [&](double sigma, double distance_squared) {
       const double weight = 1 / (distance_squared + 1e-4 * gap_ * gap_);
       total += weight;
       if (random.uniform() * total <= weight) drawn = sigma;
-    };
+      return true;
+    });
+    return drawn;
+  }
+
+  /// offer(sigma, squared distance) -> whether to go on.
+  template <class Offer>
+  void each_approach(const Vec3& direction, ConnectionStatistics& statistics,
+                     const Offer& offer) const {
+    const double h = options_.step;
+    RayState ray = start_ray(field_, from_, direction);
     double nearing = (to_ - ray.x).dot(ray.v);
     for (int i = 0; i < most_steps; ++i) {
       const RayState before = ray;
       const double was_nearing = nearing;
       Leapfrog::step(field_, ray, h);
       ++statistics.guess_steps;
-      if (!(ray.arc_length > before.arc_length)) break;  // no ray: the index is not positive
+      if (!(ray.arc_length > before.arc_length)) return;  // no ray: the index is not positive
       nearing = (to_ - ray.x).dot(ray.v);
       if (was_nearing > 0 && nearing <= 0) {
         const double part = was_nearing / (was_nearing - nearing);
-        offer((i + part) * h, (before.x + part * (ray.x - before.x) - to_).squaredNorm());
+        const Vec3 x = before.x + part * (ray.x - before.x);
+        if (!offer((i + part) * h, (x - to_).squaredNorm())) return;
       }
       if (ray.arc_length > options_.max_length || !region_(ray.x)) {
         if (nearing > 0) offer((i + 1) * h, (ray.x - to_).squaredNorm());
-        break;
+        return;
       }
     }
-    return drawn;
   }
 
   Shot shoot(const Aim& aim, ConnectionStatistics& statistics) const {

@@ -2,6 +2,8 @@
 
 namespace flatspeckle::grin {
 
+template class CurvedSpaceOf<GaussianBlobs>;
 template class CurvedSpaceOf<SplineField>;
+template class CurvedSpaceOf<AnySum>;
 
 }  // namespace flatspeckle::grin

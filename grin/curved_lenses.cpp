@@ -4,5 +4,7 @@ namespace flatspeckle::grin {
 
 template class CurvedSpaceOf<Luneburg>;
 template class CurvedSpaceOf<Fisheye>;
+template class CurvedSpaceOf<ParabolicGuide>;
+template class CurvedSpaceOf<SechGuide>;
 
 }  // namespace flatspeckle::grin

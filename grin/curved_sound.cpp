@@ -2,6 +2,8 @@
 
 namespace flatspeckle::grin {
 
+template class CurvedSpaceOf<LinearRamp>;
+template class CurvedSpaceOf<TanhRamp>;
 template class CurvedSpaceOf<StandingWave>;
 template class CurvedSpaceOf<FocusedSound>;
 

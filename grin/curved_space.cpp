@@ -24,7 +24,10 @@ CurvedSetup::CurvedSetup(const Stage& of, const CurvedSpaceOptions& with)
       excess_around(of.excess_around),
       field_part(of.body ? Part::body : Part::stage),
       options(with),
-      connection{.step = with.step, .max_length = with.max_length, .count_caustics = false} {}
+      connection{.step = with.step,
+                 .max_length = with.max_length,
+                 .tolerance = 1e-8,
+                 .count_caustics = false} {}
 
 namespace {
 

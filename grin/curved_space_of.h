@@ -54,7 +54,7 @@ class CurvedSpaceOf final : public CurvedSpace {
     if (p.part != q.part) return std::nullopt;
     if (!is_curved(p)) return setup_->stage.join(p, q, 1 + setup_->excess_around, random);
     const ConnectionTrial trial(field_, Within{&container()}, p.x, q.x, setup_->connection);
-    const ConnectionEstimate estimate = connect(trial, random, statistics);
+    const ConnectionEstimate estimate = connect_chord_first(trial, random, statistics);
     if (!estimate.curve) return std::nullopt;
     const Connection& curve = *estimate.curve;
     return Join{.start_direction = curve.start_direction,

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "grin/geometric_spreading.h"
 #include "grin/input_checks.h"
 #include "grin/start_directions.h"
 
@@ -27,18 +26,12 @@ double mean_index_squared(const BoundaryPatch& patch, const std::optional<Surfac
   return mean;
 }
 
-Vec3 on_disk(const BeamLight& beam, double r, double azimuth) {
-  const Frame across = frame_across(beam.direction);
-  return beam.centre + r * (std::cos(azimuth) * across.col(0) + std::sin(azimuth) * across.col(1));
-}
-
 /// The disk has no point outside the stage, as far as its rim tells, and light goes into it.
-void require_inside(const BeamLight& beam, const Stage& stage) {
+void require_inside(const BeamLight& beam, const FlatDisk& disk, const Stage& stage) {
   constexpr int rim_points = 64;
   const double tolerance = 1e-9 * (beam.radius + std::abs(distance(stage.boundary, beam.centre)));
   for (int i = 0; i < rim_points; ++i)
-    if (!(distance(stage.boundary, on_disk(beam, beam.radius, 2 * pi * i / rim_points)) <=
-          tolerance))
+    if (!(distance(stage.boundary, disk.rim(2 * pi * i / rim_points)) <= tolerance))
       throw InputError("radius of a beam_light", beam.radius,
                        "the beam's disk must be inside the stage");
   if (distance(stage.boundary, beam.centre) >= -tolerance &&
@@ -63,9 +56,12 @@ Lights::Source Lights::source(const BeamLight& light, const Stage& stage, const 
   require_finite("position of a beam_light", beam.centre);
   require_positive("radius of a beam_light", beam.radius);
   require_positive("power of a beam_light", beam.power);
-  require_inside(beam, stage);
-  return {
-      .light = beam, .power = beam.power, .position_density = 1 / (pi * beam.radius * beam.radius)};
+  const FlatDisk disk(beam.centre, beam.direction, beam.radius);
+  require_inside(beam, disk, stage);
+  return {.light = beam,
+          .power = beam.power,
+          .position_density = 1 / (pi * beam.radius * beam.radius),
+          .disk = disk};
 }
 
 Lights::Source Lights::source(const FaceLight& light, const Stage& stage, const Index& index) {
@@ -119,15 +115,13 @@ EndPosition Lights::draw_position(RandomStream& random) const {
   while (light + 1 < static_cast<int>(source_.size()) && u >= source_[light].chance_so_far) ++light;
   const Source& from = source_[light];
   if (from.patch) return position(light, from.patch->sample(random));
-  if (const auto* point = std::get_if<PointLight>(&from.light)) {
-    EndPosition at = position(light, {point->x, Vec3::Zero()});
-    at.is_point = true;
+  if (from.disk) {
+    EndPosition at = position(light, {from.disk->sample(random), from.disk->normal()});
+    at.is_beam = true;
     return at;
   }
-  const auto& beam = std::get<BeamLight>(from.light);
-  const double r = beam.radius * std::sqrt(random.uniform());
-  EndPosition at = position(light, {on_disk(beam, r, 2 * pi * random.uniform()), beam.direction});
-  at.is_beam = true;
+  EndPosition at = position(light, {std::get<PointLight>(from.light).x, Vec3::Zero()});
+  at.is_point = true;
   return at;
 }
 
@@ -137,12 +131,9 @@ EndDirection Lights::sample_direction(const EndPosition& at, RandomStream& rando
     return {.direction = at.inward,
             .density = 1,
             .strength = from.power * from.position_density / from.chance};
-  if (at.is_point) {
-    const double cosine = 2 * random.uniform() - 1;
-    return towards(at, direction_about(Vec3::UnitZ(), cosine, 2 * pi * random.uniform()));
-  }
-  const double cosine = std::sqrt(random.uniform());
-  return towards(at, direction_about(at.inward, cosine, 2 * pi * random.uniform()));
+  const double u = random.uniform();
+  if (at.is_point) return towards(at, random_turn(Vec3::UnitZ(), 2 * u, random));
+  return towards(at, random_turn(at.inward, 1 - std::sqrt(u), random));
 }
 
 EndDirection Lights::towards(const EndPosition& at, const Vec3& direction) const {

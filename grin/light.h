@@ -76,6 +76,7 @@ class Lights {
     double chance_so_far = 0;  ///< this and all before
     double position_density = 1;
     std::optional<BoundaryPatch> patch = {};  ///< of a face
+    std::optional<FlatDisk> disk = {};        ///< of a beam
   };
   EndPosition draw_position(RandomStream& random) const;
   EndPosition position(int light, const BoundaryPoint& at) const;

@@ -30,7 +30,7 @@ EndDirection leaving(const Transport& transport, const End& end, const PathVerte
 /// from_y, from_z: leaving() along the curve, either way.
 inline JoinedPath joined_path(const Strategies& strategies, const PathVertex& y,
                               const EndDirection& from_y, const PathVertex& z,
-                              const EndDirection& from_z, const JoiningCurve& curve, bool is_beam) {
+                              const EndDirection& from_z, const JoiningCurve& curve) {
   const double value = y.weight * from_y.strength * from_z.strength * z.weight /
                        (z.index * z.index * curve.spreading);
   if (!(value > 0)) return {};
@@ -41,8 +41,8 @@ inline JoinedPath joined_path(const Strategies& strategies, const PathVertex& y,
   const double z_from_y =
       from_y.density * attenuation / curve.spreading * z.cosine(curve.end_direction);
   const double others =
-      fewer_of_ours(y, y_from_z, from_y.density, strategies.most_sensor - z.vertices) +
-      fewer_of_ours(z, z_from_y, from_z.density, strategies.most_of_light(is_beam) - y.vertices);
+      fewer_of_ours(y, y_from_z, from_y.density, strategies.most_sensor() - z.vertices) +
+      fewer_of_ours(z, z_from_y, from_z.density, strategies.most_light() - y.vertices);
   return {value, 1 / (1 + others), from_z.pixel};
 }
 

@@ -6,14 +6,14 @@
 
 #include "core/random.h"
 #include "grin/curved_space.h"
-#include "grin/render_plan.h"
 #include "grin/film.h"
+#include "grin/render_plan.h"
 #include "grin/transport.h"
 
 namespace flatspeckle::grin {
 
-/// Light paths and as many sensor paths, added to a film; with `promises`, what joins promise is
-/// collected too.
+/// Light paths and as many sensor paths, added to a film; with `promises`, what each pair promised
+/// to add (Bidirectional) is collected too.
 using PathKernel = std::function<void(int paths, RandomStream& random, Film& film,
                                       TransportCounts& counts, std::vector<double>* promises)>;
 

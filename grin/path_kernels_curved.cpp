@@ -14,8 +14,10 @@ PathKernel kernel_of(std::shared_ptr<const Transport> transport,
              std::vector<double>* promises) {
     const auto add = [&](const CurvedSpace& met, int first, int last) {
       Bidirectional<plan, CurvedSpace> estimator(*transport, met, random, film, counts);
-      if (promises) estimator.record(*promises);
-      for (int path = first; path < last; ++path) estimator.add(stratum(path, paths, random));
+      for (int path = first; path < last; ++path) {
+        estimator.add(stratum(path, paths, random));
+        if (promises) promises->push_back(estimator.promised());
+      }
     };
     if (!random_phase) return add(*space, 0, paths);
     for (int path = 0; path < paths; ++path)

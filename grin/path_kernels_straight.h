@@ -23,8 +23,10 @@ PathKernel straight_kernel_of(std::shared_ptr<const Transport> transport, double
   return [=](int paths, RandomStream& random, Film& film, TransportCounts& counts,
              std::vector<double>* promises) {
     Bidirectional<plan, StraightSpace<plan>> estimator(*transport, *space, random, film, counts);
-    if (promises) estimator.record(*promises);
-    for (int path = 0; path < paths; ++path) estimator.add(stratum(path, paths, random));
+    for (int path = 0; path < paths; ++path) {
+      estimator.add(stratum(path, paths, random));
+      if (promises) promises->push_back(estimator.promised());
+    }
   };
 }
 

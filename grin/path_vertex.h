@@ -98,14 +98,16 @@ inline PathVertex arrived(const PathVertex& here, const Flight& flight, double d
   return next;
 }
 
-/// Which strategies are in use, by the numbers of vertices made from either end.
+/// Which strategies are in use. A short path from an end stops where the rest can be joined to it
+/// or hits it: after the end itself, but for a beam, and for ways that cross a body.
 struct Strategies {
   static constexpr int unlimited = std::numeric_limits<int>::max() / 2;
-  int most_light = unlimited;          ///< 1: path tracing
-  int most_light_of_beam = unlimited;  ///< 2: path tracing; the first collision is the light
-  int most_sensor = unlimited;         ///< 1: light tracing
+  bool short_light = false;   ///< path tracing
+  bool short_sensor = false;  ///< light tracing
 
-  int most_of_light(bool is_beam) const { return is_beam ? most_light_of_beam : most_light; }
+  /// Vertices made from an end that can also be made from the other.
+  int most_light() const { return short_light ? 1 : unlimited; }
+  int most_sensor() const { return short_sensor ? 1 : unlimited; }
 };
 
 }  // namespace flatspeckle::grin

@@ -4,11 +4,11 @@
 #include <cmath>
 #include <limits>
 #include <mutex>
+#include <numeric>
 
 #include "core/error.h"
 #include "core/random.h"
 #include "grin/curved_space.h"
-#include "grin/join_level.h"
 #include "grin/path_kernels.h"
 #include "grin/photon_map.h"
 
@@ -16,15 +16,12 @@ namespace flatspeckle::grin {
 
 namespace {
 
-/// Joins per flight, as a curve costs ten flights and more and a line no more than one
-/// (bench_render).
-constexpr double joins_per_curved_flight = 0.25, joins_per_straight_flight = 1;
+/// What a join costs (bench_render).
+constexpr double flights_per_curve = 4, flights_per_line = 0.1;
 
 Strategies strategies(RenderMethod method) {
-  Strategies all;
-  if (method == RenderMethod::path) return {1, 2, all.most_sensor};
-  if (method == RenderMethod::light) return {all.most_light, all.most_light_of_beam, 1};
-  return all;
+  return {.short_light = method == RenderMethod::path,
+          .short_sensor = method == RenderMethod::light};
 }
 
 bool is_photon_map(const RenderRequest& request) {
@@ -67,9 +64,8 @@ Tracer straight_tracer(const RenderScene& scene, const RenderRequest& request,
 
 Tracer curved_tracer(const RenderScene& scene, const RenderRequest& request,
                      const RenderPlan& plan) {
-  const std::shared_ptr<const CurvedSpace> space =
-      make_curved_space(scene.field, scene.stage,
-                        {scene.step, scene.max_length, !is_photon_map(request)});
+  const std::shared_ptr<const CurvedSpace> space = make_curved_space(
+      scene.field, scene.stage, {scene.step, scene.max_length, !is_photon_map(request)});
   const auto transport =
       transport_in(scene, request, [&](const PathPoint& p) { return space->index(p); });
   if (is_photon_map(request))
@@ -78,20 +74,27 @@ Tracer curved_tracer(const RenderScene& scene, const RenderRequest& request,
   return {transport, curved_kernel(plan, transport, space, scene.random_phase)};
 }
 
-/// From a few paths that join nothing; they depend on the scene alone.
-double level_of_joins(const Tracer& tracer, const RenderScene& scene, double joins_per_flight) {
-  constexpr int paths = 256;
+/// Of the scene alone: from a few pairs of paths that join nothing. A pair costs F flights, and V,
+/// the mean square of what it adds. Joins at a level L with the promise S add L S to V and cost c
+/// S/L flights; V F is least at L^2 = c V / F, both without joins.
+double level_of_joins(const Tracer& tracer, const RenderScene& scene, double flights_per_join) {
+  constexpr int pairs = 256;
   constexpr auto no_batch = std::numeric_limits<std::uint64_t>::max();
-  std::vector<Complex> sums(static_cast<std::size_t>(tracer.transport->sensor.pixels().count()) *
-                            scene.bins.count);
-  Film film(tracer.transport->sensor.pixels().count(), scene.bins, sums);
+  const int pixels = tracer.transport->sensor.pixels().count();
+  std::vector<Complex> sums(static_cast<std::size_t>(pixels) * scene.bins.count);
+  Film film(pixels, scene.bins, sums);
   RandomStream random(0, static_cast<std::uint64_t>(Stream::render), no_batch);
   TransportCounts counts;
   std::vector<double> promises;
   tracer.transport->join_level = std::numeric_limits<double>::infinity();
-  tracer.kernel(paths, random, film, counts, &promises);
-  return join_level(promises,
-                    std::max(1.0, joins_per_flight * static_cast<double>(counts.flights)));
+  tracer.kernel(pairs, random, film, counts, &promises);
+  // without the few that promise most: what is near an end is rare, and would decide alone
+  std::sort(promises.begin(), promises.end());
+  promises.resize(pairs - pairs / 64);
+  const double square =
+      std::inner_product(promises.begin(), promises.end(), promises.begin(), 0.0) / pairs;
+  const double flights = static_cast<double>(counts.flights) / pairs;
+  return std::sqrt(flights_per_join * square / std::max(flights, 1.0));
 }
 
 int paths_per_batch(std::size_t sums) {
@@ -130,8 +133,8 @@ RenderJob render_job(const RenderScene& scene, const RenderRequest& request, std
   const Tracer tracer =
       plan.curved ? curved_tracer(scene, request, plan) : straight_tracer(scene, request, plan);
   if (!is_photon_map(request))
-    tracer.transport->join_level = level_of_joins(
-        tracer, scene, plan.curved ? joins_per_curved_flight : joins_per_straight_flight);
+    tracer.transport->join_level =
+        level_of_joins(tracer, scene, plan.curved ? flights_per_curve : flights_per_line);
 
   RenderJob job;
   job.pixels = tracer.transport->sensor.pixels();

@@ -119,7 +119,8 @@ PhotonPicture photon_picture(const TwoScenes& scenes, std::uint64_t photons, std
 
 void check_against(const PhotonPicture& photons, const TwoScenes& scenes,
                    const RenderRequest& request, std::uint64_t samples, double precision) {
-  CAPTURE(name(request.method));
+  const std::string method = name(request.method);
+  CAPTURE(method);
   const RenderJob job = render_job(scenes.scene, request, 11);
   const RunState state = run_render(job, static_cast<double>(samples));
   const RenderedPicture picture = rendered_picture(job, state.sums);

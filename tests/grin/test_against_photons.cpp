@@ -125,7 +125,7 @@ TwoScenes foggy_guide() {
                     .max_length = 100,
                     .stage = {.boundary = Box{{-1, -1, 0}, {1, 1, 4}},
                               .medium = {.mu_s = 0.3, .mu_a = 0.05, .density = density}},
-                    .lights = {BeamLight{{0.2, 0, 0}, {0.2, 0, 1}, 0.3}},
+                    .lights = {BeamLight{{0.2, 0, 0.2}, {0.2, 0, 1}, 0.3}},
                     .sensor = end,
                     .bins = {5, 8, 4}},
           .walk = {.boundary = {{-1, -1, 0}, {1, 1, 4}},
@@ -134,7 +134,7 @@ TwoScenes foggy_guide() {
                               .density = [](const Vec3& x) { return 0.5 + x.z() / 4; },
                               .largest_density = 1.5},
                    .curved = WalkIndex{n, gradient, 0.05}},
-          .source = beam_source({0.2, 0, 0}, {0.2, 0, 1}, 0.3),
+          .source = beam_source({0.2, 0, 0.2}, {0.2, 0, 1}, 0.3),
           .sensor = area_sensor(end, {0, 0, 1})};
 }
 

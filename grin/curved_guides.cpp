@@ -1,8 +1,0 @@
-#include "grin/curved_space_of.h"
-
-namespace flatspeckle::grin {
-
-template class CurvedSpaceOf<ParabolicGuide>;
-template class CurvedSpaceOf<SechGuide>;
-
-}  // namespace flatspeckle::grin

@@ -1,7 +1,0 @@
-#include "grin/curved_space_of.h"
-
-namespace flatspeckle::grin {
-
-template class CurvedSpaceOf<AnySum>;
-
-}  // namespace flatspeckle::grin

@@ -1,0 +1,149 @@
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <doctest/doctest.h>
+
+#include "core/error.h"
+#include "grin/geometric_spreading.h"
+#include "grin/part_medium.h"
+#include "grin/stage.h"
+#include "tests/grin/space_stages.h"
+#include "tests/statistics.h"
+
+namespace flatspeckle::grin {
+
+namespace {
+
+using std::numbers::pi;
+using Kind = SpacePhaseFunction::Kind;
+
+const SpacePhaseFunction phases[] = {
+    {},
+    {Kind::rayleigh},
+    {Kind::henyey_greenstein, 0},
+    {Kind::henyey_greenstein, 0.85},
+    {Kind::henyey_greenstein, -0.6},
+    {Kind::henyey_greenstein, 0.99},
+};
+const Vec3 axes[] = {Vec3::UnitZ(), -Vec3::UnitZ(), Vec3(0.6, 0, -0.8), Vec3(-2, 3, 1).normalized(),
+                     Vec3(0.8, -0.6, 0)};
+
+/// Bins in the angle, finer towards 0 for forward phase functions.
+double angle_at(double t, double g) {
+  return g > 0.9 ? 0.02 * (std::pow(pi / 0.02 + 1, t) - 1) : pi * t;
+}
+
+}  // namespace
+
+TEST_CASE("phase functions integrate to 1, and their mean cosine is g") {
+  for (const SpacePhaseFunction& phase : phases) {
+    const auto moment = [&](int power) {
+      return flatspeckle::tests::integral(
+          [&](double t) {
+            const double c = std::cos(t);
+            return 2 * pi * phase.density(c) * std::pow(c, power) * std::sin(t);
+          },
+          0, pi);
+    };
+    CHECK(moment(0) == doctest::Approx(1).epsilon(1e-9));
+    CHECK(moment(1) == doctest::Approx(phase.g).epsilon(1e-8));
+  }
+}
+
+TEST_CASE("scattered directions follow the phase function in angle and azimuth") {
+  std::uint64_t seed = 0;
+  constexpr int polar = 25, around = 8, samples = 200000;
+  for (const SpacePhaseFunction& phase : phases) {
+    const Vec3 axis = axes[seed % std::size(axes)];
+    const Frame across = frame_across(axis);
+    std::vector<double> edges, counts(polar * around), probabilities;
+    for (int i = 0; i <= polar; ++i) edges.push_back(angle_at(1.0 * i / polar, phase.g));
+    RandomStream random(++seed, 81, 0);
+    for (int i = 0; i < samples; ++i) {
+      const Vec3 d = phase.sample(axis, random);
+      REQUIRE(d.squaredNorm() == doctest::Approx(1).epsilon(1e-14));
+      const Eigen::Vector2d part = across.transpose() * d;
+      const double angle = std::atan2(part.norm(), d.dot(axis));
+      const auto bin = std::upper_bound(edges.begin() + 1, edges.end() - 1, angle) - edges.begin() - 1;
+      const double turn = (std::atan2(part[1], part[0]) / pi + 1) / 2;
+      ++counts[bin * around + std::min(around - 1, static_cast<int>(turn * around))];
+    }
+    const auto ring = [&](double t) { return 2 * pi * phase.density(std::cos(t)) * std::sin(t); };
+    for (int i = 0; i < polar; ++i)
+      for (int k = 0; k < around; ++k)
+        probabilities.push_back(flatspeckle::tests::integral(ring, edges[i], edges[i + 1]) / around);
+    flatspeckle::tests::check_chi_square(counts, probabilities);
+  }
+}
+
+TEST_CASE("directions stay of length 1 over long walks, also about the poles of the frame") {
+  const SpacePhaseFunction phase{Kind::henyey_greenstein, 0.999};
+  for (Vec3 d : axes) {
+    RandomStream random(1, 82, 0);
+    for (int i = 0; i < 20000; ++i) d = phase.sample(d, random);
+    CHECK(std::abs(d.norm() - 1) < 1e-14);
+  }
+}
+
+TEST_CASE("a density grid is trilinear, 0 outside, and refuses what is none") {
+  const FieldGrid grid{Vec3(1, 2, 3), Vec3(0.5, 0.25, 1), {3, 4, 2}};
+  const auto affine = [](const Vec3& x) { return 1 + 0.3 * x[0] + 2 * x[1] * x[2]; };
+  std::vector<double> values;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 4; ++j)
+      for (int k = 0; k < 2; ++k)
+        values.push_back(affine(grid.origin + Vec3(i, j, k).cwiseProduct(grid.spacing)));
+  const DensityGrid density(grid, values);
+  for (const Vec3& x : {Vec3(1, 2, 3), Vec3(1.3, 2.6, 3.9), Vec3(2, 2.75, 4), Vec3(1.5, 2.25, 3.5)})
+    CHECK(density(x) == doctest::Approx(affine(x)).epsilon(1e-13));
+  CHECK(density(Vec3(0.999, 2.5, 3.5)) == 0);
+  CHECK(density(Vec3(1.5, 2.751, 3.5)) == 0);
+  CHECK(density.largest() == *std::max_element(values.begin(), values.end()));
+  std::vector<double> bad = values;
+  bad[3] = -1e-9;
+  CHECK_THROWS_AS(DensityGrid(grid, bad), InputError);
+  bad[3] = std::nan("");
+  CHECK_THROWS_AS(DensityGrid(grid, bad), InputError);
+  bad.pop_back();
+  CHECK_THROWS_AS(DensityGrid(grid, bad), InputError);
+  CHECK_THROWS_AS(DensityGrid({grid.origin, grid.spacing, {1, 4, 2}}, std::vector<double>(8)),
+                  InputError);
+}
+
+TEST_CASE("media and stages refuse what cannot be") {
+  const auto refuses = [](Stage stage, const std::string& word) {
+    try {
+      check(stage);
+      FAIL("accepted: " << word);
+    } catch (const InputError& error) {
+      CHECK(std::string(error.what()).find(word) != std::string::npos);
+    }
+  };
+  const Stage good{.boundary = Box{{-1, -1, -1}, {1, 1, 1}}, .body = Body{Sphere{}}};
+  check(good);
+  Stage bad = good;
+  bad.medium.mu_s = -1;
+  refuses(bad, "mu_s");
+  bad = good;
+  bad.body->medium.mu_a = std::nan("");
+  refuses(bad, "body_mu_a");
+  bad = good;
+  bad.medium.phase.g = 1;
+  refuses(bad, "g");
+  bad = good;
+  bad.excess_around = -1;
+  refuses(bad, "index_around");
+  bad = good;
+  bad.boundary = Plane{{0, 0, 1}, Vec3::UnitZ()};
+  refuses(bad, "closed");
+  bad = good;
+  bad.body->surface = Sphere{{0.1, 0, 0}, 1};
+  refuses(bad, "within");
+  bad = good;
+  bad.boundary = Sphere{Vec3::Zero(), 1.7};
+  bad.body->surface = Box{{-1, -1, -1}, {1, 1, 1}};
+  refuses(bad, "within");
+}
+
+}  // namespace flatspeckle::grin
