@@ -76,6 +76,31 @@ class Writer {
   SensorAxes axes_;
 };
 
+void write_counts(ResultFile& file, const grin::TransportCounts& counts) {
+  const auto count = [&](const char* name, std::uint64_t value, const std::string& long_name) {
+    file.dataset(std::string("transport/") + name, std::vector<std::uint64_t>{value}, {}, "1",
+                 long_name);
+  };
+  count("flights", counts.flights, "ways from one event to the next");
+  count("lost_flights", counts.lost_flights,
+        "of these, too long or into an index that is not positive: they carry nothing on");
+  count("joins", counts.joins, "vertices of light and sensor that were joined");
+  count("lost_values", counts.lost_values, "contributions that were not finite, left out");
+}
+
+/// What is missing from a picture is not passed over in silence.
+void note_losses(const grin::TransportCounts& counts) {
+  if (counts.lost_flights > 0)
+    std::fprintf(stderr,
+                 "note: %.2g %% of the flights were longer than max_length or came to where the "
+                 "index is not positive; their light is missing\n",
+                 100 * static_cast<double>(counts.lost_flights) /
+                     static_cast<double>(counts.flights));
+  if (counts.lost_values > 0)
+    std::fprintf(stderr, "note: %llu contributions were not finite and are left out\n",
+                 static_cast<unsigned long long>(counts.lost_values));
+}
+
 bool has_trials(const grin::RenderJob& job) {
   return job.counts && job.counts->connections.pairs > 0;
 }
@@ -103,6 +128,7 @@ void write_render(ResultFile& file, const grin::RenderScene& scene, const grin::
   Writer writer(file, scene);
   writer.steady(result);
   if (job.bins.count > 1) writer.timed(result, job.bins, length_unit);
+  if (job.counts) write_counts(file, *job.counts);
   if (!has_trials(job)) return;
   write_trials(file, job.counts->connections);
   write_pairs(file, job.counts->connections);
@@ -121,6 +147,7 @@ void print_render(const grin::RenderScene& scene, const grin::RenderJob& job,
   print_row("brightest pixel", image, static_cast<std::size_t>(brightest - image.value.begin()),
             axes.image_units);
   std::printf("pixels: relative error %.2g %%\n", 100 * relative_error(image));
+  if (job.counts) note_losses(*job.counts);
   if (!has_trials(job)) return;
   const auto& curves = job.counts->connections;
   std::printf("curves: %llu pairs, %.3g %% of trials converged, %.3g further trials each\n",

@@ -19,7 +19,7 @@ CAMERA = {"sensor_at": [0.2, 0, 3.9], "sensor_direction": [0, 0, -1], "field_of_
           "pixels": [6, 4]}
 FIBRE = {"field": "parabolic", "index": 1.5, "alpha": 0.5}
 NEVER = 1e-12
-COST = ("wall_s", "cpu_s", "state", "trials")  # differs from run to run, or when resumed
+COST = ("wall_s", "cpu_s", "state", "trials", "transport")  # differs from run to run, or when resumed
 
 
 def write_density(path, density, **attributes):
