@@ -91,11 +91,11 @@ void write_counts(ResultFile& file, const grin::TransportCounts& counts) {
 /// What is missing from a picture is not passed over in silence.
 void note_losses(const grin::TransportCounts& counts) {
   if (counts.lost_flights > 0)
-    std::fprintf(stderr,
-                 "note: %.2g %% of the flights were longer than max_length or came to where the "
-                 "index is not positive; their light is missing\n",
-                 100 * static_cast<double>(counts.lost_flights) /
-                     static_cast<double>(counts.flights));
+    std::fprintf(
+        stderr,
+        "note: %.2g %% of the flights were longer than max_length or came to where the "
+        "index is not positive; their light is missing\n",
+        100 * static_cast<double>(counts.lost_flights) / static_cast<double>(counts.flights));
   if (counts.lost_values > 0)
     std::fprintf(stderr, "note: %llu contributions were not finite and are left out\n",
                  static_cast<unsigned long long>(counts.lost_values));

@@ -34,7 +34,7 @@ def draw_image(figure, axis, result, norm):
     bar = panel(figure, axis, result, result.values("image"), pictures.quantity(result), "max",
                 cmap="inferno", norm=norm)
     if not isinstance(norm, LogNorm):
-        bar.ax.yaxis.set_major_locator(MaxNLocator(5))
+        bar.ax.yaxis.set_major_locator(MaxNLocator(4))
         bar.ax.yaxis.get_offset_text().set_ha("left")
         bar.formatter.set_powerlimits((-2, 4))
 

@@ -10,6 +10,7 @@ from lib.result_file import Unusable
 
 import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.ticker import MaxNLocator
 
 NAMES = {"amplitude": "amplitude of the index", "mu_s": r"$\mu_s$", "mu_a": r"$\mu_a$"}
 
@@ -52,7 +53,9 @@ def draw(results, arguments):
         axis.errorbar(key, power, error, **style.look(number),
                       label=None if second is None else f"{name} = {second:g}")
     axis.set_xlabel(NAMES.get(arguments.key, arguments.key))
-    axis.set_ylabel("power on the detector" + (", over that without" if relative else ""))
+    axis.set_ylabel("relative power on the detector" if relative else "power on the detector")
+    axis.xaxis.set_major_locator(MaxNLocator(4))
+    axis.ticklabel_format(axis="x", scilimits=(-2, 4), useMathText=True)
     if arguments.curves:
         axis.legend()
     return figure

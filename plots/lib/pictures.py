@@ -7,6 +7,8 @@ from matplotlib.colors import LogNorm, Normalize, PowerNorm
 
 LENGTHS = {1.0: "m", 1e-2: "cm", 1e-3: "mm", 1e-6: "µm", 1e-9: "nm"}
 BRIGHTEST = 0.999  # of the pixels; those above share one colour
+UNITS = {"1/(length^2 sr)": "{}$^{{-2}}$ sr$^{{-1}}$", "1/length^2": "{}$^{{-2}}$",
+         "1/sr": "sr$^{{-1}}$", "1": ""}
 TONES = ("linear", "root", "log")
 
 
@@ -26,7 +28,7 @@ def length_name(result):
 def unit_name(result, name):
     """Of a dataset, with the unit of length by its name."""
     units = result.dataset(name).attrs["units"]
-    return "" if units == "1" else units.replace("length", length_name(result)).replace("^2", "²")
+    return UNITS.get(units, units).format(length_name(result))
 
 
 def quantity(result):

@@ -156,6 +156,37 @@ class ClosedForms(RenderTest):
         self.assertGreater(found["random"], 1.1 * found["low"])
 
 
+class Axes(RenderTest):
+    """Unscattered light is where row and column say."""
+
+    def brightest(self, **keys):
+        found = self.render(**{**BOX, "pixels": [19, 15], "samples": 2000, **keys})
+        row, column = np.unravel_index(found["image"].argmax(), found["image"].shape)
+        self.step = abs(found["column"][1] - found["column"][0])
+        self.assertAlmostEqual(abs(found["row"][1] - found["row"][0]), self.step)
+        self.assertGreater(found["image"].max(), 0.3 * found["image"].sum())
+        return found["column"][column], found["row"][row]
+
+    def check(self, column, row, **keys):
+        at = self.brightest(**keys)
+        np.testing.assert_allclose(at, (column, row), atol=0.51 * self.step)
+
+    def test_area(self):
+        """Columns along outward normal x up, here -x."""
+        self.check(-0.31, 0.22, sensor="area", sensor_at=[0, 0, 4], sensor_size=[1.9, 1.5],
+                   beam_light=[0.31, 0.22, 0, 0, 0, 1, 0.01, 1])
+
+    def test_directional(self):
+        x, y, _ = np.array([0.31, 0.12, 1]) / np.linalg.norm([0.31, 0.12, 1])
+        self.check(-x, y, sensor="directional", half_angle=0.6, pixels=[19, 19],
+                   beam_light=[0, 0, 0, 0.31, 0.12, 1, 0.01, 1])
+
+    def test_camera(self):
+        """Columns along sensor_direction x sensor_up, here x."""
+        self.check(0.5 / 2.9, 0.3 / 2.9, **{**CAMERA, "sensor_at": [0, 0, 3.9], "pixels": [19, 15]},
+                   point_light=[0.5, 0.3, 1, 1])
+
+
 class SameNumbers(RenderTest):
     KEYS = {**BOX, **BEAM, **FOG, **AREA, "path_bins": [3, 9, 6]}
 
