@@ -39,19 +39,22 @@ def draw_image(figure, axis, result, norm):
         bar.formatter.set_powerlimits((-2, 4))
 
 
-def draw_error(figure, axis, result):
-    error = relative_error(result)
-    least = 10 ** np.floor(np.log10(np.quantile(error, 0.01)))
-    norm = LogNorm(min(least, MOST / 10), MOST, clip=True)
-    bar = panel(figure, axis, result, error, "relative standard error", "both", cmap="cividis",
+def error_norm(results):
+    """From the decade of the best pixels of any of them."""
+    best = min(np.quantile(relative_error(result), 0.01) for result in results)
+    return LogNorm(min(10 ** np.floor(np.log10(best)), MOST / 10), MOST, clip=True)
+
+
+def draw_error(figure, axis, result, norm):
+    bar = panel(figure, axis, result, relative_error(result), "relative standard error", "both", cmap="cividis",
                 norm=norm)
     bar.ax.yaxis.set_major_formatter(FuncFormatter(lambda share, _: f"{100 * share:g} %"))
     bar.ax.yaxis.set_minor_formatter(NullFormatter())
 
 
-def draw_row(figure, axes, result, norm):
+def draw_row(figure, axes, result, norm, errors):
     draw_image(figure, axes[0], result, norm)
-    draw_error(figure, axes[1], result)
+    draw_error(figure, axes[1], result, errors)
     across, up = pictures.axis_names(result)
     axes[0].set_ylabel(up)
     for axis in axes:
@@ -73,8 +76,9 @@ def draw(results, arguments):
     height = np.clip((top - bottom) / (right - left), 0.2, 2) * 0.36 * style.PAGE + 0.4
     figure, axes = plt.subplots(len(results), 2, squeeze=False,
                                 figsize=(style.PAGE, len(results) * height))
+    errors = error_norm(results)
     for row, result, norm in zip(axes, results, norms(results, arguments)):
-        draw_row(figure, row, result, norm)
+        draw_row(figure, row, result, norm, errors)
         if len(results) > 1:
             row[0].set_title(result.path)
     return figure

@@ -179,7 +179,7 @@ class Axes(RenderTest):
     def test_directional(self):
         x, y, _ = np.array([0.31, 0.12, 1]) / np.linalg.norm([0.31, 0.12, 1])
         self.check(-x, y, sensor="directional", half_angle=0.6, pixels=[19, 19],
-                   beam_light=[0, 0, 0, 0.31, 0.12, 1, 0.01, 1])
+                   beam_light=[0, 0, 0.1, 0.31, 0.12, 1, 0.01, 1])
 
     def test_camera(self):
         """Columns along sensor_direction x sensor_up, here x."""
