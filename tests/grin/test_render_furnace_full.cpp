@@ -4,7 +4,7 @@
 
 namespace flatspeckle::grin::tests {
 
-// The white furnace to an error of 0.1 %: some ten minutes of a processor.
+// The white furnace to an error of 0.1 %: about an hour of a processor.
 
 namespace {
 
