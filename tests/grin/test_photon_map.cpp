@@ -2,11 +2,11 @@
 #include <cmath>
 #include <numbers>
 
+#include <boost/math/quadrature/gauss.hpp>
 #include <doctest/doctest.h>
 
 #include "grin/photon_map.h"
 #include "tests/grin/render_tests.h"
-#include "tests/statistics.h"
 
 using namespace flatspeckle;
 using namespace flatspeckle::grin;
@@ -16,6 +16,11 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 constexpr double everywhere = std::numeric_limits<double>::infinity();
+
+template <class F>
+double smooth_integral(const F& f, double from, double to) {
+  return boost::math::quadrature::gauss<double, 20>::integrate(f, from, to);
+}
 
 /// Looks along +z, one pixel.
 Camera pinhole(const Vec3& x) {
@@ -45,13 +50,13 @@ double blurred_furnace(const Index& n, double mu, double radius) {
       };
       // up to the wall, so that the integrand is smooth
       const double wall = std::clamp((1 - s * s - r * r) / (2 * s * r), -1.0, 1.0);
-      return 2 * pi * r * r * flatspeckle::tests::integral(ring, -1, wall);
+      return 2 * pi * r * r * smooth_integral(ring, -1, wall);
     };
-    return flatspeckle::tests::integral(shell, 0, radius) / (4 * pi / 3 * std::pow(radius, 3));
+    return smooth_integral(shell, 0, radius) / (4 * pi / 3 * std::pow(radius, 3));
   };
   const auto collided = [&](double s) { return mu * std::exp(-mu * s) * gathered(s); };
-  return std::exp(-mu) + flatspeckle::tests::integral(collided, 1e-9, 1 - radius) +
-         flatspeckle::tests::integral(collided, 1 - radius, 1);
+  return std::exp(-mu) + smooth_integral(collided, 1e-9, 1 - radius) +
+         smooth_integral(collided, 1 - radius, 1);
 }
 
 void check_value(const Rendered& picture, double expected) {
@@ -59,7 +64,7 @@ void check_value(const Rendered& picture, double expected) {
   CAPTURE(value);
   CAPTURE(error);
   CAPTURE(expected);
-  CHECK(error < 0.005 * expected);
+  CHECK(error < 0.02 * expected);
   CHECK(std::abs(value - expected) < 4 * error);
 }
 
@@ -96,7 +101,7 @@ TEST_CASE("the photon map of a furnace is 1, but for the photons missing beyond 
   const RenderScene scene =
       furnace(Homogeneous{n - 1},
               {.mu_s = mu, .phase = {SpacePhaseFunction::Kind::henyey_greenstein, 0.6}});
-  for (const double radius : {0.25, 0.1}) {
+  for (const double radius : {0.35, 0.15}) {
     const double expected = blurred_furnace([&](double) { return n; }, mu, radius);
     CHECK(expected < 1 - 0.06 * radius);
     check_value(rendered(scene, {RenderMethod::photon_map, 0, radius}, 160000), expected);
@@ -105,10 +110,11 @@ TEST_CASE("the photon map of a furnace is 1, but for the photons missing beyond 
 
 TEST_CASE("the photon map in curved space counts L/n^2") {
   const double mu = 1.5, radius = 0.25;
-  const RenderScene scene = furnace(Fisheye({.centre_excess = 1, .radius = 1}),
+  const RenderScene scene = furnace(Fisheye({.centre_excess = 1, .radius = 0.6}),
                                     {.mu_s = mu, .phase = {SpacePhaseFunction::Kind::rayleigh}});
-  const double expected = blurred_furnace([](double r) { return 2 / (1 + r * r); }, mu, radius);
-  CHECK(std::abs(expected - blurred_furnace([](double) { return 1; }, mu, radius)) > 0.005);
+  const double expected =
+      blurred_furnace([](double r) { return 2 / (1 + r * r / 0.36); }, mu, radius);
+  CHECK(std::abs(expected - blurred_furnace([](double) { return 1; }, mu, radius)) > 0.04);
   check_value(rendered(scene, {RenderMethod::photon_map, 0, radius}, 100000), expected);
 }
 
