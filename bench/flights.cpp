@@ -101,8 +101,8 @@ void print_curved(const char* name, const AnyIndexField& field, const Stage& sta
   const auto full = make_curved_space(field, stage, {step, 8, true});
   const Part part = stage.body ? Part::body : Part::stage;
   const Figures without = measure(*quick, part), with = measure(*full, part);
-  std::printf("%-34s %8.2f %8.2f %8.2f %7.2f %7.2f %7.2f\n", name, without.fly / 1e3, with.fly / 1e3,
-              with.join / 1e3, with.found, with.trials, with.refind);
+  std::printf("%-34s %8.2f %8.2f %8.2f %7.2f %7.2f %7.2f\n", name, without.fly / 1e3,
+              with.fly / 1e3, with.join / 1e3, with.found, with.trials, with.refind);
 }
 
 GaussianBlobs blobs(double height) {
@@ -129,8 +129,10 @@ int main(int argc, char** argv) {
   std::printf("%-34s %8s %8s\n", "straight, ns", "flight", "join");
   print_straight("nothing in it", measure(StraightSpace<least>(clear, 0), Part::stage));
   print_straight("scattering", measure(StraightSpace<scattering()>(foggy, 0), Part::stage));
-  print_straight("scattering, box", measure(StraightSpace<scattering()>(
-      Stage{.boundary = Box{{-1, -1, -1}, {1, 1, 1}}, .medium = fog}, 0), Part::stage));
+  print_straight("scattering, box",
+                 measure(StraightSpace<scattering()>(
+                             Stage{.boundary = Box{{-1, -1, -1}, {1, 1, 1}}, .medium = fog}, 0),
+                         Part::stage));
   print_straight("grid of density 1", measure(StraightSpace<gridded()>(cloud, 0), Part::stage));
   print_straight("glass ball in fog", measure(StraightSpace<with_body()>(glass, 0.5), Part::stage));
   std::printf("\n%-34s %8s %8s %8s %7s %7s %7s\n", "curved, us", "flight", "with |J|", "join",

@@ -46,8 +46,7 @@ ConnectionEstimate connect_by(const Draw& draw, const ConnectionTrial<F, R, Step
   if (outcome != TrialOutcome::converged) return {outcome, std::nullopt, 0};
   ++statistics.found;
   const double multiplicity = trials_to_refind(draw, curve, trial.options(), random, statistics);
-  return {outcome,
-          trial.options().count_caustics ? trial.with_caustics(curve, statistics) : curve,
+  return {outcome, trial.options().count_caustics ? trial.with_caustics(curve, statistics) : curve,
           multiplicity};
 }
 

@@ -44,7 +44,8 @@ class ConnectionTrial {
     return result;
   }
 
-  /// The trial that starts along the chord and goes for the first closest approach: no chance in it.
+  /// The trial that starts along the chord and goes for the first closest approach: no chance in
+  /// it.
   Result along_chord(ConnectionStatistics& statistics) const {
     const Result result = search_along_chord(statistics);
     ++statistics.outcomes[static_cast<int>(result.outcome)];

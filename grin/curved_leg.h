@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <tuple>
 
 #include "grin/first_crossing.h"
@@ -32,42 +33,37 @@ class CurvedLeg {
   template <class... Tangent>
   Stop go(double longest, double& weight, RandomStream& random, RayState& ray,
           Tangent&... tangent) const {
-    const double start_distance = distance(surface_, ray.x);
-    const bool on_surface = start_distance >= -tolerance_;
-    const double put_back = on_surface ? std::max(0.0, start_distance) + 0.75 * tolerance_ : 0;
-    double clearance = put_back - start_distance, collision = next_collision(0, random);
+    const double outside = distance(surface_, ray.x);
+    const double put_back = outside >= -tolerance_ ? std::max(0.0, outside) + 0.75 * tolerance_ : 0;
+    double clearance = put_back - outside, collision = next_collision(0, random);
     for (int steps = 0; steps < most_steps && ray.arc_length <= longest; ++steps) {
       const std::tuple<RayState, Tangent...> before(ray, tangent...);
       const RayState& start = std::get<0>(before);
       Sharma::step(field_, ray, tangent..., step_);
       const bool is_lost = !(ray.arc_length > start.arc_length);
-      const double arc = is_lost ? 3 * start.v.norm() * step_ : 1.1 * (ray.arc_length - start.arc_length);
+      const double arc = is_lost ? 3 * start.v.norm() * step_  // more than it might have been
+                                 : 1.1 * (ray.arc_length - start.arc_length);
       clearance -= arc;
-      double part = 1;
-      bool on_way_out = false;
+      std::optional<double> exit;
       if (is_lost || !(clearance > 0)) {
-        const auto exit = way_out(start, ray, put_back, arc, is_lost);
+        exit = way_out(start, ray, put_back, arc, is_lost);
         if (!exit && is_lost) return Stop::lost;
-        on_way_out = exit.has_value();
         clearance = put_back - distance(surface_, ray.x);
-        if (exit) part = *exit;
       }
-      const auto go_back = [&](double theta) {
+      const auto go_only = [&](double part) {
         std::tie(ray, tangent...) = before;
-        Sharma::step(field_, ray, tangent..., theta * step_);
+        Sharma::step(field_, ray, tangent..., part * step_);
       };
-      if (on_way_out) go_back(part);
+      if (exit) go_only(*exit);
+      const double part = exit.value_or(1);
       if (collision <= ray.arc_length) {
-        const RayState end = ray;
-        const StepCurve curve(start, end, part * step_);
-        for (; collision <= end.arc_length; collision = next_collision(collision, random)) {
-          const double theta = curve.theta_at(collision);
-          if (!collides(curve.x(theta), weight, random)) continue;
-          go_back(theta * part);
+        if (const auto at = collide({start, ray, part * step_}, collision, weight, random)) {
+          go_only(*at * part);
           return Stop::collision;
         }
       }
-      if (on_way_out) return Stop::surface;
+      if (exit)
+        return put_back - distance(surface_, ray.x) <= tolerance_ ? Stop::surface : Stop::lost;
     }
     return Stop::lost;
   }
@@ -92,10 +88,17 @@ class CurvedLeg {
     if (!has_collisions_) return std::numeric_limits<double>::infinity();
     return after + sample_free_flight(medium_.majorant(), random.uniform());
   }
-  bool collides(const Vec3& x, double& weight, RandomStream& random) const {
-    if (medium_.scatters()) return medium_.accepts(x, random);
-    weight *= medium_.lacking(x);
-    return false;
+  /// Where in a step light collides, theta; goes on to the first tentative collision beyond it.
+  std::optional<double> collide(const StepCurve& curve, double& collision, double& weight,
+                                RandomStream& random) const {
+    for (; collision <= curve.end_arc_length(); collision = next_collision(collision, random)) {
+      const double theta = curve.theta_at(collision);
+      if (!medium_.scatters())
+        weight *= medium_.lacking(curve.x(theta));
+      else if (medium_.accepts(curve.x(theta), random))
+        return theta;
+    }
+    return std::nullopt;
   }
 
   /// The part of a step that ends on the surface, within the last quarter of the tolerance before

@@ -26,6 +26,7 @@ CurvedSetup::CurvedSetup(const Stage& of, const CurvedSpaceOptions& with)
       options(with),
       connection{.step = with.step,
                  .max_length = with.max_length,
+                 .start = {.chord_share = 0.2},
                  .tolerance = 1e-8,
                  .count_caustics = false} {}
 
@@ -61,7 +62,8 @@ Luneburg smooth_within(const Luneburg& field, const Surface& container) {
   const Sphere* sphere = std::get_if<Sphere>(&container);
   LuneburgProfile profile = field.profile();
   const double rounding = 1e-9 * profile.radius;
-  if (!sphere || (sphere->centre - field.centre()).norm() + sphere->radius > profile.radius + rounding)
+  if (!sphere ||
+      (sphere->centre - field.centre()).norm() + sphere->radius > profile.radius + rounding)
     return field;
   profile.beyond = 0.4;
   return Luneburg(profile, field.centre());

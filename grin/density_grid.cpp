@@ -9,7 +9,9 @@
 namespace flatspeckle::grin {
 
 DensityGrid::DensityGrid(const FieldGrid& grid, std::span<const double> density)
-    : grid_(grid), per_spacing_(grid.spacing.cwiseInverse()), density_(density.begin(), density.end()) {
+    : grid_(grid),
+      per_spacing_(grid.spacing.cwiseInverse()),
+      density_(density.begin(), density.end()) {
   for (int a = 0; a < 3; ++a) {
     if (grid.nodes[a] < 2) throw InputError("nodes of a density grid", grid.nodes[a], "at least 2");
     if (!(grid.spacing[a] > 0) || !std::isfinite(grid.spacing[a]))
@@ -23,7 +25,8 @@ DensityGrid::DensityGrid(const FieldGrid& grid, std::span<const double> density)
     if (!(value >= 0) || !std::isfinite(value))
       throw InputError("density", value, "must be finite and not negative");
   largest_ = *std::max_element(density.begin(), density.end());
-  mean_ = std::accumulate(density.begin(), density.end(), 0.0) / static_cast<double>(density.size());
+  mean_ =
+      std::accumulate(density.begin(), density.end(), 0.0) / static_cast<double>(density.size());
 }
 
 double DensityGrid::operator()(const Vec3& x) const {

@@ -14,8 +14,7 @@ class GridDataset {
 
   FieldGrid grid() const {
     const std::vector<std::size_t> shape = file_.shape(name_);
-    if (shape.size() != 3)
-      throw InputError("axes of " + name_, shape.size(), "must be 3: x, y, z");
+    if (shape.size() != 3) throw InputError("axes of " + name_, shape.size(), "must be 3: x, y, z");
     FieldGrid grid{vector("origin"), vector("spacing"), {}};
     for (int a = 0; a < 3; ++a) grid.nodes[a] = static_cast<int>(shape[a]);
     return grid;
@@ -25,8 +24,7 @@ class GridDataset {
  private:
   Vec3 vector(const std::string& attribute) const {
     const auto values = file_.attribute<std::vector<double>>(name_, attribute);
-    if (values.size() != 3)
-      throw InputError("numbers in " + attribute, values.size(), "must be 3");
+    if (values.size() != 3) throw InputError("numbers in " + attribute, values.size(), "must be 3");
     return {values[0], values[1], values[2]};
   }
 

@@ -40,8 +40,8 @@ inline Vec3 random_turn(const Vec3& axis, double one_minus_cosine, RandomStream&
   // Duff et al. 2017, Building an orthonormal basis, revisited
   const double sign = std::copysign(1.0, axis[2]), c = -1 / (sign + axis[2]);
   const double t = sign * axis[0] * a + axis[1] * b;
-  const Vec3 turned = (1 - one_minus_cosine) * axis +
-                      Vec3(a + axis[0] * c * t, sign * b + axis[1] * c * t, -t);
+  const Vec3 turned =
+      (1 - one_minus_cosine) * axis + Vec3(a + axis[0] * c * t, sign * b + axis[1] * c * t, -t);
   return (1.5 - 0.5 * turned.squaredNorm()) * turned;  // lengths of long walks do not drift
 }
 

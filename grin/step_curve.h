@@ -15,6 +15,7 @@ class StepCurve {
     const auto [a, da, b, db] = weights(theta);
     return a * start_.x + da * start_.v + b * end_.x + db * end_.v;
   }
+  double end_arc_length() const { return end_.arc_length; }
   double arc_length(double theta) const {
     const auto [a, da, b, db] = weights(theta);
     return a * start_.arc_length + da * n_start_ + b * end_.arc_length + db * n_end_;

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <functional>
 
+#include <Eigen/Geometry>
 #include <doctest/doctest.h>
 
 #include "core/error.h"
@@ -39,7 +40,8 @@ void check_depths(const std::vector<double>& survived, double depth_of_exit) {
   for (const double u : survived) ++counts[std::min(bins - 1, static_cast<int>(u * bins))];
   for (int i = 0; i < bins; ++i) {
     const double low = 1.0 * i / bins, high = 1.0 * (i + 1) / bins;
-    probabilities[i] = std::max(0.0, high - std::max(low, exit)) + (low <= exit && exit < high ? exit : 0);
+    probabilities[i] =
+        std::max(0.0, high - std::max(low, exit)) + (low <= exit && exit < high ? exit : 0);
   }
   flatspeckle::tests::check_chi_square(counts, probabilities);
 }
@@ -54,8 +56,9 @@ double straight_depth(const ScatteringMedium& medium, const Vec3& x, const Vec3&
 }
 
 template <Space S>
-void check_free_flights(const S& space, const ScatteringMedium& medium, const Vec3& x, const Vec3& d,
-                        const std::function<double(double)>& depth, double way, int flights) {
+void check_free_flights(const S& space, const ScatteringMedium& medium, const Vec3& x,
+                        const Vec3& d, const std::function<double(double)>& depth, double way,
+                        int flights) {
   std::vector<double> survived;
   RandomStream random(7, 90, 0);
   for (int i = 0; i < flights; ++i) {
@@ -138,8 +141,8 @@ TEST_CASE("free flights follow the extinction along the way, straight and curved
         const double arc = ray.arc_length - before.arc_length;
         const Vec3 middle = (ray.x + before.x) / 2;
         arcs.push_back(ray.arc_length);
-        depths.push_back(depths.back() + medium.mu_t() * arc *
-                                             (gridded ? (*medium.density)(middle) : 1));
+        depths.push_back(depths.back() +
+                         medium.mu_t() * arc * (gridded ? (*medium.density)(middle) : 1));
       }
       const auto depth = [&](double s) {
         const auto i = std::min<std::size_t>(
@@ -164,8 +167,8 @@ TEST_CASE("absorption without scattering weighs a flight, exactly or by ratio tr
     if (gridded) medium.density = tests::random_density(3);
     const double expected = std::exp(-straight_depth(medium, x, d, way));
     // a curved space so weak that the way is straight
-    const auto curved = make_curved_space(LinearRamp{0, 1e-9 * Vec3::UnitX()},
-                                          stage_of(ball, medium), {0.1, 8});
+    const auto curved =
+        make_curved_space(LinearRamp{0, 1e-9 * Vec3::UnitX()}, stage_of(ball, medium), {0.1, 8});
     const StraightAll straight(stage_of(ball, medium), 0);
     const auto check_mean = [&](const auto& space, std::uint64_t seed) {
       RandomStream random(seed, 92, 0);
@@ -206,7 +209,8 @@ TEST_CASE("curved flights in a Luneburg ball: place, direction, |J|, optical pat
         if ((exact.x(k * 0.001) - flight.point.x).norm() < (exact.x(sigma) - flight.point.x).norm())
           sigma = k * 0.001;
       for (int k = 0; k < 20; ++k)
-        sigma -= (exact.x(sigma) - flight.point.x).dot(exact.v(sigma)) / exact.v(sigma).squaredNorm();
+        sigma -=
+            (exact.x(sigma) - flight.point.x).dot(exact.v(sigma)) / exact.v(sigma).squaredNorm();
       const double tolerance = by == space.get() ? 2e-7 : 1e-5;
       CHECK((exact.x(sigma) - flight.point.x).norm() < tolerance);
       CHECK((exact.v(sigma).normalized() - flight.direction).norm() < tolerance);
@@ -236,7 +240,8 @@ TEST_CASE("curved flights in a fisheye: |J| by the optical path, and the angular
     const double n = index(field, flight.point.x);
     const double exact = std::pow(big * std::sin(flight.optical_path / big) / n, 2);
     CHECK(std::abs(flight.spreading - exact) < 1e-6);
-    const Vec3 before = x.cross(index(field, x) * d), after = flight.point.x.cross(n * flight.direction);
+    const Vec3 before = x.cross(index(field, x) * d),
+               after = flight.point.x.cross(n * flight.direction);
     CHECK((before - after).norm() < 1e-7);
     CHECK(space->index(flight.point) == n);
   }
@@ -279,7 +284,8 @@ TEST_CASE("a glass sphere splits light by Fresnel, bends it by Snell and keeps a
       CHECK(flight.crosses_body);
       CHECK(flight.spreading == 0);
       CHECK(flight.weight == 1);
-      CHECK(std::abs(flight.point.x.cross(flight.direction)[1] - x.cross(Vec3::UnitZ())[1]) < 1e-12);
+      CHECK(std::abs(flight.point.x.cross(flight.direction)[1] - x.cross(Vec3::UnitZ())[1]) <
+            1e-12);
       const double before = 2 - std::cos(at), inside = 2 * std::cos(in);
       const double after = [&] { return std::sqrt(9 - impact * impact) - std::cos(at); }();
       const double legs = (flight.arc_length - before - after) / inside;
@@ -330,8 +336,8 @@ TEST_CASE("a flight is the same through a mesh of a cube as through the cube") {
 
 TEST_CASE("a Luneburg body in a box: a beam meets at the far pole, whatever the step") {
   for (const double step : {0.05, 0.02}) {
-    const auto space = make_curved_space(
-        Luneburg({}), with_body(Box{{-2, -2, -2}, {2, 2, 2}}, ball), {step, 10});
+    const auto space =
+        make_curved_space(Luneburg({}), with_body(Box{{-2, -2, -2}, {2, 2, 2}}, ball), {step, 10});
     RandomStream random(10, 91, 0);
     for (int i = 0; i < 100; ++i) {
       const double rho = 0.95 * std::sqrt(random.uniform()), turn = 6.28 * random.uniform();
@@ -355,8 +361,8 @@ TEST_CASE("flights that are too long, or where there is no index, are lost") {
   CHECK(brief->fly({0.8 * Vec3::UnitX()}, Vec3::UnitX(), random).end == Flight::End::boundary);
   const auto dark = make_curved_space(LinearRamp{0, Vec3(0, 0, -2)}, stage_of(ball), {0.01, 8});
   CHECK(dark->fly({0.8 * Vec3::UnitZ()}, Vec3::UnitX(), random).end == Flight::End::lost);
-  const auto guide =
-      make_curved_space(ParabolicGuide({.axis_excess = 0.1, .alpha = 2}), stage_of(ball), {0.01, 8});
+  const auto guide = make_curved_space(ParabolicGuide({.axis_excess = 0.1, .alpha = 2}),
+                                       stage_of(ball), {0.01, 8});
   CHECK(guide->fly({0.9 * Vec3::UnitX()}, Vec3::UnitZ(), random).end == Flight::End::lost);
 }
 
@@ -379,7 +385,8 @@ TEST_CASE("a frozen wave is the wave at that phase; other fields have none") {
   const StandingWave wave(0.3, 0.05, 0, 9, 40);
   const Stage stage = stage_of(ball);
   const auto space = make_curved_space(wave, stage, {0.02, 8});
-  const auto frozen = space->frozen(1.1), exact = make_curved_space(wave.frozen(std::cos(1.1)), stage, {0.02, 8});
+  const auto frozen = space->frozen(1.1),
+             exact = make_curved_space(wave.frozen(std::cos(1.1)), stage, {0.02, 8});
   RandomStream random(13, 91, 0);
   const Vec3 x(0.3, -0.2, 0.1), d = random_direction(random);
   CHECK(frozen->index({x}) == exact->index({x}));

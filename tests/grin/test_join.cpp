@@ -1,0 +1,223 @@
+#include <cmath>
+#include <map>
+
+#include <doctest/doctest.h>
+
+#include "grin/connection_solver.h"
+#include "tests/grin/harmonic_curves.h"
+#include "tests/grin/space_stages.h"
+
+namespace flatspeckle::grin {
+
+namespace {
+
+using tests::random_direction;
+using tests::random_point;
+using StraightAll = StraightSpace<tests::straight_plan>;
+
+const Sphere ball;
+
+/// Mean and standard error.
+struct Mean {
+  double sum = 0, squares = 0;
+  long count = 0;
+
+  void add(double value) {
+    sum += value;
+    squares += value * value;
+    ++count;
+  }
+  double mean() const { return sum / static_cast<double>(count); }
+  double error() const {
+    const double n = static_cast<double>(count);
+    return std::sqrt(std::max(0.0, squares / n - mean() * mean()) / (n - 1));
+  }
+};
+
+/// A path from p flies to a point q of density sum over curves of mu_t(q) T / (4 pi |J|): the share
+/// of flights that collide in each octant about p, by flights and by joins to even points.
+template <Space S>
+void check_flights_against_joins(const S& space, const PathPoint& p, const ScatteringMedium& medium,
+                                 int samples) {
+  const auto octant = [&](const Vec3& x) {
+    const Vec3 d = x - p.x;
+    return (d[0] > 0) + 2 * (d[1] > 0) + 4 * (d[2] > 0);
+  };
+  std::map<int, Mean> flown, joined;
+  ConnectionStatistics statistics;
+  RandomStream random(3, 95, 0);
+  for (int i = 0; i < samples; ++i) {
+    const Flight flight = space.fly(p, random_direction(random), random);
+    // what circles for longer than max_length is lost to both
+    for (int k = 0; k < 8; ++k)
+      flown[k].add(flight.end == Flight::End::collision && octant(flight.point.x) == k);
+    // even along a line from p in a random direction: the 1/|J| of near points does no harm
+    const Vec3 d = random_direction(random);
+    const double far = way_out(ball, p.x, d), r = far * random.uniform();
+    const PathPoint q{p.x + r * d, p.part};
+    const auto join = space.join(p, q, random, statistics);
+    const double rho = medium.density ? (*medium.density)(q.x) : 1;
+    const double value = join ? medium.mu_t() * rho * join->transmittance * join->multiplicity /
+                                    join->spreading * r * r * far
+                              : 0;
+    for (int k = 0; k < 8; ++k) joined[k].add(octant(q.x) == k ? value : 0);
+  }
+  for (int k = 0; k < 8; ++k) {
+    CAPTURE(k);
+    const double error = std::hypot(flown[k].error(), joined[k].error());
+    CHECK(flown[k].mean() > 8 * error);
+    CHECK(std::abs(flown[k].mean() - joined[k].mean()) < 4 * error);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("straight joins: closed form, none through a body or to another part") {
+  const Stage stage{.boundary = Sphere{Vec3::Zero(), 3},
+                    .medium = {.mu_s = 0.4, .mu_a = 0.1},
+                    .body = Body{ball, {.mu_a = 0.7}},
+                    .excess_around = 0.2};
+  const StraightAll space(stage, 0.5);
+  RandomStream random(1, 96, 0);
+  ConnectionStatistics statistics;
+  int blocked = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const PathPoint p{(1 + 1.9 * random.uniform()) * random_direction(random)};
+    const PathPoint q{(1 + 1.9 * random.uniform()) * random_direction(random)};
+    const Vec3 chord = q.x - p.x;
+    const double t = std::clamp(-p.x.dot(chord) / chord.squaredNorm(), 0.0, 1.0);
+    const bool meets = (p.x + t * chord).norm() < 1;
+    const auto join = space.join(p, q, random, statistics);
+    REQUIRE(join.has_value() == !meets);
+    blocked += meets;
+    if (!join) continue;
+    CHECK(join->spreading == doctest::Approx(chord.squaredNorm()));
+    CHECK(join->optical_path == doctest::Approx(1.2 * chord.norm()));
+    CHECK(join->transmittance == doctest::Approx(std::exp(-0.5 * chord.norm())));
+    CHECK(join->optical_depth == doctest::Approx(0.5 * chord.norm()));
+    CHECK(join->multiplicity == 1);
+    CHECK((join->start_direction - chord.normalized()).norm() < 1e-14);
+    CHECK(!space.join(p, {0.3 * q.x, Part::body}, random, statistics));
+    const auto within =
+        space.join({0.3 * p.x, Part::body}, {0.3 * q.x, Part::body}, random, statistics);
+    REQUIRE(within);
+    CHECK(within->optical_path == doctest::Approx(1.5 * 0.3 * chord.norm()));
+    CHECK(within->transmittance == doctest::Approx(std::exp(-0.7 * 0.3 * chord.norm())));
+    CHECK(within->optical_depth == 0);
+  }
+  CHECK(blocked > 200);
+  CHECK(blocked < 1800);
+  CHECK(!space.join({Vec3::UnitX() * 2}, {Vec3::UnitX() * 2}, random, statistics));
+}
+
+TEST_CASE("a curved flight and the join of its ends are one curve") {
+  RandomStream fields(2, 96, 0);
+  const Stage stage{.boundary = ball, .medium = {.mu_s = 2, .mu_a = 0.5}};
+  const AnyIndexField all[] = {tests::random_blobs(fields, 0.03), Luneburg({}),
+                               StandingWave(0.33, 1e-3, 0, 20, 40),
+                               ParabolicGuide({.axis_excess = 0.5, .alpha = 0.6})};
+  for (const AnyIndexField& field : all) {
+    const auto space = make_curved_space(field, stage, {0.01, 8});
+    RandomStream random(4, 96, 0);
+    ConnectionStatistics statistics;
+    int same = 0;
+    for (int i = 0; i < 100; ++i) {
+      const PathPoint p{random_point(random, 0.9)};
+      const Flight flight = space->fly(p, random_direction(random), random);
+      const auto join = space->join(p, flight.point, random, statistics);
+      if (!join) continue;
+      if ((join->start_direction - flight.start_direction).norm() > 1e-3) continue;  // another one
+      ++same;
+      CHECK((join->start_direction - flight.start_direction).norm() < 1e-6);
+      CHECK((join->end_direction - flight.direction).norm() < 1e-6);
+      CHECK(std::abs(join->spreading / flight.spreading - 1) < 1e-6);
+      CHECK(std::abs(join->optical_path - flight.optical_path) < 1e-7);
+      CHECK(std::abs(join->optical_depth - flight.optical_depth) < 1e-7);
+      CHECK(join->transmittance ==
+            doctest::Approx(std::exp(-2.5 * flight.arc_length)).epsilon(1e-6));
+      const auto back = space->join(flight.point, p, random, statistics);
+      if (!back || (back->end_direction + join->start_direction).norm() > 1e-3) continue;
+      const double n_p = space->index(p), n_q = space->index(flight.point);
+      CHECK(n_q * n_q * join->spreading ==
+            doctest::Approx(n_p * n_p * back->spreading).epsilon(1e-6));
+    }
+    CHECK(same > 90);
+  }
+}
+
+TEST_CASE("flights and joins agree on where light from a point collides") {
+  ScatteringMedium medium{.mu_s = 0.8, .mu_a = 0.1};
+  const PathPoint p{Vec3(0.5, -0.2, 0.3)};
+  for (const bool gridded : {false, true}) {
+    if (gridded) medium.density = tests::random_density(5);
+    const Stage stage{.boundary = ball, .medium = medium};
+    check_flights_against_joins(StraightAll(stage, 0.1), p, medium, 20000);
+    // the focus of light from p is outside: at one inside, 1/|J| has no variance
+    const auto fisheye =
+        make_curved_space(Fisheye({.centre_excess = 1, .radius = 1.1}), stage, {0.05, 8});
+    check_flights_against_joins(*fisheye, p, medium, 8000);
+  }
+}
+
+TEST_CASE("flights and joins agree within a body") {
+  const ScatteringMedium medium{.mu_s = 1.5};
+  const Stage stage{.boundary = Box{{-2, -2, -2}, {2, 2, 2}}, .body = Body{ball, medium}};
+  const auto space = make_curved_space(Luneburg({}), stage, {0.05, 10});
+  check_flights_against_joins(*space, {Vec3(0.4, 0.3, -0.5), Part::body}, medium, 8000);
+  // around the body light is straight, and no solver runs
+  ConnectionStatistics statistics;
+  RandomStream random(5, 96, 0);
+  const auto join = space->join({Vec3(1.5, 1.5, 0)}, {Vec3(1.5, -1, 0.5)}, random, statistics);
+  REQUIRE(join);
+  CHECK(join->spreading == doctest::Approx(6.5));
+  CHECK(!space->join({Vec3(1.5, 0, 0)}, {Vec3(-1.5, 0, 0)}, random, statistics));
+  CHECK(statistics.trials() == 0);
+}
+
+TEST_CASE("a homogeneous field runs no solver") {
+  const Stage stage{.boundary = ball, .medium = {.mu_s = 1}};
+  const auto space = make_curved_space(Homogeneous{0.4}, stage, {0.1, 1e-3});
+  const StraightAll straight(stage, 0.4);
+  ConnectionStatistics statistics;
+  RandomStream a(6, 96, 0), b(6, 96, 0);
+  for (int i = 0; i < 100; ++i) {
+    const PathPoint p{random_point(a, 1)}, q{random_point(a, 1)};
+    const Vec3 d = random_direction(a);
+    for (int k = 0; k < 100; ++k) random_point(b, 1);
+    const auto join = space->join(p, q, a, statistics);
+    REQUIRE(join);
+    CHECK(join->optical_path == 1.4 * (q.x - p.x).norm());
+    const Flight flight = space->fly(p, d, a);
+    CHECK(flight.end != Flight::End::lost);
+  }
+  CHECK(statistics.trials() == 0);
+}
+
+TEST_CASE("the share of curves that start along the chord does not change their sum") {
+  // two curves and more, as they wind about the centre
+  const tests::HarmonicBall field{tests::HarmonicProfile{}};
+  const ConnectionOptions options{.step = 0.02, .max_length = 6, .count_caustics = false};
+  const Vec3 from(0.5, 0.1, -0.2), to(-0.3, 0.6, 0.4);
+  const ConnectionTrial trial(field, Inside<tests::Ball>{{1.41}}, from, to, options);
+  RandomStream random(7, 96, 0);
+  ConnectionStatistics statistics;
+  double exact = 0;
+  int curves = 0;
+  for (const tests::HarmonicCurve& curve : tests::harmonic_curves(from, to, 20)) {
+    if (curve.arc_length() > options.max_length) continue;
+    exact += 1 / curve.spreading();
+    ++curves;
+  }
+  REQUIRE(curves > 1);
+  Mean number, spread;
+  for (int i = 0; i < 12000; ++i) {
+    const auto found = connect_chord_first(trial, random, statistics);
+    number.add(found.multiplicity);
+    spread.add(found.curve ? found.multiplicity / found.curve->spreading : 0);
+  }
+  CHECK(number.error() < 0.1 * curves);
+  CHECK(std::abs(number.mean() - curves) < 4 * number.error());
+  CHECK(std::abs(spread.mean() - exact) < 4 * spread.error());
+}
+
+}  // namespace flatspeckle::grin

@@ -1,10 +1,14 @@
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <numbers>
+#include <unistd.h>
 
 #include <doctest/doctest.h>
 
 #include "core/error.h"
+#include "core/result_file.h"
+#include "grin/field_file.h"
 #include "grin/geometric_spreading.h"
 #include "grin/part_medium.h"
 #include "grin/stage.h"
@@ -65,14 +69,16 @@ TEST_CASE("scattered directions follow the phase function in angle and azimuth")
       REQUIRE(d.squaredNorm() == doctest::Approx(1).epsilon(1e-14));
       const Eigen::Vector2d part = across.transpose() * d;
       const double angle = std::atan2(part.norm(), d.dot(axis));
-      const auto bin = std::upper_bound(edges.begin() + 1, edges.end() - 1, angle) - edges.begin() - 1;
+      const auto bin =
+          std::upper_bound(edges.begin() + 1, edges.end() - 1, angle) - edges.begin() - 1;
       const double turn = (std::atan2(part[1], part[0]) / pi + 1) / 2;
       ++counts[bin * around + std::min(around - 1, static_cast<int>(turn * around))];
     }
     const auto ring = [&](double t) { return 2 * pi * phase.density(std::cos(t)) * std::sin(t); };
     for (int i = 0; i < polar; ++i)
       for (int k = 0; k < around; ++k)
-        probabilities.push_back(flatspeckle::tests::integral(ring, edges[i], edges[i + 1]) / around);
+        probabilities.push_back(flatspeckle::tests::integral(ring, edges[i], edges[i + 1]) /
+                                around);
     flatspeckle::tests::check_chi_square(counts, probabilities);
   }
 }
@@ -109,6 +115,36 @@ TEST_CASE("a density grid is trilinear, 0 outside, and refuses what is none") {
   CHECK_THROWS_AS(DensityGrid(grid, bad), InputError);
   CHECK_THROWS_AS(DensityGrid({grid.origin, grid.spacing, {1, 4, 2}}, std::vector<double>(8)),
                   InputError);
+}
+
+TEST_CASE("a density grid from a file; errors name the file") {
+  const auto path = std::filesystem::temp_directory_path() /
+                    ("flatspeckle-density-" + std::to_string(::getpid()) + ".h5");
+  const FieldGrid grid{Vec3(-1, 2, 0.5), Vec3(0.3, 0.2, 0.1), {2, 3, 4}};
+  std::vector<double> values(grid.size());
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = std::sqrt(static_cast<double>(i));
+  const auto write = [&] {
+    ResultFile file(path);
+    file.dataset("density", values, {std::size_t{2}, std::size_t{3}, std::size_t{4}}, "1", "");
+    file.attribute("density", "origin", std::vector<double>{-1, 2, 0.5});
+    file.attribute("density", "spacing", std::vector<double>{0.3, 0.2, 0.1});
+    file.commit();
+  };
+  write();
+  const Vec3 x(-0.8, 2.33, 0.71);
+  CHECK(read_density_grid(path)(x) == DensityGrid(grid, values)(x));
+  CHECK(read_density_grid(path)(x) > 1);
+  CHECK_THROWS_AS(read_spline_field(path), InputError);
+  values[7] = -2;
+  write();
+  try {
+    read_density_grid(path);
+    FAIL("accepted a negative density");
+  } catch (const InputError& error) {
+    CHECK(std::string(error.what()).find(path.string()) != std::string::npos);
+    CHECK(std::string(error.what()).find("-2") != std::string::npos);
+  }
+  std::filesystem::remove(path);
 }
 
 TEST_CASE("media and stages refuse what cannot be") {
