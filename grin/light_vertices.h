@@ -12,7 +12,7 @@ namespace flatspeckle::grin {
 /// the same chance (reservoir sampling), so that joins cost in proportion to a path's length.
 class LightVertices {
  public:
-  static constexpr int capacity = 16;
+  static constexpr int capacity = 8;
 
   void clear() { offered_ = 0; }
 

@@ -17,7 +17,7 @@ namespace flatspeckle::grin {
 namespace {
 
 /// What a join costs (bench_render).
-constexpr double flights_per_curve = 8, flights_per_line = 1;
+constexpr double flights_per_curve = 4, flights_per_line = 0.1;
 
 Strategies strategies(RenderMethod method) {
   return {.short_light = method == RenderMethod::path,
