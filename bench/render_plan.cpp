@@ -135,6 +135,7 @@ std::vector<Comparison> comparisons() {
   RenderScene clear = fog, alone = fog;
   clear.stage.medium = clear.stage.body->medium = {};
   alone.stage.body = {};
+  alone.stage.medium.mu_s = 1;
   return {{"curved rays", alone,
            [](RenderPlan& p) {
              p = RenderPlan{};

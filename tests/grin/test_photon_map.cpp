@@ -134,3 +134,62 @@ TEST_CASE("photons of another part are not counted") {
   CHECK(std::abs(black.value() - dark.value()) < 4 * error);
   CHECK(error < 0.02 * black.value());
 }
+
+namespace {
+
+/// A beam through fog and, in its way, a ball that bends light or none.
+RenderScene beam_in_fog(bool ball) {
+  RenderScene scene{};
+  scene.step = 0.1;
+  scene.max_length = 100;
+  scene.stage.boundary = Box{{-2, -2, -2}, {2, 2, 2}};
+  scene.stage.medium.mu_s = 0.3;
+  scene.stage.medium.mu_a = 0.05;
+  scene.stage.medium.phase = {SpacePhaseFunction::Kind::henyey_greenstein, 0.5};
+  if (ball) {
+    Body body;
+    body.surface = Sphere{};
+    body.medium.mu_s = 0.5;
+    scene.field = Luneburg({});
+    scene.stage.body = body;
+  }
+  scene.lights = {BeamLight{{0, 0, -2}, {0, 0, 1}, 0.3}};
+  // a patch of the side wall, for light that is nearly normal to it, sees the beam; what leaves the
+  // ball can only hit sensors, so there it is all that leaves to the side
+  scene.sensor = AreaDetector{{2, 0, 0.3}, {0, 1, 0}, 0.5, 0.3, {}, 0.3};
+  if (ball) scene.sensor = DirectionalDetector{{1, 0, 0}, {0, 1, 0}, 0.8, {}};
+  return scene;
+}
+
+}  // namespace
+
+TEST_CASE("the photon map converges to bidirectional tracing as its radius shrinks") {
+  for (const bool ball : {false, true}) {
+    CAPTURE(ball);
+    const RenderScene scene = beam_in_fog(ball);
+    const Rendered exact = rendered(scene, RenderMethod::bidirectional, 300000);
+    const auto at = [&](double radius) {
+      return rendered(scene, {RenderMethod::photon_map, 0, radius}, 150000);
+    };
+    const Rendered wide = at(0.4), half = at(0.2), quarter = at(0.1);
+    const double reference = exact.value();
+    CAPTURE(reference);
+    CAPTURE(exact.error());
+    CAPTURE(wide.value());
+    CAPTURE(wide.error());
+    CAPTURE(half.value());
+    CAPTURE(half.error());
+    CAPTURE(quarter.value());
+    CAPTURE(quarter.error());
+    // blurred by far at first
+    CHECK(std::abs(wide.value() - reference) > 8 * std::hypot(wide.error(), exact.error()));
+    CHECK(std::abs(quarter.value() - reference) < 0.5 * std::abs(wide.value() - reference));
+    // without the terms in radius^2 and, less certain, radius^3
+    const double limit = (4 * quarter.value() - half.value()) / 3;
+    const double error = std::hypot(4 * quarter.error(), half.error()) / 3;
+    CAPTURE(limit);
+    CAPTURE(error);
+    CHECK(error < 0.03 * reference);
+    CHECK(std::abs(limit - reference) < 4 * std::hypot(error, exact.error()));
+  }
+}
