@@ -57,6 +57,8 @@ class CurvedSpaceOf final : public CurvedSpace {
     const ConnectionEstimate estimate = connect_chord_first(trial, random, statistics);
     if (!estimate.curve) return std::nullopt;
     const Connection& curve = *estimate.curve;
+    if (goes_outside(p.x, curve.start_direction) || goes_outside(q.x, -curve.end_direction))
+      return std::nullopt;
     return Join{.start_direction = curve.start_direction,
                 .end_direction = curve.end_direction,
                 .spreading = curve.spreading,
@@ -77,6 +79,12 @@ class CurvedSpaceOf final : public CurvedSpace {
   bool is_curved(const PathPoint& p) const { return p.part == setup_->field_part; }
   const Surface& container() const { return setup_->stage.container(setup_->field_part); }
   const PartMedium& medium() const { return setup_->stage.medium(setup_->field_part); }
+
+  /// From a point on the surface; the solver asks about the ends of its steps only.
+  bool goes_outside(const Vec3& x, const Vec3& direction) const {
+    const double on_surface = 1e-9 * setup_->options.step;
+    return distance(container(), x) >= -on_surface && direction.dot(normal(container(), x)) > 0;
+  }
 
   /// Nothing: lost.
   std::optional<LegEnd> curved_leg(Flight& flight, RandomStream& random) const {

@@ -174,6 +174,20 @@ TEST_CASE("flights and joins agree within a body") {
   CHECK(statistics.trials() == 0);
 }
 
+TEST_CASE("no curve begins or ends outside the boundary, however short") {
+  // rays bend towards the middle of a fisheye: between points of a face they run outside
+  const Stage stage{.boundary = Box{{-1, -1, -1}, {1, 1, 1}}};
+  const auto space = make_curved_space(Fisheye({.centre_excess = 1, .radius = 2}), stage, {0.2, 8});
+  ConnectionStatistics statistics;
+  RandomStream random(8, 96, 0);
+  const PathPoint p{Vec3(1, -0.05, 0.1)}, q{Vec3(1, 0.05, 0.05)}, inner{Vec3(0.95, 0.05, 0.05)};
+  for (int i = 0; i < 20; ++i) {
+    CHECK(!space->join(p, q, random, statistics));
+    CHECK(space->join(p, inner, random, statistics));
+    CHECK(space->join(inner, q, random, statistics));
+  }
+}
+
 TEST_CASE("a homogeneous field runs no solver") {
   const Stage stage{.boundary = ball, .medium = {.mu_s = 1}};
   const auto space = make_curved_space(Homogeneous{0.4}, stage, {0.1, 1e-3});
