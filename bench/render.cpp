@@ -3,7 +3,7 @@
 // the pixels relative to the RMS of the picture, bias included, less what the reference itself is
 // off by. CSV on standard output; plots/render_error_time.py reads it.
 //
-//   bench_render [seconds of a run] [CPU seconds of a reference] [runs of each]
+//   bench_render [seconds of a run] [CPU seconds of a reference] [runs of each] [scene]
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -101,6 +101,7 @@ int main(int argc, char** argv) {
   const int runs = argc > 3 ? std::atoi(argv[3]) : 3;
   std::printf("scene,method,photon_radius,seed,cpu_s,samples,relative_error\n");
   for (const bench::NamedRender& named : bench::render_scenes()) {
+    if (argc > 4 && named.name != argv[4]) continue;
     const Reference reference = reference_of(named.scene, reference_seconds);
     std::printf("# %s: reference off by %.2g\n", named.name.c_str(),
                 std::sqrt(reference.error_square / reference.mean_square));

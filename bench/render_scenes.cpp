@@ -52,12 +52,33 @@ RenderScene waveguide() {
   return scene;
 }
 
+RenderScene luneburg() {
+  RenderScene scene = ball_under_beam();
+  scene.field = Luneburg({});
+  return scene;
+}
+
+RenderScene luneburg_within() {
+  RenderScene scene{};
+  scene.field = Luneburg({});
+  scene.step = 0.1;
+  scene.max_length = 100;
+  scene.stage.boundary = Sphere{};
+  scene.stage.medium = fog(0.5, 0, 0.5);
+  scene.lights = {BeamLight{{0, 0, -0.55}, {0, 0, 1}, 0.8}};
+  Camera camera = side_camera();
+  camera.x = {-0.95, 0, 0};
+  camera.field_of_view = 1.2;
+  camera.lens_radius = 0;
+  scene.sensor = camera;
+  return scene;
+}
+
 }  // namespace
 
 std::vector<NamedRender> render_scenes() {
-  RenderScene luneburg = ball_under_beam();
-  luneburg.field = Luneburg({});
-  return {{"luneburg", luneburg}, {"waveguide", waveguide()}};
+  return {
+      {"luneburg_within", luneburg_within()}, {"waveguide", waveguide()}, {"luneburg", luneburg()}};
 }
 
 RenderScene foggy_ball() {
