@@ -46,7 +46,8 @@ struct HenyeyGreenstein {
   double sample(double u) const {
     if constexpr (Dimension == 2)
       return 2 * std::atan((1 - g) / (1 + g) * std::tan(std::numbers::pi * (u - 0.5)));
-    return 2 * std::asin(std::sqrt(sample_one_minus_cosine(u) / 2));
+    else
+      return 2 * std::asin(std::sqrt(sample_one_minus_cosine(u) / 2));
   }
   /// Of the angle that sample(u) returns.
   double sample_one_minus_cosine(double u) const requires(Dimension == 3) {

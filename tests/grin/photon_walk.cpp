@@ -243,13 +243,16 @@ PhotonSource beam_source(const Vec3& centre, const Vec3& direction, double radiu
   };
 }
 
-PhotonSource lambertian_source(const Vec3& centre, const Vec3& half_u, const Vec3& half_v) {
-  const Vec3 u = half_u.normalized(), v = half_v.normalized(), normal = u.cross(v);
+PhotonSource lambertian_source(const Vec3& centre, const Vec3& normal, double radius) {
+  const Vec3 u = any_normal_to(normal), v = normal.cross(u);
+  const auto on_disk = [=](double r, Random& random) -> Vec3 {
+    const double angle = two_pi * uniform(random);
+    return r * (std::cos(angle) * u + std::sin(angle) * v);
+  };
   return [=](Random& random) {
-    const double r = std::sqrt(uniform(random)), angle = two_pi * uniform(random);
-    const Vec3 d = r * (std::cos(angle) * u + std::sin(angle) * v) + std::sqrt(1 - r * r) * normal;
-    const double a = 2 * uniform(random) - 1, b = 2 * uniform(random) - 1;
-    return Photon{centre + a * half_u + b * half_v, d, 0, 0, false};
+    const double sine = std::sqrt(uniform(random));
+    const Vec3 d = on_disk(sine, random) + std::sqrt(1 - sine * sine) * normal;
+    return Photon{centre + on_disk(radius * std::sqrt(uniform(random)), random), d, 0, 0, false};
   };
 }
 

@@ -74,8 +74,8 @@ void walk_photons(const WalkScene& scene, const PhotonSource& source, std::uint6
 PhotonSource point_source(const Vec3& x, bool in_ball = false);
 PhotonSource beam_source(const Vec3& centre, const Vec3& direction, double radius,
                          bool in_ball = false);
-/// Lambertian from the rectangle centre + [-1, 1] half_u + [-1, 1] half_v.
-PhotonSource lambertian_source(const Vec3& centre, const Vec3& half_u, const Vec3& half_v);
+/// Lambertian from a disk.
+PhotonSource lambertian_source(const Vec3& centre, const Vec3& normal, double radius);
 
 /// What photons are worth to a detector, per photon sent out. A photon adds to a bin no more than
 /// once, so that the squares of its shares tell the errors.
