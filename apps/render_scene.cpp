@@ -33,6 +33,17 @@ void check_size(const grin::Sensor& sensor, const grin::TimeBins& bins) {
   if (size > most) throw InputError("pixels x path_bins", size, "must be at most 100000000");
 }
 
+/// Sound of amplitude 0 bends no rays.
+bool is_silent(const RenderSpec& spec, const grin::AnyIndexField& field) {
+  return spec.field.amplitude == 0 && (std::holds_alternative<grin::StandingWave>(field) ||
+                                       std::holds_alternative<grin::FocusedSound>(field));
+}
+
+grin::AnyIndexField field_of(const RenderSpec& spec, const grin::AnyIndexField& field) {
+  if (!is_silent(spec, field)) return field;
+  return grin::Homogeneous{spec.field.index.value_or(1) - 1};
+}
+
 /// Of sound that each path meets at a random time.
 void check_random_phase(const Subcommand& command, const SceneField& field) {
   if (!std::holds_alternative<grin::StandingWave>(field.field) &&
@@ -108,14 +119,15 @@ grin::RenderRequest make_render_request(const RenderSpec& spec) {
 }
 
 grin::RenderScene make_render_scene(const Subcommand& command, const RenderSpec& spec) {
-  FilledStage filled = make_stage(command, spec.stage, spec.field);
+  const FilledStage filled = make_stage(command, spec.stage, spec.field);
   if (spec.random_phase) check_random_phase(command, filled.field);
   const grin::Box box = bounds(filled.stage.boundary);
   const double size = (box.high - box.low).norm();
-  grin::RenderScene scene{.field = filled.field.field,
+  const grin::AnyIndexField& field = filled.field.field;
+  grin::RenderScene scene{.field = field_of(spec, field),
                           .step = step_of(spec, filled.field.scale, size),
                           .max_length = positive("max_length", spec.max_length.value_or(10 * size)),
-                          .random_phase = spec.random_phase,
+                          .random_phase = spec.random_phase && !is_silent(spec, field),
                           .stage = filled.stage,
                           .lights = make_lights(spec.lights),
                           .sensor = make_sensor(command, spec.sensor),

@@ -94,6 +94,7 @@ class Scenes(RenderTest):
             found = self.scene("waveguide", amplitude=amplitude, pixels=[1, 1],
                                sensor_size=[0.4, 0.4], samples=20_000)
             middle[amplitude] = found["total"], found["total_error"]
+            self.assertIn("curved rays" if amplitude else "straight rays", self.output)
         (off, off_error), (on, on_error) = middle[0], middle[0.001]
         self.assertGreater(on - off, 4 * np.hypot(on_error, off_error))
 
