@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "grin/signed_distance.h"
 #include "grin/vec3.h"
 
 namespace flatspeckle::apps {
@@ -15,6 +16,15 @@ std::vector<double> finite(const std::string& key, const std::vector<double>& va
 grin::Vec3 vector_of(const std::string& key, const std::vector<double>& values);
 /// The same, not all 0, made of length 1.
 grin::Vec3 direction_of(const std::string& key, const std::vector<double>& values);
+/// Those from `first` on.
+grin::Vec3 three(const std::vector<double>& values, std::size_t first);
+/// The numbers of a key that takes so many for each thing.
+std::vector<std::vector<double>> parts_of(const std::string& key, const std::vector<double>& values,
+                                          std::size_t size, const std::string& what);
+/// Of x y z radius, one for each four.
+std::vector<grin::Sphere> spheres_of(const std::string& key, const std::vector<double>& values);
+/// Of two opposite corners, one for each six numbers.
+std::vector<grin::Box> boxes_of(const std::string& key, const std::vector<double>& values);
 
 /// "1 2 3", for messages.
 std::string listed(const std::vector<double>& values);

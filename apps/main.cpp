@@ -32,6 +32,7 @@ const char* const usage =
   merge        the points of a sweep that ran in shares, as one result
   field        speckle fields drawn with the covariance of a scene, also over tilts of the light
   trace        rays and the curves between two points in a gradient-index field
+  render       pictures of scattering media with a gradient index: 3D refractive path tracing
 
   flatspeckle SUBCOMMAND --help lists the keys; flatspeckle --version tells the version.
   Exit status: 0 done, 2 bad input, 3 stopped before the target error was reached,
@@ -40,9 +41,9 @@ const char* const usage =
 
 int run(const Arguments& arguments) {
   static const std::map<std::string, int (*)(const Arguments&)> subcommands = {
-      {"place", place}, {"solve", solve},       {"covariance", covariance},
-      {"flux", flux},   {"validate", validate}, {"sweep", sweep},
-      {"field", field}, {"merge", merge},       {"trace", trace}};
+      {"place", place},       {"solve", solve},  {"covariance", covariance}, {"flux", flux},
+      {"validate", validate}, {"sweep", sweep},  {"field", field},           {"merge", merge},
+      {"trace", trace},       {"render", render}};
   const std::string word = arguments.size() > 1 ? arguments[1] : "--help";
   if (word == "--help" || word == "-h" || word == "help") {
     std::cout << usage;
@@ -55,7 +56,8 @@ int run(const Arguments& arguments) {
   const auto subcommand = subcommands.find(word);
   if (subcommand == subcommands.end())
     throw InputError("subcommand", word,
-                     "must be one of covariance field flux merge place solve sweep trace validate");
+                     "must be one of covariance field flux merge place render solve sweep trace "
+                     "validate");
   if (word != "sweep" && launched_ranks().size > 1)
     throw InputError("subcommand", word, "runs as one process; of these, sweep alone takes many");
   return subcommand->second(arguments);

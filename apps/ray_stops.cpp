@@ -10,39 +10,14 @@ namespace flatspeckle::apps {
 
 namespace {
 
-using grin::Vec3;
-
-/// The numbers of a key, so many for each surface.
-std::vector<std::vector<double>> parts(const std::string& key, const std::vector<double>& values,
-                                       std::size_t size, const std::string& what) {
-  finite(key, values);
-  if (values.size() % size != 0)
-    throw InputError(key, listed(values),
-                     "must be " + std::to_string(size) + " numbers for each: " + what);
-  std::vector<std::vector<double>> all;
-  for (std::size_t i = 0; i < values.size(); i += size)
-    all.emplace_back(values.begin() + i, values.begin() + i + size);
-  return all;
-}
-
-Vec3 three(const std::vector<double>& values, std::size_t first) {
-  return {values[first], values[first + 1], values[first + 2]};
-}
-
 std::vector<grin::Surface> surfaces_of(const RayStopSpec& spec) {
   std::vector<grin::Surface> surfaces;
-  for (const auto& plane : parts("stop_plane", spec.planes, 6, "a point and the normal outwards"))
+  for (const auto& plane :
+       parts_of("stop_plane", spec.planes, 6, "a point and the normal outwards"))
     surfaces.push_back(grin::Plane{
         three(plane, 0), direction_of("stop_plane, normal", {plane[3], plane[4], plane[5]})});
-  for (const auto& sphere : parts("stop_sphere", spec.spheres, 4, "centre and radius"))
-    surfaces.push_back(grin::Sphere{three(sphere, 0), positive("stop_sphere, radius", sphere[3])});
-  for (const auto& box :
-       parts("stop_box", spec.boxes, 6, "two opposite corners, the low one first")) {
-    const grin::Box corners{three(box, 0), three(box, 3)};
-    if (!((corners.high - corners.low).minCoeff() > 0))
-      throw InputError("stop_box", listed(box), "must have its low corner first");
-    surfaces.push_back(corners);
-  }
+  for (const auto& sphere : spheres_of("stop_sphere", spec.spheres)) surfaces.push_back(sphere);
+  for (const auto& box : boxes_of("stop_box", spec.boxes)) surfaces.push_back(box);
   return surfaces;
 }
 

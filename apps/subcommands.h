@@ -24,5 +24,6 @@ int sweep(const Arguments& arguments);
 int merge(const Arguments& arguments);
 int field(const Arguments& arguments);
 int trace(const Arguments& arguments);
+int render(const Arguments& arguments);
 
 }  // namespace flatspeckle::apps

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 
+#include "apps/light_speed.h"
+#include "apps/trials_output.h"
+
 namespace flatspeckle::apps {
 
 namespace {
@@ -184,14 +187,7 @@ void write_rays(ResultFile& file, const SceneField& scene, const std::vector<Ray
 }
 
 void write_connections(ResultFile& file, const FoundConnections& found, double length_unit) {
-  static constexpr const char* outcomes[grin::trial_outcomes] = {
-      "converged", "no_approach", "not_converged", "left_region", "too_long", "degenerate"};
-  for (int i = 0; i < grin::trial_outcomes; ++i)
-    file.dataset(std::string("trials/") + outcomes[i],
-                 std::vector<std::uint64_t>{found.statistics.outcomes[i]}, {}, "1",
-                 "trials that ended so");
-  file.dataset("trials/iterations", std::vector<std::uint64_t>{found.statistics.iterations}, {},
-               "1", "Gauss-Newton steps of all trials");
+  write_trials(file, found.statistics);
   if (found.curves.empty()) return;
   using Found = grin::FoundConnection;
   file.numbered_scale("curve", found.curves.size(), "number of the curve, by optical path");

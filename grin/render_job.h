@@ -12,6 +12,7 @@
 #include "grin/light.h"
 #include "grin/sensor.h"
 #include "grin/stage.h"
+#include "grin/transport_counts.h"
 
 namespace flatspeckle::grin {
 
@@ -35,14 +36,14 @@ struct RenderRequest {
   double photon_radius = 0;  ///< of photon_map; 0: chosen from the scene
 };
 
-/// samples: camera paths and as many light paths.
+/// samples: camera paths and as many light paths. Sums of a batch: [pixel][bin], imaginary part 0.
 struct RenderJob {
   BatchJob batches;
   PixelGrid pixels;
   TimeBins bins;
   std::string plan;  ///< what is left out and what is not
-  /// Of all batches that ran here.
-  std::shared_ptr<const ConnectionStatistics> connections;
+  /// Of all batches that have run here.
+  std::shared_ptr<const TransportCounts> counts;
 };
 
 /// Throws InputError.

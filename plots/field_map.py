@@ -4,6 +4,7 @@ with the outlines of the disks. Light of angle 0 travels to the right. The highe
 amplitudes share one colour."""
 
 from lib import style
+from lib.pictures import edges
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -12,12 +13,6 @@ from matplotlib.ticker import MaxNLocator
 
 MOST_LIGHTS = 4
 plt.rcParams["savefig.dpi"] = 118  # pictures without white paper make large files
-
-
-def edges(centres):
-    """Where the first pixel begins and the last one ends."""
-    step = (centres[-1] - centres[0]) / max(len(centres) - 1, 1) or 1
-    return centres[0] - step / 2, centres[-1] + step / 2
 
 
 def outlines(result, wavelength):

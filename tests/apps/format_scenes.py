@@ -138,6 +138,20 @@ def traces():
             "trace_connect": Run("trace", ["trace"], connect)}
 
 
+def renders():
+    scene = {"field": "parabolic", "index": 1.5, "alpha": 0.5, "stage_box": [-1, -1, 0, 1, 1, 4],
+             "mu_s": 0.5, "point_light": [0, 0, 1, 1], "samples": 2000}
+    sensors = {
+        "camera": {"sensor_at": [0.2, 0, 3.9], "sensor_direction": [0, 0, -1], "field_of_view": 1,
+                   "pixels": [30, 20], "path_bins": [1, 9, 4]},
+        "area": {"sensor": "area", "sensor_at": [0, 0, 4], "sensor_size": [1, 1], "pixels": [3, 2],
+                 "path_bins": [4, 9, 5], "length_unit": 0.001},
+        "directional": {"sensor": "directional", "pixels": [4, 3], "path_bins": [4, 9, 5]},
+    }
+    return {f"render_{name}": Run("render", ["Trace", "render"], {**scene, **keys})
+            for name, keys in sensors.items()}
+
+
 def unfinished():
     never = {"target_error": 1e-9}
     state = "Unfinished results"
@@ -201,7 +215,8 @@ class ResultsTest(ProgramTest):
         maker.setUp()
         cls.addClassCleanup(maker.doCleanups)
         cls.results = maker.folder
-        cls.runs = {**covariances(), **extras(), **other_subcommands(), **traces(), **unfinished(), **sweeps()}
+        cls.runs = {**covariances(), **extras(), **other_subcommands(), **traces(), **renders(),
+                    **unfinished(), **sweeps()}
         for name, text in FILES.items():
             maker.write(name, text)
         for name, run in cls.runs.items():

@@ -376,6 +376,7 @@ class AcceptedScenes(ProgramTest):
             tilts = {"slab_hg": 33, "gallery": 40}.get(scene.stem)
             for subcommand in (("sweep",) if tilts else ("solve",) if "\nmap = " in text else
                                ("field",) if "\nfields = " in text else
+                               ("render",) if "\nsensor = " in text else
                                ("trace",) if "\nmax_length = " in text else
                                ("validate", "covariance")):
                 with self.subTest(scene=scene.name, subcommand=subcommand):

@@ -13,6 +13,10 @@ REQUEST = ["near_sources", "beam_waist", "beam_positions", "beam_depth", "covari
 RUN = ["seed", "samples", "seconds", "target_error", "threads", "resume"]
 PROGRAM = ["config", "print-config", "out", "help"]
 SCENE = SCATTERER + MEDIUM + VIEWS
+FIELD = ["field", "index", "radius", "alpha", "centre", "slope", "index_low", "index_high",
+         "ramp_width", "ramp_axis", "blobs", "amplitude", "sound_wavenumber", "sound_order",
+         "sound_phase", "emitters", "aperture", "focusing", "grid"]
+SPACE_MEDIUM = ["mu_s", "mu_a", "phase", "g", "density"]
 KEYS = {
     "place": ["width", "depth", "radii", "fractions", "count", "packing_fraction", "placement",
               "min_gap", "seed", "structure", "realizations"],
@@ -22,12 +26,16 @@ KEYS = {
     "validate": SCENE + REQUEST + ["structure", "wave_samples"] + RUN,
     "field": SCENE + ["structure", "tilts", "method", "fields", "paths_per_field", "target_error", "seed",
                       "threads"],
-    "trace": ["field", "index", "radius", "alpha", "centre", "slope", "index_low", "index_high",
-              "ramp_width", "ramp_axis", "blobs", "amplitude", "sound_wavenumber", "sound_order",
-              "sound_phase", "emitters", "aperture", "focusing", "grid", "rays", "light",
-              "ray_count", "origin", "direction", "across", "beam_radius", "half_angle",
-              "stop_plane", "stop_sphere", "stop_box", "max_length", "integrator", "step",
-              "tolerance", "connect", "trials", "path_points", "length_unit", "seed", "threads"],
+    "trace": FIELD + ["rays", "light", "ray_count", "origin", "direction", "across", "beam_radius",
+                      "half_angle", "stop_plane", "stop_sphere", "stop_box", "max_length",
+                      "integrator", "step", "tolerance", "connect", "trials", "path_points",
+                      "length_unit", "seed", "threads"],
+    "render": FIELD + SPACE_MEDIUM + ["body_" + key for key in SPACE_MEDIUM] + RUN + [
+        "stage_box", "stage_sphere", "body_box", "body_sphere", "index_around", "point_light",
+        "beam_light", "face_light", "environment", "sensor", "sensor_at", "sensor_direction",
+        "sensor_up", "sensor_size", "pixels", "field_of_view", "lens_radius", "focus_distance",
+        "acceptance", "half_angle", "path_bins", "length_unit", "method", "photon_radius",
+        "max_scatterings", "random_phase", "step", "max_length"],
     "sweep": SCENE + ["structure", "tilts"] + RUN,
 }
 

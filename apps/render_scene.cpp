@@ -1,0 +1,152 @@
+#include "apps/render_scene.h"
+
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <limits>
+
+#include "apps/key_values.h"
+#include "core/error.h"
+
+namespace flatspeckle::apps {
+
+namespace {
+
+grin::TimeBins time_bins(const RenderSpec& spec) {
+  constexpr double most = 100'000;
+  const auto& bins = spec.path_bins;
+  if (bins.empty()) return {};
+  if (bins.size() != 3)
+    throw InputError("path_bins", listed(bins), "must be three numbers: first last count");
+  finite("path_bins", bins);
+  if (!(bins[0] >= 0 && bins[1] > bins[0]))
+    throw InputError("path_bins", listed(bins), "must go from a length to a larger one");
+  if (!(bins[2] >= 2 && bins[2] <= most && bins[2] == std::floor(bins[2])))
+    throw InputError("path_bins", listed(bins), "must have a whole count from 2 to 100000");
+  return {bins[0], bins[1], static_cast<int>(bins[2])};
+}
+
+void check_size(const grin::Sensor& sensor, const grin::TimeBins& bins) {
+  constexpr double most = 1e8;
+  const int pixels = std::visit([](const auto& kind) { return kind.pixels.count(); }, sensor);
+  const double size = static_cast<double>(pixels) * bins.count;
+  if (size > most) throw InputError("pixels x path_bins", size, "must be at most 100000000");
+}
+
+/// Sound of amplitude 0 bends no rays.
+bool is_silent(const RenderSpec& spec, const grin::AnyIndexField& field) {
+  return spec.field.amplitude == 0 && (std::holds_alternative<grin::StandingWave>(field) ||
+                                       std::holds_alternative<grin::FocusedSound>(field));
+}
+
+grin::AnyIndexField field_of(const RenderSpec& spec, const grin::AnyIndexField& field) {
+  if (!is_silent(spec, field)) return field;
+  return grin::Homogeneous{spec.field.index.value_or(1) - 1};
+}
+
+/// Of sound that each path meets at a random time.
+void check_random_phase(const Subcommand& command, const SceneField& field) {
+  if (!std::holds_alternative<grin::StandingWave>(field.field) &&
+      !std::holds_alternative<grin::FocusedSound>(field.field))
+    throw InputError("random_phase: needs the field ultrasound or focused_sound, and it alone");
+  if (command.given("sound_phase")) throw InputError("sound_phase: random_phase has no use for it");
+}
+
+double step_of(const RenderSpec& spec, double scale, double size) {
+  if (spec.step && scale == 0)
+    throw InputError("step: rays in a homogeneous field are straight and have no use for it");
+  if (spec.step) return positive("step", *spec.step);
+  constexpr double parts = 10;  // a fourth-order step then errs by about 1e-6
+  return scale > 0 ? std::min(scale / parts, size) : size;
+}
+
+/// FNV-1a.
+std::string fingerprint(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::uint64_t hash = 14695981039346656037u;
+  for (std::istreambuf_iterator<char> byte(file), end; byte != end; ++byte)
+    hash = (hash ^ static_cast<unsigned char>(*byte)) * 1099511628211u;
+  return std::to_string(hash);
+}
+
+}  // namespace
+
+void add_render_options(CLI::App& app, RenderSpec& spec) {
+  add_index_field_options(app, spec.field);
+  add_stage_options(app, spec.stage);
+  add_light_options(app, spec.lights);
+  add_sensor_options(app, spec.sensor);
+  app.add_option("--path_bins", spec.path_bins,
+                 "first last count: also pictures by optical path, in equal bins of it");
+  app.add_option("--length_unit", spec.length_unit,
+                 "Metres in a unit of length, for the times of path_bins");
+  app.add_option("--method", spec.method,
+                 "bidirectional (default), path (tracing, from the sensor), light (tracing) or "
+                 "photon_map");
+  app.add_option("--photon_radius", spec.photon_radius,
+                 "photon_map: radius of the estimate (default: chosen from the scene)");
+  app.add_option("--max_scatterings", spec.max_scatterings,
+                 "Longer paths are left out (default 0: none)");
+  app.add_flag("--random_phase", spec.random_phase,
+               "ultrasound, focused_sound: each path meets the sound at a phase of its own");
+  app.add_option("--step", spec.step,
+                 "Equal steps of rays, length at index 1 (default: a tenth of the field's scale)");
+  app.add_option("--max_length", spec.max_length,
+                 "Arc length of one flight between scatterings, at the most (default: 10 times the "
+                 "stage's size)");
+}
+
+grin::RenderRequest make_render_request(const RenderSpec& spec) {
+  using Method = grin::RenderMethod;
+  grin::RenderRequest request;
+  if (spec.method == "path")
+    request.method = Method::path;
+  else if (spec.method == "light")
+    request.method = Method::light;
+  else if (spec.method == "photon_map")
+    request.method = Method::photon_map;
+  else if (spec.method != "bidirectional")
+    throw InputError("method", spec.method, "must be one of bidirectional light path photon_map");
+  if (spec.max_scatterings < 0 || spec.max_scatterings > std::numeric_limits<int>::max())
+    throw InputError("max_scatterings", spec.max_scatterings,
+                     "must not be negative, and at most 2147483647");
+  request.max_scatterings = static_cast<int>(spec.max_scatterings);
+  if (!spec.photon_radius) return request;
+  if (request.method != Method::photon_map)
+    throw InputError("photon_radius: method (" + spec.method + ") has no use for it");
+  request.photon_radius = positive("photon_radius", *spec.photon_radius);
+  return request;
+}
+
+grin::RenderScene make_render_scene(const Subcommand& command, const RenderSpec& spec) {
+  const FilledStage filled = make_stage(command, spec.stage, spec.field);
+  if (spec.random_phase) check_random_phase(command, filled.field);
+  const grin::Box box = bounds(filled.stage.boundary);
+  const double size = (box.high - box.low).norm();
+  const grin::AnyIndexField& field = filled.field.field;
+  grin::RenderScene scene{.field = field_of(spec, field),
+                          .step = step_of(spec, filled.field.scale, size),
+                          .max_length = positive("max_length", spec.max_length.value_or(10 * size)),
+                          .random_phase = spec.random_phase && !is_silent(spec, field),
+                          .stage = filled.stage,
+                          .lights = make_lights(spec.lights),
+                          .sensor = make_sensor(command, spec.sensor),
+                          .bins = time_bins(spec)};
+  check_size(scene.sensor, scene.bins);
+  return scene;
+}
+
+std::optional<double> length_unit_of(const RenderSpec& spec) {
+  if (!spec.length_unit) return std::nullopt;
+  return positive("length_unit", *spec.length_unit);
+}
+
+std::string inputs_text(const RenderSpec& spec) {
+  std::string text;
+  for (const auto& path : {spec.field.blobs, spec.field.grid, spec.stage.medium.density,
+                           spec.stage.body_medium.density})
+    if (!path.empty()) text += path + ' ' + fingerprint(path) + '\n';
+  return text;
+}
+
+}  // namespace flatspeckle::apps

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/command_line.h"
+#include "grin/sensor.h"
+
+namespace flatspeckle::apps {
+
+/// The sensor as the user writes it.
+struct SensorSpec {
+  std::string kind = "camera";
+  std::vector<double> at, direction = {0, 0, 1}, up = {0, 1, 0}, size;
+  std::optional<double> field_of_view, lens_radius, focus_distance, acceptance, half_angle;
+  std::vector<std::int64_t> pixels = {64, 64};
+};
+
+void add_sensor_options(CLI::App& app, SensorSpec& spec);
+
+/// Throws InputError, also for keys that the sensor has no use for.
+grin::Sensor make_sensor(const Subcommand& command, const SensorSpec& spec);
+
+/// Centres of the pixels along rows and columns, and what they measure.
+struct SensorAxes {
+  std::vector<double> row, column;
+  std::string units;                    ///< of row and column
+  std::string row_name, column_name;    ///< in words
+  std::string image_units, image_name;  ///< of a pixel, for lights of power 1
+  std::optional<double> area = {};      ///< over which an irradiance adds up to a power
+};
+SensorAxes axes_of(const grin::Sensor& sensor);
+
+}  // namespace flatspeckle::apps

@@ -1,0 +1,91 @@
+#include "bench/render_scenes.h"
+
+#include <numbers>
+
+namespace flatspeckle::bench {
+
+using namespace grin;
+
+namespace {
+
+ScatteringMedium fog(double mu_s, double mu_a, double g) {
+  ScatteringMedium medium;
+  medium.mu_s = mu_s;
+  medium.mu_a = mu_a;
+  medium.phase = {SpacePhaseFunction::Kind::henyey_greenstein, g};
+  return medium;
+}
+
+Camera side_camera() {
+  Camera camera{};
+  camera.x = {-3, 0, 0};
+  camera.forward = {1, 0, 0};
+  camera.up = {0, 1, 0};
+  camera.field_of_view = 0.8;
+  camera.pixels = {24, 24};
+  camera.lens_radius = 0.1;
+  camera.focus_distance = 3;
+  return camera;
+}
+
+RenderScene ball_under_beam() {
+  RenderScene scene{};
+  scene.step = 0.1;
+  scene.max_length = 100;
+  scene.stage.boundary = Box{{-3, -3, -3}, {3, 3, 3}};
+  scene.stage.body = Body{Sphere{}, fog(0.5, 0, 0.5)};
+  scene.lights = {BeamLight{{0, 0, -3}, {0, 0, 1}, 0.8}};
+  scene.sensor = side_camera();
+  return scene;
+}
+
+RenderScene waveguide() {
+  constexpr double wave_number = 3.40548;  // 813 kHz at 1500 m/s, per mm
+  RenderScene scene{};
+  scene.field = StandingWave(0.33, 0.001, 0, wave_number, 15);
+  scene.step = 0.2;
+  scene.max_length = 1000;
+  scene.stage.boundary = Box{{-15, -15, 0}, {15, 15, 30}};
+  scene.stage.medium = fog(0.1, 0, 0.85);
+  scene.lights = {BeamLight{{0, 0, 0}, {0, 0, 1}, 0.5}};
+  scene.sensor = AreaDetector{{0, 0, 30}, {0, 1, 0}, 6, 6, {24, 24}, 0.1};
+  return scene;
+}
+
+RenderScene luneburg() {
+  RenderScene scene = ball_under_beam();
+  scene.field = Luneburg({});
+  return scene;
+}
+
+RenderScene luneburg_within() {
+  RenderScene scene{};
+  scene.field = Luneburg({});
+  scene.step = 0.1;
+  scene.max_length = 100;
+  scene.stage.boundary = Sphere{};
+  scene.stage.medium = fog(0.5, 0, 0.5);
+  scene.lights = {BeamLight{{0, 0, -0.55}, {0, 0, 1}, 0.8}};
+  Camera camera = side_camera();
+  camera.x = {-0.95, 0, 0};
+  camera.field_of_view = 1.2;
+  camera.lens_radius = 0;
+  scene.sensor = camera;
+  return scene;
+}
+
+}  // namespace
+
+std::vector<NamedRender> render_scenes() {
+  return {
+      {"luneburg_within", luneburg_within()}, {"waveguide", waveguide()}, {"luneburg", luneburg()}};
+}
+
+RenderScene foggy_ball() {
+  RenderScene scene = ball_under_beam();
+  scene.field = Homogeneous{0.5};
+  scene.stage.medium = fog(0.2, 0, 0.5);
+  return scene;
+}
+
+}  // namespace flatspeckle::bench

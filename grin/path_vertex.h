@@ -1,0 +1,113 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "grin/path_end.h"
+
+namespace flatspeckle::grin {
+
+/// What a ratio of densities counts in the weights of multiple importance sampling (power
+/// heuristic, Veach 1997, 9.2.4).
+inline double heuristic(double ratio) {
+  return ratio * ratio;
+}
+
+/// The share of light that a stretch lets through, as weights see it: never so small that its
+/// square is 0.
+inline double bounded_attenuation(double optical_depth) {
+  return std::exp(-std::min(optical_depth, 100.0));
+}
+
+/// A vertex of a subpath that begins at a light or at the sensor, "our end". All that weights need
+/// of the vertices before it is in three numbers, so that a path costs in proportion to its length
+/// (as in Georgiev, Krivanek, Davidovic and Slusallek 2012, light transport simulation with vertex
+/// connection and merging, but for curved rays).
+///
+/// A path of k+1 vertices has a strategy for each number of vertices made from the light. Two
+/// neighbouring strategies differ by who made one vertex: the ratio of their densities is that of
+/// the two densities of this vertex (per area on a surface; per volume and mu_t in a medium), each
+/// the density of the direction at the vertex it was made from, times the attenuation, the cosine
+/// on a surface, and 1/|J| instead of 1/r^2.
+struct PathVertex {
+  PathPoint point;
+  Vec3 arrived = Vec3::Zero();  ///< unit tangent of the way here; 0 at our end
+  double index = 1;
+  double weight = 1;  ///< of the subpath, without the direction in which it goes on
+  double optical_path = 0;
+  int vertices = 1;                  ///< of the subpath, this one included
+  const EndPosition* end = nullptr;  ///< at our end
+
+  double density = 1;  ///< with which it was made
+  double back = 0;     ///< that of the vertex before, made from here, per density of the direction
+  /// Of the strategies with fewer of our vertices than made the vertex before this: sum of their
+  /// densities relative to that strategy's, per density of the vertex before as made from here.
+  double before = 0;
+  /// Whether there is a strategy in which this is the first vertex from the other end.
+  bool first_of_other = false;
+
+  bool on_surface() const { return end && !end->is_point; }
+  double cosine(const Vec3& direction) const {
+    return on_surface() ? std::abs(end->inward.dot(direction)) : 1;
+  }
+};
+
+inline PathVertex end_vertex(const EndPosition& end) {
+  PathVertex vertex;
+  vertex.point = end.point;
+  vertex.index = end.index;
+  vertex.weight = 1 / end.position_density;
+  vertex.end = &end;
+  vertex.density = end.position_density;
+  vertex.first_of_other = !end.is_point && !end.is_beam;
+  return vertex;
+}
+
+/// Densities of the strategies with fewer of our vertices, relative to the one at hand, in which
+/// `last` is our last. `made_from_other`: density of `last` if made from the other side;
+/// `direction_density`: at `last`, from the other side towards the vertex before. No more than
+/// `more` vertices can be made from the other side than are.
+inline double fewer_of_ours(const PathVertex& last, double made_from_other,
+                            double direction_density, int more) {
+  if (more <= 0) return 0;
+  const double rest = more > 1 ? heuristic(direction_density * last.back) * last.before : 0;
+  return heuristic(made_from_other / last.density) * (last.first_of_other + rest);
+}
+
+/// Where a flight from `here` ended. The direction was drawn with `direction_density` (1 of a beam;
+/// phase functions have the same both ways). On a surface, `density` still lacks the cosine there.
+inline PathVertex arrived(const PathVertex& here, const Flight& flight, double direction_density,
+                          double index) {
+  const double turned = index / here.index * (index / here.index);
+  // what weights take for |J| of a way that no strategy joins cancels
+  const double spreading = flight.crosses_body ? 1 : std::max(flight.spreading, 1e-60);
+  const double attenuation = bounded_attenuation(flight.optical_depth);
+  PathVertex next;
+  next.point = flight.point;
+  next.arrived = flight.direction;
+  next.index = index;
+  next.weight = here.weight * flight.weight;
+  next.optical_path = here.optical_path + flight.optical_path;
+  next.vertices = here.vertices + 1;
+  next.density = direction_density * attenuation / spreading;
+  next.back = attenuation / (spreading * turned) * here.cosine(flight.start_direction);
+  next.before = (here.first_of_other + heuristic(direction_density * here.back) * here.before) /
+                heuristic(here.density);
+  next.first_of_other = !flight.crosses_body && !(here.end && here.end->is_beam);
+  return next;
+}
+
+/// Which strategies are in use. A short path from an end stops where the rest can be joined to it
+/// or hits it: after the end itself, but for a beam, and for ways that cross a body.
+struct Strategies {
+  static constexpr int unlimited = std::numeric_limits<int>::max() / 2;
+  bool short_light = false;   ///< path tracing
+  bool short_sensor = false;  ///< light tracing
+
+  /// Vertices made from an end that can also be made from the other.
+  int most_light() const { return short_light ? 1 : unlimited; }
+  int most_sensor() const { return short_sensor ? 1 : unlimited; }
+};
+
+}  // namespace flatspeckle::grin

@@ -1,0 +1,169 @@
+#include "grin/render_job.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <mutex>
+#include <numeric>
+
+#include "core/error.h"
+#include "core/random.h"
+#include "grin/curved_space.h"
+#include "grin/path_kernels.h"
+#include "grin/photon_map.h"
+
+namespace flatspeckle::grin {
+
+namespace {
+
+/// What a join costs (bench_render).
+constexpr double flights_per_curve = 4, flights_per_line = 0.1;
+
+Strategies strategies(RenderMethod method) {
+  return {.short_light = method == RenderMethod::path,
+          .short_sensor = method == RenderMethod::light};
+}
+
+bool is_photon_map(const RenderRequest& request) {
+  return request.method == RenderMethod::photon_map;
+}
+
+double photon_radius(const RenderScene& scene, const RenderRequest& request) {
+  return request.photon_radius > 0 ? request.photon_radius : default_photon_radius(scene.stage);
+}
+
+/// Lights, sensor and kernel of a scene.
+struct Tracer {
+  std::shared_ptr<Transport> transport;
+  PathKernel kernel;
+};
+
+std::shared_ptr<Transport> transport_in(const RenderScene& scene, const RenderRequest& request,
+                                        const Lights::Index& index) {
+  const int limit = request.max_scatterings;
+  return std::make_shared<Transport>(Transport{
+      .stage = scene.stage,
+      .lights = Lights(scene.lights, scene.stage, index),
+      .sensor = SensorEnd(scene.sensor, scene.stage),
+      .strategies = strategies(request.method),
+      .max_scatterings = limit > 0 ? limit : std::numeric_limits<int>::max(),
+  });
+}
+
+Tracer straight_tracer(const RenderScene& scene, const RenderRequest& request,
+                       const RenderPlan& plan) {
+  const double excess = std::get<Homogeneous>(scene.field).n_excess;
+  const double around = scene.stage.body ? scene.stage.excess_around : excess;
+  const auto transport = transport_in(scene, request, [&](const PathPoint& p) {
+    return 1 + (p.part == Part::body ? excess : around);
+  });
+  return {transport, is_photon_map(request) ? photon_kernel(plan.timed, transport, excess,
+                                                            photon_radius(scene, request))
+                                            : straight_kernel(plan, transport, excess)};
+}
+
+Tracer curved_tracer(const RenderScene& scene, const RenderRequest& request,
+                     const RenderPlan& plan) {
+  const std::shared_ptr<const CurvedSpace> space = make_curved_space(
+      scene.field, scene.stage, {scene.step, scene.max_length, !is_photon_map(request)});
+  const auto transport =
+      transport_in(scene, request, [&](const PathPoint& p) { return space->index(p); });
+  if (is_photon_map(request))
+    return {transport, photon_kernel(plan.timed, transport, space, scene.random_phase,
+                                     photon_radius(scene, request))};
+  return {transport, curved_kernel(plan, transport, space, scene.random_phase)};
+}
+
+/// Of the scene alone: from a few pairs of paths that join nothing. A pair costs F flights, and V,
+/// the mean square of what it adds. Joins at a level L with the promise S add L S to V and cost c
+/// S/L flights; V F is least at L^2 = c V / F, both without joins.
+double level_of_joins(const Tracer& tracer, const RenderScene& scene, double flights_per_join) {
+  constexpr int pairs = 256;
+  constexpr auto no_batch = std::numeric_limits<std::uint64_t>::max();
+  const int pixels = tracer.transport->sensor.pixels().count();
+  std::vector<Complex> sums(static_cast<std::size_t>(pixels) * scene.bins.count);
+  Film film(pixels, scene.bins, sums);
+  RandomStream random(0, static_cast<std::uint64_t>(Stream::render), no_batch);
+  TransportCounts counts;
+  std::vector<double> promises;
+  tracer.transport->join_level = std::numeric_limits<double>::infinity();
+  tracer.kernel(pairs, random, film, counts, &promises);
+  // without the few that promise most: what is near an end is rare, and would decide alone
+  std::sort(promises.begin(), promises.end());
+  promises.resize(pairs - pairs / 64);
+  const double square =
+      std::inner_product(promises.begin(), promises.end(), promises.begin(), 0.0) / pairs;
+  const double flights = static_cast<double>(counts.flights) / pairs;
+  return std::sqrt(flights_per_join * square / std::max(flights, 1.0));
+}
+
+int paths_per_batch(std::size_t sums) {
+  return static_cast<int>(std::clamp<std::size_t>(sums / 8, 256, 16384));
+}
+
+std::vector<Complex> steady_mean(double samples, std::span<const Complex> sums, int bins) {
+  std::vector<Complex> steady(sums.size() / bins);
+  for (std::size_t i = 0; i < sums.size(); ++i) steady[i / bins] += sums[i] / samples;
+  return steady;
+}
+
+Estimate steady_picture(const GroupedSums& sums, int bins) {
+  return jackknife(sums, [bins](double samples, std::span<const Complex> total) {
+    return steady_mean(samples, total, bins);
+  });
+}
+
+void require_usable(const RenderScene& scene, const RenderRequest& request) {
+  require_usable(scene.bins);
+  if (request.max_scatterings < 0)
+    throw InputError("max_scatterings", request.max_scatterings, "must be 0 (no limit) or more");
+  if (!(request.photon_radius >= 0) || !std::isfinite(request.photon_radius))
+    throw InputError("photon_radius", request.photon_radius, "must be 0 (automatic) or positive");
+  if (scene.random_phase && !std::holds_alternative<StandingWave>(scene.field) &&
+      !std::holds_alternative<FocusedSound>(scene.field))
+    throw InputError("random_phase", "true", "needs a field of sound");
+}
+
+}  // namespace
+
+RenderJob render_job(const RenderScene& scene, const RenderRequest& request, std::uint64_t seed) {
+  require_usable(scene, request);
+  check(scene.stage);
+  const RenderPlan plan = render_plan(scene);
+  const Tracer tracer =
+      plan.curved ? curved_tracer(scene, request, plan) : straight_tracer(scene, request, plan);
+  if (!is_photon_map(request))
+    tracer.transport->join_level =
+        level_of_joins(tracer, scene, plan.curved ? flights_per_curve : flights_per_line);
+
+  RenderJob job;
+  job.pixels = tracer.transport->sensor.pixels();
+  job.bins = scene.bins;
+  job.plan = plan.describe();
+  job.batches.size = static_cast<std::size_t>(job.pixels.count()) * scene.bins.count;
+  const int paths =
+      is_photon_map(request) ? photon_paths_per_batch : paths_per_batch(job.batches.size);
+  job.batches.samples_per_batch = paths;
+  const auto counts = std::make_shared<TransportCounts>();
+  job.counts = counts;
+  const auto counting = std::make_shared<std::mutex>();
+  job.batches.run = [=, pixels = job.pixels.count(), bins = scene.bins](std::uint64_t number,
+                                                                        std::span<Complex> sums) {
+    Film film(pixels, bins, sums);
+    RandomStream random(seed, static_cast<std::uint64_t>(Stream::render), number);
+    TransportCounts of_batch;
+    tracer.kernel(paths, random, film, of_batch, nullptr);
+    const std::lock_guard lock(*counting);
+    *counts += of_batch;
+  };
+  job.batches.relative_error = [bins = scene.bins.count](const GroupedSums& sums) {
+    return relative_error(steady_picture(sums, bins));
+  };
+  return job;
+}
+
+RenderedPicture rendered_picture(const RenderJob& job, const GroupedSums& sums) {
+  return {jackknife(sums, sample_mean), steady_picture(sums, job.bins.count)};
+}
+
+}  // namespace flatspeckle::grin

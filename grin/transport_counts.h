@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstdint>
+
+#include "grin/connection.h"
+
+namespace flatspeckle::grin {
+
+/// What light paths cost.
+struct TransportCounts {
+  std::uint64_t flights = 0, lost_flights = 0;
+  std::uint64_t joins_weighed = 0, joins = 0;  ///< considered; asked of space
+  std::uint64_t lost_values = 0;               ///< not finite; left out
+  ConnectionStatistics connections = {};
+
+  TransportCounts& operator+=(const TransportCounts& other) {
+    flights += other.flights;
+    lost_flights += other.lost_flights;
+    joins_weighed += other.joins_weighed;
+    joins += other.joins;
+    lost_values += other.lost_values;
+    connections += other.connections;
+    return *this;
+  }
+};
+
+}  // namespace flatspeckle::grin

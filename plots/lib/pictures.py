@@ -1,0 +1,76 @@
+"""Pictures of `flatspeckle render`: their axes, units and tone mapping."""
+
+from lib.result_file import Unusable
+
+import numpy as np
+from matplotlib.colors import LogNorm, Normalize, PowerNorm
+
+LENGTHS = {1.0: "m", 1e-2: "cm", 1e-3: "mm", 1e-6: "µm", 1e-9: "nm"}
+BRIGHTEST = 0.999  # of the pixels; those above share one colour
+UNITS = {"1/(length^2 sr)": "{}$^{{-2}}$ sr$^{{-1}}$", "1/length^2": "{}$^{{-2}}$",
+         "1/sr": "sr$^{{-1}}$", "1": ""}
+TONES = ("linear", "root", "log")
+
+
+def edges(centres):
+    """Where the first pixel begins and the last one ends."""
+    step = (centres[-1] - centres[0]) / max(len(centres) - 1, 1) or 1
+    return centres[0] - step / 2, centres[-1] + step / 2
+
+
+def length_name(result):
+    """Of the unit of length."""
+    unit = result.attribute("length_unit")
+    named = [name for metres, name in LENGTHS.items() if unit and np.isclose(metres, unit)]
+    return named[0] if named else "length"
+
+
+def unit_name(result, name):
+    """Of a dataset, with the unit of length by its name."""
+    units = result.dataset(name).attrs["units"]
+    return UNITS.get(units, units).format(length_name(result))
+
+
+def quantity(result):
+    """What a pixel reads, in symbols."""
+    units = result.dataset("image").attrs["units"]
+    symbol = {"1/(length^2 sr)": "$L/n^2$", "1/length^2": "irradiance"}.get(units, "power")
+    return f"{symbol} ({unit_name(result, 'image')})"
+
+
+def axis_names(result):
+    units = result.dataset("row").attrs["units"]
+    if units == "length":
+        return [f"${axis}$ ({length_name(result)})" for axis in "xy"]
+    if result.dataset("image").attrs["units"] == "1/sr":
+        return "direction, sideways", "direction, upwards"
+    return "tangent, sideways", "tangent, upwards"
+
+
+def extent(result):
+    left, right = edges(result.values("column"))
+    top, bottom = edges(result.values("row"))
+    return left, right, bottom, top
+
+
+def tone(pictures, kind, decades):
+    """A norm for all of the pictures."""
+    values = np.concatenate([np.ravel(picture) for picture in pictures])
+    lit = values[values > 0]
+    if len(lit) == 0:
+        raise Unusable("nothing but dark pixels")
+    high = np.quantile(lit, BRIGHTEST)
+    if kind == "log":
+        return LogNorm(high * 10.0**-decades, high, clip=True)
+    return Normalize(0, high, clip=True) if kind == "linear" else PowerNorm(0.5, 0, high, clip=True)
+
+
+def add_tone_options(parser, default):
+    parser.add_argument("--tone", choices=TONES, default=default,
+                        help=f"how brightness becomes colour (default: {default})")
+    parser.add_argument("--decades", type=float, default=3, help="of log (default: 3)")
+
+
+def show(axis, result, picture, **look):
+    return axis.imshow(picture, origin="upper", extent=extent(result), interpolation="nearest",
+                       **look)

@@ -1,0 +1,89 @@
+#!/usr/bin/env python3
+"""Picture of `flatspeckle render` with tone mapping, and its relative standard error beside it; of
+several results a row each, with one scale where they measure the same. The brightest 0.1 % of the
+pixels share one colour."""
+
+from lib import style
+from lib import pictures
+
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.colors import LogNorm
+from matplotlib.ticker import FuncFormatter, MaxNLocator, NullFormatter
+
+plt.rcParams["savefig.dpi"] = 150  # pictures without white paper make large files
+MOST = 1.0  # of relative errors
+
+
+def relative_error(result):
+    """1 where there is no light."""
+    value, error = result.values("image"), result.values("image_error")
+    lit = value > 0
+    return np.where(lit, np.divide(error, value, where=lit, out=np.ones_like(value)), 1.0)
+
+
+def panel(figure, axis, result, picture, label, extend, **look):
+    image = pictures.show(axis, result, picture, **look)
+    axis.tick_params(direction="out", top=False, right=False)
+    axis.xaxis.set_major_locator(MaxNLocator(5))
+    axis.yaxis.set_major_locator(MaxNLocator(5))
+    return figure.colorbar(image, ax=axis, label=label, extend=extend, shrink=0.95, pad=0.02)
+
+
+def draw_image(figure, axis, result, norm):
+    bar = panel(figure, axis, result, result.values("image"), pictures.quantity(result), "max",
+                cmap="inferno", norm=norm)
+    if not isinstance(norm, LogNorm):
+        bar.ax.yaxis.set_major_locator(MaxNLocator(4))
+        bar.ax.yaxis.get_offset_text().set_ha("left")
+        bar.formatter.set_powerlimits((-2, 4))
+
+
+def error_norm(results):
+    """From the decade of the best pixels of any of them."""
+    best = min(np.quantile(relative_error(result), 0.01) for result in results)
+    return LogNorm(min(10 ** np.floor(np.log10(best)), MOST / 10), MOST, clip=True)
+
+
+def draw_error(figure, axis, result, norm):
+    bar = panel(figure, axis, result, relative_error(result), "relative standard error", "both", cmap="cividis",
+                norm=norm)
+    bar.ax.yaxis.set_major_formatter(FuncFormatter(lambda share, _: f"{100 * share:g} %"))
+    bar.ax.yaxis.set_minor_formatter(NullFormatter())
+
+
+def draw_row(figure, axes, result, norm, errors):
+    draw_image(figure, axes[0], result, norm)
+    draw_error(figure, axes[1], result, errors)
+    across, up = pictures.axis_names(result)
+    axes[0].set_ylabel(up)
+    for axis in axes:
+        axis.set_xlabel(across)
+
+
+def norms(results, arguments):
+    """One for all that measure the same."""
+    by_quantity = {}
+    for result in results:
+        by_quantity.setdefault(pictures.quantity(result), []).append(result.values("image"))
+    shared = {name: pictures.tone(images, arguments.tone, arguments.decades)
+              for name, images in by_quantity.items()}
+    return [shared[pictures.quantity(result)] for result in results]
+
+
+def draw(results, arguments):
+    left, right, bottom, top = pictures.extent(results[0])
+    height = np.clip((top - bottom) / (right - left), 0.2, 2) * 0.36 * style.PAGE + 0.4
+    figure, axes = plt.subplots(len(results), 2, squeeze=False,
+                                figsize=(style.PAGE, len(results) * height))
+    errors = error_norm(results)
+    for row, result, norm in zip(axes, results, norms(results, arguments)):
+        draw_row(figure, row, result, norm, errors)
+        if len(results) > 1:
+            row[0].set_title(result.path)
+    return figure
+
+
+if __name__ == "__main__":
+    style.main(draw, __doc__, several=True,
+               add_options=lambda parser: pictures.add_tone_options(parser, "root"))

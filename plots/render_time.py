@@ -1,0 +1,87 @@
+#!/usr/bin/env python3
+"""Film strip of `flatspeckle render` with path_bins, each frame the light of a share of the optical
+path, all in one scale; beneath it the pulse with its standard errors and the frames' shares. The
+first and last bin hold what is before and beyond."""
+
+from lib import style
+from lib import pictures
+from lib.result_file import Unusable
+
+import matplotlib.pyplot as plt
+import numpy as np
+
+plt.rcParams["savefig.dpi"] = 150
+PICOSECOND = 1e-12
+
+
+def shares(bins, frames):
+    """First and last bin, exclusive, of each frame."""
+    cuts = np.linspace(0, bins, min(frames, bins) + 1).round().astype(int)
+    return list(zip(cuts[:-1], cuts[1:]))
+
+
+def draw_film(figure, axes, result, parts, norm):
+    transient = result.values("transient")
+    across, up = pictures.axis_names(result)
+    paths = np.linspace(*pictures.edges(result.values("optical_path")), transient.shape[2] + 1)
+    for number, (axis, (first, last)) in enumerate(zip(axes, parts)):
+        image = pictures.show(axis, result, transient[:, :, first:last].sum(axis=2),
+                              cmap="inferno", norm=norm)
+        axis.set_title(f"{paths[first]:.4g} to {paths[last]:.4g}", fontsize=7)
+        axis.tick_params(direction="out", top=False, right=False, labelleft=number == 0)
+        axis.set_xlabel(across)
+    axes[0].set_ylabel(up)
+    figure.colorbar(image, ax=axes, label=pictures.quantity(result), extend="both", pad=0.01)
+
+
+def draw_pulse(axis, result, parts):
+    path, pulse = result.values("optical_path"), result.values("pulse")
+    error = result.values("pulse_error")
+    cuts = np.linspace(*pictures.edges(path), len(path) + 1)
+    for number, (first, last) in enumerate(parts):
+        axis.axvspan(cuts[first], cuts[last], color="0.93" if number % 2 else "white", zorder=0)
+    lit = pulse > 0
+    axis.stairs(np.where(lit, pulse, np.nan), cuts, color=style.COLOURS[0], baseline=None)
+    axis.errorbar(path[lit], pulse[lit], np.minimum(error, 0.999 * pulse)[lit], fmt="none",
+                  color=style.COLOURS[0], elinewidth=0.6)
+    axis.set(yscale="log", xlim=cuts[[0, -1]], xlabel=f"optical path ({pictures.length_name(result)})",
+             ylabel=pulse_name(result))
+    if result.has("time"):
+        rate = result.values("time")[-1] / path[-1] / PICOSECOND
+        above = axis.secondary_xaxis("top", functions=(lambda x: x * rate, lambda t: t / rate))
+        above.set_xlabel("time (ps)")
+        axis.tick_params(top=False)
+
+
+def pulse_name(result):
+    units = pictures.unit_name(result, "pulse")
+    return f"mean in each bin ({units})" if units else "power in each bin"
+
+
+def draw(results, arguments):
+    result = results[0]
+    if not result.has("transient"):
+        raise Unusable(f"{result.path}: is not timed; render with --path_bins")
+    if arguments.frames < 1:
+        raise Unusable("--frames must be positive")
+    transient = result.values("transient")
+    parts = shares(transient.shape[2], arguments.frames)
+    frames = [transient[:, :, first:last].sum(axis=2) for first, last in parts]
+    left, right, bottom, top = pictures.extent(result)
+    width = 0.85 * style.PAGE / len(parts)
+    height = np.clip((top - bottom) / (right - left), 0.3, 3) * width + 0.55
+    figure = plt.figure(figsize=(style.PAGE, height + 1.9))
+    film, curve = figure.subfigures(2, 1, height_ratios=[height, 1.9])
+    draw_film(film, film.subplots(1, len(parts), sharey=True, squeeze=False)[0], result, parts,
+              pictures.tone(frames, arguments.tone, arguments.decades))
+    draw_pulse(curve.subplots(), result, parts)
+    return figure
+
+
+def add_options(parser):
+    pictures.add_tone_options(parser, "log")
+    parser.add_argument("--frames", type=int, default=6, help="of the film (default: 6)")
+
+
+if __name__ == "__main__":
+    style.main(draw, __doc__, add_options=add_options)

@@ -1,0 +1,376 @@
+"""Pictures of scattering media against closed forms, what the file holds, what is refused."""
+
+import unittest
+
+import h5py
+import numpy as np
+
+from program import DATA, ProgramTest, attributes, datasets
+
+SCENES = DATA / "scenes"
+NAMES = ["luneburg", "fisheye", "grin_fibre", "waveguide", "glass_ball", "luneburg_pulse"]
+METHODS = ["path", "light", "bidirectional", "photon_map"]
+LIGHT_SPEED = 299792458
+BOX = {"stage_box": [-1, -1, 0, 1, 1, 4]}
+BEAM = {"beam_light": [0, 0, 0, 0, 0, 1, 0.3, 2]}
+FOG = {"mu_s": 0.4, "mu_a": 0.1}
+AREA = {"sensor": "area", "sensor_at": [0, 0, 4], "sensor_size": [1, 0.8], "pixels": [4, 3]}
+CAMERA = {"sensor_at": [0.2, 0, 3.9], "sensor_direction": [0, 0, -1], "field_of_view": 1,
+          "pixels": [6, 4]}
+FIBRE = {"field": "parabolic", "index": 1.5, "alpha": 0.5}
+NEVER = 1e-12
+COST = ("wall_s", "cpu_s", "state", "trials", "transport")  # differs from run to run, or when resumed
+
+
+def write_density(path, density, **attributes):
+    with h5py.File(path, "w") as file:
+        data = file.create_dataset("density", data=density)
+        data.attrs["origin"] = attributes.get("origin", np.array([-1.0, -1, 0]))
+        data.attrs["spacing"] = attributes.get("spacing", np.array([0.5, 0.5, 1]))
+
+
+class RenderTest(ProgramTest):
+    def render(self, name="render.h5", **keys):
+        keys = {"samples": 4000, "threads": 2, **keys}
+        status = 3 if "target_error" in keys else 0
+        self.output = self.call("render", **keys, out=name, status=status).stdout
+        return datasets(self.folder / name)
+
+    def scene(self, scene, **keys):
+        return self.render(config=SCENES / f"render_{scene}.toml", **keys)
+
+    def assert_within(self, value, error, expected, count=4):
+        np.testing.assert_array_less(np.abs(value - expected), count * error + 1e-12)
+
+
+class Scenes(RenderTest):
+    def check_sums(self, found, config):
+        """Totals and pulses are those of the pixels; nothing is lost beyond the bins."""
+        image = found["image"]
+        self.assertGreater(image.max(), 0)
+        np.testing.assert_allclose(found["mean"], image.mean(), rtol=1e-12)
+        if "transient" in found:
+            np.testing.assert_allclose(found["transient"].sum(axis=2), image,
+                                       atol=1e-12 * image.max())
+            whole = found["total"] if "total" in found else found["mean"]
+            np.testing.assert_allclose(found["pulse"].sum(), whole, rtol=1e-12)
+            np.testing.assert_allclose(found["time"], found["optical_path"] * 1e-3 / LIGHT_SPEED)
+
+    def test_each_runs(self):
+        for name in NAMES:
+            with self.subTest(scene=name):
+                found = self.scene(name, samples=500, pixels=[12, 8])
+                for key, values in found.items():
+                    self.assertTrue(np.all(np.isfinite(values)), key)
+                self.assertEqual(found["image"].shape, (8, 12))
+                self.check_sums(found, name)
+                for words in ("brightest pixel", "mean of pixels", "relative error", "wrote"):
+                    self.assertIn(words, self.output)
+                self.assertEqual(attributes(self.folder / "render.h5")["length_unit"], 1e-3)
+
+    def test_methods(self):
+        """All of them run on a curved and on a straight scene, and say which they are."""
+        for scene in ("luneburg", "glass_ball"):
+            for method in METHODS:
+                with self.subTest(scene=scene, method=method):
+                    self.scene(scene, method=method, samples=500, pixels=[6, 4])
+                    self.assertIn(method, attributes(self.folder / "render.h5")["plan"])
+
+    def test_curves_are_counted(self):
+        """Where rays are curved, and there alone."""
+        found = self.render(**BOX, **BEAM, **FOG, **AREA, **FIBRE)
+        self.assertGreater(found["trials/found"], 0)
+        self.assertLessEqual(found["trials/found"], found["trials/pairs"])
+        self.assertLessEqual(found["trials/found"], found["trials/converged"])
+        self.assertIn("curves:", self.output)
+        straight = self.render(**BOX, **BEAM, **FOG, **AREA)
+        self.assertNotIn("trials/found", straight)
+        self.assertNotIn("curves:", self.output)
+
+    def test_sound_on_and_off(self):
+        """The guide brings more light to the middle of the far side."""
+        middle = {}
+        for amplitude in (0, 0.001):
+            found = self.scene("waveguide", amplitude=amplitude, pixels=[1, 1],
+                               sensor_size=[0.4, 0.4], samples=20_000)
+            middle[amplitude] = found["total"], found["total_error"]
+            self.assertIn("curved rays" if amplitude else "straight rays", self.output)
+        (off, off_error), (on, on_error) = middle[0], middle[0.001]
+        self.assertGreater(on - off, 4 * np.hypot(on_error, off_error))
+
+
+class ClosedForms(RenderTest):
+    def test_absorption(self):
+        """A beam through a medium that absorbs."""
+        found = self.render(**BOX, **{**AREA, "sensor_size": [2, 2]}, **BEAM, mu_a=0.3)
+        self.assert_within(found["total"], found["total_error"], 2 * np.exp(-0.3 * 4))
+
+    def test_absorption_in_a_density(self):
+        """Half the density on average: linear from 0 to 1 along z, in a grid of 5 nodes."""
+        write_density(self.folder / "density.h5", np.tile(np.linspace(0, 1, 5), (5, 5, 1)))
+        found = self.render(**BOX, **{**AREA, "sensor_size": [2, 2]}, **BEAM, mu_a=0.3,
+                            density="density.h5", samples=20_000)
+        self.assert_within(found["total"], found["total_error"], 2 * np.exp(-0.3 * 4 / 2))
+
+    def test_point_light_in_all_directions(self):
+        found = self.render(**BOX, point_light=[0.1, 0.2, 1, 3], sensor="directional",
+                            half_angle=0.5, pixels=[2, 3], sensor_direction=[1, 0, 1])
+        self.assert_within(found["image"], found["image_error"], 3 / (4 * np.pi))
+
+    def test_white_furnace(self):
+        """L/n^2 of the environment everywhere (C24), by every method in a straight and a curved
+        scene."""
+        for field in ({}, FIBRE):
+            for method in METHODS:
+                with self.subTest(field=field, method=method):
+                    found = self.render(**BOX, **field, **CAMERA, mu_s=0.3, environment=1.5,
+                                        method=method, samples=8000, photon_radius=0.4
+                                        if method == "photon_map" else None)
+                    if method != "photon_map":
+                        self.assert_within(found["mean"], found["mean_error"], 1.5)
+                    self.assertAlmostEqual(found["mean"], 1.5, delta=0.3)
+
+    def test_arrival(self):
+        """Unscattered light through a Luneburg ball: pi/2 + 1 from one tangent plane to the focus
+        (C27), in one bin."""
+        found = self.scene("luneburg_pulse", body_mu_s=0, path_bins=[2.65, 2.75, 100])
+        at = found["optical_path"][np.argmax(found["pulse"])]
+        self.assertAlmostEqual(at, 0.1 + 1 + np.pi / 2, delta=3e-3)
+        self.assert_within(found["total"], found["total_error"], 1)
+
+    def test_lights_add_up(self):
+        both = self.render(**BOX, **FOG, **AREA, **BEAM, point_light=[0, 0, 2, 1], samples=20_000)
+        beam = self.render(**BOX, **FOG, **AREA, **BEAM, samples=20_000)
+        point = self.render(**BOX, **FOG, **AREA, point_light=[0, 0, 2, 1], samples=20_000)
+        errors = [each["total_error"] for each in (both, beam, point)]
+        self.assert_within(both["total"], np.linalg.norm(errors), beam["total"] + point["total"])
+
+    def test_random_phase(self):
+        """Sound that each path meets at its own time is neither that at its height nor none."""
+        sound = {"random_phase": True, "sensor_size": [0.4, 0.4], "pixels": [1, 1],
+                 "samples": 20_000, "mu_s": 0}
+        found = {}
+        for name, keys in (("random", sound), ("high", {**sound, "random_phase": None}),
+                           ("low", {**sound, "random_phase": None, "sound_phase": np.pi})):
+            found[name] = self.scene("waveguide", **keys)["total"]
+        self.assertGreater(found["high"], 1.1 * found["random"])
+        self.assertGreater(found["random"], 1.1 * found["low"])
+
+
+class Axes(RenderTest):
+    """Unscattered light is where row and column say."""
+
+    def brightest(self, **keys):
+        found = self.render(**{**BOX, "pixels": [19, 15], "samples": 2000, **keys})
+        row, column = np.unravel_index(found["image"].argmax(), found["image"].shape)
+        self.step = abs(found["column"][1] - found["column"][0])
+        self.assertAlmostEqual(abs(found["row"][1] - found["row"][0]), self.step)
+        self.assertGreater(found["image"].max(), 0.3 * found["image"].sum())
+        return found["column"][column], found["row"][row]
+
+    def check(self, column, row, **keys):
+        at = self.brightest(**keys)
+        np.testing.assert_allclose(at, (column, row), atol=0.51 * self.step)
+
+    def test_area(self):
+        """Columns along outward normal x up, here -x."""
+        self.check(-0.31, 0.22, sensor="area", sensor_at=[0, 0, 4], sensor_size=[1.9, 1.5],
+                   beam_light=[0.31, 0.22, 0, 0, 0, 1, 0.01, 1])
+
+    def test_directional(self):
+        x, y, _ = np.array([0.31, 0.12, 1]) / np.linalg.norm([0.31, 0.12, 1])
+        self.check(-x, y, sensor="directional", half_angle=0.6, pixels=[19, 19],
+                   beam_light=[0, 0, 0.1, 0.31, 0.12, 1, 0.01, 1])
+
+    def test_camera(self):
+        """Columns along sensor_direction x sensor_up, here x."""
+        self.check(0.5 / 2.9, 0.3 / 2.9, **{**CAMERA, "sensor_at": [0, 0, 3.9], "pixels": [19, 15]},
+                   point_light=[0.5, 0.3, 1, 1])
+
+
+class SameNumbers(RenderTest):
+    KEYS = {**BOX, **BEAM, **FOG, **AREA, "path_bins": [3, 9, 6]}
+
+    def kinds(self):
+        for field in ({}, FIBRE):
+            for method in METHODS:
+                with self.subTest(field=field, method=method):
+                    yield {**self.KEYS, **field, "method": method}
+
+    def assert_same(self, first, second):
+        first, second = (datasets(self.folder / name, COST) for name in (first, second))
+        self.assertEqual(first.keys(), second.keys())
+        for name, values in first.items():
+            self.assertEqual(np.asarray(values).tobytes(), np.asarray(second[name]).tobytes(), name)
+
+    def test_threads(self):
+        for keys in self.kinds():
+            for threads in (1, 3):
+                self.render(f"{threads}.h5", **keys, threads=threads, samples=40_000)
+            self.assert_same_data("1.h5", "3.h5")
+
+    def test_resume(self):
+        for keys in self.kinds():
+            self.render("parts.h5", **keys, target_error=NEVER, samples=17_000)
+            self.render("parts.h5", **keys, target_error=NEVER, samples=50_000, resume=True)
+            self.render("whole.h5", **keys, target_error=NEVER, samples=50_000)
+            self.assert_same("parts.h5", "whole.h5")
+
+    def test_another_scene_may_not_resume(self):
+        write_density(self.folder / "d.h5", np.ones((5, 5, 5)))
+        keys = {**self.KEYS, "density": "d.h5", "target_error": NEVER}
+        self.render(**keys)
+        write_density(self.folder / "d.h5", np.full((5, 5, 5), 2.0))
+        before = self.listing()
+        self.call("render", **keys, samples=9000, resume=True, out="render.h5", status=2)
+        self.assertEqual(self.listing(), before)
+
+    def test_config_runs_again(self):
+        for name in NAMES:
+            with self.subTest(scene=name):
+                self.scene(name, samples=200, pixels=[3, 2])
+                self.write("again.toml", attributes(self.folder / "render.h5")["config"])
+                self.render("again.h5", config="again.toml", samples=200)
+                self.assert_same("render.h5", "again.h5")
+
+    def test_seeds_differ(self):
+        first = self.render(**self.KEYS)["image"]
+        self.assertTrue(np.any(first != self.render(**self.KEYS, seed=2)["image"]))
+
+
+class Refused(RenderTest):
+    GOOD = {**BOX, **BEAM, **FOG, **AREA, "samples": 100}
+
+    def refuse(self, *words, **keys):
+        """One line that holds the words, status 2, and nothing written."""
+        before = self.listing()
+        done = self.call("render", status=2, **{"out": "bad.h5", **self.GOOD, **keys})
+        self.assertEqual(done.stdout, "")
+        self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
+        for word in words:
+            self.assertIn(str(word), done.stderr)
+        self.assertEqual(self.listing(), before)
+
+    def test_the_scene_itself_is_good(self):
+        self.render(**self.GOOD)
+
+    def test_stages(self):
+        self.refuse("stage is not given", "boundary", stage_box=None)
+        self.refuse("stage is not given", "boundary", stage_box=None, **FIBRE)
+        self.refuse("give one stage", stage_sphere=[0, 0, 0, 9])
+        self.refuse("stage_box = 1 1 1 0 0 0", stage_box=[1, 1, 1, 0, 0, 0])
+        self.refuse("stage_box", "6 numbers", stage_box=[1, 1, 1])
+        self.refuse("stage_sphere, radius = 0", stage_box=None, stage_sphere=[0, 0, 0, 0])
+        self.refuse("body", "inside of the stage", body_sphere=[0, 0, 2, 1.5])
+        self.refuse("give one body", body_sphere=[0, 0, 2, 0.5], body_box=[0, 0, 1, 0.1, 0.1, 2])
+        self.refuse("body_sphere, radius = -1", body_sphere=[0, 0, 2, -1])
+        self.refuse("index_around", "no body", index_around=1.3)
+        self.refuse("index_around = 0", index_around=0, body_sphere=[0, 0, 2, 0.5])
+        self.refuse("body_mu_s", "no body", body_mu_s=1)
+        self.refuse("max_length = 0", max_length=0)
+        self.refuse("step = -1", step=-1, **FIBRE)
+        self.refuse("step", "no use", step=0.1)
+        self.refuse("length_unit = 0", length_unit=0)
+
+    def test_fields(self):
+        self.refuse("index", "must be positive", field="linear", slope=[0, 0, -0.5])
+        self.refuse("index", "in all of the body", field="linear", slope=[0, 0, -0.5],
+                    body_box=[-1, -1, 1, 1, 1, 3])
+        self.refuse("index", "positive", **{**FIBRE, "alpha": 2})
+        self.refuse("index = 0", index=0)
+        self.refuse("luneburg", "rim", field="luneburg", centre=[0, 0, 2],
+                    body_sphere=[0, 0, 2, 1.01], stage_box=[-2, -2, 0, 2, 2, 4])
+        self.refuse("luneburg in a sum", field=["luneburg", "linear"], centre=[0, 0, 2],
+                    slope=[0, 0, 0.01])
+        self.refuse("alpha", "no use", alpha=1)
+        self.refuse("random_phase", random_phase=True)
+        self.refuse("sound_phase", "no use", field="ultrasound", amplitude=1e-3, sound_phase=1,
+                    sound_wavenumber=1, random_phase=True)
+        with h5py.File(self.folder / "small.h5", "w") as file:
+            data = file.create_dataset("excess", data=np.zeros((5, 5, 5)))
+            data.attrs["origin"], data.attrs["spacing"] = np.array([-1.0, -1, 0]), np.full(3, 0.5)
+        self.refuse("grid", "ends inside of the stage", field="grid", grid="small.h5")
+
+    def test_media(self):
+        self.refuse("mu_s = -1", "negative", mu_s=-1)
+        self.refuse("mu_a = -0.1", "negative", mu_a=-0.1)
+        self.refuse("mu_s = nan", mu_s="nan")
+        self.refuse("body_mu_s = -1", body_mu_s=-1, body_sphere=[0, 0, 2, 0.5])
+        self.refuse("body_g = 2", body_mu_s=1, body_phase="henyey_greenstein", body_g=2,
+                    body_sphere=[0, 0, 2, 0.5])
+        self.refuse("phase = mie", phase="mie")
+        self.refuse("g = 1", "between", phase="henyey_greenstein", g=1)
+        self.refuse("g:", "no use", g=0.5)
+        self.refuse("phase", "no use", mu_s=None, mu_a=None, phase="rayleigh")
+
+    def test_densities(self):
+        write_density(self.folder / "flat.h5", np.ones((5, 5)))
+        write_density(self.folder / "thin.h5", np.ones((5, 5, 1)))
+        write_density(self.folder / "low.h5", np.full((5, 5, 5), -1.0))
+        write_density(self.folder / "nan.h5", np.full((5, 5, 5), np.nan))
+        write_density(self.folder / "still.h5", np.ones((5, 5, 5)), spacing=np.zeros(3))
+        write_density(self.folder / "odd.h5", np.ones((5, 5, 5)), origin=np.zeros(2))
+        with h5py.File(self.folder / "empty.h5", "w"):
+            pass
+        for name, what in (("flat", "axes"), ("thin", ""), ("low", "-1"), ("nan", "nan"),
+                           ("still", "spacing"), ("odd", "origin"), ("empty", "density"),
+                           ("absent", "absent.h5")):
+            self.refuse(f"density = {name}.h5", what, density=f"{name}.h5")
+
+    def test_lights(self):
+        self.refuse("light is not given", beam_light=None)
+        self.refuse("point_light", "4 numbers", point_light=[0, 0, 1])
+        self.refuse("point_light, power = 0", point_light=[0, 0, 1, 0])
+        self.refuse("point_light", "inside the stage", point_light=[0, 0, 5, 1])
+        self.refuse("beam_light", "8 numbers", beam_light=[0, 0, 0, 0, 0, 1])
+        self.refuse("beam_light, direction = 0 0 0", beam_light=[0, 0, 0, 0, 0, 0, 0.1, 1])
+        self.refuse("beam_light", "inside the stage", beam_light=[0, 0, 0, 0, 0, 1, 1.1, 1])
+        self.refuse("beam_light", "into the stage", beam_light=[0, 0, 0, 0, 0, -1, 0.1, 1])
+        self.refuse("beam_light, radius = 0", beam_light=[0, 0, 0, 0, 0, 1, 0, 1])
+        self.refuse("face_light", face_light=[0, 0, 1, 0.1, 1])
+        self.refuse("face_light, radiance = -1", face_light=[0, 0, 0, 0.1, -1])
+        self.refuse("environment = 0", environment=0)
+
+    def test_sensors(self):
+        camera = {**{key: None for key in AREA}, **CAMERA}
+        directional = {**{key: None for key in AREA}, "sensor": "directional", "pixels": [2, 2]}
+        body = {"body_sphere": [0, 0, 2, 0.5], "index": 1.5}
+        self.refuse("sensor = eye", sensor="eye")
+        self.refuse("sensor_at is not given", sensor_at=None)
+        self.refuse("sensor_at = 0 0 3", "boundary", sensor_at=[0, 0, 3])
+        self.refuse("sensor_size", sensor_size=[3, 1])
+        self.refuse("sensor_size = 1", "two numbers", sensor_size=[1])
+        self.refuse("sensor_up", sensor_up=[0, 0, 1])
+        self.refuse("acceptance = 2", acceptance=2)
+        self.refuse("pixels = 0 3", pixels=[0, 3])
+        self.refuse("pixels = 4", "columns rows", pixels=[4])
+        self.refuse("field_of_view", "no use", field_of_view=1)
+        self.refuse("field_of_view is not given", **{**camera, "field_of_view": None})
+        self.refuse("field_of_view = 4", **{**camera, "field_of_view": 4})
+        self.refuse("sensor_at", "inside the stage", **{**camera, "sensor_at": [0, 0, 5]})
+        self.refuse("sensor_at", "body", **{**camera, "sensor_at": [0, 0, 2.2]}, **body)
+        self.refuse("sensor_up", "along", **camera, sensor_up=[0, 0, 1])
+        self.refuse("focus_distance", "no use", **camera, focus_distance=1)
+        self.refuse("focus_distance is not given", **camera, lens_radius=0.1)
+        self.refuse("sensor_at", "boundary", **camera, lens_radius=0.1, focus_distance=2)
+        self.refuse("half_angle = 0", **directional, half_angle=0)
+        self.refuse("sensor_at", "no use", **{**directional, "sensor_at": [0, 0, 4]})
+
+    def test_bins_and_methods(self):
+        self.refuse("path_bins = 1 2", path_bins=[1, 2])
+        self.refuse("path_bins = 2 1 5", path_bins=[2, 1, 5])
+        self.refuse("path_bins = 1 2 1.5", path_bins=[1, 2, 1.5])
+        self.refuse("path_bins = 1 2 1", path_bins=[1, 2, 1])
+        self.refuse("pixels x path_bins", path_bins=[1, 2, 90_000], pixels=[999, 999])
+        self.refuse("method = magic", method="magic")
+        self.refuse("photon_radius", "no use", photon_radius=0.1)
+        self.refuse("photon_radius = 0", method="photon_map", photon_radius=0)
+        self.refuse("max_scatterings = -1", max_scatterings=-1)
+        self.refuse("samples = 0", samples=0)
+        self.refuse("target_error", target_error=2)
+        self.refuse("mu_z", mu_z=1)
+        self.refuse("out is not given", out=None)
+
+
+if __name__ == "__main__":
+    unittest.main()

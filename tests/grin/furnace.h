@@ -1,0 +1,38 @@
+#pragma once
+
+#include "tests/grin/render_scenes.h"
+#include "tests/grin/render_tests.h"
+
+namespace flatspeckle::grin::tests {
+
+inline constexpr RenderMethod unbiased_methods[] = {RenderMethod::path, RenderMethod::light,
+                                                    RenderMethod::bidirectional};
+
+/// Everything is as bright as the environment, L/n^2 = 1: a detector reads pi times the mean of
+/// n^2. Returns the standard error relative to that.
+inline double check_furnace_face(RenderScene scene, RenderMethod method, double samples) {
+  const double expected = std::numbers::pi * mean_square_index(scene);
+  const Rendered result = rendered(scene, method, samples);
+  CAPTURE(name(method));
+  CHECK(result.counts.lost_values == 0);
+  CHECK(result.counts.lost_flights == 0);
+  CHECK(result.value() > 0);
+  CHECK(std::abs(result.value() - expected) < 4 * result.error() + 1e-9 * expected);
+  return result.error() / expected;
+}
+
+/// A camera in the field reads 1 in each pixel.
+inline double check_furnace_camera(RenderScene scene, RenderMethod method, double samples) {
+  scene.sensor = Camera{Vec3(0.2, -0.1, -0.8), Vec3::UnitZ(), Vec3::UnitY(), 1.2, {2, 1}};
+  const Rendered result = rendered(scene, method, samples);
+  CAPTURE(name(method));
+  double worst = 0;
+  for (int pixel = 0; pixel < 2; ++pixel) {
+    CAPTURE(pixel);
+    CHECK(std::abs(result.value(pixel) - 1) < 4 * result.error(pixel) + 1e-9);
+    worst = std::max(worst, result.error(pixel));
+  }
+  return worst;
+}
+
+}  // namespace flatspeckle::grin::tests

@@ -1,0 +1,145 @@
+#include "tests/grin/photon_comparison.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Geometry>
+#include <doctest/doctest.h>
+
+#include "tests/grin/render_tests.h"
+
+namespace flatspeckle::grin::tests {
+
+namespace {
+
+/// u to the right, v up, both within the half sides.
+std::optional<int> pixel_of(const PixelGrid& grid, double u, double v, double half_u,
+                            double half_v) {
+  const double column = std::floor((u + half_u) / (2 * half_u) * grid.columns);
+  const double row = std::floor((half_v - v) / (2 * half_v) * grid.rows);
+  if (column < 0 || column >= grid.columns || row < 0 || row >= grid.rows) return {};
+  return static_cast<int>(row) * grid.columns + static_cast<int>(column);
+}
+
+Vec3 upright(const Vec3& up, const Vec3& forward) {
+  return (up - up.dot(forward) * forward).normalized();
+}
+
+double total_of(const std::vector<double>& values) {
+  double sum = 0;
+  for (double value : values) sum += value;
+  return sum;
+}
+
+struct Compared {
+  double a, a_error, b, b_error;
+  bool agree() const { return std::abs(a - b) <= 4 * std::hypot(a_error, b_error); }
+};
+
+void check_all(const std::vector<Complex>& value, const std::vector<double>& error,
+               const std::vector<double>& expected, const std::vector<double>& expected_error) {
+  REQUIRE(value.size() == expected.size());
+  for (std::size_t i = 0; i < value.size(); ++i) {
+    // bins where nothing or next to nothing was seen have no errors to speak of
+    if (expected[i] < 5 * expected_error[i] || value[i].real() < 5 * error[i]) continue;
+    const Compared c{value[i].real(), error[i], expected[i], expected_error[i]};
+    CAPTURE(i);
+    CAPTURE(c.a);
+    CAPTURE(c.a_error);
+    CAPTURE(c.b);
+    CAPTURE(c.b_error);
+    CHECK(c.agree());
+  }
+}
+
+}  // namespace
+
+PhotonSensor area_sensor(const AreaDetector& detector, const Vec3& outward, double sphere_radius) {
+  const Vec3 v = upright(detector.up, outward), u = outward.cross(v);
+  const double pixel_area =
+      detector.width * detector.height / (detector.pixels.columns * detector.pixels.rows);
+  return [=](const Photon& p) -> std::optional<PhotonWorth> {
+    const Vec3 from = p.x - detector.centre;
+    const Vec3 normal =
+        sphere_radius > 0 ? ((from + sphere_radius * outward) / sphere_radius).eval() : outward;
+    if (sphere_radius > 0 ? normal.dot(outward) <= 0 : std::abs(from.dot(outward)) > 1e-6)
+      return {};
+    if (p.direction.dot(normal) < std::cos(detector.acceptance)) return {};
+    const auto pixel = pixel_of(detector.pixels, from.dot(u), from.dot(v), detector.width / 2,
+                                detector.height / 2);
+    if (!pixel) return {};
+    return PhotonWorth{*pixel, normal.dot(outward) / pixel_area};
+  };
+}
+
+PhotonSensor directional_sensor(const DirectionalDetector& detector) {
+  const Vec3 forward = detector.forward.normalized(), v = upright(detector.up, forward);
+  const Vec3 u = forward.cross(v);
+  const double half = std::sin(detector.half_angle);
+  const double pixel_area = 4 * half * half / (detector.pixels.columns * detector.pixels.rows);
+  return [=](const Photon& p) -> std::optional<PhotonWorth> {
+    const double cosine = p.direction.dot(forward);
+    const auto pixel =
+        pixel_of(detector.pixels, p.direction.dot(u), p.direction.dot(v), half, half);
+    if (cosine <= 0 || !pixel) return {};
+    return PhotonWorth{*pixel, cosine / pixel_area};
+  };
+}
+
+PhotonPicture photon_picture(const TwoScenes& scenes, std::uint64_t photons, std::uint64_t seed) {
+  const PixelGrid grid = std::visit([](const auto& s) { return s.pixels; }, scenes.scene.sensor);
+  const TimeBins& bins = scenes.scene.bins;
+  const std::size_t pixels = static_cast<std::size_t>(grid.columns) * grid.rows;
+  PhotonTally tally(pixels * bins.count, photons), steady(pixels, photons);
+  walk_photons(scenes.walk, scenes.source, photons, seed, [&](const Photon& p) {
+    const auto seen = scenes.sensor(p);
+    if (!seen) return;
+    const std::size_t pixel = seen->pixel;
+    steady.add(pixel, seen->worth);
+    if (bins.count == 1) return tally.add(pixel, seen->worth);
+    // shared between the bins whose centres are next to it
+    const double width = (bins.last - bins.first) / bins.count;
+    const double at =
+        std::clamp((p.optical_path - bins.first) / width - 0.5, 0.0, bins.count - 1.0);
+    const int before = std::min(static_cast<int>(at), bins.count - 2);
+    tally.add(pixel * bins.count + before, seen->worth * (before + 1 - at));
+    tally.add(pixel * bins.count + before + 1, seen->worth * (at - before));
+  });
+  PhotonPicture picture;
+  for (std::size_t i = 0; i < tally.size(); ++i) {
+    picture.value.push_back(scenes.power * tally.mean(i));
+    picture.error.push_back(scenes.power * tally.error(i));
+  }
+  for (std::size_t i = 0; i < pixels; ++i) {
+    picture.steady_value.push_back(scenes.power * steady.mean(i));
+    picture.steady_error.push_back(scenes.power * steady.error(i));
+  }
+  return picture;
+}
+
+void check_against(const PhotonPicture& photons, const TwoScenes& scenes,
+                   const RenderRequest& request, std::uint64_t samples, double precision) {
+  const std::string method = name(request.method);
+  CAPTURE(method);
+  const RenderJob job = render_job(scenes.scene, request, 11);
+  const RunState state = run_render(job, static_cast<double>(samples));
+  const RenderedPicture picture = rendered_picture(job, state.sums);
+  check_all(picture.bins.value, picture.bins.error, photons.value, photons.error);
+  if (scenes.scene.bins.count > 1)
+    check_all(picture.steady.value, picture.steady.error, photons.steady_value,
+              photons.steady_error);
+  const Estimate mean = pixel_mean(state);
+  double error = 0;
+  for (double e : photons.steady_error) error = std::hypot(error, e);
+  const auto entries = static_cast<double>(photons.value.size());
+  const Compared c{mean.value[0].real() * entries, mean.error[0] * entries,
+                   total_of(photons.steady_value), error};
+  CAPTURE(c.a);
+  CAPTURE(c.a_error);
+  CAPTURE(c.b);
+  CAPTURE(c.b_error);
+  CHECK(c.agree());
+  CHECK(c.a_error < precision * c.a);
+}
+
+}  // namespace flatspeckle::grin::tests

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include "grin/render_job.h"
+
+namespace flatspeckle::grin::tests {
+
+inline std::string name(RenderMethod method) {
+  constexpr const char* names[] = {"path", "light", "bidirectional", "photon_map"};
+  return names[static_cast<int>(method)];
+}
+
+/// A picture and what it cost.
+struct Rendered {
+  RenderedPicture picture;
+  TransportCounts counts;
+  double cpu_s = 0, samples = 0;
+
+  double value(std::size_t pixel = 0) const { return picture.steady.value[pixel].real(); }
+  double error(std::size_t pixel = 0) const { return picture.steady.error[pixel]; }
+};
+
+inline RunState run_render(const RenderJob& job, double samples, int threads = 0) {
+  RunState state{GroupedSums(job.batches.size), {}};
+  RunOptions options;
+  options.stop.samples = static_cast<std::uint64_t>(samples);
+  options.threads = threads;
+  run_batches(job.batches, options, state);
+  return state;
+}
+
+inline Rendered rendered(const RenderScene& scene, const RenderRequest& request, double samples,
+                         std::uint64_t seed = 1) {
+  const RenderJob job = render_job(scene, request, seed);
+  const RunState state = run_render(job, samples);
+  return {rendered_picture(job, state.sums), *job.counts, state.cpu_s, state.sums.total_samples()};
+}
+
+inline Rendered rendered(const RenderScene& scene, RenderMethod method, double samples,
+                         std::uint64_t seed = 1) {
+  return rendered(scene, RenderRequest{method}, samples, seed);
+}
+
+/// Mean over the pixels with its error, as one number to compare: pixels of a picture are made from
+/// the same light paths, so the error comes from batches too.
+inline Estimate pixel_mean(const RunState& state) {
+  return jackknife(state.sums, [](double samples, std::span<const Complex> sums) {
+    Complex total = 0;
+    for (const Complex& sum : sums) total += sum;
+    return std::vector<Complex>{total / (samples * static_cast<double>(sums.size()))};
+  });
+}
+
+}  // namespace flatspeckle::grin::tests

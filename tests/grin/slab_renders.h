@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include <doctest/doctest.h>
+
+#include "tests/grin/render_tests.h"
+
+namespace flatspeckle::grin::tests {
+
+/// Slabs of matched index under a beam.
+
+enum class Face { reflected, transmitted };
+
+/// A box so wide that light hardly reaches its sides; the detector covers a face, so that the
+/// beam's power of 1 is shared between the faces and absorption.
+inline RenderScene slab(const ScatteringMedium& medium, double thickness, double half_width,
+                        Face face) {
+  const Vec3 low(-half_width, -half_width, 0), high(half_width, half_width, thickness);
+  const double z = face == Face::reflected ? 0 : thickness;
+  RenderScene scene{};
+  scene.step = 1;
+  scene.max_length = 1e9;
+  scene.stage.boundary = Box{low, high};
+  scene.stage.medium = medium;
+  scene.lights = {BeamLight{{0, 0, 0}, {0, 0, 1}, thickness / 100}};
+  scene.sensor =
+      AreaDetector{{0, 0, z}, {0, 1, 0}, 2 * half_width, 2 * half_width, {}, std::numbers::pi / 2};
+  return scene;
+}
+
+inline ScatteringMedium isotropic(double albedo) {
+  ScatteringMedium medium;
+  medium.mu_s = albedo;
+  medium.mu_a = 1 - albedo;
+  return medium;
+}
+
+/// Prahl, Keijzer, Jacques and Welch 1989, table 1: lengths in cm.
+inline RenderScene van_de_hulst(Face face) {
+  ScatteringMedium medium;
+  medium.mu_s = 90;
+  medium.mu_a = 10;
+  medium.phase = {SpacePhaseFunction::Kind::henyey_greenstein, 0.75};
+  return slab(medium, 0.02, 0.5, face);
+}
+
+inline void check_share(const RenderScene& scene, RenderMethod method, double samples,
+                        double expected, double largest_error) {
+  const Rendered picture = rendered(scene, method, samples);
+  const AreaDetector& detector = std::get<AreaDetector>(scene.sensor);
+  const double area = detector.width * detector.height;
+  const double value = area * picture.value(), error = area * picture.error();
+  const std::string how = name(method);
+  CAPTURE(how);
+  CAPTURE(value);
+  CAPTURE(error);
+  CAPTURE(expected);
+  CHECK(error < largest_error);
+  CHECK(std::abs(value - expected) < 4 * error);
+}
+
+}  // namespace flatspeckle::grin::tests

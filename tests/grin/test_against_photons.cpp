@@ -1,0 +1,189 @@
+#include <cmath>
+#include <numbers>
+#include <span>
+
+#include <doctest/doctest.h>
+
+#include "tests/grin/photon_comparison.h"
+
+// Estimators against analog photons, on detectors that photons hit.
+
+using namespace flatspeckle;
+using namespace flatspeckle::grin;
+using namespace flatspeckle::grin::tests;
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+/// Fog that absorbs a little in a sphere of index 1.3, a point light off the centre, pulses seen by
+/// a cap of the wall.
+TwoScenes foggy_sphere() {
+  const AreaDetector cap{.centre = {0, 0, 1},
+                         .up = {0, 1, 0},
+                         .width = 1.2,
+                         .height = 0.8,
+                         .pixels = {3, 2},
+                         .acceptance = pi / 2};
+  const Vec3 light(0.2, -0.1, -0.4);
+  return {
+      .scene = {.field = Homogeneous{0.3},
+                .step = 0.1,
+                .max_length = 100,
+                .stage = {.boundary = Sphere{},
+                          .medium = {.mu_s = 2.5,
+                                     .mu_a = 0.3,
+                                     .phase = {SpacePhaseFunction::Kind::henyey_greenstein, 0.6}}},
+                .lights = {PointLight{.x = light, .power = 3}},
+                .sensor = cap,
+                .bins = {1.5, 4.5, 5}},
+      .walk = {.boundary = {Vec3::Zero(), Vec3::Zero(), 1},
+               .medium =
+                   {.mu_s = 2.5, .mu_a = 0.3, .law = WalkMedium::Law::henyey_greenstein, .g = 0.6},
+               .inside = 1.3},
+      .source = point_source(light),
+      .power = 3,
+      .sensor = area_sensor(cap, {0, 0, 1}, 1)};
+}
+
+/// A glass ball that scatters in thin fog, a beam past its centre, seen by direction.
+TwoScenes glass_ball() {
+  const DirectionalDetector far{
+      .forward = {0, 0, 1}, .up = {0, 1, 0}, .half_angle = 0.6, .pixels = {3, 3}};
+  return {.scene = {.field = Homogeneous{0.5},
+                    .step = 0.1,
+                    .max_length = 100,
+                    .stage = {.boundary = Box{{-2, -2, -2}, {2, 2, 2}},
+                              .medium = {.mu_s = 0.3},
+                              .body = Body{Sphere{{0.1, 0, 0}, 1},
+                                           {.mu_s = 0.8,
+                                            .mu_a = 0.1,
+                                            .phase = {SpacePhaseFunction::Kind::rayleigh}}}},
+                    .lights = {BeamLight{{0, 0, -2}, {0, 0, 1}, 0.7}},
+                    .sensor = far},
+          .walk = {.boundary = {{-2, -2, -2}, {2, 2, 2}},
+                   .medium = {.mu_s = 0.3},
+                   .ball = WalkBall{{0.1, 0, 0},
+                                    1,
+                                    {.mu_s = 0.8, .mu_a = 0.1, .law = WalkMedium::Law::rayleigh}},
+                   .inside = 1.5},
+          .source = beam_source({0, 0, -2}, {0, 0, 1}, 0.7),
+          .sensor = directional_sensor(far)};
+}
+
+/// A Luneburg ball that scatters under a beam; power by place behind it.
+TwoScenes luneburg_ball() {
+  const AreaDetector wall{.centre = {0, 0, 1.5},
+                          .up = {0, 1, 0},
+                          .width = 2,
+                          .height = 2,
+                          .pixels = {3, 3},
+                          .acceptance = 1.0};
+  const auto n = [](const Vec3& x) { return std::sqrt(2 - x.squaredNorm()); };
+  return {
+      .scene = {.field = Luneburg({}),
+                .step = 0.1,
+                .max_length = 100,
+                .stage = {.boundary = Box{{-1.5, -1.5, -1.5}, {1.5, 1.5, 1.5}},
+                          .medium = {.mu_s = 0.1},
+                          .body =
+                              Body{Sphere{},
+                                   {.mu_s = 0.7,
+                                    .phase = {SpacePhaseFunction::Kind::henyey_greenstein, 0.5}}}},
+                .lights = {BeamLight{{0, 0, -1.5}, {0, 0, 1}, 0.8}},
+                .sensor = wall},
+      .walk = {.boundary = {{-1.5, -1.5, -1.5}, {1.5, 1.5, 1.5}},
+               .medium = {.mu_s = 0.1},
+               .ball = WalkBall{Vec3::Zero(),
+                                1,
+                                {.mu_s = 0.7, .law = WalkMedium::Law::henyey_greenstein, .g = 0.5}},
+               .curved = WalkIndex{n, [=](const Vec3& x) { return Vec3(-x / n(x)); }, 0.05}},
+      .source = beam_source({0, 0, -1.5}, {0, 0, 1}, 0.8),
+      .sensor = area_sensor(wall, {0, 0, 1})};
+}
+
+/// A guide n^2 = n0^2 - alpha^2 rho^2 whose fog grows denser along it; pulses from a lit end.
+TwoScenes foggy_guide() {
+  constexpr double n0 = 1.5, alpha = 0.5;
+  const AreaDetector end{.centre = {0, 0, 4},
+                         .up = {0, 1, 0},
+                         .width = 2,
+                         .height = 2,
+                         .pixels = {2, 1},
+                         .acceptance = pi / 2};
+  // linear between the nodes, as the walk's formula
+  const FieldGrid nodes{.origin = {-1, -1, 0}, .spacing = {2, 2, 4}, .nodes = {2, 2, 2}};
+  const auto density = std::make_shared<DensityGrid>(
+      nodes, std::vector<double>{0.5, 1.5, 0.5, 1.5, 0.5, 1.5, 0.5, 1.5});
+  const auto n = [](const Vec3& x) {
+    return std::sqrt(n0 * n0 - alpha * alpha * (x.x() * x.x() + x.y() * x.y()));
+  };
+  const auto gradient = [n](const Vec3& x) {
+    return Vec3(-alpha * alpha / n(x) * Vec3(x.x(), x.y(), 0));
+  };
+  return {.scene = {.field = ParabolicGuide({n0 - 1, alpha}),
+                    .step = 0.1,
+                    .max_length = 100,
+                    .stage = {.boundary = Box{{-1, -1, 0}, {1, 1, 4}},
+                              .medium = {.mu_s = 0.3, .mu_a = 0.05, .density = density}},
+                    .lights = {BeamLight{{0.2, 0, 0.2}, {0.2, 0, 1}, 0.3}},
+                    .sensor = end,
+                    .bins = {5, 8, 4}},
+          .walk = {.boundary = {{-1, -1, 0}, {1, 1, 4}},
+                   .medium = {.mu_s = 0.3,
+                              .mu_a = 0.05,
+                              .density = [](const Vec3& x) { return 0.5 + x.z() / 4; },
+                              .largest_density = 1.5},
+                   .curved = WalkIndex{n, gradient, 0.05}},
+          .source = beam_source({0.2, 0, 0.2}, {0.2, 0, 1}, 0.3),
+          .sensor = area_sensor(end, {0, 0, 1})};
+}
+
+/// The beam's place taken by a disk that shines on the wall at z.
+TwoScenes with_face_light(TwoScenes scenes, double z, double index) {
+  const double radius = 0.9;
+  scenes.scene.lights = {FaceLight{.centre = {0, 0, z}, .radius = radius, .radiance = 2}};
+  scenes.source = lambertian_source({0, 0, z}, {0, 0, 1}, radius);
+  scenes.power = 2 * pi * index * index * pi * radius * radius;
+  return scenes;
+}
+
+constexpr RenderMethod two_methods[] = {RenderMethod::light, RenderMethod::bidirectional};
+constexpr RenderMethod three_methods[] = {RenderMethod::path, RenderMethod::light,
+                                          RenderMethod::bidirectional};
+
+void check_methods(const TwoScenes& scenes, std::span<const RenderMethod> methods,
+                   std::uint64_t photons, double precision, std::uint64_t samples) {
+  const PhotonPicture picture = photon_picture(scenes, photons, 5);
+  for (const RenderMethod method : methods)
+    check_against(picture, scenes, {.method = method}, samples, precision);
+}
+
+}  // namespace
+
+// Path tracing cannot see a beam that is scattered once in a body, as nothing is joined through a
+// surface; and its errors have no variance next to a point light in fog.
+
+TEST_CASE("fog in a sphere around a point light: as photons see it") {
+  check_methods(foggy_sphere(), two_methods, 400000, 0.01, 200000);
+}
+
+TEST_CASE("a glass ball in fog under a beam: as photons see it") {
+  check_methods(glass_ball(), two_methods, 400000, 0.02, 200000);
+}
+
+TEST_CASE("a glass ball in fog before a lit wall: as photons see it") {
+  check_methods(with_face_light(glass_ball(), -2, 1), three_methods, 400000, 0.02, 200000);
+}
+
+TEST_CASE("a Luneburg ball in fog under a beam: as photons see it") {
+  check_methods(luneburg_ball(), two_methods, 100000, 0.03, 30000);
+}
+
+TEST_CASE("a Luneburg ball in fog before a lit wall: as photons see it") {
+  check_methods(with_face_light(luneburg_ball(), -1.5, 1), three_methods, 100000, 0.03, 30000);
+}
+
+TEST_CASE("a guide in fog under a beam, in pulses: as photons see it") {
+  check_methods(foggy_guide(), three_methods, 100000, 0.03, 30000);
+}

@@ -1,0 +1,277 @@
+#include <optional>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include "core/random.h"
+#include "grin/curved_space.h"
+#include "grin/path_join.h"
+#include "tests/grin/closed_fields.h"
+
+namespace flatspeckle::grin::tests {
+
+namespace {
+
+/// One way along a path from the light to the sensor, and the same walked back.
+struct Edge {
+  Flight forth, back;
+};
+
+/// A path's vertices, their indices, and the edges between them.
+struct WholePath {
+  std::vector<PathPoint> points;
+  std::vector<double> index;
+  std::vector<Edge> edges;
+  EndPosition light, sensor;
+};
+
+Flight as_flight(const Join& join, const PathPoint& to) {
+  Flight flight;
+  flight.end = Flight::End::collision;
+  flight.point = to;
+  flight.start_direction = join.start_direction;
+  flight.direction = join.end_direction;
+  flight.spreading = join.spreading;
+  flight.optical_depth = join.optical_depth;
+  return flight;
+}
+
+/// By the formula of C25, where no curve can be solved for.
+Flight reversed(const Flight& flight, const PathPoint& from, double n_from, double n_to) {
+  Flight back = flight;
+  back.point = from;
+  back.start_direction = -flight.direction;
+  back.direction = -flight.start_direction;
+  back.spreading = flight.spreading * n_to * n_to / (n_from * n_from);
+  return back;
+}
+
+double scattering_density(const Transport& transport, const WholePath& path, std::size_t i,
+                          bool from_light) {
+  const Vec3 in = from_light ? path.edges[i - 1].forth.direction : path.edges[i].back.direction;
+  const Vec3 out =
+      from_light ? path.edges[i].forth.start_direction : path.edges[i - 1].back.start_direction;
+  return transport.medium(path.points[i].part).phase.density(in.dot(out));
+}
+
+PathVertex light_subpath(const Transport& transport, const WholePath& path, int count) {
+  PathVertex vertex = end_vertex(path.light);
+  for (int i = 0; i + 1 < count; ++i) {
+    const Edge& edge = path.edges[i];
+    double density = 1;
+    if (i > 0)
+      density = scattering_density(transport, path, i, true);
+    else if (!path.light.is_beam)
+      density = transport.lights.towards(path.light, edge.forth.start_direction).density;
+    vertex = arrived(vertex, edge.forth, density, path.index[i + 1]);
+  }
+  return vertex;
+}
+
+PathVertex sensor_subpath(const Transport& transport, const WholePath& path, int count) {
+  PathVertex vertex = end_vertex(path.sensor);
+  const int last = static_cast<int>(path.points.size()) - 1;
+  for (int i = last; i > last + 1 - count; --i) {
+    const Edge& edge = path.edges[i - 1];
+    const double density =
+        i == last ? transport.sensor.towards(path.sensor, edge.back.start_direction).density
+                  : scattering_density(transport, path, i, false);
+    vertex = arrived(vertex, edge.back, density, path.index[i - 1]);
+  }
+  return vertex;
+}
+
+/// Weight of the strategy in which all vertices were made from one side, `end` being hit.
+double weight_of_hit(PathVertex last, const EndPosition& end, double density, int more) {
+  last.density *= std::abs(end.inward.dot(last.arrived));
+  return 1 / (1 + fewer_of_ours(last, end.position_density, density, more));
+}
+
+/// Of the strategy with s vertices made from the light; nothing where there is no such strategy.
+std::optional<double> weight_of(const Transport& transport, const WholePath& path, int s) {
+  const int all = static_cast<int>(path.points.size());
+  const Strategies& allowed = transport.strategies;
+  if (s == 0) {
+    if (path.light.is_point || path.light.is_beam) return {};
+    const Vec3& out = path.edges[0].forth.start_direction;
+    return weight_of_hit(sensor_subpath(transport, path, all), path.light,
+                         transport.lights.towards(path.light, out).density, allowed.most_light());
+  }
+  if (s == all) {
+    if (path.sensor.is_point) return {};
+    const Vec3& out = path.edges.back().back.start_direction;
+    return weight_of_hit(light_subpath(transport, path, all), path.sensor,
+                         transport.sensor.towards(path.sensor, out).density, allowed.most_sensor());
+  }
+  const Flight& edge = path.edges[s - 1].forth;
+  if (edge.crosses_body || (s == 1 && path.light.is_beam)) return {};
+  const PathVertex y = light_subpath(transport, path, s);
+  const PathVertex z = sensor_subpath(transport, path, all - s);
+  const JoiningCurve curve{edge.start_direction, edge.direction, edge.spreading,
+                           edge.optical_depth};
+  return joined_path(allowed, y, leaving(transport, transport.lights, y, curve.start_direction), z,
+                     leaving(transport, transport.sensor, z, -curve.end_direction), curve)
+      .weight;
+}
+
+/// Over all strategies that could have made a path: of a short end, those with the fewest vertices
+/// from there, and if that is a hit the next.
+double sum_of_weights(const Transport& transport, const WholePath& path, int& strategies) {
+  const int all = static_cast<int>(path.points.size());
+  const bool is_short = transport.strategies.short_light || transport.strategies.short_sensor;
+  double sum = 0;
+  strategies = 0;
+  for (int count = 0; count <= all; ++count) {
+    const int s = transport.strategies.short_sensor ? all - count : count;
+    const auto weight = weight_of(transport, path, s);
+    if (!weight) continue;
+    CHECK(*weight > 0);
+    sum += *weight;
+    ++strategies;
+    if (is_short && count >= 1) break;
+    // a surface that is hit is joined to as well, but not where a body is in the way
+    if (is_short && path.edges[s == 0 ? 0 : all - 2].forth.crosses_body) break;
+  }
+  return sum;
+}
+
+constexpr double radius = 1.5;
+
+Stage foggy_ball() {
+  return {Sphere{Vec3::Zero(), radius},
+          {1.2, 0.1, {SpacePhaseFunction::Kind::henyey_greenstein, 0.4}}};
+}
+
+Transport transport_of(const CurvedSpace& space, const Stage& stage, const Light& light,
+                       const Sensor& sensor, const Strategies& strategies = {}) {
+  return {stage, Lights({light}, stage, [&](const PathPoint& p) { return space.index(p); }),
+          SensorEnd(sensor, stage), strategies};
+}
+
+const Strategies path_tracing{.short_light = true};
+const Strategies light_tracing{.short_sensor = true};
+
+/// Through random points, each way of each edge solved for by itself; nothing where one of them
+/// has no curve or the two differ.
+std::optional<WholePath> random_path(const Transport& transport, const CurvedSpace& space,
+                                     int scatterings, RandomStream& random) {
+  WholePath path;
+  path.light = transport.lights.sample_position(space, random);
+  path.sensor = transport.sensor.sample_position(space, random);
+  path.points.push_back(path.light.point);
+  for (int i = 0; i < scatterings; ++i) path.points.push_back({random_point(random, 1.0)});
+  path.points.push_back(path.sensor.point);
+  for (const PathPoint& p : path.points) path.index.push_back(space.index(p));
+  ConnectionStatistics statistics;
+  for (std::size_t i = 0; i + 1 < path.points.size(); ++i) {
+    const PathPoint &p = path.points[i], &q = path.points[i + 1];
+    const auto forth = space.join(p, q, random, statistics);
+    const auto back = space.join(q, p, random, statistics);
+    if (!forth || !back || (forth->start_direction + back->end_direction).norm() > 1e-6)
+      return std::nullopt;
+    path.edges.push_back({as_flight(*forth, q), as_flight(*back, p)});
+  }
+  return path;
+}
+
+const Light lights[] = {PointLight{Vec3(0.3, -0.2, 0.6)}, FaceLight{Vec3::Zero(), INFINITY}};
+const Sensor sensors[] = {Camera{Vec3(0, 0.1, -0.6), Vec3::UnitZ(), Vec3::UnitY(), 3.0, {3, 2}},
+                          AreaDetector{Vec3(0, 0, radius), Vec3::UnitY(), 1, 1, {2, 2}, 1.57},
+                          DirectionalDetector{Vec3::UnitZ(), Vec3::UnitY(), 1.5, {2, 2}}};
+
+}  // namespace
+
+TEST_CASE("the weights of all strategies that make a path sum to 1 where rays are curved") {
+  const Stage stage = foggy_ball();
+  const auto space =
+      make_curved_space(Fisheye({.centre_excess = 0.7, .radius = 2.5}), stage, {0.02, 20});
+  RandomStream random(3, 91, 0);
+  int paths = 0;
+  for (const Light& light : lights)
+    for (const Sensor& sensor : sensors)
+      for (const Strategies& mask : {Strategies{}, path_tracing, light_tracing}) {
+        const Transport transport = transport_of(*space, stage, light, sensor, mask);
+        for (int scatterings = 0; scatterings < 6; ++scatterings)
+          for (int trial = 0; trial < 20; ++trial) {
+            const auto path = random_path(transport, *space, scatterings, random);
+            if (!path) continue;
+            // a path that the sensor does not see has no weights
+            if (!(transport.sensor.towards(path->sensor, path->edges.back().back.start_direction)
+                      .strength > 0))
+              continue;
+            CAPTURE(scatterings);
+            int strategies = 0;
+            const double sum = sum_of_weights(transport, *path, strategies);
+            if (strategies == 0) continue;
+            CHECK(sum == doctest::Approx(1).epsilon(1e-6));
+            if (mask.short_light) CHECK(strategies <= 2);
+            ++paths;
+          }
+      }
+  CHECK(paths > 150);
+}
+
+namespace {
+
+/// Walks from the light, then to the sensor's point if that can be joined.
+std::optional<WholePath> walked_path(const Transport& transport, const CurvedSpace& space,
+                                     int scatterings, RandomStream& random) {
+  WholePath path;
+  path.light = transport.lights.sample_position(space, random);
+  path.sensor = transport.sensor.sample_position(space, random);
+  path.points.push_back(path.light.point);
+  path.index.push_back(path.light.index);
+  Vec3 direction = transport.lights.sample_direction(path.light, random).direction;
+  const auto add = [&](const Flight& flight) {
+    const double from = path.index.back(), to = space.index(flight.point);
+    path.edges.push_back({flight, reversed(flight, path.points.back(), from, to)});
+    path.points.push_back(flight.point);
+    path.index.push_back(to);
+  };
+  for (int i = 0; i < scatterings; ++i) {
+    const Flight flight = space.fly(path.points.back(), direction, random);
+    if (flight.end != Flight::End::collision) return std::nullopt;
+    add(flight);
+    direction = transport.medium(flight.point.part).phase.sample(flight.direction, random);
+  }
+  ConnectionStatistics statistics;
+  if (path.points.back().part != path.sensor.point.part) return std::nullopt;
+  const auto last = space.join(path.points.back(), path.sensor.point, random, statistics);
+  if (!last) return std::nullopt;
+  add(as_flight(*last, path.sensor.point));
+  return path;
+}
+
+}  // namespace
+
+TEST_CASE("weights sum to 1 on paths that cross a body, and of beams") {
+  Stage stage = foggy_ball();
+  stage.body = Body{Sphere{Vec3(0.1, 0, 0), 0.8}, {2.5, 0, {}}};
+  const auto space =
+      make_curved_space(Fisheye({.centre_excess = 0.7, .radius = 1.5}), stage, {0.02, 20});
+  const Light beam = BeamLight{Vec3(0, 0, -1.4), Vec3::UnitZ(), 0.2};
+  RandomStream random(4, 91, 0);
+  int paths = 0, crossing = 0;
+  for (const Light& light : {lights[1], beam})
+    for (const Sensor& sensor : {sensors[1], sensors[2]})
+      for (const Strategies& mask : {Strategies{}, path_tracing, light_tracing}) {
+        const Transport transport = transport_of(*space, stage, light, sensor, mask);
+        for (int trial = 0; trial < 1000; ++trial) {
+          const auto path = walked_path(transport, *space, 1 + trial % 7, random);
+          if (!path) continue;
+          if (!(transport.sensor.towards(path->sensor, path->edges.back().back.start_direction)
+                    .strength > 0))
+            continue;
+          int strategies = 0;
+          const double sum = sum_of_weights(transport, *path, strategies);
+          if (strategies == 0) continue;
+          CHECK(sum == doctest::Approx(1).epsilon(1e-6));
+          ++paths;
+          for (const Edge& edge : path->edges) crossing += edge.forth.crosses_body;
+        }
+      }
+  CHECK(paths > 300);
+  CHECK(crossing > 200);
+}
+
+}  // namespace flatspeckle::grin::tests

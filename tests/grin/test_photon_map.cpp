@@ -1,0 +1,216 @@
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <boost/math/quadrature/gauss.hpp>
+#include <doctest/doctest.h>
+
+#include "grin/photon_map.h"
+#include "tests/grin/render_tests.h"
+
+using namespace flatspeckle;
+using namespace flatspeckle::grin;
+using namespace flatspeckle::grin::tests;
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+constexpr double everywhere = std::numeric_limits<double>::infinity();
+
+template <class F>
+double smooth_integral(const F& f, double from, double to) {
+  return boost::math::quadrature::gauss<double, 20>::integrate(f, from, to);
+}
+
+/// Looks along +z, one pixel.
+Camera pinhole(const Vec3& x) {
+  return {.x = x, .forward = {0, 0, 1}, .up = {0, 1, 0}, .field_of_view = 2.8, .pixels = {}};
+}
+
+RenderScene furnace(const AnyIndexField& field, const ScatteringMedium& medium) {
+  return {.field = field,
+          .step = 0.1,
+          .max_length = 100,
+          .stage = {.boundary = Sphere{}, .medium = medium},
+          .lights = {FaceLight{.radius = everywhere}},
+          .sensor = pinhole(Vec3::Zero())};
+}
+
+/// In a furnace L/n^2 = 1, so all that the blur does is to lose photons beyond the wall and to
+/// mix places of another index: expectation of the camera in the centre of the unit sphere.
+template <class Index>
+double blurred_furnace(const Index& n, double mu, double radius) {
+  const auto gathered = [&](double s) {
+    // shells of the ball about a point at distance s from the centre, and their polar angles
+    const auto shell = [&](double r) {
+      const auto ring = [&](double cosine) {
+        const double from_centre = std::sqrt(s * s + r * r + 2 * s * r * cosine);
+        const double ratio = n(from_centre) / n(s);
+        return from_centre < 1 ? ratio * ratio : 0;
+      };
+      // up to the wall, so that the integrand is smooth
+      const double wall = std::clamp((1 - s * s - r * r) / (2 * s * r), -1.0, 1.0);
+      return 2 * pi * r * r * smooth_integral(ring, -1, wall);
+    };
+    return smooth_integral(shell, 0, radius) / (4 * pi / 3 * std::pow(radius, 3));
+  };
+  const auto collided = [&](double s) { return mu * std::exp(-mu * s) * gathered(s); };
+  return std::exp(-mu) + smooth_integral(collided, 1e-9, 1 - radius) +
+         smooth_integral(collided, 1 - radius, 1);
+}
+
+/// Of many small maps: their pairs cost less.
+void check_furnace(const RenderScene& scene, double radius, double expected) {
+  const std::shared_ptr<const CurvedSpace> space =
+      make_curved_space(scene.field, scene.stage, {scene.step, scene.max_length, false});
+  const auto index = [&](const PathPoint& p) { return space->index(p); };
+  const auto transport =
+      std::make_shared<Transport>(Transport{.stage = scene.stage,
+                                            .lights = Lights(scene.lights, scene.stage, index),
+                                            .sensor = SensorEnd(scene.sensor, scene.stage)});
+  const Homogeneous* constant = std::get_if<Homogeneous>(&scene.field);
+  const PathKernel kernel = constant ? photon_kernel(false, transport, constant->n_excess, radius)
+                                     : photon_kernel(false, transport, space, false, radius);
+  GroupedSums sums(1);
+  for (int batch = 0; batch < 80; ++batch) {
+    std::vector<Complex> sum(1);
+    Film film(1, {}, sum);
+    RandomStream random(1, 4, batch);
+    TransportCounts counts;
+    kernel(1024, random, film, counts, nullptr);
+    sums.add(1024, sum);
+  }
+  const Estimate mean = jackknife(sums, sample_mean);
+  const double value = mean.value[0].real(), error = mean.error[0];
+  CAPTURE(value);
+  CAPTURE(error);
+  CAPTURE(expected);
+  CHECK(error < 0.02 * expected);
+  CHECK(std::abs(value - expected) < 4 * error);
+}
+
+}  // namespace
+
+TEST_CASE("the grid finds the points within the radius, each once") {
+  RandomStream random(3, 9, 0);
+  const auto anywhere = [&](double scale) {
+    return Vec3(scale * (random.uniform() - 0.5), scale * (random.uniform() - 0.5),
+                scale * (random.uniform() - 0.5));
+  };
+  for (const double scale : {0.05, 1.0, 30.0}) {
+    std::vector<GatherPoint> points(500);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      points[i].x = anywhere(scale);
+      points[i].pixel = static_cast<int>(i);
+    }
+    const double radius = 0.3;
+    const GatherGrid grid(points, radius);
+    for (int trial = 0; trial < 200; ++trial) {
+      const Vec3 x = trial % 2 ? anywhere(1.2 * scale) : Vec3(points[trial].x + anywhere(0.4));
+      std::vector<int> expected, found;
+      for (const GatherPoint& p : points)
+        if ((p.x - x).norm() < radius) expected.push_back(p.pixel);
+      grid.near(x, [&](const GatherPoint& p) { found.push_back(p.pixel); });
+      std::sort(found.begin(), found.end());
+      CHECK(found == expected);
+    }
+  }
+}
+
+TEST_CASE("the photon map of a furnace is 1, but for the photons missing beyond the wall") {
+  const double mu = 1.5, n = 1.4;
+  const RenderScene scene =
+      furnace(Homogeneous{n - 1},
+              {.mu_s = mu, .phase = {SpacePhaseFunction::Kind::henyey_greenstein, 0.6}});
+  for (const double radius : {0.35, 0.15}) {
+    const double expected = blurred_furnace([&](double) { return n; }, mu, radius);
+    CHECK(expected < 1 - 0.06 * radius);
+    check_furnace(scene, radius, expected);
+  }
+}
+
+TEST_CASE("the photon map in curved space counts L/n^2") {
+  const double mu = 1.5, radius = 0.25;
+  const RenderScene scene = furnace(Fisheye({.centre_excess = 1, .radius = 0.6}),
+                                    {.mu_s = mu, .phase = {SpacePhaseFunction::Kind::rayleigh}});
+  const double expected =
+      blurred_furnace([](double r) { return 2 / (1 + r * r / 0.36); }, mu, radius);
+  CHECK(std::abs(expected - blurred_furnace([](double) { return 1; }, mu, radius)) > 0.04);
+  check_furnace(scene, radius, expected);
+}
+
+TEST_CASE("photons of another part are not counted") {
+  // Fog around an absorbing ball: the camera looks past it at fog only; photons inside the ball,
+  // none of which leaves, must not show.
+  const auto scene_of = [](double mu_s_of_ball) {
+    RenderScene scene = furnace(Homogeneous{}, {.mu_s = 0.5});
+    scene.stage.body =
+        Body{Sphere{{0, 0, 0.5}, 0.3}, {.mu_s = mu_s_of_ball, .mu_a = 1000 - mu_s_of_ball}};
+    return scene;
+  };
+  const RenderRequest request{RenderMethod::photon_map, 0, 0.2};
+  const Rendered black = rendered(scene_of(0), request, 200000);
+  const Rendered dark = rendered(scene_of(1e-6), request, 200000, 2);
+  const double error = std::hypot(black.error(), dark.error());
+  CHECK(std::abs(black.value() - dark.value()) < 4 * error);
+  CHECK(error < 0.02 * black.value());
+}
+
+namespace {
+
+/// A beam through fog and, in its way, a ball that bends light or none.
+RenderScene beam_in_fog(bool ball) {
+  RenderScene scene{};
+  scene.step = 0.1;
+  scene.max_length = 100;
+  scene.stage.boundary = Box{{-2, -2, -2}, {2, 2, 2}};
+  scene.stage.medium.mu_s = 0.3;
+  scene.stage.medium.mu_a = 0.05;
+  scene.stage.medium.phase = {SpacePhaseFunction::Kind::henyey_greenstein, 0.5};
+  if (ball) {
+    Body body;
+    body.surface = Sphere{};
+    body.medium.mu_s = 0.5;
+    scene.field = Luneburg({});
+    scene.stage.body = body;
+  }
+  scene.lights = {BeamLight{{0, 0, -2}, {0, 0, 1}, 0.3}};
+  // a patch of the side wall, for light that is nearly normal to it, sees the beam; what leaves the
+  // ball can only hit sensors, so there it is all that leaves to the side
+  scene.sensor = AreaDetector{{2, 0, 0.3}, {0, 1, 0}, 0.5, 0.3, {}, 0.3};
+  if (ball) scene.sensor = DirectionalDetector{{1, 0, 0}, {0, 1, 0}, 0.8, {}};
+  return scene;
+}
+
+}  // namespace
+
+TEST_CASE("the photon map converges to bidirectional tracing as its radius shrinks") {
+  for (const bool ball : {false, true}) {
+    CAPTURE(ball);
+    const RenderScene scene = beam_in_fog(ball);
+    const Rendered exact = rendered(scene, RenderMethod::bidirectional, 300000);
+    const auto at = [&](double radius) {
+      return rendered(scene, {RenderMethod::photon_map, 0, radius}, 150000);
+    };
+    const Rendered wide = at(0.4), half = at(0.2), quarter = at(0.1);
+    const double reference = exact.value();
+    CAPTURE(reference);
+    CAPTURE(exact.error());
+    CAPTURE(wide.value());
+    CAPTURE(wide.error());
+    CAPTURE(half.value());
+    CAPTURE(half.error());
+    CAPTURE(quarter.value());
+    CAPTURE(quarter.error());
+    // blurred by far at first
+    CHECK(std::abs(wide.value() - reference) > 4 * std::hypot(wide.error(), exact.error()));
+    CHECK(std::abs(quarter.value() - reference) < 0.5 * std::abs(wide.value() - reference));
+    // without the terms in radius^2 and, less certain, radius^3
+    const double limit = (4 * quarter.value() - half.value()) / 3;
+    const double error = std::hypot(4 * quarter.error(), half.error()) / 3;
+    CAPTURE(limit);
+    CAPTURE(error);
+    CHECK(error < 0.05 * reference);
+    CHECK(std::abs(limit - reference) < 4 * std::hypot(error, exact.error()));
+  }
+}

@@ -1,0 +1,35 @@
+#include <doctest/doctest.h>
+
+#include "tests/grin/slab_renders.h"
+#include "tests/grin/slab_transport.h"
+
+// Reflected and transmitted light of slabs against exact transport.
+
+using namespace flatspeckle;
+using namespace flatspeckle::grin;
+using namespace flatspeckle::grin::tests;
+
+TEST_CASE("van de Hulst's slab by light and bidirectional tracing") {
+  for (const RenderMethod method : {RenderMethod::light, RenderMethod::bidirectional}) {
+    check_share(van_de_hulst(Face::reflected), method, 200000, 0.09739, 1e-3);
+    check_share(van_de_hulst(Face::transmitted), method, 200000, 0.66096, 1.5e-3);
+  }
+}
+
+TEST_CASE("isotropic slabs against Peierls' equation") {
+  for (const double albedo : {0.5, 0.95}) {
+    const ScatteringMedium medium = isotropic(albedo);
+    const SlabShares exact = isotropic_slab(2, albedo);
+    for (const RenderMethod method : {RenderMethod::light, RenderMethod::bidirectional}) {
+      check_share(slab(medium, 2, 100, Face::reflected), method, 100000, exact.reflected, 2e-3);
+      check_share(slab(medium, 2, 100, Face::transmitted), method, 100000, exact.transmitted, 2e-3);
+    }
+  }
+}
+
+TEST_CASE("a half-space against Chandrasekhar's H function") {
+  const double albedo = 0.9;
+  const ScatteringMedium medium = isotropic(albedo);
+  check_share(slab(medium, 40, 100, Face::reflected), RenderMethod::bidirectional, 200000,
+              isotropic_half_space(albedo), 2e-3);
+}
