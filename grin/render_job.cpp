@@ -16,7 +16,7 @@ namespace flatspeckle::grin {
 
 namespace {
 
-/// What a join costs (bench_render).
+/// What a join costs, in flights; less than that, as a level too low only costs time.
 constexpr double flights_per_curve = 4, flights_per_line = 0.1;
 
 Strategies strategies(RenderMethod method) {
@@ -74,9 +74,9 @@ Tracer curved_tracer(const RenderScene& scene, const RenderRequest& request,
   return {transport, curved_kernel(plan, transport, space, scene.random_phase)};
 }
 
-/// Of the scene alone: from a few pairs of paths that join nothing. A pair costs F flights, and V,
-/// the mean square of what it adds. Joins at a level L with the promise S add L S to V and cost c
-/// S/L flights; V F is least at L^2 = c V / F, both without joins.
+/// Of the scene alone: from a few pairs of paths that join nothing. A pair costs F flights and
+/// varies by V. Joins of the promise S at a level L add L S to V and cost c S/L flights; variance
+/// times cost is least at L^2 = c V / F, both without joins.
 double level_of_joins(const Tracer& tracer, const RenderScene& scene, double flights_per_join) {
   constexpr int pairs = 256;
   constexpr auto no_batch = std::numeric_limits<std::uint64_t>::max();
@@ -91,14 +91,16 @@ double level_of_joins(const Tracer& tracer, const RenderScene& scene, double fli
   // without the few that promise most: what is near an end is rare, and would decide alone
   std::sort(promises.begin(), promises.end());
   promises.resize(pairs - pairs / 64);
-  const double square =
-      std::inner_product(promises.begin(), promises.end(), promises.begin(), 0.0) / pairs;
+  const double n = static_cast<double>(promises.size());
+  const double mean = std::accumulate(promises.begin(), promises.end(), 0.0) / n;
+  const double variance =
+      std::inner_product(promises.begin(), promises.end(), promises.begin(), 0.0) / n - mean * mean;
   const double flights = static_cast<double>(counts.flights) / pairs;
-  return std::sqrt(flights_per_join * square / std::max(flights, 1.0));
+  return std::sqrt(flights_per_join * std::max(variance, 0.0) / std::max(flights, 1.0));
 }
 
 int paths_per_batch(std::size_t sums) {
-  return static_cast<int>(std::clamp<std::size_t>(sums / 8, 256, 16384));
+  return static_cast<int>(std::clamp<std::size_t>(sums / 8, 32, 16384));
 }
 
 std::vector<Complex> steady_mean(double samples, std::span<const Complex> sums, int bins) {

@@ -26,12 +26,4 @@ struct RenderPlan {
 /// The least plan that a scene allows.
 RenderPlan render_plan(const RenderScene& scene);
 
-/// The plan that is compiled for it: estimators in curved space leave out scattering and time bins
-/// only (the rest is the space's, behind the call of a flight), and a grid keeps absorption.
-constexpr RenderPlan compiled_plan(RenderPlan plan) {
-  if (plan.curved) plan.absorbs = plan.gridded = plan.body = true;
-  if (plan.gridded) plan.scatters = plan.absorbs = true;
-  return plan;
-}
-
 }  // namespace flatspeckle::grin

@@ -11,7 +11,7 @@ namespace {
 
 /// Rays through many blobs and a spline cost ten times as much.
 double affordable(const std::string& name, double samples) {
-  return name == "blobs and spline" ? samples / 8 : samples;
+  return name == "blobs and spline" ? samples / 4 : samples;
 }
 
 }  // namespace
