@@ -11,7 +11,7 @@
 
 namespace flatspeckle::grin::tests {
 
-inline const char* name(RenderMethod method) {
+inline std::string name(RenderMethod method) {
   constexpr const char* names[] = {"path", "light", "bidirectional", "photon_map"};
   return names[static_cast<int>(method)];
 }

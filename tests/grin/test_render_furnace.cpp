@@ -7,14 +7,23 @@ namespace flatspeckle::grin::tests {
 // The white furnace (conventions, C24), shortly; test_render_furnace_full.cpp is for errors of
 // 0.1 %.
 
+namespace {
+
+/// Rays through many blobs and a spline cost ten times as much.
+double affordable(const std::string& name, double samples) {
+  return name == "blobs and spline" ? samples / 8 : samples;
+}
+
+}  // namespace
+
 TEST_CASE("light stays uniform without scattering, in every field and by every estimator") {
   for (const auto& [name, scene] : furnaces({})) {
     CAPTURE(name);
     for (const RenderMethod method : unbiased_methods) {
-      CHECK(check_furnace_face(scene, method, 20000) < 0.03);
-      // a body lenses light onto a pinhole, which light from far finds but seldom
+      CHECK(check_furnace_face(scene, method, affordable(name, 10000)) < 0.08);
+      // what is near a pinhole is seen by light tracing but seldom, and then brightly
       if (method != RenderMethod::light) {
-        CHECK(check_furnace_camera(scene, method, 10000) < 0.01);
+        CHECK(check_furnace_camera(scene, method, affordable(name, 20000)) < 0.02);
       }
     }
   }
@@ -24,9 +33,9 @@ TEST_CASE("light stays uniform where it scatters, in every field and by every es
   for (const auto& [name, scene] : furnaces(fog(1, 0, 0.85))) {
     CAPTURE(name);
     for (const RenderMethod method : unbiased_methods) {
-      CHECK(check_furnace_face(scene, method, 20000) < 0.05);
+      CHECK(check_furnace_face(scene, method, affordable(name, 10000)) < 0.1);
       if (method != RenderMethod::light) {
-        CHECK(check_furnace_camera(scene, method, 5000) < 0.05);
+        CHECK(check_furnace_camera(scene, method, affordable(name, 8000)) < 0.1);
       }
     }
   }
