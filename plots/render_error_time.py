@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Error against run time of light transport, from the CSV of bench_render: bidirectional tracing and
-the photon map with its default and its best radius; prints the ratios of times to equal error."""
+the photon map with its default and its best radius; prints the times to equal errors."""
 
 import argparse
 import csv
@@ -12,7 +12,9 @@ from lib import style
 import matplotlib.pyplot as plt
 import numpy as np
 
-TITLES = {"luneburg": "scattering Luneburg ball", "waveguide": "waveguide of ultrasound in tissue"}
+TITLES = {"luneburg": "scattering Luneburg ball", "waveguide": "waveguide of ultrasound in tissue",
+          "luneburg_within": "scattering Luneburg ball, from within"}
+TARGETS = (0.1, 0.05, 0.02, 0.01, 0.005, 0.002)
 
 
 def read_runs(path):
@@ -29,7 +31,10 @@ def read_runs(path):
     for (scene, key), seeds in rows.items():
         shortest = min(len(points) for points in seeds.values())
         points = np.array([points[:shortest] for points in seeds.values()])
-        runs[scene][key] = tuple(np.median(points, axis=0).T)
+        cpu, error = np.median(points, axis=0).T
+        seen = error > 0  # else below what the reference is off by
+        if np.any(seen):
+            runs[scene][key] = cpu[seen], error[seen]
     return runs
 
 
@@ -41,10 +46,21 @@ def lower_envelope(curves):
     return times, np.array(best)
 
 
-def time_to(curve, target):
-    """By slope -1/2 through the points of a curve without bias."""
+def bias_and_variance(curve, biased):
+    """b^2 and v of error^2 = b^2 + v / time, by least squares of the relative deviations."""
     cpu, error = curve
-    return np.median(cpu * (error / target) ** 2)
+    columns = np.stack([1 / error**2, 1 / (cpu * error**2)], axis=1)
+    if biased:
+        (square, variance), *_ = np.linalg.lstsq(columns, np.ones_like(cpu), rcond=None)
+        if square > 0 and variance > 0:
+            return square, variance
+    return 0.0, np.median(cpu * error**2)
+
+
+def time_to(curve, target, biased):
+    """Infinite where the bias alone is more."""
+    square, variance = bias_and_variance(curve, biased)
+    return variance / (target**2 - square) if square < target**2 else np.inf
 
 
 def methods_of(curves):
@@ -54,19 +70,24 @@ def methods_of(curves):
     return {**named, "photon_map_tuned": lower_envelope(maps)}
 
 
-def print_ratios(runs):
-    print("scene       photon map  radius   error   its time  bidirectional   ratio")
+def print_times(runs):
+    """The best radius is another for each error."""
+    print("CPU seconds to an error, by error^2 = bias^2 + variance / time; in "
+          "brackets relative to bidirectional")
     for scene, curves in runs.items():
-        ours = curves["bidirectional", 0.0]
-        default = next(key for key in curves if key[0] == "photon_map_default")
-        tuned = min((key for key in curves if key[0].startswith("photon_map")),
-                    key=lambda key: curves[key][1].min())
-        for name, key in (("default", default), ("tuned", tuned)):
-            cpu, error = curves[key]
-            best = np.argmin(error)
-            time = time_to(ours, error[best])
-            print(f"{scene:12s}{name:11s}{key[1]:7.3g}{error[best]:8.3f}{cpu[best]:9.2f} s"
-                  f"{time:13.3f} s{cpu[best] / time:8.1f}")
+        unbiased = {method: curve for (method, _), curve in curves.items()
+                    if not method.startswith("photon_map")}
+        maps = {key: curve for key, curve in curves.items() if key[0].startswith("photon_map")}
+        print(scene)
+        for target in TARGETS:
+            times = {name: time_to(curve, target, False) for name, curve in unbiased.items()}
+            of_maps = {key: time_to(curve, target, True) for key, curve in maps.items()}
+            default = next(time for key, time in of_maps.items() if key[0] == "photon_map_default")
+            (_, radius), tuned = min(of_maps.items(), key=lambda item: item[1])
+            ours = times["bidirectional"]
+            print(f"  {target:6.3f}  " + "  ".join(f"{n} {t:.3g}" for n, t in times.items())
+                  + f"  map, default {default:.3g} ({default / ours:.2g})"
+                  + f"  map, best {tuned:.3g} ({tuned / ours:.2g}, radius {radius:.3g})")
 
 
 def draw(runs):
@@ -100,7 +121,7 @@ def main():
     except (OSError, KeyError, ValueError, style.Unusable) as problem:
         print(f"{arguments.traces}: {problem}", file=sys.stderr)
         sys.exit(2)
-    print_ratios(runs)
+    print_times(runs)
     style.save(draw(runs), arguments.out)
 
 

@@ -97,8 +97,9 @@ TEST_CASE("the grid finds the points within the radius, each once") {
     return Vec3(scale * (random.uniform() - 0.5), scale * (random.uniform() - 0.5),
                 scale * (random.uniform() - 0.5));
   };
-  for (const double scale : {0.05, 1.0, 30.0}) {
-    std::vector<GatherPoint> points(500);
+  // few points: few buckets, which cells share
+  for (const auto& [scale, count] : {std::pair(0.05, 500), {1.0, 500}, {2.0, 20}, {30.0, 500}}) {
+    std::vector<GatherPoint> points(count);
     for (std::size_t i = 0; i < points.size(); ++i) {
       points[i].x = anywhere(scale);
       points[i].pixel = static_cast<int>(i);
@@ -106,7 +107,8 @@ TEST_CASE("the grid finds the points within the radius, each once") {
     const double radius = 0.3;
     const GatherGrid grid(points, radius);
     for (int trial = 0; trial < 200; ++trial) {
-      const Vec3 x = trial % 2 ? anywhere(1.2 * scale) : Vec3(points[trial].x + anywhere(0.4));
+      const Vec3 x =
+          trial % 2 ? anywhere(1.2 * scale) : Vec3(points[trial % count].x + anywhere(0.4));
       std::vector<int> expected, found;
       for (const GatherPoint& p : points)
         if ((p.x - x).norm() < radius) expected.push_back(p.pixel);
