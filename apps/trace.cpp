@@ -7,6 +7,7 @@
 #include <omp.h>
 
 #include "apps/key_values.h"
+#include "apps/light_speed.h"
 #include "apps/ray_connections.h"
 #include "apps/ray_tracing.h"
 #include "apps/run_options.h"

@@ -10,8 +10,6 @@
 
 namespace flatspeckle::apps {
 
-inline constexpr double light_speed = 299'792'458;  // m/s
-
 /// Of any rays: optical paths, ends, invariants. length_unit: metres.
 void write_rays(ResultFile& file, const SceneField& scene, const std::vector<RayStart>& starts,
                 const std::vector<TracedRay>& rays, double length_unit);
