@@ -52,19 +52,45 @@ RenderScene waveguide() {
   return scene;
 }
 
-RenderScene luneburg() {
+RenderScene luneburg_from_outside() {
   RenderScene scene = ball_under_beam();
   scene.field = Luneburg({});
   return scene;
 }
 
-RenderScene luneburg_within() {
+RenderScene filled_ball() {
   RenderScene scene{};
   scene.field = Luneburg({});
   scene.step = 0.1;
   scene.max_length = 100;
   scene.stage.boundary = Sphere{};
   scene.stage.medium = fog(0.5, 0, 0.5);
+  return scene;
+}
+
+RenderScene luneburg() {
+  RenderScene scene = filled_ball();
+  struct Pencil {
+    double x, z, dx, dz;
+  };
+  for (const Pencil& p : {Pencil{0.746253, -0.5583, -0.0703927, 0.997519},
+                          {0.497502, -0.761865, -0.0461076, 0.998936},
+                          {0.248751, -0.863575, -0.0228566, 0.999739}})
+    for (const double side : {-1, 1})
+      scene.lights.push_back(BeamLight{{side * p.x, 0, p.z}, {side * p.dx, 0, p.dz}, 0.03});
+  scene.lights.push_back(BeamLight{{0, 0, -0.895171}, {0, 0, 1}, 0.03});
+  Camera camera{};
+  camera.x = {0, 0.6, 0};
+  camera.forward = {0, -1, 0};
+  camera.up = {1, 0, 0};
+  camera.field_of_view = 2.52;
+  camera.pixels = {48, 36};
+  scene.sensor = camera;
+  return scene;
+}
+
+RenderScene luneburg_wide_beam() {
+  RenderScene scene = filled_ball();
   scene.lights = {BeamLight{{0, 0, -0.55}, {0, 0, 1}, 0.8}};
   Camera camera = side_camera();
   camera.x = {-0.95, 0, 0};
@@ -77,8 +103,10 @@ RenderScene luneburg_within() {
 }  // namespace
 
 std::vector<NamedRender> render_scenes() {
-  return {
-      {"luneburg_within", luneburg_within()}, {"waveguide", waveguide()}, {"luneburg", luneburg()}};
+  return {{"luneburg", luneburg()},
+          {"waveguide", waveguide()},
+          {"luneburg_wide_beam", luneburg_wide_beam()},
+          {"luneburg_from_outside", luneburg_from_outside()}};
 }
 
 RenderScene foggy_ball() {

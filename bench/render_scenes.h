@@ -12,10 +12,10 @@ struct NamedRender {
   grin::RenderScene scene;
 };
 
-/// The scattering Luneburg ball under a beam, seen from the side, and the ultrasonic waveguide in
-/// tissue (813 kHz, 3 mean free paths, g = 0.85): data/scenes/render_luneburg.toml and
-/// render_waveguide.toml with fewer pixels. Lengths in mm. And a Luneburg ball that is the whole
-/// stage, with beam and pinhole within it.
+/// The scattering Luneburg ball with its pencils of light and the ultrasonic waveguide in tissue:
+/// data/scenes/render_luneburg.toml and render_waveguide.toml with fewer pixels. And two that suit
+/// a photon map better: a wide beam, smooth from pixel to pixel, and a ball seen from outside,
+/// whose surface no join crosses. Lengths in mm.
 std::vector<NamedRender> render_scenes();
 
 /// The general straight scene and its parts, for the table of what a plan leaves out.

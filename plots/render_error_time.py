@@ -13,7 +13,8 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 TITLES = {"luneburg": "scattering Luneburg ball", "waveguide": "waveguide of ultrasound in tissue",
-          "luneburg_within": "scattering Luneburg ball, from within"}
+          "luneburg_wide_beam": "the ball under a wide beam",
+          "luneburg_from_outside": "the ball seen from outside"}
 TARGETS = (0.1, 0.05, 0.02, 0.01, 0.005, 0.002)
 
 
