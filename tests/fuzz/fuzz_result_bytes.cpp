@@ -1,0 +1,31 @@
+#include "apps/shard_folder.h"
+#include "core/sealed_file.h"
+#include "tests/fuzz/input.h"
+#include "tests/fuzz/result_kinds.h"
+
+// Damaged HDF5 files. The first byte says what the rest is read as. What HDF5 itself does with such
+// files is its own: a crash within it is no fault of the program. Of sealed files it sees none that
+// is damaged, so shards are looked at as sealed ones are.
+
+namespace {
+
+using namespace flatspeckle;
+
+const char* const path = "input.h5";
+
+void read_shard(const std::string&) {
+  apps::ShardFolder folder(".");
+  folder.read("input", apps::ShardFolder::Part::finished, "identity", [](const ResultReader&) {});
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* input, std::size_t size) {
+  static const fuzz::Folder folder;
+  fuzz::Bytes bytes(input, size);
+  const auto& kinds = fuzz::result_kinds();
+  const unsigned kind = bytes.below(static_cast<unsigned>(kinds.size()) + 1);
+  fuzz::write_file(path, {reinterpret_cast<const char*>(input) + 1, size > 0 ? size - 1 : 0});
+  fuzz::taken(path, kind == kinds.size() ? read_shard : kinds[kind].read);
+  return 0;
+}

@@ -1,0 +1,151 @@
+#include "tests/fuzz/result_kinds.h"
+
+#include <numbers>
+
+#include "apps/point_result.h"
+#include "core/result_file.h"
+#include "core/result_reader.h"
+#include "core/run_merger.h"
+#include "core/run_state_file.h"
+#include "flatland/structure_table.h"
+#include "grin/field_file.h"
+#include "tests/fuzz/input.h"
+
+namespace flatspeckle::fuzz {
+
+namespace {
+
+constexpr std::size_t sums = 2;
+
+BatchJob job() {
+  return {.size = sums, .samples_per_batch = 10, .run = {}, .relative_error = [](const auto& all) {
+            return relative_error(jackknife(all, sample_mean));
+          }};
+}
+
+void add_batch(GroupedSums& to) {
+  const double number = static_cast<double>(to.batches());
+  to.add(10, std::vector<Complex>{{1 + 1 / (1 + number), 0.5}, {2, number}});
+}
+
+void write_run(const std::string& path) {
+  RunState state{GroupedSums(sums), {{1, 2}, {1, 2}, {80, 100}, {0.5, 0.4}}, 2, 2};
+  for (int batch = 0; batch < 10; ++batch) add_batch(state.sums);
+  ResultFile file(path);
+  write_state(file, "state", state);
+  file.commit();
+}
+
+/// Goes on with the run and saves it again.
+void read_run(const std::string& path) {
+  RunState state = read_state(ResultReader(path), "state", sums);
+  const BatchJob work = job();
+  RunMerger merger(work, {.samples = 200, .seconds = {}, .target_error = 0.01}, state);
+  while (!merger.ended()) {
+    merger.add(std::vector<Complex>{{1, 0.5}, {2, 1}}, 0.1);
+    require_finite(merger.cpu_s_left());
+  }
+  ResultFile file("again.h5");
+  write_state(file, "state", state);
+}
+
+void write_shard(const std::string& path) {
+  ResultFile file(path);
+  file.scale("tilt", std::vector{0.0, 0.1}, "rad", "");
+  const std::vector<Axis> tilt{"tilt"};
+  file.dataset("field_correlation", std::vector{1.0, 0.6}, tilt, "1", "");
+  file.dataset("field_correlation_error", std::vector{0.0, 0.1}, tilt, "1", "");
+  file.dataset("memory_effect_range", std::vector{1.0}, {}, "1", "");
+  file.dataset("memory_effect_range_error", std::vector{0.1}, {}, "1", "");
+  for (const char* name : {"relative_error", "samples", "cpu_s", "wall_s"})
+    file.attribute("/", name, 0.5);
+  file.attribute("/", "range_censored", std::uint64_t{1});
+  file.attribute("/", "reached", true);
+  file.attribute("/", "plan", "mc");
+  file.attribute("/", "started", "now");
+  write_trace(file, "trace", {{1}, {1}, {80}, {0.5}});
+  file.commit();
+}
+
+void read_shard(const std::string& path) {
+  const auto point = apps::read_point(ResultReader(path));
+  for (const auto* numbers : {&point.correlation, &point.correlation_error})
+    for (std::size_t tilt = 0; tilt < point.correlation.size(); ++tilt)
+      require_finite(numbers->at(tilt));
+  require_finite(point.range + point.range_error);
+}
+
+constexpr DiskSpacing disks{0.1, 0.5};
+
+void write_structure(const std::string& path) {
+  ResultFile file(path);
+  file.scale("q", std::vector{0.5, 1.0, 2.0}, "1/length", "");
+  file.dataset("structure_factor", std::vector{0.8, 0.9, 1.0}, {"q"}, "1", "");
+  file.attribute("/", "count", std::uint64_t{10});
+  file.attribute("/", "packing_fraction", disks.packing());
+  file.attribute("/", "min_gap", 0.0);
+  file.attribute("/", "width", 10.0);
+  file.attribute("/", "depth", 10.0);
+  file.commit();
+}
+
+void read_structure(const std::string& path) {
+  const StructureTable table = flatspeckle::read_structure(path, disks);
+  for (double q = 0; q < 3; q += 0.1) require_finite(table(q));
+}
+
+void write_grid(const std::string& path) {
+  ResultFile file(path);
+  constexpr std::size_t side = 4;
+  file.dataset("excess", std::vector(side * side * side, 0.1), {side, side, side}, "1", "");
+  for (const char* name : {"origin", "spacing"})
+    file.attribute("excess", name, std::vector{1.0, 1.0, 1.0});
+  file.commit();
+}
+
+void read_grid(const std::string& path) {
+  const auto field = grin::read_spline_field(path);
+  require_finite(field.excess(field.grid().origin));
+}
+
+}  // namespace
+
+const std::vector<ResultKind>& result_kinds() {
+  static const std::vector<ResultKind> kinds{
+      {write_run,
+       {{"state/group_samples", ""},
+        {"state/group_sums", ""},
+        {"state", "batches"},
+        {"state", "wall_s"},
+        {"state", "cpu_s"},
+        {"state/trace/wall_s", ""},
+        {"state/trace/cpu_s", ""},
+        {"state/trace/samples", ""},
+        {"state/trace/relative_error", ""}},
+       read_run},
+      {write_shard,
+       {{"field_correlation", ""},
+        {"field_correlation_error", ""},
+        {"memory_effect_range", ""},
+        {"memory_effect_range_error", ""},
+        {"/", "relative_error"},
+        {"/", "samples"},
+        {"/", "range_censored"},
+        {"/", "reached"},
+        {"/", "plan"},
+        {"trace/wall_s", ""}},
+       read_shard},
+      {write_structure,
+       {{"q", ""},
+        {"structure_factor", ""},
+        {"/", "count"},
+        {"/", "packing_fraction"},
+        {"/", "min_gap"},
+        {"/", "width"},
+        {"/", "depth"}},
+       read_structure},
+      {write_grid, {{"excess", ""}, {"excess", "origin"}, {"excess", "spacing"}}, read_grid}};
+  return kinds;
+}
+
+}  // namespace flatspeckle::fuzz

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace flatspeckle::fuzz {
+
+/// A dataset, or an attribute of an object.
+struct Stored {
+  std::string object, attribute;
+};
+
+/// A kind of HDF5 file that the program reads.
+struct ResultKind {
+  std::function<void(const std::string& path)> write;  ///< a small valid one
+  std::vector<Stored> stored;                          ///< what it reads of it
+  /// Reads one and goes on with what it holds for a while.
+  void (*read)(const std::string& path);
+};
+
+/// Run states, points of sweeps, structure factors, index grids.
+const std::vector<ResultKind>& result_kinds();
+
+}  // namespace flatspeckle::fuzz
