@@ -127,12 +127,13 @@ std::string ends_of(const std::vector<TracedRay>& rays, double length_unit) {
   std::ostringstream text;
   text << "ended: " << ends[0] << " on a stop surface, " << ends[1] << " at max_length";
   if (ends[2] > 0) text << ", " << ends[2] << " at the edge of the grid";
-  const auto [least, most] =
+  const auto extremes =  // clang 14 captures no structured bindings
       std::minmax_element(rays.begin(), rays.end(), [](const TracedRay& a, const TracedRay& b) {
         return a.end.optical_path < b.end.optical_path;
       });
   const auto range = [&](const char* what, double unit, const char* name) {
-    const double low = unit * least->end.optical_path, high = unit * most->end.optical_path;
+    const double low = unit * extremes.first->end.optical_path;
+    const double high = unit * extremes.second->end.optical_path;
     text << '\n' << what << std::setprecision(12) << low << " to " << high << name;
     text << std::setprecision(3) << ", spread " << high - low << name;
   };
