@@ -59,7 +59,14 @@ void write_point(ResultFile& file, const PointResult& point, const CovarianceReq
 }
 
 PointResult read_point(const ResultReader& file) {
-  const auto scalar = [&](const char* name) { return file.dataset<double>(name).at(0); };
+  const auto tilts = file.shape("tilt");
+  for (const char* name : {"field_correlation", "field_correlation_error"})
+    if (file.shape(name) != tilts) throw InputError(std::string(name) + " is not one per tilt");
+  const auto scalar = [&](const char* name) {
+    const auto values = file.dataset<double>(name);
+    if (values.size() != 1) throw InputError(std::string(name) + " is not one number");
+    return values.front();
+  };
   const auto attribute = [&](const char* name) { return file.attribute<double>("/", name); };
   return {.correlation = file.dataset<double>("field_correlation"),
           .correlation_error = file.dataset<double>("field_correlation_error"),

@@ -6,6 +6,7 @@
 
 #include "apps/subcommands.h"
 #include "apps/sweep_table.h"
+#include "core/error.h"
 #include "core/provenance.h"
 #include "core/ranks.h"
 
@@ -62,8 +63,12 @@ SweepResults gather(const SweepPlan& plan, const std::vector<std::string>& folde
       const std::string name = plan.name(run);
       if (results[run] || !folder.has(name, Part::finished)) continue;
       const auto wrong =
-          folder.read(name, Part::finished, plan.identity(run),
-                      [&](const ResultReader& file) { results[run] = read_point(file); });
+          folder.read(name, Part::finished, plan.identity(run), [&](const ResultReader& file) {
+            PointResult point = read_point(file);
+            if (point.correlation.size() != plan.base.tilts.size())
+              throw InputError("field_correlation is of other tilts");
+            results[run] = std::move(point);
+          });
       if (wrong) warnings << "warning: " << path << ": " << name << ' ' << *wrong << '\n';
     }
   }

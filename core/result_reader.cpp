@@ -1,5 +1,7 @@
 #include "core/result_reader.h"
 
+#include <algorithm>
+#include <cmath>
 #include <functional>
 #include <numeric>
 #include <type_traits>
@@ -48,11 +50,10 @@ class Reader {
     const Hdf5Handle set = dataset();
     const Hdf5Handle stored = call_.handle(H5Dget_type(set.get()), H5Tclose);
     require_type<Number>(stored.get());
-    const auto extents = shape(set.get());
-    std::vector<Number> values(
-        std::accumulate(extents.begin(), extents.end(), std::size_t{1}, std::multiplies<>()));
+    std::vector<Number> values(size(set.get(), H5Tget_size(stored.get())));
     const Hdf5Handle type = number_type<Number>();
     call_.check(H5Dread(set.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()));
+    require_finite(values);
     return values;
   }
 
@@ -69,16 +70,17 @@ class Reader {
   std::vector<Number> numbers(hid_t attribute) const {
     const Hdf5Handle stored = call_.handle(H5Aget_type(attribute), H5Tclose);
     require_type<Number>(stored.get());
-    std::vector<Number> values(size(attribute));
+    std::vector<Number> values(attribute_size(attribute));
     const Hdf5Handle type = number_type<Number>();
     if (!values.empty()) call_.check(H5Aread(attribute, type.get(), values.data()));
+    require_finite(values);
     return values;
   }
 
   std::vector<std::string> strings(hid_t attribute) const {
     const Hdf5Handle stored = call_.handle(H5Aget_type(attribute), H5Tclose);
     if (H5Tis_variable_str(stored.get()) <= 0) call_.check(-1);
-    std::vector<char*> texts(size(attribute));
+    std::vector<char*> texts(attribute_size(attribute));
     if (texts.empty()) return {};
     const Hdf5Handle space = call_.handle(H5Aget_space(attribute), H5Sclose);
     const Hdf5Handle type = string_type();
@@ -105,9 +107,36 @@ class Reader {
     return 1;  // the first is enough
   }
 
-  std::size_t size(hid_t attribute) const {
+  /// How many numbers a dataset holds. What is not stored HDF5 would make up, gigabytes of it.
+  std::size_t size(hid_t set, std::size_t number_bytes) const {
+    constexpr double most_shrinkage = 1100;  // deflate's is 1032
+    hsize_t file_bytes = 0;
+    call_.check(H5Fget_filesize(file_, &file_bytes));
+    const auto stored = static_cast<double>(std::min(H5Dget_storage_size(set), file_bytes));
+    double bytes = static_cast<double>(number_bytes);
+    const auto extents = shape(set);
+    for (const hsize_t extent : extents) bytes *= static_cast<double>(extent);
+    if (bytes > most_shrinkage * stored)
+      throw InputError(path_ + ": " + name_ + " is larger than what the file stores of it");
+    return std::accumulate(extents.begin(), extents.end(), std::size_t{1}, std::multiplies<>());
+  }
+
+  std::size_t attribute_size(hid_t attribute) const {
     const Hdf5Handle space = call_.handle(H5Aget_space(attribute), H5Sclose);
-    return static_cast<std::size_t>(call_.check(H5Sget_simple_extent_npoints(space.get())));
+    const auto count = call_.check(H5Sget_simple_extent_npoints(space.get()));
+    if (static_cast<hsize_t>(count) > H5Aget_storage_size(attribute)) call_.check(-1);
+    return static_cast<std::size_t>(count);
+  }
+
+  /// Result files hold nothing else (ResultFile), and nothing goes on with it.
+  template <typename Number>
+  void require_finite(const std::vector<Number>& values) const {
+    const auto is_finite = [](Number value) {
+      if constexpr (std::is_integral_v<Number>) return true;
+      return std::isfinite(std::real(value)) && std::isfinite(std::imag(value));
+    };
+    if (!std::ranges::all_of(values, is_finite))
+      throw InputError(path_ + ": " + name_ + " holds a number that is not finite");
   }
 
   /// HDF5 itself would turn 1.5 into the integer 1 and a foreign compound into zeros.

@@ -57,6 +57,11 @@ std::vector<Complex> GroupedSums::total() const {
 void GroupedSums::restore(State state) {
   if (state.samples.size() != samples_.size() || state.sums.size() != sums_.size())
     throw InputError("the checkpoint's sums have another shape than this scene's");
+  constexpr std::uint64_t most_batches = std::uint64_t{1} << 53;  // numbers that a double counts
+  const std::size_t filled = std::min<std::uint64_t>(state.batches, state.samples.size());
+  for (std::size_t group = 0; group < state.samples.size(); ++group)
+    if (state.batches > most_batches || (state.samples[group] > 0) != (group < filled))
+      throw InputError("the checkpoint's samples are not those of its batches");
   batches_ = state.batches;
   samples_ = std::move(state.samples);
   sums_ = std::move(state.sums);

@@ -37,7 +37,8 @@ class GroupedSums {
     std::vector<Complex> sums;
   };
   State state() const { return {batches_, samples_, sums_}; }
-  /// Throws InputError if the shapes do not belong to a GroupedSums of this size.
+  /// Throws InputError if the shapes do not belong to a GroupedSums of this size, or the samples
+  /// not to the batches.
   void restore(State state);
 
  private:
