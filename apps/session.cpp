@@ -9,6 +9,7 @@
 #include "core/interrupt.h"
 #include "core/result_reader.h"
 #include "core/run_state_file.h"
+#include "core/sealed_file.h"
 #include "core/version.h"
 
 namespace flatspeckle::apps {
@@ -47,14 +48,19 @@ Session::Session(const CommandLine& command_line, const RunSettings& settings, s
   if (settings_.resume && std::filesystem::exists(settings_.out)) resume(settings_.out);
 }
 
-/// All states at once: what is saved while one run goes on must hold those of the others.
+/// All states at once: what is saved while one run goes on must hold those of the others. HDF5,
+/// which may crash on a damaged file, sees none.
 void Session::resume(const std::string& path) {
+  const auto refuse = [&] {
+    throw InputError("resume: " + path +
+                     " holds another run, or is damaged; scene, sensors, seed and program version "
+                     "must be the same");
+  };
+  if (!is_sealed(path)) refuse();
   const ResultReader file(path);
   if (!file.has_attribute("/", "identity") ||
       file.attribute<std::string>("/", "identity") != identity_)
-    throw InputError(
-        "resume: " + path +
-        " holds another run; scene, sensors, seed and program version must be the same");
+    refuse();
   already_complete_ = file.attribute<bool>("/", "converged");
   for (const auto& [name, label, job, stop] : runs_)
     if (const std::string group = state_group(name); file.has(group))
@@ -96,7 +102,7 @@ int Session::finish(const std::function<void(ResultFile&)>& contents) {
   for (const auto& [name, state] : states_) write_trace(file, trace_group(name), state.trace);
   contents(file);
   if (!converged_) write_states(file);
-  file.commit();
+  file.commit_sealed(Durable::yes);
   std::cout << "wrote " << settings_.out << '\n';
   if (converged_) return ExitStatus::done;
   std::cout << "stopped before the target error was reached; --resume goes on\n";
@@ -119,7 +125,7 @@ void Session::save_resumable() const {
   ResultFile file(settings_.out);
   write_common(file, false);
   write_states(file);
-  file.commit();
+  file.commit_sealed(Durable::yes);
 }
 
 void Session::write_states(ResultFile& file) const {

@@ -514,6 +514,17 @@ class Resume(RefusingTest):
                 (self.folder / "run.h5").write_bytes(whole[:size])
                 self.refused_resume("run.h5", ["run.h5"])
 
+    def test_a_damaged_run(self):
+        """Wherever the damage is: HDF5 may crash where it sees it."""
+        self.call("covariance", **self.KEYS, target_error=1e-6, out="run.h5", status=3)
+        whole = (self.folder / "run.h5").read_bytes()
+        for place in range(0, len(whole), len(whole) // 20):
+            with self.subTest(place=place):
+                damaged = bytearray(whole)
+                damaged[place] ^= 1
+                (self.folder / "run.h5").write_bytes(damaged)
+                self.refused_resume("run.h5", ["run.h5", "damaged"])
+
     def refused_resume(self, name, words):
         before = self.listing()
         done = self.call("covariance", **self.KEYS, out=name, status=2)
