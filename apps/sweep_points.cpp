@@ -63,6 +63,10 @@ std::vector<SweepAxis> given_axes(const SweepLists& lists) {
 }
 
 std::vector<SweepPoint> product(const std::vector<SweepAxis>& axes) {
+  constexpr double most_points = 1e5;
+  double count = 1;
+  for (const SweepAxis& axis : axes) count *= static_cast<double>(axis.values.size());
+  if (count > most_points) throw InputError("points of the sweep", count, "must be at most 100000");
   std::vector<SweepPoint> points(1);
   for (const SweepAxis& axis : axes) {
     std::vector<SweepPoint> longer;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <unordered_map>
@@ -40,8 +41,10 @@ class CellGrid {
     std::size_t number;
   };
 
+  /// Very far ones share the last.
   std::int64_t column(double coordinate) const {
-    return static_cast<std::int64_t>(std::floor(coordinate / cell_size_));
+    constexpr double last = 1e18;
+    return static_cast<std::int64_t>(std::clamp(std::floor(coordinate / cell_size_), -last, last));
   }
   static std::uint64_t key(std::int64_t x, std::int64_t z) {
     return (static_cast<std::uint64_t>(x) << 32) ^ (static_cast<std::uint64_t>(z) & 0xffffffffU);

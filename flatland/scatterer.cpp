@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/bessel.h"
+#include "core/error.h"
 #include "core/scaled_bessel.h"
 
 namespace flatspeckle {
@@ -134,7 +135,12 @@ int oscillating_order(const Scatterer& scatterer, double k) {
   if (!scatterer.is_disk()) return 0;
   const bool penetrable = scatterer.kind == Kind::tm || scatterer.kind == Kind::te;
   const double index = penetrable ? std::max(1.0, std::abs(scatterer.index)) : 1.0;
-  return static_cast<int>(std::ceil(k * scatterer.radius * index));
+  const double size = k * scatterer.radius * index;
+  constexpr double most = 1e4;
+  if (!(size <= most))
+    throw InputError("radius", scatterer.radius,
+                     "k radius |index| is " + std::to_string(size) + ", must be at most 10000");
+  return static_cast<int>(std::ceil(size));
 }
 
 int isolated_order(const Scatterer& scatterer, double k, double tolerance) {

@@ -34,7 +34,8 @@ std::vector<ScaledComplex> scaled_t_matrix(const Scatterer& scatterer, double k,
 /// The same; 0 where T_n is below the range of long double.
 std::vector<ExtendedComplex> t_matrix(const Scatterer& scatterer, double k, int order);
 
-/// The order up to which T_n may oscillate or resonate; beyond it |T_n| falls.
+/// The order up to which T_n may oscillate or resonate; beyond it |T_n| falls. Throws InputError
+/// where it is above 10000.
 int oscillating_order(const Scatterer& scatterer, double k);
 
 /// The order beyond which no |T_n| exceeds tolerance times the largest one.

@@ -16,6 +16,8 @@ namespace flatspeckle {
 
 inline double positive(const std::string& key, double value) {
   if (!(std::isfinite(value) && value > 0)) throw InputError(key, value, "must be positive");
+  constexpr double most = 1e50;  // products of a few of them stay numbers
+  if (value > most || value < 1 / most) throw InputError(key, value, "must be from 1e-50 to 1e50");
   return value;
 }
 
