@@ -1,5 +1,10 @@
 #include "grin/field_file.h"
 
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
 #include "core/error.h"
 #include "core/result_reader.h"
 
@@ -32,13 +37,33 @@ class GridDataset {
   std::string name_;
 };
 
+/// So far from the limits of numbers that rays do not come to them, with nodes that can be told
+/// apart.
+void check_range(const FieldGrid& grid, const std::vector<double>& values) {
+  constexpr double least = 1e-100, most = 1e100, most_value = 1e6, rounding = 1e-12;
+  const auto high = std::max_element(values.begin(), values.end());
+  if (high != values.end() && *high > most_value)
+    throw InputError("sample of a grid", *high, "must be at most 1e6");
+  for (int a = 0; a < 3; ++a) {
+    const double farthest = std::max(std::abs(grid.origin[a]), std::abs(grid.end()[a]));
+    if (!(farthest < most)) throw InputError("end of a grid", farthest, "must be below 1e100");
+    if (grid.spacing[a] < std::max(least, rounding * farthest))
+      throw InputError("spacing of a grid", grid.spacing[a],
+                       "must be above 1e-100 and the rounding of its coordinates");
+  }
+}
+
 /// Every InputError names the file.
 template <class Grid>
 Grid read_grid(const std::filesystem::path& path, const std::string& name) {
   const ResultReader file(path);
   try {
     const GridDataset dataset(file, name);
-    return Grid(dataset.grid(), dataset.values());
+    const auto where = dataset.grid();
+    const auto values = dataset.values();
+    Grid grid(where, values);  // checks too
+    check_range(where, values);
+    return grid;
   } catch (const InputError& error) {
     const std::string message = error.what();
     if (message.find(path.string()) != std::string::npos) throw;

@@ -84,7 +84,7 @@ SplineField::Axis SplineField::axis(const Vec3& x, int which) const {
   const double position = (x[which] - grid_.origin[which]) * scale;
   const double held = std::clamp(position, -margin, cells + margin);
   const bool inside = position == held;
-  const double cell = std::clamp(std::floor(held), 0.0, cells - 1);
+  const double cell = held > 0 ? std::min(std::floor(held), cells - 1) : 0;  // 0 also for NaN
   const double t = held - cell, s = 1 - t;
   Axis result{static_cast<int>(cell), {}, {}, {}};
   result.w = {s * s * s / 6, 2 / 3. - t * t * (2 - t) / 2, 2 / 3. - s * s * (2 - s) / 2,
