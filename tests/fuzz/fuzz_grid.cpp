@@ -34,8 +34,8 @@ void write_grid(Bytes& bytes) {
   std::size_t count = 1;
   for (hsize_t& n : nodes) count *= n = 1 + bytes.below(8);
   const Hdf5Handle space{H5Screate_simple(3, nodes, nullptr), H5Sclose};
-  const Hdf5Handle set{H5Dcreate2(file.get(), "excess", H5T_NATIVE_DOUBLE, space.get(),
-                                  H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+  const Hdf5Handle set{H5Dcreate2(file.get(), "excess", H5T_NATIVE_DOUBLE, space.get(), H5P_DEFAULT,
+                                  H5P_DEFAULT, H5P_DEFAULT),
                        H5Dclose};
   write_attribute(set.get(), "origin", bytes);
   write_attribute(set.get(), "spacing", bytes);

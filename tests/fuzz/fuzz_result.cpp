@@ -83,10 +83,10 @@ std::vector<hsize_t> any_shape(Bytes& bytes) {
 
 Hdf5Handle space_of(const std::vector<hsize_t>& shape) {
   constexpr std::size_t none = 4;  // a dataset that is there and holds nothing
-  const hid_t space = shape.empty()          ? H5Screate(H5S_SCALAR)
-                      : shape.size() == none ? H5Screate(H5S_NULL)
-                                             : H5Screate_simple(static_cast<int>(shape.size()),
-                                                                shape.data(), nullptr);
+  const hid_t space = shape.empty() ? H5Screate(H5S_SCALAR)
+                      : shape.size() == none
+                          ? H5Screate(H5S_NULL)
+                          : H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr);
   return {space, H5Sclose};
 }
 
@@ -116,14 +116,13 @@ void replace(hid_t file, const fuzz::Stored& stored, Bytes& bytes) {
   const hssize_t count = H5Sget_simple_extent_npoints(space.get());
   const bool is_written = plain && count > 0 && count <= most_written &&
                           std::ranges::all_of(shape, [](hsize_t n) { return n <= 1024; });
-  const auto values = numbers(
-      bytes, is_written ? static_cast<std::size_t>(count) * H5Tget_size(type.get()) : 0);
+  const auto values =
+      numbers(bytes, is_written ? static_cast<std::size_t>(count) * H5Tget_size(type.get()) : 0);
   if (stored.attribute.empty()) {
     const Hdf5Handle set{H5Dcreate2(file, stored.object.c_str(), type.get(), space.get(),
                                     H5P_DEFAULT, layout.get(), H5P_DEFAULT),
                          H5Dclose};
-    if (is_written)
-      H5Dwrite(set.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data());
+    if (is_written) H5Dwrite(set.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data());
     return;
   }
   const Hdf5Handle attribute{

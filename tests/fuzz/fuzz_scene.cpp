@@ -6,6 +6,7 @@
 #include "apps/ray_starts.h"
 #include "apps/ray_stops.h"
 #include "apps/scene_field.h"
+#include "apps/scene_options.h"
 #include "apps/subcommands.h"
 #include "core/result_file.h"
 #include "tests/fuzz/input.h"
@@ -17,6 +18,29 @@ namespace {
 
 using namespace flatspeckle;
 using namespace flatspeckle::apps;
+
+/// What `covariance` and `validate` make of a scene.
+int make_medium(const Arguments& arguments) {
+  SceneSpec spec;
+  Subcommand command("covariance", "");
+  add_scatterer_options(command.options(), spec);
+  add_bulk_options(command.options(), spec);
+  add_medium_options(command.options(), spec);
+  add_structure_option(command.options(), spec);
+  add_view_options(command.options(), spec);
+  add_light_options(command.options(), spec);
+  add_request_options(command.options(), spec);
+  if (!command.parse(arguments)) return ExitStatus::done;
+  settle_request(command, spec);
+  const Scene scene = make_scene(spec);
+  for (double number : {scene.medium.mu_s, scene.medium.mu_t, scene.medium.g, scene.medium.albedo,
+                        scene.medium.k_shift, scene.placement.mean_count})
+    fuzz::require_finite(number);
+  for (double angle : {0.0, 1.0, 3.0})
+    if (scene.medium.has_scatterers)
+      fuzz::require_finite(std::abs(scattering_amplitude(scene.medium, scene.k, angle)));
+  return ExitStatus::done;
+}
 
 /// What `trace` makes of a scene; it asks for --out first.
 int trace_scene(const Arguments& arguments) {
@@ -53,8 +77,7 @@ void write_files() {
   structure.dataset("structure_factor", std::vector{0.8, 0.9, 1.0}, {"q"}, "1", "");
   structure.attribute("/", "count", std::uint64_t{31});
   structure.attribute("/", "packing_fraction", 31 * 3.14159265358979 * 0.04 / 200);
-  for (const auto& [name, value] :
-       {std::pair{"min_gap", 0.0002}, {"width", 20.0}, {"depth", 10.0}})
+  for (const auto& [name, value] : {std::pair{"min_gap", 0.0002}, {"width", 20.0}, {"depth", 10.0}})
     structure.attribute("/", name, value);
   structure.commit();
   ResultFile grid("grid.h5");
@@ -67,9 +90,9 @@ void write_files() {
 
 void read_scene(const std::string& word) {
   static const std::map<std::string, int (*)(const Arguments&)> subcommands = {
-      {"place", place}, {"solve", solve},       {"covariance", covariance},
-      {"flux", flux},   {"validate", validate}, {"sweep", sweep},
-      {"field", field}, {"trace", trace},       {"rays", trace_scene}};
+      {"place", place},       {"solve", solve},       {"covariance", covariance}, {"flux", flux},
+      {"validate", validate}, {"sweep", sweep},       {"field", field},           {"trace", trace},
+      {"rays", trace_scene},  {"medium", make_medium}};
   const auto subcommand = subcommands.find(word);
   if (subcommand != subcommands.end())
     subcommand->second({"flatspeckle", word, "--config", "scene.toml"});

@@ -59,8 +59,7 @@ void read_table(const std::string& word) {
       {"disks", [] { check_placement({.kind = Scatterer::Kind::tm, .radius = 0.1}); }},
       {"sensors", [] { read_points(path); }},
       {"sweep", [] { check_sweep("scatterer = \"hg\"\ndepth = 10\n"); }},
-      {"sweep_disks",
-       [] { check_sweep("scatterer = \"tm\"\ndepth = 10\nmethod = \"mc\"\n"); }},
+      {"sweep_disks", [] { check_sweep("scatterer = \"tm\"\ndepth = 10\nmethod = \"mc\"\n"); }},
       {"rays", check_rays},
       {"blobs", check_blobs}};
   const auto reader = readers.find(word);

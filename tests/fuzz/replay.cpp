@@ -12,7 +12,7 @@
 // which are libFuzzer's, are not looked at.
 int main(int argc, char** argv) {
   std::vector<std::filesystem::path> files;
-  for (const std::string argument : std::vector<std::string>(argv + 1, argv + argc))
+  for (const std::string& argument : std::vector<std::string>(argv + 1, argv + argc))
     if (!argument.starts_with('-'))
       for (const auto& entry : std::filesystem::directory_iterator(argument))
         files.push_back(entry.path());
