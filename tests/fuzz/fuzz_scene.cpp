@@ -90,9 +90,9 @@ void write_files() {
 
 void read_scene(const std::string& word) {
   static const std::map<std::string, int (*)(const Arguments&)> subcommands = {
-      {"place", place},       {"solve", solve},       {"covariance", covariance}, {"flux", flux},
-      {"validate", validate}, {"sweep", sweep},       {"field", field},           {"trace", trace},
-      {"rays", trace_scene},  {"medium", make_medium}};
+      {"place", place},       {"solve", solve},        {"covariance", covariance}, {"flux", flux},
+      {"validate", validate}, {"sweep", sweep},        {"field", field},           {"trace", trace},
+      {"rays", trace_scene},  {"medium", make_medium}, {"render", render}};
   const auto subcommand = subcommands.find(word);
   if (subcommand != subcommands.end())
     subcommand->second({"flatspeckle", word, "--config", "scene.toml"});
