@@ -28,7 +28,7 @@ std::shared_ptr<const grin::DensityGrid> read_density(const std::string& key,
   try {
     return std::make_shared<grin::DensityGrid>(grin::read_density_grid(path));
   } catch (const InputError& error) {
-    throw InputError(key, path, error.what());
+    throw InputError(key + ": " + error.what());  // names the file
   }
 }
 

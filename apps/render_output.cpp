@@ -83,7 +83,7 @@ void write_counts(ResultFile& file, const grin::TransportCounts& counts) {
   };
   count("flights", counts.flights, "ways from one event to the next");
   count("lost_flights", counts.lost_flights,
-        "of these, too long or into an index that is not positive: they carry nothing on");
+        "of these, too long, trapped or into an index that is not positive: they carry nothing on");
   count("joins", counts.joins, "vertices of light and sensor that were joined");
   count("lost_values", counts.lost_values, "contributions that were not finite, left out");
 }
@@ -93,12 +93,22 @@ void note_losses(const grin::TransportCounts& counts) {
   if (counts.lost_flights > 0)
     std::fprintf(
         stderr,
-        "note: %.2g %% of the flights were longer than max_length or came to where the "
-        "index is not positive; their light is missing\n",
+        "note: %.2g %% of the flights were longer than max_length, trapped in a body, or came to "
+        "where the index is not positive; their light is missing\n",
         100 * static_cast<double>(counts.lost_flights) / static_cast<double>(counts.flights));
   if (counts.lost_values > 0)
     std::fprintf(stderr, "note: %llu contributions were not finite and are left out\n",
                  static_cast<unsigned long long>(counts.lost_values));
+}
+
+/// A dark picture is more often a mistake than a result.
+void note_darkness(const grin::Stage& stage) {
+  std::fputs("note: no light came to the sensor\n", stderr);
+  if (stage.body)
+    std::fputs(
+        "note: points are not joined across the surface of a body: a pinhole does not see a point "
+        "or beam through it, a camera with a lens or an area sensor does\n",
+        stderr);
 }
 
 bool has_trials(const grin::RenderJob& job) {
@@ -146,7 +156,10 @@ void print_render(const grin::RenderScene& scene, const grin::RenderJob& job,
   print_row("mean of pixels", result.mean, 0, axes.image_units);
   print_row("brightest pixel", image, static_cast<std::size_t>(brightest - image.value.begin()),
             axes.image_units);
-  std::printf("pixels: relative error %.2g %%\n", 100 * relative_error(image));
+  if (brightest->real() > 0)
+    std::printf("pixels: relative error %.2g %%\n", 100 * relative_error(image));
+  else
+    note_darkness(scene.stage);
   if (job.counts) note_losses(*job.counts);
   if (!has_trials(job)) return;
   const auto& curves = job.counts->connections;

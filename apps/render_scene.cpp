@@ -80,13 +80,14 @@ void add_render_options(CLI::App& app, RenderSpec& spec) {
                  "first last count: also pictures by optical path, in equal bins of it");
   app.add_option("--length_unit", spec.length_unit,
                  "Metres in a unit of length, for the times of path_bins");
-  app.add_option("--method", spec.method,
-                 "bidirectional (default), path (tracing, from the sensor), light (tracing) or "
-                 "photon_map");
+  app.add_option(
+      "--method", spec.method,
+      "bidirectional (default), path (tracing, from the sensor), light (tracing: best for "
+      "powers on large areas) or photon_map");
   app.add_option("--photon_radius", spec.photon_radius,
                  "photon_map: radius of the estimate (default: chosen from the scene)");
   app.add_option("--max_scatterings", spec.max_scatterings,
-                 "Longer paths are left out (default 0: none)");
+                 "Paths of more scatterings are left out (default 0: no limit)");
   app.add_flag("--random_phase", spec.random_phase,
                "ultrasound, focused_sound: each path meets the sound at a phase of its own");
   app.add_option("--step", spec.step,

@@ -34,7 +34,7 @@ void check_keys(const Subcommand& command, const SensorSpec& spec) {
 
 double angle_of(const std::string& key, double value, double most, const std::string& limit) {
   if (!(value > 0 && value <= most))
-    throw InputError(key, value, "must be an angle in (0, " + limit + "]");
+    throw InputError(key, value, "must be an angle in (0, " + limit + "], radians");
   return value;
 }
 
@@ -74,10 +74,10 @@ View view_of(const SensorSpec& spec) {
 
 grin::Camera camera(const Subcommand& command, const SensorSpec& spec) {
   if (!spec.field_of_view)
-    throw InputError("field_of_view is not given: full angle of the camera's rows, rad");
+    throw InputError("field_of_view is not given: full angle of the camera's rows, radians");
   const double angle = *spec.field_of_view;
   if (!(angle > 0 && angle < std::numbers::pi))
-    throw InputError("field_of_view", angle, "must be an angle in (0, pi)");
+    throw InputError("field_of_view", angle, "must be an angle in (0, pi), radians");
   const auto [forward, up] = view_of(spec);
   grin::Camera camera{position_of(spec), forward, up, angle, pixels_of(spec)};
   if (!spec.lens_radius) {
@@ -92,6 +92,7 @@ grin::Camera camera(const Subcommand& command, const SensorSpec& spec) {
 }
 
 grin::AreaDetector area(const SensorSpec& spec) {
+  if (spec.size.empty()) throw InputError("sensor_size is not given: width height of the area");
   if (spec.size.size() != 2)
     throw InputError("sensor_size", listed(spec.size), "must be two numbers: width height");
   for (double side : spec.size) positive("sensor_size", side);

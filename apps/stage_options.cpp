@@ -66,6 +66,17 @@ void check_index(const SceneField& field, const grin::Surface& region, const std
       field.field);
 }
 
+/// A grid beside the medium would leave it clear without a word.
+void check_overlap(const grin::ScatteringMedium& medium, const grin::Surface& region,
+                   const std::string& key, const std::string& name) {
+  if (!medium.density) return;
+  const Vec3 low = medium.density->grid().origin, high = medium.density->grid().end();
+  const grin::Box box = bounds(region);
+  if ((low.array() >= box.high.array()).any() || (high.array() <= box.low.array()).any())
+    throw InputError(key + ": the grid, from " + listed(low) + " to " + listed(high) +
+                     ", is outside of the " + name);
+}
+
 class StageMaker {
  public:
   StageMaker(const Subcommand& command, const StageSpec& spec) : command_(command), spec_(spec) {
@@ -76,18 +87,22 @@ class StageMaker {
           "stage_sphere)");
     stage_.boundary = *boundary;
     body_ = one_surface("body", spec.body_box, spec.body_sphere);
+    given_body_ = body_.has_value();
   }
 
   FilledStage make(const IndexFieldSpec& field) {
     SceneField filled = make_index_field(command_, field, reach_of(region()));
     settle_rim(filled);
     if (body_ && !fits(*body_, stage_.boundary))
-      throw InputError("body: must be inside of the stage");
+      throw InputError(given_body_ ? "body: must be inside of the stage"
+                                   : "luneburg: its ball must be inside of the stage, or the stage "
+                                     "inside of it");
     if (filled.grid && !fits(region(), *filled.grid))
       throw InputError("grid: ends inside of the " + name() +
                        ", and light needs a field in all of it");
     check_index(filled, region(), name());
     stage_.medium = make_space_medium(command_, spec_.medium, "");
+    check_overlap(stage_.medium, stage_.boundary, "density", "stage");
     add_body();
     return {stage_, filled};
   }
@@ -115,6 +130,7 @@ class StageMaker {
       return;
     }
     stage_.body = grin::Body{*body_, make_space_medium(command_, spec_.body_medium, "body_")};
+    check_overlap(stage_.body->medium, *body_, "body_density", "body");
     stage_.excess_around = positive("index_around", spec_.index_around.value_or(1)) - 1;
   }
 
@@ -122,6 +138,7 @@ class StageMaker {
   const StageSpec& spec_;
   grin::Stage stage_;
   std::optional<grin::Surface> body_;
+  bool given_body_ = false;  // else the ball of luneburg
 };
 
 }  // namespace

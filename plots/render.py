@@ -5,10 +5,11 @@ pixels share one colour."""
 
 from lib import style
 from lib import pictures
+from lib.result_file import Unusable
 
 import matplotlib.pyplot as plt
 import numpy as np
-from matplotlib.colors import LogNorm
+from matplotlib.colors import LogNorm, PowerNorm
 from matplotlib.ticker import FuncFormatter, MaxNLocator, NullFormatter
 
 plt.rcParams["savefig.dpi"] = 150  # pictures without white paper make large files
@@ -30,11 +31,21 @@ def panel(figure, axis, result, picture, label, extend, **look):
     return figure.colorbar(image, ax=axis, label=label, extend=extend, shrink=0.95, pad=0.02)
 
 
+def root_ticks(high):
+    """Even numbers, of which those too close on a scale of roots are left out."""
+    ticks = [0.0]
+    for tick in MaxNLocator(8).tick_values(0, high):
+        if tick <= high and np.sqrt(tick / high) - np.sqrt(ticks[-1] / high) > 0.12:
+            ticks.append(tick)
+    return ticks
+
+
 def draw_image(figure, axis, result, norm):
     bar = panel(figure, axis, result, result.values("image"), pictures.quantity(result), "max",
                 cmap="inferno", norm=norm)
     if not isinstance(norm, LogNorm):
-        bar.ax.yaxis.set_major_locator(MaxNLocator(4))
+        bar.set_ticks(root_ticks(norm.vmax) if isinstance(norm, PowerNorm)
+                      else MaxNLocator(4).tick_values(0, norm.vmax)[:-1])
         bar.ax.yaxis.get_offset_text().set_ha("left")
         bar.formatter.set_powerlimits((-2, 4))
 
@@ -72,6 +83,11 @@ def norms(results, arguments):
 
 
 def draw(results, arguments):
+    for result in results:
+        if result.values("image").size == 1:
+            raise Unusable(f"{result.path}: is a single pixel, not a picture")
+    if not any(np.any(result.values("image") > 0) for result in results):
+        raise Unusable(f"{results[0].path}: no pixel has any light")
     left, right, bottom, top = pictures.extent(results[0])
     height = np.clip((top - bottom) / (right - left), 0.2, 2) * 0.36 * style.PAGE + 0.4
     figure, axes = plt.subplots(len(results), 2, squeeze=False,

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Film strip of `flatspeckle render` with path_bins, each frame the light of a share of the optical
-path, all in one scale; beneath it the pulse with its standard errors and the frames' shares. The
-first and last bin hold what is before and beyond."""
+path, all in one scale; beneath it the pulse with its standard errors and the frames' shares, or
+the pulse alone of a single pixel. The first and last bin hold what is before and beyond."""
 
 from lib import style
 from lib import pictures
@@ -12,6 +12,7 @@ import numpy as np
 
 plt.rcParams["savefig.dpi"] = 150
 PICOSECOND = 1e-12
+PULSE_DECADES = 6  # below the peak; what is fainter is noise
 
 
 def shares(bins, frames):
@@ -24,6 +25,7 @@ def draw_film(figure, axes, result, parts, norm):
     transient = result.values("transient")
     across, up = pictures.axis_names(result)
     paths = np.linspace(*pictures.edges(result.values("optical_path")), transient.shape[2] + 1)
+    figure.suptitle(f"optical path ({pictures.length_name(result)})", fontsize=8)
     for number, (axis, (first, last)) in enumerate(zip(axes, parts)):
         image = pictures.show(axis, result, transient[:, :, first:last].sum(axis=2),
                               cmap="inferno", norm=norm)
@@ -40,11 +42,13 @@ def draw_pulse(axis, result, parts):
     cuts = np.linspace(*pictures.edges(path), len(path) + 1)
     for number, (first, last) in enumerate(parts):
         axis.axvspan(cuts[first], cuts[last], color="0.93" if number % 2 else "white", zorder=0)
-    lit = pulse > 0
+    lit = pulse > pulse.max() * 10.0**-PULSE_DECADES
+    if not np.any(lit):
+        raise Unusable(f"{result.path}: no bin has any light")
     axis.stairs(np.where(lit, pulse, np.nan), cuts, color=style.COLOURS[0], baseline=None)
     axis.errorbar(path[lit], pulse[lit], np.minimum(error, 0.999 * pulse)[lit], fmt="none",
                   color=style.COLOURS[0], elinewidth=0.6)
-    axis.set(yscale="log", xlim=cuts[[0, -1]], xlabel=f"optical path ({pictures.length_name(result)})",
+    axis.set(yscale="log", xlim=cuts[[0, -1]], ylim=(0.3 * pulse[lit].min(), None), xlabel=f"optical path ({pictures.length_name(result)})",
              ylabel=pulse_name(result))
     if result.has("time"):
         rate = result.values("time")[-1] / path[-1] / PICOSECOND
@@ -65,11 +69,15 @@ def draw(results, arguments):
     if arguments.frames < 1:
         raise Unusable("--frames must be positive")
     transient = result.values("transient")
+    if transient[:, :, 0].size == 1:
+        figure, axis = plt.subplots(figsize=(style.PAGE, 2.1))
+        draw_pulse(axis, result, [])
+        return figure
     parts = shares(transient.shape[2], arguments.frames)
     frames = [transient[:, :, first:last].sum(axis=2) for first, last in parts]
     left, right, bottom, top = pictures.extent(result)
     width = 0.85 * style.PAGE / len(parts)
-    height = np.clip((top - bottom) / (right - left), 0.3, 3) * width + 0.55
+    height = np.clip((top - bottom) / (right - left), 0.3, 3) * width + 0.7
     figure = plt.figure(figsize=(style.PAGE, height + 1.9))
     film, curve = figure.subfigures(2, 1, height_ratios=[height, 1.9])
     draw_film(film, film.subplots(1, len(parts), sharey=True, squeeze=False)[0], result, parts,

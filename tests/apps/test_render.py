@@ -8,7 +8,7 @@ import numpy as np
 from program import DATA, ProgramTest, attributes, datasets
 
 SCENES = DATA / "scenes"
-NAMES = ["luneburg", "fisheye", "grin_fibre", "waveguide", "glass_ball", "luneburg_pulse"]
+NAMES = ["luneburg", "fisheye", "grin_fibre", "waveguide", "glass_ball", "luneburg_pulse", "slab"]
 METHODS = ["path", "light", "bidirectional", "photon_map"]
 LIGHT_SPEED = 299792458
 BOX = {"stage_box": [-1, -1, 0, 1, 1, 4]}
@@ -86,6 +86,15 @@ class Scenes(RenderTest):
         straight = self.render(**BOX, **BEAM, **FOG, **AREA)
         self.assertNotIn("trials/found", straight)
         self.assertNotIn("curves:", self.output)
+
+    def test_darkness_is_told(self):
+        """A beam beside the sensor, and nothing that scatters; a light behind a body."""
+        dark = {**BOX, **CAMERA, "samples": 100, "out": "dark.h5"}
+        note = "note: no light came to the sensor"
+        self.assertEqual(self.call("render", **dark, **BEAM).stderr.count(note), 1)
+        self.assertNotIn(note, self.call("render", **dark, **BEAM, **FOG).stderr)
+        body = {"body_sphere": [0, 0, 2, 0.5], "index": 1.5, "point_light": [0, 0, 1, 1]}
+        self.assertIn("across the surface of a body", self.call("render", **dark, **body).stderr)
 
     def test_sound_on_and_off(self):
         """The guide brings more light to the middle of the far side."""
@@ -280,6 +289,7 @@ class Refused(RenderTest):
         self.refuse("index = 0", index=0)
         self.refuse("luneburg", "rim", field="luneburg", centre=[0, 0, 2],
                     body_sphere=[0, 0, 2, 1.01], stage_box=[-2, -2, 0, 2, 2, 4])
+        self.refuse("luneburg: its ball must be inside of the stage", field="luneburg")
         self.refuse("luneburg in a sum", field=["luneburg", "linear"], centre=[0, 0, 2],
                     slope=[0, 0, 0.01])
         self.refuse("alpha", "no use", alpha=1)
@@ -315,7 +325,9 @@ class Refused(RenderTest):
         for name, what in (("flat", "axes"), ("thin", ""), ("low", "-1"), ("nan", "nan"),
                            ("still", "spacing"), ("odd", "origin"), ("empty", "density"),
                            ("absent", "absent.h5")):
-            self.refuse(f"density = {name}.h5", what, density=f"{name}.h5")
+            self.refuse(f"density: {name}.h5", what, density=f"{name}.h5")
+        write_density(self.folder / "far.h5", np.ones((5, 5, 5)), origin=np.array([2.0, 0, 0]))
+        self.refuse("density: the grid, from 2 0 0", "outside of the stage", density="far.h5")
 
     def test_lights(self):
         self.refuse("light is not given", beam_light=None)
@@ -340,6 +352,7 @@ class Refused(RenderTest):
         self.refuse("sensor_at = 0 0 3", "boundary", sensor_at=[0, 0, 3])
         self.refuse("sensor_size", sensor_size=[3, 1])
         self.refuse("sensor_size = 1", "two numbers", sensor_size=[1])
+        self.refuse("sensor_size is not given", sensor_size=None)
         self.refuse("sensor_up", sensor_up=[0, 0, 1])
         self.refuse("acceptance = 2", acceptance=2)
         self.refuse("pixels = 0 3", pixels=[0, 3])
