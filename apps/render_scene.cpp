@@ -76,8 +76,10 @@ void add_render_options(CLI::App& app, RenderSpec& spec) {
   add_stage_options(app, spec.stage);
   add_light_options(app, spec.lights);
   add_sensor_options(app, spec.sensor);
-  app.add_option("--path_bins", spec.path_bins,
-                 "first last count: also pictures by optical path, in equal bins of it");
+  app.add_option(
+      "--path_bins", spec.path_bins,
+      "first last count: also pictures by optical path, in equal bins of it, shared between "
+      "the two nearest middles");
   app.add_option("--length_unit", spec.length_unit,
                  "Metres in a unit of length, for the times of path_bins");
   app.add_option(
