@@ -136,10 +136,10 @@ int oscillating_order(const Scatterer& scatterer, double k) {
   const bool penetrable = scatterer.kind == Kind::tm || scatterer.kind == Kind::te;
   const double index = penetrable ? std::max(1.0, std::abs(scatterer.index)) : 1.0;
   const double size = k * scatterer.radius * index;
-  constexpr double most = 2000;
+  constexpr double most = 1e4;
   if (!(size <= most))
     throw InputError("radius", scatterer.radius,
-                     "k radius |index| is " + std::to_string(size) + ", must be at most 2000");
+                     "k radius |index| is " + std::to_string(size) + ", must be at most 10000");
   return static_cast<int>(std::ceil(size));
 }
 

@@ -35,7 +35,7 @@ std::vector<ScaledComplex> scaled_t_matrix(const Scatterer& scatterer, double k,
 std::vector<ExtendedComplex> t_matrix(const Scatterer& scatterer, double k, int order);
 
 /// The order up to which T_n may oscillate or resonate; beyond it |T_n| falls. Throws InputError
-/// where it is above 2000.
+/// where it is above 10000.
 int oscillating_order(const Scatterer& scatterer, double k);
 
 /// The order beyond which no |T_n| exceeds tolerance times the largest one.

@@ -39,9 +39,9 @@ Domain make_domain(const SceneSpec& spec) {
   const bool box = domain.kind == Domain::Kind::box;
   only_for("width", spec.width, box, "a box");
   if (box) domain.width = positive("width", spec.width);
-  const double most = 1e5 * spec.wavelength;  // along which phases are integrated
+  const double most = 1e8 * spec.wavelength;  // along which phases are integrated
   for (const auto& [key, extent] : {std::pair{"width", domain.width}, {"depth", domain.depth}})
-    if (box && extent > most) throw InputError(key, extent, "must be at most 100000 wavelengths");
+    if (box && extent > most) throw InputError(key, extent, "must be at most 1e8 wavelengths");
   return domain;
 }
 
