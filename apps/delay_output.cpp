@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "apps/estimate_output.h"
 #include "apps/moments_output.h"
 #include "apps/moments_table.h"
 
@@ -24,14 +25,6 @@ void print_correlation(const CovarianceRequest& request, const std::vector<doubl
   if (rows > most_rows) std::printf("... and %zu more\n", rows - most_rows);
 }
 
-void write(ResultFile& file, const std::string& name, const Estimate& estimate,
-           const std::vector<Axis>& axes, const std::string& units, const std::string& long_name) {
-  std::vector<double> values;
-  for (const Complex value : estimate.value) values.push_back(value.real());
-  file.dataset(name, values, axes, units, long_name);
-  file.dataset(name + "_error", estimate.error, axes, units, "standard error: " + long_name);
-}
-
 bool through_slab(const Scene& scene) {
   const auto& views = scene.request.views;
   return scene.domain.kind == Domain::Kind::slab &&
@@ -47,9 +40,10 @@ void write_delays(ResultFile& file, const Scene& scene, const mc::DelayJob& job,
   print_correlation(scene.request, delays, correlation);
   file.scale("delay", delays, "1", "k^2 D tau");
   const std::vector<Axis> axes = {"delay", "light_angle", view_axis(scene.request)};
-  write(file, "covariance", jackknife(sums, job.covariance), axes, covariance_units(scene),
-        "covariance of the field with itself after a delay");
-  write(file, "field_correlation", correlation, axes, "1", "field correlation after a delay");
+  write_estimate(file, "covariance", jackknife(sums, job.covariance), axes, covariance_units(scene),
+                 "covariance of the field with itself after a delay");
+  write_estimate(file, "field_correlation", correlation, axes, "1",
+                 "field correlation after a delay");
   if (!through_slab(scene)) return;
   std::vector<double> theory;
   for (const double delay : delays)

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <string>
 
+#include "apps/estimate_output.h"
 #include "apps/moments_output.h"
 #include "mc/field_statistics.h"
 
@@ -24,12 +25,6 @@ std::vector<double> real_parts(const std::vector<Complex>& values) {
   std::vector<double> real;
   for (Complex value : values) real.push_back(value.real());
   return real;
-}
-
-void write_real(ResultFile& file, const std::string& name, const Estimate& estimate,
-                const Axes& axes, const std::string& units, const std::string& long_name) {
-  file.dataset(name, real_parts(estimate.value), axes, units, long_name);
-  file.dataset(name + "_error", estimate.error, axes, units, "standard error: " + long_name);
 }
 
 std::string view_axis(const Scene& scene) {
@@ -90,7 +85,7 @@ void write_histogram(ResultFile& file, const mc::FieldStatistics& statistics) {
   for (double& count : expected) count *= values;
   file.scale("intensity_bin", steps(mc::FieldStatistics::bins, mc::FieldStatistics::bin_width), "1",
              "lower edge of a bin of intensity over its mean; the last bin is open");
-  write_real(file, "histogram", counts, {"intensity_bin"}, "1", "values in the bin");
+  write_estimate(file, "histogram", counts, {"intensity_bin"}, "1", "values in the bin");
   file.dataset("histogram_expected", expected, {"intensity_bin"}, "1",
                "values in the bin by the exponential law");
 }
@@ -102,11 +97,11 @@ void write_autocorrelation(ResultFile& file, const Scene& scene, double step,
   file.scale("view_lag", steps(scene.request.views.size(), step), near ? "length" : "1",
              near ? "distance of two sensors" : "difference of the sines of two views");
   const Estimate found = statistics.autocorrelation();
-  write_real(file, "intensity_autocorrelation", found, {"view_lag"}, "1",
-             "<I I'> / (<I> <I'>) - 1 over the first light's views");
+  write_estimate(file, "intensity_autocorrelation", found, {"view_lag"}, "1",
+                 "<I I'> / (<I> <I'>) - 1 over the first light's views");
   if (siegert.value.empty()) return;
-  write_real(file, "siegert", siegert, {"view_lag"}, "1",
-             "|<u u'*>|^2 / (<I> <I'>) over the same views, from light paths");
+  write_estimate(file, "siegert", siegert, {"view_lag"}, "1",
+                 "|<u u'*>|^2 / (<I> <I'>) over the same views, from light paths");
   const bool by_paths = drawn.plan.method == mc::FieldMethod::paths;
   const double excess = by_paths ? drawn.plan.excess : 0;
   double deviation = 0;
@@ -133,12 +128,12 @@ void write_fields(ResultFile& file, const Scene& scene, const std::vector<double
   write_field_axes(file, scene, tilts, drawn.field.size() / channels);
   write_field(file, scene, drawn);
   const Axes axes = {"light_angle", view_axis(scene)};
-  write_real(file, "intensity", drawn.intensity, axes,
-             scene.request.views.front().near ? "1" : "length", "variance of the field");
-  write_real(file, "contrast", statistics.contrast(), axes, "1",
-             "standard deviation over mean of the intensity");
+  write_estimate(file, "intensity", drawn.intensity, axes,
+                 scene.request.views.front().near ? "1" : "length", "variance of the field");
+  write_estimate(file, "contrast", statistics.contrast(), axes, "1",
+                 "standard deviation over mean of the intensity");
   const Estimate contrast = statistics.mean_contrast(), circularity = statistics.circularity();
-  write_real(file, "mean_contrast", contrast, {}, "1", "contrast of I / <I> over all channels");
+  write_estimate(file, "mean_contrast", contrast, {}, "1", "contrast of I / <I> over all channels");
   file.dataset("circularity", circularity.value, {}, "1", "<u u> / <I> over all channels");
   file.dataset("circularity_error", circularity.error, {}, "1",
                "standard error: <u u> / <I> over all channels");

@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <numbers>
 
+#include "apps/estimate_output.h"
 #include "apps/moments_output.h"
 #include "apps/scene_options.h"
 #include "apps/session.h"
@@ -53,15 +54,6 @@ void print_table(const Scene& scene, const mc::FluxEstimates& flux) {
     print(flux.absorptance, light);
     std::printf("\n");
   }
-}
-
-void write_estimate(ResultFile& file, const std::string& name, const Estimate& estimate,
-                    const std::vector<Axis>& axes, const std::string& units,
-                    const std::string& long_name) {
-  std::vector<double> values;
-  for (Complex value : estimate.value) values.push_back(value.real());
-  file.dataset(name, values, axes, units, long_name);
-  file.dataset(name + "_error", estimate.error, axes, units, "standard error: " + long_name);
 }
 
 void write_flux(ResultFile& file, const Scene& scene, std::size_t bins,

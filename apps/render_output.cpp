@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "apps/estimate_output.h"
 #include "apps/light_speed.h"
 #include "apps/sensor_options.h"
 #include "apps/trials_output.h"
@@ -11,24 +12,13 @@ namespace flatspeckle::apps {
 
 namespace {
 
-/// Mean over the pixels of each bin, times `factor`.
-Estimate pixel_mean(const GroupedSums& sums, const grin::RenderJob& job, double factor) {
-  const auto pixels = static_cast<std::size_t>(job.pixels.count());
-  const auto bins = static_cast<std::size_t>(job.bins.count);
+/// Mean over the pixels of each bin, times `factor`; one bin is all.
+Estimate pixel_mean(const GroupedSums& sums, int pixels, int bins, double factor) {
   return jackknife(sums, [=](double samples, std::span<const Complex> all) {
     std::vector<Complex> means(bins);
-    for (std::size_t i = 0; i < pixels * bins; ++i) means[i % bins] += all[i];
-    for (Complex& mean : means) mean *= factor / (samples * static_cast<double>(pixels));
+    for (std::size_t i = 0; i < all.size(); ++i) means[i % bins] += all[i];
+    for (Complex& mean : means) mean *= factor / (samples * pixels);
     return means;
-  });
-}
-
-Estimate sum_of_bins(const GroupedSums& sums, const grin::RenderJob& job, double factor) {
-  const double share = factor / job.pixels.count();
-  return jackknife(sums, [=](double samples, std::span<const Complex> all) {
-    Complex sum = 0;
-    for (const Complex& value : all) sum += value;
-    return std::vector<Complex>{sum * share / samples};
   });
 }
 
@@ -42,10 +32,7 @@ class Writer {
 
   void estimate(const std::string& name, const Estimate& estimate, const std::vector<Axis>& axes,
                 const std::string& units, const std::string& long_name) {
-    std::vector<double> values;
-    for (Complex value : estimate.value) values.push_back(value.real());
-    file_.dataset(name, values, axes, units, long_name);
-    file_.dataset(name + "_error", estimate.error, axes, units, "standard error: " + long_name);
+    write_estimate(file_, name, estimate, axes, units, long_name);
   }
 
   void steady(const RenderResult& result) {
@@ -126,9 +113,10 @@ void print_row(const char* name, const Estimate& estimate, std::size_t entry,
 RenderResult render_result(const grin::RenderScene& scene, const grin::RenderJob& job,
                            const GroupedSums& sums) {
   const SensorAxes axes = axes_of(scene.sensor);
-  RenderResult result{rendered_picture(job, sums), sum_of_bins(sums, job, 1), {}, {}};
-  if (axes.area) result.total = sum_of_bins(sums, job, *axes.area);
-  if (job.bins.count > 1) result.pulse = pixel_mean(sums, job, axes.area.value_or(1));
+  const int pixels = job.pixels.count(), bins = job.bins.count;
+  RenderResult result{rendered_picture(job, sums), pixel_mean(sums, pixels, 1, 1), {}, {}};
+  if (axes.area) result.total = pixel_mean(sums, pixels, 1, *axes.area);
+  if (bins > 1) result.pulse = pixel_mean(sums, pixels, bins, axes.area.value_or(1));
   return result;
 }
 

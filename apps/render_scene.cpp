@@ -1,12 +1,11 @@
 #include "apps/render_scene.h"
 
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <limits>
 
 #include "apps/key_values.h"
 #include "core/error.h"
+#include "core/file_checksum.h"
 
 namespace flatspeckle::apps {
 
@@ -58,15 +57,6 @@ double step_of(const RenderSpec& spec, double scale, double size) {
   if (spec.step) return positive("step", *spec.step);
   constexpr double parts = 10;  // a fourth-order step then errs by about 1e-6
   return scale > 0 ? std::min(scale / parts, size) : size;
-}
-
-/// FNV-1a.
-std::string fingerprint(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::uint64_t hash = 14695981039346656037u;
-  for (std::istreambuf_iterator<char> byte(file), end; byte != end; ++byte)
-    hash = (hash ^ static_cast<unsigned char>(*byte)) * 1099511628211u;
-  return std::to_string(hash);
 }
 
 }  // namespace
@@ -148,7 +138,7 @@ std::string inputs_text(const RenderSpec& spec) {
   std::string text;
   for (const auto& path : {spec.field.blobs, spec.field.grid, spec.stage.medium.density,
                            spec.stage.body_medium.density})
-    if (!path.empty()) text += path + ' ' + fingerprint(path) + '\n';
+    if (!path.empty()) text += path + ' ' + std::to_string(file_checksum(path)) + '\n';
   return text;
 }
 

@@ -35,7 +35,7 @@ grin::RenderRequest make_render_request(const RenderSpec& spec);
 /// Metres in a unit of length, where the user said.
 std::optional<double> length_unit_of(const RenderSpec& spec);
 
-/// What the scene takes from files, each by name and fingerprint.
+/// What the scene takes from files, each by name and checksum.
 std::string inputs_text(const RenderSpec& spec);
 
 }  // namespace flatspeckle::apps
