@@ -11,6 +11,9 @@ namespace {
 
 using std::numbers::pi;
 
+/// Share of the choices that are uniform over the detector: rays may be curved.
+constexpr double anywhere = 0.1;
+
 BoundaryPoint centre_on(const Surface& boundary, const Vec3& centre) {
   require_finite("sensor_at", centre);
   const auto at = boundary_point(boundary, centre);
@@ -41,6 +44,7 @@ AreaDetectorEnd::AreaDetectorEnd(const AreaDetector& detector, const Stage& stag
       centre_(centre_on(stage.boundary, detector.centre).x),
       view_("sensor_at", -centre_on(stage.boundary, detector.centre).inward, detector.up),
       sine_squared_(sine_squared_of_acceptance(detector.acceptance)),
+      tangent_(std::sqrt(sine_squared_ / (1 - sine_squared_))),
       body_(body_surface(stage)) {
   require_in_stage(stage, centre_);
   const auto* sphere = std::get_if<Sphere>(&boundary_);
@@ -70,15 +74,47 @@ EndPosition AreaDetectorEnd::on_face(const Vec3& x, int pixel) const {
           .pixel = pixel};
 }
 
-EndPosition AreaDetectorEnd::sample_position(double stratum, RandomStream& random) const {
-  const PicturePoint at = face_.sample(stratum, random);
-  Vec3 x = centre_ + at.u * view_.right + at.v * view_.up;
+EndPosition AreaDetectorEnd::at(double u, double v, int pixel) const {
+  Vec3 x = centre_ + u * view_.right + v * view_.up;
   if (const auto* sphere = std::get_if<Sphere>(&boundary_)) {
     // u^2 + v^2 = s (2 R - s), s the depth below the tangent plane
-    const double squared = at.u * at.u + at.v * at.v, r = sphere->radius;
+    const double squared = u * u + v * v, r = sphere->radius;
     x -= squared / (r + std::sqrt(r * r - squared)) * view_.forward;
   }
-  return on_face(x, at.pixel);
+  return on_face(x, pixel);
+}
+
+EndPosition AreaDetectorEnd::sample_position(double stratum, RandomStream& random) const {
+  const PicturePoint point = face_.sample(stratum, random);
+  return at(point.u, point.v, point.pixel);
+}
+
+Window AreaDetectorEnd::accepting_from(const Vec3& x) const {
+  constexpr double room_for_curves = 1.25;
+  const Vec3 from_centre = x - centre_;
+  const double before = std::max(0.0, -from_centre.dot(view_.forward));
+  return face_.near(from_centre.dot(view_.right), from_centre.dot(view_.up),
+                    room_for_curves * tangent_ * before);
+}
+
+double AreaDetectorEnd::choice_of(double u, double v, const Window& accepting) const {
+  const double within = accepting.contains(u, v) ? face_.area() / accepting.area() : 0;
+  return anywhere + (1 - anywhere) * within;
+}
+
+EndPosition AreaDetectorEnd::choose_position(const Vec3& x, RandomStream& random) const {
+  const Window accepting = accepting_from(x);
+  const Window part = random.uniform() < anywhere ? face_.all() : accepting;
+  const double u = part.u_low + (part.u_high - part.u_low) * random.uniform();
+  const double v = part.v_low + (part.v_high - part.v_low) * random.uniform();
+  EndPosition chosen = at(u, v, face_.pixel_at(u, v));
+  chosen.choice = choice_of(u, v, accepting);
+  return chosen;
+}
+
+double AreaDetectorEnd::choice(const Vec3& position, const Vec3& x) const {
+  const Vec3 from_centre = position - centre_;
+  return choice_of(from_centre.dot(view_.right), from_centre.dot(view_.up), accepting_from(x));
 }
 
 std::optional<EndPosition> AreaDetectorEnd::position_at(const Vec3& x) const {

@@ -28,12 +28,18 @@ class AreaDetectorEnd {
 
   const PixelGrid& pixels() const { return face_.grid(); }
   EndPosition sample_position(double stratum, RandomStream& random) const;
+  /// For a join from x: most often where the straight way from x is accepted.
+  EndPosition choose_position(const Vec3& x, RandomStream& random) const;
+  double choice(const Vec3& position, const Vec3& x) const;
   EndDirection sample_direction(const EndPosition& at, double stratum, RandomStream& random) const;
   EndDirection towards(const EndPosition& at, const Vec3& direction) const;
   std::optional<EndPosition> position_at(const Vec3& x) const;
 
  private:
   EndPosition on_face(const Vec3& x, int pixel) const;
+  EndPosition at(double u, double v, int pixel) const;
+  Window accepting_from(const Vec3& x) const;
+  double choice_of(double u, double v, const Window& accepting) const;
   Vec3 inward(const Vec3& x) const;
 
   PixelRectangle face_;
@@ -41,6 +47,7 @@ class AreaDetectorEnd {
   Vec3 centre_;
   Orientation view_;     ///< forward is the outward normal at the centre
   double sine_squared_;  ///< of the acceptance
+  double tangent_;       ///< the same; infinite for all directions
   std::optional<Surface> body_;
 };
 

@@ -36,16 +36,18 @@ class Bidirectional {
     const PathVertex start = end_vertex(end);
     join_to_sensor(start);
     const EndDirection first = transport_.lights.sample_direction(end, random_);
-    const auto left = [&](const PathVertex& last) {
+    const auto left = [&](const PathVertex& last, const PathVertex& before) {
+      if (end.is_beam && last.vertices == 2) return;  // summed apart (unscattered_beams.h)
       const int more = transport_.strategies.most_sensor();
-      arrive(transport_.sensor, last, more, [&](const EndHit& hit) { return hit.direction.pixel; });
+      arrive(transport_.sensor, last, before, more,
+             [&](const EndHit& hit) { return hit.direction.pixel; });
     };
     const auto collided = [&](const PathVertex& vertex) {
       join_to_sensor(vertex);
       vertices_.offer(vertex, random_);
     };
-    walk<plan>(transport_, space_, start, first, transport_.strategies.short_light, random_,
-               counts_, collided, left);
+    walk<plan>(transport_, space_, transport_.lights, start, first,
+               transport_.strategies.short_light, random_, counts_, collided, left);
   }
 
   void walk_from_sensor(double stratum) {
@@ -53,24 +55,26 @@ class Bidirectional {
     const PathVertex start = end_vertex(end);
     const EndDirection first = transport_.sensor.sample_direction(end, random_, stratum);
     pixel_ = first.pixel;
-    const auto left = [&](const PathVertex& last) {
+    const auto left = [&](const PathVertex& last, const PathVertex& before) {
       const int more = transport_.strategies.most_light();
-      arrive(transport_.lights, last, more, [&](const EndHit&) { return pixel_; });
+      arrive(transport_.lights, last, before, more, [&](const EndHit&) { return pixel_; });
     };
     const auto collided = [&](const PathVertex& vertex) {
       join_to_light(vertex);
       join_to_light_path(vertex);
     };
-    walk<plan>(transport_, space_, start, first, transport_.strategies.short_sensor, random_,
-               counts_, collided, left);
+    walk<plan>(transport_, space_, transport_.sensor, start, first,
+               transport_.strategies.short_sensor, random_, counts_, collided, left);
   }
 
   /// A path that reached the boundary meets the other ends there.
   template <class End, class Pixel>
-  void arrive(const End& ends, const PathVertex& last, int more, const Pixel& pixel) {
+  void arrive(const End& ends, const PathVertex& last, const PathVertex& before, int more,
+              const Pixel& pixel) {
     ends.hit(space_, last.point.x, last.arrived, [&](const EndHit& hit) {
       PathVertex here = last;
       here.density *= std::abs(hit.position.inward.dot(last.arrived));
+      here.first_of_other *= heuristic(ends.choice(hit.position, before.point.x));
       const double others =
           fewer_of_ours(here, hit.position.position_density, hit.direction.density, more);
       const double value = here.weight * hit.value / (1 + others);
@@ -80,7 +84,7 @@ class Bidirectional {
   }
 
   void join_to_sensor(const PathVertex& y) {
-    const EndPosition end = transport_.sensor.sample_position(space_, random_);
+    const EndPosition end = transport_.sensor.choose_position(space_, y.point.x, random_);
     const PathVertex z = end_vertex(end);
     join_to_end(y, z);
   }
@@ -164,15 +168,7 @@ class Bidirectional {
   }
 
   void add(int pixel, double value, double optical_path) {
-    if (pixel < 0 || value == 0) return;
-    if (!std::isfinite(value)) {
-      ++counts_.lost_values;
-      return;
-    }
-    if constexpr (plan.timed)
-      film_.add(pixel, value, optical_path);
-    else
-      film_.add(pixel, value);
+    deposit<plan.timed>(film_, counts_, pixel, value, optical_path);
   }
 
   const Transport& transport_;

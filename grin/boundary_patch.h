@@ -1,6 +1,8 @@
 #pragma once
 
 #include <array>
+#include <cmath>
+#include <numbers>
 #include <optional>
 #include <variant>
 
@@ -31,6 +33,11 @@ class FlatDisk {
       b = 2 * random.uniform() - 1;
     } while (a * a + b * b > 1);
     return at(a * radius_, b * radius_);
+  }
+  /// Of the unit square; keeps ratios of areas.
+  Vec3 from_square(double u, double v) const {
+    const double r = radius_ * std::sqrt(u), azimuth = 2 * std::numbers::pi * v;
+    return at(r * std::cos(azimuth), r * std::sin(azimuth));
   }
   bool reaches(const Vec3& x) const { return (x - centre_).norm() <= radius_; }
 

@@ -33,6 +33,7 @@ class CameraEnd {
   EndDirection sample_direction(const EndPosition& at, double stratum, RandomStream& random) const;
   EndDirection towards(const EndPosition& at, const Vec3& direction) const;
   std::optional<EndPosition> position_at(const Vec3& x) const;
+  bool is_pinhole() const { return !lens_; }
 
  private:
   void place_lens(const Camera& camera, const Stage& stage);

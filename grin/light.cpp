@@ -89,6 +89,10 @@ Lights::Lights(std::vector<Light> lights, const Stage& stage, const Index& index
     source_.push_back(std::visit([&](const auto& l) { return source(l, stage, index); }, light));
     if (source_.back().patch) faces_.push_back(static_cast<int>(source_.size()) - 1);
     power_ += source_.back().power;
+    if (source_.back().disk) {
+      beams_.push_back(static_cast<int>(source_.size()) - 1);
+      beam_power_ += source_.back().power;
+    }
   }
   double so_far = 0;
   for (Source& s : source_) {
@@ -109,17 +113,27 @@ EndPosition Lights::position(int light, const BoundaryPoint& at) const {
           .light = light};
 }
 
+EndPosition Lights::on_beam(int beam, const Vec3& x) const {
+  EndPosition at = position(beam, {x, source_[beam].disk->normal()});
+  at.is_beam = true;
+  return at;
+}
+
+EndPosition Lights::beam_position(double stratum, double u, double v) const {
+  double power = stratum * beam_power_;
+  std::size_t i = 0;
+  while (i + 1 < beams_.size() && power >= source_[beams_[i]].power)
+    power -= source_[beams_[i++]].power;
+  return on_beam(beams_[i], source_[beams_[i]].disk->from_square(u, v));
+}
+
 EndPosition Lights::draw_position(RandomStream& random) const {
   const double u = random.uniform();
   int light = 0;
   while (light + 1 < static_cast<int>(source_.size()) && u >= source_[light].chance_so_far) ++light;
   const Source& from = source_[light];
   if (from.patch) return position(light, from.patch->sample(random));
-  if (from.disk) {
-    EndPosition at = position(light, {from.disk->sample(random), from.disk->normal()});
-    at.is_beam = true;
-    return at;
-  }
+  if (from.disk) return on_beam(light, from.disk->sample(random));
   EndPosition at = position(light, {std::get<PointLight>(from.light).x, Vec3::Zero()});
   at.is_point = true;
   return at;

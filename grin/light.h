@@ -52,8 +52,16 @@ class Lights {
     return at;
   }
   EndDirection sample_direction(const EndPosition& at, RandomStream& random) const;
+  /// As SensorEnd's; lights have no other choice than that of sample_position.
+  double choice(const EndPosition&, const Vec3&) const { return 1; }
   /// Towards a given direction, for joins.
   EndDirection towards(const EndPosition& at, const Vec3& direction) const;
+
+  /// Power of all beams.
+  double beam_power() const { return beam_power_; }
+  /// A place on one of the beams: which, by their power, says `stratum` in (0, 1); where, (u, v) in
+  /// the unit square. Its direction is `inward`.
+  EndPosition beam_position(double stratum, double u, double v) const;
 
   /// A path arrives on the boundary at x along `direction`: calls use(EndHit) for each light there.
   template <class S, class Use>
@@ -80,14 +88,15 @@ class Lights {
   };
   EndPosition draw_position(RandomStream& random) const;
   EndPosition position(int light, const BoundaryPoint& at) const;
+  EndPosition on_beam(int beam, const Vec3& x) const;
   static Source source(const PointLight& light, const Stage& stage, const Index& index);
   static Source source(const BeamLight& light, const Stage& stage, const Index& index);
   static Source source(const FaceLight& light, const Stage& stage, const Index& index);
 
   std::vector<Source> source_;
-  std::vector<int> faces_;
+  std::vector<int> faces_, beams_;
   std::optional<Surface> body_;
-  double power_ = 0;
+  double power_ = 0, beam_power_ = 0;
 };
 
 }  // namespace flatspeckle::grin

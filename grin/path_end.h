@@ -29,6 +29,8 @@ struct EndPosition {
   int pixel = -1;               ///< of a sensor whose positions have pixels
   bool is_point = false;        ///< cannot be hit
   bool is_beam = false;         ///< one direction only: can neither be joined nor hit
+  /// Of a place chosen for a join from somewhere: the density of that choice over position_density.
+  double choice = 1;
 };
 
 /// One direction of light away from an end (for a sensor: against the light).

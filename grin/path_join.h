@@ -40,9 +40,12 @@ inline JoinedPath joined_path(const Strategies& strategies, const PathVertex& y,
       from_z.density * attenuation / (curve.spreading * turned) * y.cosine(curve.start_direction);
   const double z_from_y =
       from_y.density * attenuation / curve.spreading * z.cosine(curve.end_direction);
+  // a path goes on from an end that was not chosen
   const double others =
-      fewer_of_ours(y, y_from_z, from_y.density, strategies.most_sensor() - z.vertices) +
-      fewer_of_ours(z, z_from_y, from_z.density, strategies.most_light() - y.vertices);
+      fewer_of_ours(y, y_from_z, from_y.density, strategies.most_sensor() - z.vertices) /
+          heuristic(z.choice()) +
+      fewer_of_ours(z, z_from_y, from_z.density, strategies.most_light() - y.vertices) /
+          heuristic(y.choice());
   return {value, 1 / (1 + others), from_z.pixel};
 }
 

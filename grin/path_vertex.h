@@ -44,9 +44,11 @@ struct PathVertex {
   /// Of the strategies with fewer of our vertices than made the vertex before this: sum of their
   /// densities relative to that strategy's, per density of the vertex before as made from here.
   double before = 0;
-  /// Whether there is a strategy in which this is the first vertex from the other end.
-  bool first_of_other = false;
+  /// Of the strategy in which this is the first vertex from the other end: 0 if there is none, 1 if
+  /// there is; where our end alone is left, what its choice counts (EndPosition).
+  double first_of_other = 0;
 
+  double choice() const { return end ? end->choice : 1; }
   bool on_surface() const { return end && !end->is_point; }
   double cosine(const Vec3& direction) const {
     return on_surface() ? std::abs(end->inward.dot(direction)) : 1;
@@ -57,9 +59,9 @@ inline PathVertex end_vertex(const EndPosition& end) {
   PathVertex vertex;
   vertex.point = end.point;
   vertex.index = end.index;
-  vertex.weight = 1 / end.position_density;
   vertex.end = &end;
-  vertex.density = end.position_density;
+  vertex.density = end.position_density * end.choice;
+  vertex.weight = 1 / vertex.density;
   vertex.first_of_other = !end.is_point && !end.is_beam;
   return vertex;
 }
@@ -76,9 +78,10 @@ inline double fewer_of_ours(const PathVertex& last, double made_from_other,
 }
 
 /// Where a flight from `here` ended. The direction was drawn with `direction_density` (1 of a beam;
-/// phase functions have the same both ways). On a surface, `density` still lacks the cosine there.
+/// phase functions have the same both ways). `choice`: of `here` if that is our end and were chosen
+/// from there. On a surface, `density` still lacks the cosine there.
 inline PathVertex arrived(const PathVertex& here, const Flight& flight, double direction_density,
-                          double index) {
+                          double choice, double index) {
   const double turned = index / here.index * (index / here.index);
   // what weights take for |J| of a way that no strategy joins cancels
   const double spreading = flight.crosses_body ? 1 : std::max(flight.spreading, 1e-60);
@@ -94,7 +97,8 @@ inline PathVertex arrived(const PathVertex& here, const Flight& flight, double d
   next.back = attenuation / (spreading * turned) * here.cosine(flight.start_direction);
   next.before = (here.first_of_other + heuristic(direction_density * here.back) * here.before) /
                 heuristic(here.density);
-  next.first_of_other = !flight.crosses_body && !(here.end && here.end->is_beam);
+  const bool can_be_joined = !flight.crosses_body && !(here.end && here.end->is_beam);
+  next.first_of_other = can_be_joined ? heuristic(choice) : 0;
   return next;
 }
 

@@ -157,15 +157,7 @@ class PhotonMap {
   }
 
   void add(int pixel, double value, double optical_path) {
-    if (pixel < 0 || value == 0) return;
-    if (!std::isfinite(value)) {
-      ++counts_.lost_values;
-      return;
-    }
-    if constexpr (timed)
-      film_.add(pixel, value, optical_path);
-    else
-      film_.add(pixel, value);
+    deposit<timed>(film_, counts_, pixel, value, optical_path);
   }
 
   const Transport& transport_;

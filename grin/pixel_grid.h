@@ -23,6 +23,15 @@ struct PicturePoint {
   int pixel;
 };
 
+struct Window {
+  double u_low, u_high, v_low, v_high;
+
+  double area() const { return (u_high - u_low) * (v_high - v_low); }
+  bool contains(double u, double v) const {
+    return u >= u_low && u <= u_high && v >= v_low && v <= v_high;
+  }
+};
+
 /// A rectangle of pixels, |u| <= half_width, |v| <= half_height.
 class PixelRectangle {
  public:
@@ -38,6 +47,15 @@ class PixelRectangle {
   double half_width() const { return half_width_; }
   double half_height() const { return half_height_; }
   double area() const { return 4 * half_width_ * half_height_; }
+  /// The part of it within a square; all of it if there is none.
+  Window near(double u, double v, double half_side) const {
+    const Window part{std::max(u - half_side, -half_width_), std::min(u + half_side, half_width_),
+                      std::max(v - half_side, -half_height_),
+                      std::min(v + half_side, half_height_)};
+    if (part.u_low < part.u_high && part.v_low < part.v_high) return part;
+    return all();
+  }
+  Window all() const { return {-half_width_, half_width_, -half_height_, half_height_}; }
   double pixel_area() const { return area() / grid_.count(); }
 
   /// -1 outside.

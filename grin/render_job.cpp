@@ -11,6 +11,7 @@
 #include "grin/curved_space.h"
 #include "grin/path_kernels.h"
 #include "grin/photon_map.h"
+#include "grin/unscattered_beams.h"
 
 namespace flatspeckle::grin {
 
@@ -32,11 +33,17 @@ double photon_radius(const RenderScene& scene, const RenderRequest& request) {
   return request.photon_radius > 0 ? request.photon_radius : default_photon_radius(scene.stage);
 }
 
-/// Lights, sensor and kernel of a scene.
+/// Lights, sensor and kernels of a scene.
 struct Tracer {
   std::shared_ptr<Transport> transport;
   PathKernel kernel;
+  PathKernel unscattered_beams = {};  ///< where the kernel leaves that out and there is some
 };
+
+bool sums_beams_apart(const Transport& transport, const RenderRequest& request) {
+  return !is_photon_map(request) && transport.lights.beam_power() > 0 &&
+         transport.sensor.can_be_hit();
+}
 
 std::shared_ptr<Transport> transport_in(const RenderScene& scene, const RenderRequest& request,
                                         const Lights::Index& index) {
@@ -57,9 +64,12 @@ Tracer straight_tracer(const RenderScene& scene, const RenderRequest& request,
   const auto transport = transport_in(scene, request, [&](const PathPoint& p) {
     return 1 + (p.part == Part::body ? excess : around);
   });
-  return {transport, is_photon_map(request) ? photon_kernel(plan.timed, transport, excess,
-                                                            photon_radius(scene, request))
-                                            : straight_kernel(plan, transport, excess)};
+  Tracer tracer{transport, is_photon_map(request) ? photon_kernel(plan.timed, transport, excess,
+                                                                  photon_radius(scene, request))
+                                                  : straight_kernel(plan, transport, excess)};
+  if (sums_beams_apart(*transport, request))
+    tracer.unscattered_beams = beams_kernel(plan.timed, transport, excess);
+  return tracer;
 }
 
 Tracer curved_tracer(const RenderScene& scene, const RenderRequest& request,
@@ -71,7 +81,14 @@ Tracer curved_tracer(const RenderScene& scene, const RenderRequest& request,
   if (is_photon_map(request))
     return {transport, photon_kernel(plan.timed, transport, space, scene.random_phase,
                                      photon_radius(scene, request))};
-  return {transport, curved_kernel(plan, transport, space, scene.random_phase)};
+  Tracer tracer{transport, curved_kernel(plan, transport, space, scene.random_phase)};
+  if (sums_beams_apart(*transport, request))
+    tracer.unscattered_beams =
+        beams_kernel(plan.timed, transport,
+                     make_curved_space(scene.field, without_scattering(scene.stage),
+                                       {scene.step, scene.max_length, false}),
+                     scene.random_phase);
+  return tracer;
 }
 
 /// Of the scene alone: from a few pairs of paths that join nothing. A pair costs F flights and
@@ -155,6 +172,7 @@ RenderJob render_job(const RenderScene& scene, const RenderRequest& request, std
     RandomStream random(seed, static_cast<std::uint64_t>(Stream::render), number);
     TransportCounts of_batch;
     tracer.kernel(paths, random, film, of_batch, nullptr);
+    if (tracer.unscattered_beams) tracer.unscattered_beams(paths, random, film, of_batch, nullptr);
     const std::lock_guard lock(*counting);
     *counts += of_batch;
   };

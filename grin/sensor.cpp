@@ -27,6 +27,11 @@ EndDirection SensorEnd::sample_direction(const EndPosition& at, RandomStream& ra
                     end_);
 }
 
+bool SensorEnd::can_be_hit() const {
+  const auto* camera = std::get_if<CameraEnd>(&end_);
+  return !camera || !camera->is_pinhole();
+}
+
 EndDirection SensorEnd::towards(const EndPosition& at, const Vec3& direction) const {
   return std::visit([&](const auto& end) { return end.towards(at, direction); }, end_);
 }

@@ -38,12 +38,28 @@ class SensorEnd {
   EndPosition sample_position(const S& space, RandomStream& random) const {
     return sample_position(space, random, random.uniform());
   }
+  /// For a join from x: where the sensor may see light from there.
+  template <class S>
+  EndPosition choose_position(const S& space, const Vec3& x, RandomStream& random) const {
+    const auto* area = std::get_if<AreaDetectorEnd>(&end_);
+    if (!area) return sample_position(space, random);
+    EndPosition at = area->choose_position(x, random);
+    at.index = space.index(at.point);
+    return at;
+  }
+  /// Density of choosing this place from x over at.position_density.
+  double choice(const EndPosition& at, const Vec3& x) const {
+    const auto* area = std::get_if<AreaDetectorEnd>(&end_);
+    return area ? area->choice(at.point.x, x) : 1;
+  }
   EndDirection sample_direction(const EndPosition& at, RandomStream& random) const {
     return sample_direction(at, random, random.uniform());
   }
   /// pixel -1 and strength 0 where the sensor does not look.
   EndDirection towards(const EndPosition& at, const Vec3& direction) const;
 
+  /// A pinhole cannot.
+  bool can_be_hit() const;
   /// A path arrives on the boundary at x along `direction`: calls use(EndHit) if the sensor sees
   /// it.
   template <class S, class Use>

@@ -45,7 +45,20 @@ bool lies_in(const Surface& body, const Surface& boundary) {
   return true;
 }
 
+ScatteringMedium without_scattering(ScatteringMedium medium) {
+  medium.mu_a = medium.mu_t();
+  medium.mu_s = 0;
+  return medium;
+}
+
 }  // namespace
+
+Stage without_scattering(const Stage& stage) {
+  Stage black = stage;
+  black.medium = without_scattering(stage.medium);
+  if (stage.body) black.body->medium = without_scattering(stage.body->medium);
+  return black;
+}
 
 void check(const Stage& stage) {
   check_size("stage", stage.boundary);

@@ -24,6 +24,9 @@ struct Stage {
   double excess_around = 0;
 };
 
+/// The same stage where light that collides is lost.
+Stage without_scattering(const Stage& stage);
+
 /// Throws InputError for bad media, an index around that is not positive, a boundary or a body that
 /// is not closed or has no size, and a body that is not within the boundary.
 void check(const Stage& stage);

@@ -16,9 +16,10 @@ inline bool short_path_goes_on(const Transport& transport, const PathVertex& her
 
 /// Walks a path away from one of its ends, through collisions, until it leaves the stage, is long
 /// enough where it is to be short, or loses at roulette: what absorption leaves of it decides.
-/// Calls collided(vertex) at each collision and left(vertex) on the boundary.
-template <RenderPlan plan, Space S, class Collided, class Left>
-void walk(const Transport& transport, const S& space, const PathVertex& start,
+/// Calls collided(vertex) at each collision and left(vertex, the one before) on the boundary. ends:
+/// those that the path comes from.
+template <RenderPlan plan, Space S, class Ends, class Collided, class Left>
+void walk(const Transport& transport, const S& space, const Ends& ends, const PathVertex& start,
           const EndDirection& first, bool is_short, RandomStream& random, TransportCounts& counts,
           const Collided& collided, const Left& left) {
   PathVertex here = start;
@@ -33,9 +34,10 @@ void walk(const Transport& transport, const S& space, const PathVertex& start,
       ++counts.lost_flights;
       return;
     }
-    PathVertex next = arrived(here, flight, density, space.index(flight.point));
-    if (is_short && next.first_of_other) return;
-    if (!plan.scatters || flight.end == Flight::End::boundary) return left(next);
+    const double choice = here.end ? ends.choice(*here.end, flight.point.x) : 1;
+    PathVertex next = arrived(here, flight, density, choice, space.index(flight.point));
+    if (is_short && next.first_of_other > 0) return;
+    if (!plan.scatters || flight.end == Flight::End::boundary) return left(next, here);
     if (next.vertices - 2 >= transport.max_scatterings) return;
     const ScatteringMedium& medium = transport.medium(next.point.part);
     if constexpr (plan.absorbs) {

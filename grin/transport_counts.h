@@ -1,8 +1,10 @@
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 
 #include "grin/connection.h"
+#include "grin/film.h"
 
 namespace flatspeckle::grin {
 
@@ -23,5 +25,19 @@ struct TransportCounts {
     return *this;
   }
 };
+
+/// Adds to a pixel of a film, if there is one (-1: none) and the value is finite.
+template <bool timed>
+void deposit(Film& film, TransportCounts& counts, int pixel, double value, double optical_path) {
+  if (pixel < 0 || value == 0) return;
+  if (!std::isfinite(value)) {
+    ++counts.lost_values;
+    return;
+  }
+  if constexpr (timed)
+    film.add(pixel, value, optical_path);
+  else
+    film.add(pixel, value);
+}
 
 }  // namespace flatspeckle::grin

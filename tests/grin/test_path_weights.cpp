@@ -23,6 +23,13 @@ struct WholePath {
   std::vector<double> index;
   std::vector<Edge> edges;
   EndPosition light, sensor;
+
+  /// The sensor as it would be chosen from the vertex before it.
+  EndPosition chosen_sensor(const Transport& transport) const {
+    EndPosition chosen = sensor;
+    chosen.choice = transport.sensor.choice(sensor, points[points.size() - 2].x);
+    return chosen;
+  }
 };
 
 Flight as_flight(const Join& join, const PathPoint& to) {
@@ -63,7 +70,7 @@ PathVertex light_subpath(const Transport& transport, const WholePath& path, int 
       density = scattering_density(transport, path, i, true);
     else if (!path.light.is_beam)
       density = transport.lights.towards(path.light, edge.forth.start_direction).density;
-    vertex = arrived(vertex, edge.forth, density, path.index[i + 1]);
+    vertex = arrived(vertex, edge.forth, density, 1, path.index[i + 1]);
   }
   return vertex;
 }
@@ -76,7 +83,8 @@ PathVertex sensor_subpath(const Transport& transport, const WholePath& path, int
     const double density =
         i == last ? transport.sensor.towards(path.sensor, edge.back.start_direction).density
                   : scattering_density(transport, path, i, false);
-    vertex = arrived(vertex, edge.back, density, path.index[i - 1]);
+    const double choice = i == last ? path.chosen_sensor(transport).choice : 1;
+    vertex = arrived(vertex, edge.back, density, choice, path.index[i - 1]);
   }
   return vertex;
 }
@@ -100,13 +108,16 @@ std::optional<double> weight_of(const Transport& transport, const WholePath& pat
   if (s == all) {
     if (path.sensor.is_point) return {};
     const Vec3& out = path.edges.back().back.start_direction;
-    return weight_of_hit(light_subpath(transport, path, all), path.sensor,
-                         transport.sensor.towards(path.sensor, out).density, allowed.most_sensor());
+    PathVertex last = light_subpath(transport, path, all);
+    last.first_of_other *= heuristic(path.chosen_sensor(transport).choice);
+    return weight_of_hit(last, path.sensor, transport.sensor.towards(path.sensor, out).density,
+                         allowed.most_sensor());
   }
   const Flight& edge = path.edges[s - 1].forth;
   if (edge.crosses_body || (s == 1 && path.light.is_beam)) return {};
   const PathVertex y = light_subpath(transport, path, s);
-  const PathVertex z = sensor_subpath(transport, path, all - s);
+  const EndPosition chosen = path.chosen_sensor(transport);
+  const PathVertex z = s == all - 1 ? end_vertex(chosen) : sensor_subpath(transport, path, all - s);
   const JoiningCurve curve{edge.start_direction, edge.direction, edge.spreading,
                            edge.optical_depth};
   return joined_path(allowed, y, leaving(transport, transport.lights, y, curve.start_direction), z,
@@ -177,6 +188,7 @@ std::optional<WholePath> random_path(const Transport& transport, const CurvedSpa
 const Light lights[] = {PointLight{Vec3(0.3, -0.2, 0.6)}, FaceLight{Vec3::Zero(), INFINITY}};
 const Sensor sensors[] = {Camera{Vec3(0, 0.1, -0.6), Vec3::UnitZ(), Vec3::UnitY(), 3.0, {3, 2}},
                           AreaDetector{Vec3(0, 0, radius), Vec3::UnitY(), 1, 1, {2, 2}, 1.57},
+                          AreaDetector{Vec3(0, 0, radius), Vec3::UnitY(), 2, 2, {2, 2}, 0.5},
                           DirectionalDetector{Vec3::UnitZ(), Vec3::UnitY(), 1.5, {2, 2}}};
 
 }  // namespace
