@@ -9,9 +9,6 @@ namespace flatspeckle::grin {
 
 namespace {
 
-/// For each pair of paths: rays cost little, and many at once are spread more evenly.
-constexpr int rays_per_path = 8;
-
 class EvenSquare {
  public:
   explicit EvenSquare(RandomStream& random) : u_(random.uniform()), v_(random.uniform()) {}
@@ -36,17 +33,15 @@ void add_ray(const Transport& transport, const S& space, const EndPosition& star
   }
   transport.sensor.hit(space, flight.point.x, flight.direction, [&](const EndHit& hit) {
     deposit<timed>(film, counts, hit.direction.pixel,
-                   transport.lights.beam_power() / rays_per_path * flight.weight * hit.value,
-                   flight.optical_path);
+                   transport.lights.beam_power() * flight.weight * hit.value, flight.optical_path);
   });
 }
 
 /// with_space(use): calls use(space), the same or another for each ray.
 template <bool timed, class WithSpace>
 PathKernel kernel(std::shared_ptr<const Transport> transport, const WithSpace& with_space) {
-  return [=](int paths, RandomStream& random, Film& film, TransportCounts& counts,
+  return [=](int rays, RandomStream& random, Film& film, TransportCounts& counts,
              std::vector<double>*) {
-    const int rays = rays_per_path * paths;
     const EvenSquare even(random);
     const double beam = random.uniform();
     for (int ray = 0; ray < rays; ++ray) {
