@@ -41,6 +41,7 @@ class Bidirectional {
       arrive(transport_.sensor, last, more, [&](const EndHit& hit) { return hit.direction.pixel; });
     };
     const auto collided = [&](const PathVertex& vertex) {
+      ++counts_.light_collisions;
       join_to_sensor(vertex);
       vertices_.offer(vertex, random_);
     };
@@ -72,7 +73,7 @@ class Bidirectional {
       PathVertex here = last;
       here.density *= std::abs(hit.position.inward.dot(last.arrived));
       const double others =
-          fewer_of_ours(here, hit.position.position_density, hit.direction.density, more);
+          fewer_of_ours(here, hit.position.position_density, hit.direction.density, more, 1);
       const double value = here.weight * hit.value / (1 + others);
       promised_ += value;
       add(pixel(hit), value, here.optical_path);

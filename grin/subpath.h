@@ -33,7 +33,8 @@ void walk(const Transport& transport, const S& space, const PathVertex& start,
       ++counts.lost_flights;
       return;
     }
-    PathVertex next = arrived(here, flight, density, space.index(flight.point));
+    PathVertex next =
+        arrived(transport.strategies, here, flight, density, space.index(flight.point));
     if (is_short && next.first_of_other) return;
     if (!plan.scatters || flight.end == Flight::End::boundary) return left(next);
     if (next.vertices - 2 >= transport.max_scatterings) return;
