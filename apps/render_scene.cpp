@@ -1,7 +1,6 @@
 #include "apps/render_scene.h"
 
 #include <cmath>
-#include <limits>
 
 #include "apps/key_values.h"
 #include "core/error.h"
@@ -26,10 +25,10 @@ grin::TimeBins time_bins(const RenderSpec& spec) {
 }
 
 void check_size(const grin::Sensor& sensor, const grin::TimeBins& bins) {
-  constexpr double most = 1e8;
+  constexpr double most = 1 << 23;  // of which 16 groups of sums are 2 GiB
   const int pixels = std::visit([](const auto& kind) { return kind.pixels.count(); }, sensor);
   const double size = static_cast<double>(pixels) * bins.count;
-  if (size > most) throw InputError("pixels x path_bins", size, "must be at most 100000000");
+  if (size > most) throw InputError("pixels x path_bins", size, "must be at most 8388608");
 }
 
 /// Sound of amplitude 0 bends no rays.
@@ -43,20 +42,23 @@ grin::AnyIndexField field_of(const RenderSpec& spec, const grin::AnyIndexField& 
   return grin::Homogeneous{spec.field.index.value_or(1) - 1};
 }
 
-/// Of sound that each path meets at a random time.
-void check_random_phase(const Subcommand& command, const SceneField& field) {
-  if (!std::holds_alternative<grin::StandingWave>(field.field) &&
-      !std::holds_alternative<grin::FocusedSound>(field.field))
-    throw InputError("random_phase: needs the field ultrasound or focused_sound, and it alone");
-  if (command.given("sound_phase")) throw InputError("sound_phase: random_phase has no use for it");
+void check_unused(const Subcommand& command, const RenderSpec& spec, const SceneField& field) {
+  if (spec.random_phase && command.given("sound_phase"))
+    throw InputError("sound_phase: random_phase has no use for it");
+  for (const std::string key : {"step", "max_length"})
+    if (field.scale == 0 && command.given(key))
+      throw InputError(key + ": rays in a homogeneous field are straight and have no use for it");
 }
 
 double step_of(const RenderSpec& spec, double scale, double size) {
-  if (spec.step && scale == 0)
-    throw InputError("step: rays in a homogeneous field are straight and have no use for it");
-  if (spec.step) return positive("step", *spec.step);
   constexpr double parts = 10;  // a fourth-order step then errs by about 1e-6
-  return scale > 0 ? std::min(scale / parts, size) : size;
+  constexpr double most_steps = 1e5;
+  const double step = spec.step   ? positive("step", *spec.step)
+                      : scale > 0 ? std::min(scale / parts, size)
+                                  : size;
+  if (!(step * most_steps >= size))
+    throw InputError("step", step, "must be at least 1e-5 of the stage's size: " + listed({size}));
+  return step;
 }
 
 }  // namespace
@@ -100,10 +102,7 @@ grin::RenderRequest make_render_request(const RenderSpec& spec) {
     request.method = Method::photon_map;
   else if (spec.method != "bidirectional")
     throw InputError("method", spec.method, "must be one of bidirectional light path photon_map");
-  if (spec.max_scatterings < 0 || spec.max_scatterings > std::numeric_limits<int>::max())
-    throw InputError("max_scatterings", spec.max_scatterings,
-                     "must not be negative, and at most 2147483647");
-  request.max_scatterings = static_cast<int>(spec.max_scatterings);
+  request.max_scatterings = spec.max_scatterings;
   if (!spec.photon_radius) return request;
   if (request.method != Method::photon_map)
     throw InputError("photon_radius: method (" + spec.method + ") has no use for it");
@@ -113,7 +112,7 @@ grin::RenderRequest make_render_request(const RenderSpec& spec) {
 
 grin::RenderScene make_render_scene(const Subcommand& command, const RenderSpec& spec) {
   const FilledStage filled = make_stage(command, spec.stage, spec.field);
-  if (spec.random_phase) check_random_phase(command, filled.field);
+  check_unused(command, spec, filled.field);
   const grin::Box box = bounds(filled.stage.boundary);
   const double size = (box.high - box.low).norm();
   const grin::AnyIndexField& field = filled.field.field;

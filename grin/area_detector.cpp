@@ -18,7 +18,7 @@ BoundaryPoint centre_on(const Surface& boundary, const Vec3& centre) {
   require_finite("sensor_at", centre);
   const auto at = boundary_point(boundary, centre);
   if (!at)
-    throw InputError("sensor_at", centre.transpose(),
+    throw InputError("sensor_at", listed(centre),
                      "must be on the boundary of the stage, a sphere or a box");
   return *at;
 }
@@ -55,8 +55,7 @@ AreaDetectorEnd::AreaDetectorEnd(const AreaDetector& detector, const Stage& stag
       const bool fits = sphere ? corner.norm() < sphere->radius
                                : boundary_point(boundary_, centre_ + corner).has_value();
       if (!fits)
-        throw InputError("sensor_size",
-                         std::to_string(detector.width) + " " + std::to_string(detector.height),
+        throw InputError("sensor_size", listed(detector.width, detector.height),
                          "must be within one face of the boundary");
     }
 }

@@ -43,6 +43,7 @@ class Bidirectional {
              [&](const EndHit& hit) { return hit.direction.pixel; });
     };
     const auto collided = [&](const PathVertex& vertex) {
+      ++counts_.light_collisions;
       join_to_sensor(vertex);
       vertices_.offer(vertex, random_);
     };
@@ -76,7 +77,7 @@ class Bidirectional {
       here.density *= std::abs(hit.position.inward.dot(last.arrived));
       here.first_of_other *= heuristic(ends.choice(hit.position, before.point.x));
       const double others =
-          fewer_of_ours(here, hit.position.position_density, hit.direction.density, more);
+          fewer_of_ours(here, hit.position.position_density, hit.direction.density, more, 1);
       const double value = here.weight * hit.value / (1 + others);
       promised_ += value;
       add(pixel(hit), value, here.optical_path);

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/error.h"
+#include "grin/input_checks.h"
 #include "grin/start_directions.h"
 
 namespace flatspeckle::grin {
@@ -75,7 +75,7 @@ BoundaryPatch::BoundaryPatch(const Surface& boundary, const Vec3& centre, double
   const auto* box = std::get_if<Box>(&boundary);
   if (!sphere && !box) refuse_boundary(centre_key);
   const auto at = boundary_point(boundary, centre);
-  if (!at) throw InputError(centre_key, centre.transpose(), "must be on the boundary of the stage");
+  if (!at) throw InputError(centre_key, listed(centre), "must be on the boundary of the stage");
   const double room = sphere ? 2 * sphere->radius : room_on_face(*box, *at);
   if (!(radius > 0 && radius <= room * (1 + nearness)))
     throw InputError(radius_key, radius,

@@ -33,7 +33,7 @@ void CameraEnd::place_lens(const Camera& camera, const Stage& stage) {
   if (!(camera.focus_distance > camera.lens_radius && std::isfinite(camera.focus_distance)))
     throw InputError("focus_distance", camera.focus_distance, "must be more than lens_radius");
   if (!(view_.forward.dot(lens_->inward(centre_)) > 0))
-    throw InputError("sensor_direction", camera.forward.transpose(),
+    throw InputError("sensor_direction", listed(camera.forward),
                      "must point from the lens into the stage");
   focus_distance_ = camera.focus_distance;
 }

@@ -2,9 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
-#include "core/error.h"
+#include "grin/input_checks.h"
 
 namespace flatspeckle::grin {
 
@@ -18,15 +17,13 @@ DensityGrid::DensityGrid(const FieldGrid& grid, std::span<const double> density)
       throw InputError("spacing of a density grid", grid.spacing[a], "must be positive");
   }
   if (!grid.origin.allFinite())
-    throw InputError("origin of a density grid", grid.origin.transpose(), "must be finite");
+    throw InputError("origin of a density grid", listed(grid.origin), "must be finite");
   if (density.size() != grid.size())
     throw InputError("values of a density grid", density.size(), "must be as many as nodes");
   for (const double value : density)
     if (!(value >= 0) || !std::isfinite(value))
       throw InputError("density", value, "must be finite and not negative");
   largest_ = *std::max_element(density.begin(), density.end());
-  mean_ =
-      std::accumulate(density.begin(), density.end(), 0.0) / static_cast<double>(density.size());
 }
 
 double DensityGrid::operator()(const Vec3& x) const {

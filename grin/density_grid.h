@@ -17,14 +17,13 @@ class DensityGrid {
 
   double operator()(const Vec3& x) const;
   double largest() const { return largest_; }
-  double mean() const { return mean_; }
   const FieldGrid& grid() const { return grid_; }
 
  private:
   FieldGrid grid_;
   Vec3 per_spacing_;
   std::vector<double> density_;
-  double largest_ = 0, mean_ = 0;
+  double largest_ = 0;
 };
 
 }  // namespace flatspeckle::grin

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/error.h"
+#include "grin/input_checks.h"
 #include "grin/mesh_distance.h"
 
 namespace flatspeckle::grin {
@@ -16,8 +16,7 @@ void check(const TriangleMesh& mesh, int cells) {
   if (mesh.triangles.empty()) throw InputError("triangles of a mesh", 0, "at least one");
   if (cells < 2) throw InputError("cells of a distance grid", cells, "at least 2");
   for (const Vec3& corner : mesh.corners)
-    if (!corner.allFinite())
-      throw InputError("corner of a mesh", corner.transpose(), "must be finite");
+    if (!corner.allFinite()) throw InputError("corner of a mesh", listed(corner), "must be finite");
   for (const auto& triangle : mesh.triangles)
     for (const int corner : triangle)
       if (corner < 0 || corner >= static_cast<int>(mesh.corners.size()))

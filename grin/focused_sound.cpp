@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <numbers>
 
-#include "core/error.h"
+#include "grin/input_checks.h"
 
 namespace flatspeckle::grin {
 
@@ -22,7 +22,7 @@ FocusedSound::FocusedSound(double background, double amplitude, double k,
     throw InputError("wavenumber of the sound", k, "must be positive");
   for (const Vec3& direction : directions) {
     if (!(direction.norm() > 0))
-      throw InputError("direction of an emitter", direction.transpose(), "must not be 0");
+      throw InputError("direction of an emitter", listed(direction), "must not be 0");
     waves_.push_back(k * direction.normalized());
   }
 }

@@ -1,16 +1,30 @@
 #pragma once
 
 #include <cmath>
+#include <sstream>
 
 #include "core/error.h"
 #include "grin/stage.h"
 
 namespace flatspeckle::grin {
 
+/// As the scene file has it.
+inline std::string listed(const Vec3& x) {
+  std::ostringstream text;
+  text << x[0] << ' ' << x[1] << ' ' << x[2];
+  return text.str();
+}
+
+inline std::string listed(double first, double second) {
+  std::ostringstream text;
+  text << first << ' ' << second;
+  return text.str();
+}
+
 /// Checks of scene keys; all throw InputError.
 
 inline void require_finite(const char* key, const Vec3& x) {
-  if (!x.allFinite()) throw InputError(key, x.transpose(), "must be finite");
+  if (!x.allFinite()) throw InputError(key, listed(x), "must be finite");
 }
 inline void require_positive(const char* key, double value) {
   if (!(value > 0 && std::isfinite(value)))
@@ -20,16 +34,16 @@ inline Vec3 unit_direction(const char* key, const Vec3& direction) {
   require_finite(key, direction);
   const Vec3 unit = direction.stableNormalized();
   if (!(std::abs(unit.norm() - 1) < 1e-9))
-    throw InputError(key, direction.transpose(), "must not be 0");
+    throw InputError(key, listed(direction), "must not be 0");
   return unit;
 }
 /// Of a sensor's place: inside the stage or on its boundary, and not in the body.
 inline void require_in_stage(const Stage& stage, const Vec3& x) {
   require_finite("sensor_at", x);
   if (!(distance(stage.boundary, x) <= 1e-9 * x.norm()))
-    throw InputError("sensor_at", x.transpose(), "must be inside the stage");
+    throw InputError("sensor_at", listed(x), "must be inside the stage");
   if (stage.body && !(distance(stage.body->surface, x) >= 0))
-    throw InputError("sensor_at", x.transpose(), "must not be inside the body");
+    throw InputError("sensor_at", listed(x), "must not be inside the body");
 }
 
 }  // namespace flatspeckle::grin

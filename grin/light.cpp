@@ -26,36 +26,41 @@ double mean_index_squared(const BoundaryPatch& patch, const std::optional<Surfac
   return mean;
 }
 
+/// Within what sums of squares can hold.
+void require_brightness(const char* key, double value) {
+  if (!(value >= 1e-50 && value <= 1e50))
+    throw InputError(key, value, "must be from 1e-50 to 1e50");
+}
+
 /// The disk has no point outside the stage, as far as its rim tells, and light goes into it.
 void require_inside(const BeamLight& beam, const FlatDisk& disk, const Stage& stage) {
   constexpr int rim_points = 64;
   const double tolerance = 1e-9 * (beam.radius + std::abs(distance(stage.boundary, beam.centre)));
   for (int i = 0; i < rim_points; ++i)
     if (!(distance(stage.boundary, disk.rim(2 * pi * i / rim_points)) <= tolerance))
-      throw InputError("radius of a beam_light", beam.radius,
+      throw InputError("beam_light, radius", beam.radius,
                        "the beam's disk must be inside the stage");
   if (distance(stage.boundary, beam.centre) >= -tolerance &&
       !(beam.direction.dot(normal(stage.boundary, beam.centre)) < 0))
-    throw InputError("direction of a beam_light", beam.direction.transpose(),
-                     "must point into the stage");
+    throw InputError("beam_light, direction", listed(beam.direction), "must point into the stage");
 }
 
 }  // namespace
 
 Lights::Source Lights::source(const PointLight& light, const Stage& stage, const Index&) {
-  require_finite("position of a point_light", light.x);
-  require_positive("power of a point_light", light.power);
+  require_finite("point_light, position", light.x);
+  require_brightness("point_light, power", light.power);
   if (!(distance(stage.boundary, light.x) < 0))
-    throw InputError("position of a point_light", light.x.transpose(), "must be inside the stage");
+    throw InputError("point_light, position", listed(light.x), "must be inside the stage");
   return {.light = light, .power = light.power};
 }
 
 Lights::Source Lights::source(const BeamLight& light, const Stage& stage, const Index&) {
   BeamLight beam = light;
-  beam.direction = unit_direction("direction of a beam_light", light.direction);
-  require_finite("position of a beam_light", beam.centre);
-  require_positive("radius of a beam_light", beam.radius);
-  require_positive("power of a beam_light", beam.power);
+  beam.direction = unit_direction("beam_light, direction", light.direction);
+  require_finite("beam_light, position", beam.centre);
+  require_positive("beam_light, radius", beam.radius);
+  require_brightness("beam_light, power", beam.power);
   const FlatDisk disk(beam.centre, beam.direction, beam.radius);
   require_inside(beam, disk, stage);
   return {.light = beam,
@@ -66,13 +71,11 @@ Lights::Source Lights::source(const BeamLight& light, const Stage& stage, const 
 
 Lights::Source Lights::source(const FaceLight& light, const Stage& stage, const Index& index) {
   const bool everywhere = light.radius == INFINITY;
-  require_positive(everywhere ? "radiance of environment" : "radiance of a face_light",
-                   light.radiance);
-  if (!everywhere) require_finite("centre of a face_light", light.centre);
-  BoundaryPatch patch = everywhere
-                            ? BoundaryPatch(stage.boundary, "environment")
-                            : BoundaryPatch(stage.boundary, light.centre, light.radius,
-                                            "centre of a face_light", "radius of a face_light");
+  require_brightness(everywhere ? "environment" : "face_light, radiance", light.radiance);
+  if (!everywhere) require_finite("face_light, position", light.centre);
+  BoundaryPatch patch = everywhere ? BoundaryPatch(stage.boundary, "environment")
+                                   : BoundaryPatch(stage.boundary, light.centre, light.radius,
+                                                   "face_light, position", "face_light, radius");
   const double n_squared = mean_index_squared(patch, body_surface(stage), index);
   if (!(n_squared > 0 && std::isfinite(n_squared)))
     throw InputError("face_light: the index of refraction is not positive and finite all over it");

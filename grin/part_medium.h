@@ -13,11 +13,12 @@ namespace flatspeckle::grin {
 class PartMedium {
  public:
   PartMedium() = default;
-  explicit PartMedium(const ScatteringMedium& medium)
+  /// The mean of the relative density in the part.
+  PartMedium(const ScatteringMedium& medium, double mean_density)
       : grid_(medium.density),
         mu_t_(medium.mu_t()),
         largest_(grid_ ? grid_->largest() : 1),
-        reference_(medium.mu_s > 0 ? mu_t_ * (grid_ ? grid_->mean() : 1) : 0),
+        reference_(medium.mu_s > 0 ? mu_t_ * mean_density : 0),
         scatters_(medium.mu_s > 0) {}
 
   bool scatters() const { return scatters_; }

@@ -42,11 +42,14 @@ inline JoinedPath joined_path(const Strategies& strategies, const PathVertex& y,
       from_y.density * attenuation / curve.spreading * z.cosine(curve.end_direction);
   // a path goes on from an end that was not chosen
   const double others =
-      fewer_of_ours(y, y_from_z, from_y.density, strategies.most_sensor() - z.vertices) /
+      fewer_of_ours(y, y_from_z, from_y.density, strategies.most_sensor() - z.vertices,
+                    strategies.share(y.vertices - 1, z.vertices + 1)) /
           heuristic(z.choice()) +
-      fewer_of_ours(z, z_from_y, from_z.density, strategies.most_light() - y.vertices) /
+      fewer_of_ours(z, z_from_y, from_z.density, strategies.most_light() - y.vertices,
+                    strategies.share(y.vertices + 1, z.vertices - 1)) /
           heuristic(y.choice());
-  return {value, 1 / (1 + others), from_z.pixel};
+  const double share = strategies.share(y.vertices, z.vertices);
+  return {value, share / (share + others), from_z.pixel};
 }
 
 }  // namespace flatspeckle::grin

@@ -20,6 +20,27 @@ inline double bounded_attenuation(double optical_depth) {
   return std::exp(-std::min(optical_depth, 100.0));
 }
 
+/// Which strategies are in use. A short path from an end stops where the rest can be joined to it
+/// or hits it: after the end itself, but for a beam, and for ways that cross a body.
+struct Strategies {
+  static constexpr int unlimited = std::numeric_limits<int>::max() / 2;
+  bool short_light = false;   ///< path tracing
+  bool short_sensor = false;  ///< light tracing
+  /// How often two vertices that both scatter are joined, of the pairs of them that a light path
+  /// and a sensor's path have: one stands for many, which weights should know.
+  double joined_share = 1;
+
+  /// Vertices made from an end that can also be made from the other.
+  int most_light() const { return short_light ? 1 : unlimited; }
+  int most_sensor() const { return short_sensor ? 1 : unlimited; }
+
+  /// What the density of a strategy of so many vertices from the light and from the sensor counts,
+  /// beside the densities of its vertices.
+  double share(int from_light, int from_sensor) const {
+    return from_light > 1 && from_sensor > 1 ? heuristic(joined_share) : 1;
+  }
+};
+
 /// A vertex of a subpath that begins at a light or at the sensor, "our end". All that weights need
 /// of the vertices before it is in three numbers, so that a path costs in proportion to its length
 /// (as in Georgiev, Krivanek, Davidovic and Slusallek 2012, light transport simulation with vertex
@@ -69,19 +90,21 @@ inline PathVertex end_vertex(const EndPosition& end) {
 /// Densities of the strategies with fewer of our vertices, relative to the one at hand, in which
 /// `last` is our last. `made_from_other`: density of `last` if made from the other side;
 /// `direction_density`: at `last`, from the other side towards the vertex before. No more than
-/// `more` vertices can be made from the other side than are.
+/// `more` vertices can be made from the other side than are. `share`: Strategies::share() of the
+/// strategy with one of ours less.
 inline double fewer_of_ours(const PathVertex& last, double made_from_other,
-                            double direction_density, int more) {
+                            double direction_density, int more, double share) {
   if (more <= 0) return 0;
   const double rest = more > 1 ? heuristic(direction_density * last.back) * last.before : 0;
-  return heuristic(made_from_other / last.density) * (last.first_of_other + rest);
+  return heuristic(made_from_other / last.density) * (share * last.first_of_other + rest);
 }
 
 /// Where a flight from `here` ended. The direction was drawn with `direction_density` (1 of a beam;
 /// phase functions have the same both ways). `choice`: of `here` if that is our end and were chosen
 /// from there. On a surface, `density` still lacks the cosine there.
-inline PathVertex arrived(const PathVertex& here, const Flight& flight, double direction_density,
-                          double choice, double index) {
+inline PathVertex arrived(const Strategies& strategies, const PathVertex& here,
+                          const Flight& flight, double direction_density, double choice,
+                          double index) {
   const double turned = index / here.index * (index / here.index);
   // what weights take for |J| of a way that no strategy joins cancels
   const double spreading = flight.crosses_body ? 1 : std::max(flight.spreading, 1e-60);
@@ -95,23 +118,14 @@ inline PathVertex arrived(const PathVertex& here, const Flight& flight, double d
   next.vertices = here.vertices + 1;
   next.density = direction_density * attenuation / spreading;
   next.back = attenuation / (spreading * turned) * here.cosine(flight.start_direction);
-  next.before = (here.first_of_other + heuristic(direction_density * here.back) * here.before) /
-                heuristic(here.density);
+  // the other end made `here` and, where that counts, at least two more
+  const double share = strategies.share(here.vertices - 1, 2);
+  next.before =
+      (share * here.first_of_other + heuristic(direction_density * here.back) * here.before) /
+      heuristic(here.density);
   const bool can_be_joined = !flight.crosses_body && !(here.end && here.end->is_beam);
   next.first_of_other = can_be_joined ? heuristic(choice) : 0;
   return next;
 }
-
-/// Which strategies are in use. A short path from an end stops where the rest can be joined to it
-/// or hits it: after the end itself, but for a beam, and for ways that cross a body.
-struct Strategies {
-  static constexpr int unlimited = std::numeric_limits<int>::max() / 2;
-  bool short_light = false;   ///< path tracing
-  bool short_sensor = false;  ///< light tracing
-
-  /// Vertices made from an end that can also be made from the other.
-  int most_light() const { return short_light ? 1 : unlimited; }
-  int most_sensor() const { return short_sensor ? 1 : unlimited; }
-};
 
 }  // namespace flatspeckle::grin

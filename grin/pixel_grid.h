@@ -93,7 +93,7 @@ struct Orientation {
     const Vec3 unit_up = unit_direction("sensor_up", upwards);
     const Vec3 across = forward.cross(unit_up);
     if (!(across.norm() > 1e-6))
-      throw InputError("sensor_up", upwards.transpose(), "must not be along the view");
+      throw InputError("sensor_up", listed(upwards), "must not be along the view");
     right = across.normalized();
     up = right.cross(forward);
   }

@@ -1,16 +1,18 @@
 #include "grin/render_job.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <mutex>
-#include <numeric>
+#include <string>
 
 #include "core/error.h"
 #include "core/random.h"
 #include "grin/curved_space.h"
 #include "grin/path_kernels.h"
 #include "grin/photon_map.h"
+#include "grin/render_pilot.h"
 #include "grin/unscattered_beams.h"
 
 namespace flatspeckle::grin {
@@ -27,6 +29,12 @@ Strategies strategies(RenderMethod method) {
 
 bool is_photon_map(const RenderRequest& request) {
   return request.method == RenderMethod::photon_map;
+}
+
+constexpr int most_scatterings = std::numeric_limits<int>::max();
+
+int path_limit(const RenderRequest& request) {
+  return request.max_scatterings > 0 ? static_cast<int>(request.max_scatterings) : most_scatterings;
 }
 
 double photon_radius(const RenderScene& scene, const RenderRequest& request) {
@@ -47,13 +55,12 @@ bool sums_beams_apart(const Transport& transport, const RenderRequest& request) 
 
 std::shared_ptr<Transport> transport_in(const RenderScene& scene, const RenderRequest& request,
                                         const Lights::Index& index) {
-  const int limit = request.max_scatterings;
   return std::make_shared<Transport>(Transport{
       .stage = scene.stage,
       .lights = Lights(scene.lights, scene.stage, index),
       .sensor = SensorEnd(scene.sensor, scene.stage),
       .strategies = strategies(request.method),
-      .max_scatterings = limit > 0 ? limit : std::numeric_limits<int>::max(),
+      .max_scatterings = path_limit(request),
   });
 }
 
@@ -91,33 +98,14 @@ Tracer curved_tracer(const RenderScene& scene, const RenderRequest& request,
   return tracer;
 }
 
-/// Of the scene alone: from a few pairs of paths that join nothing. A pair costs F flights and
-/// varies by V. Joins of the promise S at a level L add L S to V and cost c S/L flights; variance
-/// times cost is least at L^2 = c V / F, both without joins.
-double level_of_joins(const Tracer& tracer, const RenderScene& scene, double flights_per_join) {
-  constexpr int pairs = 256;
-  constexpr auto no_batch = std::numeric_limits<std::uint64_t>::max();
-  const int pixels = tracer.transport->sensor.pixels().count();
-  std::vector<Complex> sums(static_cast<std::size_t>(pixels) * scene.bins.count);
-  Film film(pixels, scene.bins, sums);
-  RandomStream random(0, static_cast<std::uint64_t>(Stream::render), no_batch);
-  TransportCounts counts;
-  std::vector<double> promises;
-  tracer.transport->join_level = std::numeric_limits<double>::infinity();
-  tracer.kernel(pairs, random, film, counts, &promises);
-  // without the few that promise most: what is near an end is rare, and would decide alone
-  std::sort(promises.begin(), promises.end());
-  promises.resize(pairs - pairs / 64);
-  const double n = static_cast<double>(promises.size());
-  const double mean = std::accumulate(promises.begin(), promises.end(), 0.0) / n;
-  const double variance =
-      std::inner_product(promises.begin(), promises.end(), promises.begin(), 0.0) / n - mean * mean;
-  const double flights = static_cast<double>(counts.flights) / pairs;
-  return std::sqrt(flights_per_join * std::max(variance, 0.0) / std::max(flights, 1.0));
-}
-
-int paths_per_batch(std::size_t sums) {
-  return static_cast<int>(std::clamp<std::size_t>(sums / 8, 32, 16384));
+/// Of a picture's size, and so few that a batch ends soon where paths are long. A power of two: no
+/// rounding of the flights changes it.
+int paths_per_batch(const RenderRequest& request, std::size_t sums, double flights_per_pair) {
+  const double most_flights = is_photon_map(request) ? 1 << 20 : 1 << 17;
+  const std::size_t paths = is_photon_map(request) ? photon_paths_per_batch
+                                                   : std::clamp<std::size_t>(sums / 8, 32, 16384);
+  const auto short_enough = static_cast<std::size_t>(most_flights / flights_per_pair);
+  return static_cast<int>(std::min(paths, std::bit_floor(std::max<std::size_t>(short_enough, 1))));
 }
 
 std::vector<Complex> steady_mean(double samples, std::span<const Complex> sums, int bins) {
@@ -134,13 +122,14 @@ Estimate steady_picture(const GroupedSums& sums, int bins) {
 
 void require_usable(const RenderScene& scene, const RenderRequest& request) {
   require_usable(scene.bins);
-  if (request.max_scatterings < 0)
-    throw InputError("max_scatterings", request.max_scatterings, "must be 0 (no limit) or more");
+  if (request.max_scatterings < 0 || request.max_scatterings > most_scatterings)
+    throw InputError("max_scatterings", request.max_scatterings,
+                     "must not be negative, and at most " + std::to_string(most_scatterings));
   if (!(request.photon_radius >= 0) || !std::isfinite(request.photon_radius))
     throw InputError("photon_radius", request.photon_radius, "must be 0 (automatic) or positive");
   if (scene.random_phase && !std::holds_alternative<StandingWave>(scene.field) &&
       !std::holds_alternative<FocusedSound>(scene.field))
-    throw InputError("random_phase", "true", "needs a field of sound");
+    throw InputError("random_phase: needs the field ultrasound or focused_sound, and it alone");
 }
 
 }  // namespace
@@ -148,20 +137,21 @@ void require_usable(const RenderScene& scene, const RenderRequest& request) {
 RenderJob render_job(const RenderScene& scene, const RenderRequest& request, std::uint64_t seed) {
   require_usable(scene, request);
   check(scene.stage);
+  check_path_lengths(scene.stage, path_limit(request));
   const RenderPlan plan = render_plan(scene);
   const Tracer tracer =
       plan.curved ? curved_tracer(scene, request, plan) : straight_tracer(scene, request, plan);
-  if (!is_photon_map(request))
-    tracer.transport->join_level =
-        level_of_joins(tracer, scene, plan.curved ? flights_per_curve : flights_per_line);
+  const double flights = is_photon_map(request)
+                             ? flights_per_pair(*tracer.transport, tracer.kernel, scene.bins)
+                             : tune_joins(*tracer.transport, tracer.kernel, scene.bins,
+                                          plan.curved ? flights_per_curve : flights_per_line);
 
   RenderJob job;
   job.pixels = tracer.transport->sensor.pixels();
   job.bins = scene.bins;
   job.plan = plan.describe();
   job.batches.size = static_cast<std::size_t>(job.pixels.count()) * scene.bins.count;
-  const int paths =
-      is_photon_map(request) ? photon_paths_per_batch : paths_per_batch(job.batches.size);
+  const int paths = paths_per_batch(request, job.batches.size, flights);
   job.batches.samples_per_batch = paths;
   const auto counts = std::make_shared<TransportCounts>();
   job.counts = counts;

@@ -32,8 +32,8 @@ enum class RenderMethod { path, light, bidirectional, photon_map };
 
 struct RenderRequest {
   RenderMethod method = RenderMethod::bidirectional;
-  int max_scatterings = 0;   ///< 0: no limit
-  double photon_radius = 0;  ///< of photon_map; 0: chosen from the scene
+  std::int64_t max_scatterings = 0;  ///< 0: no limit
+  double photon_radius = 0;          ///< of photon_map; 0: chosen from the scene
 };
 
 /// samples: camera paths and as many light paths. Sums of a batch: [pixel][bin], imaginary part 0.

@@ -45,10 +45,10 @@ struct Join {
   double multiplicity;   ///< K of C26: f multiplicity is unbiased for the sum of f over the curves
 };
 
-// The reference extinction of a part that scatters: mu_t, or mu_t times the mean relative density
-// where the density is a grid; of a part that does not: 0, as no flight ends there. Weights of
-// multiple importance sampling use it in place of the true one, which leaves them weights and needs
-// no second estimate.
+// The reference extinction of a part that scatters: mu_t, or mu_t times the mean in it of the
+// relative density where that is a grid; of a part that does not: 0, as no flight ends there.
+// Weights of multiple importance sampling use it in place of the true one, which leaves them
+// weights and needs no second estimate.
 
 /// What the estimators ask of space. StraightSpace<plan> answers inline; CurvedSpace (abstract) by
 /// one virtual call per flight, behind which the field's type is known to every step.

@@ -31,4 +31,11 @@ Stage without_scattering(const Stage& stage);
 /// is not closed or has no size, and a body that is not within the boundary.
 void check(const Stage& stage);
 
+/// Throws InputError for a medium so dense that a path of at most so many scatterings may not end
+/// within minutes.
+void check_path_lengths(const Stage& stage, int max_scatterings);
+
+/// The relative density of the medium in the body, or around it, averaged over points of a lattice.
+double mean_density(const Stage& stage, bool in_body);
+
 }  // namespace flatspeckle::grin

@@ -19,10 +19,11 @@ template <RenderPlan plan>
 class StraightStage {
  public:
   explicit StraightStage(const Stage& stage)
-      : boundary_(stage.boundary), media_{PartMedium(stage.medium), {}} {
+      : boundary_(stage.boundary),
+        media_{PartMedium(stage.medium, mean_density(stage, false)), {}} {
     if (!stage.body) return;
     body_ = stage.body->surface;
-    media_[1] = PartMedium(stage.body->medium);
+    media_[1] = PartMedium(stage.body->medium, mean_density(stage, true));
   }
 
   const PartMedium& medium(Part part) const {

@@ -35,7 +35,8 @@ void walk(const Transport& transport, const S& space, const Ends& ends, const Pa
       return;
     }
     const double choice = here.end ? ends.choice(*here.end, flight.point.x) : 1;
-    PathVertex next = arrived(here, flight, density, choice, space.index(flight.point));
+    PathVertex next =
+        arrived(transport.strategies, here, flight, density, choice, space.index(flight.point));
     if (is_short && next.first_of_other > 0) return;
     if (!plan.scatters || flight.end == Flight::End::boundary) return left(next, here);
     if (next.vertices - 2 >= transport.max_scatterings) return;

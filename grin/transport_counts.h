@@ -11,6 +11,7 @@ namespace flatspeckle::grin {
 /// What light paths cost.
 struct TransportCounts {
   std::uint64_t flights = 0, lost_flights = 0;
+  std::uint64_t light_collisions = 0;          ///< of paths from lights
   std::uint64_t joins_weighed = 0, joins = 0;  ///< considered; asked of space
   std::uint64_t lost_values = 0;               ///< not finite; left out
   ConnectionStatistics connections = {};
@@ -18,6 +19,7 @@ struct TransportCounts {
   TransportCounts& operator+=(const TransportCounts& other) {
     flights += other.flights;
     lost_flights += other.lost_flights;
+    light_collisions += other.light_collisions;
     joins_weighed += other.joins_weighed;
     joins += other.joins;
     lost_values += other.lost_values;

@@ -276,8 +276,10 @@ class Refused(RenderTest):
         self.refuse("index_around", "no body", index_around=1.3)
         self.refuse("index_around = 0", index_around=0, body_sphere=[0, 0, 2, 0.5])
         self.refuse("body_mu_s", "no body", body_mu_s=1)
-        self.refuse("max_length = 0", max_length=0)
+        self.refuse("max_length = 0", max_length=0, **FIBRE)
+        self.refuse("max_length", "no use", max_length=9)
         self.refuse("step = -1", step=-1, **FIBRE)
+        self.refuse("step = 1e-09", "at least", step=1e-9, **FIBRE)
         self.refuse("step", "no use", step=0.1)
         self.refuse("length_unit = 0", length_unit=0)
 
@@ -293,7 +295,7 @@ class Refused(RenderTest):
         self.refuse("luneburg in a sum", field=["luneburg", "linear"], centre=[0, 0, 2],
                     slope=[0, 0, 0.01])
         self.refuse("alpha", "no use", alpha=1)
-        self.refuse("random_phase", random_phase=True)
+        self.refuse("random_phase", "ultrasound", random_phase=True)
         self.refuse("sound_phase", "no use", field="ultrasound", amplitude=1e-3, sound_phase=1,
                     sound_wavenumber=1, random_phase=True)
         with h5py.File(self.folder / "small.h5", "w") as file:
@@ -305,6 +307,8 @@ class Refused(RenderTest):
         self.refuse("mu_s = -1", "negative", mu_s=-1)
         self.refuse("mu_a = -0.1", "negative", mu_a=-0.1)
         self.refuse("mu_s = nan", mu_s="nan")
+        self.refuse("mu_s = 1e+07", "too dense", mu_s=1e7, mu_a=None)
+        self.refuse("body_mu_s = 1e+07", "too dense", body_mu_s=1e7, body_sphere=[0, 0, 2, 0.5])
         self.refuse("body_mu_s = -1", body_mu_s=-1, body_sphere=[0, 0, 2, 0.5])
         self.refuse("body_g = 2", body_mu_s=1, body_phase="henyey_greenstein", body_g=2,
                     body_sphere=[0, 0, 2, 0.5])
@@ -333,15 +337,19 @@ class Refused(RenderTest):
         self.refuse("light is not given", beam_light=None)
         self.refuse("point_light", "4 numbers", point_light=[0, 0, 1])
         self.refuse("point_light, power = 0", point_light=[0, 0, 1, 0])
-        self.refuse("point_light", "inside the stage", point_light=[0, 0, 5, 1])
+        self.refuse("point_light, power = 1e+200", point_light=[0, 0, 1, 1e200])
+        self.refuse("point_light, position = 0.25 0 5", "inside the stage",
+                    point_light=[0.25, 0, 5, 1])
         self.refuse("beam_light", "8 numbers", beam_light=[0, 0, 0, 0, 0, 1])
         self.refuse("beam_light, direction = 0 0 0", beam_light=[0, 0, 0, 0, 0, 0, 0.1, 1])
-        self.refuse("beam_light", "inside the stage", beam_light=[0, 0, 0, 0, 0, 1, 1.1, 1])
+        self.refuse("beam_light, radius = 1.1", "inside the stage",
+                    beam_light=[0, 0, 0, 0, 0, 1, 1.1, 1])
         self.refuse("beam_light", "into the stage", beam_light=[0, 0, 0, 0, 0, -1, 0.1, 1])
         self.refuse("beam_light, radius = 0", beam_light=[0, 0, 0, 0, 0, 1, 0, 1])
         self.refuse("face_light", face_light=[0, 0, 1, 0.1, 1])
         self.refuse("face_light, radiance = -1", face_light=[0, 0, 0, 0.1, -1])
         self.refuse("environment = 0", environment=0)
+        self.refuse("environment = 1e+200", environment=1e200)
 
     def test_sensors(self):
         camera = {**{key: None for key in AREA}, **CAMERA}
@@ -350,7 +358,7 @@ class Refused(RenderTest):
         self.refuse("sensor = eye", sensor="eye")
         self.refuse("sensor_at is not given", sensor_at=None)
         self.refuse("sensor_at = 0 0 3", "boundary", sensor_at=[0, 0, 3])
-        self.refuse("sensor_size", sensor_size=[3, 1])
+        self.refuse("sensor_size = 3 1:", sensor_size=[3, 1])
         self.refuse("sensor_size = 1", "two numbers", sensor_size=[1])
         self.refuse("sensor_size is not given", sensor_size=None)
         self.refuse("sensor_up", sensor_up=[0, 0, 1])
@@ -374,7 +382,7 @@ class Refused(RenderTest):
         self.refuse("path_bins = 2 1 5", path_bins=[2, 1, 5])
         self.refuse("path_bins = 1 2 1.5", path_bins=[1, 2, 1.5])
         self.refuse("path_bins = 1 2 1", path_bins=[1, 2, 1])
-        self.refuse("pixels x path_bins", path_bins=[1, 2, 90_000], pixels=[999, 999])
+        self.refuse("pixels x path_bins", path_bins=[1, 2, 90_000], pixels=[10, 10])
         self.refuse("method = magic", method="magic")
         self.refuse("photon_radius", "no use", photon_radius=0.1)
         self.refuse("photon_radius = 0", method="photon_map", photon_radius=0)

@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "grin/trace.h"
+#include "tests/grin/meshes.h"
 #include "tests/grin/ray_tests.h"
 #include "tests/grin/space_stages.h"
 #include "tests/statistics.h"
@@ -15,6 +16,7 @@ namespace flatspeckle::grin {
 
 namespace {
 
+using tests::cube_mesh;
 using tests::random_direction;
 using tests::random_point;
 using tests::straight_plan;
@@ -70,15 +72,6 @@ void check_free_flights(const S& space, const ScatteringMedium& medium, const Ve
   }
   check_depths(survived, depth(way));
   CHECK(medium.mu_s > 0);
-}
-
-TriangleMesh cube_mesh(double half) {
-  TriangleMesh mesh;
-  for (int i = 0; i < 8; ++i)
-    mesh.corners.push_back(half * Vec3(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1));
-  mesh.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
-                    {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
-  return mesh;
 }
 
 }  // namespace

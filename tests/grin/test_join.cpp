@@ -72,6 +72,28 @@ void check_flights_against_joins(const S& space, const PathPoint& p, const Scatt
 
 }  // namespace
 
+TEST_CASE("the reference extinction is that of the density inside of the part") {
+  // 1 in the body, 3 around it in the stage, 100 beyond
+  const Sphere core{Vec3::Zero(), 1};
+  const Box box{Vec3::Constant(-2), Vec3::Constant(2)};
+  const FieldGrid grid{Vec3::Constant(-5), Vec3::Constant(0.125), {81, 81, 81}};
+  std::vector<double> density;
+  for (int i = 0; i < 81 * 81 * 81; ++i) {
+    const Vec3 x = grid.origin + 0.125 * Vec3(i / 81 / 81, i / 81 % 81, i % 81);
+    density.push_back(core.distance(x) < 0.25 ? 1 : box.distance(x) < 0.25 ? 3 : 100);
+  }
+  const ScatteringMedium medium{2, 0, {}, std::make_shared<DensityGrid>(grid, density)};
+  const Stage stage{box, medium, Body{core, medium}};
+  const StraightSpace<RenderPlan{.curved = false}> space(stage, 0);
+  RandomStream random(2, 94, 0);
+  ConnectionStatistics statistics;
+  const auto depth = [&](const Vec3& p, const Vec3& q, Part part) {
+    return space.join({p, part}, {q, part}, random, statistics)->optical_depth;
+  };
+  CHECK(depth({0, 0, 0}, {0.5, 0, 0}, Part::body) == doctest::Approx(2 * 1 * 0.5));
+  CHECK(depth({1.5, 0, 0}, {1.5, 1, 0}, Part::stage) == doctest::Approx(2 * 3 * 1).epsilon(0.1));
+}
+
 TEST_CASE("straight joins: closed form, none through a body or to another part") {
   const Stage stage{.boundary = Sphere{Vec3::Zero(), 3},
                     .medium = {.mu_s = 0.4, .mu_a = 0.1},

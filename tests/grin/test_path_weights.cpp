@@ -70,7 +70,7 @@ PathVertex light_subpath(const Transport& transport, const WholePath& path, int 
       density = scattering_density(transport, path, i, true);
     else if (!path.light.is_beam)
       density = transport.lights.towards(path.light, edge.forth.start_direction).density;
-    vertex = arrived(vertex, edge.forth, density, 1, path.index[i + 1]);
+    vertex = arrived(transport.strategies, vertex, edge.forth, density, 1, path.index[i + 1]);
   }
   return vertex;
 }
@@ -84,7 +84,7 @@ PathVertex sensor_subpath(const Transport& transport, const WholePath& path, int
         i == last ? transport.sensor.towards(path.sensor, edge.back.start_direction).density
                   : scattering_density(transport, path, i, false);
     const double choice = i == last ? path.chosen_sensor(transport).choice : 1;
-    vertex = arrived(vertex, edge.back, density, choice, path.index[i - 1]);
+    vertex = arrived(transport.strategies, vertex, edge.back, density, choice, path.index[i - 1]);
   }
   return vertex;
 }
@@ -92,7 +92,7 @@ PathVertex sensor_subpath(const Transport& transport, const WholePath& path, int
 /// Weight of the strategy in which all vertices were made from one side, `end` being hit.
 double weight_of_hit(PathVertex last, const EndPosition& end, double density, int more) {
   last.density *= std::abs(end.inward.dot(last.arrived));
-  return 1 / (1 + fewer_of_ours(last, end.position_density, density, more));
+  return 1 / (1 + fewer_of_ours(last, end.position_density, density, more, 1));
 }
 
 /// Of the strategy with s vertices made from the light; nothing where there is no such strategy.
@@ -161,6 +161,7 @@ Transport transport_of(const CurvedSpace& space, const Stage& stage, const Light
 
 const Strategies path_tracing{.short_light = true};
 const Strategies light_tracing{.short_sensor = true};
+const Strategies rarely_joined{.joined_share = 0.01};
 
 /// Through random points, each way of each edge solved for by itself; nothing where one of them
 /// has no curve or the two differ.
@@ -201,7 +202,7 @@ TEST_CASE("the weights of all strategies that make a path sum to 1 where rays ar
   int paths = 0;
   for (const Light& light : lights)
     for (const Sensor& sensor : sensors)
-      for (const Strategies& mask : {Strategies{}, path_tracing, light_tracing}) {
+      for (const Strategies& mask : {Strategies{}, rarely_joined, path_tracing, light_tracing}) {
         const Transport transport = transport_of(*space, stage, light, sensor, mask);
         for (int scatterings = 0; scatterings < 6; ++scatterings)
           for (int trial = 0; trial < 20; ++trial) {
@@ -266,7 +267,7 @@ TEST_CASE("weights sum to 1 on paths that cross a body, and of beams") {
   int paths = 0, crossing = 0;
   for (const Light& light : {lights[1], beam})
     for (const Sensor& sensor : {sensors[1], sensors[2]})
-      for (const Strategies& mask : {Strategies{}, path_tracing, light_tracing}) {
+      for (const Strategies& mask : {Strategies{}, rarely_joined, path_tracing, light_tracing}) {
         const Transport transport = transport_of(*space, stage, light, sensor, mask);
         for (int trial = 0; trial < 1000; ++trial) {
           const auto path = walked_path(transport, *space, 1 + trial % 7, random);

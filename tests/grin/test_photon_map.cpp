@@ -6,6 +6,7 @@
 #include <doctest/doctest.h>
 
 #include "grin/photon_map.h"
+#include "tests/grin/meshes.h"
 #include "tests/grin/render_tests.h"
 
 using namespace flatspeckle;
@@ -184,35 +185,80 @@ RenderScene beam_in_fog(bool ball) {
   return scene;
 }
 
+/// Sound that bends the beam, at a phase of its own for each path, strong enough to be seen.
+RenderScene beam_in_sound() {
+  RenderScene scene = beam_in_fog(false);
+  scene.field = FocusedSound(0.3, 0.15, 4, cap_directions(4, 0.9), Vec3(0, 0, 0.3));
+  scene.random_phase = true;
+  scene.step = 0.2;
+  scene.sensor = AreaDetector{{2, 0, 0.3}, {0, 1, 0}, 1, 1, {}, 0.6};
+  return scene;
+}
+
+/// The beam in a stage whose boundary is a mesh; a camera in it looks across.
+RenderScene beam_in_mesh() {
+  RenderScene scene = beam_in_fog(false);
+  scene.stage.boundary = DistanceGrid(cube_mesh(2), 20);
+  scene.lights = {BeamLight{{0, 0, -1.9}, {0, 0, 1}, 0.3}};
+  scene.sensor = Camera{.x = {1.5, 0, 0.3},
+                        .forward = {-1, 0, 0},
+                        .up = {0, 1, 0},
+                        .field_of_view = 0.3,
+                        .pixels = {}};
+  return scene;
+}
+
+/// Against another method, which has no bias.
+void check_shrinking(const RenderScene& scene, RenderMethod method, double exact_samples,
+                     double samples) {
+  const Rendered exact = rendered(scene, method, exact_samples);
+  const auto at = [&](double radius) {
+    return rendered(scene, {RenderMethod::photon_map, 0, radius}, samples);
+  };
+  const Rendered wide = at(0.4), half = at(0.2), quarter = at(0.1);
+  const double reference = exact.value();
+  CAPTURE(reference);
+  CAPTURE(exact.error());
+  CAPTURE(wide.value());
+  CAPTURE(wide.error());
+  CAPTURE(half.value());
+  CAPTURE(half.error());
+  CAPTURE(quarter.value());
+  CAPTURE(quarter.error());
+  // blurred by far at first
+  CHECK(std::abs(wide.value() - reference) > 4 * std::hypot(wide.error(), exact.error()));
+  CHECK(std::abs(quarter.value() - reference) < 0.5 * std::abs(wide.value() - reference));
+  // without the terms in radius^2 and, less certain, radius^3
+  const double limit = (4 * quarter.value() - half.value()) / 3;
+  const double error = std::hypot(4 * quarter.error(), half.error()) / 3;
+  CAPTURE(limit);
+  CAPTURE(error);
+  CHECK(error < 0.05 * reference);
+  CHECK(std::abs(limit - reference) < 4 * std::hypot(error, exact.error()));
+}
+
 }  // namespace
 
 TEST_CASE("the photon map converges to bidirectional tracing as its radius shrinks") {
   for (const bool ball : {false, true}) {
     CAPTURE(ball);
-    const RenderScene scene = beam_in_fog(ball);
-    const Rendered exact = rendered(scene, RenderMethod::bidirectional, 300000);
-    const auto at = [&](double radius) {
-      return rendered(scene, {RenderMethod::photon_map, 0, radius}, 150000);
-    };
-    const Rendered wide = at(0.4), half = at(0.2), quarter = at(0.1);
-    const double reference = exact.value();
-    CAPTURE(reference);
-    CAPTURE(exact.error());
-    CAPTURE(wide.value());
-    CAPTURE(wide.error());
-    CAPTURE(half.value());
-    CAPTURE(half.error());
-    CAPTURE(quarter.value());
-    CAPTURE(quarter.error());
-    // blurred by far at first
-    CHECK(std::abs(wide.value() - reference) > 4 * std::hypot(wide.error(), exact.error()));
-    CHECK(std::abs(quarter.value() - reference) < 0.5 * std::abs(wide.value() - reference));
-    // without the terms in radius^2 and, less certain, radius^3
-    const double limit = (4 * quarter.value() - half.value()) / 3;
-    const double error = std::hypot(4 * quarter.error(), half.error()) / 3;
-    CAPTURE(limit);
-    CAPTURE(error);
-    CHECK(error < 0.05 * reference);
-    CHECK(std::abs(limit - reference) < 4 * std::hypot(error, exact.error()));
+    check_shrinking(beam_in_fog(ball), RenderMethod::bidirectional, 300000, 150000);
   }
+}
+
+TEST_CASE("the photon map agrees with light tracing in focused sound") {
+  const RenderScene scene = beam_in_sound();
+  const Rendered exact = rendered(scene, RenderMethod::light, 30000);
+  const Rendered map = rendered(scene, {RenderMethod::photon_map, 0, 0.15}, 60000);
+  CAPTURE(exact.value());
+  CAPTURE(exact.error());
+  CAPTURE(map.value());
+  CAPTURE(map.error());
+  const double error = std::hypot(exact.error(), map.error());
+  CHECK(error < 0.06 * exact.value());
+  CHECK(std::abs(map.value() - exact.value()) < 4 * error);
+}
+
+TEST_CASE("the photon map converges to bidirectional tracing within a mesh") {
+  check_shrinking(beam_in_mesh(), RenderMethod::bidirectional, 100000, 60000);
 }

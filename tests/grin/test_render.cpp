@@ -1,6 +1,7 @@
 #include <doctest/doctest.h>
 
 #include "core/error.h"
+#include "core/stopwatch.h"
 #include "tests/grin/furnace.h"
 
 namespace flatspeckle::grin::tests {
@@ -145,10 +146,27 @@ TEST_CASE("what a plan leaves out changes no bit of a picture") {
     CHECK(a.value(pixel) == doctest::Approx(b.value(pixel)).epsilon(1e-12));
 }
 
+TEST_CASE("neither the pilot nor a batch takes long where paths are") {
+  const RenderScene scene =
+      scene_in(Homogeneous{}, {unit_box(), fog(5000, 0, 0.9)}, point, whole_face());
+  for (const RenderMethod method : {RenderMethod::bidirectional, RenderMethod::photon_map}) {
+    const double start = thread_cpu_seconds();
+    const RenderJob job = render_job(scene, {method}, 1);
+    CHECK(thread_cpu_seconds() - start < 2);
+    CHECK(job.batches.samples_per_batch == 1);
+  }
+}
+
 TEST_CASE("bad requests are refused") {
   const RenderScene scene = scene_in(fisheye, {unit_box(), {}}, point, camera);
   CHECK_THROWS_AS(render_job(scene, {.max_scatterings = -1}, 1), InputError);
   CHECK_THROWS_AS(render_job(scene, {.photon_radius = -1}, 1), InputError);
+  CHECK_THROWS_AS(
+      render_job(scene, {.max_scatterings = std::numeric_limits<std::int64_t>::max()}, 1),
+      InputError);
+  const RenderScene dense = scene_in(Homogeneous{}, {unit_box(), fog(1e7, 0, 0.9)}, point, camera);
+  CHECK_THROWS_AS(render_job(dense, {}, 1), InputError);
+  CHECK_NOTHROW(render_job(dense, {.max_scatterings = 100}, 1));
   RenderScene silent = scene;
   silent.random_phase = true;
   CHECK_THROWS_AS(render_job(silent, {}, 1), InputError);

@@ -33,3 +33,25 @@ TEST_CASE("a half-space against Chandrasekhar's H function") {
   check_share(slab(medium, 40, 100, Face::reflected), RenderMethod::bidirectional, 200000,
               isotropic_half_space(albedo), 2e-3);
 }
+
+TEST_CASE("the errors of short runs in a thick slab hold") {
+  ScatteringMedium medium;
+  medium.mu_s = 10;
+  medium.mu_a = 0.01;
+  medium.phase = {SpacePhaseFunction::Kind::henyey_greenstein, 0.9};
+  const RenderScene scene = slab(medium, 10, 50, Face::reflected);
+  const double area = 1e4;
+  const Rendered exact = rendered(scene, RenderMethod::light, 20000);
+  CHECK(area * exact.error() < 0.004);
+  const int runs = 20;
+  int within = 0;
+  double squares = 0;
+  for (int seed = 1; seed <= runs; ++seed) {
+    const Rendered run = rendered(scene, RenderMethod::bidirectional, 512, seed);
+    const double off = (run.value() - exact.value()) / std::hypot(run.error(), exact.error());
+    within += std::abs(off) < 2;
+    squares += off * off / runs;
+  }
+  CHECK(within >= 16);
+  CHECK(squares < 2);
+}
