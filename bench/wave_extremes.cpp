@@ -211,8 +211,11 @@ void add_statics(ExtremeRows& rows) {
     for (const double gap : {1e-2, 1e-4}) {
       // a small gap takes so high an order that less is asked of it
       const double tolerance = gap < 1e-3 ? 1e-4 : 1e-9, limit = gap < 1e-3 ? 1e-4 : 1e-6;
-      rows.add("hard, k a 1e-4, gap " + short_number(gap), what,
-               [=] { return dipole(disk(Kind::hard, 1e-4), gap, -1, across, tolerance, limit); });
+      const auto run = [=] {
+        return dipole(disk(Kind::hard, 1e-4), gap, -1, across, tolerance, limit);
+      };
+      const std::string name = "hard, k a 1e-4, gap " + short_number(gap);
+      gap < 1e-3 ? rows.add_slow(name, what, run) : rows.add(name, what, run);
     }
     const double te = -(1.5 * 1.5 - 1) / (1.5 * 1.5 + 1);
     rows.add("TE, k a 1e-4, gap 1e-6", what,
@@ -241,8 +244,8 @@ void add_indices(ExtremeRows& rows) {
       // the second scattering is left out: as large as the phase that one disk adds, 2 k a 1e-8
       rows.add(named("k a " + short_number(x) + ", index 1 + 1e-8", kind), "independent scattering",
                [=] { return independent(disk(kind, x, 1 + 1e-8), x > 1 ? 1e-5 : 1e-7); });
-    rows.add(named("k a 1000, index 0.1 + 5i", kind), "Mie series from J'/J of the textbook",
-             [=] { return mie(disk(kind, 1000, metal), 1e-9); });
+    rows.add_slow(named("k a 1000, index 0.1 + 5i", kind), "Mie series from J'/J of the textbook",
+                  [=] { return mie(disk(kind, 1000, metal), 1e-9); });
     rows.add(named("k a 100, index 10", kind), "Mie series from J'/J of the textbook",
              [=] { return mie(disk(kind, 100, 10), 1e-9); });
     for (const double x : {1e-4, 1.0, 10.0}) {
@@ -264,8 +267,9 @@ void add_resonances(ExtremeRows& rows) {
 
 void add_overlaps(ExtremeRows& rows) {
   const Scatterer one = disk(Kind::tm, 1);
-  for (const auto& [name, distance] :
-       {std::pair("one disk upon another", 0.0), {"overlapping disks", 0.5}, {"touching disks", 2.0}})
+  for (const auto& [name, distance] : {std::pair("one disk upon another", 0.0),
+                                       {"overlapping disks", 0.5},
+                                       {"touching disks", 2.0}})
     rows.add_refused(name, "overlap", [=, z = distance * one.radius] {
       solved({{{0, 0}, one}, {{0, z}, one}}, 1e-6);
     });
