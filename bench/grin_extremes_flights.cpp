@@ -147,7 +147,7 @@ Finding beside_spike() {
   const StraightSpace<straight> space(spike(0.3), 0);
   RandomStream random(5, 90, 0);
   ConnectionStatistics statistics;
-  constexpr int count = 60;
+  constexpr int count = 25;
   double sum = 0, squares = 0;
   for (int i = 0; i < count; ++i) {
     const auto join =

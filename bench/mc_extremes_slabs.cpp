@@ -179,7 +179,7 @@ void add_intensities(ExtremeRows& rows) {
   rows.add("slab of OD 1e-3, with reversed paths", theory, [] {
     return isotropic_slab({1e-3}, {0, 0.8}, {0.1, -1, pi, 2.2}, ReversedPaths::yes, 8000);
   });
-  rows.add("slab of OD 100", theory, [] {
+  rows.add_slow("slab of OD 100", theory, [] {
     return isotropic_slab({100}, {0}, {0.1, -1, 2.2}, ReversedPaths::no, 32000);
   });
   rows.add("slab of OD 5, albedo 1 - 1e-9", theory, [] {
