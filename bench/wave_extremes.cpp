@@ -28,10 +28,11 @@ Scatterer disk(Kind kind, double ka, Complex index = 1.5) {
   return scatterer;
 }
 
-// Two equal disks along the z axis, the origin between them; gap in radii.
-Placement pair(const Scatterer& scatterer, double gap) {
-  const double half = (1 + gap / 2) * scatterer.radius;
-  return {{{0, -half}, scatterer}, {{0, half}, scatterer}};
+// Two equal disks, the origin between them; gap in radii. Askew, as along an axis half of a
+// translation is 0.
+Placement pair(const Scatterer& scatterer, double gap, double axis = 0.7) {
+  const Vec2 half = (1 + gap / 2) * scatterer.radius * direction(axis);
+  return {{-half, scatterer}, {half, scatterer}};
 }
 
 WaveSolution solved(const Placement& placement, double tolerance, bool diagnose = false) {
@@ -132,14 +133,14 @@ Finding dipole(const Scatterer& small, double gap, Complex reflection, bool acro
         solve(placement, k, {angle}, {.tolerance = tolerance, .sensors = {}, .diagnose = false});
     return solution.far_field(angle) - solution.far_field(angle + pi);
   };
-  const Complex found = moment(pair(small, gap)) / (2.0 * moment({{{0, 0}, small}}));
+  const Complex found = moment(pair(small, gap, 0)) / (2.0 * moment({{{0, 0}, small}}));
   const Complex expected = image_sum(gap, across ? -reflection : reflection);
   return {std::abs(found - expected) / std::abs(expected), limit, {}};
 }
 
 // Monopoles: b = T_0 (a + H_0(kd) b), light across the axis.
 Finding monopoles(const Scatterer& small, double limit) {
-  const Placement two = pair(small, 2000);
+  const Placement two = pair(small, 2000, 0);
   const double kd = k * length(two[1].position - two[0].position);
   const Complex t = static_cast<Complex>(t_matrix(small, k, 0)[0]);
   const Complex b = t / (1.0 - t * Complex(::j0(kd), ::y0(kd)));

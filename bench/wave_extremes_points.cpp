@@ -84,7 +84,7 @@ Finding soft_rim() {
   Scatterer one;
   one.kind = Kind::soft;
   one.radius = 5 / k;
-  const Placement placement{{{0, 0}, one}, {{0, 3 * one.radius}, one}};
+  const Placement placement{{{0, 0}, one}, {{2 * one.radius, 2 * one.radius}, one}};
   double worst = 0;
   std::vector<Vec2> sensors;
   for (const double angle : {0.0, 1.3, 3.0})
