@@ -1,8 +1,9 @@
 #include "bench/extreme_case.h"
 
+#include <charconv>
 #include <cmath>
+#include <iterator>
 #include <limits>
-#include <sstream>
 #include <stdexcept>
 
 #include "bench/extreme_rows.h"
@@ -44,12 +45,12 @@ Finding worse(const Finding& a, const Finding& b) {
 }
 
 std::string short_number(double value) {
-  std::ostringstream text;
-  text << value;
-  std::string digits = text.str();
-  for (const char* zero : {"e-0", "e+0", "e+"})
-    if (const auto at = digits.find(zero); at != std::string::npos)
-      digits.replace(at, std::string(zero).size(), zero[1] == '-' ? "e-" : "e");
+  char text[32];
+  std::string digits(text, std::to_chars(text, std::end(text), value).ptr);
+  const auto exponent = digits.find('e');
+  if (exponent != std::string::npos)
+    digits =
+        digits.substr(0, exponent + 1) + std::to_string(std::stoi(digits.substr(exponent + 1)));
   return digits;
 }
 

@@ -186,7 +186,8 @@ void add_intensities(ExtremeRows& rows) {
     return isotropic_slab({5, 0, 1 - 1e-9}, {0}, {0.1, pi}, ReversedPaths::no, 16000);
   });
   rows.add("slab of OD 1, light at 1.5, views at 1.54 and 1.61", theory, [] {
-    return isotropic_slab({1}, {1.5}, {0.1, 1.54, -1.54, 1.61, pi + 1.5}, ReversedPaths::no, 32000);
+    return isotropic_slab({1}, {1.5}, {0.1, 1.54, -1.54, 1.61, pi + 1.5}, ReversedPaths::no,
+                          640000);
   });
   rows.add("slab, lights and views at exactly pi/2", "nothing is seen", along);
   rows.add("slab of albedo 0", "no covariance", black);
