@@ -82,6 +82,7 @@ void compare_times(PlanRow& row, const Slice& general, const Slice& special, dou
   special(fewest_calls);
   const double both = (thread_cpu_seconds() - start) / fewest_calls;  // warming up
   const double affordable = cpu_seconds / both;
+  const int fewest_rounds = cpu_seconds < quick ? 1 : 3;
   const int rounds =
       std::clamp(static_cast<int>(affordable / fewest_calls), fewest_rounds, most_rounds);
   const int calls = std::max(fewest_calls, static_cast<int>(affordable / rounds));
