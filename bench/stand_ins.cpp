@@ -1,29 +1,9 @@
 #include <cmath>
-#include <exception>
 
 #include "bench/error_curve.h"
-#include "bench/extreme_case.h"
 #include "core/random.h"
 
 namespace flatspeckle::bench {
-
-std::vector<ExtremeCase> extreme_cases() {
-  std::vector<ExtremeCase> cases;
-  for (int i = 0; i < 66; ++i)
-    cases.push_back({i % 2 ? "wave solver" : "grin", "case " + std::to_string(i), "energy", "",
-                     [i] { return Finding{1e-13 * (i + 1), 1e-9, ""}; }, i % 7 == 0});
-  cases.push_back({"flatland", "a scatterer on top of another", "refusal", "overlap",
-                   [] { return Finding{0, 0, "overlap of scatterers 0 and 1"}; }, false});
-  return cases;
-}
-Finding examine(const ExtremeCase& extreme) {
-  return extreme.run();
-}
-bool passes(const ExtremeCase& extreme, const Finding& finding) {
-  if (!finding.refusal.empty())
-    return !extreme.must_say.empty() && finding.refusal.find(extreme.must_say) != std::string::npos;
-  return finding.figure <= finding.limit;
-}
 
 std::vector<ErrorRun> error_runs() {
   std::vector<ErrorRun> runs;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 
@@ -20,8 +21,12 @@ class RandomStream {
     return block_.v[used_++];
   }
 
-  /// Uniform in the open interval (0, 1): odd multiples of 2^-54, so log(u) and 1/u are finite.
-  double uniform() { return (static_cast<double>(bits() >> 11) + 0.5) * 0x1p-53; }
+  /// Uniform in the open interval (0, 1), so that log(u), log(1 - u) and 1/u are finite.
+  double uniform() { return uniform(bits()); }
+  /// Odd multiples of 2^-54, rounded above 1/2: 1 - 2^-54 to 1, but for the bound.
+  static double uniform(std::uint64_t bits) {
+    return std::min((static_cast<double>(bits >> 11) + 0.5) * 0x1p-53, 1 - 0x1p-53);
+  }
 
  private:
   void refill() {

@@ -1,0 +1,27 @@
+#pragma once
+
+#include "flatland/scene.h"
+#include "mc/covariance_estimator.h"
+
+namespace flatspeckle::bench {
+
+inline constexpr double mc_depth = 10;
+
+/// A Henyey-Greenstein slab of a depth of ten wavelengths, or of another.
+struct Bulk {
+  double optical_depth, g = 0, albedo = 1, depth = mc_depth;
+};
+Scene hg_slab(const Bulk& bulk, const CovarianceRequest& request);
+/// The same bulk in a box.
+Scene hg_box(double width, const Bulk& bulk, const CovarianceRequest& request);
+
+std::vector<View> far_views(const std::vector<double>& angles);
+
+/// On this thread.
+GroupedSums summed(const BatchJob& job, std::uint64_t samples);
+
+/// A covariance by its plan, with errors.
+Estimate covariance(const Scene& scene, mc::ReversedPaths reversed, std::uint64_t paths,
+                    std::uint64_t seed = 1);
+
+}  // namespace flatspeckle::bench

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <doctest/doctest.h>
+
+#include "bench/extreme_case.h"
+
+namespace flatspeckle::bench::tests {
+
+/// The quick or the slow rows of the stability table.
+inline void check_extremes(bool slow) {
+  int rows = 0;
+  for (const ExtremeCase& extreme : extreme_cases()) {
+    if (extreme.slow != slow) continue;
+    ++rows;
+    const Finding finding = examine(extreme);
+    CAPTURE(extreme.room);
+    CAPTURE(extreme.name);
+    CAPTURE(extreme.invariant);
+    CAPTURE(finding.figure);
+    CAPTURE(finding.limit);
+    CAPTURE(finding.refusal);
+    CHECK(passes(extreme, finding));
+  }
+  CHECK(rows > 0);
+}
+
+}  // namespace flatspeckle::bench::tests
