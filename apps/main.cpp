@@ -33,17 +33,19 @@ const char* const usage =
   field        speckle fields drawn with the covariance of a scene, also over tilts of the light
   trace        rays and the curves between two points in a gradient-index field
   render       pictures of scattering media with a gradient index: 3D refractive path tracing
+  bench        what accuracy costs, where it breaks, what plans leave out: error, stability, plan
 
   flatspeckle SUBCOMMAND --help lists the keys; flatspeckle --version tells the version.
   Exit status: 0 done, 2 bad input, 3 stopped before the target error was reached,
-  4 input or output failed, 75 interrupted and resumable.
+  4 input or output failed, 5 a row of a benchmark failed, 75 interrupted and resumable.
 )";
 
 int run(const Arguments& arguments) {
   static const std::map<std::string, int (*)(const Arguments&)> subcommands = {
-      {"place", place},       {"solve", solve},  {"covariance", covariance}, {"flux", flux},
-      {"validate", validate}, {"sweep", sweep},  {"field", field},           {"merge", merge},
-      {"trace", trace},       {"render", render}};
+      {"place", place},   {"solve", solve},       {"covariance", covariance},
+      {"flux", flux},     {"validate", validate}, {"sweep", sweep},
+      {"field", field},   {"merge", merge},       {"trace", trace},
+      {"render", render}, {"bench", bench}};
   const std::string word = arguments.size() > 1 ? arguments[1] : "--help";
   if (word == "--help" || word == "-h" || word == "help") {
     std::cout << usage;
@@ -55,9 +57,10 @@ int run(const Arguments& arguments) {
   }
   const auto subcommand = subcommands.find(word);
   if (subcommand == subcommands.end())
-    throw InputError("subcommand", word,
-                     "must be one of covariance field flux merge place render solve sweep trace "
-                     "validate");
+    throw InputError(
+        "subcommand", word,
+        "must be one of bench covariance field flux merge place render solve sweep trace "
+        "validate");
   if (word != "sweep" && launched_ranks().size > 1)
     throw InputError("subcommand", word, "runs as one process; of these, sweep alone takes many");
   return subcommand->second(arguments);

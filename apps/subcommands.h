@@ -10,6 +10,7 @@ enum ExitStatus : int {
   bad_input = 2,
   error_not_reached = 3,
   io_failed = 4,
+  row_failed = 5,  ///< a row of a benchmark; the result is written
   interrupted_resumable = 75,
   interrupted_for_good = 130  ///< nothing written, nothing to resume
 };
@@ -25,5 +26,6 @@ int merge(const Arguments& arguments);
 int field(const Arguments& arguments);
 int trace(const Arguments& arguments);
 int render(const Arguments& arguments);
+int bench(const Arguments& arguments);
 
 }  // namespace flatspeckle::apps

@@ -77,7 +77,7 @@ class Writer {
       shape.push_back(extent(scales[i]));
       stored[i] = std::min(stored[i], shape[i]);
     }
-    const Hdf5Handle set = create<Complex>(shape, compressed(stored));
+    const Hdf5Handle set = create(complex_type(), shape, compressed(stored));
     for (unsigned i = 0; i < scales.size(); ++i) attach(set.get(), i, scales[i]);
   }
 
@@ -107,19 +107,28 @@ class Writer {
         values.size())
       throw std::logic_error(name_ + ": the number of values does not fit the axes");
     const Hdf5Handle type = number_type<Number>();
-    Hdf5Handle set = create<Number>(shape, storage(shape, sizeof(Number)));
+    Hdf5Handle set = create(type, shape, storage(shape, sizeof(Number)));
     call_.check(H5Dwrite(set.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()));
     return set;
   }
 
   template <typename Number>
   void dataset(std::span<const Number> numbers, const std::vector<Axis>& axes) const {
-    std::vector<hsize_t> shape;
-    shape.reserve(axes.size());
-    for (const Axis& axis : axes) shape.push_back(extent(axis));
-    const Hdf5Handle set = values(numbers, shape);
-    for (unsigned i = 0; i < axes.size(); ++i)
-      if (const auto* scale = std::get_if<std::string>(&axes[i])) attach(set.get(), i, *scale);
+    attach(values(numbers, shape_of(axes)).get(), axes);
+  }
+
+  /// Of few; HDF5 keeps texts apart from the dataset, where filters do not reach them.
+  void dataset(const std::vector<std::string>& texts, const std::vector<Axis>& axes) const {
+    if (exists(file_, name_)) throw std::logic_error(name_ + ": written twice");
+    const auto shape = shape_of(axes);
+    if (std::accumulate(shape.begin(), shape.end(), hsize_t{1}, std::multiplies<>()) !=
+        texts.size())
+      throw std::logic_error(name_ + ": the number of texts does not fit the axes");
+    std::vector<const char*> pointers;
+    for (const std::string& text : texts) pointers.push_back(text.c_str());
+    const Hdf5Handle type = string_type(), set = create(type, shape, untimed());
+    call_.check(H5Dwrite(set.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, pointers.data()));
+    attach(set.get(), axes);
   }
 
   void scale(std::span<const double> numbers) const {
@@ -142,9 +151,8 @@ class Writer {
                          : H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr);
   }
 
-  template <typename Number>
-  Hdf5Handle create(const std::vector<hsize_t>& shape, const Hdf5Handle& layout) const {
-    const Hdf5Handle type = number_type<Number>();
+  Hdf5Handle create(const Hdf5Handle& type, const std::vector<hsize_t>& shape,
+                    const Hdf5Handle& layout) const {
     const Hdf5Handle space = call_.handle(dataspace(shape), H5Sclose);
     const Hdf5Handle links = intermediate_groups();
     return call_.handle(H5Dcreate2(file_, name_.c_str(), type.get(), space.get(), links.get(),
@@ -194,6 +202,18 @@ class Writer {
     return static_cast<hsize_t>(call_.check(H5Sget_simple_extent_npoints(space.get())));
   }
 
+  std::vector<hsize_t> shape_of(const std::vector<Axis>& axes) const {
+    std::vector<hsize_t> shape;
+    shape.reserve(axes.size());
+    for (const Axis& axis : axes) shape.push_back(extent(axis));
+    return shape;
+  }
+
+  /// Those of the axes that have scales.
+  void attach(hid_t set, const std::vector<Axis>& axes) const {
+    for (unsigned i = 0; i < axes.size(); ++i)
+      if (const auto* scale = std::get_if<std::string>(&axes[i])) attach(set, i, *scale);
+  }
   void attach(hid_t set, unsigned axis, const std::string& name) const {
     const Hdf5Handle scale = open_scale(name);
     call_.check(H5DSattach_scale(set, scale.get(), axis));
@@ -344,6 +364,16 @@ void ResultFile::dataset(const std::string& name, std::span<const std::uint64_t>
   const Writer writer(file_.get(), path_.string(), name);
   writer.dataset(values, axes);
   writer.describe(units, long_name);
+}
+
+void ResultFile::dataset(const std::string& name, const std::vector<std::string>& texts,
+                         const std::vector<Axis>& axes, const std::string& long_name) {
+  std::size_t bytes = 0;
+  for (const std::string& text : texts) bytes += text.size() + sizeof(std::uint64_t) * 4;
+  make_room(bytes);
+  const Writer writer(file_.get(), path_.string(), name);
+  writer.dataset(texts, axes);
+  writer.describe("", long_name);
 }
 
 void ResultFile::begin_dataset(const std::string& name, const std::vector<std::string>& axes,

@@ -65,6 +65,10 @@ class ResultFile {
                const std::vector<Axis>& axes, const std::string& units,
                const std::string& long_name);
 
+  /// Texts, UTF-8.
+  void dataset(const std::string& name, const std::vector<std::string>& texts,
+               const std::vector<Axis>& axes, const std::string& long_name);
+
   /// A complex dataset whose values come in blocks, compressed by chunks of this shape. Axes with
   /// scales only. What no block brings is 0.
   void begin_dataset(const std::string& name, const std::vector<std::string>& axes,

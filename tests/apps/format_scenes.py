@@ -152,6 +152,11 @@ def renders():
             for name, keys in sensors.items()}
 
 
+def benchmarks():
+    return {f"bench_{kind}": Run(f"bench {kind}", [f"bench {kind}"], {"quick": True})
+            for kind in ("error", "stability", "plan")}
+
+
 def unfinished():
     never = {"target_error": 1e-9}
     state = "Unfinished results"
@@ -203,7 +208,7 @@ def make_file(test, name, run):
     elif run.status == 75:
         interrupt(test, run, keys)
     else:
-        test.call(run.subcommand, **keys, status=run.status)
+        test.call(*run.subcommand.split(), **keys, status=run.status)
 
 
 class ResultsTest(ProgramTest):
@@ -216,7 +221,7 @@ class ResultsTest(ProgramTest):
         cls.addClassCleanup(maker.doCleanups)
         cls.results = maker.folder
         cls.runs = {**covariances(), **extras(), **other_subcommands(), **traces(), **renders(),
-                    **unfinished(), **sweeps()}
+                    **benchmarks(), **unfinished(), **sweeps()}
         for name, text in FILES.items():
             maker.write(name, text)
         for name, run in cls.runs.items():

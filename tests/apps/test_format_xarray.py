@@ -45,7 +45,8 @@ class Xarray(ResultsTest):
 
     def check_variable(self, variable, dataset):
         self.assertEqual(variable.dtype, dataset.dtype, dataset.name)
-        np.testing.assert_array_equal(variable.values, dataset[()], dataset.name)
+        stored = dataset.asstr() if h5py.check_string_dtype(dataset.dtype) else dataset
+        np.testing.assert_array_equal(variable.values, stored[()], dataset.name)
         for key in ("units", "long_name"):
             self.assertEqual(variable.attrs.get(key), dataset.attrs.get(key), dataset.name)
         if is_scale(dataset):

@@ -18,6 +18,7 @@ FIELD = ["field", "index", "radius", "alpha", "centre", "slope", "index_low", "i
          "sound_phase", "emitters", "aperture", "focusing", "grid"]
 SPACE_MEDIUM = ["mu_s", "mu_a", "phase", "g", "density"]
 KEYS = {
+    "bench": ["quick", "threads"],
     "place": ["width", "depth", "radii", "fractions", "count", "packing_fraction", "placement",
               "min_gap", "seed", "structure", "realizations"],
     "solve": SCENE + ["seed"],
@@ -61,7 +62,7 @@ class Help(ProgramTest):
             text = self.call(*words).stdout
             for subcommand in KEYS:
                 self.assertIn(subcommand, text)
-            for status in ("0 done", "2 bad input", "3 stopped", "4 input or output", "75"):
+            for status in ("0 done", "2 bad input", "3 stopped", "4 input or output", "5 a row", "75"):
                 self.assertIn(status, text)
 
     def test_version(self):

@@ -208,6 +208,7 @@ TEST_CASE("mistakes in the use of a result file are told") {
   CHECK_THROWS_AS(file.dataset("x", two, {std::size_t{3}}, "", ""), std::logic_error);
   CHECK_THROWS_AS(file.dataset("x", two, {}, "", ""), std::logic_error);
   CHECK_THROWS_AS(file.dataset("x", two, {"view"}, "", ""), std::logic_error);
+  CHECK_THROWS_AS(file.dataset("x", {"one", "two", "three"}, {"tilt"}, ""), std::logic_error);
   file.commit();
   CHECK_THROWS_AS(file.attribute("/", "late", 1), std::logic_error);
   CHECK_THROWS_AS(file.commit(), std::logic_error);

@@ -1,0 +1,280 @@
+"""Pictures of the benchmark report: functions of a Bench that return figures."""
+
+from lib import style
+
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter, NullLocator
+
+HALF = -0.5
+SLOPE_BAND = 0.05
+LEAST_MARGIN = 1e-9  # of figure over limit; smaller ones stand at this edge
+OURS = {"color": "black", "marker": "o", "linestyle": "-", "linewidth": 1.3}
+LOOKS = {  # the same method looks the same everywhere
+    "ours": OURS, "bidirectional": OURS, "exact dense": style.look(0), "exact fast": style.look(4),
+    "textbook Monte Carlo": style.look(1), "fields": style.look(3), "path tracing": style.look(1),
+    "light tracing": style.look(2), "photon map": style.look(3)}
+GUIDE = {"color": "0.6", "linewidth": 0.7, "zorder": 0}
+TITLES = {"box_points": "31 points in a box, OD 1", "box_cylinders": "67 cylinders in a box, OD 1",
+          "box_points_absorbing": "absorbing points in a box", "slab_hg": "slab, OD 10",
+          "luneburg": "Luneburg ball, pencils of light", "waveguide": "ultrasonic waveguide",
+          "luneburg_wide_beam": "Luneburg ball, wide beam",
+          "luneburg_from_outside": "Luneburg ball from outside",
+          "luneburg_even": "Luneburg ball, even light", "glass_ball_beam": "glass ball under a beam"}
+ROOM_NAMES = {"mc": "Monte Carlo", "wave": "wave solver", "wave_solver": "wave solver"}
+
+
+def title(scene):
+    return TITLES.get(scene, scene.replace("_", " "))
+
+
+def room_name(room):
+    return ROOM_NAMES.get(room, room)
+
+
+def base_method(method):
+    """Without what is said of it: "photon map" of "photon map, biased by its radius"."""
+    return method.split(",")[0]
+
+
+def method_look(method):
+    return LOOKS.get(base_method(method), style.look(5))
+
+
+def flat_scenes(error):
+    return [scene for scene in error.scenes()
+            if any(curve["method"] == "ours" for curve in error.of_scene(scene))]
+
+
+def render_scenes(error):
+    return [scene for scene in error.scenes() if scene not in flat_scenes(error)]
+
+
+def draw_guide(axis, curves):
+    """Slope -1/2, above all curves."""
+    cpu = np.concatenate([curve["cpu_s"] for curve in curves])
+    level = max(np.max(curve["relative_error"] * np.sqrt(curve["cpu_s"])) for curve in curves)
+    ends = np.array([cpu.min(), cpu.max()])
+    axis.loglog(ends, 1.6 * level / np.sqrt(ends), **GUIDE)
+
+
+def draw_reference(axis, curves):
+    """What the reference is off by: below it there is nothing to see."""
+    uncertainty = max(curve["reference_uncertainty"] for curve in curves)
+    low = min(curve["relative_error"].min() for curve in curves)
+    if uncertainty > low / 3:
+        axis.axhline(uncertainty, color=style.GREY, linewidth=0.6, zorder=0)
+
+
+def draw_error_curves(axis, curves):
+    for curve in curves:
+        axis.loglog(curve["cpu_s"], curve["relative_error"], **method_look(curve["method"]))
+    draw_guide(axis, curves)
+    draw_reference(axis, curves)
+    for side in (axis.xaxis, axis.yaxis):
+        side.set_minor_formatter(NullFormatter())
+    axis.set_title(title(curves[0]["scene"]))
+
+
+def method_entries(curves):
+    methods = dict.fromkeys(base_method(curve["method"]) for curve in curves)
+    for method in methods:
+        name = "Monte Carlo, ours" if method == "ours" else method
+        yield plt.Line2D([], [], **method_look(method)), name
+    yield plt.Line2D([], [], **GUIDE), r"slope $-1/2$"
+
+
+def legend_above(figure, entries, columns):
+    handles, labels = zip(*entries)
+    figure.legend(handles, labels, loc="lower center", bbox_to_anchor=(0.5, 1.0), ncol=columns)
+
+
+def error_panels(error, scenes, across):
+    down = -(-len(scenes) // across)
+    figure, axes = plt.subplots(down, across, squeeze=False, sharey="row",
+                                figsize=(style.PAGE, 0.35 + 2.25 * down))
+    shown = []
+    for axis, scene in zip(axes.flat, scenes):
+        curves = [curve for curve in error.of_scene(scene) if len(curve["cpu_s"]) > 0]
+        draw_error_curves(axis, curves)
+        shown += curves
+    for axis in axes.flat[len(scenes):]:
+        axis.remove()
+    for axis in axes[:, 0]:
+        axis.set_ylabel("relative error")
+    figure.supxlabel("processor time, one thread (s)", fontsize=8)
+    entries = list(method_entries(shown))
+    legend_above(figure, entries, min(len(entries), 6))
+    return figure
+
+
+def draw_flatland(bench):
+    scenes = flat_scenes(bench.error)
+    wanted = [scene for scene in ("box_points", "box_cylinders") if scene in scenes]
+    return error_panels(bench.error, wanted or scenes[:2], 2)
+
+
+def draw_other_flatland(bench):
+    scenes = [scene for scene in flat_scenes(bench.error)
+              if scene not in ("box_points", "box_cylinders")]
+    return error_panels(bench.error, scenes, max(len(scenes), 2)) if scenes else None
+
+
+def draw_render(bench):
+    scenes = render_scenes(bench.error)
+    return error_panels(bench.error, scenes, 3) if scenes else None
+
+
+def draw_slopes(bench):
+    curves = bench.error.monte_carlo()
+    figure, axis = plt.subplots(figsize=(style.PAGE * 0.8, 0.7 + 0.155 * len(curves)))
+    axis.axvspan(HALF - SLOPE_BAND, HALF + SLOPE_BAND, color="0.92", zorder=0)
+    axis.axvline(HALF, color=style.GREY, linewidth=0.8, zorder=0.5)
+    for row, curve in enumerate(curves):
+        look = {**method_look(curve["method"]), "linestyle": "none"}
+        axis.errorbar(curve["slope"], row, xerr=curve["slope_error"], elinewidth=0.7, **look)
+    axis.set_yticks(range(len(curves)),
+                    [f"{title(curve['scene'])}: {curve['method']}" for curve in curves])
+    axis.set_ylim(len(curves) - 0.4, -0.6)
+    axis.tick_params(axis="y", length=0)
+    widest = max(abs(curve["slope"] - HALF) + curve["slope_error"] for curve in curves)
+    reach = max(1.6 * SLOPE_BAND, 1.1 * widest)
+    axis.set_xlim(HALF - reach, HALF + reach)
+    axis.set_xlabel("fitted slope of log error over log time (band: $-1/2 \\pm 0.05$)")
+    return figure
+
+
+def draw_cost(axis, cost):
+    size, value = cost["size"], cost["cost_value"]
+    axis.loglog(size, value, color=style.COLOURS[0], marker="o", linestyle="none")
+    middle = np.exp(np.mean(np.log(value) - cost["exponent"] * np.log(size)))
+    axis.loglog(size, middle * size**cost["exponent"], color=style.COLOURS[0], zorder=0.5)
+    axis.loglog(size, value[-1] * (size / size[-1])**cost["expected_exponent"], color=style.GREY,
+                linestyle="--", zorder=0.4)
+    axis.set_title(cost["task"], fontsize=7)
+    axis.set_xlabel(cost["size_name"], fontsize=7)
+    text = f"{cost['exponent']:.2f} $\\pm$ {cost['exponent_error']:.2f}"
+    axis.text(0.05, 0.93, text, transform=axis.transAxes, va="top", fontsize=7)
+    axis.xaxis.set_minor_formatter(NullFormatter())
+    axis.yaxis.set_minor_formatter(NullFormatter())
+    if size.max() < 30 * size.min():
+        style.few_decades(axis.xaxis)
+
+
+def draw_costs(bench, across=4):
+    costs = [cost for cost in bench.error.costs if len(cost["size"]) > 0]
+    if not costs:
+        return None
+    down = -(-len(costs) // across)
+    figure, axes = plt.subplots(down, across, squeeze=False,
+                                figsize=(style.PAGE, 0.4 + 1.65 * down))
+    for axis, cost in zip(axes.flat, costs):
+        draw_cost(axis, cost)
+    for axis in axes.flat[len(costs):]:
+        axis.remove()
+    for axis, cost in zip(axes[:, 0], costs[::across]):
+        axis.set_ylabel(cost["cost_name"], fontsize=7)
+    entries = [(plt.Line2D([], [], color=style.COLOURS[0], marker="o"), "measured, with its fit"),
+               (plt.Line2D([], [], color=style.GREY, linestyle="--"), "by counting operations")]
+    legend_above(figure, entries, 2)
+    return figure
+
+
+def draw_margins(axis, stability):
+    """figure / limit of every case, room by room; those refused at the right."""
+    rooms = stability.rooms()
+    for place, room in enumerate(rooms):
+        rows = stability.of_room(room)
+        solved = [row for row in rows if not row["refusal"]]
+        margin = np.array([row["figure"] / row["limit"] if row["limit"] > 0 else row["figure"]
+                           for row in solved])
+        order = np.argsort(np.argsort(margin))
+        heights = place + 0.62 * ((order * 0.618) % 1 - 0.5)
+        look = style.look(place)
+        seen = margin >= LEAST_MARGIN
+        axis.plot(margin[seen], heights[seen], linestyle="none", color=look["color"],
+                  marker=look["marker"], alpha=0.85, markeredgewidth=0)
+        axis.plot(np.full((~seen).sum(), 1.3 * LEAST_MARGIN), heights[~seen], linestyle="none",
+                  color=look["color"], marker="<")
+        refused = len(rows) - len(solved)
+        axis.text(1.02, place, str(refused), transform=axis.get_yaxis_transform(), va="center",
+                  fontsize=7)
+    axis.axvline(1, color="black", linewidth=0.8)
+    axis.set_xscale("log")
+    axis.set_xlim(LEAST_MARGIN, 5)
+    axis.xaxis.set_major_locator(LogLocator(numticks=6))
+    axis.xaxis.set_minor_locator(NullLocator())
+    axis.set_yticks(range(len(rooms)), [f"{room_name(room)}\n{len(stability.of_room(room))} cases"
+                                        for room in rooms])
+    axis.set_ylim(len(rooms) - 0.5, -0.5)
+    axis.tick_params(axis="y", length=0)
+    for place in range(1, len(rooms)):
+        axis.axhline(place - 0.5, color="0.9", linewidth=0.5, zorder=0)
+    axis.set_xlabel("deviation from the invariant / its limit")
+    axis.text(1.02, 1.0, "refused", transform=axis.transAxes, va="bottom", fontsize=7)
+    axis.set_title(f"(a) {len(stability.rows)} extreme cases", loc="left")
+
+
+def draw_ratios(axis, plan):
+    """Rows of a room under its name."""
+    place, ticks, names = 0, [], []
+    for number, room in enumerate(plan.rooms()):
+        ticks.append(place)
+        names.append(room_name(room))
+        look = {**style.look(number), "linestyle": "none"}
+        for row in plan.of_room(room):
+            place += 1
+            axis.errorbar(row["ratio"], place, xerr=row["ratio_spread"], elinewidth=0.7, **look)
+            ticks.append(place)
+            names.append(row["left_out"])
+        place += 1.3
+    axis.axvline(1, color=style.GREY, linewidth=0.8, zorder=0)
+    axis.set_xscale("log")
+    axis.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axis.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5), numticks=12))
+    axis.xaxis.set_minor_locator(NullLocator())
+    axis.set_yticks(ticks, names, fontsize=6)
+    rooms = {room_name(room) for room in plan.rooms()}
+    for label in axis.get_yticklabels():
+        if label.get_text() in rooms:
+            label.set(weight="bold", fontsize=6.5)
+    axis.set_ylim(place - 0.6, -1)
+    axis.tick_params(axis="y", length=0)
+    axis.set_xlabel("time with it / time without it")
+    axis.set_title("(b) left out by plans, with the same result", loc="left")
+
+
+def draw_limits(bench):
+    height = max(3.2, 0.9 + 0.125 * (len(bench.plan.rows) + 2.3 * len(bench.plan.rooms())))
+    figure, (left, right) = plt.subplots(1, 2, figsize=(style.PAGE, height),
+                                         gridspec_kw={"width_ratios": [1, 1.05]})
+    draw_margins(left, bench.stability)
+    draw_ratios(right, bench.plan)
+    return figure
+
+
+FIGURES = {  # name: (function, caption)
+    "error_flatland": (
+        draw_flatland,
+        "Relative error against processor time of an ensemble of exact solutions, of the textbook "
+        "Monte Carlo estimator and of this one; both boxes, 64 tilts in transmission."),
+    "error_render": (
+        draw_render,
+        "Relative error of pictures against processor time: path tracing, light tracing, "
+        "bidirectional path tracing and a photon map, which levels off at its bias."),
+    "limits": (
+        draw_limits,
+        "(a) How far each extreme case is off its invariant, relative to the limit it was held to "
+        "(line: the limit; to the right: how many are refused, each with a message that says why). "
+        "Arrows: below 1e-9. (b) What leaving a thing out of a kernel saves, where the scene has "
+        "no need of it; bars are half the distance of the quartiles."),
+    "error_other": (
+        draw_other_flatland,
+        "The other standard scenes of flatland."),
+    "slopes": (
+        draw_slopes,
+        "Fitted slopes of all Monte Carlo curves with their standard errors."),
+    "costs": (
+        draw_costs,
+        "Cost against the size of the problem, with the fitted exponent."),
+}

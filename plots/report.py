@@ -1,0 +1,72 @@
+#!/usr/bin/env python3
+"""The report of the three result files of `flatspeckle bench`: report.html, one page that needs
+nothing beside it; report.md with its pictures; numbers.json, the numbers under keys."""
+
+import argparse
+import io
+import json
+import pathlib
+import sys
+
+from lib import bench_document, bench_figures, document, style
+from lib.bench_numbers import numbers_of
+from lib.bench_results import read_bench
+
+import matplotlib.pyplot as plt
+
+plt.rcParams.update({"svg.hashsalt": "flatspeckle", "svg.fonttype": "path"})
+DPI = 220  # at 7 inches across; larger pictures would weigh too much in a repository
+
+
+def svg_of(figure):
+    svg = io.BytesIO()
+    figure.savefig(svg, format="svg", metadata={"Date": None})
+    return svg.getvalue()
+
+
+def draw_all(bench, folder):
+    """Writes each picture as PNG; name -> SVG of those that there is something to draw for."""
+    pictures = {}
+    for name, (draw, _) in bench_figures.FIGURES.items():
+        figure = draw(bench)
+        if figure is None:
+            continue
+        figure.savefig(folder / f"{name}.png", dpi=DPI, metadata={"Software": None})
+        pictures[name] = svg_of(figure)
+        plt.close(figure)
+    return pictures
+
+
+def write_report(bench, folder):
+    folder.mkdir(parents=True, exist_ok=True)
+    pictures = draw_all(bench, folder)
+    blocks = bench_document.blocks_of(bench, pictures)
+    (folder / "report.md").write_text(document.as_markdown(blocks))
+    (folder / "report.html").write_text(
+        document.as_html(blocks, pictures, f"flatspeckle: {bench_document.TITLE}"))
+    numbers = json.dumps(numbers_of(bench), indent=1, ensure_ascii=False, sort_keys=True)
+    (folder / "numbers.json").write_text(numbers + "\n")
+    for name in ("report.html", "report.md", "numbers.json"):
+        print(f"wrote {folder / name}")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    for name in ("error", "stability", "plan"):
+        parser.add_argument(name, metavar=f"{name.upper()}.h5", help=f"of flatspeckle bench {name}")
+    parser.add_argument("--out", metavar="FOLDER", required=True, type=pathlib.Path)
+    arguments = parser.parse_args()
+    try:
+        write_report(read_bench(arguments.error, arguments.stability, arguments.plan),
+                     arguments.out)
+    except style.Unusable as problem:
+        print(problem, file=sys.stderr)
+        sys.exit(2)
+    except OSError as problem:
+        print(f"{problem.filename}: {problem.strerror}" if problem.filename else problem,
+              file=sys.stderr)
+        sys.exit(2)
+
+
+if __name__ == "__main__":
+    main()

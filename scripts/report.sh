@@ -1,0 +1,28 @@
+#!/usr/bin/env bash
+# report.sh [FOLDER]: installs what is missing (Debian 12), builds the program, and makes the report:
+# what accuracy costs (bench error), where it breaks (bench stability) and what plans leave out
+# (bench plan). Result files, report.html, report.md with its pictures and numbers.json go to FOLDER,
+# by default results/report in the checkout. Exit status 5: a row failed; the report says which.
+set -euo pipefail
+report=${1:+$(realpath -m "$1")}
+# shellcheck source=scripts/setup.sh
+source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
+report=${report:-results/report}
+
+install_build_packages
+install_plot_packages
+build_release flatspeckle
+mkdir -p "$report"
+
+failed=0
+for kind in stability plan error; do
+  printf '\n== bench %s\n' "$kind"
+  build/release/bin/flatspeckle bench "$kind" --out "$report/$kind.h5" || {
+    status=$?
+    [[ $status -eq 5 ]] || exit "$status"
+    failed=$status
+  }
+done
+python3 plots/report.py "$report"/{error,stability,plan}.h5 --out "$report"
+echo "Done in $SECONDS s."
+exit "$failed"
