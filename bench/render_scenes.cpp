@@ -1,5 +1,6 @@
 #include "bench/render_scenes.h"
 
+#include <limits>
 #include <numbers>
 
 namespace flatspeckle::bench {
@@ -89,6 +90,49 @@ RenderScene luneburg() {
   return scene;
 }
 
+AreaDetector detector(const Vec3& centre, double size) {
+  return {centre, {0, 1, 0}, size, size, {8, 8}, std::numbers::pi / 2};
+}
+
+RenderScene luneburg_lamp() {
+  RenderScene scene = filled_ball();
+  scene.lights = {FaceLight{{0, 0, -1}, 0.6}};
+  scene.sensor = detector({0, 0, 1}, 1);
+  return scene;
+}
+
+RenderScene waveguide_lamp() {
+  RenderScene scene = waveguide();
+  scene.lights = {FaceLight{{0, 0, 0}, 10}};
+  scene.sensor = detector({0, 0, 30}, 16);
+  return scene;
+}
+
+RenderScene slab_lamp() {
+  RenderScene scene{};
+  scene.field = Homogeneous{};
+  scene.step = 0.1;
+  scene.max_length = 1000;
+  scene.stage.boundary = Box{{-20, -20, 0}, {20, 20, 10}};
+  scene.stage.medium = fog(0.5, 0.01, 0.8);
+  scene.lights = {FaceLight{{0, 0, 0}, 5}};
+  scene.sensor = detector({0, 0, 10}, 20);
+  return scene;
+}
+
+RenderScene glass_ball_lamp() {
+  RenderScene scene{};
+  scene.field = Homogeneous{0.5};
+  scene.step = 0.1;
+  scene.max_length = 1000;
+  scene.stage.boundary = Box{{-10, -10, -10}, {10, 10, 10}};
+  scene.stage.medium = fog(0.05, 0, 0.5);
+  scene.stage.body = Body{Sphere{{0, 0, -2}, 4}};
+  scene.lights = {FaceLight{{0, 0, -10}, 6}};
+  scene.sensor = detector({0, 0, 10}, 10);
+  return scene;
+}
+
 RenderScene luneburg_wide_beam() {
   RenderScene scene = filled_ball();
   scene.lights = {BeamLight{{0, 0, -0.55}, {0, 0, 1}, 0.8}};
@@ -107,6 +151,26 @@ std::vector<NamedRender> render_scenes() {
           {"waveguide", waveguide()},
           {"luneburg_wide_beam", luneburg_wide_beam()},
           {"luneburg_from_outside", luneburg_from_outside()}};
+}
+
+std::vector<NamedRender> lamp_scenes() {
+  return {{"luneburg", luneburg_lamp()},
+          {"waveguide", waveguide_lamp()},
+          {"slab", slab_lamp()},
+          {"glass_ball", glass_ball_lamp()}};
+}
+
+RenderScene even_luneburg() {
+  RenderScene scene = luneburg_lamp();
+  scene.lights = {FaceLight{{0, 0, 0}, std::numeric_limits<double>::infinity()}};
+  return scene;
+}
+
+RenderScene beam_on_glass_ball() {
+  RenderScene scene = glass_ball_lamp();
+  scene.lights = {BeamLight{{0, 0, -10}, {0, 0, 1}, 2}};
+  scene.sensor = detector({10, 0, 0}, 10);
+  return scene;
 }
 
 RenderScene foggy_ball() {

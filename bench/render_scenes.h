@@ -18,6 +18,15 @@ struct NamedRender {
 /// whose surface no join crosses. Lengths in mm.
 std::vector<NamedRender> render_scenes();
 
+/// Lit by a part of the boundary and seen by another (8 x 8 pixels of irradiance), which rays can
+/// hit: the Luneburg ball, the waveguide, a slab of five mean free paths with straight rays, and a
+/// glass ball in fog.
+std::vector<NamedRender> lamp_scenes();
+/// The Luneburg ball in even light from everywhere.
+grin::RenderScene even_luneburg();
+/// The glass ball in fog under a beam, seen from the side.
+grin::RenderScene beam_on_glass_ball();
+
 /// The general straight scene and its parts, for the table of what a plan leaves out.
 grin::RenderScene foggy_ball();
 

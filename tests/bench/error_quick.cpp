@@ -1,0 +1,68 @@
+// Every curve of `flatspeckle bench error` in a moment: whether they have the right shape.
+#include <cmath>
+#include <exception>
+#include <string>
+#include <vector>
+
+#include <doctest/doctest.h>
+#include <omp.h>
+
+#include "bench/error_curve.h"
+
+using namespace flatspeckle::bench;
+
+namespace {
+
+constexpr double cpu_seconds = 0.2;
+
+bool is_rising(const std::vector<double>& values) {
+  for (std::size_t i = 0; i < values.size(); ++i)
+    if (!(values[i] > (i > 0 ? values[i - 1] : 0)) || !std::isfinite(values[i])) return false;
+  return true;
+}
+
+/// All at once, in any order; an exception would end the program.
+template <class Run, class Curve>
+std::vector<Curve> run_all(const std::vector<Run>& runs) {
+  std::vector<Curve> curves(runs.size());
+#pragma omp parallel for schedule(dynamic, 1)
+  for (std::size_t i = 0; i < runs.size(); ++i) curves[i] = runs[i].run(cpu_seconds);
+  return curves;
+}
+
+}  // namespace
+
+TEST_CASE("bench_error_quick: error curves") {
+  for (const ErrorCurve& curve : run_all<ErrorRun, ErrorCurve>(error_runs())) {
+    CAPTURE(curve.scene);
+    CAPTURE(curve.method);
+    std::vector<double> times, samples;
+    for (const ErrorPoint& point : curve.points) {
+      CHECK(std::isfinite(point.error));
+      CHECK(point.error > 0);
+      times.push_back(point.cpu_s);
+      samples.push_back(point.samples);
+    }
+    CHECK(times.size() >= 3);
+    CHECK(is_rising(times));
+    CHECK(is_rising(samples));
+    CHECK(std::isfinite(curve.slope_error));
+    CHECK(std::isfinite(curve.efficiency));
+    CHECK(curve.efficiency > 0);
+    CHECK_FALSE(curve.reference.empty());
+    if (curve.is_monte_carlo) CHECK(std::abs(curve.slope + 0.5) < 0.3);
+  }
+}
+
+TEST_CASE("bench_error_quick: cost curves") {
+  for (const CostCurve& curve : run_all<CostRun, CostCurve>(cost_runs())) {
+    CAPTURE(curve.what);
+    CHECK(curve.size.size() == curve.cpu_s.size());
+    CHECK(curve.size.size() >= 4);
+    CHECK(is_rising(curve.size));
+    CHECK(curve.cpu_s.back() > curve.cpu_s.front());
+    CHECK(curve.exponent > 0);
+    CHECK(std::isfinite(curve.exponent_error));
+    CHECK(std::abs(curve.exponent - curve.expected) < 0.8);
+  }
+}

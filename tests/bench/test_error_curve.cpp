@@ -1,0 +1,105 @@
+#include <cmath>
+#include <memory>
+#include <numbers>
+
+#include <doctest/doctest.h>
+
+#include "bench/cost_measure.h"
+#include "bench/error_curve.h"
+#include "bench/error_fit.h"
+#include "bench/error_measure.h"
+#include "core/random.h"
+
+using namespace flatspeckle;
+using namespace flatspeckle::bench;
+
+namespace {
+
+constexpr std::uint64_t stream = 2001;
+
+/// Means of numbers drawn by `draw`, about 0, against a reference of 1 in 16 entries.
+template <class Draw>
+Method toy(const Draw& draw, double offset = 0) {
+  constexpr std::size_t entries = 16;
+  return {"toy", "toy", [=](std::uint64_t seed) {
+            Trial trial{{}, sample_mean};
+            trial.batches.size = entries;
+            trial.batches.run = [=](std::uint64_t number, std::span<Complex> sums) {
+              RandomStream random(seed, stream, number);
+              for (Complex& sum : sums) sum += 1 + offset + draw(random);
+            };
+            return trial;
+          }};
+}
+
+double uniform(RandomStream& random) {
+  return std::sqrt(3.0) * (2 * random.uniform() - 1);  // variance 1
+}
+
+/// Density 1.2 / |x|^2.2 beyond 1: no variance; the error of n of them falls as n^(1/1.2 - 1).
+double heavy(RandomStream& random) {
+  const double sign = random.uniform() < 0.5 ? -1 : 1;
+  return sign * std::pow(random.uniform(), -1 / 1.2);
+}
+
+ErrorReference ones(double error = 0) {
+  return {std::vector<Complex>(16, 1.0), error, "closed form"};
+}
+
+}  // namespace
+
+TEST_CASE("fit_power finds a power law, and its error from the scatter") {
+  const std::vector<double> x{1, 2, 4, 8}, y{3, 12, 48, 192};
+  const PowerFit exact = fit_power(x, y);
+  CHECK(exact.exponent == doctest::Approx(2));
+  CHECK(exact.exponent_error < 1e-12);
+  const std::vector<double> weight{1, 2, 3, 4};
+  CHECK(fit_power(x, y, weight).amplitude == doctest::Approx(3));
+  // one point off by e^d: slope and scatter by hand, x = 0, 1, 2, 3 in log 2
+  const double d = 0.1;
+  const std::vector<double> off{3, 12, 48, 192 * std::exp(d)};
+  const PowerFit fitted = fit_power(x, off);
+  CHECK(fitted.exponent == doctest::Approx(2 + 0.3 * d / std::numbers::ln2));
+  CHECK(fitted.exponent_error ==
+        doctest::Approx(std::sqrt((0.75 - 0.45) * d * d / 2 / 5) / std::numbers::ln2));
+}
+
+TEST_CASE("measure_error finds -1/2 and the efficiency of independent numbers") {
+  const ErrorCurve curve = measure_error(toy(uniform), ones(), 0.2);
+  CHECK(curve.slope_error > 0);
+  CHECK(curve.slope_error < 0.03);
+  CHECK(std::abs(curve.slope + 0.5) < 4 * curve.slope_error);
+  for (const ErrorPoint& point : curve.points)
+    CHECK(point.error == doctest::Approx(1 / std::sqrt(point.samples)).epsilon(0.2));
+  const ErrorPoint& last = curve.points.back();
+  CHECK(curve.efficiency ==
+        doctest::Approx(1 / (last.error * last.error * last.cpu_s)).epsilon(0.4));
+}
+
+TEST_CASE("measure_error sees a bias and takes off what the reference is off by") {
+  constexpr double offset = 0.05;
+  const ErrorCurve biased = measure_error(toy(uniform, offset), ones(), 0.2);
+  CHECK(biased.slope > -0.45);
+  CHECK(biased.points.back().error == doctest::Approx(offset).epsilon(0.3));
+  const ErrorCurve mended = measure_error(toy(uniform, offset), ones(offset), 0.2);
+  CHECK(mended.slope < -0.47);
+  CHECK(mended.slope_error > biased.slope_error);  // the reference's part
+}
+
+TEST_CASE("measure_error sees that there is no finite variance") {
+  const ErrorCurve curve = measure_error(toy(heavy), ones(), 0.2);
+  CHECK(curve.slope > -0.4);
+  CHECK(curve.slope < 0.05);
+}
+
+TEST_CASE("measure_cost finds the exponent of a loop in a loop") {
+  const Scaling scaling{"loops", "n", 64, 1024, 2, [](double size) {
+                          return [n = static_cast<int>(size), sum = std::make_shared<double>()] {
+                            for (int i = 0; i < n; ++i)
+                              for (int j = 0; j < n; ++j) *sum = *sum * 0.999 + i + j;
+                          };
+                        }};
+  const CostCurve curve = measure_cost(scaling, 0.1);
+  CHECK(curve.size.size() == 5);
+  CHECK(curve.exponent == doctest::Approx(2).epsilon(0.1));
+}
