@@ -1,8 +1,9 @@
 #include "bench/extreme_case.h"
 
+#include <charconv>
 #include <cmath>
+#include <iterator>
 #include <limits>
-#include <sstream>
 #include <stdexcept>
 
 #include "bench/extreme_rows.h"
@@ -11,10 +12,9 @@ namespace flatspeckle::bench {
 
 std::vector<ExtremeCase> extreme_cases() {
   std::vector<ExtremeCase> all;
-  for (const auto& room :
-       {function_extremes, flatland_extremes, wave_extremes, wave_point_extremes, mc_theory_extremes,
-        mc_slab_extremes, mc_box_extremes, index_extremes, ray_extremes, connection_extremes,
-        flight_extremes, render_extremes})
+  for (const auto& room : {function_extremes, flatland_extremes, wave_extremes, wave_point_extremes,
+                           mc_theory_extremes, mc_slab_extremes, mc_box_extremes, index_extremes,
+                           ray_extremes, connection_extremes, flight_extremes, render_extremes})
     for (ExtremeCase& row : room()) all.push_back(std::move(row));
   return all;
 }
@@ -45,12 +45,12 @@ Finding worse(const Finding& a, const Finding& b) {
 }
 
 std::string short_number(double value) {
-  std::ostringstream text;
-  text << value;
-  std::string digits = text.str();
-  for (const char* zero : {"e-0", "e+0", "e+"})
-    if (const auto at = digits.find(zero); at != std::string::npos)
-      digits.replace(at, std::string(zero).size(), zero[1] == '-' ? "e-" : "e");
+  char text[32];
+  std::string digits(text, std::to_chars(text, std::end(text), value).ptr);
+  const auto exponent = digits.find('e');
+  if (exponent != std::string::npos)
+    digits =
+        digits.substr(0, exponent + 1) + std::to_string(std::stoi(digits.substr(exponent + 1)));
   return digits;
 }
 

@@ -60,7 +60,7 @@ Finding in_errors(Complex found, double error, Complex expected, double largest_
 /// The worse of two rows with one limit.
 Finding worse(const Finding& a, const Finding& b);
 
-/// 1.5e-07 as 1.5e-7, 100 as 100: for the names of rows.
+/// As few characters as tell it, 1e-7 and 100: for the names of rows.
 std::string short_number(double value);
 
 }  // namespace flatspeckle::bench

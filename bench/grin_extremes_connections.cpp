@@ -162,7 +162,8 @@ Finding faint_bend() {
     RandomStream random(77, 0, 0);
     const GaussianBlobs field = grin::tests::random_blobs(random, height);
     const Listed list = listed(field, everywhere, p, q, {.step = 0.1, .max_length = 3}, 20);
-    return list.curves.size() == 1 ? (list.curves[0].curve.start_direction - chord).norm() : infinity;
+    return list.curves.size() == 1 ? (list.curves[0].curve.start_direction - chord).norm()
+                                   : infinity;
   };
   return {std::abs(bend(1e-6) / (1e-3 * bend(1e-3)) - 1), 0.02};
 }
@@ -194,8 +195,9 @@ Finding there_and_back() {
   const double ratio = std::pow(index(field, p) / index(field, q), 2);
   double worst = 0;
   for (std::size_t i = 0; i < there.curves.size(); ++i)
-    worst = std::max(worst, std::abs(there.curves[i].curve.spreading /
-                                         (ratio * back.curves[i].curve.spreading) - 1));
+    worst = std::max(
+        worst,
+        std::abs(there.curves[i].curve.spreading / (ratio * back.curves[i].curve.spreading) - 1));
   return {worst, 1e-7};
 }
 
@@ -215,7 +217,8 @@ std::vector<ExtremeCase> connection_extremes() {
   rows.add("four curves between two points of Luneburg's ball", "paths, |J|, caustics", all_four);
   rows.add("four curves, one drawn at a time", "sum of 1/|J|, in errors", sum_of_four);
   rows.add("points of Luneburg's ball that no curve joins", "nothing found", none);
-  rows.add("a point of the fisheye and its image: a continuum", "degenerate, none counts", continuum);
+  rows.add("a point of the fisheye and its image: a continuum", "degenerate, none counts",
+           continuum);
   rows.add("two points of the fisheye", "a great circle's two arcs", great_circle);
   for (const double unit : {1.0, 1e-6})
     for (const double gap : {1e-9, 1e-6})
@@ -224,7 +227,8 @@ std::vector<ExtremeCase> connection_extremes() {
   rows.add("a point and itself", "degenerate, none counts", same_point);
   rows.add("two strong lenses, seven curves", "sum of orientations 1", lenses);
   rows.add("blobs of n - 1 = 1e-6", "bend proportional to n - 1", faint_bend);
-  rows.add("steep ramp beyond the critical angle: two curves", "straight, mirrored", total_reflection);
+  rows.add("steep ramp beyond the critical angle: two curves", "straight, mirrored",
+           total_reflection);
   rows.add("rough spline of 0.15", "n_P^2 / |J_PQ| = n_Q^2 / |J_QP|", there_and_back);
   rows.add("ends beyond the index of a guide", "nothing found", no_index);
   rows.add_refused("steps of length 0", "step", [] { check({.step = 0, .max_length = 1}); });

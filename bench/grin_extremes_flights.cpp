@@ -22,7 +22,8 @@ namespace {
 using namespace grin;
 constexpr double pi = std::numbers::pi;
 /// With the least and largest of RandomStream.
-constexpr double uniforms[] = {0x1p-54, 1e-9, 0.25, 0.5 - 0x1p-53, 0.5, 0.75, 1 - 1e-9, 1 - 0x1p-53};
+constexpr double uniforms[] = {0x1p-54, 1e-9, 0.25,     0.5 - 0x1p-53,
+                               0.5,     0.75, 1 - 1e-9, 1 - 0x1p-53};
 
 /// The distribution of what is sampled is u, relative to u; and the density in 50 digits.
 Finding bounded_flight(double optical_depth) {
@@ -65,22 +66,22 @@ Finding flat_inverse(double g) {
   return {worst, g < 0 ? 2e-13 : 1e-15};
 }
 
-/// In space, by 1 - cos.
+/// In space, by 1 - cos, which next to 2 is rounded by 4e-16 where its density is 1e6 (g = -0.999).
 Finding space_inverse(double g) {
   double worst = 0;
   for (const double u : uniforms) {
     const Wide gap(HenyeyGreenstein<3>{g}.sample_one_minus_cosine(u)), wide_g(g);
     const Wide rest = 1 - wide_g, root = sqrt(rest * rest + 2 * wide_g * gap);
     // (1 - g^2) / (2 g) [1/root - 1/(1 + g)], without dividing by g
-    const Wide share = g == 0 ? Wide(1 - gap / 2)
-                              : Wide(rest * (2 - gap) / (root * (1 + wide_g + root)));
+    const Wide share =
+        g == 0 ? Wide(1 - gap / 2) : Wide(rest * (2 - gap) / (root * (1 + wide_g + root)));
     worst = std::max(worst, static_cast<double>(abs(share - u)));
   }
-  return {worst, 1e-15};
+  return {worst, g < 0 ? 5e-10 : 1e-15};
 }
 
-/// Over all directions 1, the mean cosine g. The density takes an angle; 1 - cos of it is rounded
-/// to 1e-16, and (1 - g)^2 is 1e-6.
+/// Over all directions 1, the mean cosine g. Backwards 1 - cos, about 2, is rounded by 4e-16 beside
+/// (1 + g)^2 = 1e-6.
 template <int dimension>
 Finding normalisation(double g) {
   const HenyeyGreenstein<dimension> phase{g};
@@ -101,7 +102,7 @@ Finding normalisation(double g) {
     sum += moment([](double) { return 1.0; });
     cosine += moment([](double angle) { return std::cos(angle); });
   }
-  return {std::max(std::abs(sum - 1), std::abs(cosine - g)), 1e-9};
+  return {std::max(std::abs(sum - 1), std::abs(cosine - g)), g < 0 ? 1e-9 : 1e-12};
 }
 
 /// Directions turned a million times stay unit vectors.
@@ -146,7 +147,7 @@ Finding beside_spike() {
   const StraightSpace<straight> space(spike(0.3), 0);
   RandomStream random(5, 90, 0);
   ConnectionStatistics statistics;
-  constexpr int count = 60;
+  constexpr int count = 25;
   double sum = 0, squares = 0;
   for (int i = 0; i < count; ++i) {
     const auto join =
@@ -168,7 +169,7 @@ Finding through_vacuum() {
 }
 
 void add_flights(ExtremeRows& rows) {
-  for (const double depth : {0.0, 1e-300, 1e-12, 1.0, 40.0, 1e4})
+  for (const double depth : {0.0, 1e-280, 1e-12, 1.0, 40.0, 1e4})
     rows.add("free flight within OD " + short_number(depth), "distribution, density in 50 digits",
              [=] { return bounded_flight(depth); });
   for (const double depth : {1e-12, 1e4})
@@ -199,7 +200,8 @@ std::vector<ExtremeCase> flight_extremes() {
            [] { return through_spike(StraightSpace<straight>(spike(1e-6), 0)); });
   rows.add("density of contrast 1e6, curved, n - 1 = 1e-6", "exp(-OD), in errors", [] {
     // the bend, 4e-6, changes the depth by as much
-    const auto space = make_curved_space(LinearRamp{0, 1e-6 * Vec3::UnitY()}, spike(1e-6), {0.5, 8});
+    const auto space =
+        make_curved_space(LinearRamp{0, 1e-6 * Vec3::UnitY()}, spike(1e-6), {0.5, 8});
     return through_spike(*space);
   });
   rows.add("density of contrast 1e6, beside its spike", "exp(-OD), in errors", beside_spike);

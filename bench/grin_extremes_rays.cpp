@@ -47,7 +47,8 @@ Finding luneburg(double height, double limit) {
   if (height > 0) trace(Homogeneous{}, rim, limits, straight, ray);
   const TraceEnd end = trace(lens, rim, limits, steps, ray);
   if (end.stop != Stop::surface) return yes(false);
-  return {std::max((ray.x - Vec3::UnitX()).norm(), std::abs(ray.optical_path - (pi / 2 + 1))), limit};
+  return {std::max((ray.x - Vec3::UnitX()).norm(), std::abs(ray.optical_path - (pi / 2 + 1))),
+          limit};
 }
 
 Finding beside_the_rim() {
@@ -76,8 +77,7 @@ Finding fisheye_far_out(double angle) {
 /// turning point and down to the start again.
 Finding turning_point(double slope, double cosine) {
   const LinearRamp ramp{0.5, Vec3(0, 0, slope)};
-  const RayState start =
-      start_ray(ramp, Vec3::Zero(), {std::sqrt(1 - cosine * cosine), 0, cosine});
+  const RayState start = start_ray(ramp, Vec3::Zero(), {std::sqrt(1 - cosine * cosine), 0, cosine});
   const double sigma = cosine > 0 ? -2 * std::atanh(start.v[2] / 1.5) / slope : -1 / slope;
   RayState ray = start;
   constexpr int count = 2000;
@@ -215,14 +215,16 @@ Beam beam(const F& field, RayState ray, double sigma, int steps) {
   return {ray, signed_spreading(tangent, start.v.norm(), start.v, ray.v), caustics.count()};
 }
 
-/// Luneburg's ball: |J| = n0^2 sin^2 sigma (v0.v) about its foci, where it is 0 to second order.
+/// Luneburg's ball: |J| = n0^2 sin^2 sigma (v0.v) about its foci, where it is 0 to second order:
+/// 1e-6 beyond, places that are right to 1e-13 make 1e-7 of it.
 Finding ball_focus(double beyond) {
   const HarmonicBall field{{}};
   const RayState start = start_ray(field, {0.3, 0.2, -0.4}, {0.5, -0.3, 0.6});
   const HarmonicCurve exact{start.x, start.v, pi + beyond};
   const Beam found = beam(field, start, exact.sigma, 3000);
-  if (beyond != 0 && found.caustics != exact.caustics()) return yes(false);
-  return {std::abs(std::abs(found.spreading) - exact.spreading()), 1e-9};
+  if (beyond == 0) return {std::abs(found.spreading), 1e-20};
+  if (found.caustics != exact.caustics()) return yes(false);
+  return {std::abs(std::abs(found.spreading) / exact.spreading() - 1), 1e-6};
 }
 
 /// The image of a fisheye: both widths vanish at once.
@@ -230,16 +232,15 @@ Finding fisheye_focus() {
   const double n0 = 1.7, a = 0.8;
   const Fisheye field({n0 - 1, a});
   const Vec3 from(0.3, 0.2, -0.4);
-  auto steps = controlled(1e-12, 0.05);
+  auto steps = controlled(1e-12, 0.01);
   RayState ray = start_ray(field, from, {0.1, 0.9, 0.3});
   const RayState start = ray;
   RayTangent tangent;
-  while (ray.optical_path < pi * n0 * a / 2) {
-    const double left = pi * n0 * a / 2 - ray.optical_path, n = index(field, ray.x);
-    steps.h = std::min(steps.h, left / (n * n));
-    steps.advance(field, ray, tangent);
-    if (left < 1e-12) break;
-  }
+  const auto left = [&] { return pi * n0 * a / 2 - ray.optical_path; };
+  while (left() > 0.02) steps.advance(field, ray, tangent);
+  for (int newton = 0; newton < 10; ++newton)
+    for (int part = 0, parts = 10; part < parts; ++part)
+      Sharma::step(field, ray, tangent, left() / (parts - part) / ray.v.squaredNorm());
   const Vec3 image = -a * a / from.squaredNorm() * from;
   return {std::max((ray.x - image).norm(),
                    std::abs(signed_spreading(tangent, start.v.norm(), start.v, ray.v))),
@@ -281,6 +282,14 @@ Finding beyond_the_guide() {
   return yes(trace(guide, nothing, {1e3, 1e-11}, wide, out).stop == Stop::lost);
 }
 
+/// Of order 64 the wave is a product of (kr rho)^64 and a profile; a table reaches to 1e4.
+Finding sound_too_far() {
+  const StandingWave wave(0.3, 0.01, 64, 7, 70);
+  auto steps = controlled(1e-10, 1);
+  RayState ray = start_ray(wave, {1e5 / 7, 0, 0}, Vec3::UnitZ());
+  return yes(trace(wave, nothing, {10, 1e-9}, steps, ray).stop == Stop::lost);
+}
+
 void add_lenses(ExtremeRows& rows) {
   for (const double height : {0.0, 0.7, 0.999})
     rows.add("Luneburg lens, beam at height " + short_number(height), "focus, optical path",
@@ -307,16 +316,19 @@ void add_ramps(ExtremeRows& rows) {
     rows.add("ramp of width " + short_number(width) + ", 1e-8 about the critical angle",
              "passes or turns, Snell", [=] { return critical_angle(width); });
   rows.add("ramp where n falls to 0", "lost, or turned back", no_index);
+  rows.add("ultrasound of order 64 at kr rho = 1e5: (kr rho)^64 is no number", "lost",
+           sound_too_far);
   rows.add("step beyond the index of a guide", "lost", beyond_the_guide);
 }
 
 void add_guides(ExtremeRows& rows) {
   rows.add("guide, 1e4 oscillations, 40 steps each", "|v| - n, v along", guide_index);
-  rows.add("guide, 1e4 oscillations, 400 steps each", "place in closed form", guide_phase);
+  rows.add_slow("guide, 1e4 oscillations, 400 steps each", "place in closed form", guide_phase);
   rows.add("guide, 1e4 oscillations and back", "place, direction", guide_and_back);
   rows.add("guide, tangent of 100 oscillations", "dx/dv0 in closed form", guide_tangent);
   rows.add("guide of n - 1 = 1e-6, period 6e4", "place, slope, path beyond length", faint_guide);
-  rows.add("sech guide, 1000 half periods, slopes to 0.8", "optical path n0 L", sech_dispersion);
+  rows.add_slow("sech guide, 1000 half periods, slopes to 0.8", "optical path n0 L",
+                sech_dispersion);
   rows.add("guide at coordinates of 1e8", "place in closed form", far_from_origin);
   rows.add("axis of ultrasound, and 1e-6 beside it", "guide of C28", sound_axis);
 }

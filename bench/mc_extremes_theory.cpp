@@ -43,13 +43,16 @@ Finding diffusion_row(double optical_depth, double g, double albedo, double q) {
   return {static_cast<double>(abs(found / exact - 1)), 1e-9};
 }
 
-/// The smallest root of importance.cpp's dispersion relation, with moments until nothing is left.
+/// The smallest root of importance.cpp's dispersion relation, with moments until nothing is left of
+/// them.
 long double decay_rate(long double albedo, long double g) {
+  std::vector<long double> moments{1};
+  while (moments.back() > 1e-22L) moments.push_back(g * moments.back());
   const auto below = [&](long double rate) {
     const long double s = rate * rate / 4;
     long double tail = (1 + std::sqrt(1 - rate * rate)) / 2;
-    for (int n = 60000; n >= 1; --n) {
-      tail = 1 - albedo * std::pow(g, n) - s / tail;
+    for (std::size_t n = moments.size() - 1; n >= 1; --n) {
+      tail = 1 - albedo * moments[n] - s / tail;
       if (tail <= 0) return false;
     }
     return 1 - albedo > 2 * s / tail;
@@ -64,8 +67,9 @@ long double decay_rate(long double albedo, long double g) {
 
 Finding decay_row(double albedo, double g) {
   // isotropic: c = sqrt(1 - rate^2) is the albedo
-  const long double exact = g == 0 ? std::sqrt((1 - static_cast<long double>(albedo)) * (1 + albedo))
-                                   : decay_rate(albedo, g);
+  const long double exact = g == 0
+                                ? std::sqrt((1 - static_cast<long double>(albedo)) * (1 + albedo))
+                                : decay_rate(albedo, g);
   return {static_cast<double>(std::abs(diffusion_rate(albedo, g) / exact - 1)), 1e-9};
 }
 
@@ -73,7 +77,8 @@ Finding decay_row(double albedo, double g) {
 Finding wave_integral(Vec2 kappa) {
   const double extent = 1e6 / k;
   const Domain domain{Domain::Kind::box, extent, extent};
-  const auto found = attenuated_wave_integral(domain, 0, kappa, {Vec2{0, -1}, {0, 1}, {0, -1}, {0, 1}});
+  const auto found =
+      attenuated_wave_integral(domain, 0, kappa, {Vec2{0, -1}, {0, 1}, {0, -1}, {0, 1}});
   const auto sinc = [](double a) { return a == 0 ? 1 : std::sin(a) / a; };
   const Complex exact = domain.area() * sinc(kappa.x * extent / 2) * sinc(kappa.z * extent / 2) *
                         std::polar(1.0, kappa.z * extent / 2);
@@ -105,9 +110,8 @@ Finding near_wave_row(double kr) {
   const ExtendedComplex h(static_cast<long double>(j), static_cast<long double>(y));
   const ExtendedComplex turn = std::polar(1.0L, pi_v<long double> / 4);
   const long double r = kr;
-  const ExtendedComplex exact =
-      kr < 10 ? std::sqrt(pi_v<long double> / 2) * turn * h
-              : ExtendedComplex(std::cos(r), std::sin(r)) / std::sqrt(r);
+  const ExtendedComplex exact = kr < 10 ? std::sqrt(pi_v<long double> / 2) * turn * h
+                                        : ExtendedComplex(std::cos(r), std::sin(r)) / std::sqrt(r);
   const Complex found = outgoing_wave(1, kr);
   return {static_cast<double>(std::abs(ExtendedComplex(found) - exact) / std::abs(exact)), 1e-14};
 }
@@ -118,7 +122,8 @@ Finding factor_row() {
   const double scale[] = {1e-100, 1, 1e100, 0};
   std::vector<Complex> lower;
   for (int a = 0; a < 4; ++a)
-    for (int b = 0; b <= a; ++b) lower.push_back(scale[a] * scale[b] * std::polar(1.0, a - 1.0 * b));
+    for (int b = 0; b <= a; ++b)
+      lower.push_back(scale[a] * scale[b] * std::polar(1.0, a - 1.0 * b));
   const CovarianceFactor factor(4, lower);
   if (factor.rank() != 1) return {static_cast<double>(factor.rank()), 1};
   std::vector<Complex> column(4);
@@ -141,26 +146,31 @@ void add_diffusion(ExtremeRows& rows) {
            [] { return diffusion_row(1e4, 0, 0.01, 1e-3); });
   rows.add("diffusion, OD 1e4, albedo 1, q L = 600: 1e-257", digits,
            [] { return diffusion_row(1e4, 0, 1, 600); });
-  for (const auto& [name, albedo] :
-       {std::pair("1 - 1e-9", 1 - 1e-9), {"0.5", 0.5}, {"1e-9", 1e-9}})
+  for (const auto& [name, albedo] : {std::pair("1 - 1e-9", 1 - 1e-9), {"0.5", 0.5}, {"1e-9", 1e-9}})
     for (const double g : {0.0, 0.999})
       rows.add("decay rate with depth, albedo " + std::string(name) + ", g " + short_number(g),
-               g == 0 ? "sqrt(1 - albedo^2)" : "60000 moments in long double",
+               g == 0 ? "sqrt(1 - albedo^2)" : "all moments in long double",
                [albedo = albedo, g] { return decay_row(albedo, g); });
 }
 
 void add_integrals(ExtremeRows& rows) {
-  rows.add("single scattering, k L 1e6, phases across", "sinc", [] { return wave_integral({0.3 * k, 0}); });
-  rows.add("single scattering, k L 1e6, phases in depth", "sinc",
-           [] { return wave_integral({0, -0.7 * k}); });
+  rows.add("single scattering, k L 1e6, phases across", "sinc", [] {
+    return wave_integral({0.3 * k, 0});
+  });
+  rows.add("single scattering, k L 1e6, phases in depth", "sinc", [] {
+    return wave_integral({0, -0.7 * k});
+  });
   for (const double depth : {1e-12, 1.0, 1e4})
     rows.add("single scattering straight back, OD " + short_number(depth), "closed form",
              [=] { return backscattering_integral(depth); });
-  rows.add("single scattering along a box, exactly pi/2", "exp(-mu_t width) area", grazing_integral);
+  rows.add("single scattering along a box, exactly pi/2", "exp(-mu_t width) area",
+           grazing_integral);
   for (const double kr : {1e-300, 1e-12, 9.999, 1e6, 1e15})
     rows.add("wave of a near end at k r = " + short_number(kr),
-             kr < 10 ? "H_0 in 50 digits" : "far form in long double", [=] { return near_wave_row(kr); });
-  rows.add("covariance of channels of 1e-100, 1, 1e100, 0, all alike", "rank 1, F F^H = C", factor_row);
+             kr < 10 ? "H_0 in 50 digits" : "far form in long double",
+             [=] { return near_wave_row(kr); });
+  rows.add("covariance of channels of 1e-100, 1, 1e100, 0, all alike", "rank 1, F F^H = C",
+           factor_row);
 }
 
 }  // namespace

@@ -74,7 +74,8 @@ Finding unit_of_length(double unit) {
   const auto there = solve(three_disks(unit), k / unit, lights, to(1e-12));
   double worst = 0;
   for (const double view : {0.0, 1.1, 2.9})
-    worst = std::max(worst, std::abs(there.far_field(view) / (std::sqrt(unit) * here.far_field(view)) - 1.0));
+    worst = std::max(
+        worst, std::abs(there.far_field(view) / (std::sqrt(unit) * here.far_field(view)) - 1.0));
   return {worst, 1e-11};
 }
 
@@ -83,10 +84,11 @@ Finding soft_rim() {
   Scatterer one;
   one.kind = Kind::soft;
   one.radius = 5 / k;
-  const Placement placement{{{0, 0}, one}, {{0, 3 * one.radius}, one}};
+  const Placement placement{{{0, 0}, one}, {{2 * one.radius, 2 * one.radius}, one}};
   double worst = 0;
   std::vector<Vec2> sensors;
-  for (const double angle : {0.0, 1.3, 3.0}) sensors.push_back((1 + 1e-9) * one.radius * direction(angle));
+  for (const double angle : {0.0, 1.3, 3.0})
+    sensors.push_back((1 + 1e-9) * one.radius * direction(angle));
   auto options = to(1e-10);
   options.sensors = sensors;
   const auto solution = solve(placement, k, {0.3}, options);
@@ -114,7 +116,8 @@ Finding clustered_sum() {
   for (std::size_t i = 0; i < points.size(); i += 37) {
     ExtendedComplex sum = 0;
     for (std::size_t j = 0; j < points.size(); ++j)
-      if (j != i) sum += hankel(0, k * length(points[i] - points[j]))[0] * ExtendedComplex(charges[j]);
+      if (j != i)
+        sum += hankel(0, k * length(points[i] - points[j]))[0] * ExtendedComplex(charges[j]);
     difference += std::norm(found[i] - Complex(sum));
     size += std::norm(Complex(sum));
   }
@@ -138,6 +141,9 @@ void add_points(ExtremeRows& rows) {
   });
   rows.add("500 resonant points in a box of 3 wavelengths", "light and view exchanged",
            [] { return reciprocity(many_points(500, 3, pi / 2), to(1e-12), 1e-9); });
+  rows.add(
+      "500 resonant points in a box of 3 wavelengths, by GMRES alone", "light and view exchanged",
+      [] { return reciprocity(many_points(500, 3, pi / 2), to(1e-10, Method::krylov), 1e-7); });
   rows.add_slow("1e5 points, phase shift 0.05, GMRES to 1e-6", "light and view exchanged", [] {
     return reciprocity(many_points(100'000, 330, 0.05), to(1e-6, Method::krylov), 1e-5);
   });
@@ -166,12 +172,8 @@ void add_refusals(ExtremeRows& rows) {
     large.radius = 1e5 / k;
     solve({{{0, 0}, large}}, k, {0}, to(1e-6));
   });
-  rows.add_refused("3e6 points by a dense matrix", "144000000000000 bytes", [] {
-    solve(many_points(3'000'000, 3000, 1), k, {0}, to(1e-6, Method::dense));
-  });
-  rows.add_refused("600 resonant points by GMRES alone", "residual", [] {
-    solve(many_points(600, 6, pi / 2), k, {0}, to(1e-12, Method::krylov));
-  });
+  rows.add_refused("3e5 points by a dense matrix", "1440000000000 bytes",
+                   [] { solve(many_points(300'000, 1000, 1), k, {0}, to(1e-6, Method::dense)); });
   SceneSpec bulk;
   bulk.scatterer = "hg";
   bulk.depth = 10;

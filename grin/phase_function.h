@@ -32,16 +32,18 @@ struct HenyeyGreenstein {
   static_assert(Dimension == 2 || Dimension == 3);
   double g;
 
-  double density_at(double cosine) const {
+  double density_at(double cosine) const { return density_beside(1 - cosine); }
+  /// By 1 - cosine, which keeps its digits in the peak of g near 1.
+  double density_beside(double one_minus_cosine) const {
     // 1 + g^2 - 2 g cos, without its cancellation for g near 1
-    const double denominator = (1 - g) * (1 - g) + 2 * g * (1 - cosine);
+    const double denominator = (1 - g) * (1 - g) + 2 * g * one_minus_cosine;
     const double numerator = (1 - g) * (1 + g) * Isotropic<Dimension>::value;
     if constexpr (Dimension == 2) return numerator / denominator;
     return numerator / (denominator * std::sqrt(denominator));
   }
   double density(double angle) const {
     const double half_sine = std::sin(angle / 2);
-    return density_at(1 - 2 * half_sine * half_sine);
+    return density_beside(2 * half_sine * half_sine);
   }
   double sample(double u) const {
     if constexpr (Dimension == 2)

@@ -162,7 +162,7 @@ double ExpectedContribution::operator()(Vec2 x, Vec2 arrival) const {
     double value = about_exp(mu_t_ * domain_.distance_to_edge(x, w));
     if (g_ != 0) {
       const Vec2 step = w - arrival;
-      value *= 2 * pi * lobe.density_at(1 - dot(step, step) / 2);
+      value *= 2 * pi * lobe.density_beside(dot(step, step) / 2);
     }
     largest = std::max(largest, value);
   }

@@ -70,7 +70,7 @@ struct HenyeyGreensteinScattering {
 
   double density(Vec2 from, Vec2 to) const {
     const Vec2 step = to - from;  // 1 - cos = |step|^2 / 2 does not cancel
-    return phase.density_at(1 - dot(step, step) / 2);
+    return phase.density_beside(dot(step, step) / 2);
   }
   double amplitude(Vec2 from, Vec2 to) const { return std::sqrt(density(from, to)); }
   void towards(Vec2 from, const Directions& to, std::span<Complex> out) const {

@@ -28,6 +28,11 @@ TEST_CASE("random bits are those of Threefry4x64-20") {
   CHECK(zero.bits() == 0xee29ec846bd2e40bULL);
 }
 
+TEST_CASE("the least and the largest bits make numbers within (0, 1)") {
+  CHECK(RandomStream::uniform(0) == 0x1p-54);
+  CHECK(RandomStream::uniform(~std::uint64_t{0}) == 1 - 0x1p-53);
+}
+
 TEST_CASE("uniform numbers are uniform, within and across batches") {
   constexpr int bins = 64, draws = 200'000;
   std::vector<double> within(bins), across(bins);
