@@ -159,7 +159,7 @@ void fit(const Spread& spread, ErrorCurve& curve) {
 ErrorCurve measure_error(const Method& method, const ErrorReference& reference,
                          double cpu_seconds) {
   omp_set_num_threads(1);
-  const auto [runs, first, points] = schedule(method, reference, cpu_seconds);
+  const auto [runs, first, points] = schedule(method, reference, method.share * cpu_seconds);
   std::vector<RunErrors> errors;
   double seconds = 0;
   for (std::uint64_t seed = 1; seed <= runs; ++seed) {

@@ -21,6 +21,7 @@ struct Method {
   std::function<Trial(std::uint64_t seed)> trial;
   std::uint64_t first_point = 1;  ///< batches of the first point of a curve
   bool is_monte_carlo = true;     ///< see ErrorCurve
+  double share = 1;               ///< of the time, for dear ones
 };
 
 /// What a curve is compared with.

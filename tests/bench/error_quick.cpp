@@ -1,19 +1,18 @@
 // Every curve of `flatspeckle bench error` in a moment: whether they have the right shape.
 #include <cmath>
-#include <exception>
 #include <string>
 #include <vector>
 
 #include <doctest/doctest.h>
-#include <omp.h>
 
 #include "bench/error_curve.h"
+#include "core/parallel.h"
 
 using namespace flatspeckle::bench;
 
 namespace {
 
-constexpr double cpu_seconds = 0.2;
+constexpr double cpu_seconds = 0.1;
 
 bool is_rising(const std::vector<double>& values) {
   for (std::size_t i = 0; i < values.size(); ++i)
@@ -21,12 +20,11 @@ bool is_rising(const std::vector<double>& values) {
   return true;
 }
 
-/// All at once, in any order; an exception would end the program.
 template <class Run, class Curve>
 std::vector<Curve> run_all(const std::vector<Run>& runs) {
   std::vector<Curve> curves(runs.size());
-#pragma omp parallel for schedule(dynamic, 1)
-  for (std::size_t i = 0; i < runs.size(); ++i) curves[i] = runs[i].run(cpu_seconds);
+  flatspeckle::parallel_for(runs.size(),
+                            [&](std::size_t i) { curves[i] = runs[i].run(cpu_seconds); });
   return curves;
 }
 

@@ -36,10 +36,10 @@ double uniform(RandomStream& random) {
   return std::sqrt(3.0) * (2 * random.uniform() - 1);  // variance 1
 }
 
-/// Density 1.2 / |x|^2.2 beyond 1: no variance; the error of n of them falls as n^(1/1.2 - 1).
+/// Density 0.4 / |x|^1.8 beyond 1: no variance; the error of n of them grows as n^(1/0.8 - 1).
 double heavy(RandomStream& random) {
   const double sign = random.uniform() < 0.5 ? -1 : 1;
-  return sign * std::pow(random.uniform(), -1 / 1.2);
+  return sign * std::pow(random.uniform(), -1 / 0.8);
 }
 
 ErrorReference ones(double error = 0) {
@@ -88,8 +88,7 @@ TEST_CASE("measure_error sees a bias and takes off what the reference is off by"
 
 TEST_CASE("measure_error sees that there is no finite variance") {
   const ErrorCurve curve = measure_error(toy(heavy), ones(), 0.2);
-  CHECK(curve.slope > -0.4);
-  CHECK(curve.slope < 0.05);
+  CHECK(curve.slope > -0.25);
 }
 
 TEST_CASE("measure_cost finds the exponent of a loop in a loop") {
