@@ -19,7 +19,7 @@ def making(bench):
                 [[f"`flatspeckle bench {name}`", f"{file.made.wall_s:.0f}",
                   f"{file.made.cpu_s:.0f}", str(file.made.threads)]
                  for name, file in bench.files().items()], "lrrr",
-                f"flatspeckle {made.version}, commit {made.commit}, {made.date}, {made.machine}")
+                f"flatspeckle {made.version}, commit {made.short_commit}, {made.date}, {made.machine}")
     yield Paragraph("Times are processor seconds of one thread. On another machine they are "
                     "others; ratios, slopes and exponents travel.")
 

@@ -88,7 +88,7 @@ def of_making(bench):
     whole = sum(file.made.wall_s for file in bench.files().values()) / 60
     yield "made.minutes", number(whole, text=number_text.digits(whole, 2))
     made = bench.error.made
-    for key, text in {"machine": made.machine, "commit": made.commit, "date": made.date}.items():
+    for key, text in {"machine": made.machine, "commit": made.short_commit, "date": made.date}.items():
         yield f"made.{key}", {"value": text, "error": 0.0, "text": text}
 
 

@@ -38,6 +38,12 @@ class Made:
     def date(self):
         return self.started[:10]
 
+    @property
+    def short_commit(self):
+        """Its first digits, and whether files differed from it."""
+        digits, plus, _ = self.commit.partition("+")
+        return digits[:10] + (" with changes" if plus else "")
+
 
 def made(result):
     text = lambda name: str(result.attribute(name, ""))

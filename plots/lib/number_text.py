@@ -51,6 +51,9 @@ def plus_minus(value, error):
 
 def seconds(value):
     """In the unit that suits."""
+    for size, unit in ((3600, "h"), (60, "min")):
+        if value >= 10 * size:
+            return f"{digits(value / size, 2)} {unit}"
     for size, unit in UNITS:
         if value >= size or unit == "ns":
             return f"{digits(value / size)} {unit}"
