@@ -7,6 +7,8 @@
 #include <memory>
 #include <sstream>
 
+#include <CLI/CLI.hpp>
+
 #include "apps/scene_file.h"
 #include "core/error.h"
 
@@ -97,55 +99,61 @@ void refuse_strays(const std::vector<std::string>& strays) {
 }  // namespace
 
 Subcommand::Subcommand(const std::string& name, const std::string& purpose)
-    : app_(purpose, "flatspeckle " + name) {
-  app_.set_config("--config", "", "Scene file: these flags as keys, one a line (TOML)");
-  app_.allow_config_extras(CLI::config_extras_mode::error);
-  app_.config_formatter(std::make_shared<SceneFile>());
-  app_.allow_extras();  // refused below, in clearer words
-  app_.add_flag("--print-config", print_config_, "Print the resolved scene and exit")
+    : app_(std::make_unique<CLI::App>(purpose, "flatspeckle " + name)), options_(*app_) {
+  app_->set_config("--config", "", "Scene file: these flags as keys, one a line (TOML)");
+  app_->allow_config_extras(CLI::config_extras_mode::error);
+  app_->config_formatter(std::make_shared<SceneFile>());
+  app_->allow_extras();  // refused below, in clearer words
+  app_->add_flag("--print-config", print_config_, "Print the resolved scene and exit")
       ->configurable(false);
-  app_.get_formatter()->column_width(34);
+  app_->get_formatter()->column_width(34);
+}
+
+Subcommand::~Subcommand() = default;
+
+bool Subcommand::given(const std::string& key) const {
+  return app_->get_option("--" + key)->count() > 0;
 }
 
 /// Turns CLI11's complaints into ours; CallForHelp passes.
 void Subcommand::parse_by(const std::function<void()>& parser) {
-  for (CLI::Option* option : app_.get_options())
+  for (CLI::Option* option : app_->get_options())
     if (option->get_type_name() == "FLOAT") option->transform(shortest);
   try {
     parser();
   } catch (const CLI::CallForHelp&) {
     throw;
   } catch (const CLI::ParseError& error) {
-    throw InputError(explain(app_, error));
+    throw InputError(explain(*app_, error));
   }
-  refuse_odd_values(app_);
-  refuse_strays(app_.remaining());
+  refuse_odd_values(*app_);
+  refuse_strays(app_->remaining());
 }
 
 bool Subcommand::parse(const Arguments& arguments) {
   std::vector<std::string> own(arguments.rbegin(), arguments.rend() - 2);
   const auto parser = [&] {
     try {
-      app_.parse(own);
+      app_->parse(own);
     } catch (const InputError& error) {  // from the scene file
-      throw InputError(app_.get_config_ptr()->as<std::string>() + ", " + error.what());
+      throw InputError(app_->get_config_ptr()->as<std::string>() + ", " + error.what());
     }
   };
   try {
     parse_by(parser);
   } catch (const CLI::CallForHelp&) {
-    std::cout << app_.help();
+    std::cout << app_->help();
     return false;
   }
-  command_line_ = {app_.config_to_str(), joined(arguments)};
+  command_line_ = {app_->config_to_str(), joined(arguments)};
   if (print_config_) std::cout << command_line_.config;
   return !print_config_;
 }
 
 void Subcommand::parse_config(const std::string& config) {
   std::istringstream text(config);
-  parse_by([&] { app_.parse_from_stream(text); });
-  command_line_.config = app_.config_to_str();
+  parse_by([&] { app_->parse_from_stream(text); });
+  command_line_.config = app_->config_to_str();
 }
 
 std::string without_keys(const std::string& config, const std::vector<std::string>& keys) {

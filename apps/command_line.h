@@ -1,10 +1,11 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
+#include "apps/options.h"
 
 namespace flatspeckle::apps {
 
@@ -22,8 +23,9 @@ struct CommandLine {
 class Subcommand {
  public:
   Subcommand(const std::string& name, const std::string& purpose);
+  ~Subcommand();
 
-  CLI::App& options() { return app_; }
+  Options& options() { return options_; }
 
   /// Throws InputError for what cannot be parsed. --help and --print-config print and return false.
   bool parse(const Arguments& arguments);
@@ -31,12 +33,13 @@ class Subcommand {
   void parse_config(const std::string& config);
   const CommandLine& command_line() const { return command_line_; }
   /// Whether a key was given, in the file or as a flag.
-  bool given(const std::string& key) const { return app_.get_option("--" + key)->count() > 0; }
+  bool given(const std::string& key) const;
 
  private:
   void parse_by(const std::function<void()>& parser);
 
-  CLI::App app_;
+  std::unique_ptr<CLI::App> app_;
+  Options options_;
   bool print_config_ = false;
   CommandLine command_line_;
 };

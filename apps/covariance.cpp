@@ -22,7 +22,7 @@ int covariance(const Arguments& arguments) {
   add_view_options(command.options(), spec);
   add_light_options(command.options(), spec);
   add_request_options(command.options(), spec);
-  command.options().add_option("--method", method, "mc or wave")->capture_default_str();
+  command.options().add_with_default("--method", method, "mc or wave");
   add_extra_options(command.options(), extras);
   add_mc_options(command.options(), methods);
   add_wave_options(command.options(), methods);

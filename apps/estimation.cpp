@@ -19,18 +19,17 @@ mc::ReversedPaths reversed_paths(const MethodSettings& settings) {
   throw InputError("reversed_paths", word, "must be one of auto yes no");
 }
 
-void add_mc_options(CLI::App& app, MethodSettings& settings) {
-  app.add_option("--reversed_paths", settings.reversed_paths,
-                 "Coherent backscattering in Monte Carlo: auto (where a view may see it), yes, no")
-      ->capture_default_str();
+void add_mc_options(Options& options, MethodSettings& settings) {
+  options.add_with_default(
+      "--reversed_paths", settings.reversed_paths,
+      "Coherent backscattering in Monte Carlo: auto (where a view may see it), yes, no");
 }
 
-void add_wave_options(CLI::App& app, MethodSettings& settings) {
-  app.add_option("--wave_tolerance", settings.wave_tolerance,
-                 "Accuracy of each exact solution, relative")
-      ->capture_default_str();
-  app.add_option("--wave_samples", settings.wave_samples,
-                 "Placements of the exact solver, where samples counts light paths");
+void add_wave_options(Options& options, MethodSettings& settings) {
+  options.add_with_default("--wave_tolerance", settings.wave_tolerance,
+                           "Accuracy of each exact solution, relative");
+  options.add("--wave_samples", settings.wave_samples,
+              "Placements of the exact solver, where samples counts light paths");
 }
 
 void note_rounding(const Scene& scene) {

@@ -17,8 +17,8 @@ struct MethodSettings {
   std::optional<std::int64_t> wave_samples;
 };
 
-void add_mc_options(CLI::App& app, MethodSettings& settings);
-void add_wave_options(CLI::App& app, MethodSettings& settings);
+void add_mc_options(Options& options, MethodSettings& settings);
+void add_wave_options(Options& options, MethodSettings& settings);
 
 /// Throws InputError.
 mc::ReversedPaths reversed_paths(const MethodSettings& settings);

@@ -39,11 +39,11 @@ ExtendedEstimation with_delays(const Scene& scene, const MethodSettings& setting
 
 }  // namespace
 
-void add_extra_options(CLI::App& app, Extras& extras) {
-  app.add_flag("--gradient", extras.gradient,
-               "Also derivatives of the covariance by mu_t, g, albedo and optical depth");
-  app.add_option("--delays", extras.delays,
-                 "Also the field's correlation after delays, as the scatterers diffuse: k^2 D tau");
+void add_extra_options(Options& options, Extras& extras) {
+  options.add_flag("--gradient", extras.gradient,
+                   "Also derivatives of the covariance by mu_t, g, albedo and optical depth");
+  options.add("--delays", extras.delays,
+              "Also the field's correlation after delays, as the scatterers diffuse: k^2 D tau");
 }
 
 ExtendedEstimation extended_estimation(const Scene& scene, const MethodSettings& settings,

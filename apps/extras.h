@@ -14,7 +14,7 @@ struct Extras {
   bool gradient = false;
   std::vector<double> delays;
 };
-void add_extra_options(CLI::App& app, Extras& extras);
+void add_extra_options(Options& options, Extras& extras);
 
 /// An estimation and how its extra results are printed and written; write is empty without extras.
 struct ExtendedEstimation {

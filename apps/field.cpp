@@ -28,29 +28,27 @@ struct FieldKeys {
   RunSettings run;
 };
 
-void add_options(CLI::App& app, FieldKeys& keys) {
-  add_scatterer_options(app, keys.spec);
-  add_bulk_options(app, keys.spec);
-  add_medium_options(app, keys.spec);
-  add_structure_option(app, keys.spec);
-  add_view_options(app, keys.spec);
-  app.add_option("--tilts", keys.spec.tilts,
-                 "Rotations of the light, radians: fields under each, in the same views");
-  app.add_option("--fields", keys.fields, "How many realizations")->capture_default_str();
-  app.add_option("--method", keys.method,
-                 "paths (each field from light paths of its own), covariance (estimated first, "
-                 "then Cholesky) or auto (the cheaper)")
-      ->capture_default_str();
-  app.add_option("--paths_per_field", keys.paths_per_field,
-                 "Light paths of each field (default: so many that the excess kurtosis is 0.01)");
-  app.add_option("--target_error", keys.target_error,
-                 "Relative error of the covariance that fields are drawn from")
-      ->capture_default_str();
-  add_mc_options(app, keys.estimation);
-  app.add_option("--seed", keys.run.seed, "Seed; field n of a seed is always the same")
-      ->capture_default_str();
-  add_thread_option(app, keys.run);
-  add_output_option(app, keys.run);
+void add_options(Options& options, FieldKeys& keys) {
+  add_scatterer_options(options, keys.spec);
+  add_bulk_options(options, keys.spec);
+  add_medium_options(options, keys.spec);
+  add_structure_option(options, keys.spec);
+  add_view_options(options, keys.spec);
+  options.add("--tilts", keys.spec.tilts,
+              "Rotations of the light, radians: fields under each, in the same views");
+  options.add_with_default("--fields", keys.fields, "How many realizations");
+  options.add_with_default(
+      "--method", keys.method,
+      "paths (each field from light paths of its own), covariance (estimated first, "
+      "then Cholesky) or auto (the cheaper)");
+  options.add("--paths_per_field", keys.paths_per_field,
+              "Light paths of each field (default: so many that the excess kurtosis is 0.01)");
+  options.add_with_default("--target_error", keys.target_error,
+                           "Relative error of the covariance that fields are drawn from");
+  add_mc_options(options, keys.estimation);
+  options.add_with_default("--seed", keys.run.seed, "Seed; field n of a seed is always the same");
+  add_thread_option(options, keys.run);
+  add_output_option(options, keys.run);
 }
 
 mc::FieldMethod method_named(const std::string& name) {

@@ -44,11 +44,10 @@ std::vector<double> pixel_centres(const wave::MapGrid& grid, std::size_t count, 
 
 }  // namespace
 
-void add_map_options(CLI::App& app, MapSettings& settings) {
-  app.add_option("--map", settings.map,
-                 "x0 x1 z0 z1: the total field on a grid over this rectangle");
-  app.add_option("--map_pixels", settings.map_pixels,
-                 "nx nz: pixels of the map (default: ten per wavelength)");
+void add_map_options(Options& options, MapSettings& settings) {
+  options.add("--map", settings.map, "x0 x1 z0 z1: the total field on a grid over this rectangle");
+  options.add("--map_pixels", settings.map_pixels,
+              "nx nz: pixels of the map (default: ten per wavelength)");
 }
 
 std::optional<wave::MapGrid> map_grid(const MapSettings& settings, double wavelength) {

@@ -16,7 +16,7 @@ struct MapSettings {
   std::vector<double> map;               ///< x0, x1, z0, z1; empty: none
   std::vector<std::int64_t> map_pixels;  ///< nx, nz; empty: ten per wavelength
 };
-void add_map_options(CLI::App& app, MapSettings& settings);
+void add_map_options(Options& options, MapSettings& settings);
 
 /// None where no map is asked for. Throws InputError.
 std::optional<wave::MapGrid> map_grid(const MapSettings& settings, double wavelength);

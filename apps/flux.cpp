@@ -89,11 +89,10 @@ int flux(const Arguments& arguments) {
   add_scatterer_options(command.options(), spec);
   add_bulk_options(command.options(), spec);
   add_medium_options(command.options(), spec);
-  command.options().add_option("--light_angles", spec.light_angles,
-                               "Directions of the plane waves, radians from +z (default 0)");
-  command.options()
-      .add_option("--angle_bins", angle_bins, "Equal bins of the exit angle over (-pi, pi]")
-      ->capture_default_str();
+  command.options().add("--light_angles", spec.light_angles,
+                        "Directions of the plane waves, radians from +z (default 0)");
+  command.options().add_with_default("--angle_bins", angle_bins,
+                                     "Equal bins of the exit angle over (-pi, pi]");
   add_run_options(command.options(), settings);
   if (!command.parse(arguments)) return ExitStatus::done;
 

@@ -81,44 +81,41 @@ std::string medium_of(const Subcommand& command, const IndexFieldSpec& spec) {
   return medium;
 }
 
-void add_index_field_options(CLI::App& app, IndexFieldSpec& spec) {
-  app.add_option(
-      "--field", spec.kinds,
-      std::string("Index field, or several that add up (default homogeneous): ") + kinds);
-  app.add_option(
-      "--index", spec.index,
-      "Index of homogeneous, on the axis of parabolic and sech, in the centre of fisheye "
-      "(default 2 there), at the origin of linear; else background (default 1)");
-  app.add_option("--radius", spec.radius,
-                 "luneburg: of the ball; fisheye: where n is half (default 1)");
-  app.add_option("--alpha", spec.alpha,
-                 "parabolic, sech: alpha of n^2 = n0^2 - alpha^2 rho^2, and "
-                 "of n0 sech(alpha rho); 1/length");
-  app.add_option("--centre", spec.centre,
-                 "x y z of the centre of luneburg and fisheye, the axis of a guide, the middle of "
-                 "tanh, the focus of focused_sound (default 0 0 0)");
-  app.add_option("--slope", spec.slope, "linear: gradient of the index, 1/length");
-  app.add_option("--index_low", spec.index_low,
-                 "tanh: index far behind; in a sum the ramp adds their difference");
-  app.add_option("--index_high", spec.index_high, "tanh: index far along the axis");
-  app.add_option("--ramp_width", spec.ramp_width, "tanh: of tanh(distance/width) (default 1)");
-  app.add_option("--ramp_axis", spec.ramp_axis, "tanh: direction (default 0 0 1)");
-  app.add_option("--blobs", spec.blobs,
-                 "CSV with columns x, y, z, height, width: height exp(-r^2/(2 width^2))");
-  app.add_option("--amplitude", spec.amplitude, "ultrasound, focused_sound: of the index");
-  app.add_option("--sound_wavenumber", spec.sound_wavenumber,
-                 "2 pi frequency / speed of the sound");
-  app.add_option("--sound_order", spec.sound_order,
-                 "ultrasound: m of J_m(k rho) cos(m phi) (default 0)");
-  app.add_option("--sound_phase", spec.sound_phase,
-                 "Phase at which the sound is frozen, radians (default 0)");
-  app.add_option("--emitters", spec.emitters, "focused_sound: plane waves (default 16)");
-  app.add_option("--aperture", spec.aperture,
-                 "focused_sound: half angle about z, radians (default 0.5)");
-  app.add_option("--focusing", spec.focusing,
-                 "focused_sound: cone (on a point, default) or arc (on a line)");
-  app.add_option("--grid", spec.grid,
-                 "HDF5 with excess[x, y, z] = n - 1 and its attributes origin, spacing");
+void add_index_field_options(Options& options, IndexFieldSpec& spec) {
+  options.add("--field", spec.kinds,
+              std::string("Index field, or several that add up (default homogeneous): ") + kinds);
+  options.add("--index", spec.index,
+              "Index of homogeneous, on the axis of parabolic and sech, in the centre of fisheye "
+              "(default 2 there), at the origin of linear; else background (default 1)");
+  options.add("--radius", spec.radius,
+              "luneburg: of the ball; fisheye: where n is half (default 1)");
+  options.add("--alpha", spec.alpha,
+              "parabolic, sech: alpha of n^2 = n0^2 - alpha^2 rho^2, and "
+              "of n0 sech(alpha rho); 1/length");
+  options.add("--centre", spec.centre,
+              "x y z of the centre of luneburg and fisheye, the axis of a guide, the middle of "
+              "tanh, the focus of focused_sound (default 0 0 0)");
+  options.add("--slope", spec.slope, "linear: gradient of the index, 1/length");
+  options.add("--index_low", spec.index_low,
+              "tanh: index far behind; in a sum the ramp adds their difference");
+  options.add("--index_high", spec.index_high, "tanh: index far along the axis");
+  options.add("--ramp_width", spec.ramp_width, "tanh: of tanh(distance/width) (default 1)");
+  options.add("--ramp_axis", spec.ramp_axis, "tanh: direction (default 0 0 1)");
+  options.add("--blobs", spec.blobs,
+              "CSV with columns x, y, z, height, width: height exp(-r^2/(2 width^2))");
+  options.add("--amplitude", spec.amplitude, "ultrasound, focused_sound: of the index");
+  options.add("--sound_wavenumber", spec.sound_wavenumber, "2 pi frequency / speed of the sound");
+  options.add("--sound_order", spec.sound_order,
+              "ultrasound: m of J_m(k rho) cos(m phi) (default 0)");
+  options.add("--sound_phase", spec.sound_phase,
+              "Phase at which the sound is frozen, radians (default 0)");
+  options.add("--emitters", spec.emitters, "focused_sound: plane waves (default 16)");
+  options.add("--aperture", spec.aperture,
+              "focused_sound: half angle about z, radians (default 0.5)");
+  options.add("--focusing", spec.focusing,
+              "focused_sound: cone (on a point, default) or arc (on a line)");
+  options.add("--grid", spec.grid,
+              "HDF5 with excess[x, y, z] = n - 1 and its attributes origin, spacing");
 }
 
 }  // namespace flatspeckle::apps

@@ -22,7 +22,7 @@ struct IndexFieldSpec {
   std::string focusing = "cone";
 };
 
-void add_index_field_options(CLI::App& app, IndexFieldSpec& spec);
+void add_index_field_options(Options& options, IndexFieldSpec& spec);
 
 /// The kind that is a medium, not something added to one; "" if there is none. Throws InputError
 /// for kinds that are unknown, there twice, or do not go together, and for keys that they have no

@@ -7,15 +7,15 @@
 
 namespace flatspeckle::apps {
 
-void add_light_options(CLI::App& app, LightSpec& spec) {
-  app.add_option("--point_light", spec.points, "x y z power: shines alike into all directions");
-  app.add_option("--beam_light", spec.beams,
-                 "x y z dx dy dz radius power: parallel rays from an even disk");
-  app.add_option("--face_light", spec.faces,
-                 "x y z radius radiance: the stage's boundary within the radius shines inwards, "
-                 "Lambertian, with this L/n^2");
-  app.add_option("--environment", spec.environment,
-                 "L/n^2 of light that comes in through all of the boundary");
+void add_light_options(Options& options, LightSpec& spec) {
+  options.add("--point_light", spec.points, "x y z power: shines alike into all directions");
+  options.add("--beam_light", spec.beams,
+              "x y z dx dy dz radius power: parallel rays from an even disk");
+  options.add("--face_light", spec.faces,
+              "x y z radius radiance: the stage's boundary within the radius shines inwards, "
+              "Lambertian, with this L/n^2");
+  options.add("--environment", spec.environment,
+              "L/n^2 of light that comes in through all of the boundary");
 }
 
 std::vector<grin::Light> make_lights(const LightSpec& spec) {

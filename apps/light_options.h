@@ -14,7 +14,7 @@ struct LightSpec {
   std::optional<double> environment;
 };
 
-void add_light_options(CLI::App& app, LightSpec& spec);
+void add_light_options(Options& options, LightSpec& spec);
 
 /// In the order points, beams, faces, environment. Throws InputError, also for no lights.
 std::vector<grin::Light> make_lights(const LightSpec& spec);

@@ -34,18 +34,18 @@ std::shared_ptr<const grin::DensityGrid> read_density(const std::string& key,
 
 }  // namespace
 
-void add_space_medium_options(CLI::App& app, MediumSpec& spec, const std::string& prefix,
+void add_space_medium_options(Options& options, MediumSpec& spec, const std::string& prefix,
                               const std::string& of) {
   const std::string key = "--" + prefix;
-  app.add_option(key + "mu_s", spec.mu_s,
-                 "Scattering coefficient of " + of + ", 1/length (default 0)");
-  app.add_option(key + "mu_a", spec.mu_a, "Absorption coefficient, 1/length (default 0)");
-  app.add_option(key + "phase", spec.phase,
-                 "Phase function: isotropic (default), henyey_greenstein or rayleigh");
-  app.add_option(key + "g", spec.g, "Mean cosine of henyey_greenstein, |g| < 1");
-  app.add_option(key + "density", spec.density,
-                 "HDF5 with density[x, y, z], by which both coefficients are multiplied, and its "
-                 "attributes origin, spacing; 0 outside the grid");
+  options.add(key + "mu_s", spec.mu_s,
+              "Scattering coefficient of " + of + ", 1/length (default 0)");
+  options.add(key + "mu_a", spec.mu_a, "Absorption coefficient, 1/length (default 0)");
+  options.add(key + "phase", spec.phase,
+              "Phase function: isotropic (default), henyey_greenstein or rayleigh");
+  options.add(key + "g", spec.g, "Mean cosine of henyey_greenstein, |g| < 1");
+  options.add(key + "density", spec.density,
+              "HDF5 with density[x, y, z], by which both coefficients are multiplied, and its "
+              "attributes origin, spacing; 0 outside the grid");
 }
 
 grin::ScatteringMedium make_space_medium(const Subcommand& command, const MediumSpec& spec,

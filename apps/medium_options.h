@@ -14,7 +14,7 @@ struct MediumSpec {
 };
 
 /// prefix: of the keys, "" or "body_"; of: what the medium fills, in words.
-void add_space_medium_options(CLI::App& app, MediumSpec& spec, const std::string& prefix,
+void add_space_medium_options(Options& options, MediumSpec& spec, const std::string& prefix,
                               const std::string& of);
 
 /// Throws InputError, also for keys that the medium has no use for.

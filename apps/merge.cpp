@@ -102,7 +102,7 @@ int merge(const Arguments& arguments) {
   std::vector<std::string> folders;
   bool partial = false;
   Subcommand command("merge", "The points of a sweep, from one or several folders, as one result");
-  command.options().add_option("--shards", folders, "Folders of points (default OUT.shards)");
+  command.options().add("--shards", folders, "Folders of points (default OUT.shards)");
   command.options().add_flag("--partial", partial, "Take the points that are there, as a list");
   add_output_option(command.options(), settings);
   if (!command.parse(arguments)) return ExitStatus::done;

@@ -52,27 +52,28 @@ struct Drawing {
   }
 };
 
-void add_options(CLI::App& app, PlaceKeys& keys) {
-  app.add_option("--width", keys.width, "Width of the box, |x| <= width/2");
-  app.add_option("--depth", keys.depth, "Depth of the box, 0 <= z <= depth");
-  app.add_option("--radii", keys.radii, "Radius of each species of disks; none: points");
-  app.add_option("--fractions", keys.fractions,
-                 "Share of each species in the number of disks (default equal)");
-  app.add_option("--count", keys.count, "Number of scatterers");
-  app.add_option("--packing_fraction", keys.packing_fraction,
-                 "Share of the box's area that the disks cover, instead of count");
-  app.add_option("--placement", keys.placement,
-                 "poisson (points), hard_disk (one disk after the other) or equilibrium (the fluid "
-                 "of hard disks)");
-  app.add_option("--min_gap", keys.min_gap,
-                 "Least distance between the rims of disks (default 1e-3 of the smallest radius)");
-  app.add_option("--seed", keys.run.seed, "Seed")->capture_default_str();
-  app.add_option("--structure", keys.structure,
-                 "Result file (HDF5) for the structure factor S(q) over realizations")
-      ->configurable(false);
-  app.add_option("--realizations", keys.realizations,
-                 "Placements that S(q) is averaged over (default 100)");
-  app.add_option("--out", keys.run.out, "Placement file (CSV)")->configurable(false);
+void add_options(Options& options, PlaceKeys& keys) {
+  options.add("--width", keys.width, "Width of the box, |x| <= width/2");
+  options.add("--depth", keys.depth, "Depth of the box, 0 <= z <= depth");
+  options.add("--radii", keys.radii, "Radius of each species of disks; none: points");
+  options.add("--fractions", keys.fractions,
+              "Share of each species in the number of disks (default equal)");
+  options.add("--count", keys.count, "Number of scatterers");
+  options.add("--packing_fraction", keys.packing_fraction,
+              "Share of the box's area that the disks cover, instead of count");
+  options.add("--placement", keys.placement,
+              "poisson (points), hard_disk (one disk after the other) or equilibrium (the fluid "
+              "of hard disks)");
+  options.add("--min_gap", keys.min_gap,
+              "Least distance between the rims of disks (default 1e-3 of the smallest radius)");
+  options.add_with_default("--seed", keys.run.seed, "Seed");
+  options.add("--structure", keys.structure,
+              "Result file (HDF5) for the structure factor S(q) over realizations");
+  options.keep_out_of_scene_file("--structure");
+  options.add("--realizations", keys.realizations,
+              "Placements that S(q) is averaged over (default 100)");
+  options.add("--out", keys.run.out, "Placement file (CSV)");
+  options.keep_out_of_scene_file("--out");
 }
 
 double positive(const std::string& key, const std::optional<double>& value) {

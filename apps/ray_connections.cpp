@@ -103,10 +103,10 @@ double largest_index(const SceneField& scene, const ConnectSpec& spec) {
   return largest > 0 ? largest : 1;
 }
 
-void add_connect_options(CLI::App& app, ConnectSpec& spec) {
-  app.add_option("--connect", spec.connect,
-                 "x y z x y z: instead of rays, the curves from the first point to the second");
-  app.add_option("--trials", spec.trials, "Random starts in search of curves (default 1000)");
+void add_connect_options(Options& options, ConnectSpec& spec) {
+  options.add("--connect", spec.connect,
+              "x y z x y z: instead of rays, the curves from the first point to the second");
+  options.add("--trials", spec.trials, "Random starts in search of curves (default 1000)");
 }
 
 FoundConnections find_connections(const SceneField& scene, const RayStops& stops, double step,

@@ -14,7 +14,7 @@ struct ConnectSpec {
   std::int64_t trials = 1000;
 };
 
-void add_connect_options(CLI::App& app, ConnectSpec& spec);
+void add_connect_options(Options& options, ConnectSpec& spec);
 
 struct FoundConnections {
   std::vector<grin::FoundConnection> curves;  ///< by optical path

@@ -115,18 +115,18 @@ Vec3 turned(const RayStartSpec& spec, const Axes& axes, std::size_t i, std::size
 
 }  // namespace
 
-void add_ray_start_options(CLI::App& app, RayStartSpec& spec) {
-  app.add_option("--rays", spec.rays, "CSV with columns x, y, z, dx, dy, dz, in place of a light");
-  app.add_option(
+void add_ray_start_options(Options& options, RayStartSpec& spec) {
+  options.add("--rays", spec.rays, "CSV with columns x, y, z, dx, dy, dz, in place of a light");
+  options.add(
       "--light", spec.light,
       "Parallel rays: line, disk (even), beam (Gaussian); from a point: fan, cone (default line)");
-  app.add_option("--ray_count", spec.ray_count, "Rays of the light (default 11)");
-  app.add_option("--origin", spec.origin, "x y z of the light's middle (default 0 0 0)");
-  app.add_option("--direction", spec.direction, "Of its axis (default 0 0 1)");
-  app.add_option("--across", spec.across, "Of the line, or of the fan's spread (default 1 0 0)");
-  app.add_option("--beam_radius", spec.beam_radius,
-                 "Half the line, radius of the disk, 1/e^2 radius of the beam (default 1)");
-  app.add_option("--half_angle", spec.half_angle, "Of fan and cone, radians (default 0.1)");
+  options.add("--ray_count", spec.ray_count, "Rays of the light (default 11)");
+  options.add("--origin", spec.origin, "x y z of the light's middle (default 0 0 0)");
+  options.add("--direction", spec.direction, "Of its axis (default 0 0 1)");
+  options.add("--across", spec.across, "Of the line, or of the fan's spread (default 1 0 0)");
+  options.add("--beam_radius", spec.beam_radius,
+              "Half the line, radius of the disk, 1/e^2 radius of the beam (default 1)");
+  options.add("--half_angle", spec.half_angle, "Of fan and cone, radians (default 0.1)");
 }
 
 std::vector<RayStart> make_ray_starts(const Subcommand& command, const RayStartSpec& spec) {

@@ -20,7 +20,7 @@ struct RayStart {
   grin::Vec3 x, direction;  ///< direction of length 1
 };
 
-void add_ray_start_options(CLI::App& app, RayStartSpec& spec);
+void add_ray_start_options(Options& options, RayStartSpec& spec);
 
 /// Throws InputError, also for keys that the light has no use for.
 std::vector<RayStart> make_ray_starts(const Subcommand& command, const RayStartSpec& spec);

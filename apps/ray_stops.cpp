@@ -37,19 +37,18 @@ double size(const grin::DistanceGrid& grid) {
 
 }  // namespace
 
-void add_ray_stop_options(CLI::App& app, RayStopSpec& spec) {
-  app.add_option("--stop_plane", spec.planes,
-                 "x y z nx ny nz: rays end on this plane; n points away from them");
-  app.add_option("--stop_sphere", spec.spheres, "x y z radius: rays end on it, inside or outside");
-  app.add_option("--stop_box", spec.boxes, "x y z x y z of two corners: rays end on it");
-  app.add_option("--max_length", spec.max_length,
-                 "Rays and curves end at this arc length at the latest; always needed");
-  app.add_option("--integrator", spec.integrator, "sharma (default), yoshida4 or leapfrog");
-  app.add_option(
-      "--step", spec.step,
-      "Equal steps, length at index 1; with a tolerance, or for curves, the longest step");
-  app.add_option("--tolerance", spec.tolerance,
-                 "Error of a ray per length (default 1e-10, unless a step is given)");
+void add_ray_stop_options(Options& options, RayStopSpec& spec) {
+  options.add("--stop_plane", spec.planes,
+              "x y z nx ny nz: rays end on this plane; n points away from them");
+  options.add("--stop_sphere", spec.spheres, "x y z radius: rays end on it, inside or outside");
+  options.add("--stop_box", spec.boxes, "x y z x y z of two corners: rays end on it");
+  options.add("--max_length", spec.max_length,
+              "Rays and curves end at this arc length at the latest; always needed");
+  options.add("--integrator", spec.integrator, "sharma (default), yoshida4 or leapfrog");
+  options.add("--step", spec.step,
+              "Equal steps, length at index 1; with a tolerance, or for curves, the longest step");
+  options.add("--tolerance", spec.tolerance,
+              "Error of a ray per length (default 1e-10, unless a step is given)");
 }
 
 double max_length_of(const RayStopSpec& spec) {

@@ -30,7 +30,7 @@ struct RaySteps {
   std::optional<double> tolerance;
 };
 
-void add_ray_stop_options(CLI::App& app, RayStopSpec& spec);
+void add_ray_stop_options(Options& options, RayStopSpec& spec);
 
 /// All throw InputError. scale: over which the index varies, 0: nowhere; farthest: the largest
 /// coordinate of where rays start, which sets their rounding.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <string>
 
 #include "apps/estimate_output.h"
 #include "apps/light_speed.h"
@@ -52,7 +53,7 @@ class Writer {
     if (length_unit)
       file_.dataset("time", times, {"optical_path"}, "s", "optical path over the speed of light");
     estimate("transient", result.picture.bins, {"row", "column", "optical_path"}, axes_.image_units,
-             axes_.image_name + ", in the bin");
+             axes_.image_name + std::string(", in the bin"));
     estimate(
         "pulse", result.pulse, {"optical_path"}, result.total ? "1" : axes_.image_units,
         result.total ? "power on the detector, in the bin" : "mean over the pixels, in the bin");

@@ -63,32 +63,31 @@ double step_of(const RenderSpec& spec, double scale, double size) {
 
 }  // namespace
 
-void add_render_options(CLI::App& app, RenderSpec& spec) {
-  add_index_field_options(app, spec.field);
-  add_stage_options(app, spec.stage);
-  add_light_options(app, spec.lights);
-  add_sensor_options(app, spec.sensor);
-  app.add_option(
+void add_render_options(Options& options, RenderSpec& spec) {
+  add_index_field_options(options, spec.field);
+  add_stage_options(options, spec.stage);
+  add_light_options(options, spec.lights);
+  add_sensor_options(options, spec.sensor);
+  options.add(
       "--path_bins", spec.path_bins,
       "first last count: also pictures by optical path, in equal bins of it, shared between "
       "the two nearest middles");
-  app.add_option("--length_unit", spec.length_unit,
-                 "Metres in a unit of length, for the times of path_bins");
-  app.add_option(
-      "--method", spec.method,
-      "bidirectional (default), path (tracing, from the sensor), light (tracing: best for "
-      "powers on large areas) or photon_map");
-  app.add_option("--photon_radius", spec.photon_radius,
-                 "photon_map: radius of the estimate (default: chosen from the scene)");
-  app.add_option("--max_scatterings", spec.max_scatterings,
-                 "Paths of more scatterings are left out (default 0: no limit)");
-  app.add_flag("--random_phase", spec.random_phase,
-               "ultrasound, focused_sound: each path meets the sound at a phase of its own");
-  app.add_option("--step", spec.step,
-                 "Equal steps of rays, length at index 1 (default: a tenth of the field's scale)");
-  app.add_option("--max_length", spec.max_length,
-                 "Arc length of one flight between scatterings, at the most (default: 10 times the "
-                 "stage's size)");
+  options.add("--length_unit", spec.length_unit,
+              "Metres in a unit of length, for the times of path_bins");
+  options.add("--method", spec.method,
+              "bidirectional (default), path (tracing, from the sensor), light (tracing: best for "
+              "powers on large areas) or photon_map");
+  options.add("--photon_radius", spec.photon_radius,
+              "photon_map: radius of the estimate (default: chosen from the scene)");
+  options.add("--max_scatterings", spec.max_scatterings,
+              "Paths of more scatterings are left out (default 0: no limit)");
+  options.add_flag("--random_phase", spec.random_phase,
+                   "ultrasound, focused_sound: each path meets the sound at a phase of its own");
+  options.add("--step", spec.step,
+              "Equal steps of rays, length at index 1 (default: a tenth of the field's scale)");
+  options.add("--max_length", spec.max_length,
+              "Arc length of one flight between scatterings, at the most (default: 10 times the "
+              "stage's size)");
 }
 
 grin::RenderRequest make_render_request(const RenderSpec& spec) {

@@ -27,7 +27,7 @@ struct RenderSpec {
   std::int64_t max_scatterings = 0;
 };
 
-void add_render_options(CLI::App& app, RenderSpec& spec);
+void add_render_options(Options& options, RenderSpec& spec);
 
 /// All throw InputError.
 grin::RenderScene make_render_scene(const Subcommand& command, const RenderSpec& spec);

@@ -17,25 +17,26 @@ double positive(const std::string& key, double value) {
 
 }  // namespace
 
-void add_output_option(CLI::App& app, RunSettings& settings) {
-  app.add_option("--out", settings.out, "Result file (HDF5)")->configurable(false);
+void add_output_option(Options& options, RunSettings& settings) {
+  options.add("--out", settings.out, "Result file (HDF5)");
+  options.keep_out_of_scene_file("--out");
 }
 
-void add_thread_option(CLI::App& app, RunSettings& settings) {
-  app.add_option("--threads", settings.threads, "Threads; 0: as many as there are cores")
-      ->capture_default_str();
+void add_thread_option(Options& options, RunSettings& settings) {
+  options.add_with_default("--threads", settings.threads, "Threads; 0: as many as there are cores");
 }
 
-void add_run_options(CLI::App& app, RunSettings& settings) {
-  add_output_option(app, settings);
-  app.add_option("--seed", settings.seed, "Seed; the same seed and samples give the same numbers")
-      ->capture_default_str();
-  app.add_option("--samples", settings.samples, "Stop after so many light paths or placements");
-  app.add_option("--seconds", settings.seconds, "Stop after so many seconds");
-  app.add_option("--target_error", settings.target_error,
-                 "Stop at this relative error (default 0.02 if no other stop is given)");
-  add_thread_option(app, settings);
-  app.add_flag("--resume", settings.resume, "Go on from the run that --out holds, if there is one");
+void add_run_options(Options& options, RunSettings& settings) {
+  add_output_option(options, settings);
+  options.add_with_default("--seed", settings.seed,
+                           "Seed; the same seed and samples give the same numbers");
+  options.add("--samples", settings.samples, "Stop after so many light paths or placements");
+  options.add("--seconds", settings.seconds, "Stop after so many seconds");
+  options.add("--target_error", settings.target_error,
+              "Stop at this relative error (default 0.02 if no other stop is given)");
+  add_thread_option(options, settings);
+  options.add_flag("--resume", settings.resume,
+                   "Go on from the run that --out holds, if there is one");
 }
 
 int threads_of(const RunSettings& settings) {

@@ -18,9 +18,9 @@ struct RunSettings {
   bool resume = false;
 };
 
-void add_output_option(CLI::App& app, RunSettings& settings);
-void add_thread_option(CLI::App& app, RunSettings& settings);
-void add_run_options(CLI::App& app, RunSettings& settings);
+void add_output_option(Options& options, RunSettings& settings);
+void add_thread_option(Options& options, RunSettings& settings);
+void add_run_options(Options& options, RunSettings& settings);
 
 /// The number of threads that is meant. Throws InputError.
 int threads_of(const RunSettings& settings);

@@ -6,18 +6,18 @@
 namespace flatspeckle::apps {
 
 /// Keys of one scatterer and of what is recorded.
-void add_scatterer_options(CLI::App& app, SceneSpec& spec);
-void add_view_options(CLI::App& app, SceneSpec& spec);
+void add_scatterer_options(Options& options, SceneSpec& spec);
+void add_view_options(Options& options, SceneSpec& spec);
 /// Keys of the medium.
-void add_medium_options(CLI::App& app, SceneSpec& spec);
+void add_medium_options(Options& options, SceneSpec& spec);
 /// The structure factor that Monte Carlo takes positions to have.
-void add_structure_option(CLI::App& app, SceneSpec& spec);
+void add_structure_option(Options& options, SceneSpec& spec);
 /// g, albedo and optical_depth, where a subcommand takes one value of each.
-void add_bulk_options(CLI::App& app, SceneSpec& spec);
+void add_bulk_options(Options& options, SceneSpec& spec);
 /// Near sources and beams.
-void add_light_options(CLI::App& app, SceneSpec& spec);
+void add_light_options(Options& options, SceneSpec& spec);
 /// Which entries of the covariance.
-void add_request_options(CLI::App& app, SceneSpec& spec);
+void add_request_options(Options& options, SceneSpec& spec);
 
 /// Near sensors take the place of the default far view.
 void settle_views(const Subcommand& subcommand, SceneSpec& spec);

@@ -163,24 +163,24 @@ SensorAxes axes_of_kind(const grin::DirectionalDetector& detector) {
 
 }  // namespace
 
-void add_sensor_options(CLI::App& app, SensorSpec& spec) {
-  app.add_option("--sensor", spec.kind,
-                 "camera (default; reads L/n^2), area (irradiance on the boundary) or directional "
-                 "(power per solid angle that leaves the stage)");
-  app.add_option("--sensor_at", spec.at, "x y z of the camera's eye or lens, or the area's middle");
-  app.add_option("--sensor_direction", spec.direction,
-                 "Where the camera looks; middle of the directions of directional (default 0 0 1)");
-  app.add_option("--sensor_up", spec.up, "Upwards in the picture (default 0 1 0)");
-  app.add_option("--pixels", spec.pixels, "Columns and rows (default 64 64)");
-  app.add_option("--field_of_view", spec.field_of_view, "camera: full angle of a row, radians");
-  app.add_option("--lens_radius", spec.lens_radius,
-                 "camera: of a thin lens on the stage's boundary (default: pinhole)");
-  app.add_option("--focus_distance", spec.focus_distance, "camera: of the lens");
-  app.add_option("--sensor_size", spec.size, "area: width and height");
-  app.add_option("--acceptance", spec.acceptance,
-                 "area: half angle about the normal, radians (default pi/2)");
-  app.add_option("--half_angle", spec.half_angle,
-                 "directional: angle of the middle of a side, radians (default pi/2)");
+void add_sensor_options(Options& options, SensorSpec& spec) {
+  options.add("--sensor", spec.kind,
+              "camera (default; reads L/n^2), area (irradiance on the boundary) or directional "
+              "(power per solid angle that leaves the stage)");
+  options.add("--sensor_at", spec.at, "x y z of the camera's eye or lens, or the area's middle");
+  options.add("--sensor_direction", spec.direction,
+              "Where the camera looks; middle of the directions of directional (default 0 0 1)");
+  options.add("--sensor_up", spec.up, "Upwards in the picture (default 0 1 0)");
+  options.add("--pixels", spec.pixels, "Columns and rows (default 64 64)");
+  options.add("--field_of_view", spec.field_of_view, "camera: full angle of a row, radians");
+  options.add("--lens_radius", spec.lens_radius,
+              "camera: of a thin lens on the stage's boundary (default: pinhole)");
+  options.add("--focus_distance", spec.focus_distance, "camera: of the lens");
+  options.add("--sensor_size", spec.size, "area: width and height");
+  options.add("--acceptance", spec.acceptance,
+              "area: half angle about the normal, radians (default pi/2)");
+  options.add("--half_angle", spec.half_angle,
+              "directional: angle of the middle of a side, radians (default pi/2)");
 }
 
 grin::Sensor make_sensor(const Subcommand& command, const SensorSpec& spec) {

@@ -148,25 +148,24 @@ struct SolveKeys {
   std::string solver = "auto";
 };
 
-void add_options(CLI::App& app, SolveKeys& keys) {
-  add_scatterer_options(app, keys.spec);
-  add_bulk_options(app, keys.spec);
-  add_medium_options(app, keys.spec);
-  app.get_option("--placement")
-      ->description(
-          "CSV with columns x, z [, radius [, index_re, index_im]]; or poisson, hard_disk or "
-          "equilibrium, to draw one");
-  add_view_options(app, keys.spec);
-  add_map_options(app, keys.map);
-  app.add_option("--tolerance", keys.tolerance, "Relative accuracy of the fields")
-      ->capture_default_str();
-  app.add_option("--solver", keys.solver,
-                 "auto, dense, fast (direct, for thousands of unknowns and more) or krylov "
-                 "(iterative, for weak scattering)")
-      ->capture_default_str();
-  add_thread_option(app, keys.settings);
-  app.add_option("--seed", keys.settings.seed, "Seed of a drawn placement")->capture_default_str();
-  add_output_option(app, keys.settings);
+void add_options(Options& options, SolveKeys& keys) {
+  add_scatterer_options(options, keys.spec);
+  add_bulk_options(options, keys.spec);
+  add_medium_options(options, keys.spec);
+  options.describe(
+      "--placement",
+      "CSV with columns x, z [, radius [, index_re, index_im]]; or poisson, hard_disk or "
+      "equilibrium, to draw one");
+  add_view_options(options, keys.spec);
+  add_map_options(options, keys.map);
+  options.add_with_default("--tolerance", keys.tolerance, "Relative accuracy of the fields");
+  options.add_with_default(
+      "--solver", keys.solver,
+      "auto, dense, fast (direct, for thousands of unknowns and more) or krylov "
+      "(iterative, for weak scattering)");
+  add_thread_option(options, keys.settings);
+  options.add_with_default("--seed", keys.settings.seed, "Seed of a drawn placement");
+  add_output_option(options, keys.settings);
 }
 
 void check(const SolveKeys& keys) {

@@ -151,17 +151,17 @@ grin::Box bounds(const grin::Surface& surface) {
   return std::get<grin::Box>(surface);
 }
 
-void add_stage_options(CLI::App& app, StageSpec& spec) {
-  app.add_option("--stage_box", spec.stage_box,
-                 "x y z x y z of two corners: light leaves the scene through this box");
-  app.add_option("--stage_sphere", spec.stage_sphere, "x y z radius: the same with a sphere");
-  add_space_medium_options(app, spec.medium, "", "the stage around the body");
-  app.add_option("--body_box", spec.body_box,
-                 "x y z x y z of two corners: the index field fills this body alone");
-  app.add_option("--body_sphere", spec.body_sphere,
-                 "x y z radius: the same with a sphere; luneburg in a larger stage needs none");
-  app.add_option("--index_around", spec.index_around, "Index around the body (default 1)");
-  add_space_medium_options(app, spec.body_medium, "body_", "the body");
+void add_stage_options(Options& options, StageSpec& spec) {
+  options.add("--stage_box", spec.stage_box,
+              "x y z x y z of two corners: light leaves the scene through this box");
+  options.add("--stage_sphere", spec.stage_sphere, "x y z radius: the same with a sphere");
+  add_space_medium_options(options, spec.medium, "", "the stage around the body");
+  options.add("--body_box", spec.body_box,
+              "x y z x y z of two corners: the index field fills this body alone");
+  options.add("--body_sphere", spec.body_sphere,
+              "x y z radius: the same with a sphere; luneburg in a larger stage needs none");
+  options.add("--index_around", spec.index_around, "Index around the body (default 1)");
+  add_space_medium_options(options, spec.body_medium, "body_", "the body");
 }
 
 FilledStage make_stage(const Subcommand& command, const StageSpec& spec,

@@ -17,7 +17,7 @@ struct StageSpec {
   MediumSpec medium, body_medium;
 };
 
-void add_stage_options(CLI::App& app, StageSpec& spec);
+void add_stage_options(Options& options, StageSpec& spec);
 
 /// A stage and the index field that light meets in it.
 struct FilledStage {

@@ -33,17 +33,15 @@ class SweepParser {
     auto& options = subcommand_.options();
     add_scatterer_options(options, plan_.base);
     add_medium_options(options, plan_.base);
-    for (const char* key : {"--radius", "--index", "--density"})
-      options.remove_option(options.get_option(key));  // lists here
+    for (const char* key : {"--radius", "--index", "--density"}) options.remove(key);  // lists here
     add_sweep_options(options, lists_);
     add_structure_option(options, plan_.base);
     add_view_options(options, plan_.base);
-    options.add_option("--tilts", plan_.base.tilts, "Rotations of the light, radians");
-    options.add_option("--method", method_, "mc, wave or both")->capture_default_str();
-    options
-        .add_option("--shard", share_,
-                    "i/n: work on every nth point only, from number i = 0 .. n - 1 on; then merge")
-        ->configurable(false);
+    options.add("--tilts", plan_.base.tilts, "Rotations of the light, radians");
+    options.add_with_default("--method", method_, "mc, wave or both");
+    options.add("--shard", share_,
+                "i/n: work on every nth point only, from number i = 0 .. n - 1 on; then merge");
+    options.keep_out_of_scene_file("--shard");
     add_mc_options(options, plan_.methods);
     add_wave_options(options, plan_.methods);
     add_run_options(options, plan_.settings);

@@ -156,17 +156,17 @@ SceneSpec SweepPoints::scene(SceneSpec base, const SweepPoint& point) const {
   return base;
 }
 
-void add_sweep_options(CLI::App& app, SweepLists& lists) {
-  app.add_option("--radius", lists.radius, "Radii of soft, hard, tm and te");
-  app.add_option("--index", lists.index,
-                 "Relative indices of tm and te, as \"1.5+0.1i\" (default 1.5)");
-  app.add_option("--density", lists.density, "Densities as number per area");
-  app.add_option("--g", lists.g, "Mean cosines of hg");
-  app.add_option("--albedo", lists.albedo, "Albedos of hg and of resonant points");
-  app.add_option("--optical_depth", lists.optical_depth, "Densities from mu_t x depth");
-  app.add_option("--points", lists.points,
-                 "CSV with columns among these keys (and index_imaginary): a list of points in "
-                 "place of all combinations");
+void add_sweep_options(Options& options, SweepLists& lists) {
+  options.add("--radius", lists.radius, "Radii of soft, hard, tm and te");
+  options.add("--index", lists.index,
+              "Relative indices of tm and te, as \"1.5+0.1i\" (default 1.5)");
+  options.add("--density", lists.density, "Densities as number per area");
+  options.add("--g", lists.g, "Mean cosines of hg");
+  options.add("--albedo", lists.albedo, "Albedos of hg and of resonant points");
+  options.add("--optical_depth", lists.optical_depth, "Densities from mu_t x depth");
+  options.add("--points", lists.points,
+              "CSV with columns among these keys (and index_imaginary): a list of points in "
+              "place of all combinations");
 }
 
 SweepPoints sweep_points(const SweepLists& lists) {

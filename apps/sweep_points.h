@@ -39,8 +39,8 @@ struct SweepLists {
   std::vector<std::string> index;
   std::string points;
 };
-/// Adds those keys; the app must not have them yet.
-void add_sweep_options(CLI::App& app, SweepLists& lists);
+/// Adds those keys; there must be none of them yet.
+void add_sweep_options(Options& options, SweepLists& lists);
 
 /// Throws InputError for a table without rows, with columns that are no keys of a sweep or lists
 /// beside it, and for a point that comes twice.

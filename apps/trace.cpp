@@ -34,19 +34,19 @@ struct TraceKeys {
   RunSettings run;
 };
 
-void add_options(CLI::App& app, TraceKeys& keys) {
-  add_index_field_options(app, keys.field);
-  add_ray_start_options(app, keys.starts);
-  add_ray_stop_options(app, keys.stops);
-  add_connect_options(app, keys.connect);
-  app.add_option("--path_points", keys.path_points,
-                 "Points of each ray in the file, to be drawn; also an index map (default 0: none)")
-      ->capture_default_str();
-  app.add_option("--length_unit", keys.length_unit, "Metres in a unit of length, for times")
-      ->capture_default_str();
-  app.add_option("--seed", keys.run.seed, "Seed of the trials of connect")->capture_default_str();
-  add_thread_option(app, keys.run);
-  add_output_option(app, keys.run);
+void add_options(Options& options, TraceKeys& keys) {
+  add_index_field_options(options, keys.field);
+  add_ray_start_options(options, keys.starts);
+  add_ray_stop_options(options, keys.stops);
+  add_connect_options(options, keys.connect);
+  options.add_with_default(
+      "--path_points", keys.path_points,
+      "Points of each ray in the file, to be drawn; also an index map (default 0: none)");
+  options.add_with_default("--length_unit", keys.length_unit,
+                           "Metres in a unit of length, for times");
+  options.add_with_default("--seed", keys.run.seed, "Seed of the trials of connect");
+  add_thread_option(options, keys.run);
+  add_output_option(options, keys.run);
 }
 
 /// Of a light's rays: starts, ends and columns, and points twice, as rays and as columns.

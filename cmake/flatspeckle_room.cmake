@@ -29,3 +29,11 @@ function(flatspeckle_flags target)
     target_link_options(${target} PUBLIC -fsanitize=${FLATSPECKLE_SANITIZE})
   endif()
 endfunction()
+
+# Eigen and the larger headers of the standard library are parsed once for the target, not for each
+# file. The preset dev goes without, so that a file without the includes it needs does not compile.
+function(flatspeckle_precompile target)
+  target_precompile_headers(${target} PRIVATE
+    <algorithm> <array> <cmath> <complex> <filesystem> <functional> <map> <memory> <numbers>
+    <optional> <span> <sstream> <string> <variant> <vector> <Eigen/Geometry> <Random123/threefry.h>)
+endfunction()

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <boost/math/constants/constants.hpp>
-#include <boost/math/special_functions/bessel.hpp>
 #include <boost/multiprecision/cpp_bin_float.hpp>
 
 namespace flatspeckle {
@@ -12,16 +10,14 @@ using Wide = boost::multiprecision::cpp_bin_float_50;
 struct BesselOracle {
   Wide j, y;
 
-  Wide size() const { return sqrt(j * j + y * y); }
+  Wide size() const;
 };
 
-inline BesselOracle bessel_oracle(int n, double x) {
-  return {boost::math::cyl_bessel_j(n, Wide(x)), boost::math::cyl_neumann(n, Wide(x))};
-}
+BesselOracle bessel_oracle(int n, const Wide& x);
+/// J_n'(x) and Y_n'(x).
+BesselOracle bessel_prime_oracle(int n, const Wide& x);
 
 /// |found - exact| / scale without leaving extended range
-inline double error(long double found, const Wide& exact, const Wide& scale) {
-  return static_cast<double>(abs((Wide(found) - exact) / scale));
-}
+double error(long double found, const Wide& exact, const Wide& scale);
 
 }  // namespace flatspeckle

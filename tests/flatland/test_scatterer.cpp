@@ -1,18 +1,15 @@
 #include <cmath>
 
-#include <boost/math/special_functions/bessel.hpp>
-#include <boost/math/special_functions/bessel_prime.hpp>
-#include <boost/multiprecision/cpp_bin_float.hpp>
 #include <boost/multiprecision/cpp_complex.hpp>
 #include <doctest/doctest.h>
 
 #include "flatland/scatterer.h"
+#include "tests/core/bessel_oracle.h"
 
 namespace flatspeckle {
 
 namespace {
 
-using Wide = boost::multiprecision::cpp_bin_float_50;
 using WideComplex = boost::multiprecision::cpp_complex_50;
 using Kind = Scatterer::Kind;
 
@@ -32,15 +29,15 @@ CrossSections cross_sections_of(const Scatterer& scatterer) {
 
 // C7 word by word, for a real index.
 WideComplex oracle(const Scatterer& scatterer, int n) {
-  using boost::math::cyl_bessel_j, boost::math::cyl_neumann;
-  using boost::math::cyl_bessel_j_prime, boost::math::cyl_neumann_prime;
   const Wide x(k * scatterer.radius), m(scatterer.index.real());
-  const Wide j = cyl_bessel_j(n, x), slope_j = cyl_bessel_j_prime(n, x);
-  const WideComplex h(j, cyl_neumann(n, x)), slope_h(slope_j, cyl_neumann_prime(n, x));
+  const auto [j, y] = bessel_oracle(n, x);
+  const auto [slope_j, slope_y] = bessel_prime_oracle(n, x);
+  const WideComplex h(j, y), slope_h(slope_j, slope_y);
   if (scatterer.kind == Kind::soft) return -j / h;
   if (scatterer.kind == Kind::hard) return -slope_j / slope_h;
   const Wide q = scatterer.kind == Kind::tm ? m : 1 / m;
-  const Wide inside = cyl_bessel_j(n, m * x), slope_inside = q * cyl_bessel_j_prime(n, m * x);
+  const Wide inside = bessel_oracle(n, m * x).j;
+  const Wide slope_inside = q * bessel_prime_oracle(n, m * x).j;
   return -(slope_inside * j - inside * slope_j) / (slope_inside * h - inside * slope_h);
 }
 
