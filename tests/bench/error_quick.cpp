@@ -13,7 +13,7 @@ using namespace flatspeckle::bench;
 
 namespace {
 
-constexpr double cpu_seconds = 0.1;
+constexpr double cpu_seconds = 0.5;
 
 bool is_rising(const std::vector<double>& values) {
   for (std::size_t i = 0; i < values.size(); ++i)
