@@ -17,10 +17,10 @@ LOOKS = {  # the same method looks the same everywhere
 GUIDE = {"color": "0.6", "linewidth": 0.7, "zorder": 0}
 TITLES = {"box_points": "31 points in a box, OD 1", "box_cylinders": "67 cylinders in a box, OD 1",
           "box_points_absorbing": "absorbing points in a box", "slab_hg": "slab, OD 10",
-          "luneburg": "Luneburg ball, pencils of light", "waveguide": "ultrasonic waveguide",
-          "luneburg_wide_beam": "Luneburg ball, wide beam",
-          "luneburg_from_outside": "Luneburg ball from outside",
-          "luneburg_even": "Luneburg ball, even light", "glass_ball_beam": "glass ball under a beam"}
+          "luneburg": "Luneburg ball", "waveguide": "ultrasonic waveguide",
+          "slab": "slab, straight rays", "glass_ball": "glass ball in fog",
+          "luneburg_even": "Luneburg ball, even light",
+          "glass_ball_beam": "glass ball under a beam"}
 ROOM_NAMES = {"mc": "Monte Carlo", "wave": "wave solver", "wave_solver": "wave solver"}
 
 
@@ -196,6 +196,9 @@ def draw_margins(axis, stability):
                   marker=look["marker"], alpha=0.85, markeredgewidth=0)
         axis.plot(np.full((~seen).sum(), 1.3 * LEAST_MARGIN), heights[~seen], linestyle="none",
                   color=look["color"], marker="<")
+        failed = np.array([not row["passed"] for row in solved])
+        axis.plot(margin[failed], heights[failed], linestyle="none", color="black", marker="o",
+                  markersize=7, fillstyle="none", clip_on=False)
         refused = len(rows) - len(solved)
         axis.text(1.02, place, str(refused), transform=axis.get_yaxis_transform(), va="center",
                   fontsize=7)
@@ -266,7 +269,7 @@ FIGURES = {  # name: (function, caption)
         draw_limits,
         "(a) How far each extreme case is off its invariant, relative to the limit it was held to "
         "(line: the limit; to the right: how many are refused, each with a message that says why). "
-        "Arrows: below 1e-9. (b) What leaving a thing out of a kernel saves, where the scene has "
+        "Arrows: below 1e-9; a ring would mark a failure. (b) What leaving a thing out of a kernel saves, where the scene has "
         "no need of it; bars are half the distance of the quartiles."),
     "error_other": (
         draw_other_flatland,
