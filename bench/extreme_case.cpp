@@ -41,7 +41,7 @@ Finding in_errors(Complex found, double error, Complex expected, double largest_
 }
 
 Finding worse(const Finding& a, const Finding& b) {
-  return a.figure <= b.figure ? b : a;  // NaN is the worst
+  return std::isnan(a.figure) || a.figure > b.figure ? a : b;
 }
 
 std::string short_number(double value) {

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <cmath>
+#include <initializer_list>
+#include <numeric>
 #include <string>
 #include <utility>
 #include <vector>
@@ -57,6 +60,14 @@ std::vector<ExtremeCase> render_extremes();
 Finding in_errors(Complex found, double error, Complex expected, double largest_error,
                   double accuracy = 0);
 
+/// The largest figure; NaN where any is, which std::max would lose.
+inline double larger(double a, double b) {
+  return std::isnan(a) || a > b ? a : b;
+}
+inline double larger(std::initializer_list<double> figures) {
+  return std::accumulate(figures.begin(), figures.end(), 0.0,
+                         [](double a, double b) { return larger(a, b); });
+}
 /// The worse of two rows with one limit.
 Finding worse(const Finding& a, const Finding& b);
 

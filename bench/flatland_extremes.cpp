@@ -31,14 +31,14 @@ double t_matrix_error(const Scatterer& scatterer) {
   const auto t = scaled_t_matrix(scatterer, k, last);
   double worst = 0;
   for (int n = 0; n <= last; n = n < 4 ? n + 1 : n + 1 + last / 12)
-    worst = std::max(worst, relative_error(wide(t[n]), wide_t(scatterer, k, n)));
+    worst = larger(worst, relative_error(wide(t[n]), wide_t(scatterer, k, n)));
   return worst;
 }
 
 Finding t_matrix_row(Kind kind, Complex index, double limit) {
   double worst = 0;
   for (const double ka : {1e-4, 1.0, 100.0})
-    worst = std::max(worst, t_matrix_error(disk(kind, ka, index)));
+    worst = larger(worst, t_matrix_error(disk(kind, ka, index)));
   return {worst, limit};
 }
 
@@ -46,7 +46,7 @@ Finding t_matrix_row(Kind kind, Complex index, double limit) {
 Finding lossless(const Scatterer& scatterer, double limit) {
   double worst = 0;
   for (const ExtendedComplex t : t_matrix(scatterer, k, isolated_order(scatterer, k, 1e-15)))
-    worst = std::max(worst, static_cast<double>(std::abs(std::abs(1.0L + 2.0L * t) - 1)));
+    worst = larger(worst, static_cast<double>(std::abs(std::abs(1.0L + 2.0L * t) - 1)));
   return {worst, limit};
 }
 
@@ -65,7 +65,7 @@ Finding integrals(const Scatterer& scatterer, double limit) {
   const auto sections = cross_sections(t, k);
   const double scattered = sum * pi / static_cast<double>(intervals);
   return {
-      std::max(std::abs(scattered / sections.scattering - 1), std::abs(cosine / sum - sections.g)),
+      larger(std::abs(scattered / sections.scattering - 1), std::abs(cosine / sum - sections.g)),
       limit};
 }
 
@@ -98,7 +98,7 @@ Finding optical_depths() {
         spec.radius = 1e-6;  // so small that many find room
         if (depth > 1e-6) continue;
       }
-      worst = std::max(worst, std::abs(make_scene(spec).medium.mu_t * 10 / depth - 1));
+      worst = larger(worst, std::abs(make_scene(spec).medium.mu_t * 10 / depth - 1));
     }
   return {worst, 1e-14};
 }
@@ -112,8 +112,7 @@ Finding absorption() {
   double worst = 0;
   for (const SceneSpec& spec : {hg(0.999, albedo), points}) {
     const BulkMedium medium = make_scene(spec).medium;
-    worst =
-        std::max(worst, std::abs((medium.mu_t - medium.mu_s) / (medium.mu_t * (1 - albedo)) - 1));
+    worst = larger(worst, std::abs((medium.mu_t - medium.mu_s) / (medium.mu_t * (1 - albedo)) - 1));
   }
   return {worst, 1e-6};
 }
@@ -122,8 +121,7 @@ Finding transport_lengths() {
   double worst = 0;
   for (const double g : {-0.999, 0.0, 0.999}) {
     const BulkMedium medium = make_scene(hg(g, 1)).medium;
-    worst =
-        std::max(worst, std::abs(medium.transport_mean_free_path() * medium.mu_t * (1 - g) - 1));
+    worst = larger(worst, std::abs(medium.transport_mean_free_path() * medium.mu_t * (1 - g) - 1));
   }
   return {worst, 1e-12};
 }
@@ -147,7 +145,7 @@ Finding few_scatterers(std::int64_t count) {
 /// The phase k L (sin v2 - sin v1 - q / k) that a matched view is off over k L = 1e6: the angles'
 /// rounding, 1e-16 of 1, is 1e-10 of it.
 Finding matched_views() {
-  long double worst = 0;
+  double worst = 0;
   for (const double light : {0.0, 0.8, 1.5})
     for (const double tilt : {1e-12, -1e-6, 1e-3}) {
       const std::vector<double> views{0.0, -0.3, 1.2, pi - 0.2, 1.5};
@@ -159,10 +157,10 @@ Finding matched_views() {
         const long double in = sine(static_cast<long double>(light) + tilt) - sine(light);
         const long double out =
             sine(request.views[b.view].angle) - sine(request.views[a.view].angle);
-        worst = std::max(worst, std::abs(1e6L * (out - in)));
+        worst = larger(worst, static_cast<double>(std::abs(1e6L * (out - in))));
       }
     }
-  return {static_cast<double>(worst), 1e-9};
+  return {worst, 1e-9};
 }
 
 /// A tilt of 0 is no tilt, to the last bit.
@@ -179,7 +177,7 @@ Finding edges() {
   const Domain domain{Domain::Kind::box, 20, 10};
   double worst = 0;
   const auto check = [&](Vec2 from, double angle, double expected) {
-    worst = std::max(worst, std::abs(domain.distance_to_edge(from, direction(angle)) - expected));
+    worst = larger(worst, std::abs(domain.distance_to_edge(from, direction(angle)) - expected));
   };
   check({3, 5}, pi / 2, 7);
   check({3, 5}, -pi / 2, 13);
@@ -197,9 +195,9 @@ Finding compressibility(double eta) {
   const double rest = 1 - eta, z = 1 + eta * eta / 8;
   const double stiffness = ((z + eta * eta / 4) * rest + 2 * eta * z) / (rest * rest * rest);
   const HardDiskFluid fluid(eta, 1);
-  return {std::max({std::abs(fluid.structure_factor(0) * stiffness - 1),
-                    std::abs(fluid.structure_factor(1e-9) * stiffness - 1),
-                    std::abs(fluid.structure_factor(1e4) - 1)}),
+  return {larger({std::abs(fluid.structure_factor(0) * stiffness - 1),
+                  std::abs(fluid.structure_factor(1e-9) * stiffness - 1),
+                  std::abs(fluid.structure_factor(1e4) - 1)}),
           eta < 0.1 ? 1e-9 : 1e-3};
 }
 
@@ -214,7 +212,7 @@ Finding dense_fluid() {
   double overlap = 0;
   for (std::size_t i = 0; i < count; ++i)
     for (std::size_t j = 0; j < i; ++j)
-      overlap = std::max(overlap, 2 * radius - length(centres[i] - centres[j]));
+      overlap = larger(overlap, 2 * radius - length(centres[i] - centres[j]));
   return {overlap, 1e-12};
 }
 

@@ -29,7 +29,7 @@ Finding cylinder_row(double x, const std::vector<int>& orders) {
     const Wide size = exact.size(), j_size = n > x ? abs(exact.j) : size;
     const Wide off_h = abs(wide(h[n]) - WideComplex(exact.j, exact.y)) / size,
                off_j = abs(wide(j[n]) - exact.j) / j_size;
-    worst = std::max(worst, static_cast<double>(std::max(off_h, off_j)));
+    worst = larger({worst, static_cast<double>(off_h), static_cast<double>(off_j)});
   }
   return {worst, 1e-14};
 }
@@ -47,7 +47,7 @@ Finding hankel_sets_row() {
       if (abs(y) > 1e300) continue;
       const Wide size = BesselOracle{j, y}.size();
       const double at_re = re[n * x.size() + i], at_im = im[n * x.size() + i];
-      worst = std::max({worst, error(at_re, j, size), error(at_im, y, size)});
+      worst = larger({worst, error(at_re, j, size), error(at_im, y, size)});
     }
   return {worst, 2e-15};  // (1 + n/8) 1e-15 of |H_n|
 }
@@ -57,8 +57,7 @@ Finding ratio_row(ExtendedComplex z) {
   const auto found = bessel_ratios(order, z);
   const auto exact = wide_bessel_ratios(order, wide(z));
   double worst = 0;
-  for (int n = 0; n <= order; ++n)
-    worst = std::max(worst, relative_error(wide(found[n]), exact[n]));
+  for (int n = 0; n <= order; ++n) worst = larger(worst, relative_error(wide(found[n]), exact[n]));
   return {worst, 1e-15};
 }
 
@@ -75,7 +74,7 @@ Finding phasor_row() {
   for (std::size_t i = 0; i < phase.size(); ++i) {
     const long double p = phase[i];
     const ExtendedComplex exact(std::cos(p), std::sin(p));
-    worst = std::max(worst, static_cast<double>(std::abs(ExtendedComplex(found[i]) - exact)));
+    worst = larger(worst, static_cast<double>(std::abs(ExtendedComplex(found[i]) - exact)));
   }
   return {worst, 1e-15};
 }
@@ -90,7 +89,7 @@ Finding damping_row() {
   double worst = 0;
   for (std::size_t i = 0; i < found.size(); ++i) {
     const double exact = std::exp(log_magnitude[i]);
-    worst = std::max(worst, exact > 0x1p-1022 ? std::abs(found[i] / exact - 1) : found[i]);
+    worst = larger(worst, exact > 0x1p-1022 ? std::abs(found[i] / exact - 1) : found[i]);
   }
   return {worst, 1e-15};
 }

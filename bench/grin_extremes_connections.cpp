@@ -63,9 +63,9 @@ Finding all_four() {
   double worst = 0;
   for (std::size_t i = 0; i < exact.size(); ++i) {
     const Connection& found = list.curves[i].curve;
-    worst = std::max({worst, std::abs(found.optical_path / exact[i].optical_path() - 1),
-                      std::abs(found.spreading / exact[i].spreading() - 1),
-                      std::abs(found.caustics - 1.0 * exact[i].caustics())});
+    worst = larger({worst, std::abs(found.optical_path / exact[i].optical_path() - 1),
+                    std::abs(found.spreading / exact[i].spreading() - 1),
+                    std::abs(found.caustics - 1.0 * exact[i].caustics())});
   }
   return {worst, 1e-5};
 }
@@ -133,8 +133,8 @@ Finding close_points(double gap, double unit) {
   if (list.curves.empty()) return {infinity, 1e-4};
   const Connection& curve = list.curves[0].curve;
   // the points' difference has lost digits to their rounding: 1e-16 / gap
-  return {std::max(std::abs(curve.spreading / std::pow(gap * unit, 2) - 1),
-                   (curve.start_direction - to).norm()),
+  return {larger(std::abs(curve.spreading / std::pow(gap * unit, 2) - 1),
+                 (curve.start_direction - to).norm()),
           1e-4};
 }
 
@@ -177,8 +177,8 @@ Finding total_reflection() {
   const Listed list = listed(ramp, dense, p, q, {.step = 2e-3, .max_length = 3}, 400);
   if (list.curves.size() != 2) return {infinity, 0.02};
   const double line = 1.5 * 2, mirrored = 1.5 * std::hypot(2, 1);
-  return {std::max(std::abs(list.curves[0].curve.optical_path / line - 1),
-                   std::abs(list.curves[1].curve.optical_path / mirrored - 1)),
+  return {larger(std::abs(list.curves[0].curve.optical_path / line - 1),
+                 std::abs(list.curves[1].curve.optical_path / mirrored - 1)),
           0.02};
 }
 
@@ -195,7 +195,7 @@ Finding there_and_back() {
   const double ratio = std::pow(index(field, p) / index(field, q), 2);
   double worst = 0;
   for (std::size_t i = 0; i < there.curves.size(); ++i)
-    worst = std::max(
+    worst = larger(
         worst,
         std::abs(there.curves[i].curve.spreading / (ratio * back.curves[i].curve.spreading) - 1));
   return {worst, 1e-7};

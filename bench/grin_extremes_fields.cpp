@@ -26,7 +26,7 @@ Finding fisheye_far_out(double r) {
   const double n = 2 / (1 + r * r), slope = -2 * r * n / (1 + r * r);
   const double value_error = std::abs(index(eye, Vec3(r, 0, 0)) - n);
   const double slope_error = std::abs(eye.gradient({r, 0, 0}).gradient[0] / slope - 1);
-  return {std::max(value_error, slope_error), 1e-14};
+  return {larger(value_error, slope_error), 1e-14};
 }
 
 /// n - 1 = sqrt(2 - r^2) - 1 from within, 0 from without, gradient -r / n: a jump of 1 at the rim.
@@ -38,8 +38,8 @@ Finding luneburg_rim() {
     const auto at = lens.gradient({1 - below, 0, 0});
     const double r_double = 1 - below;
     const long double exact = (1 - static_cast<long double>(r_double) * r_double) / (1 + n);
-    worst = std::max({worst, static_cast<double>(std::abs(at.excess - exact)),
-                      static_cast<double>(std::abs(at.gradient[0] + r / n))});
+    worst = larger({worst, static_cast<double>(std::abs(at.excess - exact)),
+                    static_cast<double>(std::abs(at.gradient[0] + r / n))});
   }
   const auto outside = lens.gradient({1 + 1e-8, 0, 0});
   return {worst + std::abs(outside.excess) + outside.gradient.norm(), 1e-15};
@@ -55,8 +55,8 @@ Finding faint_guide() {
     const Wide exact = sqrt(square) - 1;
     const double slope = static_cast<double>(-Wide(alpha) * alpha * rho / sqrt(square));
     const auto at = guide.gradient({0, rho, 3});
-    worst = std::max({worst, static_cast<double>(abs(Wide(at.excess) - exact)) / excess,
-                      std::abs(at.gradient[1] - slope) / (alpha * alpha)});
+    worst = larger({worst, static_cast<double>(abs(Wide(at.excess) - exact)) / excess,
+                    std::abs(at.gradient[1] - slope) / (alpha * alpha)});
   }
   return {worst, 1e-15};
 }
@@ -79,8 +79,8 @@ Finding steep_ramp(double width) {
   const auto middle = ramp.gradient(Vec3::Zero()), above = ramp.gradient({0, 0, 30 * width}),
              below = ramp.gradient({0, 0, -1e9 * width});
   return {
-      std::max({std::abs(middle.gradient[2] * width / 0.25 - 1), std::abs(middle.excess - 0.35),
-                std::abs(above.excess - 0.6), std::abs(below.excess - 0.1), below.gradient.norm()}),
+      larger({std::abs(middle.gradient[2] * width / 0.25 - 1), std::abs(middle.excess - 0.35),
+              std::abs(above.excess - 0.6), std::abs(below.excess - 0.1), below.gradient.norm()}),
       1e-15};
 }
 
@@ -94,9 +94,9 @@ Finding sound_on_axis(int m, double off) {
   if (m == 0) hessian.diagonal() = Vec3(-1, -1, 0) / 2;
   if (m == 1) gradient = Vec3(0.5, 0, 0);
   if (m == 2) hessian.diagonal() = Vec3(1, -1, 0) / 4;
-  return {std::max({std::abs(at.excess - 0.33 - (m == 0 ? amplitude : 0)) / amplitude,
-                    (at.gradient / (amplitude * kr) - gradient).norm(),
-                    (at.hessian / (amplitude * kr * kr) - hessian).norm()}),
+  return {larger({std::abs(at.excess - 0.33 - (m == 0 ? amplitude : 0)) / amplitude,
+                  (at.gradient / (amplitude * kr) - gradient).norm(),
+                  (at.hessian / (amplitude * kr * kr) - hessian).norm()}),
           1e-12};
 }
 
@@ -132,8 +132,7 @@ Finding snell() {
     const Vec3 v(std::sqrt(1 - cosine * cosine), 0, cosine);
     for (const double jump : {1e-9, 0.5}) {
       const Vec3 beyond = *Interface(v, -Vec3::UnitZ(), 0, jump).refracted();
-      worst =
-          std::max({worst, std::abs(beyond.norm() / (1 + jump) - 1), std::abs(beyond[0] - v[0])});
+      worst = larger({worst, std::abs(beyond.norm() / (1 + jump) - 1), std::abs(beyond[0] - v[0])});
     }
   }
   return {worst, 1e-15};

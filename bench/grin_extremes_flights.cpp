@@ -36,10 +36,10 @@ Finding bounded_flight(double optical_depth) {
     const double s = flight.sample(u);
     if (!(s >= 0 && s <= longest * (1 + 1e-15))) return {1, 1e-15};
     const Wide share = optical_depth == 0 ? Wide(s) / longest : Wide(-expm1(-mu_t * s) / all);
-    worst = std::max(worst, static_cast<double>(abs(share / u - 1)));
+    worst = larger(worst, static_cast<double>(abs(share / u - 1)));
     const Wide density = optical_depth == 0 ? Wide(1) / longest : Wide(mu_t * exp(-mu_t * s) / all);
     if (density > 1e-280)  // exponents of 1e4 keep their 1e-16, and so 1e-12 of their power
-      worst = std::max(worst, 1e-3 * static_cast<double>(abs(flight.density(s) / density - 1)));
+      worst = larger(worst, 1e-3 * static_cast<double>(abs(flight.density(s) / density - 1)));
   }
   return {worst, 1e-15};
 }
@@ -61,7 +61,7 @@ Finding flat_inverse(double g) {
     const Wide half = Wide(HenyeyGreenstein<2>{g}.sample(u)) / 2;
     const Wide share = Wide(0.5) + atan2((1 + Wide(g)) * sin(half), (1 - Wide(g)) * cos(half)) /
                                        boost::math::constants::pi<Wide>();
-    worst = std::max(worst, static_cast<double>(abs(share - u)));
+    worst = larger(worst, static_cast<double>(abs(share - u)));
   }
   return {worst, g < 0 ? 2e-13 : 1e-15};
 }
@@ -75,7 +75,7 @@ Finding space_inverse(double g) {
     // (1 - g^2) / (2 g) [1/root - 1/(1 + g)], without dividing by g
     const Wide share =
         g == 0 ? Wide(1 - gap / 2) : Wide(rest * (2 - gap) / (root * (1 + wide_g + root)));
-    worst = std::max(worst, static_cast<double>(abs(share - u)));
+    worst = larger(worst, static_cast<double>(abs(share - u)));
   }
   return {worst, g < 0 ? 5e-10 : 1e-15};
 }
@@ -102,7 +102,7 @@ Finding normalisation(double g) {
     sum += moment([](double) { return 1.0; });
     cosine += moment([](double angle) { return std::cos(angle); });
   }
-  return {std::max(std::abs(sum - 1), std::abs(cosine - g)), g < 0 ? 1e-9 : 1e-12};
+  return {larger(std::abs(sum - 1), std::abs(cosine - g)), g < 0 ? 1e-9 : 1e-12};
 }
 
 /// Directions turned a million times stay unit vectors.
@@ -112,7 +112,7 @@ Finding long_walk() {
   for (Vec3 d : {Vec3(0, 0, 1), Vec3(0, 0, -1), Vec3(0.6, 0, -0.8)}) {
     RandomStream random(1, 82, 0);
     for (int i = 0; i < 300'000; ++i) d = phase.sample(d, random);
-    worst = std::max(worst, std::abs(d.norm() - 1));
+    worst = larger(worst, std::abs(d.norm() - 1));
   }
   return {worst, 1e-14};
 }

@@ -47,8 +47,7 @@ Finding luneburg(double height, double limit) {
   if (height > 0) trace(Homogeneous{}, rim, limits, straight, ray);
   const TraceEnd end = trace(lens, rim, limits, steps, ray);
   if (end.stop != Stop::surface) return yes(false);
-  return {std::max((ray.x - Vec3::UnitX()).norm(), std::abs(ray.optical_path - (pi / 2 + 1))),
-          limit};
+  return {larger((ray.x - Vec3::UnitX()).norm(), std::abs(ray.optical_path - (pi / 2 + 1))), limit};
 }
 
 Finding beside_the_rim() {
@@ -70,7 +69,7 @@ Finding fisheye_far_out(double angle) {
   const double arc = 2 * (pi - angle) / std::sin(angle);
   const TraceEnd end = trace(eye, nothing, {arc, 1e-11 * arc}, steps, ray);
   if (end.stop != Stop::length) return yes(false);
-  return {std::max((ray.x + start).norm(), std::abs(ray.optical_path - pi * 0.75)), 1e-9 / angle};
+  return {larger((ray.x + start).norm(), std::abs(ray.optical_path - pi * 0.75)), 1e-9 / angle};
 }
 
 /// n = 1.5 + slope z: n = n0 cosh(slope sigma) + v_z sinh(slope sigma), x = v_x sigma, up to the
@@ -85,9 +84,9 @@ Finding turning_point(double slope, double cosine) {
   const double along = slope * sigma;
   const double n = 1.5 * std::cosh(along) + start.v[2] * std::sinh(along);
   const double size = std::abs(1 / slope);
-  return {std::max({std::abs(ray.x[0] - start.v[0] * sigma) / size,
-                    std::abs(ray.x[2] - (n - 1.5) / slope) / size,
-                    std::abs(index(ramp, ray.x) - ray.v.norm())}),
+  return {larger({std::abs(ray.x[0] - start.v[0] * sigma) / size,
+                  std::abs(ray.x[2] - (n - 1.5) / slope) / size,
+                  std::abs(index(ramp, ray.x) - ray.v.norm())}),
           1e-11};
 }
 
@@ -118,7 +117,7 @@ Finding guide_index() {
   double worst = 0;
   for (int i = 0; i < 400'000; ++i) {
     Yoshida4::step(guide, ray, 2 * pi / 40);
-    worst = std::max(worst, std::abs(ray_invariants(guide, ray).index_mismatch));
+    worst = larger(worst, std::abs(ray_invariants(guide, ray).index_mismatch));
   }
   return ray.v[2] == along ? Finding{worst, 2e-5} : yes(false);
 }
@@ -143,7 +142,7 @@ Finding guide_and_back() {
   for (const double h : {2 * pi / 40, -2 * pi / 40})
     for (int i = 0; i < 400'000; ++i) Yoshida4::step(guide, ray, h);
   // in z coordinates of 6e4 are rounded 8e5 times
-  return {std::max((ray.x - start.x).norm(), (ray.v - start.v).norm()), 1e-8};
+  return {larger((ray.x - start.x).norm(), (ray.v - start.v).norm()), 1e-8};
 }
 
 /// dx/dv0 across the guide is sin(sigma) after 100 oscillations and a quarter.
@@ -166,8 +165,8 @@ Finding faint_guide() {
   const double beta = ray.v[2], sigma = 1.25 * 2 * pi / 1e-4, n0 = 1 + 1e-6;
   for (int i = 0; i < 1000; ++i) Yoshida4::step(guide, ray, sigma / 1000);
   const double path = beta * sigma * (n0 * n0 + beta * beta) / (2 * beta);
-  return {std::max({std::abs(ray.x[0]) / 0.3, std::abs(ray.v[0] / -0.3e-4 - 1),
-                    std::abs(ray.optical_path / path - 1) * 1e7}),
+  return {larger({std::abs(ray.x[0]) / 0.3, std::abs(ray.v[0] / -0.3e-4 - 1),
+                  std::abs(ray.optical_path / path - 1) * 1e7}),
           1e-7};
 }
 
@@ -181,7 +180,7 @@ Finding sech_dispersion() {
     ControlledSteps<Yoshida4> steps{1e-12, 0.01, 1};
     RayState ray = start_ray(guide, Vec3::Zero(), {slope * 0.6, slope * 0.8, 1});
     if (trace(guide, end, {1e5, 1e-9}, steps, ray).stop != Stop::surface) return yes(false);
-    worst = std::max(worst, std::abs(ray.optical_path / (n0 * length) - 1));
+    worst = larger(worst, std::abs(ray.optical_path / (n0 * length) - 1));
   }
   return {worst, 1e-9};
 }
@@ -242,8 +241,8 @@ Finding fisheye_focus() {
     for (int part = 0, parts = 10; part < parts; ++part)
       Sharma::step(field, ray, tangent, left() / (parts - part) / ray.v.squaredNorm());
   const Vec3 image = -a * a / from.squaredNorm() * from;
-  return {std::max((ray.x - image).norm(),
-                   std::abs(signed_spreading(tangent, start.v.norm(), start.v, ray.v))),
+  return {larger((ray.x - image).norm(),
+                 std::abs(signed_spreading(tangent, start.v.norm(), start.v, ray.v))),
           1e-8};
 }
 
@@ -258,8 +257,8 @@ Finding sound_axis() {
     Yoshida4::step(wave, ray, sigma / 1000);
     Yoshida4::step(wave, axis, sigma / 1000);
   }
-  return {std::max({std::abs(ray.x[0]) / off, std::abs(ray.v[0] / (off * alpha) + 1),
-                    std::hypot(axis.x[0], axis.x[1])}),
+  return {larger({std::abs(ray.x[0]) / off, std::abs(ray.v[0] / (off * alpha) + 1),
+                  std::hypot(axis.x[0], axis.x[1])}),
           1e-9};
 }
 

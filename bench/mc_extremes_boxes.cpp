@@ -27,7 +27,7 @@ Finding speck() {
     const Channel channel = request.channels[c];
     const double angle = request.views[channel.view].angle - request.lights[channel.light].angle;
     const double p = (1 - g * g) / (2 * pi * (1 + g * g - 2 * g * std::cos(angle)));
-    worst = std::max(worst, std::abs(found.value[c] / (p * size * size) - 1.0));
+    worst = larger(worst, std::abs(found.value[c] / (p * size * size) - 1.0));
   }
   return {worst, 1e-5};  // the optical depth, and what is scattered twice
 }
@@ -57,7 +57,7 @@ Finding along_needle() {
   for (std::size_t a = 0; a < request.channels.size(); ++a)
     for (std::size_t b = 0; b <= a; ++b) {
       const double bound = std::sqrt(entry(a, a).real()) * std::sqrt(entry(b, b).real());
-      worst = std::max(worst, std::abs(entry(a, b)) / (bound + 1e-150));
+      worst = larger(worst, std::abs(entry(a, b)) / (bound + 1e-150));
     }
   return {worst, 1 + 1e-12};
 }
@@ -88,7 +88,7 @@ Finding across_edge(Vec2 point, Vec2 outwards) {
     return covariance(hg_box(20, {2.5, 0.5}, request), ReversedPaths::automatic, 4000).value[0];
   };
   const Complex on = at(0);
-  return {std::max(std::abs(at(1e-9) / on - 1.0), std::abs(at(-1e-9) / on - 1.0)), 1e-6};
+  return {larger(std::abs(at(1e-9) / on - 1.0), std::abs(at(-1e-9) / on - 1.0)), 1e-6};
 }
 
 /// A point source very far away is a plane wave: k r = 6e9 in all phases.
@@ -151,7 +151,7 @@ Finding forward_density() {
     const long double exact =
         rest * (1 + g) / (2 * std::numbers::pi_v<long double> * (rest * rest + 4 * g * h * h));
     const double found = scattering.density(direction(1), direction(1 + turn));
-    worst = std::max(worst, static_cast<double>(std::abs(found / exact - 1)));
+    worst = larger(worst, static_cast<double>(std::abs(found / exact - 1)));
   }
   return {worst, 1e-12};
 }

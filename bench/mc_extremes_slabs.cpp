@@ -95,7 +95,7 @@ Finding untilted() {
   const Scene scene = hg_slab({3, 0.9, 0.99, 1e6 / k}, request);
   const FieldJob job = mc::covariance_job(scene, mc::make_plan(scene, ReversedPaths::automatic), 1);
   const auto effect = mc::memory_effect(request, summed(job.batches, 4000), job.covariance);
-  return {std::max(std::abs(effect.correlation[0] - 1), effect.correlation_error[0]), 1e-12};
+  return {larger(std::abs(effect.correlation[0] - 1), effect.correlation_error[0]), 1e-12};
 }
 
 double total_magnitude(const Estimate& found) {
@@ -131,7 +131,7 @@ Finding wavelength() {
   const Estimate short_waves = covariance(scene, ReversedPaths::no, 4000);
   double worst = 0;
   for (std::size_t e = 0; e < request.entries.size(); ++e)
-    worst = std::max(worst, std::abs(short_waves.value[e] / long_waves.value[e] - 1.0));
+    worst = larger(worst, std::abs(short_waves.value[e] / long_waves.value[e] - 1.0));
   return {worst, 1e-12};
 }
 

@@ -131,8 +131,8 @@ Finding factor_row() {
   double worst = std::abs(column[3]);
   for (int a = 0; a < 3; ++a)
     for (int b = 0; b < 3; ++b)
-      worst = std::max(worst, std::abs(column[a] / scale[a] * std::conj(column[b] / scale[b]) -
-                                       std::polar(1.0, a - 1.0 * b)));
+      worst = larger(worst, std::abs(column[a] / scale[a] * std::conj(column[b] / scale[b]) -
+                                     std::polar(1.0, a - 1.0 * b)));
   return {worst, 1e-14};
 }
 

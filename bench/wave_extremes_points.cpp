@@ -74,7 +74,7 @@ Finding unit_of_length(double unit) {
   const auto there = solve(three_disks(unit), k / unit, lights, to(1e-12));
   double worst = 0;
   for (const double view : {0.0, 1.1, 2.9})
-    worst = std::max(
+    worst = larger(
         worst, std::abs(there.far_field(view) / (std::sqrt(unit) * here.far_field(view)) - 1.0));
   return {worst, 1e-11};
 }
@@ -94,7 +94,7 @@ Finding soft_rim() {
   const auto solution = solve(placement, k, {0.3}, options);
   for (const Vec2 sensor : sensors) {
     const Complex incident = std::polar(1.0, k * dot(direction(0.3), sensor));
-    worst = std::max(worst, std::abs(solution.near_field(sensor) + incident));
+    worst = larger(worst, std::abs(solution.near_field(sensor) + incident));
   }
   return {worst, 1e-7};
 }
