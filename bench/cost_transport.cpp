@@ -100,13 +100,13 @@ SceneSpec box(double channels, const std::string& covariance) {
 }
 
 CostRun intensities_against_channels() {
-  return run_of({"100 paths, intensities", "channels", 256, 32768, 1, [](double channels) {
+  return run_of({"100 paths, intensities", "channels", 256, 8192, 1, [](double channels) {
                    return batches(covariance_job(box(channels, "intensity")).batches);
                  }});
 }
 
 CostRun full_against_channels() {
-  return run_of({"100 paths, full covariance", "channels", 32, 2048, 2, [](double channels) {
+  return run_of({"100 paths, full covariance", "channels", 32, 1024, 2, [](double channels) {
                    return batches(covariance_job(box(channels, "full")).batches);
                  }});
 }

