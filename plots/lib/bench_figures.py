@@ -65,7 +65,7 @@ def draw_error_curves(axis, curves):
     for side in (axis.xaxis, axis.yaxis):
         side.set_minor_formatter(NullFormatter())
     low, high = axis.get_ylim()
-    if high < 60 * low:
+    if high < 150 * low:  # else too few powers of ten to read it by
         style.few_decades(axis.yaxis)
     axis.set_title(title(curves[0]["scene"]))
 
