@@ -85,7 +85,7 @@ bool has_slope_of_sampling(const bench::ErrorCurve& curve) {
 }
 
 Outcome error_against_time(ResultFile& file, bool quick) {
-  const double cpu_seconds = quick ? 0.2 : 40;
+  const double cpu_seconds = quick ? 0.2 : 30;
   const auto runs = bench::error_runs();
   const auto costs = bench::cost_runs();
   std::vector<bench::ErrorCurve> curves(runs.size());

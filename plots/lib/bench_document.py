@@ -83,7 +83,7 @@ def costs(bench, pictures):
     yield Table(["task", "size", "from", "to", "exponent", "expected"],
                 [[cost["task"], cost["size_name"], number_text.digits(cost["size"][0]),
                   number_text.digits(cost["size"][-1]),
-                  number_text.with_error(cost["exponent"], cost["exponent_error"]),
+                  number_text.exponent(cost["exponent"], cost["exponent_error"]),
                   number_text.digits(cost["expected_exponent"])]
                  for cost in bench.error.costs], "llrrrr")
 

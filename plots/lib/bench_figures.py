@@ -1,6 +1,6 @@
 """Pictures of the benchmark report: functions of a Bench that return figures."""
 
-from lib import style
+from lib import number_text, style
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -17,10 +17,10 @@ LOOKS = {  # the same method looks the same everywhere
 GUIDE = {"color": "0.6", "linewidth": 0.7, "zorder": 0}
 TITLES = {"box_points": "31 points in a box, OD 1", "box_cylinders": "67 cylinders in a box, OD 1",
           "box_points_absorbing": "absorbing points in a box", "slab_hg": "slab, OD 10",
-          "luneburg": "Luneburg ball, pencils of light", "waveguide": "ultrasonic waveguide",
-          "luneburg_wide_beam": "Luneburg ball, wide beam",
-          "luneburg_from_outside": "Luneburg ball from outside",
-          "luneburg_even": "Luneburg ball, even light", "glass_ball_beam": "glass ball under a beam"}
+          "luneburg": "Luneburg ball", "waveguide": "ultrasonic waveguide",
+          "slab": "slab, straight rays", "glass_ball": "glass ball in fog",
+          "luneburg_even": "Luneburg ball, even light",
+          "glass_ball_beam": "glass ball under a beam"}
 ROOM_NAMES = {"mc": "Monte Carlo", "wave": "wave solver", "wave_solver": "wave solver"}
 
 
@@ -51,28 +51,22 @@ def render_scenes(error):
 
 
 def draw_guide(axis, curves):
-    """Slope -1/2, above all curves."""
-    cpu = np.concatenate([curve["cpu_s"] for curve in curves])
-    level = max(np.max(curve["relative_error"] * np.sqrt(curve["cpu_s"])) for curve in curves)
-    ends = np.array([cpu.min(), cpu.max()])
-    axis.loglog(ends, 1.6 * level / np.sqrt(ends), **GUIDE)
-
-
-def draw_reference(axis, curves):
-    """What the reference is off by: below it there is nothing to see."""
-    uncertainty = max(curve["reference_uncertainty"] for curve in curves)
-    low = min(curve["relative_error"].min() for curve in curves)
-    if uncertainty > low / 3:
-        axis.axhline(uncertainty, color=style.GREY, linewidth=0.6, zorder=0)
+    """Slope -1/2, above the curve that is highest at equal times."""
+    level = lambda curve: np.max(curve["relative_error"] * np.sqrt(curve["cpu_s"]))
+    highest = max((curve for curve in curves if curve["is_monte_carlo"]), key=level)
+    ends = highest["cpu_s"][[0, -1]]
+    axis.loglog(ends, 1.6 * level(highest) / np.sqrt(ends), **GUIDE)
 
 
 def draw_error_curves(axis, curves):
     for curve in curves:
         axis.loglog(curve["cpu_s"], curve["relative_error"], **method_look(curve["method"]))
     draw_guide(axis, curves)
-    draw_reference(axis, curves)
     for side in (axis.xaxis, axis.yaxis):
         side.set_minor_formatter(NullFormatter())
+    low, high = axis.get_ylim()
+    if high < 150 * low:  # else too few powers of ten to read it by
+        style.few_decades(axis.yaxis)
     axis.set_title(title(curves[0]["scene"]))
 
 
@@ -91,7 +85,7 @@ def legend_above(figure, entries, columns):
 
 def error_panels(error, scenes, across):
     down = -(-len(scenes) // across)
-    figure, axes = plt.subplots(down, across, squeeze=False, sharey="row",
+    figure, axes = plt.subplots(down, across, squeeze=False, sharey=across < 3,
                                 figsize=(style.PAGE, 0.35 + 2.25 * down))
     shown = []
     for axis, scene in zip(axes.flat, scenes):
@@ -140,20 +134,21 @@ def draw_slopes(bench):
     widest = max(abs(curve["slope"] - HALF) + curve["slope_error"] for curve in curves)
     reach = max(1.6 * SLOPE_BAND, 1.1 * widest)
     axis.set_xlim(HALF - reach, HALF + reach)
-    axis.set_xlabel("fitted slope of log error over log time (band: $-1/2 \\pm 0.05$)")
+    axis.set_xlabel("fitted slope (band: $-1/2 \\pm 0.05$)")
     return figure
 
 
 def draw_cost(axis, cost):
     size, value = cost["size"], cost["cost_value"]
     axis.loglog(size, value, color=style.COLOURS[0], marker="o", linestyle="none")
-    middle = np.exp(np.mean(np.log(value) - cost["exponent"] * np.log(size)))
-    axis.loglog(size, middle * size**cost["exponent"], color=style.COLOURS[0], zorder=0.5)
+    large = slice(len(size) // 2, None)  # small ones need not follow the law
+    scale = np.exp(np.mean((np.log(value) - cost["exponent"] * np.log(size))[large]))
+    axis.loglog(size, scale * size**cost["exponent"], color=style.COLOURS[0], zorder=0.5)
     axis.loglog(size, value[-1] * (size / size[-1])**cost["expected_exponent"], color=style.GREY,
                 linestyle="--", zorder=0.4)
-    axis.set_title(cost["task"], fontsize=7)
+    axis.set_title(cost["task"].replace(", ", ",\n"), fontsize=7)
     axis.set_xlabel(cost["size_name"], fontsize=7)
-    text = f"{cost['exponent']:.2f} $\\pm$ {cost['exponent_error']:.2f}"
+    text = number_text.exponent(cost["exponent"], cost["exponent_error"])
     axis.text(0.05, 0.93, text, transform=axis.transAxes, va="top", fontsize=7)
     axis.xaxis.set_minor_formatter(NullFormatter())
     axis.yaxis.set_minor_formatter(NullFormatter())
@@ -161,19 +156,20 @@ def draw_cost(axis, cost):
         style.few_decades(axis.xaxis)
 
 
-def draw_costs(bench, across=4):
+def draw_costs(bench, across=5):
     costs = [cost for cost in bench.error.costs if len(cost["size"]) > 0]
     if not costs:
         return None
     down = -(-len(costs) // across)
     figure, axes = plt.subplots(down, across, squeeze=False,
-                                figsize=(style.PAGE, 0.4 + 1.65 * down))
+                                figsize=(style.PAGE, 0.4 + 1.6 * down))
     for axis, cost in zip(axes.flat, costs):
         draw_cost(axis, cost)
     for axis in axes.flat[len(costs):]:
         axis.remove()
-    for axis, cost in zip(axes[:, 0], costs[::across]):
-        axis.set_ylabel(cost["cost_name"], fontsize=7)
+    for number, cost in enumerate(costs):
+        if number % across == 0 or cost["cost_name"] != costs[number - 1]["cost_name"]:
+            axes.flat[number].set_ylabel(cost["cost_name"], fontsize=7)
     entries = [(plt.Line2D([], [], color=style.COLOURS[0], marker="o"), "measured, with its fit"),
                (plt.Line2D([], [], color=style.GREY, linestyle="--"), "by counting operations")]
     legend_above(figure, entries, 2)
@@ -196,6 +192,9 @@ def draw_margins(axis, stability):
                   marker=look["marker"], alpha=0.85, markeredgewidth=0)
         axis.plot(np.full((~seen).sum(), 1.3 * LEAST_MARGIN), heights[~seen], linestyle="none",
                   color=look["color"], marker="<")
+        failed = np.array([not row["passed"] for row in solved])
+        axis.plot(margin[failed], heights[failed], linestyle="none", color="black", marker="o",
+                  markersize=7, fillstyle="none")
         refused = len(rows) - len(solved)
         axis.text(1.02, place, str(refused), transform=axis.get_yaxis_transform(), va="center",
                   fontsize=7)
@@ -261,12 +260,13 @@ FIGURES = {  # name: (function, caption)
     "error_render": (
         draw_render,
         "Relative error of pictures against processor time: path tracing, light tracing, "
-        "bidirectional path tracing and a photon map, which levels off at its bias."),
+        "bidirectional path tracing and a photon map, which levels off at its bias. The glass ball "
+        "under a beam gives path tracing no finite variance: rare paths make its error jump."),
     "limits": (
         draw_limits,
         "(a) How far each extreme case is off its invariant, relative to the limit it was held to "
         "(line: the limit; to the right: how many are refused, each with a message that says why). "
-        "Arrows: below 1e-9. (b) What leaving a thing out of a kernel saves, where the scene has "
+        "Arrows: below 1e-9; a ring would mark a failure. (b) What leaving a thing out of a kernel saves, where the scene has "
         "no need of it; bars are half the distance of the quartiles."),
     "error_other": (
         draw_other_flatland,

@@ -59,7 +59,9 @@ def of_slopes(error):
 
 def of_costs(error):
     for cost in error.costs:
-        yield f"exponent.{slug(cost['task'])}", number(cost["exponent"], cost["exponent_error"])
+        yield f"exponent.{slug(cost['task'])}", number(
+            cost["exponent"], cost["exponent_error"],
+            number_text.exponent(cost["exponent"], cost["exponent_error"]))
 
 
 def of_stability(stability):

@@ -41,6 +41,11 @@ def with_error(value, error):
     return f"{minus(f'{value:.{places}f}')}({round(error * 10**places)})"
 
 
+def exponent(value, error):
+    """The same to three places at most."""
+    return with_error(value, max(error, 1e-3))
+
+
 def plus_minus(value, error):
     """1.52 ± 0.03, as many digits as two of the error ask for."""
     if not error > 0:
