@@ -41,13 +41,16 @@ def reference_rows(error):
 
 def curve_rows(error, scene):
     curves = error.of_scene(scene)
-    ours = next((curve for curve in curves if curve["method"] in ("ours", "bidirectional")), None)
+    ours = next(curve for curve in curves if curve["method"] in ("ours", "bidirectional"))
     for curve in curves:
-        relative = ours["efficiency"] / curve["efficiency"] if ours else 0
-        yield [curve["method"], number_text.with_error(curve["slope"], curve["slope_error"]),
-               number_text.digits(curve["efficiency"]),
+        row = [curve["method"], number_text.with_error(curve["slope"], curve["slope_error"])]
+        if not curve["is_monte_carlo"]:  # no law to go by
+            yield [*row, "", "", ""]
+            continue
+        relative = ours["efficiency"] / curve["efficiency"]
+        yield [*row, number_text.digits(curve["efficiency"]),
                number_text.seconds(time_to_target(curve["efficiency"])),
-               "" if curve is ours or not ours else number_text.factor(relative)]
+               "" if curve is ours else number_text.factor(relative)]
 
 
 def accuracy(bench, pictures):
@@ -57,11 +60,12 @@ def accuracy(bench, pictures):
         "Every standard scene by every method: the deviation from a reference that is known in "
         "another way, against processor time. Independent samples bring a slope of "
         "\u22121/2. Efficiency is 1/(error\u00b2 \u00d7 CPU seconds); the last "
-        "column says how many times as long a method takes as ours to the same error.")
+        "column says how many times as long a method takes as ours to the same error. What is biased "
+        "or has no finite variance has neither.")
     for name in ("error_flatland", "error_other", "error_render"):
         yield from figure(name, pictures)
     for scene in error.scenes():
-        yield Table(["method", "slope", "efficiency (1/s)", f"time to {TARGET:.0%}", "\u00d7 ours"],
+        yield Table(["method", "slope", "efficiency (1/s)", f"time to {100 * TARGET:g} %", "\u00d7 ours"],
                     list(curve_rows(error, scene)), "lrrrr",
                     f"{scene}: {bench_figures.title(scene)}")
     yield Heading(3, "How the references are known")

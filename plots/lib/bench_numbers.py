@@ -26,6 +26,8 @@ def of_curves(error):
     for curve in error.curves:
         key = f"{slug(curve['scene'])}.{slug(curve['method'])}"
         yield f"slope.{key}", number(curve["slope"], curve["slope_error"])
+        if not curve["is_monte_carlo"]:
+            continue
         yield f"efficiency.{key}", number(curve["efficiency"],
                                           text=number_text.digits(curve["efficiency"]))
         seconds = time_to_target(curve["efficiency"])
@@ -41,7 +43,7 @@ def of_speeds(error):
         if ours is None:
             continue
         for method, curve in curves.items():
-            if curve is not ours:
+            if curve is not ours and curve["is_monte_carlo"]:
                 ratio = ours["efficiency"] / curve["efficiency"]
                 yield (f"speed.{slug(scene)}.{slug(method)}",
                        number(ratio, text=number_text.factor(ratio)))

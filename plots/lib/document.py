@@ -117,6 +117,7 @@ caption { text-align: left; font-weight: 600; padding-bottom: 0.35rem; }
 th, td { text-align: left; vertical-align: top; padding: 0.28rem 0.9rem 0.28rem 0; }
 th { color: var(--soft); font-weight: 500; border-bottom: 1px solid var(--ink); white-space: nowrap; }
 td { border-bottom: 1px solid var(--rule); }
+td:first-child { min-width: 14rem; }
 .n { text-align: right; white-space: nowrap; }
 @media print { body { max-width: none; padding: 0; font-size: 10pt; } figure, tr { break-inside: avoid; } }
 """

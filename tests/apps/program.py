@@ -81,7 +81,7 @@ class ProgramTest(unittest.TestCase):
     def call(self, *words, status=0, **keys):
         """Runs the program with words, then keys as flags, and checks its exit status."""
         command = [PROGRAM, *map(str, words), *flags(keys)]
-        done = subprocess.run(command, cwd=self.folder, capture_output=True, text=True, timeout=300)
+        done = subprocess.run(command, cwd=self.folder, capture_output=True, text=True, timeout=600)
         self.assertEqual(done.returncode, status, f"{command}\n{done.stdout}{done.stderr}")
         return done
 
