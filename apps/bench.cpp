@@ -156,11 +156,12 @@ Outcome run_kind(ResultFile& file, const BenchKeys& keys) {
   return what_plans_leave_out(file, keys.quick);
 }
 
-void add_options(CLI::App& app, BenchKeys& keys) {
-  app.add_option("kind", keys.kind, "error, stability or plan")->configurable(false);
-  app.add_flag("--quick", keys.quick, "Only a look: seconds in place of minutes");
-  add_thread_option(app, keys.run);
-  add_output_option(app, keys.run);
+void add_options(Options& options, BenchKeys& keys) {
+  options.add("kind", keys.kind, "error, stability or plan");
+  options.keep_out_of_scene_file("kind");
+  options.add_flag("--quick", keys.quick, "Only a look: seconds in place of minutes");
+  add_thread_option(options, keys.run);
+  add_output_option(options, keys.run);
 }
 
 void check(const BenchKeys& keys) {
