@@ -1,3 +1,4 @@
+#include <cmath>
 #include <memory>
 #include <utility>
 
@@ -84,6 +85,7 @@ std::vector<PlanCase> render_plan_cases() {
   fog.sensor = AreaDetector{{0, 0, 3}, {0, 1, 0}, 6, 6, {4, 4}, 1.5};
   RenderScene clear = fog, alone = fog;
   clear.stage.medium = clear.stage.body->medium = {};
+  clear.lights = {FaceLight{.radius = INFINITY}};  // what a beam sheds unscattered is summed apart
   alone.stage.body = {};
   alone.stage.medium.mu_s = 1;
   constexpr auto same = Numbers::same, other = Numbers::other;
