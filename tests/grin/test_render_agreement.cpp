@@ -71,7 +71,7 @@ void check_agreement(const RenderScene& scene, double samples) {
 TEST_CASE("path tracing, light tracing and bidirectional agree") {
   for (const auto& [name, scene] : scenes()) {
     CAPTURE(name);
-    check_agreement(scene, 5e4);
+    check_agreement(scene, 3e4);
   }
 }
 

@@ -118,8 +118,7 @@ TEST_CASE("light scattered once agrees with quadrature where two curves join man
   const double a = 1, ball = 1.5;
   const double expected = single_scattering({n0, a}, medium, ball);
   const RenderScene two = scene(Fisheye({.centre_excess = n0 - 1, .radius = a}), medium, ball);
-  const Rendered result =
-      rendered(two, {.method = RenderMethod::path, .max_scatterings = 1}, 300000);
+  const Rendered result = rendered(two, {.method = RenderMethod::path, .max_scatterings = 1}, 1e5);
   CAPTURE(result.error() / expected);
   CHECK(std::abs(result.value() - expected) < 4 * result.error());
   CHECK(result.counts.connections.mean_refind() > 1.05);
