@@ -44,6 +44,10 @@ std::vector<NamedScene> scenes() {
   };
 }
 
+bool is_beam(const Light& light) {
+  return std::holds_alternative<BeamLight>(light);
+}
+
 struct Mean {
   double value, error;
 };
@@ -57,8 +61,11 @@ Mean mean_of(const RenderScene& scene, RenderMethod method, double samples, std:
 void check_agreement(const RenderScene& scene, double samples) {
   const Mean both = mean_of(scene, RenderMethod::bidirectional, samples, 11);
   for (const RenderMethod method : {RenderMethod::path, RenderMethod::light}) {
+    // path tracing joins to where a beam scatters by 1/r^2 alone: rare paths carry much
+    const bool rare = method == RenderMethod::path && is_beam(scene.lights.front());
+    const double more = rare ? 20 : 2;
     // seeds differ: from the same paths they would agree too well
-    const Mean one = mean_of(scene, method, 2 * samples, 12 + static_cast<int>(method));
+    const Mean one = mean_of(scene, method, more * samples, 12 + static_cast<int>(method));
     CAPTURE(name(method));
     CAPTURE(one.error / both.value);
     CAPTURE(both.error / both.value);
@@ -71,7 +78,7 @@ void check_agreement(const RenderScene& scene, double samples) {
 TEST_CASE("path tracing, light tracing and bidirectional agree") {
   for (const auto& [name, scene] : scenes()) {
     CAPTURE(name);
-    check_agreement(scene, 3e4);
+    check_agreement(scene, 5e4);
   }
 }
 
