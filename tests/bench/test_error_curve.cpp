@@ -20,7 +20,7 @@ constexpr std::uint64_t stream = 2001;
 
 /// Means of numbers drawn by `draw`, about 0, against a reference of 1 in 16 entries.
 template <class Draw>
-Method toy(const Draw& draw, double offset = 0) {
+Method toy(Draw draw, double offset = 0) {
   constexpr std::size_t entries = 16;
   return {"toy", "toy", [=](std::uint64_t seed) {
             Trial trial{{}, sample_mean};

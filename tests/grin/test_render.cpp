@@ -122,11 +122,11 @@ TEST_CASE("nothing that is not a number comes from extreme scenes") {
       {"light at the image of the camera",
        scene_in(strong, {unit_box(), fog(0.1, 0, 0)}, PointLight{Vec3(0, 0, 0.5)},
                 Camera{Vec3(0, 0, -0.5), Vec3::UnitZ(), Vec3::UnitY(), 1.0, {2, 2}})}};
-  for (const auto& [label, scene] : all) {
-    CAPTURE(label);
+  for (const Extreme& extreme : all) {
+    CAPTURE(extreme.name);
     for (const RenderMethod method : unbiased_methods) {
       CAPTURE(name(method));
-      CHECK(is_sound(rendered(scene, method, 600)));
+      CHECK(is_sound(rendered(extreme.scene, method, 600)));
     }
   }
 }

@@ -76,9 +76,9 @@ void check_agreement(const RenderScene& scene, double samples) {
 }  // namespace
 
 TEST_CASE("path tracing, light tracing and bidirectional agree") {
-  for (const auto& [name, scene] : scenes()) {
-    CAPTURE(name);
-    check_agreement(scene, 5e4);
+  for (const NamedScene& named : scenes()) {
+    CAPTURE(named.name);
+    check_agreement(named.scene, 5e4);
   }
 }
 

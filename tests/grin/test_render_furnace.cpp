@@ -10,32 +10,32 @@ namespace flatspeckle::grin::tests {
 namespace {
 
 /// Rays through many blobs and a spline cost ten times as much.
-double affordable(const std::string& name, double samples) {
-  return name == "blobs and spline" ? samples / 4 : samples;
+double affordable(const NamedScene& named, double samples) {
+  return named.name == "blobs and spline" ? samples / 4 : samples;
 }
 
 }  // namespace
 
 TEST_CASE("light stays uniform without scattering, in every field and by every estimator") {
-  for (const auto& [name, scene] : furnaces({})) {
-    CAPTURE(name);
+  for (const NamedScene& named : furnaces({})) {
+    CAPTURE(named.name);
     for (const RenderMethod method : unbiased_methods) {
-      CHECK(check_furnace_face(scene, method, affordable(name, 10000)) < 0.08);
+      CHECK(check_furnace_face(named.scene, method, affordable(named, 10000)) < 0.08);
       // what is near a pinhole is seen by light tracing but seldom, and then brightly
       if (method != RenderMethod::light) {
-        CHECK(check_furnace_camera(scene, method, affordable(name, 20000)) < 0.02);
+        CHECK(check_furnace_camera(named.scene, method, affordable(named, 20000)) < 0.02);
       }
     }
   }
 }
 
 TEST_CASE("light stays uniform where it scatters, in every field and by every estimator") {
-  for (const auto& [name, scene] : furnaces(fog(1, 0, 0.85))) {
-    CAPTURE(name);
+  for (const NamedScene& named : furnaces(fog(1, 0, 0.85))) {
+    CAPTURE(named.name);
     for (const RenderMethod method : unbiased_methods) {
-      CHECK(check_furnace_face(scene, method, affordable(name, 10000)) < 0.1);
+      CHECK(check_furnace_face(named.scene, method, affordable(named, 10000)) < 0.1);
       if (method != RenderMethod::light) {
-        CHECK(check_furnace_camera(scene, method, affordable(name, 8000)) < 0.1);
+        CHECK(check_furnace_camera(named.scene, method, affordable(named, 8000)) < 0.1);
       }
     }
   }

@@ -120,14 +120,14 @@ TEST_CASE("A beam is the superposition of plane waves that has its field across 
 
 TEST_CASE("Point sources are the reciprocal of near sensors, and plane waves from far away") {
   const Placement placement = reference_placement("g1", "TM15");
-  const Circle circle = enclosing_circle(placement);
+  const Circle around = enclosing_circle(placement);
   const SolveOptions options{.tolerance = 1e-10, .sensors = {}, .diagnose = false};
   const auto fields_of = [&](const Lights& lights, const std::vector<View>& views) {
     return scattered_fields(placement, two_pi,
-                            make_field_plan(lights, views, two_pi, circle, 1e-10), options);
+                            make_field_plan(lights, views, two_pi, around, 1e-10), options);
   };
-  const Vec2 here = circle.centre + (circle.radius + 2) * direction(0.7),
-             there = circle.centre + (circle.radius + 1) * direction(-2.0);
+  const Vec2 here = around.centre + (around.radius + 2) * direction(0.7),
+             there = around.centre + (around.radius + 1) * direction(-2.0);
   const Complex forth = fields_of({point_source(here)}, {near_sensor(there)})[0],
                 back = fields_of({point_source(there)}, {near_sensor(here)})[0];
   CHECK(std::abs(forth) > 1e-4);
@@ -139,7 +139,7 @@ TEST_CASE("Point sources are the reciprocal of near sensors, and plane waves fro
   const Complex far = fields_of({point_source(here)}, {far_view(0.4)})[0],
                 near = fields_of({plane_wave(0.4 + std::acos(-1.0))}, {near_sensor(here)})[0];
   CHECK(std::abs(far - scale * near) < 1e-9);
-  CHECK_THROWS_AS(basis_of({point_source(here), plane_wave(0)}, two_pi, circle, 1e-6), InputError);
+  CHECK_THROWS_AS(basis_of({point_source(here), plane_wave(0)}, two_pi, around, 1e-6), InputError);
 }
 
 }  // namespace flatspeckle::wave
