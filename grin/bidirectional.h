@@ -33,19 +33,19 @@ class Bidirectional {
   void walk_from_light() {
     vertices_.clear();
     const EndPosition end = transport_.lights.sample_position(space_, random_);
-    const PathVertex start = end_vertex(end);
+    const PathVertex start = end_vertex(transport_.strategies, end);
     join_to_sensor(start);
     const EndDirection first = transport_.lights.sample_direction(end, random_);
     const auto left = [&](const PathVertex& last, const PathVertex& before) {
       if (end.is_beam && last.vertices == 2) return;  // summed apart (unscattered_beams.h)
-      const int more = transport_.strategies.most_sensor();
-      arrive(transport_.sensor, last, before, more,
+      arrive(transport_.sensor, last, before, transport_.strategies.most_sensor(),
              [&](const EndHit& hit) { return hit.direction.pixel; });
     };
+    const double last_kept = sample_last_kept();
     const auto collided = [&](const PathVertex& vertex) {
       ++counts_.light_collisions;
       join_to_sensor(vertex);
-      vertices_.offer(vertex, random_);
+      if (vertex.vertices < last_kept) vertices_.offer(vertex, random_);
     };
     walk<plan>(transport_, space_, transport_.lights, start, first,
                transport_.strategies.short_light, random_, counts_, collided, left);
@@ -53,19 +53,26 @@ class Bidirectional {
 
   void walk_from_sensor(double stratum) {
     const EndPosition end = transport_.sensor.sample_position(space_, random_, stratum);
-    const PathVertex start = end_vertex(end);
+    const PathVertex start = end_vertex(transport_.strategies, end);
     const EndDirection first = transport_.sensor.sample_direction(end, random_, stratum);
     pixel_ = first.pixel;
     const auto left = [&](const PathVertex& last, const PathVertex& before) {
-      const int more = transport_.strategies.most_light();
-      arrive(transport_.lights, last, before, more, [&](const EndHit&) { return pixel_; });
+      arrive(transport_.lights, last, before, transport_.strategies.most_light(),
+             [&](const EndHit&) { return pixel_; });
     };
+    const double last_kept = sample_last_kept();
     const auto collided = [&](const PathVertex& vertex) {
       join_to_light(vertex);
-      join_to_light_path(vertex);
+      if (vertex.vertices < last_kept) join_to_light_path(vertex);
     };
     walk<plan>(transport_, space_, transport_.sensor, start, first,
                transport_.strategies.short_sensor, random_, counts_, collided, left);
+  }
+
+  /// A number of vertices; those that have fewer are kept for joins to the other path.
+  double sample_last_kept() {
+    const double kept = transport_.strategies.kept;
+    return kept < 1 ? 2 + std::log(random_.uniform()) / std::log(kept) : Strategies::unlimited;
   }
 
   /// A path that reached the boundary meets the other ends there.
@@ -76,8 +83,8 @@ class Bidirectional {
       PathVertex here = last;
       here.density *= std::abs(hit.position.inward.dot(last.arrived));
       here.first_of_other *= heuristic(ends.choice(hit.position, before.point.x));
-      const double others =
-          fewer_of_ours(here, hit.position.position_density, hit.direction.density, more, 1);
+      const double others = rivals_of_hit(
+          transport_.strategies, here, hit.position.position_density, hit.direction.density, more);
       const double value = here.weight * hit.value / (1 + others);
       promised_ += value;
       add(pixel(hit), value, here.optical_path);
@@ -86,13 +93,13 @@ class Bidirectional {
 
   void join_to_sensor(const PathVertex& y) {
     const EndPosition end = transport_.sensor.choose_position(space_, y.point.x, random_);
-    const PathVertex z = end_vertex(end);
+    const PathVertex z = end_vertex(transport_.strategies, end);
     join_to_end(y, z);
   }
   void join_to_light(const PathVertex& z) {
     const EndPosition end = transport_.lights.sample_position(space_, random_);
     if (end.is_beam) return;
-    const PathVertex y = end_vertex(end);
+    const PathVertex y = end_vertex(transport_.strategies, end);
     join_to_end(y, z);
   }
 
@@ -105,7 +112,7 @@ class Bidirectional {
     const std::span<const PathVertex> all = vertices_.kept();
     double sum = 0;
     for (std::size_t i = 0; i < all.size(); ++i) {
-      of_each_[i] = can_join(all[i], z) ? promise(all[i], z) : 0;
+      of_each_[i] = can_join(all[i], z) ? promise(all[i], z) / all[i].kept : 0;
       sum += of_each_[i];
     }
     if (!(sum > 0)) return;
@@ -114,9 +121,9 @@ class Bidirectional {
     while (i + 1 < all.size() && rest >= of_each_[i]) rest -= of_each_[i++];
     if (!(of_each_[i] > 0)) return;
     PathVertex y = all[i];
-    const double stands_for = vertices_.each_stands_for() * sum / of_each_[i];
-    y.weight *= stands_for;
-    join(y, z, stands_for * of_each_[i]);
+    const double stands_for = vertices_.each_stands_for() / z.kept;
+    y.weight *= stands_for * sum / (of_each_[i] * y.kept);
+    join(y, z, stands_for * sum);
   }
 
   bool can_join(const PathVertex& y, const PathVertex& z) const {
@@ -177,7 +184,7 @@ class Bidirectional {
   RandomStream& random_;
   Film& film_;
   TransportCounts& counts_;
-  LightVertices vertices_;
+  LightVertices vertices_;  ///< that are kept for joins
   std::array<double, LightVertices::capacity> of_each_{};
   int pixel_ = -1;  ///< of the sensor's path
   double promised_ = 0;

@@ -26,19 +26,25 @@ struct Strategies {
   static constexpr int unlimited = std::numeric_limits<int>::max() / 2;
   bool short_light = false;   ///< path tracing
   bool short_sensor = false;  ///< light tracing
-  /// How often two vertices that both scatter are joined, of the pairs of them that a light path
-  /// and a sensor's path have: one stands for many, which weights should know.
+  /// How often two vertices that both scatter are joined, of the pairs of them that are kept for
+  /// it: one stands for many, which weights should know.
   double joined_share = 1;
+  /// The chance that a path's next vertex is kept for such joins, where this one was. Two very long
+  /// paths that meet do so again and again, which is rare and worth much; without these joins they
+  /// still meet each other's end.
+  double kept = 1;
 
   /// Vertices made from an end that can also be made from the other.
   int most_light() const { return short_light ? 1 : unlimited; }
   int most_sensor() const { return short_sensor ? 1 : unlimited; }
+};
 
-  /// What the density of a strategy of so many vertices from the light and from the sensor counts,
-  /// beside the densities of its vertices.
-  double share(int from_light, int from_sensor) const {
-    return from_light > 1 && from_sensor > 1 ? heuristic(joined_share) : 1;
-  }
+/// Densities of strategies relative to one at hand, as weights count them: of those that join two
+/// vertices that both scatter, and of those that join an end or hit it. The former count by the
+/// chance that both are kept, the same for all of a path, and by joined_share: these are left out
+/// until the path is whole.
+struct Rivals {
+  double joined = 0, at_ends = 0;
 };
 
 /// A vertex of a subpath that begins at a light or at the sensor, "our end". All that weights need
@@ -57,14 +63,15 @@ struct PathVertex {
   double index = 1;
   double weight = 1;  ///< of the subpath, without the direction in which it goes on
   double optical_path = 0;
-  int vertices = 1;                  ///< of the subpath, this one included
+  int vertices = 1;  ///< of the subpath, this one included
+  double kept = 1;   ///< chance that it is (Strategies); of our end as if it came before
   const EndPosition* end = nullptr;  ///< at our end
 
   double density = 1;  ///< with which it was made
   double back = 0;     ///< that of the vertex before, made from here, per density of the direction
   /// Of the strategies with fewer of our vertices than made the vertex before this: sum of their
   /// densities relative to that strategy's, per density of the vertex before as made from here.
-  double before = 0;
+  Rivals before;
   /// Of the strategy in which this is the first vertex from the other end: 0 if there is none, 1 if
   /// there is; where our end alone is left, what its choice counts (EndPosition).
   double first_of_other = 0;
@@ -76,27 +83,26 @@ struct PathVertex {
   }
 };
 
-inline PathVertex end_vertex(const EndPosition& end) {
+inline PathVertex end_vertex(const Strategies& strategies, const EndPosition& end) {
   PathVertex vertex;
   vertex.point = end.point;
   vertex.index = end.index;
   vertex.end = &end;
+  vertex.kept = 1 / strategies.kept;
   vertex.density = end.position_density * end.choice;
   vertex.weight = 1 / vertex.density;
   vertex.first_of_other = !end.is_point && !end.is_beam;
   return vertex;
 }
 
-/// Densities of the strategies with fewer of our vertices, relative to the one at hand, in which
-/// `last` is our last. `made_from_other`: density of `last` if made from the other side;
-/// `direction_density`: at `last`, from the other side towards the vertex before. No more than
-/// `more` vertices can be made from the other side than are. `share`: Strategies::share() of the
-/// strategy with one of ours less.
-inline double fewer_of_ours(const PathVertex& last, double made_from_other,
-                            double direction_density, int more, double share) {
-  if (more <= 0) return 0;
-  const double rest = more > 1 ? heuristic(direction_density * last.back) * last.before : 0;
-  return heuristic(made_from_other / last.density) * (share * last.first_of_other + rest);
+/// The strategies in which `last`, and vertices before it, are made from the other side, relative
+/// to the one in which it is our last: `first` is that in which it alone is, `rest` the others. The
+/// other side made `others` vertices in the strategy at hand.
+inline Rivals fewer_of_ours(const PathVertex& last, double first, double rest, int others) {
+  Rivals fewer{rest * last.before.joined, rest * last.before.at_ends};
+  const bool both_scatter = last.vertices > 2 && others > 0;
+  (both_scatter ? fewer.joined : fewer.at_ends) += first * last.first_of_other;
+  return fewer;
 }
 
 /// Where a flight from `here` ended. The direction was drawn with `direction_density` (1 of a beam;
@@ -116,13 +122,12 @@ inline PathVertex arrived(const Strategies& strategies, const PathVertex& here,
   next.weight = here.weight * flight.weight;
   next.optical_path = here.optical_path + flight.optical_path;
   next.vertices = here.vertices + 1;
+  next.kept = here.kept * strategies.kept;
   next.density = direction_density * attenuation / spreading;
   next.back = attenuation / (spreading * turned) * here.cosine(flight.start_direction);
-  // the other end made `here` and, where that counts, at least two more
-  const double share = strategies.share(here.vertices - 1, 2);
-  next.before =
-      (share * here.first_of_other + heuristic(direction_density * here.back) * here.before) /
-      heuristic(here.density);
+  constexpr int others = 2;  // they made `here` and, where that counts, the next
+  next.before = fewer_of_ours(here, 1 / heuristic(here.density),
+                              heuristic(direction_density * here.back / here.density), others);
   const bool can_be_joined = !flight.crosses_body && !(here.end && here.end->is_beam);
   next.first_of_other = can_be_joined ? heuristic(choice) : 0;
   return next;

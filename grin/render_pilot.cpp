@@ -66,14 +66,18 @@ double flights_per_pair(Transport& transport, const PathKernel& kernel, const Ti
   return known_flights(pilot(transport, kernel, bins));
 }
 
-/// One vertex of a light path stands for all in a join: their mean number sets the share.
-/// A pair costs F flights and varies by V. Joins of the promise S at a level L add L S to V and
-/// cost c S/L flights; variance times cost is least at L^2 = c V / F, both without joins.
+/// One vertex of a light path stands for all in a join: their mean number sets the share, and twice
+/// that how many are kept for joins. With more, bidirectional meets rare long paths that change its
+/// picture (white furnace of optical depth 200); with fewer, a pinhole in thick fog under a beam
+/// gains little from joins. A pair costs F flights and varies by V. Joins of the promise S at a
+/// level L add L S to V and cost c S/L flights; variance times cost is least at L^2 = c V / F, both
+/// without joins.
 double tune_joins(Transport& transport, const PathKernel& kernel, const TimeBins& bins,
                   double flights_per_join) {
   const Pilot first = pilot(transport, kernel, bins);
-  transport.strategies.joined_share =
-      std::min(1.0, first.pairs / static_cast<double>(first.counts.light_collisions));
+  const double collisions = static_cast<double>(first.counts.light_collisions) / first.pairs;
+  transport.strategies.joined_share = std::min(1.0, 1 / collisions);
+  transport.strategies.kept = 1 - 1 / (2 + 2 * collisions);
   const Pilot second = pilot(transport, kernel, bins);
   transport.join_level =
       std::sqrt(flights_per_join * trimmed_variance(second.promises) / second.flights_per_pair());

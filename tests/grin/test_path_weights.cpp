@@ -62,7 +62,7 @@ double scattering_density(const Transport& transport, const WholePath& path, std
 }
 
 PathVertex light_subpath(const Transport& transport, const WholePath& path, int count) {
-  PathVertex vertex = end_vertex(path.light);
+  PathVertex vertex = end_vertex(transport.strategies, path.light);
   for (int i = 0; i + 1 < count; ++i) {
     const Edge& edge = path.edges[i];
     double density = 1;
@@ -76,7 +76,7 @@ PathVertex light_subpath(const Transport& transport, const WholePath& path, int 
 }
 
 PathVertex sensor_subpath(const Transport& transport, const WholePath& path, int count) {
-  PathVertex vertex = end_vertex(path.sensor);
+  PathVertex vertex = end_vertex(transport.strategies, path.sensor);
   const int last = static_cast<int>(path.points.size()) - 1;
   for (int i = last; i > last + 1 - count; --i) {
     const Edge& edge = path.edges[i - 1];
@@ -90,9 +90,10 @@ PathVertex sensor_subpath(const Transport& transport, const WholePath& path, int
 }
 
 /// Weight of the strategy in which all vertices were made from one side, `end` being hit.
-double weight_of_hit(PathVertex last, const EndPosition& end, double density, int more) {
+double weight_of_hit(const Strategies& allowed, PathVertex last, const EndPosition& end,
+                     double density, int more) {
   last.density *= std::abs(end.inward.dot(last.arrived));
-  return 1 / (1 + fewer_of_ours(last, end.position_density, density, more, 1));
+  return 1 / (1 + rivals_of_hit(allowed, last, end.position_density, density, more));
 }
 
 /// Of the strategy with s vertices made from the light; nothing where there is no such strategy.
@@ -102,7 +103,7 @@ std::optional<double> weight_of(const Transport& transport, const WholePath& pat
   if (s == 0) {
     if (path.light.is_point || path.light.is_beam) return {};
     const Vec3& out = path.edges[0].forth.start_direction;
-    return weight_of_hit(sensor_subpath(transport, path, all), path.light,
+    return weight_of_hit(allowed, sensor_subpath(transport, path, all), path.light,
                          transport.lights.towards(path.light, out).density, allowed.most_light());
   }
   if (s == all) {
@@ -110,14 +111,15 @@ std::optional<double> weight_of(const Transport& transport, const WholePath& pat
     const Vec3& out = path.edges.back().back.start_direction;
     PathVertex last = light_subpath(transport, path, all);
     last.first_of_other *= heuristic(path.chosen_sensor(transport).choice);
-    return weight_of_hit(last, path.sensor, transport.sensor.towards(path.sensor, out).density,
-                         allowed.most_sensor());
+    return weight_of_hit(allowed, last, path.sensor,
+                         transport.sensor.towards(path.sensor, out).density, allowed.most_sensor());
   }
   const Flight& edge = path.edges[s - 1].forth;
   if (edge.crosses_body || (s == 1 && path.light.is_beam)) return {};
   const PathVertex y = light_subpath(transport, path, s);
   const EndPosition chosen = path.chosen_sensor(transport);
-  const PathVertex z = s == all - 1 ? end_vertex(chosen) : sensor_subpath(transport, path, all - s);
+  const PathVertex z = s == all - 1 ? end_vertex(transport.strategies, chosen)
+                                    : sensor_subpath(transport, path, all - s);
   const JoiningCurve curve{edge.start_direction, edge.direction, edge.spreading,
                            edge.optical_depth};
   return joined_path(allowed, y, leaving(transport, transport.lights, y, curve.start_direction), z,
@@ -161,7 +163,7 @@ Transport transport_of(const CurvedSpace& space, const Stage& stage, const Light
 
 const Strategies path_tracing{.short_light = true};
 const Strategies light_tracing{.short_sensor = true};
-const Strategies rarely_joined{.joined_share = 0.01};
+const Strategies soon_left{.joined_share = 0.3, .kept = 0.4};
 
 /// Through random points, each way of each edge solved for by itself; nothing where one of them
 /// has no curve or the two differ.
@@ -202,7 +204,7 @@ TEST_CASE("the weights of all strategies that make a path sum to 1 where rays ar
   int paths = 0;
   for (const Light& light : lights)
     for (const Sensor& sensor : sensors)
-      for (const Strategies& mask : {Strategies{}, rarely_joined, path_tracing, light_tracing}) {
+      for (const Strategies& mask : {Strategies{}, soon_left, path_tracing, light_tracing}) {
         const Transport transport = transport_of(*space, stage, light, sensor, mask);
         for (int scatterings = 0; scatterings < 6; ++scatterings)
           for (int trial = 0; trial < 20; ++trial) {
@@ -267,7 +269,7 @@ TEST_CASE("weights sum to 1 on paths that cross a body, and of beams") {
   int paths = 0, crossing = 0;
   for (const Light& light : {lights[1], beam})
     for (const Sensor& sensor : {sensors[1], sensors[2]})
-      for (const Strategies& mask : {Strategies{}, rarely_joined, path_tracing, light_tracing}) {
+      for (const Strategies& mask : {Strategies{}, soon_left, path_tracing, light_tracing}) {
         const Transport transport = transport_of(*space, stage, light, sensor, mask);
         for (int trial = 0; trial < 1000; ++trial) {
           const auto path = walked_path(transport, *space, 1 + trial % 7, random);
