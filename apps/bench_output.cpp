@@ -85,6 +85,8 @@ void write_error_curves(ResultFile& file, const std::vector<bench::ErrorCurve>& 
   all.numbers("samples", "1", "samples by then", [](const auto& p) { return p.point.samples; });
   all.numbers("relative_error", "1", "RMS deviation from the reference over the RMS of its values",
               [](const auto& p) { return p.point.error; });
+  all.numbers("relative_error_error", "1", "standard error of relative_error",
+              [](const auto& p) { return p.point.error_error; });
 }
 
 void write_cost_curves(ResultFile& file, const std::vector<bench::CostCurve>& costs) {
@@ -93,8 +95,7 @@ void write_cost_curves(ResultFile& file, const std::vector<bench::CostCurve>& co
   table.texts("task", "whose cost it is", &CostCurve::what);
   table.texts("cost_name", "what its cost is", &CostCurve::cost_name);
   table.texts("size_name", "what its size is", &CostCurve::size_name);
-  table.numbers("exponent", "1", "fitted exponent of cost over size",
-                &CostCurve::exponent);
+  table.numbers("exponent", "1", "fitted exponent of cost over size", &CostCurve::exponent);
   table.numbers("exponent_error", "1", "standard error of exponent", &CostCurve::exponent_error);
   table.numbers("expected_exponent", "1", "exponent by theory", &CostCurve::expected);
   std::vector<CostPoint> points;

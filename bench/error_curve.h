@@ -12,6 +12,7 @@ struct ErrorPoint {
   double cpu_s;  ///< of one run on one thread, set-up not counted
   double samples;
   double error;
+  double error_error;  ///< standard error of `error`, from the spread of the runs
 };
 
 /// Error against time of one method on one scene.

@@ -174,7 +174,10 @@ ErrorCurve measure_error(const Method& method, const ErrorReference& reference,
   for (std::size_t p = 0; p < points; ++p) {
     const double batches = static_cast<double>(first) * std::exp2(p);
     const double share = std::exp2(static_cast<double>(p) - static_cast<double>(points - 1));
-    curve.points.push_back({share * to_last, batches * per_batch, spread.error(p)});
+    const double variance =
+        spread.variance([&](const RunErrors& run) { return spread.error(p, &run); });
+    curve.points.push_back(
+        {share * to_last, batches * per_batch, spread.error(p), std::sqrt(variance)});
   }
   fit(spread, curve);
   return curve;

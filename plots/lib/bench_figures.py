@@ -60,7 +60,10 @@ def draw_guide(axis, curves):
 
 def draw_error_curves(axis, curves):
     for curve in curves:
-        axis.loglog(curve["cpu_s"], curve["relative_error"], **method_look(curve["method"]))
+        axis.errorbar(curve["cpu_s"], curve["relative_error"], curve["relative_error_error"],
+                      elinewidth=0.7, **method_look(curve["method"]))
+    axis.set_xscale("log")
+    axis.set_yscale("log", nonpositive="clip")
     draw_guide(axis, curves)
     for side in (axis.xaxis, axis.yaxis):
         side.set_minor_formatter(NullFormatter())

@@ -66,8 +66,9 @@ class ErrorFile:
         self.made = made(result)
         self.curves = rows_of(result, ["scene", "method", "reference", "reference_uncertainty",
                                        "slope", "slope_error", "efficiency", "is_monte_carlo"])
-        for curve, points in zip(self.curves, points_of(
-                result, ["cpu_s", "samples", "relative_error"], "of_curve", len(self.curves))):
+        columns = ["cpu_s", "samples", "relative_error", "relative_error_error"]
+        for curve, points in zip(self.curves, points_of(result, columns, "of_curve",
+                                                        len(self.curves))):
             curve.update(points)
         self.costs = rows_of(result, ["task", "size_name", "cost_name", "exponent",
                                       "exponent_error", "expected_exponent"])
