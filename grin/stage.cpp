@@ -56,6 +56,23 @@ void check_path_lengths(const ScatteringMedium& medium, const Surface& within, d
   throw InputError(prefix + "mu_s", medium.mu_s, text.str());
 }
 
+/// Flights through a density grid go from one tentative collision to the next, as many where the
+/// grid is thin or ends.
+void check_flights(const ScatteringMedium& medium, const Surface& within,
+                   const std::string& prefix) {
+  if (!medium.density) return;
+  constexpr double most = 1e6;
+  const auto [low, high] = bounds(within);
+  const double collisions = medium.mu_t() * medium.density->largest() * (high - low).norm();
+  if (collisions <= most) return;
+  std::ostringstream text;
+  text << "is too dense: a flight through its density grid might meet " << collisions
+       << " tentative collisions, and more than " << most << " do not end in time";
+  const bool scatters = medium.mu_s >= medium.mu_a;
+  throw InputError(prefix + (scatters ? "mu_s" : "mu_a"), scatters ? medium.mu_s : medium.mu_a,
+                   text.str());
+}
+
 /// Touching is allowed.
 bool lies_in(const Surface& body, const Surface& boundary) {
   const auto [low, high] = bounds(body);
@@ -88,11 +105,13 @@ Stage without_scattering(const Stage& stage) {
 void check(const Stage& stage) {
   check_size("stage", stage.boundary);
   check(stage.medium, "");
+  check_flights(stage.medium, stage.boundary, "");
   if (!(stage.excess_around > -1) || !std::isfinite(stage.excess_around))
     throw InputError("index_around", 1 + stage.excess_around, "must be positive and finite");
   if (!stage.body) return;
   check_size("body", stage.body->surface);
   check(stage.body->medium, "body_");
+  check_flights(stage.body->medium, stage.body->surface, "body_");
   if (!lies_in(stage.body->surface, stage.boundary))
     throw InputError("the body reaches out of the stage: it must lie within its boundary");
 }

@@ -332,6 +332,14 @@ class Refused(RenderTest):
             self.refuse(f"density: {name}.h5", what, density=f"{name}.h5")
         write_density(self.folder / "far.h5", np.ones((5, 5, 5)), origin=np.array([2.0, 0, 0]))
         self.refuse("density: the grid, from 2 0 0", "outside of the stage", density="far.h5")
+        # most of the stage is beside the grid: it is all tentative collisions
+        write_density(self.folder / "speck.h5", np.ones((2, 2, 2)),
+                      origin=np.array([0, 0, 1.0]), spacing=np.full(3, 1e-3))
+        for limit in (None, 2):
+            self.refuse("mu_s = 1e+14", "too dense", "tentative", density="speck.h5", mu_s=1e14,
+                        max_scatterings=limit)
+        self.refuse("body_mu_a = 1e+14", "tentative", body_density="speck.h5", body_mu_a=1e14,
+                    body_box=[-0.5, -0.5, 0.5, 0.5, 0.5, 1.5])
 
     def test_lights(self):
         self.refuse("light is not given", beam_light=None)

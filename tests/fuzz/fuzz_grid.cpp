@@ -1,12 +1,18 @@
 #include <algorithm>
+#include <iterator>
+#include <memory>
 #include <vector>
 
 #include "apps/index_field_options.h"
 #include "apps/ray_tracing.h"
 #include "core/hdf5_handle.h"
+#include "grin/curved_space.h"
+#include "grin/field_file.h"
+#include "grin/render_job.h"
 #include "tests/fuzz/input.h"
 
-// Index grids of any numbers, and a few rays through those that load.
+// Grids of the index and of the density, of any numbers, and a few rays or flights through those
+// that load.
 
 namespace {
 
@@ -28,13 +34,13 @@ void write_attribute(hid_t set, const char* name, Bytes& bytes) {
 }
 
 /// Samples: so many of the input's numbers, over and over.
-void write_grid(Bytes& bytes) {
+void write_grid(const char* name, Bytes& bytes) {
   const Hdf5Handle file{H5Fcreate(path, H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose};
   hsize_t nodes[3];
   std::size_t count = 1;
   for (hsize_t& n : nodes) count *= n = 1 + bytes.below(8);
   const Hdf5Handle space{H5Screate_simple(3, nodes, nullptr), H5Sclose};
-  const Hdf5Handle set{H5Dcreate2(file.get(), "excess", H5T_NATIVE_DOUBLE, space.get(), H5P_DEFAULT,
+  const Hdf5Handle set{H5Dcreate2(file.get(), name, H5T_NATIVE_DOUBLE, space.get(), H5P_DEFAULT,
                                   H5P_DEFAULT, H5P_DEFAULT),
                        H5Dclose};
   write_attribute(set.get(), "origin", bytes);
@@ -51,12 +57,16 @@ std::vector<RayStart> starts_in(const grin::Box& box) {
   return {{middle, Vec3::UnitZ()}, {middle, Vec3(1, 2, -3).normalized()}, {box.low, Vec3::UnitX()}};
 }
 
-void trace_grid(const std::string& integrator) {
+SceneField scene_of_grid() {
   Subcommand command("trace", "");
   IndexFieldSpec spec;
   add_index_field_options(command.options(), spec);
   command.parse_config("field = [\"grid\"]\ngrid = \"grid.h5\"\n");
-  const SceneField scene = make_index_field(command, spec, 1);
+  return make_index_field(command, spec, 1);
+}
+
+void trace_grid(const std::string& integrator) {
+  const SceneField scene = scene_of_grid();
   const double length = 2 * scene.scale;  // some cells: how many steps a ray takes has a limit
   RayStopSpec stop_spec;
   stop_spec.max_length = length;
@@ -80,14 +90,66 @@ void trace_grid(const std::string& integrator) {
   }
 }
 
+/// Flights and a join of light that scatters in the grid's box.
+void fly_through_index(const std::string&) {
+  const SceneField scene = scene_of_grid();
+  const grin::Box box = *scene.grid;
+  const double size = (box.high - box.low).norm(), step = scene.scale / 10;
+  constexpr double most_steps = 400;
+  if (size > most_steps * step) return;
+  const grin::Stage stage{.boundary = box, .medium = {1 / size, 1 / size}};
+  const auto space = grin::make_curved_space(scene.field, stage, {step, 3 * size});
+  RandomStream random(1, 0, 0);
+  for (const RayStart& start : starts_in(box)) {
+    if (!(space->index({start.x}) > 1e-3)) continue;  // make_stage refuses what is not above 0
+    const grin::Flight flight = space->fly({start.x}, start.direction, random);
+    if (flight.end == grin::Flight::End::lost) continue;
+    fuzz::require_finite(flight.point.x.sum() + flight.direction.sum());
+    fuzz::require_finite(flight.arc_length + flight.optical_path + flight.optical_depth);
+    grin::ConnectionStatistics statistics;
+    space->join({start.x}, flight.point, random, statistics);
+  }
+}
+
+/// A picture of a few paths through the density, in a stage somewhat larger.
+void fly_through_density(const std::string&) {
+  const auto density = std::make_shared<grin::DensityGrid>(grin::read_density_grid(path));
+  const grin::FieldGrid& grid = density->grid();
+  const grin::Box box{grid.origin - grid.spacing, grid.end() + grid.spacing};
+  const double size = (box.high - box.low).norm();
+  constexpr double depth = 10;
+  const double mu = depth / size / std::max(density->largest(), 1.0);
+  const grin::DirectionalDetector sensor{Vec3::UnitZ(), Vec3::UnitY(), 1.5, {2, 2}};
+  const grin::RenderScene scene{
+      .field = grin::Homogeneous{},
+      .step = size,
+      .max_length = 10 * size,
+      .stage = {.boundary = box, .medium = {.mu_s = mu, .mu_a = mu, .density = density}},
+      .lights = {grin::PointLight{(box.low + box.high) / 2}},
+      .sensor = sensor};
+  const grin::RenderJob job = grin::render_job(scene, {.max_scatterings = 3}, 1);
+  std::vector<Complex> sums(job.batches.size);
+  job.batches.run(0, sums);
+  for (const Complex& sum : sums) fuzz::require_finite(sum.real());
+}
+
+struct Use {
+  const char *dataset, *what;
+  void (*read)(const std::string&);
+};
+constexpr Use uses[] = {{"excess", "sharma", trace_grid},
+                        {"excess", "leapfrog", trace_grid},
+                        {"excess", "yoshida4", trace_grid},
+                        {"density", "density", fly_through_density},
+                        {"excess", "index", fly_through_index}};
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* input, std::size_t size) {
   static const fuzz::Folder folder;
   Bytes bytes(input, size);
-  constexpr const char* integrators[] = {"sharma", "leapfrog", "yoshida4"};
-  const std::string integrator = integrators[bytes.below(3)];
-  write_grid(bytes);
-  fuzz::taken(integrator, trace_grid);
+  const auto& [dataset, what, read] = uses[bytes.below(std::size(uses))];
+  write_grid(dataset, bytes);
+  fuzz::taken(what, read);
   return 0;
 }

@@ -75,6 +75,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
   static const fuzz::Folder folder;
   const std::string_view text(reinterpret_cast<const char*>(bytes), size);
   fuzz::write_file(path, text);
-  fuzz::taken(fuzz::first_word(text), read_table);
+  fuzz::taken(fuzz::first_line(text), read_table);
   return 0;
 }

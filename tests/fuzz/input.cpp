@@ -60,7 +60,7 @@ void require_finite(double value) {
   if (!std::isfinite(value)) fail("a number that is not finite was passed on");
 }
 
-std::string first_word(std::string_view text) {
+std::string first_line(std::string_view text) {
   const std::string_view line = text.substr(0, text.find('\n'));
   return line.starts_with("# ") ? std::string(line.substr(2)) : "";
 }

@@ -53,8 +53,8 @@ class Bytes {
   const std::uint8_t *next_, *end_;
 };
 
-/// The word of a first line "# word": which reader the text is for. Both scene files and tables
-/// take such a line as a comment.
-std::string first_word(std::string_view text);
+/// What a first line "# word" says: which reader the text is for. Both scene files and tables take
+/// such a line as a comment.
+std::string first_line(std::string_view text);
 
 }  // namespace flatspeckle::fuzz

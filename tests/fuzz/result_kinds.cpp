@@ -94,18 +94,32 @@ void read_structure(const std::string& path) {
   for (double q = 0; q < 3; q += 0.1) require_finite(table(q));
 }
 
-void write_grid(const std::string& path) {
+void write_nodes(const std::string& path, const std::string& dataset) {
   ResultFile file(path);
   constexpr std::size_t side = 4;
-  file.dataset("excess", std::vector(side * side * side, 0.1), {side, side, side}, "1", "");
+  file.dataset(dataset, std::vector(side * side * side, 0.1), {side, side, side}, "1", "");
   for (const char* name : {"origin", "spacing"})
-    file.attribute("excess", name, std::vector{1.0, 1.0, 1.0});
+    file.attribute(dataset, name, std::vector{1.0, 1.0, 1.0});
   file.commit();
+}
+
+void write_grid(const std::string& path) {
+  write_nodes(path, "excess");
 }
 
 void read_grid(const std::string& path) {
   const auto field = grin::read_spline_field(path);
   require_finite(field.excess(field.grid().origin));
+}
+
+void write_density(const std::string& path) {
+  write_nodes(path, "density");
+}
+
+void read_density(const std::string& path) {
+  const auto density = grin::read_density_grid(path);
+  require_finite(density.largest());
+  require_finite(density(density.grid().origin + density.grid().spacing / 3));
 }
 
 }  // namespace
@@ -144,7 +158,10 @@ const std::vector<ResultKind>& result_kinds() {
         {"/", "width"},
         {"/", "depth"}},
        read_structure},
-      {write_grid, {{"excess", ""}, {"excess", "origin"}, {"excess", "spacing"}}, read_grid}};
+      {write_grid, {{"excess", ""}, {"excess", "origin"}, {"excess", "spacing"}}, read_grid},
+      {write_density,
+       {{"density", ""}, {"density", "origin"}, {"density", "spacing"}},
+       read_density}};
   return kinds;
 }
 

@@ -19,7 +19,7 @@ struct ResultKind {
   void (*read)(const std::string& path);
 };
 
-/// Run states, points of sweeps, structure factors, index grids.
+/// Run states, points of sweeps, structure factors, grids of the index and of the density.
 const std::vector<ResultKind>& result_kinds();
 
 }  // namespace flatspeckle::fuzz
