@@ -56,7 +56,7 @@ double seconds_to_one_percent(const FieldJob& job, double cpu_seconds) {
   GroupedSums sums(job.batches.size);
   std::vector<Complex> batch(job.batches.size);
   const double start = thread_cpu_seconds();
-  while (thread_cpu_seconds() - start < cpu_seconds || sums.batches() < 1024) {
+  while (thread_cpu_seconds() - start < cpu_seconds || sums.batches() < 128) {
     std::fill(batch.begin(), batch.end(), 0);
     job.batches.run(sums.batches(), batch);
     sums.add(job.batches.samples_per_batch, batch);

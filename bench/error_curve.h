@@ -32,6 +32,7 @@ struct ErrorRun {
   std::string scene, method;
   /// On the calling thread alone, in about so many CPU seconds.
   std::function<ErrorCurve(double cpu_seconds)> run;
+  bool slow = false;  ///< takes seconds however few it is given: not for a quick look
 };
 
 /// Every method on every scene: independent of each other, any of them at once.

@@ -135,7 +135,8 @@ std::vector<Method> exact_methods(const FlatScene& flat) {
                   .trial = [scene = flat.scene,
                             solver](std::uint64_t seed) { return exact(*scene, solver, seed); },
                   .first_point = is_dear ? 16U : 64U,
-                  .share = is_dear ? 3.0 : 1.0};
+                  .share = is_dear ? 3.0 : 1.0,
+                  .slow = is_dear};
   };
   return {by("exact dense", wave::Method::dense), by("exact fast", wave::Method::fast)};
 }
@@ -150,9 +151,11 @@ std::vector<Method> random_path_methods(const FlatScene& flat) {
 }
 
 ErrorRun run_of(const Method& method, const std::string& reference) {
-  return {method.scene, method.name, [method, reference](double cpu_seconds) {
+  return {method.scene, method.name,
+          [method, reference](double cpu_seconds) {
             return measure_error(method, stored_reference(reference), cpu_seconds);
-          }};
+          },
+          method.slow};
 }
 
 }  // namespace

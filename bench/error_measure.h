@@ -22,6 +22,7 @@ struct Method {
   std::uint64_t first_point = 1;  ///< batches of the first point of a curve
   bool is_monte_carlo = true;     ///< see ErrorCurve
   double share = 1;               ///< of the time, for dear ones
+  bool slow = false;              ///< see ErrorRun
 };
 
 /// What a curve is compared with.

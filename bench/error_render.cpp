@@ -33,12 +33,14 @@ Method method_of(const RenderScenePointer& named, const std::string& name, Rende
 
 ErrorRun run_of(const Method& method, const std::function<ErrorReference()>& reference) {
   return {method.scene, method.name,
-          [=](double cpu_seconds) { return measure_error(method, reference(), cpu_seconds); }};
+          [=](double cpu_seconds) { return measure_error(method, reference(), cpu_seconds); },
+          method.slow};
 }
 
 Method photon_map(const RenderScenePointer& named) {
   Method method = method_of(named, "photon map, biased by its radius", RenderMethod::photon_map);
   method.is_monte_carlo = false;
+  method.slow = named.name != "glass_ball";  // many photons, of many flights elsewhere
   return method;
 }
 

@@ -78,15 +78,16 @@ Slice timed(std::function<void()> work) {
 void compare_times(PlanRow& row, const Slice& general, const Slice& special, double cpu_seconds,
                    int fewest_calls) {
   const double start = thread_cpu_seconds();
-  general(fewest_calls);
-  special(fewest_calls);
-  const double both = (thread_cpu_seconds() - start) / fewest_calls;  // warming up
+  std::vector<double> general_s = {general(fewest_calls)}, special_s = {special(fewest_calls)};
+  std::vector<double> ratio = {general_s.back() / special_s.back()};
+  const double both = (thread_cpu_seconds() - start) / fewest_calls;
   const double affordable = cpu_seconds / both;
-  const int fewest_rounds = cpu_seconds < quick ? 1 : 3;
+  const int fewest_rounds = cpu_seconds < quick ? 0 : 3;
   const int rounds =
       std::clamp(static_cast<int>(affordable / fewest_calls), fewest_rounds, most_rounds);
-  const int calls = std::max(fewest_calls, static_cast<int>(affordable / rounds));
-  std::vector<double> general_s, special_s, ratio;
+  const int calls = std::max(fewest_calls, static_cast<int>(affordable / std::max(rounds, 1)));
+  if (rounds > 0)  // that was to warm up
+    for (auto* times : {&general_s, &special_s, &ratio}) times->clear();
   for (int round = 0; round < rounds; ++round) {
     const bool turned = round % 2 == 1;
     if (turned) special_s.push_back(special(calls));

@@ -16,7 +16,7 @@ SWEEP = {"depth": 100, "optical_depth": [1, 2], "g": [0, 0.5], "albedo": [1, 0.9
 # 40 points.
 MANY = {**SWEEP, "optical_depth": [1, 2, 3, 4, 5], "g": [0, 0.3, 0.5, 0.7]}
 # Each of its points takes some tenths of a second of one thread.
-SLOW = {**SWEEP, "g": [0.5], "albedo": [1], "optical_depth": [1, 2, 3], "samples": 600_000}
+SLOW = {**SWEEP, "g": [0.5], "albedo": [1], "optical_depth": [1, 2, 3], "samples": 400_000}
 NEVER = 1e-9  # a target error that is not reached
 
 

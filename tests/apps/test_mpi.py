@@ -15,7 +15,7 @@ ENVIRONMENT = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_R
 
 SWEEP = {"depth": 100, "optical_depth": [2, 5], "g": [0, 0.5], "albedo": [1, 0.9],
          "tilts": [0, 0.001, 0.002, 0.004]}
-LONG = {**SWEEP, "samples": 300_000}
+LONG = {**SWEEP, "samples": 150_000}
 
 
 class Mpi(ProgramTest):
@@ -99,7 +99,7 @@ class Mpi(ProgramTest):
         process = self.launch(2, "sweep", **LONG, threads=1, out="run.h5")
         while not (self.folder / "run.h5.shards").is_dir():
             time.sleep(0.01)
-        time.sleep(0.3)
+        time.sleep(0.1)
         os.kill(self.members(process)[0], signal.SIGTERM)
         stdout, _ = process.communicate(timeout=60)
         self.assertEqual(process.returncode, 75)

@@ -13,8 +13,8 @@ import unittest
 
 from sweeps import MANY, SLOW, SWEEP, SweepTest
 
-# About two seconds of one thread.
-STEADY = {**MANY, "samples": 50_000}
+# About a second of one thread.
+STEADY = {**MANY, "samples": 25_000}
 
 
 def mounts_allowed():

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cmath>
+
+#include <doctest/doctest.h>
+
+#include "tests/grin/furnace.h"
+
+namespace flatspeckle::grin::tests {
+
+/// Pairs of paths by which bidirectional tracing is compared with the other two.
+inline constexpr double agreement_samples = 5e4;
+
+inline const AreaDetector far_detector{Vec3::UnitZ(), Vec3::UnitY(), 1, 1, {2, 1}, right_angle};
+
+inline Stage ball_in_fog(const ScatteringMedium& around, const ScatteringMedium& inside) {
+  Stage stage{unit_box(), around};
+  stage.body = Body{Sphere{Vec3::Zero(), 0.7}, inside};
+  return stage;
+}
+
+inline std::vector<NamedScene> beam_scenes() {
+  const Stage luneburg = ball_in_fog(fog(0.3, 0, 0), fog(3, 0.05, 0.5));
+  const Light beam = BeamLight{Vec3(0, 0, -0.99), Vec3::UnitZ(), 0.4};
+  const Luneburg ball(LuneburgProfile{.radius = 0.7});
+  return {{"beam, detector, Luneburg ball", scene_in(ball, luneburg, beam, far_detector)},
+          {"beam, directions, Luneburg ball",
+           scene_in(ball, luneburg, beam,
+                    DirectionalDetector{Vec3::UnitZ(), Vec3::UnitY(), 0.7, {2, 1}})}};
+}
+
+struct Mean {
+  double value, error;
+};
+
+inline Mean mean_of(const RenderScene& scene, RenderMethod method, double samples,
+                    std::uint64_t seed) {
+  const RenderJob job = render_job(scene, {.method = method}, seed);
+  const Estimate mean = pixel_mean(run_render(job, samples));
+  return {mean.value[0].real(), mean.error[0]};
+}
+
+inline Mean bidirectional_mean(const RenderScene& scene) {
+  return mean_of(scene, RenderMethod::bidirectional, agreement_samples, 11);
+}
+
+inline void check_agreement(const RenderScene& scene, const Mean& both, RenderMethod method,
+                            double samples) {
+  // seeds differ: from the same paths they would agree too well
+  const Mean one = mean_of(scene, method, samples, 12 + static_cast<int>(method));
+  CAPTURE(name(method));
+  CAPTURE(one.error / both.value);
+  CAPTURE(both.error / both.value);
+  CHECK(std::abs(one.value - both.value) < 4 * std::hypot(one.error, both.error));
+}
+
+}  // namespace flatspeckle::grin::tests
