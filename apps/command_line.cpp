@@ -93,7 +93,7 @@ void refuse_strays(const std::vector<std::string>& strays) {
   if (word.starts_with("--"))
     throw InputError(word.substr(2, word.find('=') - 2) +
                      ": unknown key (--help lists the known ones)");
-  throw InputError(word + ": expected --key value");
+  throw InputError(word + ": expected --key value; switches take no value");
 }
 
 }  // namespace

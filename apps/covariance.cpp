@@ -1,3 +1,5 @@
+#include <cstdio>
+
 #include "apps/extras.h"
 #include "apps/moments_output.h"
 #include "apps/moments_table.h"
@@ -7,6 +9,18 @@
 #include "core/error.h"
 
 namespace flatspeckle::apps {
+
+namespace {
+
+void print_medium(const Scene& scene) {
+  const BulkMedium& medium = scene.medium;
+  std::printf("g %.5g, albedo %.5g, optical depth %.5g", medium.g, medium.albedo,
+              medium.mu_t * scene.domain.depth);
+  if (medium.mu_t > 0) std::printf(", k x mean free path %.5g", scene.k * medium.mean_free_path());
+  std::printf("\n");
+}
+
+}  // namespace
 
 int covariance(const Arguments& arguments) {
   SceneSpec spec;
@@ -50,6 +64,7 @@ int covariance(const Arguments& arguments) {
   return session.run([&, &job = estimation.job, &write = write_extras](ResultFile& file) {
     const GroupedSums& sums = session.state("").sums;
     const FieldMoments moments = field_moments(job, sums);
+    print_medium(scene);
     print_entries(scene.request, moments.covariance);
     write_medium(file, scene);
     write_axes(file, scene.request);

@@ -161,7 +161,9 @@ CrossSections cross_sections(const std::vector<ExtendedComplex>& t, double k) {
   long double cosine = 0;
   for (std::size_t n = 0; n + 1 < t.size(); ++n) cosine += 2 * (t[n] * std::conj(t[n + 1])).real();
   const double g = scattered > 0 ? static_cast<double>(cosine / scattered) : 0;
-  return {static_cast<double>(4 * scattered / k), static_cast<double>(4 * lost / k), g};
+  // no scatterer amplifies; of one that absorbs nothing the two differ by rounding
+  const long double extinction = std::max(lost, scattered);
+  return {static_cast<double>(4 * scattered / k), static_cast<double>(4 * extinction / k), g};
 }
 
 Complex amplitude(const std::vector<ExtendedComplex>& t, double k, double theta) {

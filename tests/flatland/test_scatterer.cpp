@@ -134,6 +134,20 @@ TEST_CASE("Cross-sections and g are the integrals of the amplitude") {
   CHECK(sections.extinction > sections.scattering);
 }
 
+TEST_CASE("No lossless cylinder scatters more than it takes out of the beam, by no rounding") {
+  for (const Kind kind : {Kind::tm, Kind::te})
+    for (const double radius : {0.05, 0.1, 0.25, 0.4, 1.0})
+      for (const double index : {1.1, 1.2, 1.33, 1.4, 1.5, 1.6, 2.0, 3.0}) {
+        const Scatterer cylinder{.kind = kind, .radius = radius, .index = index};
+        const auto sections =
+            cross_sections(t_matrix(cylinder, k, isolated_order(cylinder, k, 1e-13)), k);
+        CAPTURE(radius);
+        CAPTURE(index);
+        CHECK(sections.scattering <= sections.extinction);
+        CHECK(sections.scattering == doctest::Approx(sections.extinction).epsilon(1e-14));
+      }
+}
+
 TEST_CASE("Point scatterers") {
   Scatterer point;
   const auto resonant = cross_sections(t_matrix(point, k, 0), k);

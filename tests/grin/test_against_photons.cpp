@@ -161,14 +161,15 @@ void check_methods(const TwoScenes& scenes, std::span<const RenderMethod> method
 
 }  // namespace
 
-// Next to a point light in fog the variance of path tracing is infinite.
+// Next to a point light in fog, and under a beam, whose first scatterings path tracing joins by
+// 1/r^2 alone, its variance is infinite.
 
 TEST_CASE("fog in a sphere around a point light: as photons see it") {
   check_methods(foggy_sphere(), two_methods, 400000, 0.01, 200000);
 }
 
 TEST_CASE("a glass ball in fog under a beam: as photons see it") {
-  check_methods(glass_ball(), three_methods, 400000, 0.02, 200000);
+  check_methods(glass_ball(), two_methods, 400000, 0.02, 200000);
 }
 
 TEST_CASE("a glass ball in fog before a lit wall: as photons see it") {
@@ -176,7 +177,7 @@ TEST_CASE("a glass ball in fog before a lit wall: as photons see it") {
 }
 
 TEST_CASE("a Luneburg ball in fog under a beam: as photons see it") {
-  check_methods(luneburg_ball(), three_methods, 100000, 0.03, 30000);
+  check_methods(luneburg_ball(), two_methods, 100000, 0.03, 30000);
 }
 
 TEST_CASE("a Luneburg ball in fog before a lit wall: as photons see it") {
@@ -184,5 +185,5 @@ TEST_CASE("a Luneburg ball in fog before a lit wall: as photons see it") {
 }
 
 TEST_CASE("a guide in fog under a beam, in pulses: as photons see it") {
-  check_methods(foggy_guide(), three_methods, 100000, 0.03, 30000);
+  check_methods(foggy_guide(), two_methods, 100000, 0.03, 30000);
 }
