@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "core/error.h"
+#include "core/guarded_read.h"
 #include "core/result_reader.h"
 #include "flatland/structure_factor.h"
 
@@ -75,7 +76,9 @@ StructureTable hard_disk_structure(const DiskSpacing& disks, double q_max) {
   return {origin.str(), std::move(q), std::move(values)};
 }
 
-StructureTable read_structure(const std::string& path, const DiskSpacing& disks) {
+namespace {
+
+StructureTable read_table(const std::string& path, const DiskSpacing& disks) {
   const ResultReader file(path);
   for (const char* name : {"q", "structure_factor"})
     if (!file.has(name))
@@ -97,6 +100,12 @@ StructureTable read_structure(const std::string& path, const DiskSpacing& disks)
   if (q.size() != values.size() || q.empty() || !rising || !positive)
     throw InputError("structure", path, "must hold positive values over rising q");
   return {"measured, " + path, std::move(q), std::move(values)};
+}
+
+}  // namespace
+
+StructureTable read_structure(const std::string& path, const DiskSpacing& disks) {
+  return guarded_read(path, [&] { return read_table(path, disks); });
 }
 
 }  // namespace flatspeckle

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/guarded_read.h"
 #include "core/result_reader.h"
 
 namespace flatspeckle::grin {
@@ -53,14 +54,22 @@ void check_range(const FieldGrid& grid, const std::vector<double>& values) {
   }
 }
 
+struct Samples {
+  FieldGrid where;
+  std::vector<double> values;
+};
+
+Samples read_samples(const std::filesystem::path& path, const std::string& name) {
+  const ResultReader file(path);
+  const GridDataset dataset(file, name);
+  return {dataset.grid(), dataset.values()};
+}
+
 /// Every InputError names the file.
 template <class Grid>
 Grid read_grid(const std::filesystem::path& path, const std::string& name) {
-  const ResultReader file(path);
   try {
-    const GridDataset dataset(file, name);
-    const auto where = dataset.grid();
-    const auto values = dataset.values();
+    const auto [where, values] = guarded_read(path, [&] { return read_samples(path, name); });
     Grid grid(where, values);  // checks too
     check_range(where, values);
     return grid;

@@ -17,6 +17,7 @@ struct ResultKind {
   std::vector<Stored> stored;                          ///< what it reads of it
   /// Reads one and goes on with what it holds for a while.
   void (*read)(const std::string& path);
+  bool is_sealed = false;  ///< the program reads it only where its seal holds
 };
 
 /// Run states, points of sweeps, structure factors, grids of the index and of the density.

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+
+namespace flatspeckle {
+
+/// HDF5 may crash, or never end, on a file that is damaged below its own format. Runs `read` in a
+/// child process first, which has none of the caller's other threads, and throws InputError naming
+/// the file where that dies or takes a minute of processor time. What `read` throws there is not
+/// looked at: it will again.
+void read_in_child(const std::filesystem::path& path, const std::function<void()>& read);
+
+/// What read() returns, for files that no seal vouches for (sealed_file.h).
+template <typename Read>
+auto guarded_read(const std::filesystem::path& path, const Read& read) {
+  read_in_child(path, [&] { read(); });
+  return read();
+}
+
+}  // namespace flatspeckle
