@@ -58,6 +58,8 @@ double step_of(const RenderSpec& spec, double scale, double size) {
                                   : size;
   if (!(step * most_steps >= size))
     throw InputError("step", step, "must be at least 1e-5 of the stage's size: " + listed({size}));
+  if (scale > 0 && step > scale)
+    throw InputError("step", step, "must be at most the field's scale: " + listed({scale}));
   return step;
 }
 

@@ -60,8 +60,8 @@ Scatterer row_scatterer(const Table& table, std::size_t row, Scatterer scatterer
   if (table.has("index_re")) {
     const double imaginary = table.has("index_im") ? table.column("index_im")[row] : 0;
     scatterer.index = {table.column("index_re")[row], imaginary};
-    if (scatterer.index == 0.0 || imaginary < 0)
-      throw InputError(path + ", index", scatterer.index, "must not be 0 nor amplify");
+    if (const auto fault = index_fault(scatterer.index); !fault.empty())
+      throw InputError(path + ", index", scatterer.index, fault);
   }
   return scatterer;
 }

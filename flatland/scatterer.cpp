@@ -104,6 +104,12 @@ Complex far_field_factor(double k) {
 
 }  // namespace
 
+std::string index_fault(Complex index) {
+  if (index == 0.0 || index.imag() < 0) return "must not be 0 nor amplify (Im >= 0 absorbs)";
+  if (index.real() < 0) return "must not be negative";
+  return "";
+}
+
 std::vector<ScaledComplex> scaled_t_matrix(const Scatterer& scatterer, double k, int order) {
   assert(scatterer.kind != Kind::hg);
   std::vector<ScaledComplex> t(order + 1);

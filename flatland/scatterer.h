@@ -28,6 +28,9 @@ struct Scatterer {
   bool operator==(const Scatterer&) const = default;
 };
 
+/// Why no cylinder may have this index, empty if it may.
+std::string index_fault(Complex index);
+
 /// T_n for n = 0 .. order; T_{-n} = T_n. (conventions, C7 and C8)
 /// k: wavenumber outside. hg is a precondition violation.
 std::vector<ScaledComplex> scaled_t_matrix(const Scatterer& scatterer, double k, int order);

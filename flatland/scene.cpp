@@ -196,9 +196,11 @@ Scatterer make_scatterer(const SceneSpec& spec) {
   only_for("albedo", spec.albedo, hg || point, "hg and point");
   only_for("phase_shift", spec.phase_shift, point, "point");
   if (spec.radius) scatterer.radius = positive("radius", *spec.radius);
-  if (spec.index) scatterer.index = parse_complex("index", *spec.index);
-  if (scatterer.index.imag() < 0 || scatterer.index == 0.0)
-    throw InputError("index", *spec.index, "must not be 0 nor amplify (Im >= 0 absorbs)");
+  if (spec.index) {
+    scatterer.index = parse_complex("index", *spec.index);
+    if (const auto fault = index_fault(scatterer.index); !fault.empty())
+      throw InputError("index", *spec.index, fault);
+  }
   if (spec.g) scatterer.g = *spec.g;
   if (!(std::abs(scatterer.g) < 1)) throw InputError("g", scatterer.g, "must be in (-1, 1)");
   if (spec.albedo) scatterer.albedo = checked_albedo(*spec.albedo, point);

@@ -53,7 +53,7 @@ def draw(results, arguments):
         axis.errorbar(key, power, error, **style.look(number),
                       label=None if second is None else f"{name} = {second:g}")
     axis.set_xlabel(NAMES.get(arguments.key, arguments.key))
-    axis.set_ylabel("power on the detector / that at amplitude 0" if relative else "power on the detector")
+    axis.set_ylabel("power on the detector" + (" / that at amplitude 0" if relative else ""))
     axis.xaxis.set_major_locator(MaxNLocator(4))
     axis.ticklabel_format(axis="x", scilimits=(-2, 4), useMathText=True)
     if arguments.curves:

@@ -16,7 +16,7 @@ SWEEP = {"depth": 100, "optical_depth": [1, 2], "g": [0, 0.5], "albedo": [1, 0.9
 # 40 points.
 MANY = {**SWEEP, "optical_depth": [1, 2, 3, 4, 5], "g": [0, 0.3, 0.5, 0.7]}
 # Each of its points takes some tenths of a second of one thread.
-SLOW = {**SWEEP, "g": [0.5], "albedo": [1], "optical_depth": [1, 2, 3], "samples": 400_000}
+SLOW = {**SWEEP, "g": [0.5], "albedo": [1], "optical_depth": [1, 2, 3], "samples": 1_000_000}
 NEVER = 1e-9  # a target error that is not reached
 
 
@@ -62,7 +62,7 @@ class SweepTest(ProgramTest):
             self.assertIsNone(process.poll(), "the sweep ended before")
             self.assertLess(time.monotonic(), deadline)
 
-    def interrupted(self, number=signal.SIGINT, cpu_s=0.15, **keys):
+    def interrupted(self, number=signal.SIGINT, cpu_s=0.1, **keys):
         """Signals a sweep after so much work, in the midst of its points; it ends resumable."""
         process = self.start("sweep", **keys)
         self.wait_until(process, lambda: catches(process, number))

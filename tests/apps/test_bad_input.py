@@ -73,6 +73,7 @@ DISK_CASES = [
     ("covariance", CYLINDERS, {"scatterer": "soft", "index": "1.5"}, ["index = 1.5", "tm and te"]),
     ("covariance", CYLINDERS, {"index": "0"}, ["index = 0", "must not be 0"]),
     ("covariance", CYLINDERS, {"index": "1.5-0.1i"}, ["index = 1.5-0.1i", "amplify"]),
+    ("covariance", CYLINDERS, {"index": "-1.5+0.1i"}, ["index = -1.5+0.1i", "negative"]),
     ("covariance", CYLINDERS, {"index": "abc"}, ["index", "abc", "1.5+0.1i"]),
     ("covariance", CYLINDERS, {"index": "nan"}, ["index", "nan", "1.5+0.1i"]),
     ("covariance", CYLINDERS, {"index": "1e999"}, ["index = 1e999", "must be finite"]),

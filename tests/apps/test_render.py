@@ -280,6 +280,7 @@ class Refused(RenderTest):
         self.refuse("max_length", "no use", max_length=9)
         self.refuse("step = -1", step=-1, **FIBRE)
         self.refuse("step = 1e-09", "at least", step=1e-9, **FIBRE)
+        self.refuse("step = 3", "at most the field's scale: 2", step=3, **FIBRE)
         self.refuse("step", "no use", step=0.1)
         self.refuse("length_unit = 0", length_unit=0)
 

@@ -71,7 +71,7 @@ class Interruption(SweepTest):
     def test_in_the_midst_of_points(self):
         """Points that stop at a number of samples, and such that stop at an error, of which many
         are unfinished at a time."""
-        for stop in ({}, {"samples": None, "target_error": 0.002}):
+        for stop in ({}, {"samples": None, "target_error": 0.0008}):
             with self.subTest(stop=stop):
                 keys = {**SLOW, **stop}
                 self.call("sweep", **keys, out="whole.h5")
@@ -90,7 +90,7 @@ class Interruption(SweepTest):
 
     def test_goes_on_from_where_it_was(self):
         """And does not begin the point again: the time of the first part counts as well."""
-        keys = {**SLOW, "optical_depth": [3], "samples": 1_000_000}
+        keys = {**SLOW, "optical_depth": [3], "samples": 3_000_000}
         self.interrupted(cpu_s=0.3, **keys, out="sweep.h5")
         (name, data), = self.shards().items()
         self.assertTrue(name.endswith(".part.h5"))
@@ -104,10 +104,10 @@ class Interruption(SweepTest):
 
     def test_by_both_methods(self):
         keys = {"domain": "box", "width": 10, "depth": 10, "scatterer": "point",
-                "density": [0.2, 0.4], "tilts": [0, 0.1], "method": "both", "samples": 300_000,
-                "wave_samples": 8000, "threads": 2}
+                "density": [0.2, 0.4], "tilts": [0, 0.1], "method": "both", "samples": 600_000,
+                "wave_samples": 16000, "threads": 2}
         self.call("sweep", **keys, out="whole.h5")
-        for cpu_s in (0.1, 0.4):
+        for cpu_s in (0.1, 0.3):
             self.interrupted(cpu_s=cpu_s, **keys, resume=True, out="sweep.h5")
         self.call("sweep", "--resume", **keys, out="sweep.h5")
         self.assert_same_data("sweep.h5", "whole.h5")
@@ -248,7 +248,7 @@ class Damage(SweepTest):
         self.check_mended(self.damage([first], lambda _: files[second]))
 
     def test_of_unfinished_points_of_another_sweep(self):
-        keys = {**SLOW, "optical_depth": [3], "samples": 1_000_000}
+        keys = {**SLOW, "optical_depth": [3], "samples": 3_000_000}
         self.call("sweep", **keys, out="slow.h5")
         self.interrupted(**keys, seed=2, out="sweep.h5")
         for line in self.check_mended(self.shards(), "slow.h5", keys):
