@@ -8,10 +8,10 @@
 #include "apps/bench_output.h"
 #include "apps/run_options.h"
 #include "apps/subcommands.h"
-#include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/parallel.h"
 #include "core/provenance.h"
+#include "core/result_file.h"
 #include "core/stopwatch.h"
 
 namespace flatspeckle::apps {
@@ -172,7 +172,7 @@ void check(const BenchKeys& keys) {
     throw InputError("bench", keys.kind, "must be one of error stability plan");
   if (keys.run.out.empty())
     throw InputError("out is not given: name the result file (--out FILE.h5)");
-  check_writable(keys.run.out);
+  check_result_path(keys.run.out);
 }
 
 void write_bench_provenance(ResultFile& file, const CommandLine& command_line,

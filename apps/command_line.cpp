@@ -42,7 +42,8 @@ std::string explain(const CLI::App& app, const CLI::ParseError& error) {
   std::replace(message.begin(), message.end(), '\n', ' ');
   const std::string unknown_in_file = "INI was not able to parse ";
   if (message.starts_with(unknown_in_file))
-    return message.substr(unknown_in_file.size()) + ": unknown key (--help lists the known ones)";
+    return app.get_config_ptr()->as<std::string>() + ", " + message.substr(unknown_in_file.size()) +
+           ": unknown key (--help lists the known ones)";
   const std::string not_converted = "Could not convert: --";
   if (message.starts_with(not_converted))
     return message.substr(not_converted.size()) + accepted_by(app, message);
@@ -50,7 +51,7 @@ std::string explain(const CLI::App& app, const CLI::ParseError& error) {
   if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr) {
     const bool many = message.find("At Most") != std::string::npos;
     return message.substr(2, message.find(':') - 2) +
-           (many ? ": must have one value" : ": must have a value");
+           (many ? ": must have one value, and be given once" : ": must have a value");
   }
   return message;
 }
@@ -93,7 +94,9 @@ void refuse_strays(const std::vector<std::string>& strays) {
   if (word.starts_with("--"))
     throw InputError(word.substr(2, word.find('=') - 2) +
                      ": unknown key (--help lists the known ones)");
-  throw InputError(word + ": expected --key value; switches take no value");
+  throw InputError(word + ": stands alone; expected --key value" +
+                   (word.ends_with(".toml") ? " (of a scene file: --config FILE)"
+                                            : " (switches have none, most keys only one)"));
 }
 
 }  // namespace

@@ -47,7 +47,11 @@ int covariance(const Arguments& arguments) {
   if (method != "mc" && method != "wave")
     throw InputError("method", method, "must be one of mc wave");
   const Scene scene = make_scene(spec);
-  if (method != "mc") {
+  if (method == "mc") {
+    Neglected neglected;
+    neglected.add(scene);
+    note(neglected);
+  } else {
     refuse_extras(extras);
     note_rounding(scene);
   }

@@ -40,11 +40,21 @@ void note_rounding(const Scene& scene) {
             << mean << " asked for\n";
 }
 
-void note_small_parameter(double k_mean_free_path) {
-  constexpr double small = 10;
-  if (k_mean_free_path < small)
-    std::cerr << "note: k x mean free path is only " << k_mean_free_path
+void Neglected::add(const Scene& scene) {
+  const BulkMedium& medium = scene.medium;
+  k_mean_free_path = std::min(k_mean_free_path, scene.k * medium.mean_free_path());
+  if (medium.structure.independent()) packing = std::max(packing, medium.packing_fraction);
+}
+
+void note(const Neglected& neglected) {
+  constexpr double small = 10, dense = 0.02;
+  if (neglected.k_mean_free_path < small)
+    std::cerr << "note: k x mean free path is only " << neglected.k_mean_free_path
               << "; the Monte Carlo method neglects terms of order 1 over that\n";
+  if (neglected.packing > dense)
+    std::cerr << "note: disks fill " << neglected.packing
+              << " of the medium; the Monte Carlo method takes their positions as independent, which "
+                 "neglects terms of that order (structure = hard_disks takes them in)\n";
 }
 
 void round_density(SceneSpec& spec) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
 
@@ -33,9 +34,15 @@ struct Estimation {
 /// (conventions, C12).
 void note_rounding(const Scene& scene);
 
-/// Says so on standard error where k times the mean free path is so small that the Monte Carlo
-/// method neglects much.
-void note_small_parameter(double k_mean_free_path);
+/// What the Monte Carlo method neglects grows with these; of several scenes: the worst.
+struct Neglected {
+  double k_mean_free_path = std::numeric_limits<double>::infinity();
+  double packing = 0;  ///< of disks whose correlations are not taken in
+  void add(const Scene& scene);
+};
+
+/// Says so on standard error where that is much.
+void note(const Neglected& neglected);
 
 /// Gives the rounded number instead, so that both solvers have the same density.
 void round_density(SceneSpec& spec);

@@ -6,11 +6,11 @@
 #include "apps/moments_output.h"
 #include "apps/scene_options.h"
 #include "apps/subcommands.h"
-#include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/interrupt.h"
 #include "core/memory.h"
 #include "core/provenance.h"
+#include "core/result_file.h"
 #include "mc/speckle_field.h"
 
 namespace flatspeckle::apps {
@@ -144,7 +144,7 @@ int field(const Arguments& arguments) {
   const std::string plan = mc::make_plan(scene, settings.reversed).describe();
   const std::string& out = keys.run.out;
   if (out.empty()) throw InputError("out is not given: name the result file (--out FILE.h5)");
-  check_writable(out);
+  check_result_path(out);
   catch_interrupts();
   const auto drawn = draw_fields(scene, demand, settings);
   if (!drawn) return ExitStatus::interrupted_for_good;

@@ -1,6 +1,7 @@
 #include "apps/medium_options.h"
 
 #include <cmath>
+#include <filesystem>
 
 #include "core/error.h"
 #include "grin/field_file.h"
@@ -25,6 +26,7 @@ Kind kind_of(const std::string& key, const std::string& name) {
 
 std::shared_ptr<const grin::DensityGrid> read_density(const std::string& key,
                                                       const std::string& path) {
+  if (!std::filesystem::exists(path)) throw InputError(key, path, "no such file");
   try {
     return std::make_shared<grin::DensityGrid>(grin::read_density_grid(path));
   } catch (const InputError& error) {

@@ -6,8 +6,8 @@
 
 #include "apps/subcommands.h"
 #include "apps/sweep_end.h"
-#include "core/atomic_file.h"
 #include "core/error.h"
+#include "core/result_file.h"
 #include "core/sealed_file.h"
 #include "core/stopwatch.h"
 
@@ -108,7 +108,7 @@ int merge(const Arguments& arguments) {
   if (!command.parse(arguments)) return ExitStatus::done;
   if (settings.out.empty())
     throw InputError("out is not given: name the result file (--out FILE.h5)");
-  check_writable(settings.out);
+  check_result_path(settings.out);
   if (partial) refuse_to_shrink(settings.out);
   if (folders.empty()) folders = {shards_of(settings.out)};
 

@@ -21,13 +21,13 @@ std::string shown_channel(const CovarianceRequest& request, std::uint32_t channe
   const Light& lit = request.lights[light];
   const View& seen = request.views[view];
   if (lit.kind == Light::Kind::plane)
-    std::snprintf(light_text, sizeof light_text, "%8.4f", lit.angle);
+    std::snprintf(light_text, sizeof light_text, "%8.6g", lit.angle);
   else
     std::snprintf(light_text, sizeof light_text, "light %-3u", light);
   if (seen.near)
     std::snprintf(view_text, sizeof view_text, "sensor %-3u", view);
   else
-    std::snprintf(view_text, sizeof view_text, "%8.4f", seen.angle);
+    std::snprintf(view_text, sizeof view_text, "%8.6g", seen.angle);
   return std::string(light_text) + ' ' + view_text;
 }
 

@@ -78,7 +78,7 @@ void add_options(Options& options, PlaceKeys& keys) {
 
 double positive(const std::string& key, const std::optional<double>& value) {
   if (!value) throw InputError(key + " is not given: must be positive");
-  if (!(std::isfinite(*value) && *value > 0)) throw InputError(key, *value, "must be positive");
+  if (!(std::isfinite(*value) && *value > 0)) throw InputError(key, *value, "must be positive and finite");
   return *value;
 }
 
@@ -265,7 +265,7 @@ int place(const Arguments& arguments) {
   if (keys.run.out.empty())
     throw InputError("out is not given: name the placement file (--out FILE.csv)");
   check_writable(keys.run.out);
-  if (!keys.structure.empty()) check_writable(keys.structure);
+  if (!keys.structure.empty()) check_result_path(keys.structure);
   const std::string text = csv_text(drawing, draw(drawing, seed, 0), command.command_line().text);
   replace_file(keys.run.out, std::as_bytes(std::span(text)));
   std::printf("%zu scatterers, packing fraction %.3g\nwrote %s\n", drawing.count,

@@ -11,7 +11,7 @@ namespace {
 constexpr int most_threads = 1024;
 
 double positive(const std::string& key, double value) {
-  if (!(std::isfinite(value) && value > 0)) throw InputError(key, value, "must be positive");
+  if (!(std::isfinite(value) && value > 0)) throw InputError(key, value, "must be positive and finite");
   return value;
 }
 

@@ -3,8 +3,8 @@
 #include <filesystem>
 #include <iostream>
 
+#include "apps/identity.h"
 #include "apps/subcommands.h"
-#include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/interrupt.h"
 #include "core/result_reader.h"
@@ -36,7 +36,7 @@ Session::Session(const CommandLine& command_line, const RunSettings& settings, s
               without_keys(command_line.config, keys_of_the_stop) + inputs;
   if (settings_.out.empty())
     throw InputError("out is not given: name the result file (--out FILE.h5)");
-  check_writable(settings_.out);
+  settings_.resume ? check_writable(settings_.out) : check_result_path(settings_.out);
   catch_interrupts();
   provenance_.command_line = command_line.text;
   provenance_.config = command_line.config;
@@ -45,22 +45,24 @@ Session::Session(const CommandLine& command_line, const RunSettings& settings, s
   provenance_.threads = threads_of(settings);
   provenance_.started = utc_now();
   for (const auto& run : runs_) states_[run.name];
-  if (settings_.resume && std::filesystem::exists(settings_.out)) resume(settings_.out);
+  const bool exists = std::filesystem::exists(settings_.out);
+  has_older_ = exists && !settings_.resume;
+  if (exists && settings_.resume) resume(settings_.out);
 }
 
 /// All states at once: what is saved while one run goes on must hold those of the others. HDF5,
 /// which may crash on a damaged file, sees none.
 void Session::resume(const std::string& path) {
-  const auto refuse = [&] {
-    throw InputError("resume: " + path +
-                     " holds another run, or is damaged; scene, sensors, seed and program version "
-                     "must be the same");
-  };
-  if (!is_sealed(path)) refuse();
+  if (!is_sealed(path))
+    throw InputError("resume: " + path + " is damaged, or never held a run of this program");
   const ResultReader file(path);
-  if (!file.has_attribute("/", "identity") ||
-      file.attribute<std::string>("/", "identity") != identity_)
-    refuse();
+  const auto found = file.has_attribute("/", "identity")
+                         ? file.attribute<std::string>("/", "identity")
+                         : std::string();
+  if (found != identity_)
+    throw InputError("resume: " + path + " holds another run (" +
+                     first_difference(found, identity_) +
+                     "); scene, sensors, seed and program version must be the same");
   already_complete_ = file.attribute<bool>("/", "converged");
   for (const auto& [name, label, job, stop] : runs_)
     if (const std::string group = state_group(name); file.has(group))
@@ -94,7 +96,9 @@ void Session::run_one(const PlannedRun& run) {
 int Session::finish(const std::function<void(ResultFile&)>& contents) {
   if (interrupted_) {
     save_resumable();
-    std::cout << "interrupted; " << settings_.out << " holds what is done, --resume goes on\n";
+    std::cout << "interrupted; " << settings_.out << " holds what is done, --resume goes on";
+    if (!older_aside_.empty()) std::cout << "; what it held before is in " << older_aside_;
+    std::cout << '\n';
     return ExitStatus::interrupted_resumable;
   }
   ResultFile file(settings_.out);
@@ -103,6 +107,8 @@ int Session::finish(const std::function<void(ResultFile&)>& contents) {
   contents(file);
   if (!converged_) write_states(file);
   file.commit_sealed(Durable::yes);
+  std::error_code none;
+  if (!older_aside_.empty()) std::filesystem::remove(older_aside_, none);
   std::cout << "wrote " << settings_.out << '\n';
   if (converged_) return ExitStatus::done;
   std::cout << "stopped before the target error was reached; --resume goes on\n";
@@ -121,10 +127,24 @@ void Session::write_common(ResultFile& file, bool converged) const {
   file.attribute("/", "identity", identity_);
 }
 
-void Session::save_resumable() const {
+/// By a second name for it: the first is its own until the new file takes it.
+void Session::set_older_aside() {
+  namespace fs = std::filesystem;
+  int number = 1;
+  do older_aside_ = settings_.out + ".aside-" + std::to_string(number++);
+  while (fs::exists(older_aside_));
+  std::error_code failed;
+  fs::create_hard_link(settings_.out, older_aside_, failed);
+  if (failed) fs::rename(settings_.out, older_aside_, failed);  // of file systems without
+  if (failed) throw IoError("renaming " + settings_.out + " failed: " + failed.message());
+  has_older_ = false;
+}
+
+void Session::save_resumable() {
   ResultFile file(settings_.out);
   write_common(file, false);
   write_states(file);
+  if (has_older_) set_older_aside();
   file.commit_sealed(Durable::yes);
 }
 

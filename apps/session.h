@@ -22,7 +22,7 @@ struct PlannedRun {
 
 /// The runs of one call of the program and the result file they end in. While they run, the file
 /// holds what could be resumed; at the end, the result. Each state of it replaces the one before as
-/// a whole.
+/// a whole; what was there before the runs stays beside it (NAME.aside-1) until the result is there.
 class Session {
  public:
   /// inputs: what the scene takes from other files, as text; a resumed run must have the same.
@@ -43,7 +43,8 @@ class Session {
   void run_one(const PlannedRun& run);
   int finish(const std::function<void(ResultFile&)>& contents);
   void write_common(ResultFile& file, bool converged) const;
-  void save_resumable() const;
+  void save_resumable();
+  void set_older_aside();
   void write_states(ResultFile& file) const;
 
   RunSettings settings_;
@@ -51,6 +52,8 @@ class Session {
   std::string identity_;
   std::vector<PlannedRun> runs_;
   std::map<std::string, RunState> states_;
+  bool has_older_ = false;   ///< the file there is none of these runs
+  std::string older_aside_;  ///< where it is now
   bool already_complete_ = false, interrupted_ = false, converged_ = true;
 };
 

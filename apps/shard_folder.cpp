@@ -1,9 +1,9 @@
 #include "apps/shard_folder.h"
 
 #include <iostream>
-#include <sstream>
 #include <vector>
 
+#include "apps/identity.h"
 #include "core/error.h"
 #include "core/sealed_file.h"
 
@@ -21,16 +21,6 @@ std::string name_of(const fs::path& path) {
   for (const std::string ending : {".part.h5", ".h5"})
     if (text.ends_with(ending)) return text.substr(0, text.size() - ending.size());
   return "";
-}
-
-/// The first line of one text that the other does not have.
-std::string first_difference(const std::string& there, const std::string& here) {
-  std::istringstream ours(here), lines(there);
-  std::set<std::string> known;
-  for (std::string line; std::getline(ours, line);) known.insert(line);
-  for (std::string line; std::getline(lines, line);)
-    if (!known.contains(line)) return line;
-  return "fewer keys";
 }
 
 }  // namespace

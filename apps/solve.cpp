@@ -9,10 +9,10 @@
 #include "apps/run_options.h"
 #include "apps/scene_options.h"
 #include "apps/subcommands.h"
-#include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/interrupt.h"
 #include "core/provenance.h"
+#include "core/result_file.h"
 #include "core/stopwatch.h"
 #include "wave_solver/wave_solution.h"
 
@@ -176,7 +176,7 @@ void check(const SolveKeys& keys) {
   threads_of(keys.settings);
   if (keys.settings.out.empty())
     throw InputError("out is not given: name the result file (--out FILE.h5)");
-  check_writable(keys.settings.out);
+  check_result_path(keys.settings.out);
 }
 
 std::vector<Vec2> sensors_of(const SceneSpec& spec, const Placement& placement) {

@@ -8,11 +8,11 @@
 #include "apps/sweep_end.h"
 #include "apps/sweep_plan.h"
 #include "apps/sweep_work.h"
-#include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/interrupt.h"
 #include "core/ranks.h"
 #include "core/remote_batches.h"
+#include "core/result_file.h"
 
 namespace flatspeckle::apps {
 
@@ -91,7 +91,7 @@ void refuse_leftovers(const SweepPlan& plan, const ShardFolder& folder,
 /// Of this process alone, or of rank 0.
 int lead(const SweepPlan& plan, RankServer* server) {
   const std::string& out = plan.settings.out;
-  check_writable(out);
+  check_result_path(out);
   ShardFolder folder(shards_of(out));
   if (is_complete(plan, folder)) {
     std::cout << out << " is complete; nothing to resume\n";

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <limits>
 
 #include "apps/scene_options.h"
 #include "core/error.h"
@@ -100,20 +99,19 @@ void check_scene(const SweepPlan& plan, std::size_t run, const Scene& scene) {
 /// Every point must make a scene that the method can take. Where they come from a table, says which
 /// row does not.
 void check_points(const SweepPlan& plan, const std::string& table) {
-  double small_parameter = std::numeric_limits<double>::infinity();
+  Neglected neglected;
   for (std::size_t run = 0; run < plan.runs(); ++run) {
     try {
       const Scene scene = plan.scene(run);
       check_scene(plan, run, scene);
-      if (plan.method(run) == "mc")
-        small_parameter = std::min(small_parameter, scene.k * scene.medium.mean_free_path());
+      if (plan.method(run) == "mc") neglected.add(scene);
     } catch (const InputError& error) {
       if (table.empty()) throw;
       const std::size_t row = run % plan.points.points.size() + 1;
       throw InputError(table + ", row " + std::to_string(row) + ": " + error.what());
     }
   }
-  note_small_parameter(small_parameter);
+  note(neglected);
 }
 
 SweepPlan SweepParser::plan() {

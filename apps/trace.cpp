@@ -13,10 +13,10 @@
 #include "apps/run_options.h"
 #include "apps/subcommands.h"
 #include "apps/trace_output.h"
-#include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/memory.h"
 #include "core/provenance.h"
+#include "core/result_file.h"
 #include "core/stopwatch.h"
 
 namespace flatspeckle::apps {
@@ -81,7 +81,7 @@ void check(const Subcommand& command, const TraceKeys& keys) {
     throw InputError("trials", keys.connect.trials, "needs connect");
   if (keys.run.out.empty())
     throw InputError("out is not given: name the result file (--out FILE.h5)");
-  check_writable(keys.run.out);
+  check_result_path(keys.run.out);
 }
 
 /// How far from the z axis a ray may come.

@@ -424,4 +424,14 @@ std::vector<std::byte> ResultFile::image() {
   return bytes;
 }
 
+void check_result_path(const std::filesystem::path& path) {
+  check_writable(path);
+  std::error_code none;
+  if (const auto size = std::filesystem::file_size(path, none); none || size == 0) return;
+  silence_hdf5();
+  if (H5Fis_hdf5(path.c_str()) <= 0)
+    throw InputError("cannot write " + path.string() +
+                     ": what is there is no result of this program, and is kept");
+}
+
 }  // namespace flatspeckle

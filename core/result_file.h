@@ -36,7 +36,7 @@ class ResultFile {
   /// disk: memory stays bounded; one file in the making per path.
   enum class Storage { memory, disk };
 
-  /// Throws IoError. Where a path may be wrong, check_writable says so before long work.
+  /// Throws IoError. Where a path may be wrong, check_result_path says so before long work.
   explicit ResultFile(std::filesystem::path path, Storage storage = Storage::memory);
   ResultFile(ResultFile&&) noexcept;
   ResultFile& operator=(ResultFile&&) noexcept;
@@ -93,5 +93,8 @@ class ResultFile {
   std::unique_ptr<FileBeside> beside_;  // outlives file_
   std::unique_ptr<Hdf5Handle> file_;
 };
+
+/// check_writable, and throws InputError where another kind of file is, which would be lost.
+void check_result_path(const std::filesystem::path& path);
 
 }  // namespace flatspeckle

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <numbers>
 #include <sstream>
@@ -105,6 +106,9 @@ StructureTable read_table(const std::string& path, const DiskSpacing& disks) {
 }  // namespace
 
 StructureTable read_structure(const std::string& path, const DiskSpacing& disks) {
+  if (!std::filesystem::exists(path))
+    throw InputError("structure", path,
+                     "must be none, hard_disks or a file that place --structure wrote");
   return guarded_read(path, [&] { return read_table(path, disks); });
 }
 

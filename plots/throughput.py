@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Power on the detector of several results of `flatspeckle render` against a key of their scenes, by
 default the amplitude of ultrasound: a curve for each value of another key, over the power where the
-first is 0 if there is such a result."""
+first is 0 if there is such a result. Means over the sound's period make curves of their own."""
 
 import tomllib
 
@@ -15,23 +15,38 @@ from matplotlib.ticker import MaxNLocator
 NAMES = {"amplitude": "amplitude of the index", "mu_s": r"$\mu_s$", "mu_a": r"$\mu_a$"}
 
 
+def scene_of(result):
+    return tomllib.loads(result.attribute("config", ""))
+
+
 def key_of(result, key):
-    value = tomllib.loads(result.attribute("config", "")).get(key)
+    value = scene_of(result).get(key)
     if isinstance(value, (int, float)):
         return float(value)
     raise Unusable(f"{result.path}: its scene has no number {key}")
 
 
 def curves(results, arguments):
-    """value of the second key -> rows of key, power, error, by the key."""
+    """(value of the second key, sound's phase is random) -> rows of key, power, error, by the key."""
     found = {}
     for result in results:
-        second = key_of(result, arguments.curves) if arguments.curves else None
+        second = key_of(result, arguments.curves) if arguments.curves else 0.0
         row = (key_of(result, arguments.key), float(result.values("total")),
                float(result.values("total_error")))
-        found.setdefault(second, []).append(row)
-    return {second: np.array(sorted(rows)) for second, rows in sorted(
-        found.items(), key=lambda item: item[0] or 0)}
+        curve = second, scene_of(result).get("random_phase", False)
+        found.setdefault(curve, []).append(row)
+    return {curve: np.array(sorted(rows)) for curve, rows in sorted(found.items())}
+
+
+def labels_of(found, arguments):
+    """What tells the curves apart."""
+    labels = {curve: [] for curve in found}
+    for (second, is_mean), label in labels.items():
+        if arguments.curves:
+            label.append(f"{NAMES.get(arguments.curves, arguments.curves)} = {second:g}")
+        if len({phase for _, phase in found}) > 1:
+            label.append("mean over the period" if is_mean else "at one instant")
+    return {curve: ", ".join(label) for curve, label in labels.items()}
 
 
 def over_the_first(power, error):
@@ -45,18 +60,17 @@ def draw(results, arguments):
     figure, axis = plt.subplots(figsize=(style.COLUMN, 2.4))
     found = curves(results, arguments)
     relative = all(rows[0, 0] == 0 and rows[0, 1] > 0 for rows in found.values())
-    for number, (second, rows) in enumerate(found.items()):
+    labels = labels_of(found, arguments)
+    for number, (curve, rows) in enumerate(found.items()):
         key, power, error = rows.T
         if relative:
             power, error = over_the_first(power, error)
-        name = NAMES.get(arguments.curves, arguments.curves)
-        axis.errorbar(key, power, error, **style.look(number),
-                      label=None if second is None else f"{name} = {second:g}")
+        axis.errorbar(key, power, error, **style.look(number), label=labels[curve])
     axis.set_xlabel(NAMES.get(arguments.key, arguments.key))
-    axis.set_ylabel("power on the detector" + (" / that at amplitude 0" if relative else ""))
+    axis.set_ylabel("power / power at 0" if relative else "power on the detector")
     axis.xaxis.set_major_locator(MaxNLocator(4))
     axis.ticklabel_format(axis="x", scilimits=(-2, 4), useMathText=True)
-    if arguments.curves:
+    if any(labels.values()):
         axis.legend()
     return figure
 

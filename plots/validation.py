@@ -7,9 +7,11 @@ from lib import style
 
 import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.ticker import MaxNLocator
 
 SIGMAS = 4  # agreement is judged at so many combined standard errors
 BAND = "0.92"
+ENTRIES = "number of the entry"
 
 
 @dataclass
@@ -39,9 +41,18 @@ class Comparison:
 def read_entries(result, name):
     entries = [result.values(f"{room}/{name}{ending}")
                for room in ("mc", "wave") for ending in ("", "_error")]
-    if len({entry.shape for entry in entries}) > 1 or entries[0].ndim != 2:
-        raise style.Unusable(f"{result.path}: mc and wave {name} are not two tables of one shape")
+    if len({entry.shape for entry in entries}) > 1:
+        raise style.Unusable(f"{result.path}: mc and wave {name} are not of one shape")
     return entries
+
+
+def numbered(entries):
+    """Pairs, or the lower triangle of a full covariance [light, view, light, view], row by row."""
+    if entries[0].ndim == 4:
+        size = entries[0].shape[0] * entries[0].shape[1]
+        entries = [entry.reshape(size, size)[np.tril_indices(size)] for entry in entries]
+    return Comparison(np.arange(entries[0].size), ENTRIES, ["entries"], "covariance $|C|$",
+                      *(entry[None] for entry in entries))
 
 
 def read_comparison(result):
@@ -53,6 +64,8 @@ def read_comparison(result):
     if not result.has("mc/covariance"):
         raise style.Unusable(f"{result.path}: has neither mc/intensity nor mc/covariance")
     entries = read_entries(result, "covariance")
+    if entries[0].ndim != 2:
+        return numbered(entries)
     tilts, views = (result.axis("mc/covariance", axis) for axis in (0, 1))
     if len(views) > max(6, len(tilts)):
         return Comparison(views, "view angle", [f"tilt {style.angle(tilt)}" for tilt in tilts],
@@ -125,7 +138,11 @@ def draw(results):
                                               gridspec_kw={"height_ratios": [2.2, 1]})
     draw_values(values, data, allowance)
     draw_residual(residual, data, allowance)
-    style.angle_axis(residual, data.x, data.x_label)
+    if data.x_label == ENTRIES:
+        residual.set_xlabel(ENTRIES)
+        residual.xaxis.set_major_locator(MaxNLocator(integer=True))
+    else:
+        style.angle_axis(residual, data.x, data.x_label)
     add_legend(figure, values, data, allowance)
     return figure
 

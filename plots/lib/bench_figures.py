@@ -155,7 +155,7 @@ def draw_cost(axis, cost):
     axis.text(0.05, 0.93, text, transform=axis.transAxes, va="top", fontsize=7)
     axis.xaxis.set_minor_formatter(NullFormatter())
     axis.yaxis.set_minor_formatter(NullFormatter())
-    if size.max() < 30 * size.min():
+    if size.max() < 10 * size.min():
         style.few_decades(axis.xaxis)
 
 

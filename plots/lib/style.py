@@ -10,7 +10,8 @@ for package in ("matplotlib", "h5py", "numpy"):
     try:
         importlib.import_module(package)
     except ImportError:
-        print(f"this python has no {package}; on Debian use /usr/bin/python3", file=sys.stderr)
+        print(f"{sys.executable} has no {package}; on Debian: apt install python3-{package}, and "
+              "use /usr/bin/python3", file=sys.stderr)
         sys.exit(2)
 
 import matplotlib

@@ -104,6 +104,10 @@ class ProgramTest(unittest.TestCase):
         path.write_text(text)
         return path
 
+    def write_older_result(self, name):
+        """What the program takes for one as long as it does not read it."""
+        (self.folder / name).write_bytes(b"\x89HDF\r\n\x1a\n of an older run")
+
     def listing(self):
         """What lies in the folder, hidden files included, with contents and time of change."""
         return {path.name: (path.stat().st_mtime_ns, path.read_bytes())

@@ -214,7 +214,7 @@ class RefusingTest(ProgramTest):
             self.assert_refused(words, subcommand, *flags(keys))
         with self.subTest(subcommand=subcommand, given="file", changes=changes):
             self.write("scene.toml", toml(keys))
-            self.write("old.h5", "an older result")
+            self.write_older_result("old.h5")
             self.assert_refused(words, subcommand, config="scene.toml", out="old.h5")
 
 
@@ -471,6 +471,12 @@ class Output(RefusingTest):
                 self.assert_refused(["out"], subcommand, *flags(scene), "--out", out=None)
                 self.assert_refused(["out"], subcommand, *flags(scene), "--out=", out=None)
 
+    def test_out_is_a_file_of_another_kind(self):
+        self.write("mine.txt", "precious")
+        for subcommand, scene in self.COMMANDS.items():
+            self.assert_refused(["mine.txt", "no result"], subcommand, *flags(scene),
+                                out="mine.txt")
+
     def test_out_before_a_scene_that_is_wrong(self):
         self.assert_refused(["width"], "covariance", *flags({**BOX, "width": -3}))
 
@@ -498,14 +504,14 @@ class Resume(RefusingTest):
         self.refused_resume("text.h5", ["text.h5"])
         with h5py.File(self.folder / "other.h5", "w") as file:
             file["x"] = 1.0
-        self.refused_resume("other.h5", ["other.h5", "another run"])
+        self.refused_resume("other.h5", ["other.h5", "never held a run"])
         (self.folder / "empty.h5").write_bytes(b"")
         self.refused_resume("empty.h5", ["empty.h5"])
 
     def test_another_run(self):
         self.call("covariance", **{**self.KEYS, "seed": 2, "target_error": 1e-6}, out="run.h5",
                   status=3)
-        self.refused_resume("run.h5", ["run.h5", "another run", "seed"])
+        self.refused_resume("run.h5", ["run.h5", "another run", "seed = 2"])
 
     def test_a_truncated_run(self):
         self.call("covariance", **self.KEYS, target_error=1e-6, out="run.h5", status=3)

@@ -49,7 +49,8 @@ class Bench(ProgramTest):
         path, printed = self.bench("stability")
         with h5py.File(path) as file:
             names, refusals = texts(file, "name"), texts(file, "refusal")
-            self.assertEqual(len(set(zip(texts(file, "room"), names))), len(names))
+            cases = set(zip(texts(file, "room"), names, texts(file, "invariant")))
+            self.assertEqual(len(cases), len(names))
             self.assertTrue(np.all(file["passed"][...] == 1))
             self.assertTrue(file.attrs["converged"])
             within = file["figure"][...] <= file["limit"][...]

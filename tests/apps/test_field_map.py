@@ -132,7 +132,7 @@ class Unfinished(ProgramTest):
 
     def setUp(self):
         super().setUp()
-        self.write("map.h5", "an older result")
+        self.write_older_result("map.h5")
         self.before = self.listing()
 
     def test_interrupted(self):

@@ -2,8 +2,10 @@
 
 import random
 import signal
+import struct
 import time
 import unittest
+import zlib
 
 import h5py
 import numpy as np
@@ -19,6 +21,12 @@ LONG = {
 }
 SHORT = {**BOX, **TILTS, "samples": 20_000, "threads": 2}
 NEVER = 1e-9  # a target error that is not reached
+
+
+def seal(path):
+    """As the program does, for changes that it is to see."""
+    data = path.read_bytes()
+    path.write_bytes(data + struct.pack("<4sIQ", b"seal", zlib.crc32(data), len(data)))
 
 
 class Interruption(ProgramTest):
@@ -63,6 +71,19 @@ class Interruption(ProgramTest):
         self.assertEqual(resumed["converged"], 1)
         for key in ("samples", "identity", "plan", "seed"):
             self.assertEqual(resumed[key], whole[key])
+
+    def test_an_older_result_is_kept(self):
+        self.call("covariance", **SHORT, out="run.h5")
+        older = (self.folder / "run.h5").read_bytes()
+        keys = {**LONG["mc"][1], "threads": 2, "out": "run.h5"}
+        for aside in (("run.h5.aside-1",), ("run.h5.aside-1", "run.h5.aside-2")):
+            self.assertEqual(self.interrupt(signal.SIGINT, 0.05, "covariance", **keys), 75)
+            self.check_resumable("run.h5")
+            self.assertEqual(sorted(self.listing()), ["run.h5", *aside])
+            self.assertEqual((self.folder / "run.h5.aside-1").read_bytes(), older)
+        self.call("covariance", "--resume", **keys)
+        self.call("covariance", **SHORT, out="run.h5")
+        self.assert_same_data("run.h5", "run.h5.aside-1")
 
     def test_the_trace_goes_on(self):
         keys = LONG["mc"][1]
@@ -212,8 +233,9 @@ class Resume(ProgramTest):
             version = file.attrs["version"]
             self.assertIn(f"flatspeckle {version}\n", file.attrs["identity"])
             file.attrs["identity"] = file.attrs["identity"].replace(version, "0.0.0")
+        seal(self.folder / "run.h5")
         done = self.call("covariance", "--resume", **SHORT, out="run.h5", status=2)
-        self.assertIn("version", done.stderr)
+        self.assertIn("another run (flatspeckle 0.0.0)", done.stderr)
 
     def test_of_a_finished_run_changes_nothing(self):
         self.call("covariance", **SHORT, out="run.h5")

@@ -328,9 +328,9 @@ class Refused(RenderTest):
         with h5py.File(self.folder / "empty.h5", "w"):
             pass
         for name, what in (("flat", "axes"), ("thin", ""), ("low", "-1"), ("nan", "nan"),
-                           ("still", "spacing"), ("odd", "origin"), ("empty", "density"),
-                           ("absent", "absent.h5")):
+                           ("still", "spacing"), ("odd", "origin"), ("empty", "density")):
             self.refuse(f"density: {name}.h5", what, density=f"{name}.h5")
+        self.refuse("density = absent.h5: no such file", density="absent.h5")
         write_density(self.folder / "far.h5", np.ones((5, 5, 5)), origin=np.array([2.0, 0, 0]))
         self.refuse("density: the grid, from 2 0 0", "outside of the stage", density="far.h5")
         # most of the stage is beside the grid: it is all tentative collisions

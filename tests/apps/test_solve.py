@@ -159,7 +159,7 @@ class FullDisk(ProgramTest):
                               timeout=60)
 
     def test_status_4_and_the_older_result_stays(self):
-        self.write("result.h5", "an older result")
+        self.write_older_result("result.h5")
         before = self.listing()
         for command, keys in (("solve", BOX), ("covariance", {**BOX, "samples": 3000})):
             with self.subTest(command=command):
