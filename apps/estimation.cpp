@@ -52,9 +52,10 @@ void note(const Neglected& neglected) {
     std::cerr << "note: k x mean free path is only " << neglected.k_mean_free_path
               << "; the Monte Carlo method neglects terms of order 1 over that\n";
   if (neglected.packing > dense)
-    std::cerr << "note: disks fill " << neglected.packing
-              << " of the medium; the Monte Carlo method takes their positions as independent, which "
-                 "neglects terms of that order (structure = hard_disks takes them in)\n";
+    std::cerr
+        << "note: disks fill " << neglected.packing
+        << " of the medium; the Monte Carlo method takes their positions as independent, which "
+           "neglects terms of that order (structure = hard_disks takes them in)\n";
 }
 
 void round_density(SceneSpec& spec) {

@@ -18,7 +18,8 @@ std::string listed(const grin::Vec3& x) {
 }
 
 double positive(const std::string& key, double value) {
-  if (!(std::isfinite(value) && value > 0)) throw InputError(key, value, "must be positive and finite");
+  if (!(std::isfinite(value) && value > 0))
+    throw InputError(key, value, "must be positive and finite");
   return value;
 }
 

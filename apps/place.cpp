@@ -6,6 +6,7 @@
 #include <numeric>
 #include <sstream>
 
+#include "apps/key_values.h"
 #include "apps/run_options.h"
 #include "apps/subcommands.h"
 #include "core/atomic_file.h"
@@ -76,10 +77,9 @@ void add_options(Options& options, PlaceKeys& keys) {
   options.keep_out_of_scene_file("--out");
 }
 
-double positive(const std::string& key, const std::optional<double>& value) {
+double given_positive(const std::string& key, const std::optional<double>& value) {
   if (!value) throw InputError(key + " is not given: must be positive");
-  if (!(std::isfinite(*value) && *value > 0)) throw InputError(key, *value, "must be positive and finite");
-  return *value;
+  return positive(key, *value);
 }
 
 Kind chosen_kind(const PlaceKeys& keys) {
@@ -116,9 +116,9 @@ std::size_t number_of(const PlaceKeys& keys, const Domain& box, double mean_area
   if (keys.packing_fraction && mean_area == 0)
     throw InputError("packing_fraction", *keys.packing_fraction,
                      "points cover nothing; give count");
-  const double number =
-      keys.count ? static_cast<double>(*keys.count)
-                 : positive("packing_fraction", keys.packing_fraction) * box.area() / mean_area;
+  const double number = keys.count ? static_cast<double>(*keys.count)
+                                   : given_positive("packing_fraction", keys.packing_fraction) *
+                                         box.area() / mean_area;
   if (!(std::llround(number) >= 1 && number <= most_scatterers))
     throw InputError(keys.count ? "count" : "packing_fraction",
                      keys.count ? number : *keys.packing_fraction,
@@ -128,7 +128,8 @@ std::size_t number_of(const PlaceKeys& keys, const Domain& box, double mean_area
 
 Drawing make_drawing(const PlaceKeys& keys) {
   Drawing drawing;
-  drawing.box = {Domain::Kind::box, positive("width", keys.width), positive("depth", keys.depth)};
+  drawing.box = {Domain::Kind::box, given_positive("width", keys.width),
+                 given_positive("depth", keys.depth)};
   drawing.kind = chosen_kind(keys);
   for (double radius : keys.radii) positive("radii", radius);
   const auto share = shares(keys);

@@ -1,7 +1,6 @@
 #include "apps/run_options.h"
 
-#include <cmath>
-
+#include "apps/key_values.h"
 #include "core/error.h"
 
 namespace flatspeckle::apps {
@@ -9,11 +8,6 @@ namespace flatspeckle::apps {
 namespace {
 
 constexpr int most_threads = 1024;
-
-double positive(const std::string& key, double value) {
-  if (!(std::isfinite(value) && value > 0)) throw InputError(key, value, "must be positive and finite");
-  return value;
-}
 
 }  // namespace
 

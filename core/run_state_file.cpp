@@ -43,6 +43,11 @@ Trace read_trace(const ResultReader& file, const std::string& group) {
   if (trace.cpu_s.size() != rows || trace.samples.size() != rows ||
       trace.relative_error.size() != rows)
     throw InputError(file.path().string() + ": " + group + ": columns of different lengths");
+  constexpr double most = 1e18;  // an integer holds it
+  for (const double samples : trace.samples)
+    if (!(samples >= 0 && samples < most))
+      throw InputError(file.path().string() + ": " + group + "/samples", samples,
+                       "must be a number of samples");
   return trace;
 }
 

@@ -121,13 +121,12 @@ void fly_through_density(const std::string&) {
   const double mu = depth / size / std::max(density->largest(), 1.0);
   const grin::Stage stage{.boundary = box, .medium = {.mu_s = mu, .mu_a = mu, .density = density}};
   const grin::DirectionalDetector sensor{Vec3::UnitZ(), Vec3::UnitY(), 1.5, {2, 2}};
-  const grin::RenderScene scene{
-      .field = grin::Homogeneous{},
-      .step = size,
-      .max_length = 10 * size,
-      .stage = stage,
-      .lights = {grin::PointLight{(box.low + box.high) / 2}},
-      .sensor = sensor};
+  const grin::RenderScene scene{.field = grin::Homogeneous{},
+                                .step = size,
+                                .max_length = 10 * size,
+                                .stage = stage,
+                                .lights = {grin::PointLight{(box.low + box.high) / 2}},
+                                .sensor = sensor};
   const grin::RenderJob job = grin::render_job(scene, {.max_scatterings = 3}, 1);
   std::vector<Complex> sums(job.batches.size);
   job.batches.run(0, sums);
