@@ -1,9 +1,10 @@
 """Memory-effect curves of any number of results of `covariance` and `validate` in one panel."""
 
 import pathlib
+import tomllib
 from dataclasses import dataclass
 
-from lib import correlation_panel, page, style
+from lib import correlation_panel, page, style, theory
 from lib.curve_looks import method_look
 from lib.sweep_file import METHODS
 
@@ -54,6 +55,29 @@ def read_series(results):
     return series
 
 
+def diffusion_line(result, steps=200):
+    """(tilts in mrad, C_E) of light through a slab in diffusion theory; None of other scenes."""
+    scene = tomllib.loads(result.attribute("config", ""))
+    if scene.get("domain") != "slab" or np.any(np.cos(result.values("view_angle")) < 0):
+        return None
+    order = np.argsort(result.values("tilt"))
+    known, q = result.values("tilt")[order], result.values("tilt_q")[order]
+    tilt = np.linspace(known[0], known[-1], steps)
+    medium = (result.attribute(name) for name in ("depth", "optical_depth", "g", "albedo"))
+    return 1000 * tilt, theory.slab_diffusion(*medium, np.interp(tilt, known, q))
+
+
+def draw_theory(axis, results):
+    """Whether there is any."""
+    lines = [diffusion_line(result) for result in results]
+    for number, line in enumerate(lines):
+        if line is not None:
+            look = style.look(number)
+            axis.plot(line[0], line[1]**2, color=look["color"], linestyle=look["linestyle"],
+                      linewidth=0.7, zorder=1)
+    return any(line is not None for line in lines)
+
+
 def shared(results, name):
     """An attribute that all files agree on, else None."""
     values = {result.attribute(name) for result in results}
@@ -87,7 +111,10 @@ def draw(results, arguments):
     correlation_panel.write_title(axis, title(results), [s.correlation for s in series])
     if share_q(results):
         correlation_panel.add_q_axis(axis, results[0], series[0].tilt)
-    handles = [plt.Line2D([], [], linestyle="none", **s.look) for s in series]
-    page.legend_outside(figure, list(zip(handles, [s.label for s in series])),
+    entries = [(plt.Line2D([], [], linestyle="none", **s.look), s.label) for s in series]
+    if draw_theory(axis, results):
+        entries.append((plt.Line2D([], [], color="black", linewidth=0.7),
+                        "lines: diffusion theory"))
+    page.legend_outside(figure, entries,
                         list(correlation_panel.notes(left_out, arguments)))
     return figure

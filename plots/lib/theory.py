@@ -7,10 +7,8 @@ def log_sinh(a):
     return a + np.log(-np.expm1(-2 * a) / 2)
 
 
-def diffusion(sweep, row, q):
+def slab_diffusion(depth, optical_depth, g, albedo, q):
     """C_E at transverse wavenumbers q in diffusion theory (conventions, C20)."""
-    depth = sweep.result.attribute("depth")
-    optical_depth, g, albedo = (sweep.columns[n][row] for n in ("optical_depth", "g", "albedo"))
     mu_t = optical_depth / depth
     mu_a = mu_t * (1 - albedo)
     transport = 1 / (mu_a + mu_t * albedo * (1 - g))
@@ -23,6 +21,11 @@ def diffusion(sweep, row, q):
 
     kappa2 = 2 * mu_a / transport
     return np.exp(log_f(q**2 + kappa2) - log_f(kappa2))
+
+
+def diffusion(sweep, row, q):
+    point = (sweep.columns[name][row] for name in ("optical_depth", "g", "albedo"))
+    return slab_diffusion(sweep.result.attribute("depth"), *point, q)
 
 
 def single_scattering(sweep, row, q):
