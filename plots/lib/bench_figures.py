@@ -16,7 +16,7 @@ LOOKS = {  # the same method looks the same everywhere
     "light tracing": style.look(2), "photon map": style.look(3)}
 GUIDE = {"color": "0.6", "linewidth": 0.7, "zorder": 0}
 TITLES = {"box_points": "31 points in a box, OD 1", "box_cylinders": "67 cylinders in a box, OD 1",
-          "box_points_absorbing": "absorbing points in a box", "slab_hg": "slab, OD 10",
+          "box_points_absorbing": "absorbing points in a box", "slab_hg": "slab, OD 5, g 0.8",
           "luneburg": "Luneburg ball", "waveguide": "ultrasonic waveguide",
           "slab": "slab, straight rays", "glass_ball": "glass ball in fog",
           "luneburg_even": "Luneburg ball, even light",
@@ -259,7 +259,8 @@ FIGURES = {  # name: (function, caption)
     "error_flatland": (
         draw_flatland,
         "Relative error against processor time of an ensemble of exact solutions, of the textbook "
-        "Monte Carlo estimator and of this one; both boxes, 64 tilts in transmission."),
+        "Monte Carlo estimator and of this one; both boxes, memory effect over seven tilts, in "
+        "transmission and reflection."),
     "error_render": (
         draw_render,
         "Relative error of pictures against processor time: path tracing, light tracing, "
@@ -269,8 +270,8 @@ FIGURES = {  # name: (function, caption)
         draw_limits,
         "(a) How far each extreme case is off its invariant, relative to the limit it was held to "
         "(line: the limit; to the right: how many are refused, each with a message that says why). "
-        "Arrows: below 1e-9; a ring would mark a failure. (b) What leaving a thing out of a kernel saves, where the scene has "
-        "no need of it; bars are half the distance of the quartiles."),
+        "Arrows: below 1e-9; a ring would mark a failure. (b) What leaving a thing out of a kernel "
+        "saves, where the scene has no need of it; bars are half the distance of the quartiles."),
     "error_other": (
         draw_other_flatland,
         "The other standard scenes of flatland."),
