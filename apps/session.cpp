@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <iostream>
 
+#include "apps/aside.h"
 #include "apps/identity.h"
 #include "apps/subcommands.h"
 #include "core/error.h"
@@ -130,9 +131,7 @@ void Session::write_common(ResultFile& file, bool converged) const {
 /// By a second name for it: the first is its own until the new file takes it.
 void Session::set_older_aside() {
   namespace fs = std::filesystem;
-  int number = 1;
-  do older_aside_ = settings_.out + ".aside-" + std::to_string(number++);
-  while (fs::exists(older_aside_));
+  older_aside_ = free_aside(settings_.out).string();
   std::error_code failed;
   fs::create_hard_link(settings_.out, older_aside_, failed);
   if (failed) fs::rename(settings_.out, older_aside_, failed);  // of file systems without

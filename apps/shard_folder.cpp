@@ -3,6 +3,7 @@
 #include <iostream>
 #include <vector>
 
+#include "apps/aside.h"
 #include "apps/identity.h"
 #include "core/error.h"
 #include "core/sealed_file.h"
@@ -61,15 +62,13 @@ std::optional<std::string> ShardFolder::read(
 
 void ShardFolder::set_aside(const std::string& name, Part part, const std::string& wrong) {
   const fs::path path = file(name, part);
-  int number = 1;
-  const auto place = [&] { return path.string() + ".aside-" + std::to_string(number); };
-  while (fs::exists(place())) ++number;
+  const fs::path place = free_aside(path);
   std::error_code failed;
-  fs::rename(path, place(), failed);
+  fs::rename(path, place, failed);
   if (failed) throw IoError("renaming " + path.string() + " failed: " + failed.message());
   // In one piece: other threads may have something to say as well.
   std::cerr << "warning: " + path.string() + ' ' + wrong + "; set aside as " +
-                   fs::path(place()).filename().string() + '\n';
+                   place.filename().string() + '\n';
 }
 
 void ShardFolder::write(const std::string& name, Part part, const std::string& identity,

@@ -6,7 +6,7 @@ import h5py
 import numpy as np
 
 from program import BOX, SLAB, TILTS, ProgramTest, datasets
-from test_bad_input import RefusingTest
+from refusing import RefusingTest
 
 HG = {"width": 20, "depth": 10, "scatterer": "hg", "optical_depth": 2, "g": 0.5, "albedo": 0.9}
 VIEWS = {"light_angles": [0, 0.3], "view_angles": [0.1, 0.5, 3.0]}
