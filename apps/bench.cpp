@@ -9,10 +9,10 @@
 #include "apps/run_options.h"
 #include "apps/subcommands.h"
 #include "core/error.h"
-#include "core/parallel.h"
-#include "core/provenance.h"
-#include "core/result_file.h"
-#include "core/stopwatch.h"
+#include "core/result/provenance.h"
+#include "core/result/result_file.h"
+#include "core/run/parallel.h"
+#include "core/run/stopwatch.h"
 
 namespace flatspeckle::apps {
 

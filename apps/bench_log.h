@@ -4,7 +4,7 @@
 #include <mutex>
 #include <string>
 
-#include "core/stopwatch.h"
+#include "core/run/stopwatch.h"
 
 namespace flatspeckle::apps {
 

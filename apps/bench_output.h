@@ -5,7 +5,7 @@
 #include "bench/error_curve.h"
 #include "bench/extreme_case.h"
 #include "bench/plan_row.h"
-#include "core/result_file.h"
+#include "core/result/result_file.h"
 
 namespace flatspeckle::apps {
 

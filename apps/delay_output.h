@@ -2,9 +2,9 @@
 
 #include <vector>
 
-#include "core/result_file.h"
-#include "flatland/scene.h"
-#include "mc/brownian.h"
+#include "core/result/result_file.h"
+#include "flatland/scene/scene.h"
+#include "mc/estimators/brownian.h"
 
 namespace flatspeckle::apps {
 

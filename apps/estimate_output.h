@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "core/result_file.h"
-#include "core/statistics.h"
+#include "core/numbers/statistics.h"
+#include "core/result/result_file.h"
 
 namespace flatspeckle::apps {
 

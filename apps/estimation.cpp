@@ -6,8 +6,8 @@
 #include <sstream>
 
 #include "core/error.h"
-#include "mc/covariance_estimator.h"
-#include "wave_solver/ensemble.h"
+#include "mc/estimators/covariance_estimator.h"
+#include "wave_solver/solutions/ensemble.h"
 
 namespace flatspeckle::apps {
 

@@ -5,9 +5,9 @@
 #include <string>
 
 #include "apps/run_options.h"
-#include "flatland/field_moments.h"
-#include "flatland/scene.h"
-#include "mc/plan.h"
+#include "flatland/request/field_moments.h"
+#include "flatland/scene/scene.h"
+#include "mc/walk/plan.h"
 
 namespace flatspeckle::apps {
 

@@ -5,7 +5,7 @@
 
 #include "apps/command_line.h"
 #include "apps/estimation.h"
-#include "core/result_file.h"
+#include "core/result/result_file.h"
 
 namespace flatspeckle::apps {
 

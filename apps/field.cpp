@@ -7,11 +7,11 @@
 #include "apps/scene_options.h"
 #include "apps/subcommands.h"
 #include "core/error.h"
-#include "core/interrupt.h"
-#include "core/memory.h"
-#include "core/provenance.h"
-#include "core/result_file.h"
-#include "mc/speckle_field.h"
+#include "core/numbers/memory.h"
+#include "core/result/provenance.h"
+#include "core/result/result_file.h"
+#include "core/run/interrupt.h"
+#include "mc/speckle/speckle_field.h"
 
 namespace flatspeckle::apps {
 

@@ -4,10 +4,10 @@
 #include <cstdio>
 #include <limits>
 
-#include "core/interrupt.h"
-#include "mc/covariance_estimator.h"
-#include "mc/field_statistics.h"
-#include "mc/speckle_field.h"
+#include "core/run/interrupt.h"
+#include "mc/estimators/covariance_estimator.h"
+#include "mc/speckle/field_statistics.h"
+#include "mc/speckle/speckle_field.h"
 
 namespace flatspeckle::apps {
 

@@ -4,10 +4,10 @@
 #include <optional>
 #include <vector>
 
-#include "core/runner.h"
-#include "flatland/scene.h"
-#include "mc/field_plan.h"
-#include "mc/plan.h"
+#include "core/run/runner.h"
+#include "flatland/scene/scene.h"
+#include "mc/speckle/field_plan.h"
+#include "mc/walk/plan.h"
 
 namespace flatspeckle::apps {
 

@@ -6,9 +6,9 @@
 #include <sstream>
 
 #include "core/error.h"
-#include "core/interrupt.h"
-#include "core/progress.h"
-#include "core/stopwatch.h"
+#include "core/run/interrupt.h"
+#include "core/run/progress.h"
+#include "core/run/stopwatch.h"
 
 namespace flatspeckle::apps {
 

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "apps/command_line.h"
-#include "core/result_file.h"
-#include "wave_solver/field_map.h"
+#include "core/result/result_file.h"
+#include "wave_solver/maps/field_map.h"
 
 namespace flatspeckle::apps {
 

@@ -7,7 +7,7 @@
 
 #include "apps/estimate_output.h"
 #include "apps/moments_output.h"
-#include "mc/field_statistics.h"
+#include "mc/speckle/field_statistics.h"
 
 namespace flatspeckle::apps {
 

@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "apps/field_drawing.h"
-#include "core/result_file.h"
-#include "flatland/scene.h"
+#include "core/result/result_file.h"
+#include "flatland/scene/scene.h"
 
 namespace flatspeckle::apps {
 

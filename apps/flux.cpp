@@ -1,4 +1,4 @@
-#include "mc/flux.h"
+#include "mc/estimators/flux.h"
 
 #include <cstdio>
 #include <numbers>

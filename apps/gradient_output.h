@@ -1,8 +1,8 @@
 #pragma once
 
-#include "core/result_file.h"
-#include "flatland/scene.h"
-#include "mc/gradient.h"
+#include "core/result/result_file.h"
+#include "flatland/scene/scene.h"
+#include "mc/estimators/gradient.h"
 
 namespace flatspeckle::apps {
 

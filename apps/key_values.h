@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "grin/signed_distance.h"
-#include "grin/vec3.h"
+#include "grin/fields/vec3.h"
+#include "grin/surfaces/signed_distance.h"
 
 namespace flatspeckle::apps {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "apps/command_line.h"
-#include "grin/light.h"
+#include "grin/ends/light.h"
 
 namespace flatspeckle::apps {
 

@@ -10,8 +10,8 @@
 
 #include "apps/subcommands.h"
 #include "core/error.h"
-#include "core/ranks.h"
-#include "core/version.h"
+#include "core/result/version.h"
+#include "core/run/ranks.h"
 
 namespace {
 

@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "core/error.h"
-#include "grin/field_file.h"
+#include "grin/media/field_file.h"
 
 namespace flatspeckle::apps {
 

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "apps/command_line.h"
-#include "grin/scattering_medium.h"
+#include "grin/media/scattering_medium.h"
 
 namespace flatspeckle::apps {
 

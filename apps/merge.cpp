@@ -7,9 +7,9 @@
 #include "apps/subcommands.h"
 #include "apps/sweep_end.h"
 #include "core/error.h"
-#include "core/result_file.h"
-#include "core/sealed_file.h"
-#include "core/stopwatch.h"
+#include "core/result/result_file.h"
+#include "core/result/sealed_file.h"
+#include "core/run/stopwatch.h"
 
 namespace flatspeckle::apps {
 

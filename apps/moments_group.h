@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "apps/moments_output.h"
-#include "core/result_file.h"
-#include "core/statistics.h"
-#include "flatland/scene.h"
+#include "core/numbers/statistics.h"
+#include "core/result/result_file.h"
+#include "flatland/scene/scene.h"
 
 namespace flatspeckle::apps {
 

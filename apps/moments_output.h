@@ -2,10 +2,10 @@
 
 #include <string>
 
-#include "core/result_file.h"
-#include "flatland/field_moments.h"
-#include "flatland/scene.h"
-#include "mc/memory_effect.h"
+#include "core/result/result_file.h"
+#include "flatland/request/field_moments.h"
+#include "flatland/scene/scene.h"
+#include "mc/theory/memory_effect.h"
 
 namespace flatspeckle::apps {
 

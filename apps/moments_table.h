@@ -2,8 +2,8 @@
 
 #include <string>
 
-#include "core/statistics.h"
-#include "flatland/request.h"
+#include "core/numbers/statistics.h"
+#include "flatland/request/request.h"
 
 namespace flatspeckle::apps {
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <cstdio>
 
-#include "mc/diffusion.h"
-#include "mc/tilt_shift.h"
+#include "mc/theory/diffusion.h"
+#include "mc/theory/tilt_shift.h"
 
 namespace flatspeckle::apps {
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "apps/moments_group.h"
-#include "flatland/field_moments.h"
+#include "flatland/request/field_moments.h"
 
 namespace flatspeckle::apps {
 

@@ -9,14 +9,14 @@
 #include "apps/key_values.h"
 #include "apps/run_options.h"
 #include "apps/subcommands.h"
-#include "core/atomic_file.h"
 #include "core/error.h"
-#include "core/provenance.h"
-#include "core/result_file.h"
-#include "core/stopwatch.h"
-#include "core/version.h"
-#include "flatland/placement.h"
-#include "flatland/structure_factor.h"
+#include "core/result/atomic_file.h"
+#include "core/result/provenance.h"
+#include "core/result/result_file.h"
+#include "core/result/version.h"
+#include "core/run/stopwatch.h"
+#include "flatland/media/structure_factor.h"
+#include "flatland/placement/placement.h"
 
 namespace flatspeckle::apps {
 

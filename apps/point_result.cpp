@@ -4,7 +4,7 @@
 
 #include "apps/moments_output.h"
 #include "core/error.h"
-#include "core/run_state_file.h"
+#include "core/result/run_state_file.h"
 
 namespace flatspeckle::apps {
 

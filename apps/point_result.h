@@ -3,12 +3,12 @@
 #include <string>
 #include <vector>
 
-#include "core/result_file.h"
-#include "core/result_reader.h"
-#include "core/runner.h"
-#include "flatland/field_moments.h"
-#include "flatland/scene.h"
-#include "mc/memory_effect.h"
+#include "core/result/result_file.h"
+#include "core/result/result_reader.h"
+#include "core/run/runner.h"
+#include "flatland/request/field_moments.h"
+#include "flatland/scene/scene.h"
+#include "mc/theory/memory_effect.h"
 
 namespace flatspeckle::apps {
 

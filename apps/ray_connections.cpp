@@ -5,8 +5,8 @@
 
 #include "apps/key_values.h"
 #include "core/error.h"
-#include "grin/connection_solver.h"
-#include "grin/trace.h"
+#include "grin/connections/connection_solver.h"
+#include "grin/rays/trace.h"
 
 namespace flatspeckle::apps {
 

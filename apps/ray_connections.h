@@ -5,7 +5,7 @@
 
 #include "apps/ray_stops.h"
 #include "apps/scene_field.h"
-#include "grin/connection.h"
+#include "grin/connections/connection.h"
 
 namespace flatspeckle::apps {
 

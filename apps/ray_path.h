@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "grin/ray.h"
+#include "grin/rays/ray.h"
 
 namespace flatspeckle::apps {
 

@@ -8,8 +8,8 @@
 #include <Eigen/Geometry>
 
 #include "apps/key_values.h"
-#include "core/csv.h"
 #include "core/error.h"
+#include "core/keys/csv.h"
 
 namespace flatspeckle::apps {
 

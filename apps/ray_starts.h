@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "apps/command_line.h"
-#include "grin/vec3.h"
+#include "grin/fields/vec3.h"
 
 namespace flatspeckle::apps {
 

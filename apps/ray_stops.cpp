@@ -4,7 +4,7 @@
 
 #include "apps/key_values.h"
 #include "core/error.h"
-#include "grin/watch.h"
+#include "grin/rays/watch.h"
 
 namespace flatspeckle::apps {
 

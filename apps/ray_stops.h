@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "apps/command_line.h"
-#include "grin/signed_distance.h"
+#include "grin/surfaces/signed_distance.h"
 
 namespace flatspeckle::apps {
 

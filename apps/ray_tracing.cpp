@@ -6,8 +6,8 @@
 #include "apps/key_values.h"
 #include "apps/ray_path.h"
 #include "core/error.h"
-#include "core/parallel.h"
-#include "grin/trace.h"
+#include "core/run/parallel.h"
+#include "grin/rays/trace.h"
 
 namespace flatspeckle::apps {
 

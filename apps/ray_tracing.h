@@ -6,7 +6,7 @@
 #include "apps/ray_starts.h"
 #include "apps/ray_stops.h"
 #include "apps/scene_field.h"
-#include "grin/ray_invariants.h"
+#include "grin/rays/ray_invariants.h"
 
 namespace flatspeckle::apps {
 

@@ -2,8 +2,8 @@
 
 #include <optional>
 
-#include "core/result_file.h"
-#include "grin/render_job.h"
+#include "core/result/result_file.h"
+#include "grin/estimators/render_job.h"
 
 namespace flatspeckle::apps {
 

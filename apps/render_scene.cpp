@@ -4,7 +4,7 @@
 
 #include "apps/key_values.h"
 #include "core/error.h"
-#include "core/file_checksum.h"
+#include "core/result/file_checksum.h"
 
 namespace flatspeckle::apps {
 

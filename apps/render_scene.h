@@ -10,7 +10,7 @@
 #include "apps/light_options.h"
 #include "apps/sensor_options.h"
 #include "apps/stage_options.h"
-#include "grin/render_job.h"
+#include "grin/estimators/render_job.h"
 
 namespace flatspeckle::apps {
 

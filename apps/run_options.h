@@ -4,7 +4,7 @@
 #include <string>
 
 #include "apps/command_line.h"
-#include "core/runner.h"
+#include "core/run/runner.h"
 
 namespace flatspeckle::apps {
 

@@ -6,9 +6,9 @@
 #include <numbers>
 
 #include "apps/key_values.h"
-#include "core/csv.h"
 #include "core/error.h"
-#include "grin/field_file.h"
+#include "core/keys/csv.h"
+#include "grin/media/field_file.h"
 
 namespace flatspeckle::apps {
 

@@ -4,8 +4,8 @@
 #include <variant>
 
 #include "apps/index_field_options.h"
-#include "grin/any_index_field.h"
-#include "grin/signed_distance.h"
+#include "grin/fields/any_index_field.h"
+#include "grin/surfaces/signed_distance.h"
 
 namespace flatspeckle::apps {
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "apps/command_line.h"
-#include "flatland/scene.h"
+#include "flatland/scene/scene.h"
 
 namespace flatspeckle::apps {
 

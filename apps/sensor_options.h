@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "apps/command_line.h"
-#include "grin/sensor.h"
+#include "grin/ends/sensor.h"
 
 namespace flatspeckle::apps {
 

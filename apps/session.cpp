@@ -7,11 +7,11 @@
 #include "apps/identity.h"
 #include "apps/subcommands.h"
 #include "core/error.h"
-#include "core/interrupt.h"
-#include "core/result_reader.h"
-#include "core/run_state_file.h"
-#include "core/sealed_file.h"
-#include "core/version.h"
+#include "core/result/result_reader.h"
+#include "core/result/run_state_file.h"
+#include "core/result/sealed_file.h"
+#include "core/result/version.h"
+#include "core/run/interrupt.h"
 
 namespace flatspeckle::apps {
 

@@ -7,9 +7,9 @@
 
 #include "apps/command_line.h"
 #include "apps/run_options.h"
-#include "core/provenance.h"
-#include "core/result_file.h"
-#include "core/runner.h"
+#include "core/result/provenance.h"
+#include "core/result/result_file.h"
+#include "core/run/runner.h"
 
 namespace flatspeckle::apps {
 
@@ -22,7 +22,8 @@ struct PlannedRun {
 
 /// The runs of one call of the program and the result file they end in. While they run, the file
 /// holds what could be resumed; at the end, the result. Each state of it replaces the one before as
-/// a whole; what was there before the runs stays beside it (NAME.aside-1) until the result is there.
+/// a whole; what was there before the runs stays beside it (NAME.aside-1) until the result is
+/// there.
 class Session {
  public:
   /// inputs: what the scene takes from other files, as text; a resumed run must have the same.

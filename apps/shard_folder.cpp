@@ -6,7 +6,7 @@
 #include "apps/aside.h"
 #include "apps/identity.h"
 #include "core/error.h"
-#include "core/sealed_file.h"
+#include "core/result/sealed_file.h"
 
 namespace flatspeckle::apps {
 
@@ -14,7 +14,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Whose file it is, finished, unfinished or in the making (core/atomic_file.h); empty for others.
+/// Whose file it is, finished, unfinished or in the making (core/result/atomic_file.h); empty for
+/// others.
 std::string name_of(const fs::path& path) {
   std::string text = path.filename().string();
   if (const auto making = text.rfind(".tmp-"); text.starts_with('.') && making != text.npos)

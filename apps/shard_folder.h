@@ -7,8 +7,8 @@
 #include <set>
 #include <string>
 
-#include "core/result_file.h"
-#include "core/result_reader.h"
+#include "core/result/result_file.h"
+#include "core/result/result_reader.h"
 
 namespace flatspeckle::apps {
 

@@ -10,11 +10,11 @@
 #include "apps/scene_options.h"
 #include "apps/subcommands.h"
 #include "core/error.h"
-#include "core/interrupt.h"
-#include "core/provenance.h"
-#include "core/result_file.h"
-#include "core/stopwatch.h"
-#include "wave_solver/wave_solution.h"
+#include "core/result/provenance.h"
+#include "core/result/result_file.h"
+#include "core/run/interrupt.h"
+#include "core/run/stopwatch.h"
+#include "wave_solver/solutions/wave_solution.h"
 
 namespace flatspeckle::apps {
 

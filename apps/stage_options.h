@@ -6,7 +6,7 @@
 #include "apps/command_line.h"
 #include "apps/medium_options.h"
 #include "apps/scene_field.h"
-#include "grin/stage.h"
+#include "grin/space/stage.h"
 
 namespace flatspeckle::apps {
 

@@ -9,10 +9,10 @@
 #include "apps/sweep_plan.h"
 #include "apps/sweep_work.h"
 #include "core/error.h"
-#include "core/interrupt.h"
-#include "core/ranks.h"
-#include "core/remote_batches.h"
-#include "core/result_file.h"
+#include "core/result/result_file.h"
+#include "core/run/interrupt.h"
+#include "core/run/ranks.h"
+#include "core/run/remote_batches.h"
 
 namespace flatspeckle::apps {
 

@@ -7,8 +7,8 @@
 #include "apps/subcommands.h"
 #include "apps/sweep_table.h"
 #include "core/error.h"
-#include "core/provenance.h"
-#include "core/ranks.h"
+#include "core/result/provenance.h"
+#include "core/run/ranks.h"
 
 namespace flatspeckle::apps {
 

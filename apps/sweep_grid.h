@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "apps/sweep_plan.h"
-#include "core/result_file.h"
+#include "core/result/result_file.h"
 
 namespace flatspeckle::apps {
 

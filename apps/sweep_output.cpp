@@ -6,9 +6,9 @@
 
 #include "apps/moments_output.h"
 #include "apps/sweep_grid.h"
-#include "core/run_state_file.h"
-#include "mc/diffusion.h"
-#include "mc/memory_effect.h"
+#include "core/result/run_state_file.h"
+#include "mc/theory/diffusion.h"
+#include "mc/theory/memory_effect.h"
 
 namespace flatspeckle::apps {
 

@@ -5,7 +5,7 @@
 
 #include "apps/point_result.h"
 #include "apps/sweep_plan.h"
-#include "core/result_file.h"
+#include "core/result/result_file.h"
 
 namespace flatspeckle::apps {
 

@@ -6,7 +6,7 @@
 
 #include "apps/scene_options.h"
 #include "core/error.h"
-#include "core/version.h"
+#include "core/result/version.h"
 
 namespace flatspeckle::apps {
 

@@ -4,8 +4,8 @@
 #include <charconv>
 #include <set>
 
-#include "core/csv.h"
 #include "core/error.h"
+#include "core/keys/csv.h"
 
 namespace flatspeckle::apps {
 

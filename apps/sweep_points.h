@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "apps/command_line.h"
-#include "flatland/scene.h"
+#include "flatland/scene/scene.h"
 
 namespace flatspeckle::apps {
 

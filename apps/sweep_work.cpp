@@ -3,8 +3,8 @@
 #include <utility>
 
 #include "apps/point_result.h"
-#include "core/provenance.h"
-#include "core/run_state_file.h"
+#include "core/result/provenance.h"
+#include "core/result/run_state_file.h"
 
 namespace flatspeckle::apps {
 

@@ -8,7 +8,7 @@
 
 #include "apps/shard_folder.h"
 #include "apps/sweep_plan.h"
-#include "core/runner.h"
+#include "core/run/runner.h"
 
 namespace flatspeckle::apps {
 

@@ -14,10 +14,10 @@
 #include "apps/subcommands.h"
 #include "apps/trace_output.h"
 #include "core/error.h"
-#include "core/memory.h"
-#include "core/provenance.h"
-#include "core/result_file.h"
-#include "core/stopwatch.h"
+#include "core/numbers/memory.h"
+#include "core/result/provenance.h"
+#include "core/result/result_file.h"
+#include "core/run/stopwatch.h"
 
 namespace flatspeckle::apps {
 

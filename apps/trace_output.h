@@ -6,7 +6,7 @@
 #include "apps/ray_starts.h"
 #include "apps/ray_tracing.h"
 #include "apps/scene_field.h"
-#include "core/result_file.h"
+#include "core/result/result_file.h"
 
 namespace flatspeckle::apps {
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "core/result_file.h"
-#include "grin/connection.h"
+#include "core/result/result_file.h"
+#include "grin/connections/connection.h"
 
 namespace flatspeckle::apps {
 

@@ -11,13 +11,13 @@
 #include <cstdlib>
 #include <string>
 
-#include "core/stopwatch.h"
-#include "grin/connection_solver.h"
-#include "grin/gaussian_blobs.h"
-#include "grin/guides.h"
-#include "grin/lenses.h"
-#include "grin/spline_field.h"
-#include "grin/ultrasound.h"
+#include "core/run/stopwatch.h"
+#include "grin/connections/connection_solver.h"
+#include "grin/fields/gaussian_blobs.h"
+#include "grin/fields/guides.h"
+#include "grin/fields/lenses.h"
+#include "grin/fields/spline_field.h"
+#include "grin/fields/ultrasound.h"
 
 using namespace flatspeckle;
 using namespace flatspeckle::grin;

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "core/stopwatch.h"
+#include "core/run/stopwatch.h"
 
 namespace flatspeckle::bench {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "flatland/field_moments.h"
+#include "flatland/request/field_moments.h"
 
 namespace flatspeckle::bench {
 

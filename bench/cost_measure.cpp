@@ -7,7 +7,7 @@
 
 #include "bench/contest.h"
 #include "bench/error_fit.h"
-#include "core/stopwatch.h"
+#include "core/run/stopwatch.h"
 
 namespace flatspeckle::bench {
 

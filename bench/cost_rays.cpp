@@ -4,8 +4,8 @@
 
 #include "bench/cost_curves.h"
 #include "bench/cost_measure.h"
-#include "grin/lenses.h"
-#include "grin/ray_step.h"
+#include "grin/fields/lenses.h"
+#include "grin/rays/ray_step.h"
 
 namespace flatspeckle::bench {
 

@@ -7,8 +7,8 @@
 #include "bench/cost_curves.h"
 #include "bench/cost_measure.h"
 #include "bench/render_scenes.h"
-#include "core/stopwatch.h"
-#include "mc/covariance_estimator.h"
+#include "core/run/stopwatch.h"
+#include "mc/estimators/covariance_estimator.h"
 
 namespace flatspeckle::bench {
 

@@ -4,8 +4,8 @@
 
 #include "bench/cost_curves.h"
 #include "bench/cost_measure.h"
-#include "core/random.h"
-#include "wave_solver/wave_solution.h"
+#include "core/numbers/random.h"
+#include "wave_solver/solutions/wave_solution.h"
 
 namespace flatspeckle::bench {
 

@@ -12,11 +12,11 @@
 
 #include <omp.h>
 
-#include "core/stopwatch.h"
-#include "flatland/placement.h"
-#include "wave_solver/blas.h"
-#include "wave_solver/dense_factor.h"
-#include "wave_solver/wave_solution.h"
+#include "core/run/stopwatch.h"
+#include "flatland/placement/placement.h"
+#include "wave_solver/dense/blas.h"
+#include "wave_solver/dense/dense_factor.h"
+#include "wave_solver/solutions/wave_solution.h"
 
 using namespace flatspeckle;
 using namespace flatspeckle::wave;

@@ -16,8 +16,8 @@
 
 #include "bench/contest.h"
 #include "bench/standard_scenes.h"
-#include "core/stopwatch.h"
-#include "mc/covariance_estimator.h"
+#include "core/run/stopwatch.h"
+#include "mc/estimators/covariance_estimator.h"
 #include "tests/mc/textbook.h"
 
 using namespace flatspeckle;

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <memory>
 
-#include "core/random.h"
-#include "flatland/placement.h"
+#include "core/numbers/random.h"
+#include "flatland/placement/placement.h"
 
 namespace flatspeckle::bench {
 

@@ -2,9 +2,9 @@
 
 #include <cstdint>
 
-#include "flatland/field_moments.h"
-#include "flatland/scene.h"
-#include "wave_solver/wave_solution.h"
+#include "flatland/request/field_moments.h"
+#include "flatland/scene/scene.h"
+#include "wave_solver/solutions/wave_solution.h"
 
 namespace flatspeckle::bench {
 

@@ -5,9 +5,9 @@
 #include <numbers>
 
 #include "bench/error_exact.h"
-#include "flatland/scene.h"
-#include "mc/covariance_estimator.h"
-#include "mc/speckle_field.h"
+#include "flatland/scene/scene.h"
+#include "mc/estimators/covariance_estimator.h"
+#include "mc/speckle/speckle_field.h"
 #include "tests/mc/textbook.h"
 
 namespace flatspeckle::bench {

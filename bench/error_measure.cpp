@@ -6,7 +6,7 @@
 #include <omp.h>
 
 #include "bench/error_fit.h"
-#include "core/stopwatch.h"
+#include "core/run/stopwatch.h"
 
 namespace flatspeckle::bench {
 

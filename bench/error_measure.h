@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "bench/error_curve.h"
-#include "core/runner.h"
+#include "core/run/runner.h"
 
 namespace flatspeckle::bench {
 

@@ -10,10 +10,10 @@
 
 #include <omp.h>
 
-#include "core/stopwatch.h"
-#include "flatland/scene.h"
-#include "mc/covariance_estimator.h"
-#include "wave_solver/ensemble.h"
+#include "core/run/stopwatch.h"
+#include "flatland/scene/scene.h"
+#include "mc/estimators/covariance_estimator.h"
+#include "wave_solver/solutions/ensemble.h"
 
 using namespace flatspeckle;
 

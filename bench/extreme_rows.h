@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "bench/extreme_case.h"
-#include "core/complex.h"
+#include "core/numbers/complex.h"
 
 namespace flatspeckle::bench {
 

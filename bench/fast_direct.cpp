@@ -2,7 +2,7 @@
 // many lights cost, and how well they solve. usage: bench_fast_direct [tolerance] [N ...]
 // CPU seconds are comparable between machines only as ratios; run on one thread (OMP_NUM_THREADS=1)
 // for those, on all for wall seconds.
-#include "wave_solver/fast_direct.h"
+#include "wave_solver/skeletons/fast_direct.h"
 
 #include <cmath>
 #include <cstdio>
@@ -11,8 +11,8 @@
 #include <sys/resource.h>
 #include <vector>
 
-#include "core/random.h"
-#include "core/stopwatch.h"
+#include "core/numbers/random.h"
+#include "core/run/stopwatch.h"
 
 using namespace flatspeckle;
 

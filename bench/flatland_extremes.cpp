@@ -6,9 +6,9 @@
 
 #include "bench/extreme_rows.h"
 #include "bench/multiprecision.h"
-#include "flatland/equilibrium_disks.h"
-#include "flatland/scene.h"
-#include "flatland/structure_factor.h"
+#include "flatland/media/structure_factor.h"
+#include "flatland/placement/equilibrium_disks.h"
+#include "flatland/scene/scene.h"
 
 namespace flatspeckle::bench {
 

@@ -8,9 +8,9 @@
 #include <cstdlib>
 #include <string>
 
-#include "core/stopwatch.h"
-#include "grin/curved_space.h"
-#include "grin/straight_space.h"
+#include "core/run/stopwatch.h"
+#include "grin/space/curved_space.h"
+#include "grin/space/straight_space.h"
 
 using namespace flatspeckle;
 using namespace flatspeckle::grin;

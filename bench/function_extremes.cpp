@@ -6,12 +6,12 @@
 
 #include "bench/extreme_rows.h"
 #include "bench/multiprecision.h"
-#include "core/bessel.h"
-#include "core/hankel_array.h"
-#include "core/phasor.h"
-#include "core/random.h"
-#include "core/scaled_bessel.h"
-#include "core/statistics.h"
+#include "core/numbers/bessel.h"
+#include "core/numbers/hankel_array.h"
+#include "core/numbers/phasor.h"
+#include "core/numbers/random.h"
+#include "core/numbers/scaled_bessel.h"
+#include "core/numbers/statistics.h"
 
 namespace flatspeckle::bench {
 

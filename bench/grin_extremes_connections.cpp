@@ -8,12 +8,12 @@
 #include <Eigen/Geometry>
 
 #include "bench/extreme_rows.h"
-#include "grin/connection_solver.h"
-#include "grin/gaussian_blobs.h"
-#include "grin/guides.h"
-#include "grin/lenses.h"
-#include "grin/ramps.h"
-#include "grin/ray_step.h"
+#include "grin/connections/connection_solver.h"
+#include "grin/fields/gaussian_blobs.h"
+#include "grin/fields/guides.h"
+#include "grin/fields/lenses.h"
+#include "grin/fields/ramps.h"
+#include "grin/rays/ray_step.h"
 #include "tests/grin/closed_fields.h"
 #include "tests/grin/harmonic_curves.h"
 

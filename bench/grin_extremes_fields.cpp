@@ -6,11 +6,11 @@
 
 #include "bench/extreme_rows.h"
 #include "bench/multiprecision.h"
-#include "grin/guides.h"
-#include "grin/interface.h"
-#include "grin/lenses.h"
-#include "grin/ramps.h"
-#include "grin/ultrasound.h"
+#include "grin/fields/guides.h"
+#include "grin/fields/lenses.h"
+#include "grin/fields/ramps.h"
+#include "grin/fields/ultrasound.h"
+#include "grin/surfaces/interface.h"
 
 namespace flatspeckle::bench {
 

@@ -9,11 +9,11 @@
 
 #include "bench/extreme_rows.h"
 #include "bench/multiprecision.h"
-#include "grin/curved_space.h"
-#include "grin/free_flight.h"
-#include "grin/phase_function.h"
-#include "grin/straight_space.h"
-#include "mc/stretched_flight.h"
+#include "grin/media/free_flight.h"
+#include "grin/media/phase_function.h"
+#include "grin/space/curved_space.h"
+#include "grin/space/straight_space.h"
+#include "mc/walk/stretched_flight.h"
 
 namespace flatspeckle::bench {
 

@@ -7,13 +7,13 @@
 #include <Eigen/Geometry>
 
 #include "bench/extreme_rows.h"
-#include "grin/geometric_spreading.h"
-#include "grin/guides.h"
-#include "grin/lenses.h"
-#include "grin/ramps.h"
-#include "grin/ray_invariants.h"
-#include "grin/trace.h"
-#include "grin/ultrasound.h"
+#include "grin/connections/geometric_spreading.h"
+#include "grin/fields/guides.h"
+#include "grin/fields/lenses.h"
+#include "grin/fields/ramps.h"
+#include "grin/fields/ultrasound.h"
+#include "grin/rays/ray_invariants.h"
+#include "grin/rays/trace.h"
 #include "tests/grin/closed_fields.h"
 #include "tests/grin/harmonic_curves.h"
 

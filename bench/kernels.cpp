@@ -5,12 +5,12 @@
 
 #include <benchmark/benchmark.h>
 
-#include "core/bessel.h"
-#include "core/hankel_array.h"
-#include "core/phasor.h"
-#include "flatland/scene.h"
-#include "mc/covariance_estimator.h"
-#include "wave_solver/wave_solution.h"
+#include "core/numbers/bessel.h"
+#include "core/numbers/hankel_array.h"
+#include "core/numbers/phasor.h"
+#include "flatland/scene/scene.h"
+#include "mc/estimators/covariance_estimator.h"
+#include "wave_solver/solutions/wave_solution.h"
 
 using namespace flatspeckle;
 

@@ -6,8 +6,8 @@
 
 #include "bench/extreme_rows.h"
 #include "bench/mc_extremes.h"
-#include "mc/coherent_field.h"
-#include "mc/scattering.h"
+#include "mc/ends/coherent_field.h"
+#include "mc/ends/scattering.h"
 
 namespace flatspeckle::bench {
 

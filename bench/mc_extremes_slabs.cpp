@@ -8,8 +8,8 @@
 
 #include "bench/extreme_rows.h"
 #include "bench/mc_extremes.h"
-#include "mc/flux.h"
-#include "mc/memory_effect.h"
+#include "mc/estimators/flux.h"
+#include "mc/theory/memory_effect.h"
 #include "tests/mc/discrete_ordinates.h"
 #include "tests/mc/slab_theory.h"
 

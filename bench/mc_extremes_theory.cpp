@@ -6,12 +6,12 @@
 
 #include "bench/extreme_rows.h"
 #include "bench/multiprecision.h"
-#include "flatland/medium.h"
-#include "mc/diffusion.h"
-#include "mc/end_factors.h"
-#include "mc/importance.h"
-#include "mc/single_scattering.h"
-#include "mc/speckle_field.h"
+#include "flatland/media/medium.h"
+#include "mc/ends/end_factors.h"
+#include "mc/estimators/single_scattering.h"
+#include "mc/speckle/speckle_field.h"
+#include "mc/theory/diffusion.h"
+#include "mc/walk/importance.h"
 
 namespace flatspeckle::bench {
 

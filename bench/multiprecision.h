@@ -4,8 +4,8 @@
 
 #include <boost/multiprecision/cpp_complex.hpp>
 
-#include "core/scaled.h"
-#include "flatland/scatterer.h"
+#include "core/numbers/scaled.h"
+#include "flatland/scatterers/scatterer.h"
 #include "tests/core/bessel_oracle.h"
 
 namespace flatspeckle::bench {

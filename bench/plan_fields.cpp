@@ -5,8 +5,8 @@
 #include "bench/plan_rooms.h"
 #include "bench/plan_timing.h"
 #include "bench/standard_scenes.h"
-#include "mc/covariance_estimator.h"
-#include "mc/speckle_field.h"
+#include "mc/estimators/covariance_estimator.h"
+#include "mc/speckle/speckle_field.h"
 
 namespace flatspeckle::bench {
 

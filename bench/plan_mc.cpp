@@ -5,9 +5,9 @@
 #include "bench/plan_rooms.h"
 #include "bench/plan_timing.h"
 #include "bench/standard_scenes.h"
-#include "mc/brownian.h"
-#include "mc/covariance_estimator.h"
-#include "mc/gradient.h"
+#include "mc/estimators/brownian.h"
+#include "mc/estimators/covariance_estimator.h"
+#include "mc/estimators/gradient.h"
 
 namespace flatspeckle::bench {
 

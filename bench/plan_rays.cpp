@@ -3,9 +3,9 @@
 
 #include "bench/plan_rooms.h"
 #include "bench/plan_timing.h"
-#include "grin/curved_space.h"
-#include "grin/straight_space.h"
-#include "grin/trace.h"
+#include "grin/rays/trace.h"
+#include "grin/space/curved_space.h"
+#include "grin/space/straight_space.h"
 
 namespace flatspeckle::bench {
 

@@ -5,7 +5,7 @@
 #include "bench/plan_rooms.h"
 #include "bench/plan_timing.h"
 #include "bench/render_scenes.h"
-#include "grin/path_kernels.h"
+#include "grin/estimators/path_kernels.h"
 
 namespace flatspeckle::bench {
 

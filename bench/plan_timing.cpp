@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "bench/contest.h"
-#include "core/stopwatch.h"
+#include "core/run/stopwatch.h"
 
 namespace flatspeckle::bench {
 

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "bench/plan_row.h"
-#include "core/complex.h"
-#include "core/statistics.h"
+#include "core/numbers/complex.h"
+#include "core/numbers/statistics.h"
 
 namespace flatspeckle::bench {
 

@@ -3,10 +3,10 @@
 
 #include "bench/plan_rooms.h"
 #include "bench/plan_timing.h"
-#include "wave_solver/blas.h"
-#include "wave_solver/dense_factor.h"
-#include "wave_solver/field_map.h"
-#include "wave_solver/wave_solution.h"
+#include "wave_solver/dense/blas.h"
+#include "wave_solver/dense/dense_factor.h"
+#include "wave_solver/maps/field_map.h"
+#include "wave_solver/solutions/wave_solution.h"
 
 namespace flatspeckle::bench {
 

@@ -19,9 +19,9 @@
 #include <lapacke.h>
 
 #include "bench/contest.h"
-#include "core/stopwatch.h"
-#include "flatland/scene.h"
-#include "mc/covariance_estimator.h"
+#include "core/run/stopwatch.h"
+#include "flatland/scene/scene.h"
+#include "mc/estimators/covariance_estimator.h"
 
 using namespace flatspeckle;
 using namespace flatspeckle::bench;

@@ -8,11 +8,11 @@
 #include <numbers>
 #include <vector>
 
-#include "grin/guides.h"
-#include "grin/lenses.h"
-#include "grin/ramps.h"
-#include "grin/ray_invariants.h"
-#include "grin/trace.h"
+#include "grin/fields/guides.h"
+#include "grin/fields/lenses.h"
+#include "grin/fields/ramps.h"
+#include "grin/rays/ray_invariants.h"
+#include "grin/rays/trace.h"
 
 using namespace flatspeckle::grin;
 

@@ -9,12 +9,12 @@
 #include <string>
 #include <vector>
 
-#include "core/random.h"
-#include "core/stopwatch.h"
-#include "grin/focused_sound.h"
-#include "grin/ray_step.h"
-#include "grin/spline_field.h"
-#include "grin/ultrasound.h"
+#include "core/numbers/random.h"
+#include "core/run/stopwatch.h"
+#include "grin/fields/focused_sound.h"
+#include "grin/fields/spline_field.h"
+#include "grin/fields/ultrasound.h"
+#include "grin/rays/ray_step.h"
 
 using namespace flatspeckle;
 using namespace flatspeckle::grin;

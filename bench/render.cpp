@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "bench/render_scenes.h"
-#include "core/stopwatch.h"
-#include "grin/photon_map.h"
+#include "core/run/stopwatch.h"
+#include "grin/estimators/photon_map.h"
 
 using namespace flatspeckle;
 using namespace flatspeckle::grin;

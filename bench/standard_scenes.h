@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "flatland/scene.h"
+#include "flatland/scene/scene.h"
 
 namespace flatspeckle::bench {
 

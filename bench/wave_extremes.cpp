@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "bench/extreme_rows.h"
-#include "core/random.h"
-#include "wave_solver/wave_solution.h"
+#include "core/numbers/random.h"
+#include "wave_solver/solutions/wave_solution.h"
 
 namespace flatspeckle::bench {
 

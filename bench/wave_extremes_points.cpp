@@ -5,11 +5,11 @@
 #include <numbers>
 
 #include "bench/extreme_rows.h"
-#include "core/bessel.h"
-#include "core/random.h"
-#include "wave_solver/ensemble.h"
-#include "wave_solver/helmholtz_sum.h"
-#include "wave_solver/wave_solution.h"
+#include "core/numbers/bessel.h"
+#include "core/numbers/random.h"
+#include "wave_solver/solutions/ensemble.h"
+#include "wave_solver/solutions/wave_solution.h"
+#include "wave_solver/sums/helmholtz_sum.h"
 
 namespace flatspeckle::bench {
 

@@ -7,7 +7,7 @@
 #include <doctest/doctest.h>
 
 #include "bench/error_curve.h"
-#include "core/parallel.h"
+#include "core/run/parallel.h"
 
 using namespace flatspeckle::bench;
 

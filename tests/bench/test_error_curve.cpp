@@ -9,7 +9,7 @@
 #include "bench/error_curve.h"
 #include "bench/error_fit.h"
 #include "bench/error_measure.h"
-#include "core/random.h"
+#include "core/numbers/random.h"
 
 using namespace flatspeckle;
 using namespace flatspeckle::bench;

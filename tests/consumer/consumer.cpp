@@ -2,8 +2,8 @@
 #include <iostream>
 #include <numbers>
 
-#include "core/result_file.h"
-#include "wave_solver/wave_solution.h"
+#include "core/result/result_file.h"
+#include "wave_solver/solutions/wave_solution.h"
 
 // One sound-soft disk under a plane wave: writes its far field, and fails unless the forward
 // amplitude obeys the optical theorem (conventions, C6 and C9).

@@ -9,10 +9,10 @@
 
 #include <doctest/doctest.h>
 
-#include "core/interrupt.h"
-#include "core/random.h"
-#include "core/runner.h"
-#include "core/stopwatch.h"
+#include "core/numbers/random.h"
+#include "core/run/interrupt.h"
+#include "core/run/runner.h"
+#include "core/run/stopwatch.h"
 
 using namespace flatspeckle;
 

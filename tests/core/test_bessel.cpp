@@ -5,8 +5,8 @@
 #include <boost/multiprecision/cpp_complex.hpp>
 #include <doctest/doctest.h>
 
-#include "core/bessel.h"
-#include "core/csv.h"
+#include "core/keys/csv.h"
+#include "core/numbers/bessel.h"
 #include "tests/core/bessel_oracle.h"
 
 namespace flatspeckle {

@@ -6,8 +6,8 @@
 
 #include <doctest/doctest.h>
 
-#include "core/csv.h"
 #include "core/error.h"
+#include "core/keys/csv.h"
 
 using namespace flatspeckle;
 

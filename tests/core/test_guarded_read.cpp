@@ -4,7 +4,7 @@
 #include <doctest/doctest.h>
 
 #include "core/error.h"
-#include "core/guarded_read.h"
+#include "core/result/guarded_read.h"
 
 namespace flatspeckle {
 

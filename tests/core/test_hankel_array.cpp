@@ -5,10 +5,10 @@
 
 #include <doctest/doctest.h>
 
-#include "core/bessel.h"
-#include "core/csv.h"
-#include "core/hankel_array.h"
-#include "core/hankel_fit.h"
+#include "core/keys/csv.h"
+#include "core/numbers/bessel.h"
+#include "core/numbers/hankel_array.h"
+#include "core/numbers/hankel_fit.h"
 #include "tests/core/bessel_oracle.h"
 
 namespace flatspeckle {

@@ -4,7 +4,7 @@
 #include <boost/math/distributions/chi_squared.hpp>
 #include <doctest/doctest.h>
 
-#include "core/random.h"
+#include "core/numbers/random.h"
 
 using namespace flatspeckle;
 

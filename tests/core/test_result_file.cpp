@@ -13,12 +13,12 @@
 
 #include <doctest/doctest.h>
 
-#include "core/atomic_file.h"
 #include "core/error.h"
-#include "core/provenance.h"
-#include "core/result_file.h"
-#include "core/result_reader.h"
-#include "core/run_state_file.h"
+#include "core/result/atomic_file.h"
+#include "core/result/provenance.h"
+#include "core/result/result_file.h"
+#include "core/result/result_reader.h"
+#include "core/result/run_state_file.h"
 
 using namespace flatspeckle;
 namespace fs = std::filesystem;

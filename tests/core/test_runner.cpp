@@ -6,9 +6,9 @@
 
 #include <doctest/doctest.h>
 
-#include "core/interrupt.h"
-#include "core/random.h"
-#include "core/runner.h"
+#include "core/numbers/random.h"
+#include "core/run/interrupt.h"
+#include "core/run/runner.h"
 
 using namespace flatspeckle;
 

@@ -3,8 +3,8 @@
 
 #include <doctest/doctest.h>
 
-#include "core/bessel.h"
-#include "core/scaled_bessel.h"
+#include "core/numbers/bessel.h"
+#include "core/numbers/scaled_bessel.h"
 
 namespace flatspeckle {
 

@@ -6,9 +6,9 @@
 
 #include <doctest/doctest.h>
 
-#include "core/result_file.h"
-#include "core/result_reader.h"
-#include "core/sealed_file.h"
+#include "core/result/result_file.h"
+#include "core/result/result_reader.h"
+#include "core/result/sealed_file.h"
 
 using namespace flatspeckle;
 

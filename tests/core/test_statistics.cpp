@@ -4,8 +4,8 @@
 #include <doctest/doctest.h>
 
 #include "core/error.h"
-#include "core/random.h"
-#include "core/statistics.h"
+#include "core/numbers/random.h"
+#include "core/numbers/statistics.h"
 
 using namespace flatspeckle;
 

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "flatland/domain.h"
+#include "flatland/media/domain.h"
 
 namespace flatspeckle::tests {
 

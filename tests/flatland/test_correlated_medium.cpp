@@ -4,8 +4,8 @@
 #include <boost/math/quadrature/gauss_kronrod.hpp>
 #include <doctest/doctest.h>
 
-#include "flatland/medium.h"
-#include "flatland/structure_factor.h"
+#include "flatland/media/medium.h"
+#include "flatland/media/structure_factor.h"
 
 using namespace flatspeckle;
 

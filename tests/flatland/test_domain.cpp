@@ -3,7 +3,7 @@
 
 #include <doctest/doctest.h>
 
-#include "flatland/domain.h"
+#include "flatland/media/domain.h"
 
 using namespace flatspeckle;
 

@@ -4,10 +4,10 @@
 #include <doctest/doctest.h>
 
 #include "core/error.h"
-#include "flatland/equilibrium_disks.h"
-#include "flatland/event_chain.h"
-#include "flatland/placement.h"
-#include "flatland/structure_factor.h"
+#include "flatland/media/structure_factor.h"
+#include "flatland/placement/equilibrium_disks.h"
+#include "flatland/placement/event_chain.h"
+#include "flatland/placement/placement.h"
 #include "periodic_disks.h"
 #include "tests/statistics.h"
 

@@ -2,8 +2,8 @@
 
 #include <doctest/doctest.h>
 
-#include "flatland/event_chain.h"
-#include "flatland/structure_factor.h"
+#include "flatland/media/structure_factor.h"
+#include "flatland/placement/event_chain.h"
 #include "periodic_disks.h"
 
 using namespace flatspeckle;

@@ -6,7 +6,7 @@
 #include <doctest/doctest.h>
 
 #include "core/error.h"
-#include "flatland/placement.h"
+#include "flatland/placement/placement.h"
 
 using namespace flatspeckle;
 

@@ -4,7 +4,7 @@
 #include <doctest/doctest.h>
 
 #include "core/error.h"
-#include "flatland/request.h"
+#include "flatland/request/request.h"
 
 using namespace flatspeckle;
 

@@ -3,7 +3,7 @@
 #include <boost/multiprecision/cpp_complex.hpp>
 #include <doctest/doctest.h>
 
-#include "flatland/scatterer.h"
+#include "flatland/scatterers/scatterer.h"
 #include "tests/core/bessel_oracle.h"
 
 namespace flatspeckle {

@@ -4,7 +4,7 @@
 #include <doctest/doctest.h>
 
 #include "core/error.h"
-#include "flatland/scene.h"
+#include "flatland/scene/scene.h"
 
 using namespace flatspeckle;
 

@@ -5,8 +5,8 @@
 
 #include <doctest/doctest.h>
 
-#include "core/random.h"
-#include "flatland/structure_factor.h"
+#include "core/numbers/random.h"
+#include "flatland/media/structure_factor.h"
 
 using namespace flatspeckle;
 

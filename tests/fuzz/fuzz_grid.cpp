@@ -5,10 +5,10 @@
 
 #include "apps/index_field_options.h"
 #include "apps/ray_tracing.h"
-#include "core/hdf5_handle.h"
-#include "grin/curved_space.h"
-#include "grin/field_file.h"
-#include "grin/render_job.h"
+#include "core/result/hdf5_handle.h"
+#include "grin/estimators/render_job.h"
+#include "grin/media/field_file.h"
+#include "grin/space/curved_space.h"
 #include "tests/fuzz/input.h"
 
 // Grids of the index and of the density, of any numbers, and a few rays or flights through those

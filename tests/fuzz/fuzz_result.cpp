@@ -4,8 +4,8 @@
 #include <iterator>
 #include <vector>
 
-#include "core/hdf5_handle.h"
-#include "core/result_reader.h"
+#include "core/result/hdf5_handle.h"
+#include "core/result/result_reader.h"
 #include "tests/fuzz/input.h"
 #include "tests/fuzz/result_kinds.h"
 

@@ -1,5 +1,5 @@
 #include "apps/shard_folder.h"
-#include "core/sealed_file.h"
+#include "core/result/sealed_file.h"
 #include "tests/fuzz/input.h"
 #include "tests/fuzz/result_kinds.h"
 

@@ -17,7 +17,7 @@
 #include "apps/scene_field.h"
 #include "apps/scene_options.h"
 #include "apps/subcommands.h"
-#include "core/result_file.h"
+#include "core/result/result_file.h"
 #include "tests/fuzz/input.h"
 
 // Scene files. The first line says whose, and may go on with flags of the command line:

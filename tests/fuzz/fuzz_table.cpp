@@ -4,9 +4,9 @@
 #include "apps/ray_starts.h"
 #include "apps/scene_field.h"
 #include "apps/sweep_plan.h"
-#include "core/csv.h"
-#include "flatland/placement.h"
-#include "flatland/sensor.h"
+#include "core/keys/csv.h"
+#include "flatland/placement/placement.h"
+#include "flatland/request/sensor.h"
 #include "tests/fuzz/input.h"
 
 // Tables. The first line, a comment, says what they hold: "# disks".

@@ -3,12 +3,12 @@
 #include <numbers>
 
 #include "apps/point_result.h"
-#include "core/result_file.h"
-#include "core/result_reader.h"
-#include "core/run_merger.h"
-#include "core/run_state_file.h"
-#include "flatland/structure_table.h"
-#include "grin/field_file.h"
+#include "core/result/result_file.h"
+#include "core/result/result_reader.h"
+#include "core/result/run_state_file.h"
+#include "core/run/run_merger.h"
+#include "flatland/media/structure_table.h"
+#include "grin/media/field_file.h"
 #include "tests/fuzz/input.h"
 
 namespace flatspeckle::fuzz {

@@ -3,12 +3,12 @@
 #include <cmath>
 #include <vector>
 
-#include "core/random.h"
-#include "grin/gaussian_blobs.h"
-#include "grin/radial_field.h"
-#include "grin/ray.h"
-#include "grin/spline_field.h"
-#include "grin/start_directions.h"
+#include "core/numbers/random.h"
+#include "grin/fields/gaussian_blobs.h"
+#include "grin/fields/radial_field.h"
+#include "grin/fields/spline_field.h"
+#include "grin/media/start_directions.h"
+#include "grin/rays/ray.h"
 
 namespace flatspeckle::grin::tests {
 

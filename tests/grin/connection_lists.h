@@ -5,7 +5,7 @@
 
 #include <doctest/doctest.h>
 
-#include "grin/connection_solver.h"
+#include "grin/connections/connection_solver.h"
 #include "tests/grin/harmonic_curves.h"
 
 namespace flatspeckle::grin::tests {

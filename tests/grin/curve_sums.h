@@ -6,8 +6,8 @@
 
 #include <doctest/doctest.h>
 
-#include "core/parallel.h"
-#include "grin/connection_solver.h"
+#include "core/run/parallel.h"
+#include "grin/connections/connection_solver.h"
 #include "tests/grin/closed_fields.h"
 #include "tests/grin/harmonic_curves.h"
 

@@ -5,7 +5,7 @@
 
 #include <Eigen/Core>
 
-#include "grin/vec3.h"
+#include "grin/fields/vec3.h"
 
 namespace flatspeckle::grin::tests {
 

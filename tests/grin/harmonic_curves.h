@@ -4,7 +4,7 @@
 #include <numbers>
 #include <vector>
 
-#include "grin/vec3.h"
+#include "grin/fields/vec3.h"
 
 namespace flatspeckle::grin::tests {
 

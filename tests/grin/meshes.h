@@ -1,6 +1,6 @@
 #pragma once
 
-#include "grin/distance_grid.h"
+#include "grin/surfaces/distance_grid.h"
 
 namespace flatspeckle::grin::tests {
 

@@ -7,9 +7,9 @@
 
 #include <doctest/doctest.h>
 
-#include "grin/geometric_spreading.h"
-#include "grin/path_end.h"
-#include "grin/start_directions.h"
+#include "grin/connections/geometric_spreading.h"
+#include "grin/ends/path_end.h"
+#include "grin/media/start_directions.h"
 #include "tests/statistics.h"
 
 namespace flatspeckle::grin {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "grin/render_job.h"
+#include "grin/estimators/render_job.h"
 #include "tests/grin/photon_walk.h"
 
 namespace flatspeckle::grin::tests {

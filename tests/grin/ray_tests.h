@@ -4,10 +4,10 @@
 #include <numbers>
 #include <vector>
 
-#include "core/random.h"
-#include "grin/lenses.h"
-#include "grin/ray_step.h"
-#include "grin/spline_field.h"
+#include "core/numbers/random.h"
+#include "grin/fields/lenses.h"
+#include "grin/fields/spline_field.h"
+#include "grin/rays/ray_step.h"
 
 namespace flatspeckle::grin::tests {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "grin/render_job.h"
+#include "grin/estimators/render_job.h"
 #include "tests/grin/closed_fields.h"
 
 namespace flatspeckle::grin::tests {

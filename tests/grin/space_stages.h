@@ -3,8 +3,8 @@
 #include <memory>
 #include <vector>
 
-#include "grin/curved_space.h"
-#include "grin/straight_space.h"
+#include "grin/space/curved_space.h"
+#include "grin/space/straight_space.h"
 #include "tests/grin/closed_fields.h"
 
 namespace flatspeckle::grin::tests {

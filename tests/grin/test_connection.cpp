@@ -6,10 +6,10 @@
 #include <doctest/doctest.h>
 
 #include "core/error.h"
-#include "grin/connection_solver.h"
-#include "grin/gaussian_blobs.h"
-#include "grin/guides.h"
-#include "grin/lenses.h"
+#include "grin/connections/connection_solver.h"
+#include "grin/fields/gaussian_blobs.h"
+#include "grin/fields/guides.h"
+#include "grin/fields/lenses.h"
 #include "tests/grin/closed_fields.h"
 #include "tests/grin/connection_lists.h"
 

@@ -4,10 +4,10 @@
 #include <doctest/doctest.h>
 
 #include "core/error.h"
-#include "core/random.h"
-#include "grin/mesh_distance.h"
-#include "grin/signed_distance.h"
-#include "grin/trace.h"
+#include "core/numbers/random.h"
+#include "grin/rays/trace.h"
+#include "grin/surfaces/mesh_distance.h"
+#include "grin/surfaces/signed_distance.h"
 
 namespace flatspeckle::grin {
 

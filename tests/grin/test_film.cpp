@@ -3,8 +3,8 @@
 #include <doctest/doctest.h>
 
 #include "core/error.h"
-#include "core/random.h"
-#include "grin/film.h"
+#include "core/numbers/random.h"
+#include "grin/estimators/film.h"
 
 namespace flatspeckle::grin {
 

@@ -6,7 +6,7 @@
 #include <doctest/doctest.h>
 
 #include "core/error.h"
-#include "grin/trace.h"
+#include "grin/rays/trace.h"
 #include "tests/grin/meshes.h"
 #include "tests/grin/ray_tests.h"
 #include "tests/grin/space_stages.h"

@@ -1,7 +1,7 @@
 #include <doctest/doctest.h>
 
-#include "core/random.h"
-#include "grin/free_flight.h"
+#include "core/numbers/random.h"
+#include "grin/media/free_flight.h"
 #include "tests/statistics.h"
 
 namespace flatspeckle::grin {

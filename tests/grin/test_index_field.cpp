@@ -2,9 +2,9 @@
 
 #include <doctest/doctest.h>
 
-#include "core/bessel.h"
 #include "core/error.h"
-#include "grin/any_index_field.h"
+#include "core/numbers/bessel.h"
+#include "grin/fields/any_index_field.h"
 #include "tests/grin/derivatives.h"
 
 namespace flatspeckle::grin {

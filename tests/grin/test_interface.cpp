@@ -2,7 +2,7 @@
 
 #include <doctest/doctest.h>
 
-#include "grin/interface.h"
+#include "grin/surfaces/interface.h"
 
 namespace flatspeckle::grin {
 

@@ -3,7 +3,7 @@
 
 #include <doctest/doctest.h>
 
-#include "grin/connection_solver.h"
+#include "grin/connections/connection_solver.h"
 #include "tests/grin/harmonic_curves.h"
 #include "tests/grin/space_stages.h"
 

@@ -1,8 +1,8 @@
 #include <doctest/doctest.h>
 
 #include "core/error.h"
-#include "grin/geometric_spreading.h"
-#include "grin/light.h"
+#include "grin/connections/geometric_spreading.h"
+#include "grin/ends/light.h"
 #include "tests/grin/path_ends.h"
 
 namespace flatspeckle::grin {

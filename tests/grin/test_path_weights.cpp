@@ -3,9 +3,9 @@
 
 #include <doctest/doctest.h>
 
-#include "core/random.h"
-#include "grin/curved_space.h"
-#include "grin/path_join.h"
+#include "core/numbers/random.h"
+#include "grin/estimators/path_join.h"
+#include "grin/space/curved_space.h"
 #include "tests/grin/closed_fields.h"
 
 namespace flatspeckle::grin::tests {

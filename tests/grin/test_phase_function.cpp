@@ -3,8 +3,8 @@
 
 #include <doctest/doctest.h>
 
-#include "core/random.h"
-#include "grin/phase_function.h"
+#include "core/numbers/random.h"
+#include "grin/media/phase_function.h"
 #include "tests/statistics.h"
 
 namespace flatspeckle::grin {

@@ -5,7 +5,7 @@
 #include <boost/math/quadrature/gauss.hpp>
 #include <doctest/doctest.h>
 
-#include "grin/photon_map.h"
+#include "grin/estimators/photon_map.h"
 #include "tests/grin/meshes.h"
 #include "tests/grin/render_tests.h"
 

@@ -4,8 +4,8 @@
 #include <Eigen/Geometry>
 #include <doctest/doctest.h>
 
-#include "grin/curved_space.h"
-#include "grin/light.h"
+#include "grin/ends/light.h"
+#include "grin/space/curved_space.h"
 #include "tests/grin/example_sensors.h"
 
 namespace flatspeckle::grin {

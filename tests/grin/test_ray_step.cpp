@@ -2,10 +2,10 @@
 
 #include <doctest/doctest.h>
 
-#include "grin/guides.h"
-#include "grin/ramps.h"
-#include "grin/ray_invariants.h"
-#include "grin/ultrasound.h"
+#include "grin/fields/guides.h"
+#include "grin/fields/ramps.h"
+#include "grin/fields/ultrasound.h"
+#include "grin/rays/ray_invariants.h"
 #include "tests/grin/derivatives.h"
 #include "tests/grin/ray_tests.h"
 #include "tests/statistics.h"

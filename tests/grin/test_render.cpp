@@ -1,7 +1,7 @@
 #include <doctest/doctest.h>
 
 #include "core/error.h"
-#include "core/stopwatch.h"
+#include "core/run/stopwatch.h"
 #include "tests/grin/furnace.h"
 
 namespace flatspeckle::grin::tests {

@@ -7,11 +7,11 @@
 #include <doctest/doctest.h>
 
 #include "core/error.h"
-#include "core/result_file.h"
-#include "grin/field_file.h"
-#include "grin/geometric_spreading.h"
-#include "grin/part_medium.h"
-#include "grin/stage.h"
+#include "core/result/result_file.h"
+#include "grin/connections/geometric_spreading.h"
+#include "grin/media/field_file.h"
+#include "grin/space/part_medium.h"
+#include "grin/space/stage.h"
 #include "tests/grin/space_stages.h"
 #include "tests/statistics.h"
 

@@ -7,9 +7,9 @@
 #include <doctest/doctest.h>
 
 #include "core/error.h"
-#include "core/result_file.h"
-#include "grin/field_file.h"
-#include "grin/spline_field.h"
+#include "core/result/result_file.h"
+#include "grin/fields/spline_field.h"
+#include "grin/media/field_file.h"
 #include "tests/grin/derivatives.h"
 
 namespace flatspeckle::grin {

@@ -3,12 +3,12 @@
 #include <Eigen/Geometry>
 #include <doctest/doctest.h>
 
-#include "core/random.h"
-#include "grin/geometric_spreading.h"
-#include "grin/guides.h"
-#include "grin/lenses.h"
-#include "grin/ray_step.h"
-#include "grin/start_directions.h"
+#include "core/numbers/random.h"
+#include "grin/connections/geometric_spreading.h"
+#include "grin/fields/guides.h"
+#include "grin/fields/lenses.h"
+#include "grin/media/start_directions.h"
+#include "grin/rays/ray_step.h"
 #include "tests/grin/closed_fields.h"
 
 namespace flatspeckle::grin {

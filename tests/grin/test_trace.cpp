@@ -3,12 +3,12 @@
 #include <doctest/doctest.h>
 
 #include "core/error.h"
-#include "grin/gaussian_blobs.h"
-#include "grin/guides.h"
-#include "grin/interface.h"
-#include "grin/ramps.h"
-#include "grin/ray_invariants.h"
-#include "grin/trace.h"
+#include "grin/fields/gaussian_blobs.h"
+#include "grin/fields/guides.h"
+#include "grin/fields/ramps.h"
+#include "grin/rays/ray_invariants.h"
+#include "grin/rays/trace.h"
+#include "grin/surfaces/interface.h"
 #include "tests/grin/ray_tests.h"
 #include "tests/statistics.h"
 

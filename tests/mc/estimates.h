@@ -5,8 +5,8 @@
 
 #include <doctest/doctest.h>
 
-#include "flatland/scene.h"
-#include "mc/covariance_estimator.h"
+#include "flatland/scene/scene.h"
+#include "mc/estimators/covariance_estimator.h"
 
 namespace flatspeckle::mc::tests {
 

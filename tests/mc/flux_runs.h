@@ -1,6 +1,6 @@
 #pragma once
 
-#include "mc/flux.h"
+#include "mc/estimators/flux.h"
 #include "tests/mc/discrete_ordinates.h"
 #include "tests/mc/estimates.h"
 

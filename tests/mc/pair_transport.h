@@ -3,7 +3,7 @@
 #include <functional>
 #include <vector>
 
-#include "core/complex.h"
+#include "core/numbers/complex.h"
 
 namespace flatspeckle::mc::tests {
 

@@ -3,8 +3,8 @@
 #include <doctest/doctest.h>
 
 #include "core/error.h"
-#include "mc/brownian.h"
-#include "mc/diffusion.h"
+#include "mc/estimators/brownian.h"
+#include "mc/theory/diffusion.h"
 #include "tests/mc/estimates.h"
 
 namespace flatspeckle::mc {

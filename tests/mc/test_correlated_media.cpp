@@ -7,7 +7,7 @@
 #define lapack_complex_float std::complex<float>
 #include <lapacke.h>
 
-#include "flatland/structure_factor.h"
+#include "flatland/media/structure_factor.h"
 #include "tests/mc/estimates.h"
 
 namespace flatspeckle::mc {

@@ -2,7 +2,7 @@
 
 #include <doctest/doctest.h>
 
-#include "mc/end_factors.h"
+#include "mc/ends/end_factors.h"
 #include "tests/mc/estimates.h"
 
 namespace flatspeckle::mc {

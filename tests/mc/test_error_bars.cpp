@@ -3,7 +3,7 @@
 
 #include <doctest/doctest.h>
 
-#include "mc/memory_effect.h"
+#include "mc/theory/memory_effect.h"
 #include "tests/mc/discrete_ordinates.h"
 #include "tests/mc/estimates.h"
 

@@ -2,8 +2,8 @@
 
 #include <doctest/doctest.h>
 
-#include "mc/coherent_field.h"
-#include "mc/memory_effect.h"
+#include "mc/ends/coherent_field.h"
+#include "mc/theory/memory_effect.h"
 #include "tests/mc/estimates.h"
 #include "tests/mc/slab_theory.h"
 

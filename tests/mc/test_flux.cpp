@@ -2,9 +2,9 @@
 
 #include <boost/math/distributions/chi_squared.hpp>
 
-#include "core/random.h"
-#include "grin/phase_function.h"
-#include "mc/flux.h"
+#include "core/numbers/random.h"
+#include "grin/media/phase_function.h"
+#include "mc/estimators/flux.h"
 #include "tests/mc/flux_runs.h"
 
 namespace flatspeckle::mc {

@@ -4,9 +4,9 @@
 #include <doctest/doctest.h>
 
 #include "core/error.h"
-#include "mc/end_factors.h"
-#include "mc/gradient.h"
-#include "mc/memory_effect.h"
+#include "mc/ends/end_factors.h"
+#include "mc/estimators/gradient.h"
+#include "mc/theory/memory_effect.h"
 #include "tests/mc/estimates.h"
 #include "tests/mc/slab_theory.h"
 

@@ -2,7 +2,7 @@
 
 #include <doctest/doctest.h>
 
-#include "mc/importance.h"
+#include "mc/walk/importance.h"
 #include "tests/mc/estimates.h"
 #include "tests/mc/slab_theory.h"
 #include "tests/mc/textbook.h"

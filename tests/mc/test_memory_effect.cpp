@@ -3,8 +3,8 @@
 
 #include <doctest/doctest.h>
 
-#include "mc/diffusion.h"
-#include "mc/memory_effect.h"
+#include "mc/theory/diffusion.h"
+#include "mc/theory/memory_effect.h"
 #include "tests/mc/estimates.h"
 
 namespace flatspeckle::mc {

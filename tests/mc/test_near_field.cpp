@@ -3,8 +3,8 @@
 
 #include <doctest/doctest.h>
 
-#include "mc/memory_effect.h"
-#include "mc/tilt_shift.h"
+#include "mc/theory/memory_effect.h"
+#include "mc/theory/tilt_shift.h"
 #include "tests/mc/estimates.h"
 
 namespace flatspeckle::mc {

@@ -3,8 +3,8 @@
 
 #include <doctest/doctest.h>
 
-#include "flatland/scatterer.h"
-#include "mc/scattering.h"
+#include "flatland/scatterers/scatterer.h"
+#include "mc/ends/scattering.h"
 #include "tests/mc/estimates.h"
 #include "tests/statistics.h"
 

@@ -2,8 +2,8 @@
 
 #include <doctest/doctest.h>
 
-#include "mc/end_factors.h"
-#include "mc/memory_effect.h"
+#include "mc/ends/end_factors.h"
+#include "mc/theory/memory_effect.h"
 #include "tests/mc/estimates.h"
 
 namespace flatspeckle::mc {

@@ -2,7 +2,7 @@
 
 #include <doctest/doctest.h>
 
-#include "mc/memory_effect.h"
+#include "mc/theory/memory_effect.h"
 #include "tests/mc/estimates.h"
 #include "tests/mc/slab_theory.h"
 

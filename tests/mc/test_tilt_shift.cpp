@@ -2,8 +2,8 @@
 
 #include <doctest/doctest.h>
 
-#include "mc/diffusion.h"
-#include "mc/tilt_shift.h"
+#include "mc/theory/diffusion.h"
+#include "mc/theory/tilt_shift.h"
 #include "tests/mc/estimates.h"
 
 namespace flatspeckle::mc {

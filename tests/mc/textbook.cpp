@@ -7,8 +7,8 @@
 #include <numbers>
 #include <vector>
 
-#include "core/random.h"
-#include "grin/phase_function.h"
+#include "core/numbers/random.h"
+#include "grin/media/phase_function.h"
 
 namespace flatspeckle::mc::tests {
 

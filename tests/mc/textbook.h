@@ -2,8 +2,8 @@
 
 #include <cstdint>
 
-#include "flatland/field_moments.h"
-#include "flatland/scene.h"
+#include "flatland/request/field_moments.h"
+#include "flatland/scene/scene.h"
 
 namespace flatspeckle::mc::tests {
 

@@ -6,9 +6,9 @@
 
 #include <doctest/doctest.h>
 
-#include "flatland/scene.h"
-#include "mc/brownian.h"
-#include "wave_solver/wave_solution.h"
+#include "flatland/scene/scene.h"
+#include "mc/estimators/brownian.h"
+#include "wave_solver/solutions/wave_solution.h"
 
 using namespace flatspeckle;
 

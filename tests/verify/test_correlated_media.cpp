@@ -6,10 +6,10 @@
 
 #include <doctest/doctest.h>
 
-#include "core/csv.h"
-#include "flatland/scene.h"
-#include "flatland/structure_factor.h"
-#include "mc/covariance_estimator.h"
+#include "core/keys/csv.h"
+#include "flatland/media/structure_factor.h"
+#include "flatland/scene/scene.h"
+#include "mc/estimators/covariance_estimator.h"
 
 using namespace flatspeckle;
 

@@ -7,9 +7,9 @@
 
 #include <doctest/doctest.h>
 
-#include "flatland/scene.h"
-#include "mc/covariance_estimator.h"
-#include "wave_solver/ensemble.h"
+#include "flatland/scene/scene.h"
+#include "mc/estimators/covariance_estimator.h"
+#include "wave_solver/solutions/ensemble.h"
 
 using namespace flatspeckle;
 

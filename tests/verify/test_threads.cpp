@@ -1,9 +1,9 @@
 // The same seed and samples give the same sums bit for bit, whatever the number of threads.
 #include <doctest/doctest.h>
 
-#include "flatland/scene.h"
-#include "mc/covariance_estimator.h"
-#include "wave_solver/ensemble.h"
+#include "flatland/scene/scene.h"
+#include "mc/estimators/covariance_estimator.h"
+#include "wave_solver/solutions/ensemble.h"
 
 using namespace flatspeckle;
 

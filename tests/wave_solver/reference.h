@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "core/complex.h"
-#include "flatland/placement.h"
+#include "core/numbers/complex.h"
+#include "flatland/placement/placement.h"
 
 namespace flatspeckle::wave {
 

@@ -6,11 +6,11 @@
 #include <doctest/doctest.h>
 
 #include "core/error.h"
-#include "core/random.h"
+#include "core/numbers/random.h"
 #include "reference.h"
-#include "wave_solver/basis_order.h"
-#include "wave_solver/neighbours.h"
-#include "wave_solver/wave_solution.h"
+#include "wave_solver/equations/basis_order.h"
+#include "wave_solver/equations/neighbours.h"
+#include "wave_solver/solutions/wave_solution.h"
 
 namespace flatspeckle::wave {
 

@@ -3,8 +3,8 @@
 
 #include <doctest/doctest.h>
 
-#include "core/random.h"
-#include "wave_solver/box_tree.h"
+#include "core/numbers/random.h"
+#include "wave_solver/skeletons/box_tree.h"
 
 namespace flatspeckle::wave {
 

@@ -3,10 +3,10 @@
 
 #include <doctest/doctest.h>
 
-#include "core/bessel.h"
 #include "core/error.h"
+#include "core/numbers/bessel.h"
 #include "reference.h"
-#include "wave_solver/cylinder_waves.h"
+#include "wave_solver/equations/cylinder_waves.h"
 
 namespace flatspeckle::wave {
 

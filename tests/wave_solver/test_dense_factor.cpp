@@ -3,11 +3,11 @@
 
 #include <doctest/doctest.h>
 
-#include "core/random.h"
+#include "core/numbers/random.h"
 #include "reference.h"
-#include "wave_solver/dense_factor.h"
-#include "wave_solver/symmetric_factor.h"
-#include "wave_solver/t_matrix_system.h"
+#include "wave_solver/dense/dense_factor.h"
+#include "wave_solver/dense/symmetric_factor.h"
+#include "wave_solver/equations/t_matrix_system.h"
 
 namespace flatspeckle::wave {
 

@@ -5,10 +5,10 @@
 #include <omp.h>
 
 #include "core/error.h"
-#include "core/random.h"
+#include "core/numbers/random.h"
 #include "reference.h"
-#include "wave_solver/dense_factor.h"
-#include "wave_solver/fast_direct.h"
+#include "wave_solver/dense/dense_factor.h"
+#include "wave_solver/skeletons/fast_direct.h"
 
 namespace flatspeckle::wave {
 

@@ -4,10 +4,10 @@
 #include <doctest/doctest.h>
 #include <omp.h>
 
-#include "core/random.h"
+#include "core/numbers/random.h"
 #include "reference.h"
-#include "wave_solver/fast_product.h"
-#include "wave_solver/ring_product.h"
+#include "wave_solver/sums/fast_product.h"
+#include "wave_solver/sums/ring_product.h"
 
 namespace flatspeckle::wave {
 

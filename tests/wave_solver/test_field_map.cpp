@@ -5,8 +5,8 @@
 #include <doctest/doctest.h>
 
 #include "reference.h"
-#include "wave_solver/field_map.h"
-#include "wave_solver/interior_field.h"
+#include "wave_solver/maps/field_map.h"
+#include "wave_solver/solutions/interior_field.h"
 
 namespace flatspeckle::wave {
 

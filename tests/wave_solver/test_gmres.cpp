@@ -3,11 +3,11 @@
 
 #include <doctest/doctest.h>
 
-#include "core/random.h"
+#include "core/numbers/random.h"
 #include "reference.h"
-#include "wave_solver/fast_product.h"
-#include "wave_solver/gmres.h"
-#include "wave_solver/wave_solution.h"
+#include "wave_solver/solutions/wave_solution.h"
+#include "wave_solver/sums/fast_product.h"
+#include "wave_solver/sums/gmres.h"
 
 namespace flatspeckle::wave {
 

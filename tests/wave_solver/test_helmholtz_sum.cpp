@@ -3,11 +3,11 @@
 #include <doctest/doctest.h>
 #include <omp.h>
 
-#include "core/bessel.h"
-#include "core/random.h"
+#include "core/numbers/bessel.h"
+#include "core/numbers/random.h"
 #include "reference.h"
-#include "wave_solver/grid_sum.h"
-#include "wave_solver/helmholtz_sum.h"
+#include "wave_solver/sums/grid_sum.h"
+#include "wave_solver/sums/helmholtz_sum.h"
 
 namespace flatspeckle::wave {
 

@@ -3,7 +3,7 @@
 
 #include <doctest/doctest.h>
 
-#include "wave_solver/interpolative.h"
+#include "wave_solver/skeletons/interpolative.h"
 
 namespace flatspeckle::wave {
 

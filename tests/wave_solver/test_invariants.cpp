@@ -7,7 +7,7 @@
 #include <doctest/doctest.h>
 
 #include "reference.h"
-#include "wave_solver/wave_solution.h"
+#include "wave_solver/solutions/wave_solution.h"
 
 namespace flatspeckle::wave {
 

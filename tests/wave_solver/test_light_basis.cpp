@@ -4,8 +4,8 @@
 
 #include "core/error.h"
 #include "reference.h"
-#include "wave_solver/light_basis.h"
-#include "wave_solver/wave_solution.h"
+#include "wave_solver/solutions/light_basis.h"
+#include "wave_solver/solutions/wave_solution.h"
 
 namespace flatspeckle::wave {
 

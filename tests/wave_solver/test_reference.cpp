@@ -6,9 +6,9 @@
 
 #include <doctest/doctest.h>
 
-#include "core/csv.h"
+#include "core/keys/csv.h"
 #include "reference.h"
-#include "wave_solver/wave_solution.h"
+#include "wave_solver/solutions/wave_solution.h"
 
 namespace flatspeckle::wave {
 

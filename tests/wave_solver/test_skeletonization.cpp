@@ -3,9 +3,9 @@
 
 #include <doctest/doctest.h>
 
-#include "core/random.h"
+#include "core/numbers/random.h"
 #include "reference.h"
-#include "wave_solver/skeletonization.h"
+#include "wave_solver/skeletons/skeletonization.h"
 
 namespace flatspeckle::wave {
 

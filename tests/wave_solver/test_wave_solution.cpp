@@ -4,7 +4,7 @@
 
 #include "core/error.h"
 #include "reference.h"
-#include "wave_solver/wave_solution.h"
+#include "wave_solver/solutions/wave_solution.h"
 
 namespace flatspeckle::wave {
 

@@ -1,0 +1,90 @@
+#include "core/numbers/bessel.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <math.h>  // j0, j1, y0, y1, j0l, j1l are no part of standard C++
+#include <utility>
+
+namespace flatspeckle {
+
+namespace {
+
+// Beyond the turning point n = |z| the unwanted solution falls by exp(-1.89 d^1.5 / sqrt|z|) over d
+// orders; this start makes it 1e-20.
+int downward_start(int order, long double size) {
+  const double turning = std::max(static_cast<double>(order), static_cast<double>(size));
+  return static_cast<int>(std::ceil(turning + 9 * std::cbrt(turning))) + 12;
+}
+
+// r_{n-1} = 1 / (2n/z - r_n), calling store(n, r_n) for first <= n <= last.
+template <typename Number, typename Store>
+void ratios_downward(int first, int last, Number z, Store store) {
+  const int start = downward_start(last, std::abs(z));
+  const Number two_over_z = 2.0L / z;
+  Number ratio = 1.0L / (static_cast<long double>(start + 1) * two_over_z);
+  for (int n = start - 1; n >= first; --n) {
+    Number inverse = static_cast<long double>(n + 1) * two_over_z - ratio;
+    if (inverse == Number(0)) inverse = 1e-30L;  // a zero of J_n: any huge ratio will do
+    ratio = 1.0L / inverse;
+    if (n <= last) store(n, ratio);
+  }
+}
+
+// From J_0 and J_1 to J_order; J_n stands at j[n * stride].
+void continue_j(double x, int order, int stride, long double* j) {
+  const long double two_over_x = 2 / static_cast<long double>(x);
+  const int turning = x < order ? std::max(static_cast<int>(x), 1) : order;
+  long double before = j[0], value = j[stride];
+  for (int n = 1; n < turning; ++n) {
+    before = std::exchange(value, n * two_over_x * value - before);
+    j[(n + 1) * stride] = value;
+  }
+  if (turning >= order) return;
+  // Upwards is unstable beyond n = x, where J_n has no zeros: ratios take over.
+  ratios_downward(turning, order - 1, static_cast<long double>(x),
+                  [&](int n, long double ratio) { j[(n + 1) * stride] = ratio; });
+  for (int n = turning; n < order; ++n) j[(n + 1) * stride] *= j[n * stride];
+}
+
+}  // namespace
+
+std::vector<ExtendedComplex> bessel_ratios(int order, ExtendedComplex z) {
+  std::vector<ExtendedComplex> ratios(order + 1);
+  ratios_downward(0, order, z, [&](int n, ExtendedComplex ratio) { ratios[n] = ratio; });
+  return ratios;
+}
+
+std::vector<long double> bessel_j(int order, double x) {
+  assert(x > 0);
+  std::vector<long double> j(std::max(order, 1) + 1);
+  j[0] = ::j0l(x);
+  j[1] = ::j1l(x);
+  continue_j(x, order, 1, j.data());
+  j.resize(order + 1);
+  return j;
+}
+
+void hankel(double x, std::span<ExtendedComplex> h) {
+  assert(x > 0);
+  if (h.empty()) return;
+  const int order = static_cast<int>(h.size()) - 1;
+  h[0] = {::j0(x), ::y0(x)};
+  if (order == 0) return;
+  h[1] = {::j1(x), ::y1(x)};
+  continue_j(x, order, 2, reinterpret_cast<long double*>(h.data()));
+  const long double two_over_x = 2 / static_cast<long double>(x);
+  long double y_before = h[0].imag(), y = h[1].imag();
+  for (int n = 1; n < order; ++n) {
+    y_before = std::exchange(y, n * two_over_x * y - y_before);
+    h[n + 1].imag(y);
+  }
+}
+
+std::vector<ExtendedComplex> hankel(int order, double x) {
+  std::vector<ExtendedComplex> h(order + 1);
+  hankel(x, h);
+  return h;
+}
+
+}  // namespace flatspeckle

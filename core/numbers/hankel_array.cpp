@@ -1,0 +1,253 @@
+// Loops of straight-line arithmetic over a few lanes, which the compiler vectorises; libm is called
+// only beyond phase_end. No -ffast-math: the reduction of the phase and -inf rely on its absence.
+#include "core/numbers/hankel_array.h"
+
+#include <algorithm>
+#include <bit>
+#include <cassert>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+#include "core/numbers/hankel_fit.h"
+
+namespace flatspeckle {
+
+namespace {
+
+constexpr std::size_t lanes = 16;
+
+struct Lanes {
+  alignas(64) double at[lanes];
+};
+
+struct Hankel {
+  Lanes re, im;
+};
+
+using Limits = std::numeric_limits<double>;
+using Fits = std::array<HankelFit, 2>;
+
+// c[last] u^k + c[last - 2] u^(k-1) + .. by Horner's rule, written out: a loop inside a loop would
+// not vectorise, and neither would a call.
+template <std::size_t last, std::size_t size, std::size_t... m>
+[[gnu::always_inline]] inline double every_second(const std::array<double, size>& c, double u,
+                                                  std::index_sequence<m...>) {
+  double value = c[last];
+  ((value = value * u + c[last - 2 - 2 * m]), ...);
+  return value;
+}
+
+// Even and odd powers apart: two short chains of operations take less time than a long one.
+template <std::size_t size>
+[[gnu::always_inline]] inline double evaluate(const std::array<double, size>& c, double t) {
+  constexpr std::size_t odd = size - 1 - size % 2, even = size - 2 + size % 2;
+  return every_second<even>(c, t * t, std::make_index_sequence<even / 2>()) +
+         t * every_second<odd>(c, t * t, std::make_index_sequence<odd / 2>());
+}
+
+// cos(r) (first = 1) and sin(r) / r (first = 2) in r^2
+template <int degree>
+constexpr Polynomial<degree> taylor(int first) {
+  Polynomial<degree> c{1};
+  for (int k = 1; k <= degree; ++k)
+    c[k] = -c[k - 1] / ((first + 2 * k - 2.0) * (first + 2 * k - 1.0));
+  return c;
+}
+// to |r| = pi/2
+constexpr auto cosine_series = taylor<11>(1);
+constexpr auto sine_series = taylor<10>(2);
+
+// atanh(f) / f in f^2, to f^2 = 0.03
+constexpr auto atanh_series = [] {
+  Polynomial<10> c{};
+  for (int k = 0; k <= 10; ++k) c[k] = 1.0 / (2 * k + 1);
+  return c;
+}();
+
+// pi in three parts; a whole number below 2^23 times one of the first two is exact.
+constexpr double pi_high = 0x1.921fb54p+1;
+constexpr double pi_middle = 0x1.10b4611p-29;
+constexpr double pi_low = 0x1.4c4c6628b80dcp-58;
+constexpr double phase_end = 0x1p23;
+
+// Added, it leaves a number rounded in the lowest bits.
+constexpr double integer_bias = 0x1.8p52;
+
+// What the orders share above the border: the fit's variable and the parts of e^{ix} / sqrt(x).
+struct Outer {
+  Lanes t, cosine, sine;
+};
+
+void prepare(const double* x, double greatest, Outer& outer) {
+#pragma omp simd
+  for (std::size_t i = 0; i < lanes; ++i) {
+    const double inverse = 1 / x[i];
+    outer.t.at[i] = std::min(2 * HankelFit::border * inverse - 1, 1.0);
+    const double biased = x[i] * std::numbers::inv_pi + integer_bias;
+    const double half_turns = biased - integer_bias;
+    const double r = ((x[i] - half_turns * pi_high) - half_turns * pi_middle) - half_turns * pi_low;
+    const std::uint64_t odd = std::bit_cast<std::uint64_t>(biased) << 63;
+    const double size =
+        std::bit_cast<double>(std::bit_cast<std::uint64_t>(std::sqrt(inverse)) ^ odd);
+    outer.cosine.at[i] = size * evaluate(cosine_series, r * r);
+    outer.sine.at[i] = size * (r * evaluate(sine_series, r * r));
+  }
+  if (greatest < phase_end) return;
+  for (std::size_t i = 0; i < lanes; ++i) {
+    if (x[i] < phase_end) continue;
+    outer.cosine.at[i] = std::cos(x[i]) / std::sqrt(x[i]);
+    outer.sine.at[i] = std::sin(x[i]) / std::sqrt(x[i]);
+  }
+}
+
+void evaluate_outer(const HankelFit& fit, const Outer& outer, Hankel& h) {
+#pragma omp simd
+  for (std::size_t i = 0; i < lanes; ++i) {
+    const double a = evaluate(fit.outer_re, outer.t.at[i]);
+    const double b = evaluate(fit.outer_im, outer.t.at[i]);
+    h.re.at[i] = a * outer.cosine.at[i] - b * outer.sine.at[i];
+    h.im.at[i] = a * outer.sine.at[i] + b * outer.cosine.at[i];
+  }
+}
+
+// (2/pi) ln(x/2): x/2 = 2^e m with m in [1/sqrt 2, sqrt 2), ln m = 2 atanh((m-1)/(m+1)).
+void scaled_logarithms(const double* x, Lanes& out) {
+  constexpr auto least = std::bit_cast<std::uint64_t>(std::numbers::sqrt2 / 2);
+  constexpr auto one = std::bit_cast<std::uint64_t>(1.0);
+  constexpr auto bias = std::bit_cast<std::uint64_t>(integer_bias);
+#pragma omp simd
+  for (std::size_t i = 0; i < lanes; ++i) {
+    const std::uint64_t shifted = std::bit_cast<std::uint64_t>(x[i]) + (one - least);
+    const double e = std::bit_cast<double>(bias + (shifted >> 52)) - (integer_bias + 1024);
+    const double m = std::bit_cast<double>((shifted & 0xfffffffffffffu) + least);
+    const double f = (m - 1) / (m + 1);
+    const double logarithm = e * std::numbers::ln2 + 2 * f * evaluate(atanh_series, f * f);
+    out.at[i] = 2 / std::numbers::pi * logarithm;
+  }
+}
+
+template <int order>
+void evaluate_inner(const HankelFit& fit, const double* x, const Lanes& logarithm, Hankel& h) {
+#pragma omp simd
+  for (std::size_t i = 0; i < lanes; ++i) {
+    const double power = order == 0 ? 1 : x[i];
+    const double ratio = std::min(x[i] / HankelFit::border, 1.0), t = 2 * ratio * ratio - 1;
+    const double j = power * evaluate(fit.inner_j, t);
+    double y = power * evaluate(fit.inner_y, t) + logarithm.at[i] * j;
+    if constexpr (order == 1) y -= 2 / std::numbers::pi / x[i];
+    h.re.at[i] = j;
+    h.im.at[i] = y;
+  }
+}
+
+// A loop of its own: a choice between computed values would become a branch.
+void replace_inside(const double* x, const Hankel& inner, Hankel& h) {
+#pragma omp simd
+  for (std::size_t i = 0; i < lanes; ++i) {
+    const bool inside = x[i] < HankelFit::border;
+    h.re.at[i] = inside ? inner.re.at[i] : h.re.at[i];
+    h.im.at[i] = inside ? inner.im.at[i] : h.im.at[i];
+  }
+}
+
+// H_0 and, with two orders, H_1. A piece that no lane lies in is left out.
+template <int orders>
+void seeds(const Fits& fits, const double* x, Hankel (&h)[orders]) {
+  double least = x[0], greatest = least;
+#pragma omp simd reduction(min : least) reduction(max : greatest)
+  for (std::size_t i = 0; i < lanes; ++i) {
+    least = std::min(least, x[i]);
+    greatest = std::max(greatest, x[i]);
+  }
+  assert(least >= Limits::min() && greatest <= Limits::max());
+  if (greatest >= HankelFit::border) {
+    Outer outer;
+    prepare(x, greatest, outer);
+    for (int n = 0; n < orders; ++n) evaluate_outer(fits[n], outer, h[n]);
+  }
+  if (least >= HankelFit::border) return;
+  Lanes logarithm;
+  scaled_logarithms(x, logarithm);
+  Hankel inner;
+  evaluate_inner<0>(fits[0], x, logarithm, inner);
+  replace_inside(x, inner, h[0]);
+  if constexpr (orders == 1) return;
+  evaluate_inner<1>(fits[1], x, logarithm, inner);
+  replace_inside(x, inner, h[orders - 1]);
+}
+
+// before <- H_{n+1} = (2n/x) H_n - H_{n-1}; upwards the error stays small beside |H_n|. The bound
+// on Y_{n-1} makes -inf of what would be inf - inf.
+void recur(int n, const double* x, const Hankel& h, Hankel& before) {
+  // J_n |Y_n| is about 1 / (pi n) there: J_n does not show in |H_n|.
+  constexpr double hidden = -1e8;
+#pragma omp simd
+  for (std::size_t i = 0; i < lanes; ++i) {
+    const double factor = 2 * n / x[i];
+    const double j = factor * h.re.at[i] - before.re.at[i];
+    const double y = factor * h.im.at[i] - std::max(before.im.at[i], Limits::lowest());
+    before.re.at[i] = y < hidden ? 0 : j;
+    before.im.at[i] = y;
+  }
+}
+
+void store(const Lanes& values, std::size_t n, double* out) {
+  if (n == lanes)
+    std::copy_n(values.at, lanes, out);
+  else
+    std::copy_n(values.at, n, out);
+}
+
+void store(const Hankel& h, std::size_t n, Complex* out) {
+  if (n < lanes) {
+    Complex values[lanes];
+    store(h, lanes, values);
+    std::copy_n(values, n, out);
+    return;
+  }
+  for (std::size_t i = 0; i < lanes; ++i) out[i] = {h.re.at[i], h.im.at[i]};
+}
+
+// body(arguments, place of the first, number) for groups of `lanes` arguments; what the last group
+// lacks repeats its first.
+template <typename Body>
+void for_groups(std::span<const double> x, Body body) {
+  std::size_t first = 0;
+  for (; first + lanes <= x.size(); first += lanes) body(x.data() + first, first, lanes);
+  if (first == x.size()) return;
+  Lanes rest;
+  std::fill(rest.at, rest.at + lanes, x[first]);
+  std::copy(x.begin() + first, x.end(), rest.at);
+  body(rest.at, first, x.size() - first);
+}
+
+}  // namespace
+
+void hankel0(std::span<const double> x, std::span<Complex> h) {
+  assert(x.size() == h.size());
+  const Fits& fits = hankel_fits();
+  for_groups(x, [&](const double* arguments, std::size_t first, std::size_t n) {
+    Hankel values[1];
+    seeds(fits, arguments, values);
+    store(values[0], n, h.data() + first);
+  });
+}
+
+void hankel_sets(std::span<const double> x, int order, double* re, double* im) {
+  assert(order >= 0);
+  const Fits& fits = hankel_fits();
+  for_groups(x, [&](const double* arguments, std::size_t first, std::size_t n) {
+    Hankel values[2];
+    seeds(fits, arguments, values);
+    for (int m = 0; m <= order; ++m) {
+      if (m > 1) recur(m - 1, arguments, values[(m - 1) % 2], values[m % 2]);
+      store(values[m % 2].re, n, re + m * x.size() + first);
+      store(values[m % 2].im, n, im + m * x.size() + first);
+    }
+  });
+}
+
+}  // namespace flatspeckle

@@ -1,0 +1,121 @@
+#include "core/numbers/statistics.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+#include "core/error.h"
+
+namespace flatspeckle {
+
+namespace {
+
+std::size_t group_count(std::size_t size) {
+  constexpr std::size_t most_groups = 256, fewest_groups = 16, most_bytes = std::size_t{1} << 28;
+  return std::clamp(most_bytes / (sizeof(Complex) * std::max<std::size_t>(size, 1)), fewest_groups,
+                    most_groups);
+}
+
+}  // namespace
+
+GroupedSums::GroupedSums(std::size_t size)
+    : size_(size), samples_(group_count(size)), sums_(samples_.size() * size) {}
+
+void GroupedSums::add(double samples, std::span<const Complex> sums) {
+  assert(sums.size() == size_);
+  const std::size_t group = batches_ % samples_.size();
+  samples_[group] += samples;
+  std::transform(sums.begin(), sums.end(), sums_.begin() + group * size_,
+                 sums_.begin() + group * size_, [](Complex x, Complex sum) { return sum + x; });
+  ++batches_;
+}
+
+std::size_t GroupedSums::groups() const {
+  return std::min<std::uint64_t>(batches_, samples_.size());
+}
+
+std::span<const Complex> GroupedSums::group_sums(std::size_t group) const {
+  return {sums_.data() + group * size_, size_};
+}
+
+double GroupedSums::total_samples() const {
+  double total = 0;
+  for (double samples : samples_) total += samples;
+  return total;
+}
+
+std::vector<Complex> GroupedSums::total() const {
+  std::vector<Complex> total(size_);
+  for (std::size_t group = 0; group < groups(); ++group) {
+    const auto sums = group_sums(group);
+    for (std::size_t i = 0; i < size_; ++i) total[i] += sums[i];
+  }
+  return total;
+}
+
+void GroupedSums::restore(State state) {
+  if (state.samples.size() != samples_.size() || state.sums.size() != sums_.size())
+    throw InputError("the checkpoint's sums have another shape than this scene's");
+  constexpr std::uint64_t most_batches = std::uint64_t{1} << 53;  // numbers that a double counts
+  const std::size_t filled = std::min<std::uint64_t>(state.batches, state.samples.size());
+  for (std::size_t group = 0; group < state.samples.size(); ++group)
+    if (state.batches > most_batches || (state.samples[group] > 0) != (group < filled))
+      throw InputError("the checkpoint's samples are not those of its batches");
+  batches_ = state.batches;
+  samples_ = std::move(state.samples);
+  sums_ = std::move(state.sums);
+}
+
+std::vector<Complex> sample_mean(double samples, std::span<const Complex> sums) {
+  std::vector<Complex> mean(sums.begin(), sums.end());
+  for (Complex& value : mean) value /= samples;
+  return mean;
+}
+
+Estimate jackknife(const GroupedSums& sums, const Estimator& theta) {
+  const double samples = sums.total_samples();
+  const std::vector<Complex> total = sums.total();
+  Estimate estimate{theta(samples, total), {}};
+  const std::size_t size = estimate.value.size(), groups = sums.groups();
+  if (groups < 2) {
+    estimate.error.assign(size, std::numeric_limits<double>::infinity());
+    return estimate;
+  }
+  // With h = samples / group_samples the pseudo-values are theta + (h-1)(theta - theta_without) and
+  // weigh 1/(h-1); sums of their deviations d from theta suffice.
+  double sum_w = 0;
+  std::vector<Complex> sum_d(size), sum_mean(size);
+  std::vector<double> sum_dd(size);
+  std::vector<Complex> without(total.size());
+  for (std::size_t group = 0; group < groups; ++group) {
+    const auto left_out = sums.group_sums(group);
+    for (std::size_t i = 0; i < total.size(); ++i) without[i] = total[i] - left_out[i];
+    const double h_minus_1 = samples / sums.group_samples(group) - 1;
+    const auto value = theta(samples - sums.group_samples(group), without);
+    sum_w += 1 / h_minus_1;
+    for (std::size_t i = 0; i < size; ++i) {
+      const Complex difference = estimate.value[i] - value[i];
+      sum_d[i] += difference;
+      sum_dd[i] += h_minus_1 * std::norm(difference);
+      sum_mean[i] += h_minus_1 / (h_minus_1 + 1) * difference;
+    }
+  }
+  estimate.error.resize(size);
+  for (std::size_t i = 0; i < size; ++i) {
+    const Complex mean = sum_mean[i];  // jackknife estimate minus theta
+    const double spread =
+        sum_dd[i] - 2 * (std::conj(mean) * sum_d[i]).real() + sum_w * std::norm(mean);
+    estimate.error[i] = std::sqrt(std::max(0.0, spread) / static_cast<double>(groups));
+  }
+  return estimate;
+}
+
+double relative_error(const Estimate& estimate) {
+  double error2 = 0, value2 = 0;
+  for (double error : estimate.error) error2 += error * error;
+  for (Complex value : estimate.value) value2 += std::norm(value);
+  return error2 == 0 ? 0 : std::sqrt(error2 / value2);
+}
+
+}  // namespace flatspeckle

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "core/numbers/complex.h"
+
+namespace flatspeckle {
+
+/// Sums of numbered batches, kept in a fixed number of groups so that the error of *any* function
+/// of the sums (a mean, a covariance with its mean removed, a ratio, a half-width) follows from
+/// leaving one group out at a time. Batch b belongs to group b mod groups.
+class GroupedSums {
+ public:
+  GroupedSums() = default;
+  /// size: complex sums per batch. The number of groups is 256, or less where memory asks for it.
+  explicit GroupedSums(std::size_t size);
+
+  /// Adds batch number batches(): numbers must come in order, which makes the sums reproducible.
+  void add(double samples, std::span<const Complex> sums);
+
+  std::size_t size() const { return size_; }
+  std::uint64_t batches() const { return batches_; }
+  /// Groups that hold at least one batch.
+  std::size_t groups() const;
+  double group_samples(std::size_t group) const { return samples_[group]; }
+  std::span<const Complex> group_sums(std::size_t group) const;
+  double total_samples() const;
+  std::vector<Complex> total() const;
+
+  /// The whole state, for checkpoints: sums are [group][entry] over all groups, filled or not.
+  struct State {
+    std::uint64_t batches = 0;
+    std::vector<double> samples;
+    std::vector<Complex> sums;
+  };
+  State state() const { return {batches_, samples_, sums_}; }
+  /// Throws InputError if the shapes do not belong to a GroupedSums of this size, or the samples
+  /// not to the batches.
+  void restore(State state);
+
+ private:
+  std::size_t size_ = 0;
+  std::uint64_t batches_ = 0;
+  std::vector<double> samples_;
+  std::vector<Complex> sums_;
+};
+
+/// An estimate per entry: value and standard error. For complex values the error is that of the
+/// distance in the complex plane, sqrt(var Re + var Im).
+struct Estimate {
+  std::vector<Complex> value;
+  std::vector<double> error;
+};
+
+/// What is estimated, as a function of summed samples: theta(samples, sums) -> values.
+using Estimator =
+    std::function<std::vector<Complex>(double samples, std::span<const Complex> sums)>;
+
+/// The simplest of them: sums / samples.
+std::vector<Complex> sample_mean(double samples, std::span<const Complex> sums);
+
+/// Value of theta on all groups and its delete-one-group jackknife error for groups of unequal size
+/// (Busing, Meijer and van der Leeden 1999, eqs. 6-7). With fewer than two groups the error is
+/// infinite.
+Estimate jackknife(const GroupedSums& sums, const Estimator& theta);
+
+/// RMS error relative to the RMS magnitude; 0 where every value and error is 0.
+double relative_error(const Estimate& estimate);
+
+}  // namespace flatspeckle

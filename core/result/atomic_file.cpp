@@ -1,0 +1,114 @@
+#include "core/result/atomic_file.h"
+
+#include <cerrno>
+#include <cstring>
+#include <fcntl.h>
+#include <sstream>
+#include <string>
+#include <unistd.h>
+#include <utility>
+
+#include "core/error.h"
+
+namespace flatspeckle {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string reason(int error = errno) {
+  return std::strerror(error);
+}
+
+fs::path folder_of(const fs::path& path) {
+  return path.has_parent_path() ? path.parent_path() : fs::path(".");
+}
+
+fs::path temporary_beside(const fs::path& path) {
+  std::ostringstream name;
+  name << '.' << path.filename().string() << ".tmp-" << ::getpid();
+  return folder_of(path) / name.str();
+}
+
+int create(const fs::path& path) {
+  return ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+}
+
+/// The new name itself survives a power failure only once its folder is on the disk.
+bool sync_folder(const fs::path& folder) {
+  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) return false;
+  // Some file systems cannot sync folders and say EINVAL: nothing more can be done there.
+  const bool synced = ::fsync(descriptor) == 0 || errno == EINVAL;
+  ::close(descriptor);
+  return synced;
+}
+
+}  // namespace
+
+void check_writable(const fs::path& path) {
+  if (!path.has_filename())
+    throw InputError("cannot write \"" + path.string() + "\": no file name");
+  std::error_code unknown;  // leaves it to the attempt below to complain
+  if (fs::exists(path, unknown) && !fs::is_regular_file(path, unknown))
+    throw InputError("cannot write " + path.string() + ": not a regular file");
+  const fs::path temporary = temporary_beside(path);
+  const int descriptor = create(temporary);
+  if (descriptor < 0) {
+    const std::string message = "cannot write " + path.string() + ": " + reason();
+    if (errno == ENOENT || errno == ENOTDIR || errno == ENAMETOOLONG) throw InputError(message);
+    throw IoError(message);
+  }
+  ::close(descriptor);
+  ::unlink(temporary.c_str());
+}
+
+FileBeside::FileBeside(fs::path path)
+    : path_(std::move(path)), temporary_(temporary_beside(path_)), descriptor_(create(temporary_)) {
+  if (descriptor_ < 0) fail(errno);
+}
+
+FileBeside::~FileBeside() {
+  if (descriptor_ < 0) return;
+  ::close(descriptor_);
+  ::unlink(temporary_.c_str());
+}
+
+void FileBeside::fail(int error) const {
+  throw IoError("writing " + path_.string() + " failed: " + reason(error));
+}
+
+void FileBeside::write(std::span<const std::byte> bytes) {
+  while (!bytes.empty()) {
+    const ::ssize_t written = ::write(descriptor_, bytes.data(), bytes.size());
+    if (written < 0 && errno != EINTR) fail(errno);
+    if (written > 0) bytes = bytes.subspan(static_cast<std::size_t>(written));
+  }
+}
+
+void FileBeside::reserve(std::uintmax_t bytes) {
+  const int error = ::posix_fallocate(descriptor_, 0, static_cast<::off_t>(bytes));
+  // Some file systems cannot reserve: a full disk then shows later.
+  if (error != 0 && error != EOPNOTSUPP && error != EINVAL) fail(error);
+}
+
+void FileBeside::truncate(std::uintmax_t bytes) {
+  if (::ftruncate(descriptor_, static_cast<::off_t>(bytes)) != 0) fail(errno);
+}
+
+void FileBeside::put_in_place(Durable durable) {
+  const bool sync = durable == Durable::yes;
+  if ((sync && ::fsync(descriptor_) != 0) || ::rename(temporary_.c_str(), path_.c_str()) != 0)
+    fail(errno);
+  // From here on it is no longer ours to remove.
+  if (::close(std::exchange(descriptor_, -1)) != 0 || (sync && !sync_folder(folder_of(path_))))
+    fail(errno);
+}
+
+void replace_file(const fs::path& path, std::span<const std::byte> bytes, Durable durable) {
+  FileBeside file(path);
+  file.write(bytes);
+  file.put_in_place(durable);
+}
+
+}  // namespace flatspeckle

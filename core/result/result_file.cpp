@@ -1,0 +1,437 @@
+#include "core/result/result_file.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cassert>
+#include <cmath>
+#include <functional>
+#include <numeric>
+#include <stdexcept>
+#include <type_traits>
+#include <utility>
+
+#include <hdf5_hl.h>
+
+#include "core/error.h"
+#include "core/result/hdf5_handle.h"
+#include "core/result/sealed_file.h"
+
+namespace flatspeckle {
+
+namespace {
+
+template <typename Number>
+void require_finite(const std::string& name, std::span<const Number> values) {
+  const auto finite = [](Number value) {
+    if constexpr (std::is_same_v<Number, Complex>)
+      return std::isfinite(value.real()) && std::isfinite(value.imag());
+    else if constexpr (std::is_same_v<Number, double>)
+      return std::isfinite(value);
+    else
+      return true;
+  };
+  if (!std::all_of(values.begin(), values.end(), finite))
+    throw std::logic_error(name + ": a value is not finite");
+}
+
+/// Chunks of at most 1 MiB, shaped by halving the longest axis.
+std::vector<hsize_t> chunk_shape(std::vector<hsize_t> shape, std::size_t value_bytes) {
+  constexpr hsize_t most_bytes = hsize_t{1} << 20;
+  const auto bytes = [&] {
+    return std::accumulate(shape.begin(), shape.end(), hsize_t{value_bytes}, std::multiplies<>());
+  };
+  while (bytes() > most_bytes) {
+    hsize_t& longest = *std::max_element(shape.begin(), shape.end());
+    longest = (longest + 1) / 2;
+  }
+  return shape;
+}
+
+/// Writes into the HDF5 file of one ResultFile.
+class Writer {
+ public:
+  Writer(const Hdf5Handle* file, const std::string& path, const std::string& name)
+      : name_(name), call_("writing " + name + " into " + path + " failed") {
+    if (file == nullptr) throw std::logic_error(name + ": written after the file was finished");
+    file_ = file->get();
+  }
+
+  void group() const {
+    if (exists(file_, name_)) return;
+    const Hdf5Handle links = intermediate_groups();
+    call_.handle(H5Gcreate2(file_, name_.c_str(), links.get(), H5P_DEFAULT, H5P_DEFAULT), H5Gclose);
+  }
+
+  void attribute(const std::string& attribute, const Attribute& value) const {
+    group();
+    const Hdf5Handle object = call_.handle(H5Oopen(file_, name_.c_str(), H5P_DEFAULT), H5Oclose);
+    if (call_.check(H5Aexists(object.get(), attribute.c_str())) > 0)
+      throw std::logic_error(name_ + ": attribute " + attribute + " is written twice");
+    std::visit([&](const auto& given) { write_attribute(object.get(), attribute, given); }, value);
+  }
+
+  void begin(const std::vector<std::string>& scales, const std::vector<std::size_t>& chunk) const {
+    if (exists(file_, name_)) throw std::logic_error(name_ + ": written twice");
+    std::vector<hsize_t> shape, stored(chunk.begin(), chunk.end());
+    for (std::size_t i = 0; i < scales.size(); ++i) {
+      shape.push_back(extent(scales[i]));
+      stored[i] = std::min(stored[i], shape[i]);
+    }
+    const Hdf5Handle set = create(complex_type(), shape, compressed(stored));
+    for (unsigned i = 0; i < scales.size(); ++i) attach(set.get(), i, scales[i]);
+  }
+
+  /// Opened and closed each time, so that no chunk waits in HDF5's cache for a full disk.
+  void block(std::span<const Complex> values, const std::vector<std::size_t>& start,
+             const std::vector<std::size_t>& count) const {
+    require_finite(name_, values);
+    const std::vector<hsize_t> from(start.begin(), start.end()),
+        extents(count.begin(), count.end());
+    const Hdf5Handle set = call_.handle(H5Dopen2(file_, name_.c_str(), H5P_DEFAULT), H5Dclose);
+    const Hdf5Handle there = call_.handle(H5Dget_space(set.get()), H5Sclose);
+    const Hdf5Handle here = call_.handle(dataspace(extents), H5Sclose), type = complex_type();
+    if (static_cast<std::size_t>(H5Sget_simple_extent_npoints(here.get())) != values.size())
+      throw std::logic_error(name_ + ": the number of values does not fit the block");
+    call_.check(H5Sselect_hyperslab(there.get(), H5S_SELECT_SET, from.data(), nullptr,
+                                    extents.data(), nullptr));
+    call_.check(
+        H5Dwrite(set.get(), type.get(), here.get(), there.get(), H5P_DEFAULT, values.data()));
+    call_.check(H5Dflush(set.get()));
+  }
+
+  template <typename Number>
+  Hdf5Handle values(std::span<const Number> values, const std::vector<hsize_t>& shape) const {
+    if (exists(file_, name_)) throw std::logic_error(name_ + ": written twice");
+    require_finite(name_, values);
+    if (std::accumulate(shape.begin(), shape.end(), hsize_t{1}, std::multiplies<>()) !=
+        values.size())
+      throw std::logic_error(name_ + ": the number of values does not fit the axes");
+    const Hdf5Handle type = number_type<Number>();
+    Hdf5Handle set = create(type, shape, storage(shape, sizeof(Number)));
+    call_.check(H5Dwrite(set.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()));
+    return set;
+  }
+
+  template <typename Number>
+  void dataset(std::span<const Number> numbers, const std::vector<Axis>& axes) const {
+    attach(values(numbers, shape_of(axes)).get(), axes);
+  }
+
+  /// Of few; HDF5 keeps texts apart from the dataset, where filters do not reach them.
+  void dataset(const std::vector<std::string>& texts, const std::vector<Axis>& axes) const {
+    if (exists(file_, name_)) throw std::logic_error(name_ + ": written twice");
+    const auto shape = shape_of(axes);
+    if (std::accumulate(shape.begin(), shape.end(), hsize_t{1}, std::multiplies<>()) !=
+        texts.size())
+      throw std::logic_error(name_ + ": the number of texts does not fit the axes");
+    std::vector<const char*> pointers;
+    for (const std::string& text : texts) pointers.push_back(text.c_str());
+    const Hdf5Handle type = string_type(), set = create(type, shape, untimed());
+    call_.check(H5Dwrite(set.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, pointers.data()));
+    attach(set.get(), axes);
+  }
+
+  void scale(std::span<const double> numbers) const {
+    const Hdf5Handle set = values(numbers, {numbers.size()});
+    call_.check(H5DSset_scale(set.get(), last_part(name_).c_str()));
+  }
+
+  void describe(const std::string& units, const std::string& long_name) const {
+    if (!units.empty()) attribute("units", units);
+    if (!long_name.empty()) attribute("long_name", long_name);
+  }
+
+ private:
+  static std::string last_part(const std::string& name) {
+    return name.substr(name.find_last_of('/') + 1);
+  }
+
+  static hid_t dataspace(const std::vector<hsize_t>& shape) {
+    return shape.empty() ? H5Screate(H5S_SCALAR)
+                         : H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr);
+  }
+
+  Hdf5Handle create(const Hdf5Handle& type, const std::vector<hsize_t>& shape,
+                    const Hdf5Handle& layout) const {
+    const Hdf5Handle space = call_.handle(dataspace(shape), H5Sclose);
+    const Hdf5Handle links = intermediate_groups();
+    return call_.handle(H5Dcreate2(file_, name_.c_str(), type.get(), space.get(), links.get(),
+                                   layout.get(), H5P_DEFAULT),
+                        H5Dclose);
+  }
+
+  Hdf5Handle intermediate_groups() const {
+    Hdf5Handle links = call_.handle(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
+    call_.check(H5Pset_create_intermediate_group(links.get(), 1));
+    return links;
+  }
+
+  /// Small sets gain nothing from filters.
+  Hdf5Handle storage(const std::vector<hsize_t>& shape, std::size_t value_bytes) const {
+    constexpr hsize_t small = 4096;
+    const hsize_t bytes =
+        std::accumulate(shape.begin(), shape.end(), hsize_t{value_bytes}, std::multiplies<>());
+    return bytes <= small ? untimed() : compressed(chunk_shape(shape, value_bytes));
+  }
+
+  /// No time stamps: the same results make the same bytes.
+  Hdf5Handle untimed() const {
+    Hdf5Handle layout = call_.handle(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+    call_.check(H5Pset_obj_track_times(layout.get(), false));
+    return layout;
+  }
+
+  Hdf5Handle compressed(const std::vector<hsize_t>& chunk) const {
+    Hdf5Handle layout = untimed();
+    call_.check(H5Pset_chunk(layout.get(), static_cast<int>(chunk.size()), chunk.data()));
+    call_.check(H5Pset_shuffle(layout.get()));
+    call_.check(H5Pset_deflate(layout.get(), 1));
+    call_.check(H5Pset_fletcher32(layout.get()));
+    return layout;
+  }
+
+  Hdf5Handle open_scale(const std::string& scale) const {
+    if (!exists(file_, scale)) throw std::logic_error(name_ + ": no scale \"" + scale + "\"");
+    return call_.handle(H5Dopen2(file_, scale.c_str(), H5P_DEFAULT), H5Dclose);
+  }
+
+  hsize_t extent(const Axis& axis) const {
+    if (const auto* plain = std::get_if<std::size_t>(&axis)) return *plain;
+    const Hdf5Handle scale = open_scale(std::get<std::string>(axis));
+    const Hdf5Handle space = call_.handle(H5Dget_space(scale.get()), H5Sclose);
+    return static_cast<hsize_t>(call_.check(H5Sget_simple_extent_npoints(space.get())));
+  }
+
+  std::vector<hsize_t> shape_of(const std::vector<Axis>& axes) const {
+    std::vector<hsize_t> shape;
+    shape.reserve(axes.size());
+    for (const Axis& axis : axes) shape.push_back(extent(axis));
+    return shape;
+  }
+
+  /// Those of the axes that have scales.
+  void attach(hid_t set, const std::vector<Axis>& axes) const {
+    for (unsigned i = 0; i < axes.size(); ++i)
+      if (const auto* scale = std::get_if<std::string>(&axes[i])) attach(set, i, *scale);
+  }
+  void attach(hid_t set, unsigned axis, const std::string& name) const {
+    const Hdf5Handle scale = open_scale(name);
+    call_.check(H5DSattach_scale(set, scale.get(), axis));
+    call_.check(H5DSset_label(set, axis, last_part(name).c_str()));
+  }
+
+  void write_raw_attribute(hid_t object, const std::string& attribute, hid_t type,
+                           const std::vector<hsize_t>& shape, const void* values) const {
+    const Hdf5Handle space = call_.handle(dataspace(shape), H5Sclose);
+    const Hdf5Handle handle = call_.handle(
+        H5Acreate2(object, attribute.c_str(), type, space.get(), H5P_DEFAULT, H5P_DEFAULT),
+        H5Aclose);
+    if (values != nullptr) call_.check(H5Awrite(handle.get(), type, values));  // not an empty list
+  }
+
+  template <typename Number>
+  void write_numbers(hid_t object, const std::string& attribute, std::span<const Number> values,
+                     const std::vector<hsize_t>& shape) const {
+    require_finite(name_ + ", attribute " + attribute, values);
+    const Hdf5Handle type = number_type<Number>();
+    write_raw_attribute(object, attribute, type.get(), shape, values.data());
+  }
+
+  template <typename Number>
+  void write_attribute(hid_t object, const std::string& attribute, const Number& value) const {
+    write_numbers<Number>(object, attribute, {&value, 1}, {});
+  }
+  void write_attribute(hid_t object, const std::string& attribute, const bool& value) const {
+    write_attribute(object, attribute, static_cast<std::uint8_t>(value));
+  }
+  template <typename Number>
+  void write_attribute(hid_t object, const std::string& attribute,
+                       const std::vector<Number>& values) const {
+    write_numbers<Number>(object, attribute, values, {values.size()});
+  }
+  void write_attribute(hid_t object, const std::string& attribute, const std::string& value) const {
+    const char* text = value.c_str();
+    const Hdf5Handle type = string_type();
+    write_raw_attribute(object, attribute, type.get(), {}, &text);
+  }
+  void write_attribute(hid_t object, const std::string& attribute,
+                       const std::vector<std::string>& values) const {
+    std::vector<const char*> texts;
+    texts.reserve(values.size());
+    for (const std::string& value : values) texts.push_back(value.c_str());
+    const Hdf5Handle type = string_type();
+    write_raw_attribute(object, attribute, type.get(), {texts.size()}, texts.data());
+  }
+
+  std::string name_;
+  Hdf5Calls<IoError> call_;
+  hid_t file_ = -1;
+};
+
+/// An empty HDF5 file in memory: a full disk can then only show where we write it ourselves, in
+/// commit(), and not while HDF5 closes its objects.
+std::unique_ptr<Hdf5Handle> file_in_memory() {
+  static std::atomic<unsigned> number{0};  // HDF5 tells open files apart by their names
+  const Hdf5Calls<IoError> call("HDF5 cannot make a file in memory");
+  const Hdf5Handle access = call.handle(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  constexpr std::size_t increment = std::size_t{1} << 20;
+  call.check(H5Pset_fapl_core(access.get(), increment, false));
+  const std::string name = "result-" + std::to_string(number++);
+  return std::make_unique<Hdf5Handle>(
+      call.handle(H5Fcreate(name.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.get()), H5Fclose));
+}
+
+/// What HDF5 may write of its own with a dataset or attribute.
+constexpr std::size_t overhead = std::size_t{1} << 20;
+
+std::unique_ptr<Hdf5Handle> file_on_disk(FileBeside& place) {
+  place.reserve(overhead);
+  const Hdf5Calls<IoError> call("HDF5 cannot make " + place.name().string());
+  return std::make_unique<Hdf5Handle>(call.handle(
+      H5Fcreate(place.name().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose));
+}
+
+}  // namespace
+
+ResultFile::ResultFile(std::filesystem::path path, Storage storage) : path_(std::move(path)) {
+  silence_hdf5();
+  if (storage == Storage::disk) beside_ = std::make_unique<FileBeside>(path_);
+  file_ = beside_ ? file_on_disk(*beside_) : file_in_memory();
+  make_room(0);
+}
+
+ResultFile::ResultFile(ResultFile&&) noexcept = default;
+ResultFile& ResultFile::operator=(ResultFile&&) noexcept = default;
+ResultFile::~ResultFile() = default;
+
+// HDF5 does not survive a full disk, not even until its file is closed: room is made before.
+void ResultFile::make_room(std::size_t bytes) {
+  if (!beside_ || !file_) return;
+  hsize_t size = 0;
+  const Hdf5Calls<IoError> call("HDF5 cannot write " + path_.string());
+  call.check(H5Fget_filesize(file_->get(), &size));
+  beside_->reserve(size + bytes + bytes / 64 + overhead);
+}
+
+void ResultFile::group(const std::string& name) {
+  make_room(0);
+  Writer(file_.get(), path_.string(), name).group();
+}
+
+void ResultFile::attribute(const std::string& object, const std::string& name,
+                           const Attribute& value) {
+  make_room(0);
+  Writer(file_.get(), path_.string(), object).attribute(name, value);
+}
+
+void ResultFile::scale(const std::string& name, std::span<const double> values,
+                       const std::string& units, const std::string& long_name) {
+  make_room(values.size_bytes());
+  const Writer writer(file_.get(), path_.string(), name);
+  writer.scale(values);
+  writer.describe(units, long_name);
+}
+
+void ResultFile::numbered_scale(const std::string& name, std::size_t count,
+                                const std::string& long_name) {
+  std::vector<double> numbers(count);
+  std::iota(numbers.begin(), numbers.end(), 0.0);
+  scale(name, numbers, "1", long_name);
+}
+
+void ResultFile::dataset(const std::string& name, std::span<const double> values,
+                         const std::vector<Axis>& axes, const std::string& units,
+                         const std::string& long_name) {
+  make_room(values.size_bytes());
+  const Writer writer(file_.get(), path_.string(), name);
+  writer.dataset(values, axes);
+  writer.describe(units, long_name);
+}
+
+void ResultFile::dataset(const std::string& name, std::span<const Complex> values,
+                         const std::vector<Axis>& axes, const std::string& units,
+                         const std::string& long_name) {
+  make_room(values.size_bytes());
+  const Writer writer(file_.get(), path_.string(), name);
+  writer.dataset(values, axes);
+  writer.describe(units, long_name);
+}
+
+void ResultFile::dataset(const std::string& name, std::span<const std::uint64_t> values,
+                         const std::vector<Axis>& axes, const std::string& units,
+                         const std::string& long_name) {
+  make_room(values.size_bytes());
+  const Writer writer(file_.get(), path_.string(), name);
+  writer.dataset(values, axes);
+  writer.describe(units, long_name);
+}
+
+void ResultFile::dataset(const std::string& name, const std::vector<std::string>& texts,
+                         const std::vector<Axis>& axes, const std::string& long_name) {
+  std::size_t bytes = 0;
+  for (const std::string& text : texts) bytes += text.size() + sizeof(std::uint64_t) * 4;
+  make_room(bytes);
+  const Writer writer(file_.get(), path_.string(), name);
+  writer.dataset(texts, axes);
+  writer.describe("", long_name);
+}
+
+void ResultFile::begin_dataset(const std::string& name, const std::vector<std::string>& axes,
+                               const std::vector<std::size_t>& chunk, const std::string& units,
+                               const std::string& long_name) {
+  make_room(0);
+  const Writer writer(file_.get(), path_.string(), name);
+  writer.begin(axes, chunk);
+  writer.describe(units, long_name);
+}
+
+void ResultFile::write_block(const std::string& name, std::span<const Complex> values,
+                             const std::vector<std::size_t>& start,
+                             const std::vector<std::size_t>& count) {
+  make_room(values.size_bytes());
+  Writer(file_.get(), path_.string(), name).block(values, start, count);
+}
+
+void ResultFile::commit() {
+  if (!beside_) return replace_file(path_, image());
+  if (!file_) throw std::logic_error(path_.string() + ": finished twice");
+  make_room(0);
+  const Hdf5Calls<IoError> call("HDF5 cannot finish " + path_.string());
+  call.check(H5Fflush(file_->get(), H5F_SCOPE_GLOBAL));
+  hsize_t size = 0;
+  call.check(H5Fget_filesize(file_->get(), &size));
+  file_.reset();
+  beside_->truncate(size);
+  beside_->put_in_place();
+}
+
+void ResultFile::commit_sealed(Durable durable) {
+  assert(!beside_);
+  auto bytes = image();
+  seal(bytes);
+  replace_file(path_, bytes, durable);
+}
+
+/// The bytes of a file in memory, which is closed.
+std::vector<std::byte> ResultFile::image() {
+  if (!file_) throw std::logic_error(path_.string() + ": finished twice");
+  const Hdf5Calls<IoError> call("HDF5 cannot finish " + path_.string());
+  call.check(H5Fflush(file_->get(), H5F_SCOPE_GLOBAL));
+  std::vector<std::byte> bytes(
+      static_cast<std::size_t>(call.check(H5Fget_file_image(file_->get(), nullptr, 0))));
+  call.check(H5Fget_file_image(file_->get(), bytes.data(), bytes.size()));
+  file_.reset();
+  return bytes;
+}
+
+void check_result_path(const std::filesystem::path& path) {
+  check_writable(path);
+  std::error_code none;
+  if (const auto size = std::filesystem::file_size(path, none); none || size == 0) return;
+  silence_hdf5();
+  if (H5Fis_hdf5(path.c_str()) <= 0)
+    throw InputError("cannot write " + path.string() +
+                     ": what is there is no result of this program, and is kept");
+}
+
+}  // namespace flatspeckle

@@ -1,0 +1,100 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "core/numbers/complex.h"
+#include "core/result/atomic_file.h"
+
+namespace flatspeckle {
+
+class Hdf5Handle;
+
+/// One axis of a dataset: the name of a scale written before, or a plain extent.
+using Axis = std::variant<std::size_t, std::string>;
+
+/// Value of an attribute; bool is stored as uint8.
+using Attribute =
+    std::variant<bool, std::int64_t, std::uint64_t, double, std::string, std::vector<double>,
+                 std::vector<std::uint64_t>, std::vector<std::string>>;
+
+/// A result file in the making (HDF5, readable by version 1.8 and later; h5py sees complex numbers
+/// as complex128). It is put together in memory or, where it may be large, on disk under a
+/// temporary name; commit() puts it at its path as a whole, and without commit nothing is left.
+/// Names may hold groups ("trace/wall_s"), which are made as needed; "/" is the root. One thread at
+/// a time.
+///
+/// All that is written must be finite: std::logic_error names the dataset or attribute otherwise,
+/// and also where the number of values does not fit the axes or a name is used twice.
+class ResultFile {
+ public:
+  /// disk: memory stays bounded; one file in the making per path.
+  enum class Storage { memory, disk };
+
+  /// Throws IoError. Where a path may be wrong, check_result_path says so before long work.
+  explicit ResultFile(std::filesystem::path path, Storage storage = Storage::memory);
+  ResultFile(ResultFile&&) noexcept;
+  ResultFile& operator=(ResultFile&&) noexcept;
+  ~ResultFile();
+
+  void group(const std::string& name);
+
+  /// Of a group (made as needed) or dataset.
+  void attribute(const std::string& object, const std::string& name, const Attribute& value);
+
+  /// An axis: a 1D dimension scale. Units and long name are left out where empty; "1" says that the
+  /// values have no unit.
+  void scale(const std::string& name, std::span<const double> values, const std::string& units,
+             const std::string& long_name);
+  /// An axis of things that are only counted: 0, 1, ...
+  void numbered_scale(const std::string& name, std::size_t count, const std::string& long_name);
+
+  /// Values in row-major order (last axis fastest). No axes: one scalar.
+  void dataset(const std::string& name, std::span<const double> values,
+               const std::vector<Axis>& axes, const std::string& units,
+               const std::string& long_name);
+  void dataset(const std::string& name, std::span<const Complex> values,
+               const std::vector<Axis>& axes, const std::string& units,
+               const std::string& long_name);
+  void dataset(const std::string& name, std::span<const std::uint64_t> values,
+               const std::vector<Axis>& axes, const std::string& units,
+               const std::string& long_name);
+
+  /// Texts, UTF-8.
+  void dataset(const std::string& name, const std::vector<std::string>& texts,
+               const std::vector<Axis>& axes, const std::string& long_name);
+
+  /// A complex dataset whose values come in blocks, compressed by chunks of this shape. Axes with
+  /// scales only. What no block brings is 0.
+  void begin_dataset(const std::string& name, const std::vector<std::string>& axes,
+                     const std::vector<std::size_t>& chunk, const std::string& units,
+                     const std::string& long_name);
+  /// Values of a block from index `start` on, of `count` along each axis; best of whole chunks.
+  /// Throws IoError.
+  void write_block(const std::string& name, std::span<const Complex> values,
+                   const std::vector<std::size_t>& start, const std::vector<std::size_t>& count);
+
+  /// Puts the file at its path, replacing what is there. Throws IoError. Nothing can be written
+  /// afterwards.
+  void commit();
+  /// The same with a seal (core/result/sealed_file.h) at its end, for a file made in memory.
+  void commit_sealed(Durable durable);
+
+ private:
+  void make_room(std::size_t bytes);
+  std::vector<std::byte> image();
+
+  std::filesystem::path path_;
+  std::unique_ptr<FileBeside> beside_;  // outlives file_
+  std::unique_ptr<Hdf5Handle> file_;
+};
+
+/// check_writable, and throws InputError where another kind of file is, which would be lost.
+void check_result_path(const std::filesystem::path& path);
+
+}  // namespace flatspeckle

@@ -1,0 +1,232 @@
+#include "core/result/result_reader.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numeric>
+#include <type_traits>
+#include <utility>
+
+#include <hdf5_hl.h>
+
+#include "core/error.h"
+#include "core/result/hdf5_handle.h"
+
+namespace flatspeckle {
+
+namespace {
+
+/// Reads from the HDF5 file of one ResultReader.
+class Reader {
+ public:
+  Reader(const Hdf5Handle& file, const std::string& path, const std::string& name)
+      : name_(name),
+        path_(path),
+        call_(path + ": " + name + " cannot be read"),
+        file_(file.get()) {}
+
+  Hdf5Handle dataset() const {
+    if (!exists(file_, name_)) throw InputError(path_ + ": has no " + name_);
+    return call_.handle(H5Dopen2(file_, name_.c_str(), H5P_DEFAULT), H5Dclose);
+  }
+
+  std::vector<hsize_t> shape(hid_t set) const {
+    const Hdf5Handle space = call_.handle(H5Dget_space(set), H5Sclose);
+    std::vector<hsize_t> shape(
+        static_cast<std::size_t>(call_.check(H5Sget_simple_extent_ndims(space.get()))));
+    call_.check(H5Sget_simple_extent_dims(space.get(), shape.data(), nullptr));
+    return shape;
+  }
+
+  std::string first_scale(hid_t set, unsigned axis) const {
+    std::string name;
+    if (H5DSget_num_scales(set, axis) > 0)
+      call_.check(H5DSiterate_scales(set, axis, nullptr, store_name, &name));
+    return name;
+  }
+
+  template <typename Number>
+  std::vector<Number> values() const {
+    const Hdf5Handle set = dataset();
+    const Hdf5Handle stored = call_.handle(H5Dget_type(set.get()), H5Tclose);
+    require_type<Number>(stored.get());
+    std::vector<Number> values(size(set.get(), H5Tget_size(stored.get())));
+    const Hdf5Handle type = number_type<Number>();
+    call_.check(H5Dread(set.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()));
+    require_finite(values);
+    return values;
+  }
+
+  Hdf5Handle attribute(const std::string& attribute) const {
+    if (!exists(file_, name_)) throw InputError(path_ + ": has no " + name_);
+    if (H5Aexists_by_name(file_, name_.c_str(), attribute.c_str(), H5P_DEFAULT) <= 0)
+      throw InputError(path_ + ": " + name_ + " has no attribute " + attribute);
+    return call_.handle(
+        H5Aopen_by_name(file_, name_.c_str(), attribute.c_str(), H5P_DEFAULT, H5P_DEFAULT),
+        H5Aclose);
+  }
+
+  template <typename Number>
+  std::vector<Number> numbers(hid_t attribute) const {
+    const Hdf5Handle stored = call_.handle(H5Aget_type(attribute), H5Tclose);
+    require_type<Number>(stored.get());
+    std::vector<Number> values(attribute_size(attribute));
+    const Hdf5Handle type = number_type<Number>();
+    if (!values.empty()) call_.check(H5Aread(attribute, type.get(), values.data()));
+    require_finite(values);
+    return values;
+  }
+
+  std::vector<std::string> strings(hid_t attribute) const {
+    const Hdf5Handle stored = call_.handle(H5Aget_type(attribute), H5Tclose);
+    if (H5Tis_variable_str(stored.get()) <= 0) call_.check(-1);
+    std::vector<char*> texts(attribute_size(attribute));
+    if (texts.empty()) return {};
+    const Hdf5Handle space = call_.handle(H5Aget_space(attribute), H5Sclose);
+    const Hdf5Handle type = string_type();
+    call_.check(H5Aread(attribute, type.get(), texts.data()));
+    std::vector<std::string> values;
+    values.reserve(texts.size());
+    for (const char* text : texts) values.emplace_back(text == nullptr ? "" : text);
+    H5Dvlen_reclaim(type.get(), space.get(), H5P_DEFAULT, texts.data());
+    return values;
+  }
+
+  template <typename Value>
+  Value only(const std::vector<Value>& values) const {
+    if (values.size() != 1) call_.check(-1);
+    return values.front();
+  }
+
+ private:
+  static herr_t store_name(hid_t, unsigned, hid_t scale, void* name) {
+    char text[1024] = "";
+    H5Iget_name(scale, text, sizeof text);
+    // Names of the root read "/tilt"; we write and ask for "tilt".
+    *static_cast<std::string*>(name) = text + (text[0] == '/' ? 1 : 0);
+    return 1;  // the first is enough
+  }
+
+  /// How many numbers a dataset holds. What is not stored HDF5 would make up, gigabytes of it.
+  std::size_t size(hid_t set, std::size_t number_bytes) const {
+    constexpr double most_shrinkage = 1100;  // deflate's is 1032
+    hsize_t file_bytes = 0;
+    call_.check(H5Fget_filesize(file_, &file_bytes));
+    const auto stored = static_cast<double>(std::min(H5Dget_storage_size(set), file_bytes));
+    double bytes = static_cast<double>(number_bytes);
+    const auto extents = shape(set);
+    for (const hsize_t extent : extents) bytes *= static_cast<double>(extent);
+    if (bytes > most_shrinkage * stored)
+      throw InputError(path_ + ": " + name_ + " is larger than what the file stores of it");
+    return std::accumulate(extents.begin(), extents.end(), std::size_t{1}, std::multiplies<>());
+  }
+
+  std::size_t attribute_size(hid_t attribute) const {
+    const Hdf5Handle space = call_.handle(H5Aget_space(attribute), H5Sclose);
+    const auto count = call_.check(H5Sget_simple_extent_npoints(space.get()));
+    if (static_cast<hsize_t>(count) > H5Aget_storage_size(attribute)) call_.check(-1);
+    return static_cast<std::size_t>(count);
+  }
+
+  /// Result files hold nothing else (ResultFile), and nothing goes on with it.
+  template <typename Number>
+  void require_finite(const std::vector<Number>& values) const {
+    const auto is_finite = [](Number value) {
+      if constexpr (std::is_integral_v<Number>) return true;
+      return std::isfinite(std::real(value)) && std::isfinite(std::imag(value));
+    };
+    if (!std::ranges::all_of(values, is_finite))
+      throw InputError(path_ + ": " + name_ + " holds a number that is not finite");
+  }
+
+  /// HDF5 itself would turn 1.5 into the integer 1 and a foreign compound into zeros.
+  template <typename Number>
+  void require_type(hid_t stored) const {
+    const H5T_class_t type = H5Tget_class(stored);
+    bool right = type == H5T_INTEGER;
+    if constexpr (std::is_same_v<Number, double>) right = right || type == H5T_FLOAT;
+    if constexpr (std::is_same_v<Number, Complex>)
+      right = type == H5T_COMPOUND && H5Tget_member_index(stored, "r") >= 0 &&
+              H5Tget_member_index(stored, "i") >= 0;
+    if (!right) throw InputError(path_ + ": " + name_ + " is of another type than expected");
+  }
+
+  std::string name_, path_;
+  Hdf5Calls<InputError> call_;
+  hid_t file_;
+};
+
+}  // namespace
+
+ResultReader::ResultReader(std::filesystem::path path) : path_(std::move(path)) {
+  silence_hdf5();
+  const Hdf5Calls<InputError> call(path_.string() + ": not a readable HDF5 file");
+  file_ = std::make_unique<Hdf5Handle>(
+      call.handle(H5Fopen(path_.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose));
+}
+
+ResultReader::ResultReader(ResultReader&&) noexcept = default;
+ResultReader& ResultReader::operator=(ResultReader&&) noexcept = default;
+ResultReader::~ResultReader() = default;
+
+bool ResultReader::has(const std::string& name) const {
+  return exists(file_->get(), name);
+}
+
+bool ResultReader::has_attribute(const std::string& object, const std::string& name) const {
+  return has(object) &&
+         H5Aexists_by_name(file_->get(), object.c_str(), name.c_str(), H5P_DEFAULT) > 0;
+}
+
+std::vector<std::size_t> ResultReader::shape(const std::string& name) const {
+  const Reader reader(*file_, path_.string(), name);
+  const auto extents = reader.shape(reader.dataset().get());
+  return {extents.begin(), extents.end()};
+}
+
+std::vector<std::string> ResultReader::scales(const std::string& name) const {
+  const Reader reader(*file_, path_.string(), name);
+  const Hdf5Handle set = reader.dataset();
+  std::vector<std::string> scales(reader.shape(set.get()).size());
+  for (unsigned axis = 0; axis < scales.size(); ++axis)
+    scales[axis] = reader.first_scale(set.get(), axis);
+  return scales;
+}
+
+template <typename Number>
+std::vector<Number> ResultReader::dataset(const std::string& name) const {
+  return Reader(*file_, path_.string(), name).values<Number>();
+}
+
+template std::vector<double> ResultReader::dataset(const std::string&) const;
+template std::vector<Complex> ResultReader::dataset(const std::string&) const;
+template std::vector<std::uint64_t> ResultReader::dataset(const std::string&) const;
+
+template <typename Value>
+Value ResultReader::attribute(const std::string& object, const std::string& name) const {
+  const Reader reader(*file_, path_.string(), object);
+  const Hdf5Handle attribute = reader.attribute(name);
+  if constexpr (std::is_same_v<Value, std::string>)
+    return reader.only(reader.strings(attribute.get()));
+  else if constexpr (std::is_same_v<Value, std::vector<std::string>>)
+    return reader.strings(attribute.get());
+  else if constexpr (std::is_same_v<Value, bool>)
+    return reader.only(reader.numbers<std::uint8_t>(attribute.get())) != 0;
+  else if constexpr (std::is_arithmetic_v<Value>)
+    return reader.only(reader.numbers<Value>(attribute.get()));
+  else
+    return reader.numbers<typename Value::value_type>(attribute.get());
+}
+
+template bool ResultReader::attribute(const std::string&, const std::string&) const;
+template std::int64_t ResultReader::attribute(const std::string&, const std::string&) const;
+template std::uint64_t ResultReader::attribute(const std::string&, const std::string&) const;
+template double ResultReader::attribute(const std::string&, const std::string&) const;
+template std::string ResultReader::attribute(const std::string&, const std::string&) const;
+template std::vector<double> ResultReader::attribute(const std::string&, const std::string&) const;
+template std::vector<std::uint64_t> ResultReader::attribute(const std::string&,
+                                                            const std::string&) const;
+template std::vector<std::string> ResultReader::attribute(const std::string&,
+                                                          const std::string&) const;
+
+}  // namespace flatspeckle

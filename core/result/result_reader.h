@@ -1,0 +1,47 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/numbers/complex.h"
+
+namespace flatspeckle {
+
+class Hdf5Handle;
+
+/// Reads result files. Whatever is missing, of another type, truncated or damaged throws
+/// InputError, naming the file.
+class ResultReader {
+ public:
+  explicit ResultReader(std::filesystem::path path);
+  ResultReader(ResultReader&&) noexcept;
+  ResultReader& operator=(ResultReader&&) noexcept;
+  ~ResultReader();
+
+  const std::filesystem::path& path() const { return path_; }
+
+  /// Is there a group or dataset of this name?
+  bool has(const std::string& name) const;
+  bool has_attribute(const std::string& object, const std::string& name) const;
+
+  /// Extents of a dataset; empty for a scalar.
+  std::vector<std::size_t> shape(const std::string& name) const;
+  /// Full names of the scales of its axes, "" where an axis has none.
+  std::vector<std::string> scales(const std::string& name) const;
+
+  /// Number: double, Complex or std::uint64_t. Row-major order.
+  template <typename Number>
+  std::vector<Number> dataset(const std::string& name) const;
+
+  /// Value: any of the alternatives of Attribute (core/result/result_file.h).
+  template <typename Value>
+  Value attribute(const std::string& object, const std::string& name) const;
+
+ private:
+  std::filesystem::path path_;
+  std::unique_ptr<Hdf5Handle> file_;
+};
+
+}  // namespace flatspeckle

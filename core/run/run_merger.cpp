@@ -1,0 +1,117 @@
+#include "core/run/run_merger.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace flatspeckle {
+
+namespace {
+
+/// A target error is believed from here on: fewer batches miss the tail of rare strong paths.
+constexpr std::uint64_t trusted_batches = 256;
+
+/// Batches at which the error is looked at: 8, 10, 12, ... growing by a seventh each time. They
+/// depend on nothing but the number of batches, so a run that stops at a target is reproducible.
+std::uint64_t checkpoint_after(std::uint64_t batches) {
+  std::uint64_t next = 8;
+  while (next <= batches) next += std::max<std::uint64_t>(2, next / 7);
+  return next;
+}
+
+bool is_checkpoint(std::uint64_t batches) {
+  return batches > 0 && checkpoint_after(batches - 1) == batches;
+}
+
+std::uint64_t batch_limit(const StopRule& stop, double samples_per_batch) {
+  if (!stop.samples) return std::numeric_limits<std::uint64_t>::max();
+  const double batches = std::ceil(static_cast<double>(*stop.samples) / samples_per_batch);
+  return std::max(static_cast<std::uint64_t>(batches), fewest_batches);
+}
+
+}  // namespace
+
+RunMerger::RunMerger(const BatchJob& job, const StopRule& stop, RunState& state)
+    : job_(job),
+      stop_(stop),
+      state_(state),
+      clock_(state.wall_s),
+      saved_(state.wall_s),
+      limit_(batch_limit(stop, job.samples_per_batch)),
+      next_checkpoint_(checkpoint_after(state.sums.batches())),
+      samples_(state.sums.total_samples()) {
+  decide();
+  if (!ended_) drop_odd_row();
+}
+
+/// The row that settle() added when the run stopped between checkpoints: a run that is resumed has
+/// the same trace as one that never stopped.
+void RunMerger::drop_odd_row() {
+  Trace& trace = state_.trace;
+  if (trace.samples.empty()) return;
+  const double batches = std::round(trace.samples.back() / job_.samples_per_batch);
+  if (is_checkpoint(static_cast<std::uint64_t>(batches))) return;
+  for (auto* column : {&trace.wall_s, &trace.cpu_s, &trace.samples, &trace.relative_error})
+    column->pop_back();
+}
+
+void RunMerger::note_saved() {
+  saved_ = state_.wall_s = clock_.seconds();
+}
+
+void RunMerger::add(std::span<const Complex> sums, double cpu_s) {
+  state_.sums.add(job_.samples_per_batch, sums);
+  state_.cpu_s += cpu_s;
+  samples_ += job_.samples_per_batch;
+  if (state_.sums.batches() == next_checkpoint_) {
+    record_error();
+    next_checkpoint_ = checkpoint_after(next_checkpoint_);
+  }
+  decide();
+}
+
+void RunMerger::decide() {
+  const std::uint64_t batches = state_.sums.batches();
+  if (batches >= limit_) ended_ = StopReason::samples;
+  if (stop_.target_error && batches >= trusted_batches && is_checkpoint(batches) &&
+      error() <= *stop_.target_error)
+    ended_ = StopReason::target_error;
+  if (ended_) settle();
+}
+
+std::uint64_t RunMerger::certain() const {
+  if (!stop_.target_error) return limit_;
+  return std::min(limit_, std::max(next_checkpoint_, checkpoint_after(trusted_batches - 1)));
+}
+
+double RunMerger::error() const {
+  return state_.trace.relative_error.empty() ? std::numeric_limits<double>::infinity()
+                                             : state_.trace.relative_error.back();
+}
+
+double RunMerger::cpu_s_left() const {
+  const double batches = static_cast<double>(state_.sums.batches());
+  double left = std::numeric_limits<double>::infinity();
+  if (stop_.samples) left = static_cast<double>(limit_) - batches;
+  if (stop_.target_error) {
+    const double ratio = error() / *stop_.target_error;
+    const double enough = std::max(batches * ratio * ratio, double{trusted_batches});
+    left = std::min(left, enough - batches);
+  }
+  return std::max(0.0, left) * state_.cpu_s / batches;
+}
+
+void RunMerger::settle() {
+  state_.wall_s = clock_.seconds();
+  if (state_.trace.samples.empty() || state_.trace.samples.back() != samples_) record_error();
+}
+
+void RunMerger::record_error() {
+  state_.wall_s = clock_.seconds();
+  state_.trace.wall_s.push_back(state_.wall_s);
+  state_.trace.cpu_s.push_back(state_.cpu_s);
+  state_.trace.samples.push_back(samples_);
+  state_.trace.relative_error.push_back(job_.relative_error(state_.sums));
+}
+
+}  // namespace flatspeckle

@@ -1,0 +1,69 @@
+#include "core/run/runner.h"
+
+#include <algorithm>
+#include <exception>
+#include <thread>
+
+#include <omp.h>
+
+#include "core/run/batch_pool.h"
+#include "core/run/ranks.h"
+#include "core/run/remote_batches.h"
+#include "core/run/stopwatch.h"
+
+namespace flatspeckle {
+
+namespace {
+
+void work(BatchPool& pool) {
+  try {
+    double cpu_before = thread_cpu_seconds();
+    while (const auto batch = pool.take()) {
+      std::vector<Complex> sums(batch->job->size);
+      batch->job->run(batch->number, sums);
+      const double cpu_now = thread_cpu_seconds();
+      pool.deliver(*batch, std::move(sums), cpu_now - cpu_before);
+      cpu_before = cpu_now;
+    }
+  } catch (...) {
+    pool.fail(std::current_exception());
+  }
+}
+
+}  // namespace
+
+int default_threads() {
+  return std::max(1, omp_get_num_procs() / ranks().sharers);
+}
+
+PoolEnd run_pool(const RunList& runs, const PoolOptions& options) {
+  const int threads = options.threads > 0 ? options.threads : default_threads();
+  BatchPool pool(runs, options, threads * ranks().size);
+  std::thread server;
+  if (options.server != nullptr) server = std::thread([&] { options.server->serve(pool); });
+#pragma omp parallel num_threads(threads)
+  work(pool);
+  if (server.joinable()) server.join();
+  return pool.finish();
+}
+
+StopReason run_batches(const BatchJob& job, const RunOptions& options, RunState& state) {
+  const auto& [samples, seconds, target_error] = options.stop;
+  StopReason ended = StopReason::samples;
+  RunList one{1,
+              [&](std::size_t) {
+                return OpenRun{job, options.stop, &state};
+              },
+              [&](std::size_t, StopReason reason) { ended = reason; },
+              {},
+              {}};
+  if (options.checkpoint) one.checkpoint = [&](std::size_t) { options.checkpoint(state); };
+  PoolOptions pool{seconds, options.threads, options.label, ""};
+  if (seconds) *pool.seconds -= state.wall_s;
+  const double cpu_before = state.cpu_s;
+  const PoolEnd end = run_pool(one, pool);
+  state.cpu_s = cpu_before + end.cpu_s;
+  return end.reason == StopReason::samples ? ended : end.reason;
+}
+
+}  // namespace flatspeckle

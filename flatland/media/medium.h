@@ -1,0 +1,46 @@
+#pragma once
+
+#include <vector>
+
+#include "core/numbers/complex.h"
+#include "flatland/media/structure_table.h"
+#include "flatland/scatterers/scatterer.h"
+
+namespace flatspeckle {
+
+/// Bulk optical properties (C5). Lengths in the scene's unit. Where positions are correlated (C16),
+/// those of the medium in which each scatterer has the amplitude A sqrt(S).
+struct BulkMedium {
+  double mu_s = 0, mu_t = 0;
+  double g = 0, albedo = 1;
+  double k_shift = 0;           ///< Re k_eff - k (C15); not defined (0) for hg
+  bool has_scatterers = false;  ///< what follows exists: false for hg
+  double density = 0;           ///< scatterers per area
+  double packing_fraction = 0;
+  CrossSections cross_sections;  ///< of one scatterer alone, like its T-matrix
+  std::vector<ExtendedComplex> t_matrix;
+  StructureTable structure;
+
+  double mean_free_path() const { return 1 / mu_t; }
+  double transport_mean_free_path() const { return 1 / (mu_t - mu_s * g); }
+};
+
+/// A medium of scatterers with a T-matrix, at a number per area.
+BulkMedium bulk_medium(const Scatterer& scatterer, double k, double density);
+/// A Henyey-Greenstein medium of given extinction.
+BulkMedium bulk_medium(const Scatterer& henyey_greenstein, double mu_t);
+
+/// The same scatterers at positions with a structure factor (C16): mu_s = rho int |A|^2 S, g and
+/// albedo are those of |A|^2 S, absorption stays rho (sigma_e - sigma_s).
+BulkMedium correlated_medium(BulkMedium independent, double k, StructureTable structure);
+
+/// A(theta) sqrt(S(2 k |sin(theta/2)|)): the product of two channels' amplitudes then carries
+/// sqrt(S(q1) S(q2)), and a covariance stays positive semidefinite (C16).
+Complex scattering_amplitude(const BulkMedium& medium, double k, double theta);
+
+/// The same at theta = 0 .. pi in equal intervals, over the square root of mu_s / rho: the absolute
+/// square is the phase function. Throughout, the medium has scatterers, and they scatter.
+std::vector<Complex> normalised_amplitudes(const BulkMedium& medium, double k,
+                                           std::size_t intervals);
+
+}  // namespace flatspeckle

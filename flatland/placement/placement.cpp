@@ -1,0 +1,187 @@
+#include "flatland/placement/placement.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "core/error.h"
+#include "core/keys/csv.h"
+#include "flatland/placement/cell_grid.h"
+#include "flatland/placement/equilibrium_disks.h"
+
+namespace flatspeckle {
+
+namespace {
+
+Vec2 uniform_in(const Domain& box, RandomStream& random) {
+  const double x = (random.uniform() - 0.5) * box.width;
+  return {x, random.uniform() * box.depth};
+}
+
+/// Counts unit-rate arrivals until the mean is passed.
+std::uint64_t poisson_number(double mean, RandomStream& random) {
+  std::uint64_t number = 0;
+  for (double arrival = -std::log(random.uniform()); arrival < mean;
+       arrival -= std::log(random.uniform()))
+    ++number;
+  return number;
+}
+
+/// Random sequential addition. Radii include half the gap.
+std::vector<Vec2> add_disks(const Domain& box, std::span<const double> radii,
+                            RandomStream& random) {
+  CellGrid grid(2 * *std::max_element(radii.begin(), radii.end()));
+  std::vector<Vec2> centres;
+  constexpr std::uint64_t most_tries = 100'000'000;
+  for (std::uint64_t tries = 0; centres.size() < radii.size(); ++tries) {
+    if (tries == most_tries)
+      throw InputError("the disks cannot be packed: placing " + std::to_string(radii.size()) +
+                       " one after the other does not end; lower the density or min_gap");
+    const Vec2 position = uniform_in(box, random);
+    const double radius = radii[centres.size()];
+    const bool taken = grid.any_near(position, [&](Vec2 other, std::size_t number) {
+      return length(position - other) < radius + radii[number];
+    });
+    if (taken) continue;
+    grid.insert(position, centres.size());
+    centres.push_back(position);
+  }
+  return centres;
+}
+
+Scatterer row_scatterer(const Table& table, std::size_t row, Scatterer scatterer,
+                        const std::string& path) {
+  if (table.has("radius")) {
+    scatterer.radius = table.column("radius")[row];
+    if (scatterer.is_disk() && scatterer.radius <= 0)
+      throw InputError(path + ", radius", scatterer.radius, "must be positive");
+  }
+  if (table.has("index_re")) {
+    const double imaginary = table.has("index_im") ? table.column("index_im")[row] : 0;
+    scatterer.index = {table.column("index_re")[row], imaginary};
+    if (const auto fault = index_fault(scatterer.index); !fault.empty())
+      throw InputError(path + ", index", scatterer.index, fault);
+  }
+  return scatterer;
+}
+
+}  // namespace
+
+std::string placement_word(PlacementRule::Kind kind) {
+  switch (kind) {
+    case PlacementRule::Kind::hard_disk:
+      return "hard_disk";
+    case PlacementRule::Kind::equilibrium:
+      return "equilibrium";
+    default:
+      return "poisson";
+  }
+}
+
+Placement draw_placement(const Domain& box, const Scatterer& scatterer, const PlacementRule& rule,
+                         RandomStream& random) {
+  if (rule.mean_count > most_scatterers)
+    throw InputError("count", rule.mean_count,
+                     "too many to place, more than this machine can solve");
+  Placement placement;
+  if (rule.kind != PlacementRule::Kind::poisson) {
+    const std::vector<double> radii(static_cast<std::size_t>(std::llround(rule.mean_count)),
+                                    scatterer.radius);
+    for (const Vec2& centre : draw_disks(box, radii, rule.kind, rule.min_gap, random))
+      placement.push_back({centre, scatterer});
+    return placement;
+  }
+  const std::uint64_t count = rule.count ? *rule.count : poisson_number(rule.mean_count, random);
+  placement.reserve(count);
+  while (placement.size() < count) placement.push_back({uniform_in(box, random), scatterer});
+  return placement;
+}
+
+std::vector<Vec2> draw_disks(const Domain& box, std::span<const double> radii,
+                             PlacementRule::Kind kind, double min_gap, RandomStream& random) {
+  if (radii.empty()) return {};
+  // Large disks find no room among many small ones.
+  std::vector<std::size_t> order(radii.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return radii[a] > radii[b]; });
+  std::vector<double> reaches;
+  double packing = 0;
+  for (std::size_t disk : order) {
+    reaches.push_back(radii[disk] + min_gap / 2);
+    packing += std::numbers::pi * reaches.back() * reaches.back() / box.area();
+  }
+  check_packing(box, kind, packing, 2 * reaches.front());
+  const auto drawn = kind == PlacementRule::Kind::equilibrium
+                         ? draw_equilibrium_disks(box, reaches, random)
+                         : add_disks(box, reaches, random);
+  std::vector<Vec2> centres(radii.size());
+  for (std::size_t i = 0; i < order.size(); ++i) centres[order[i]] = drawn[i];
+  return centres;
+}
+
+void check_packing(const Domain& box, PlacementRule::Kind kind, double packing, double largest) {
+  const bool equilibrium = kind == PlacementRule::Kind::equilibrium;
+  // Some slack lets the limit itself be asked for with the default gap.
+  if (packing > 1.002 * (equilibrium ? 0.69 : 0.5))
+    throw InputError(
+        "packing fraction (with min_gap)", packing,
+        equilibrium
+            ? "the fluid of hard disks freezes near 0.7: must be at most 0.69; lower the density, "
+              "the radius or min_gap"
+            : "hard disks placed one after the other reach 0.5; lower the density, the radius or "
+              "min_gap, or let placement = equilibrium pack them");
+  const bool slab = box.kind == Domain::Kind::slab;
+  for (const auto& [key, extent] : {std::pair{"width", box.width}, {"depth", box.depth}})
+    if (equilibrium && !slab && extent < 3.001 * largest)
+      throw InputError(key, extent,
+                       "placement = equilibrium needs a box more than three times as wide and deep "
+                       "as the largest disk with its gap, " +
+                           std::to_string(largest));
+}
+
+Placement read_placement(const std::string& path, const Scatterer& scatterer) {
+  const Table table = read_csv(path);
+  for (const char* name : {"x", "z"})
+    if (!table.has(name)) throw InputError(path + ": column " + name + " is missing");
+  if (table.has("index_im") && !table.has("index_re"))
+    throw InputError(path + ": column index_re is missing beside index_im");
+  if (scatterer.is_disk() && !table.has("radius") && scatterer.radius <= 0)
+    throw InputError(path + ": column radius is missing, and the key radius is not given");
+  Placement placement;
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    const Vec2 position{table.column("x")[row], table.column("z")[row]};
+    placement.push_back({position, row_scatterer(table, row, scatterer, path)});
+  }
+  check_no_overlap(placement);
+  return placement;
+}
+
+void require_outside(const Placement& placement, Vec2 sensor) {
+  for (const auto& [position, scatterer] : placement) {
+    const double distance = length(sensor - position);
+    if (scatterer.is_disk() ? distance >= scatterer.radius : distance > 0) continue;
+    throw InputError("near_sensors",
+                     "(" + std::to_string(sensor.x) + ", " + std::to_string(sensor.z) + ")",
+                     "must lie outside every scatterer");
+  }
+}
+
+void check_no_overlap(const Placement& placement) {
+  double largest = 0;
+  for (const auto& placed : placement) largest = std::max(largest, placed.scatterer.disk_radius());
+  CellGrid grid(largest > 0 ? 2 * largest : 1);
+  for (std::size_t j = 0; j < placement.size(); ++j) {
+    const PlacedScatterer& here = placement[j];
+    grid.any_near(here.position, [&, j](Vec2 other, std::size_t l) {
+      const double reach = here.scatterer.disk_radius() + placement[l].scatterer.disk_radius();
+      if (length(here.position - other) > reach) return false;
+      throw InputError("placement: scatterers " + std::to_string(l + 1) + " and " +
+                       std::to_string(j + 1) + " overlap or touch");
+    });
+    grid.insert(here.position, j);
+  }
+}
+
+}  // namespace flatspeckle

@@ -1,0 +1,26 @@
+#pragma once
+
+#include "core/numbers/statistics.h"
+#include "core/run/runner.h"
+#include "flatland/request/request.h"
+
+namespace flatspeckle {
+
+/// What either solver makes of a scene: batches for the runner, and how their sums are read.
+/// Nothing else may know which of the two it was.
+struct FieldJob {
+  BatchJob batches;
+  Estimator mean;        ///< mean scattered field per channel; empty where it is not defined
+  Estimator covariance;  ///< per entry of the request
+};
+
+/// Mean field per channel and covariance per requested entry, with standard errors.
+struct FieldMoments {
+  Estimate mean;
+  Estimate covariance;
+  double samples = 0;
+};
+
+FieldMoments field_moments(const FieldJob& job, const GroupedSums& sums);
+
+}  // namespace flatspeckle

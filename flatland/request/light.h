@@ -1,0 +1,54 @@
+#pragma once
+
+#include <compare>
+#include <initializer_list>
+#include <vector>
+
+#include "flatland/media/domain.h"
+
+namespace flatspeckle {
+
+/// What illuminates the medium, of unit size: a plane wave exp(i k w.r), a point source (the Green
+/// function of C3), or a Gaussian beam whose field is 1 at its focus.
+struct Light {
+  enum class Kind { plane, point, beam };
+  Kind kind = Kind::plane;
+  double angle = 0;  ///< of a plane wave, or of a beam's axis (C2)
+  Vec2 point;        ///< the source, or a beam's focus
+  double waist = 0;  ///< of a beam: where its field at the focus has fallen to 1/e
+  auto operator<=>(const Light&) const = default;
+};
+
+inline Light plane_wave(double angle) {
+  return {Light::Kind::plane, angle, {}, 0};
+}
+inline Light point_source(Vec2 point) {
+  return {Light::Kind::point, 0, point, 0};
+}
+inline Light gaussian_beam(double angle, Vec2 focus, double waist) {
+  return {Light::Kind::beam, angle, focus, waist};
+}
+
+/// A list of lights; plain numbers are the angles of plane waves.
+struct Lights : std::vector<Light> {
+  Lights() = default;
+  Lights(std::vector<Light> lights) : std::vector<Light>(std::move(lights)) {}
+  Lights(std::initializer_list<Light> lights) : std::vector<Light>(lights) {}
+  Lights(std::initializer_list<double> angles) : Lights(std::vector<double>(angles)) {}
+  Lights(const std::vector<double>& angles) {
+    for (double angle : angles) push_back(plane_wave(angle));
+  }
+
+  std::vector<double> angles() const {
+    std::vector<double> list;
+    for (const Light& light : *this) list.push_back(light.angle);
+    return list;
+  }
+  bool all(Light::Kind kind) const {
+    for (const Light& light : *this)
+      if (light.kind != kind) return false;
+    return true;
+  }
+};
+
+}  // namespace flatspeckle

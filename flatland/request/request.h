@@ -1,0 +1,75 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "flatland/request/light.h"
+#include "flatland/request/sensor.h"
+
+namespace flatspeckle {
+
+/// One recorded field u: a light seen in a view, by their numbers in the scene.
+struct Channel {
+  std::uint32_t light = 0, view = 0;
+  auto operator<=>(const Channel&) const = default;
+};
+
+/// One covariance entry E[u_a conj(u_b)] - E[u_a] conj(E[u_b]), by channel numbers.
+struct Entry {
+  std::uint32_t a = 0, b = 0;
+};
+
+/// Which lights, views and entries a run is asked for. The order of `entries` is that of the
+/// result:
+///  intensity      [light][view], a = b
+///  full           the lower triangle of channels [light][view], row by row, b <= a
+///  pairs          [pair]
+///  memory_effect, tilt_shift, translation
+///                 [move][view] reference against moved; then the reference's [view] and the moved
+///                 [move][view] intensities. Moves are tilts with their matched views;
+///                 [tilt][shift] and, for far views, [tilt] with their matched views; shifts
+struct CovarianceRequest {
+  enum class Kind { intensity, pairs, memory_effect, tilt_shift, translation, full };
+  Kind kind = Kind::intensity;
+  Lights lights;
+  std::vector<View> views;
+  std::vector<Channel> channels;
+  std::vector<Entry> entries;
+  // Of a moved light or view against a reference, which is light 0 and the first views.
+  std::vector<double> tilts;   ///< rotation of the light, radians
+  std::vector<double> tilt_q;  ///< k (sin tilted - sin reference), per tilt (C19)
+  std::vector<double> shifts;  ///< of k sin(view), or along x
+  std::size_t moves = 0, reference_views = 0;
+
+  bool has_reference() const { return moves > 0; }
+  std::size_t tilted_entry(std::size_t move, std::size_t view) const {
+    return move * reference_views + view;
+  }
+  std::size_t reference_intensity(std::size_t view) const { return moves * reference_views + view; }
+  std::size_t tilted_intensity(std::size_t move, std::size_t view) const {
+    return (moves + 1 + move) * reference_views + view;
+  }
+};
+
+CovarianceRequest intensity_request(Lights lights, std::vector<View> views);
+CovarianceRequest full_request(Lights lights, std::vector<View> views);
+/// pairs: angles (light 1, view 1, light 2, view 2) of each.
+struct AnglePair {
+  double light1, view1, light2, view2;
+};
+CovarianceRequest pairs_request(const std::vector<AnglePair>& pairs);
+/// Matched views keep k sin v - k sin i and the side of the medium (C19). Throws InputError for a
+/// tilt that takes the light or a matched view past the horizon.
+CovarianceRequest memory_effect_request(double k, double light, const std::vector<double>& views,
+                                        std::vector<double> tilts);
+/// Every tilt of the light (of a beam about its focus) with every shift of the views: of k
+/// sin(view) on the same side for far views, along x for near sensors. Throws InputError for what
+/// passes the horizon.
+CovarianceRequest tilt_shift_request(double k, const Light& light, const std::vector<View>& views,
+                                     std::vector<double> tilts, std::vector<double> shifts);
+/// A beam or point source and the near sensors moved along x together. Far views stay: a
+/// translation only turns their phase.
+CovarianceRequest translation_request(const Light& light, const std::vector<View>& views,
+                                      std::vector<double> shifts);
+
+}  // namespace flatspeckle

@@ -1,0 +1,144 @@
+#include "grin/ends/area_detector.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "grin/media/start_directions.h"
+
+namespace flatspeckle::grin {
+
+namespace {
+
+using std::numbers::pi;
+
+/// Share of the choices that are uniform over the detector: rays may be curved.
+constexpr double anywhere = 0.1;
+
+BoundaryPoint centre_on(const Surface& boundary, const Vec3& centre) {
+  require_finite("sensor_at", centre);
+  const auto at = boundary_point(boundary, centre);
+  if (!at)
+    throw InputError("sensor_at", listed(centre),
+                     "must be on the boundary of the stage, a sphere or a box");
+  return *at;
+}
+
+PixelRectangle rectangle(const AreaDetector& detector) {
+  require_positive("sensor_size", detector.width);
+  require_positive("sensor_size", detector.height);
+  return {detector.pixels, detector.width / 2, detector.height / 2};
+}
+
+double sine_squared_of_acceptance(double acceptance) {
+  if (!(acceptance > 0 && acceptance <= pi / 2 * (1 + 1e-12)))
+    throw InputError("acceptance", acceptance, "must be in (0, pi/2]");
+  const double sine = std::sin(std::min(acceptance, pi / 2));
+  return sine * sine;
+}
+
+}  // namespace
+
+AreaDetectorEnd::AreaDetectorEnd(const AreaDetector& detector, const Stage& stage)
+    : face_(rectangle(detector)),
+      boundary_(stage.boundary),
+      centre_(centre_on(stage.boundary, detector.centre).x),
+      view_("sensor_at", -centre_on(stage.boundary, detector.centre).inward, detector.up),
+      sine_squared_(sine_squared_of_acceptance(detector.acceptance)),
+      tangent_(std::sqrt(sine_squared_ / (1 - sine_squared_))),
+      body_(body_surface(stage)) {
+  require_in_stage(stage, centre_);
+  const auto* sphere = std::get_if<Sphere>(&boundary_);
+  for (const double right : {-1, 1})
+    for (const double up : {-1, 1}) {
+      const Vec3 corner =
+          right * face_.half_width() * view_.right + up * face_.half_height() * view_.up;
+      const bool fits = sphere ? corner.norm() < sphere->radius
+                               : boundary_point(boundary_, centre_ + corner).has_value();
+      if (!fits)
+        throw InputError("sensor_size", listed(detector.width, detector.height),
+                         "must be within one face of the boundary");
+    }
+}
+
+Vec3 AreaDetectorEnd::inward(const Vec3& x) const {
+  if (const auto* sphere = std::get_if<Sphere>(&boundary_)) return -sphere->normal(x);
+  return -view_.forward;
+}
+
+EndPosition AreaDetectorEnd::on_face(const Vec3& x, int pixel) const {
+  const Vec3 normal = inward(x);
+  return {.point = {x, part_at(body_, x)},
+          .inward = normal,
+          .position_density = -normal.dot(view_.forward) / face_.area(),
+          .pixel = pixel};
+}
+
+EndPosition AreaDetectorEnd::at(double u, double v, int pixel) const {
+  Vec3 x = centre_ + u * view_.right + v * view_.up;
+  if (const auto* sphere = std::get_if<Sphere>(&boundary_)) {
+    // u^2 + v^2 = s (2 R - s), s the depth below the tangent plane
+    const double squared = u * u + v * v, r = sphere->radius;
+    x -= squared / (r + std::sqrt(r * r - squared)) * view_.forward;
+  }
+  return on_face(x, pixel);
+}
+
+EndPosition AreaDetectorEnd::sample_position(double stratum, RandomStream& random) const {
+  const PicturePoint point = face_.sample(stratum, random);
+  return at(point.u, point.v, point.pixel);
+}
+
+Window AreaDetectorEnd::accepting_from(const Vec3& x) const {
+  constexpr double room_for_curves = 1.25;
+  const Vec3 from_centre = x - centre_;
+  const double before = std::max(0.0, -from_centre.dot(view_.forward));
+  return face_.near(from_centre.dot(view_.right), from_centre.dot(view_.up),
+                    room_for_curves * tangent_ * before);
+}
+
+double AreaDetectorEnd::choice_of(double u, double v, const Window& accepting) const {
+  const double within = accepting.contains(u, v) ? face_.area() / accepting.area() : 0;
+  return anywhere + (1 - anywhere) * within;
+}
+
+EndPosition AreaDetectorEnd::choose_position(const Vec3& x, RandomStream& random) const {
+  const Window accepting = accepting_from(x);
+  const Window part = random.uniform() < anywhere ? face_.all() : accepting;
+  const double u = part.u_low + (part.u_high - part.u_low) * random.uniform();
+  const double v = part.v_low + (part.v_high - part.v_low) * random.uniform();
+  EndPosition chosen = at(u, v, face_.pixel_at(u, v));
+  chosen.choice = choice_of(u, v, accepting);
+  return chosen;
+}
+
+double AreaDetectorEnd::choice(const Vec3& position, const Vec3& x) const {
+  const Vec3 from_centre = position - centre_;
+  return choice_of(from_centre.dot(view_.right), from_centre.dot(view_.up), accepting_from(x));
+}
+
+std::optional<EndPosition> AreaDetectorEnd::position_at(const Vec3& x) const {
+  if (!(normal(boundary_, x).dot(view_.forward) > 0))
+    return std::nullopt;  // the far side, or another face
+  const Vec3 from_centre = x - centre_;
+  const int pixel = face_.pixel_at(from_centre.dot(view_.right), from_centre.dot(view_.up));
+  if (pixel < 0) return std::nullopt;
+  return on_face(x, pixel);
+}
+
+EndDirection AreaDetectorEnd::sample_direction(const EndPosition& at, double,
+                                               RandomStream& random) const {
+  const double squared = sine_squared_ * random.uniform();
+  return towards(at, random_turn(at.inward, squared / (1 + std::sqrt(1 - squared)), random));
+}
+
+EndDirection AreaDetectorEnd::towards(const EndPosition& at, const Vec3& direction) const {
+  EndDirection to{.direction = direction};
+  const double cosine = direction.dot(at.inward);
+  if (!(cosine > 0 && 1 - cosine * cosine <= sine_squared_)) return to;
+  to.density = cosine / (pi * sine_squared_);
+  to.pixel = at.pixel;
+  to.strength = at.index * at.index * cosine * at.position_density * pixels().count();
+  return to;
+}
+
+}  // namespace flatspeckle::grin

@@ -1,0 +1,89 @@
+#include "grin/ends/camera.h"
+
+#include <cmath>
+#include <numbers>
+
+namespace flatspeckle::grin {
+
+namespace {
+
+PixelRectangle film(const Camera& camera) {
+  if (!(camera.field_of_view > 0 && camera.field_of_view < std::numbers::pi))
+    throw InputError("field_of_view", camera.field_of_view, "must be in (0, pi)");
+  const double half_width = std::tan(camera.field_of_view / 2);
+  return {camera.pixels, half_width, half_width * camera.pixels.rows / camera.pixels.columns};
+}
+
+}  // namespace
+
+CameraEnd::CameraEnd(const Camera& camera, const Stage& stage)
+    : view_("sensor_direction", camera.forward, camera.up),
+      film_(film(camera)),
+      centre_(camera.x),
+      focus_distance_(1),
+      body_(body_surface(stage)) {
+  if (camera.lens_radius != 0) place_lens(camera, stage);
+  require_in_stage(stage, centre_);
+}
+
+void CameraEnd::place_lens(const Camera& camera, const Stage& stage) {
+  require_finite("sensor_at", centre_);
+  lens_.emplace(stage.boundary, centre_, camera.lens_radius, "sensor_at", "lens_radius");
+  centre_ = boundary_point(stage.boundary, centre_)->x;
+  if (!(camera.focus_distance > camera.lens_radius && std::isfinite(camera.focus_distance)))
+    throw InputError("focus_distance", camera.focus_distance, "must be more than lens_radius");
+  if (!(view_.forward.dot(lens_->inward(centre_)) > 0))
+    throw InputError("sensor_direction", listed(camera.forward),
+                     "must point from the lens into the stage");
+  focus_distance_ = camera.focus_distance;
+}
+
+EndPosition CameraEnd::on_lens(const BoundaryPoint& at) const {
+  return {.point = {at.x, part_at(body_, at.x)},
+          .inward = at.inward,
+          .position_density = 1 / lens_->area()};
+}
+
+EndPosition CameraEnd::sample_position(double, RandomStream& random) const {
+  if (lens_) return on_lens(lens_->sample(random));
+  return {.point = {centre_, Part::stage}, .is_point = true};
+}
+
+std::optional<EndPosition> CameraEnd::position_at(const Vec3& x) const {
+  if (!lens_ || !lens_->contains(x)) return std::nullopt;
+  return on_lens({x, lens_->inward(x)});
+}
+
+EndDirection CameraEnd::along(const EndPosition& at, const Vec3& direction, int pixel) const {
+  EndDirection to{.direction = direction};
+  const double cosine = direction.dot(view_.forward);
+  const double ahead = focus_distance_ - (at.point.x - centre_).dot(view_.forward);
+  const double stretch = ahead / focus_distance_;
+  const double film_per_angle = stretch * stretch / (cosine * cosine * cosine);
+  to.density = film_per_angle / film_.area();
+  if (!at.is_point && !(direction.dot(at.inward) > 0)) return to;  // behind the lens
+  to.pixel = pixel;
+  to.strength = at.position_density * film_per_angle / film_.pixel_area();
+  return to;
+}
+
+EndDirection CameraEnd::sample_direction(const EndPosition& at, double stratum,
+                                         RandomStream& random) const {
+  const PicturePoint seen = film_.sample(stratum, random);
+  const Vec3 focus =
+      centre_ + focus_distance_ * (view_.forward + seen.u * view_.right + seen.v * view_.up);
+  return along(at, (focus - at.point.x).normalized(), seen.pixel);
+}
+
+EndDirection CameraEnd::towards(const EndPosition& at, const Vec3& direction) const {
+  const Vec3 from_centre = at.point.x - centre_;
+  const double cosine = direction.dot(view_.forward);
+  if (!(cosine > 0)) return {.direction = direction};
+  const double t = (focus_distance_ - from_centre.dot(view_.forward)) / cosine;
+  const Vec3 focus = (from_centre + t * direction) / focus_distance_;
+  const int pixel = film_.pixel_at(focus.dot(view_.right), focus.dot(view_.up));
+  if (pixel < 0) return {.direction = direction};
+  return along(at, direction, pixel);
+}
+
+}  // namespace flatspeckle::grin

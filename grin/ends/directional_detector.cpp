@@ -1,0 +1,69 @@
+#include "grin/ends/directional_detector.h"
+
+#include <cmath>
+#include <numbers>
+
+namespace flatspeckle::grin {
+
+namespace {
+
+PixelRectangle picture(const DirectionalDetector& detector) {
+  constexpr double right_angle = std::numbers::pi / 2;
+  if (!(detector.half_angle > 0 && detector.half_angle <= right_angle * (1 + 1e-12)))
+    throw InputError("half_angle", detector.half_angle, "must be in (0, pi/2]");
+  const double sine = std::sin(std::min(detector.half_angle, right_angle));
+  return {detector.pixels, sine, sine};
+}
+
+}  // namespace
+
+DirectionalEnd::DirectionalEnd(const DirectionalDetector& detector, const Stage& stage)
+    : view_("sensor_direction", detector.forward, detector.up),
+      picture_(picture(detector)),
+      boundary_(stage.boundary, "sensor"),
+      body_(body_surface(stage)) {}
+
+EndPosition DirectionalEnd::on_boundary(const BoundaryPoint& at) const {
+  return {.point = {at.x, part_at(body_, at.x)},
+          .inward = at.inward,
+          .position_density = 1 / boundary_.area()};
+}
+
+EndPosition DirectionalEnd::sample_position(double, RandomStream& random) const {
+  return on_boundary(boundary_.sample(random));
+}
+
+std::optional<EndPosition> DirectionalEnd::position_at(const Vec3& x) const {
+  return on_boundary({x, boundary_.inward(x)});
+}
+
+EndDirection DirectionalEnd::along(const EndPosition& at, const Vec3& direction, int pixel) const {
+  EndDirection to{.direction = direction};
+  const double picture_per_angle = -direction.dot(view_.forward);
+  const double cosine = direction.dot(at.inward);
+  to.density = picture_per_angle / picture_.area();
+  if (!(cosine > 0)) return to;  // light does not leave this way here
+  to.pixel = pixel;
+  to.strength = at.index * at.index * cosine * picture_per_angle / picture_.pixel_area();
+  return to;
+}
+
+EndDirection DirectionalEnd::sample_direction(const EndPosition& at, double stratum,
+                                              RandomStream& random) const {
+  const PicturePoint seen = picture_.sample(stratum, random);
+  const double squared = 1 - seen.u * seen.u - seen.v * seen.v;
+  if (!(squared > 0)) return {.direction = at.inward, .density = 1};  // beyond the horizon
+  const Vec3 leaving =
+      seen.u * view_.right + seen.v * view_.up + std::sqrt(squared) * view_.forward;
+  return along(at, -leaving, seen.pixel);
+}
+
+EndDirection DirectionalEnd::towards(const EndPosition& at, const Vec3& direction) const {
+  const int pixel = direction.dot(view_.forward) < 0
+                        ? picture_.pixel_at(-direction.dot(view_.right), -direction.dot(view_.up))
+                        : -1;
+  if (pixel < 0) return {.direction = direction};
+  return along(at, direction, pixel);
+}
+
+}  // namespace flatspeckle::grin

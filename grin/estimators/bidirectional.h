@@ -1,0 +1,193 @@
+#pragma once
+
+#include "grin/estimators/film.h"
+#include "grin/estimators/light_vertices.h"
+#include "grin/estimators/path_join.h"
+#include "grin/estimators/subpath.h"
+
+namespace flatspeckle::grin {
+
+/// Path tracing, light tracing and bidirectional path tracing: one estimator, which draws and
+/// weighs the strategies that it is allowed. A light path is walked and joined to the sensor from
+/// each of its vertices; a sensor's path is walked and joined, from each vertex, to the lights and
+/// to one of the vertices of the light path, drawn by what it promises. What a join promises is
+/// what the straight line would give; joins that promise little are left to chance.
+template <RenderPlan plan, Space S>
+class Bidirectional {
+ public:
+  Bidirectional(const Transport& transport, const S& space, RandomStream& random, Film& film,
+                TransportCounts& counts)
+      : transport_(transport), space_(space), random_(random), film_(film), counts_(counts) {}
+
+  /// What the last pair of paths promised: its joins, made or not, and what it hit.
+  double promised() const { return promised_; }
+
+  /// One light path and one path from the sensor; `stratum` in (0, 1) says through which pixel.
+  void add(double stratum) {
+    promised_ = 0;
+    walk_from_light();
+    walk_from_sensor(stratum);
+  }
+
+ private:
+  void walk_from_light() {
+    vertices_.clear();
+    const EndPosition end = transport_.lights.sample_position(space_, random_);
+    const PathVertex start = end_vertex(transport_.strategies, end);
+    join_to_sensor(start);
+    const EndDirection first = transport_.lights.sample_direction(end, random_);
+    const auto left = [&](const PathVertex& last, const PathVertex& before) {
+      if (end.is_beam && last.vertices == 2) return;  // summed apart (unscattered_beams.h)
+      arrive(transport_.sensor, last, before, transport_.strategies.most_sensor(),
+             [&](const EndHit& hit) { return hit.direction.pixel; });
+    };
+    const double last_kept = sample_last_kept();
+    const auto collided = [&](const PathVertex& vertex) {
+      ++counts_.light_collisions;
+      join_to_sensor(vertex);
+      if (vertex.vertices < last_kept) vertices_.offer(vertex, random_);
+    };
+    walk<plan>(transport_, space_, transport_.lights, start, first,
+               transport_.strategies.short_light, random_, counts_, collided, left);
+  }
+
+  void walk_from_sensor(double stratum) {
+    const EndPosition end = transport_.sensor.sample_position(space_, random_, stratum);
+    const PathVertex start = end_vertex(transport_.strategies, end);
+    const EndDirection first = transport_.sensor.sample_direction(end, random_, stratum);
+    pixel_ = first.pixel;
+    const auto left = [&](const PathVertex& last, const PathVertex& before) {
+      arrive(transport_.lights, last, before, transport_.strategies.most_light(),
+             [&](const EndHit&) { return pixel_; });
+    };
+    const double last_kept = sample_last_kept();
+    const auto collided = [&](const PathVertex& vertex) {
+      join_to_light(vertex);
+      if (vertex.vertices < last_kept) join_to_light_path(vertex);
+    };
+    walk<plan>(transport_, space_, transport_.sensor, start, first,
+               transport_.strategies.short_sensor, random_, counts_, collided, left);
+  }
+
+  /// A number of vertices; those that have fewer are kept for joins to the other path.
+  double sample_last_kept() {
+    const double kept = transport_.strategies.kept;
+    return kept < 1 ? 2 + std::log(random_.uniform()) / std::log(kept) : Strategies::unlimited;
+  }
+
+  /// A path that reached the boundary meets the other ends there.
+  template <class End, class Pixel>
+  void arrive(const End& ends, const PathVertex& last, const PathVertex& before, int more,
+              const Pixel& pixel) {
+    ends.hit(space_, last.point.x, last.arrived, [&](const EndHit& hit) {
+      PathVertex here = last;
+      here.density *= std::abs(hit.position.inward.dot(last.arrived));
+      here.first_of_other *= heuristic(ends.choice(hit.position, before.point.x));
+      const double others = rivals_of_hit(
+          transport_.strategies, here, hit.position.position_density, hit.direction.density, more);
+      const double value = here.weight * hit.value / (1 + others);
+      promised_ += value;
+      add(pixel(hit), value, here.optical_path);
+    });
+  }
+
+  void join_to_sensor(const PathVertex& y) {
+    const EndPosition end = transport_.sensor.choose_position(space_, y.point.x, random_);
+    const PathVertex z = end_vertex(transport_.strategies, end);
+    join_to_end(y, z);
+  }
+  void join_to_light(const PathVertex& z) {
+    const EndPosition end = transport_.lights.sample_position(space_, random_);
+    if (end.is_beam) return;
+    const PathVertex y = end_vertex(transport_.strategies, end);
+    join_to_end(y, z);
+  }
+
+  void join_to_end(const PathVertex& y, const PathVertex& z) {
+    if (can_join(y, z)) join(y, z, promise(y, z));
+  }
+
+  /// One of the kept vertices stands for all, drawn by what they promise.
+  void join_to_light_path(const PathVertex& z) {
+    const std::span<const PathVertex> all = vertices_.kept();
+    double sum = 0;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      of_each_[i] = can_join(all[i], z) ? promise(all[i], z) / all[i].kept : 0;
+      sum += of_each_[i];
+    }
+    if (!(sum > 0)) return;
+    double rest = sum * random_.uniform();
+    std::size_t i = 0;
+    while (i + 1 < all.size() && rest >= of_each_[i]) rest -= of_each_[i++];
+    if (!(of_each_[i] > 0)) return;
+    PathVertex y = all[i];
+    const double stands_for = vertices_.each_stands_for() / z.kept;
+    y.weight *= stands_for * sum / (of_each_[i] * y.kept);
+    join(y, z, stands_for * sum);
+  }
+
+  bool can_join(const PathVertex& y, const PathVertex& z) const {
+    return y.point.part == z.point.part && !(y.end && y.end->is_beam) &&
+           y.vertices + z.vertices - 2 <= transport_.max_scatterings;
+  }
+
+  /// Of the path that the straight line would make.
+  double promise(const PathVertex& y, const PathVertex& z) {
+    ++counts_.joins_weighed;
+    const Vec3 way = z.point.x - y.point.x;
+    const double length = way.norm();
+    const double depth = transport_.least_extinction(y.point.part) * length;
+    const Vec3 direction = way / length;
+    const JoiningCurve line{direction, direction, length * length, depth};
+    const JoinedPath path =
+        joined_path(transport_.strategies, y, facing(transport_.lights, y, direction), z,
+                    facing(transport_.sensor, z, -direction), line);
+    return path.value * path.weight * std::exp(-depth);
+  }
+
+  /// As leaving(); but where rays are curved an end may look along the curve and not along the
+  /// straight line, so that some of its other directions counts too.
+  template <class End>
+  EndDirection facing(const End& ends, const PathVertex& vertex, const Vec3& direction) {
+    constexpr double elsewhere = 0.1;
+    EndDirection way = leaving(transport_, ends, vertex, direction);
+    if constexpr (plan.curved)
+      if (vertex.end)
+        way.strength = std::max(way.strength,
+                                elsewhere * ends.sample_direction(*vertex.end, random_).strength);
+    return way;
+  }
+
+  void join(const PathVertex& y, const PathVertex& z, double promised) {
+    promised_ += promised;
+    const double chance = std::min(1.0, promised / transport_.join_level);
+    if (!(chance > 0) || random_.uniform() >= chance) return;
+    ++counts_.joins;
+    const auto curve = space_.join(y.point, z.point, random_, counts_.connections);
+    if (!curve) return;
+    const EndDirection from_y = leaving(transport_, transport_.lights, y, curve->start_direction);
+    const EndDirection from_z = leaving(transport_, transport_.sensor, z, -curve->end_direction);
+    const JoiningCurve as_weighed{curve->start_direction, curve->end_direction, curve->spreading,
+                                  curve->optical_depth};
+    const JoinedPath path = joined_path(transport_.strategies, y, from_y, z, from_z, as_weighed);
+    add(z.end ? path.pixel : pixel_,
+        path.value * path.weight * curve->transmittance * curve->multiplicity / chance,
+        y.optical_path + curve->optical_path + z.optical_path);
+  }
+
+  void add(int pixel, double value, double optical_path) {
+    deposit<plan.timed>(film_, counts_, pixel, value, optical_path);
+  }
+
+  const Transport& transport_;
+  const S& space_;
+  RandomStream& random_;
+  Film& film_;
+  TransportCounts& counts_;
+  LightVertices vertices_;  ///< that are kept for joins
+  std::array<double, LightVertices::capacity> of_each_{};
+  int pixel_ = -1;  ///< of the sensor's path
+  double promised_ = 0;
+};
+
+}  // namespace flatspeckle::grin

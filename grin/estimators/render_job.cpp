@@ -1,0 +1,195 @@
+#include "grin/estimators/render_job.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <mutex>
+#include <string>
+
+#include "core/error.h"
+#include "core/numbers/random.h"
+#include "grin/estimators/path_kernels.h"
+#include "grin/estimators/photon_map.h"
+#include "grin/estimators/render_pilot.h"
+#include "grin/estimators/unscattered_beams.h"
+#include "grin/space/curved_space.h"
+
+namespace flatspeckle::grin {
+
+namespace {
+
+/// What a join costs, in flights; less than that, as a level too low only costs time.
+constexpr double flights_per_curve = 4, flights_per_line = 0.1;
+
+Strategies strategies(RenderMethod method) {
+  return {.short_light = method == RenderMethod::path,
+          .short_sensor = method == RenderMethod::light};
+}
+
+bool is_photon_map(const RenderRequest& request) {
+  return request.method == RenderMethod::photon_map;
+}
+
+constexpr int most_scatterings = std::numeric_limits<int>::max();
+
+int path_limit(const RenderRequest& request) {
+  return request.max_scatterings > 0 ? static_cast<int>(request.max_scatterings) : most_scatterings;
+}
+
+double photon_radius(const RenderScene& scene, const RenderRequest& request) {
+  return request.photon_radius > 0 ? request.photon_radius : default_photon_radius(scene.stage);
+}
+
+/// Lights, sensor and kernels of a scene.
+struct Tracer {
+  std::shared_ptr<Transport> transport;
+  PathKernel kernel;
+  PathKernel unscattered_beams = {};  ///< where the kernel leaves that out and there is some
+};
+
+bool sums_beams_apart(const Transport& transport, const RenderRequest& request) {
+  return !is_photon_map(request) && transport.lights.beam_power() > 0 &&
+         transport.sensor.can_be_hit();
+}
+
+std::shared_ptr<Transport> transport_in(const RenderScene& scene, const RenderRequest& request,
+                                        const Lights::Index& index) {
+  return std::make_shared<Transport>(Transport{
+      .stage = scene.stage,
+      .lights = Lights(scene.lights, scene.stage, index),
+      .sensor = SensorEnd(scene.sensor, scene.stage),
+      .strategies = strategies(request.method),
+      .max_scatterings = path_limit(request),
+  });
+}
+
+Tracer straight_tracer(const RenderScene& scene, const RenderRequest& request,
+                       const RenderPlan& plan) {
+  const double excess = std::get<Homogeneous>(scene.field).n_excess;
+  const double around = scene.stage.body ? scene.stage.excess_around : excess;
+  const auto transport = transport_in(scene, request, [&](const PathPoint& p) {
+    return 1 + (p.part == Part::body ? excess : around);
+  });
+  Tracer tracer{transport, is_photon_map(request) ? photon_kernel(plan.timed, transport, excess,
+                                                                  photon_radius(scene, request))
+                                                  : straight_kernel(plan, transport, excess)};
+  if (sums_beams_apart(*transport, request))
+    tracer.unscattered_beams = beams_kernel(plan.timed, transport, excess);
+  return tracer;
+}
+
+Tracer curved_tracer(const RenderScene& scene, const RenderRequest& request,
+                     const RenderPlan& plan) {
+  const std::shared_ptr<const CurvedSpace> space = make_curved_space(
+      scene.field, scene.stage, {scene.step, scene.max_length, !is_photon_map(request)});
+  const auto transport =
+      transport_in(scene, request, [&](const PathPoint& p) { return space->index(p); });
+  if (is_photon_map(request))
+    return {transport, photon_kernel(plan.timed, transport, space, scene.random_phase,
+                                     photon_radius(scene, request))};
+  Tracer tracer{transport, curved_kernel(plan, transport, space, scene.random_phase)};
+  if (sums_beams_apart(*transport, request))
+    tracer.unscattered_beams =
+        beams_kernel(plan.timed, transport,
+                     make_curved_space(scene.field, without_scattering(scene.stage),
+                                       {scene.step, scene.max_length, false}),
+                     scene.random_phase);
+  return tracer;
+}
+
+/// Of a picture's size, and so few that a batch ends soon where paths are long. A power of two: no
+/// rounding of the flights changes it.
+int paths_per_batch(const RenderRequest& request, std::size_t sums, double flights_per_pair) {
+  const double most_flights = is_photon_map(request) ? 1 << 20 : 1 << 17;
+  const std::size_t paths = is_photon_map(request) ? photon_paths_per_batch
+                                                   : std::clamp<std::size_t>(sums / 8, 32, 16384);
+  const auto short_enough = static_cast<std::size_t>(most_flights / flights_per_pair);
+  return static_cast<int>(std::min(paths, std::bit_floor(std::max<std::size_t>(short_enough, 1))));
+}
+
+std::vector<Complex> steady_mean(double samples, std::span<const Complex> sums, int bins) {
+  std::vector<Complex> steady(sums.size() / bins);
+  for (std::size_t i = 0; i < sums.size(); ++i) steady[i / bins] += sums[i] / samples;
+  return steady;
+}
+
+Estimate steady_picture(const GroupedSums& sums, int bins) {
+  return jackknife(sums, [bins](double samples, std::span<const Complex> total) {
+    return steady_mean(samples, total, bins);
+  });
+}
+
+void require_usable(const RenderScene& scene, const RenderRequest& request) {
+  require_usable(scene.bins);
+  if (request.max_scatterings < 0 || request.max_scatterings > most_scatterings)
+    throw InputError("max_scatterings", request.max_scatterings,
+                     "must not be negative, and at most " + std::to_string(most_scatterings));
+  if (!(request.photon_radius >= 0) || !std::isfinite(request.photon_radius))
+    throw InputError("photon_radius", request.photon_radius, "must be 0 (automatic) or positive");
+  if (scene.random_phase && !std::holds_alternative<StandingWave>(scene.field) &&
+      !std::holds_alternative<FocusedSound>(scene.field))
+    throw InputError("random_phase: needs the field ultrasound or focused_sound, and it alone");
+}
+
+}  // namespace
+
+RenderPlan render_plan(const RenderScene& scene) {
+  RenderPlan plan;
+  plan.curved = !std::holds_alternative<Homogeneous>(scene.field);
+  plan.body = scene.stage.body.has_value();
+  plan.timed = scene.bins.count > 1;
+  plan.scatters = plan.absorbs = plan.gridded = false;
+  const auto add = [&](const ScatteringMedium& medium) {
+    plan.scatters |= medium.mu_s > 0;
+    plan.absorbs |= medium.mu_a > 0;
+    plan.gridded |= medium.density && medium.mu_t() > 0;
+  };
+  add(scene.stage.medium);
+  if (scene.stage.body) add(scene.stage.body->medium);
+  return plan;
+}
+
+RenderJob render_job(const RenderScene& scene, const RenderRequest& request, std::uint64_t seed) {
+  require_usable(scene, request);
+  check(scene.stage);
+  check_path_lengths(scene.stage, path_limit(request));
+  const RenderPlan plan = render_plan(scene);
+  const Tracer tracer =
+      plan.curved ? curved_tracer(scene, request, plan) : straight_tracer(scene, request, plan);
+  const double flights = is_photon_map(request)
+                             ? flights_per_pair(*tracer.transport, tracer.kernel, scene.bins)
+                             : tune_joins(*tracer.transport, tracer.kernel, scene.bins,
+                                          plan.curved ? flights_per_curve : flights_per_line);
+
+  RenderJob job;
+  job.pixels = tracer.transport->sensor.pixels();
+  job.bins = scene.bins;
+  job.plan = plan.describe();
+  job.batches.size = static_cast<std::size_t>(job.pixels.count()) * scene.bins.count;
+  const int paths = paths_per_batch(request, job.batches.size, flights);
+  job.batches.samples_per_batch = paths;
+  const auto counts = std::make_shared<TransportCounts>();
+  job.counts = counts;
+  const auto counting = std::make_shared<std::mutex>();
+  job.batches.run = [=, pixels = job.pixels.count(), bins = scene.bins](std::uint64_t number,
+                                                                        std::span<Complex> sums) {
+    Film film(pixels, bins, sums);
+    RandomStream random(seed, static_cast<std::uint64_t>(Stream::render), number);
+    TransportCounts of_batch;
+    tracer.kernel(paths, random, film, of_batch, nullptr);
+    if (tracer.unscattered_beams) tracer.unscattered_beams(paths, random, film, of_batch, nullptr);
+    const std::lock_guard lock(*counting);
+    *counts += of_batch;
+  };
+  job.batches.relative_error = [bins = scene.bins.count](const GroupedSums& sums) {
+    return relative_error(steady_picture(sums, bins));
+  };
+  return job;
+}
+
+RenderedPicture rendered_picture(const RenderJob& job, const GroupedSums& sums) {
+  return {jackknife(sums, sample_mean), steady_picture(sums, job.bins.count)};
+}
+
+}  // namespace flatspeckle::grin

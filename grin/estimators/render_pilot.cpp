@@ -1,0 +1,87 @@
+#include "grin/estimators/render_pilot.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace flatspeckle::grin {
+
+namespace {
+
+constexpr int fewest_pairs = 4, most_pairs = 256;
+constexpr std::uint64_t enough_flights = 1 << 16;
+constexpr int most_scatterings = 1 << 15;  // of a pilot's path, which need not end
+
+struct Pilot {
+  int pairs = 0;
+  bool is_cut = false;  // some path may have been longer
+  TransportCounts counts;
+  std::vector<double> promises;
+
+  double flights_per_pair() const {
+    return std::max(static_cast<double>(counts.flights) / pairs, 1.0);
+  }
+};
+
+/// Pairs that join nothing; the same pairs each time.
+Pilot pilot(Transport& transport, const PathKernel& kernel, const TimeBins& bins) {
+  constexpr auto no_batch = std::numeric_limits<std::uint64_t>::max();
+  const int pixels = transport.sensor.pixels().count();
+  std::vector<Complex> sums(static_cast<std::size_t>(pixels) * bins.count);
+  Film film(pixels, bins, sums);
+  RandomStream random(0, static_cast<std::uint64_t>(Stream::render), no_batch);
+  const int limit = transport.max_scatterings;
+  transport.max_scatterings = std::min(limit, most_scatterings);
+  transport.join_level = std::numeric_limits<double>::infinity();
+  Pilot found;
+  for (; found.pairs < most_pairs; ++found.pairs) {
+    if (found.pairs >= fewest_pairs && found.counts.flights >= enough_flights) break;
+    const std::uint64_t before = found.counts.flights;
+    kernel(1, random, film, found.counts, &found.promises);
+    found.is_cut |= found.counts.flights - before >= most_scatterings;
+  }
+  transport.max_scatterings = limit;
+  return found;
+}
+
+double known_flights(const Pilot& pilot) {
+  return pilot.is_cut ? std::numeric_limits<double>::infinity() : pilot.flights_per_pair();
+}
+
+/// Without the few that promise most: what is near an end is rare, and would decide alone.
+double trimmed_variance(std::vector<double> promises) {
+  std::sort(promises.begin(), promises.end());
+  promises.resize(promises.size() - std::max<std::size_t>(1, promises.size() / 64));
+  const double n = static_cast<double>(promises.size());
+  const double mean = std::accumulate(promises.begin(), promises.end(), 0.0) / n;
+  const double square =
+      std::inner_product(promises.begin(), promises.end(), promises.begin(), 0.0) / n;
+  return std::max(square - mean * mean, 0.0);
+}
+
+}  // namespace
+
+double flights_per_pair(Transport& transport, const PathKernel& kernel, const TimeBins& bins) {
+  return known_flights(pilot(transport, kernel, bins));
+}
+
+/// One vertex of a light path stands for all in a join: their mean number sets the share, and twice
+/// that how many are kept for joins. With more, bidirectional meets rare long paths that change its
+/// picture (white furnace of optical depth 200); with fewer, a pinhole in thick fog under a beam
+/// gains little from joins. A pair costs F flights and varies by V. Joins of the promise S at a
+/// level L add L S to V and cost c S/L flights; variance times cost is least at L^2 = c V / F, both
+/// without joins.
+double tune_joins(Transport& transport, const PathKernel& kernel, const TimeBins& bins,
+                  double flights_per_join) {
+  const Pilot first = pilot(transport, kernel, bins);
+  const double collisions = static_cast<double>(first.counts.light_collisions) / first.pairs;
+  transport.strategies.joined_share = std::min(1.0, 1 / collisions);
+  transport.strategies.kept = 1 - 1 / (2 + 2 * collisions);
+  const Pilot second = pilot(transport, kernel, bins);
+  transport.join_level =
+      std::sqrt(flights_per_join * trimmed_variance(second.promises) / second.flights_per_pair());
+  return known_flights(second);
+}
+
+}  // namespace flatspeckle::grin

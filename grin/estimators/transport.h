@@ -1,0 +1,30 @@
+#pragma once
+
+#include "grin/ends/light.h"
+#include "grin/ends/sensor.h"
+#include "grin/estimators/path_vertex.h"
+#include "grin/estimators/transport_counts.h"
+#include "grin/space/stage.h"
+
+namespace flatspeckle::grin {
+
+/// What estimators are told of a scene, but for its space.
+struct Transport {
+  Stage stage;
+  Lights lights;
+  SensorEnd sensor;
+  Strategies strategies = {};
+  int max_scatterings = std::numeric_limits<int>::max();
+  /// Joins that promise less than this are left to chance, in proportion to what they promise.
+  double join_level = 0;
+
+  const ScatteringMedium& medium(Part part) const {
+    return part == Part::body ? stage.body->medium : stage.medium;
+  }
+  /// Known to be met everywhere in a part; a grid may be empty.
+  double least_extinction(Part part) const {
+    return medium(part).density ? 0 : medium(part).mu_t();
+  }
+};
+
+}  // namespace flatspeckle::grin

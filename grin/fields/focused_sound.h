@@ -1,0 +1,73 @@
+#pragma once
+
+#include <cmath>
+#include <vector>
+
+#include "grin/fields/index_field.h"
+
+namespace flatspeckle::grin {
+
+/// Sound focused by an array in its far field: plane waves of equal strength, all in phase at the
+/// focus, frozen at the sound's phase psi,
+///   n = 1 + background + amplitude / N sum_j cos(k d_j.(x - focus) - psi).
+/// An exact solution of the wave equation for any directions d_j. Directions in one plane focus on
+/// the line through the focus across that plane, a cone of them on a point.
+class FocusedSound {
+ public:
+  /// Throws InputError without directions (any lengths but 0), or for k <= 0.
+  FocusedSound(double background, double amplitude, double k, const std::vector<Vec3>& directions,
+               const Vec3& focus, double psi = 0);
+
+  /// The wave that a ray meets at another phase of the sound.
+  FocusedSound frozen(double psi) const {
+    FocusedSound sound = *this;
+    sound.psi_ = psi;
+    return sound;
+  }
+
+  double excess(const Vec3& x) const {
+    double sum = 0;
+    for (const Vec3& wave : waves_) sum += std::cos(phase(wave, x));
+    return background_ + amplitude_ * sum;
+  }
+  IndexGradient gradient(const Vec3& x) const {
+    double cosines = 0;
+    Vec3 slope = Vec3::Zero();
+    for (const Vec3& wave : waves_) {
+      const double at = phase(wave, x);
+      cosines += std::cos(at);
+      slope -= std::sin(at) * wave;
+    }
+    return {background_ + amplitude_ * cosines, amplitude_ * slope};
+  }
+  IndexHessian hessian(const Vec3& x) const {
+    double cosines = 0;
+    Vec3 slope = Vec3::Zero();
+    Mat3 bend = Mat3::Zero();
+    for (const Vec3& wave : waves_) {
+      const double at = phase(wave, x), cosine = std::cos(at);
+      cosines += cosine;
+      slope -= std::sin(at) * wave;
+      bend -= cosine * wave * wave.transpose();
+    }
+    return {background_ + amplitude_ * cosines, amplitude_ * slope, amplitude_ * bend};
+  }
+
+ private:
+  double phase(const Vec3& wave, const Vec3& x) const { return wave.dot(x - focus_) - psi_; }
+
+  double background_, amplitude_;  ///< of one wave
+  std::vector<Vec3> waves_;        ///< k d_j
+  Vec3 focus_;
+  double psi_;
+};
+
+/// `count` directions in the x-z plane, evenly over the angles from -aperture to aperture to the z
+/// axis: a line focus along y.
+std::vector<Vec3> arc_directions(int count, double aperture);
+
+/// `count` directions spread evenly over the cap of that half-angle about the z axis: a point
+/// focus.
+std::vector<Vec3> cap_directions(int count, double aperture);
+
+}  // namespace flatspeckle::grin

@@ -1,0 +1,148 @@
+#include "grin/fields/spline_field.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "core/error.h"
+
+namespace flatspeckle::grin {
+
+namespace {
+
+constexpr double margin = 1;  // in cells
+
+void check(const FieldGrid& grid, std::span<const double> excess) {
+  for (int a = 0; a < 3; ++a) {
+    if (grid.nodes[a] < 4) throw InputError("nodes of a field grid", grid.nodes[a], "at least 4");
+    if (!(grid.spacing[a] > 0 && std::isfinite(grid.spacing[a])))
+      throw InputError("spacing of a field grid", grid.spacing[a], "must be positive");
+    if (!std::isfinite(grid.origin[a]))
+      throw InputError("origin of a field grid", grid.origin[a], "must be finite");
+  }
+  if (excess.size() != grid.size())
+    throw InputError("samples of a field grid", excess.size(), "must be one for each node");
+  for (const double e : excess)
+    if (!(e > -1 && std::isfinite(e)))
+      throw InputError("sample of n - 1", e, "must be finite and above -1");
+}
+
+/// Samples f[0 .. n-1] to coefficients c[0 .. n+1] of the splines about nodes -1 .. n, in place in
+/// c[1 .. n]: (c[i-1] + 4 c[i] + c[i+1]) / 6 = f[i] with a third derivative that does not jump at
+/// the second and the last but one node, from which their coefficients follow at once.
+void interpolate(std::vector<double>& c, std::vector<double>& pivot) {
+  const std::size_t n = c.size() - 2;
+  const auto knot = [&](std::size_t i) { return (8 * c[i] - c[i - 1] - c[i + 1]) / 6; };
+  const double f1 = c[1], f2 = c[2], g1 = c[n], g2 = c[n - 1];
+  const double first = knot(2), last = knot(n - 1);
+  c[2] = first;
+  c[n - 1] = last;
+  // Between them 4 on the diagonal, 1 beside it: elimination down, substitution up.
+  double before = first, p = 0;
+  for (std::size_t i = 3; i + 2 <= n; ++i) {
+    p = 1 / (4 - p);
+    pivot[i] = p;
+    before = c[i] = (6 * c[i] - before) * p;
+  }
+  for (std::size_t i = n - 2; i >= 3; --i) c[i] -= pivot[i] * c[i + 1];
+  c[1] = 6 * f2 - 4 * c[2] - c[3];
+  c[0] = 6 * f1 - 4 * c[1] - c[2];
+  c[n] = 6 * g2 - 4 * c[n - 1] - c[n - 2];
+  c[n + 1] = 6 * g1 - 4 * c[n] - c[n - 1];
+}
+
+}  // namespace
+
+SplineField::SplineField(const FieldGrid& grid, std::span<const double> excess) : grid_(grid) {
+  check(grid, excess);
+  for (int a = 0; a < 3; ++a) extent_[a] = grid.nodes[a] + 2;
+  coefficients_.resize(static_cast<std::size_t>(extent_[0]) * extent_[1] * extent_[2]);
+  const auto [nx, ny, nz] = grid.nodes;
+  for (int i = 0; i < nx; ++i)
+    for (int j = 0; j < ny; ++j)
+      std::copy_n(&excess[(static_cast<std::size_t>(i) * ny + j) * nz], nz,
+                  coefficients_.begin() + (row(i + 1, j + 1, 1) - coefficients_.data()));
+  std::vector<double> line, pivot;
+  const std::array<std::size_t, 3> stride{static_cast<std::size_t>(extent_[1]) * extent_[2],
+                                          static_cast<std::size_t>(extent_[2]), 1};
+  for (int a = 0; a < 3; ++a) {
+    const std::size_t count = extent_[a];
+    line.resize(count);
+    pivot.resize(count);
+    for (std::size_t base = 0; base < coefficients_.size(); ++base) {
+      if (base / stride[a] % count != 0) continue;
+      for (std::size_t i = 0; i < count; ++i) line[i] = coefficients_[base + i * stride[a]];
+      interpolate(line, pivot);
+      for (std::size_t i = 0; i < count; ++i) coefficients_[base + i * stride[a]] = line[i];
+    }
+  }
+}
+
+template <int Derivatives>
+SplineField::Axis SplineField::axis(const Vec3& x, int which) const {
+  const double scale = 1 / grid_.spacing[which], cells = grid_.nodes[which] - 1;
+  const double position = (x[which] - grid_.origin[which]) * scale;
+  const double held = std::clamp(position, -margin, cells + margin);
+  const bool inside = position == held;
+  const double cell = held > 0 ? std::min(std::floor(held), cells - 1) : 0;  // 0 also for NaN
+  const double t = held - cell, s = 1 - t;
+  Axis result{static_cast<int>(cell), {}, {}, {}};
+  result.w = {s * s * s / 6, 2 / 3. - t * t * (2 - t) / 2, 2 / 3. - s * s * (2 - s) / 2,
+              t * t * t / 6};
+  if (!inside) return result;
+  if constexpr (Derivatives >= 1)
+    result.d = {-scale * s * s / 2, scale * t * (3 * t - 4) / 2, -scale * s * (3 * s - 4) / 2,
+                scale * t * t / 2};
+  if constexpr (Derivatives >= 2) {
+    const double q = scale * scale;
+    result.dd = {q * s, q * (3 * t - 2), q * (3 * s - 2), q * t};
+  }
+  return result;
+}
+
+double SplineField::excess(const Vec3& x) const {
+  const Axis a = axis<0>(x, 0), b = axis<0>(x, 1), c = axis<0>(x, 2);
+  double sum = 0;
+  for (int i = 0; i < 4; ++i)
+    for (int j = 0; j < 4; ++j)
+      sum += a.w[i] * b.w[j] *
+             std::inner_product(c.w.begin(), c.w.end(), row(a.cell + i, b.cell + j, c.cell), 0.0);
+  return sum;
+}
+
+IndexGradient SplineField::gradient(const Vec3& x) const {
+  const Axis a = axis<1>(x, 0), b = axis<1>(x, 1), c = axis<1>(x, 2);
+  IndexGradient sum{0, Vec3::Zero()};
+  for (int i = 0; i < 4; ++i) {
+    for (int j = 0; j < 4; ++j) {
+      const double* values = row(a.cell + i, b.cell + j, c.cell);
+      const double f = std::inner_product(c.w.begin(), c.w.end(), values, 0.0);
+      const double fz = std::inner_product(c.d.begin(), c.d.end(), values, 0.0);
+      sum.excess += a.w[i] * b.w[j] * f;
+      sum.gradient += Vec3(a.d[i] * b.w[j] * f, a.w[i] * b.d[j] * f, a.w[i] * b.w[j] * fz);
+    }
+  }
+  return sum;
+}
+
+IndexHessian SplineField::hessian(const Vec3& x) const {
+  const Axis a = axis<2>(x, 0), b = axis<2>(x, 1), c = axis<2>(x, 2);
+  IndexHessian sum{0, Vec3::Zero(), Mat3::Zero()};
+  for (int i = 0; i < 4; ++i) {
+    for (int j = 0; j < 4; ++j) {
+      const double* values = row(a.cell + i, b.cell + j, c.cell);
+      const double f = std::inner_product(c.w.begin(), c.w.end(), values, 0.0);
+      const double fz = std::inner_product(c.d.begin(), c.d.end(), values, 0.0);
+      const double fzz = std::inner_product(c.dd.begin(), c.dd.end(), values, 0.0);
+      sum.excess += a.w[i] * b.w[j] * f;
+      sum.gradient += Vec3(a.d[i] * b.w[j] * f, a.w[i] * b.d[j] * f, a.w[i] * b.w[j] * fz);
+      const double xy = a.d[i] * b.d[j] * f, xz = a.d[i] * b.w[j] * fz, yz = a.w[i] * b.d[j] * fz;
+      sum.hessian += Mat3{{a.dd[i] * b.w[j] * f, xy, xz},
+                          {xy, a.w[i] * b.dd[j] * f, yz},
+                          {xz, yz, a.w[i] * b.w[j] * fzz}};
+    }
+  }
+  return sum;
+}
+
+}  // namespace flatspeckle::grin

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "grin/fields/index_field.h"
+
+namespace flatspeckle::grin {
+
+/// Where the samples of a field lie: node (i, j, k) at origin + (i, j, k) * spacing, k fastest.
+struct FieldGrid {
+  Vec3 origin, spacing;
+  std::array<int, 3> nodes;
+
+  std::size_t size() const { return static_cast<std::size_t>(nodes[0]) * nodes[1] * nodes[2]; }
+  Vec3 end() const {
+    return origin + spacing.cwiseProduct(Vec3(nodes[0] - 1, nodes[1] - 1, nodes[2] - 1));
+  }
+};
+
+/// The tensor-product cubic spline through samples of n - 1, not-a-knot at the ends: it reproduces
+/// cubics, and has two continuous derivatives. It goes on as it is for one cell beyond the grid, so
+/// that the steps of a ray that is stopped on the grid's box stay smooth; farther out the index is
+/// that of the nearest point there.
+class SplineField {
+ public:
+  /// Throws InputError for fewer than 4 nodes along an axis, a spacing <= 0, another number of
+  /// samples than nodes, or a sample that is not a finite number > -1.
+  SplineField(const FieldGrid& grid, std::span<const double> excess);
+
+  const FieldGrid& grid() const { return grid_; }
+
+  double excess(const Vec3& x) const;
+  IndexGradient gradient(const Vec3& x) const;
+  IndexHessian hessian(const Vec3& x) const;
+
+ private:
+  /// Cell and weights of the four splines there, and of their derivatives by x.
+  struct Axis {
+    int cell;
+    std::array<double, 4> w, d, dd;
+  };
+  template <int Derivatives>
+  Axis axis(const Vec3& x, int which) const;
+  const double* row(int i, int j, int k) const {
+    return &coefficients_[(static_cast<std::size_t>(i) * extent_[1] + j) * extent_[2] + k];
+  }
+
+  FieldGrid grid_;
+  std::array<int, 3> extent_;  ///< nodes + 2
+  std::vector<double> coefficients_;
+};
+
+}  // namespace flatspeckle::grin

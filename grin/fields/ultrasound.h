@@ -1,0 +1,70 @@
+#pragma once
+
+#include <complex>
+#include <memory>
+
+#include "grin/fields/bessel_profile.h"
+#include "grin/fields/index_field.h"
+
+namespace flatspeckle::grin {
+
+/// A cylindrical standing wave of sound about the z axis, frozen (conventions, C28):
+/// n = 1 + background + amplitude S J_m(kr rho) cos(m phi).
+class StandingWave {
+ public:
+  /// Fast up to rho = reach, correct beyond. Throws InputError as BesselProfile does, and for
+  /// kr <= 0.
+  StandingWave(double background, double amplitude, int m, double kr, double reach);
+
+  /// The wave that a ray meets at the sound's phase S, from -1 to 1. The table is shared.
+  StandingWave frozen(double s) const {
+    StandingWave wave = *this;
+    wave.amplitude_ *= s;
+    return wave;
+  }
+
+  double excess(const Vec3& x) const {
+    const double u = kr_ * kr_ * (x[0] * x[0] + x[1] * x[1]);
+    return background_ + amplitude_ * profile_->value(u) * power(x, m_).real();
+  }
+
+  IndexGradient gradient(const Vec3& x) const {
+    const double u = kr_ * kr_ * (x[0] * x[0] + x[1] * x[1]);
+    const auto [value, slope] = profile_->jet(u);
+    const double radial = 2 * amplitude_ * kr_ * kr_ * slope;
+    if (m_ == 0) return {background_ + amplitude_ * value, Vec3(radial * x[0], radial * x[1], 0)};
+    // z^m and its derivative m z^(m-1) by z = kr (x + i y): by x its real part, by y minus its
+    // imaginary one.
+    const std::complex<double> lower = power(x, m_ - 1);
+    const double re = kr_ * (x[0] * lower.real() - x[1] * lower.imag());
+    const double turn = amplitude_ * value * m_ * kr_;
+    return {background_ + amplitude_ * value * re,
+            Vec3(radial * re * x[0] + turn * lower.real(), radial * re * x[1] - turn * lower.imag(),
+                 0)};
+  }
+
+  IndexHessian hessian(const Vec3& x) const;
+
+ private:
+  /// (kr (x + i y))^exponent, by squaring.
+  std::complex<double> power(const Vec3& x, int exponent) const {
+    double re = 1, im = 0, a = kr_ * x[0], b = kr_ * x[1];
+    for (; exponent > 0; exponent >>= 1) {
+      if (exponent & 1) {
+        const double next = re * a - im * b;
+        im = re * b + im * a;
+        re = next;
+      }
+      const double square = a * a - b * b;
+      b *= 2 * a;
+      a = square;
+    }
+    return {re, im};
+  }
+
+  double background_, amplitude_, kr_;
+  int m_;
+  std::shared_ptr<const BesselProfile> profile_;
+};
+
+}  // namespace flatspeckle::grin

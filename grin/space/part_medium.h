@@ -1,0 +1,76 @@
+#pragma once
+
+#include <cmath>
+#include <limits>
+
+#include "grin/media/free_flight.h"
+#include "grin/media/scattering_medium.h"
+#include "grin/space/render_plan.h"
+
+namespace flatspeckle::grin {
+
+/// A medium as flights and joins see it.
+class PartMedium {
+ public:
+  PartMedium() = default;
+  /// The mean of the relative density in the part.
+  PartMedium(const ScatteringMedium& medium, double mean_density)
+      : grid_(medium.density),
+        mu_t_(medium.mu_t()),
+        largest_(grid_ ? grid_->largest() : 1),
+        reference_(medium.mu_s > 0 ? mu_t_ * mean_density : 0),
+        scatters_(medium.mu_s > 0) {}
+
+  bool scatters() const { return scatters_; }
+  double reference() const { return reference_; }
+  double mu_t() const { return mu_t_; }
+  double majorant() const { return mu_t_ * largest_; }
+  const DensityGrid* grid() const { return grid_.get(); }
+
+  /// Is a tentative collision, of density majorant(), one of the true density?
+  bool accepts(const Vec3& x, RandomStream& random) const {
+    return !grid_ || random.uniform() * largest_ < (*grid_)(x);
+  }
+
+  /// The share of tentative collisions that is none.
+  double lacking(const Vec3& x) const { return 1 - (*grid_)(x) / largest_; }
+
+  /// The arc length to the next collision along a path x(s), from Woodcock's tentative collisions;
+  /// infinity if it would be beyond `longest`.
+  template <RenderPlan plan, class Path>
+  double free_path(const Path& x, double longest, RandomStream& random) const {
+    if constexpr (!plan.scatters) return std::numeric_limits<double>::infinity();
+    if (!scatters_) return std::numeric_limits<double>::infinity();
+    double s = sample_free_flight(majorant(), random.uniform());
+    if constexpr (plan.gridded)
+      while (s < longest && !accepts(x(s), random))
+        s += sample_free_flight(majorant(), random.uniform());
+    return s < longest ? s : std::numeric_limits<double>::infinity();
+  }
+
+  /// exp(-integral of mu_t) along the path; in a grid an unbiased estimate by ratio tracking.
+  template <RenderPlan plan, class Path>
+  double transmitted(const Path& x, double length, RandomStream& random) const {
+    if constexpr (!plan.scatters && !plan.absorbs) return 1;
+    if constexpr (plan.gridded) {
+      if (grid_) return ratio_tracked(x, length, random);
+    }
+    return transmittance(mu_t_, length);
+  }
+
+ private:
+  template <class Path>
+  double ratio_tracked(const Path& x, double length, RandomStream& random) const {
+    double left = 1;
+    for (double s = sample_free_flight(majorant(), random.uniform()); s < length && left > 0;
+         s += sample_free_flight(majorant(), random.uniform()))
+      left *= lacking(x(s));
+    return left;
+  }
+
+  std::shared_ptr<const DensityGrid> grid_;
+  double mu_t_ = 0, largest_ = 1, reference_ = 0;
+  bool scatters_ = false;
+};
+
+}  // namespace flatspeckle::grin

@@ -1,0 +1,18 @@
+#include "grin/space/render_plan.h"
+
+#include <sstream>
+
+namespace flatspeckle::grin {
+
+std::string RenderPlan::describe() const {
+  std::ostringstream text;
+  text << (curved ? "curved rays" : "straight rays") << "; "
+       << (scatters ? "scattering" : "no scattering") << "; "
+       << (absorbs ? "absorption" : "no absorption") << "; "
+       << (gridded ? "density grid" : "uniform media") << "; "
+       << (body ? "a body in the stage" : "a single medium") << "; "
+       << (timed ? "time bins" : "steady state");
+  return text.str();
+}
+
+}  // namespace flatspeckle::grin

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+
+namespace flatspeckle::grin {
+
+/// What light transport in a scene has to do. A constant of the compiler: an estimator or a space
+/// made for a plan has no code for what the plan leaves out, and leaving it out never changes a
+/// result beyond rounding. Each `false` is a promise about the scene.
+struct RenderPlan {
+  bool curved = true;    ///< the index changes from point to point, not only at the body's surface
+  bool scatters = true;  ///< some medium does
+  bool absorbs = true;   ///< some medium does; all that scatters is lossless without
+  bool gridded = true;   ///< some medium's density is a grid
+  bool body = true;
+  bool timed = true;  ///< more than one bin of optical path
+
+  bool operator==(const RenderPlan&) const = default;
+
+  /// For people, and for the result file.
+  std::string describe() const;
+};
+
+}  // namespace flatspeckle::grin

@@ -1,0 +1,119 @@
+#pragma once
+
+#include "grin/space/part_medium.h"
+#include "grin/space/space.h"
+#include "grin/space/stage.h"
+#include "grin/surfaces/interface.h"
+#include "grin/surfaces/straight_way.h"
+
+namespace flatspeckle::grin {
+
+/// Where a flight is after a leg of it, within one part.
+enum class LegEnd { collision, boundary, body };
+
+/// Through the body's surface so often at most: what total reflection traps is lost.
+inline constexpr int most_legs = 1000;
+
+/// A stage for light that goes straight within a part.
+template <RenderPlan plan>
+class StraightStage {
+ public:
+  explicit StraightStage(const Stage& stage)
+      : boundary_(stage.boundary),
+        media_{PartMedium(stage.medium, mean_density(stage, false)), {}} {
+    if (!stage.body) return;
+    body_ = stage.body->surface;
+    media_[1] = PartMedium(stage.body->medium, mean_density(stage, true));
+  }
+
+  const PartMedium& medium(Part part) const {
+    return media_[plan.body && part == Part::body ? 1 : 0];
+  }
+  /// What a part lies in.
+  const Surface& container(Part part) const {
+    return plan.body && part == Part::body ? *body_ : boundary_;
+  }
+
+  /// To the next collision or to the end of the part.
+  LegEnd fly(Flight& flight, double index, RandomStream& random) const {
+    const Vec3 x = flight.point.x, d = flight.direction;
+    const auto path = [&](double s) -> Vec3 { return x + s * d; };
+    auto [way, end] = way_to_surface(flight.point, d);
+    const PartMedium& in = medium(flight.point.part);
+    const double free = in.template free_path<plan>(path, way, random);
+    if (free < way) {
+      way = free;
+      end = LegEnd::collision;
+    }
+    flight.point.x = path(way);
+    flight.arc_length += way;
+    flight.optical_path += index * way;
+    if constexpr (plan.scatters) flight.optical_depth += in.reference() * way;
+    if constexpr (plan.absorbs)
+      if (!in.scatters()) flight.weight *= in.template transmitted<plan>(path, way, random);
+    return end;
+  }
+
+  /// At the body's surface: to the other side or back.
+  void cross(Flight& flight, double excess_body, double excess_around, RandomStream& random) const {
+    flight.crosses_body = true;
+    const bool leaves = flight.point.part == Part::body;
+    const double from = leaves ? excess_body : excess_around;
+    const double to = leaves ? excess_around : excess_body;
+    if (from != to) {
+      const Interface face((1 + from) * flight.direction, normal(*body_, flight.point.x), from, to);
+      const bool reflected = face.is_total() || random.uniform() < face.reflectance();
+      flight.direction = (reflected ? face.reflected() : *face.refracted()).normalized();
+      if (reflected) return;
+    }
+    flight.point.part = leaves ? Part::stage : Part::body;
+  }
+
+  std::optional<Join> join(const PathPoint& p, const PathPoint& q, double index,
+                           RandomStream& random) const {
+    if (plan.body && p.part != q.part) return std::nullopt;
+    const Vec3 chord = q.x - p.x;
+    const double square = chord.squaredNorm(), length = std::sqrt(square);
+    if (!(length > 0)) return std::nullopt;
+    const Vec3 d = chord / length;
+    if (is_blocked(p, d, length)) return std::nullopt;
+    const PartMedium& in = medium(p.part);
+    const auto path = [&](double s) -> Vec3 { return p.x + s * d; };
+    return Join{.start_direction = d,
+                .end_direction = d,
+                .spreading = square,
+                .optical_path = index * length,
+                .optical_depth = in.reference() * length,
+                .transmittance = in.template transmitted<plan>(path, length, random),
+                .multiplicity = 1};
+  }
+
+ private:
+  struct Way {
+    double length;
+    LegEnd end;
+  };
+  Way way_to_surface(const PathPoint& p, const Vec3& d) const {
+    if (plan.body && p.part == Part::body) return {way_out(*body_, p.x, d), LegEnd::body};
+    const double out = way_out(boundary_, p.x, d);
+    if constexpr (plan.body) {
+      if (body_) {
+        const double in = way_in(*body_, p.x, d);
+        if (in < out) return {in, LegEnd::body};
+      }
+    }
+    return {out, LegEnd::boundary};
+  }
+  bool is_blocked(const PathPoint& p, const Vec3& d, double length) const {
+    // The end may be on the surface itself.
+    const double shorter = (1 - 1e-9) * length;
+    if (!is_convex(container(p.part)) && way_out(container(p.part), p.x, d) < shorter) return true;
+    return plan.body && p.part == Part::stage && body_ && way_in(*body_, p.x, d) < shorter;
+  }
+
+  Surface boundary_;
+  std::optional<Surface> body_;
+  std::array<PartMedium, 2> media_;
+};
+
+}  // namespace flatspeckle::grin

@@ -1,0 +1,82 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/numbers/complex.h"
+#include "flatland/scene/scene.h"
+#include "mc/ends/gaussian_beam.h"
+#include "mc/ends/scattering.h"
+
+namespace flatspeckle::mc {
+
+/// Field of a unit scatterer at distance r in the far-field form exp(ikr)/sqrt(r) (C4), by the
+/// Hankel function itself where k r is small (C13).
+Complex outgoing_wave(double k, double r);
+
+/// Where light enters a path or leaves it. By reciprocity both are one thing: a far light along w
+/// is a far view towards -w, its amplitude A(i -> w_1) that from -w_1 towards -w; a point source is
+/// a near sensor but for a factor (C13).
+struct End {
+  bool near = false;  ///< a point, or a beam: the direction towards it depends on where one stands
+  Vec2 towards;       ///< far: unit vector out of the medium
+  Vec2 point;         ///< near
+  Complex strength = 1;                ///< of a point: its field over outgoing_wave
+  std::optional<GaussianBeam> beam{};  ///< a light
+};
+std::vector<End> light_ends(const Scene& scene);
+std::vector<End> view_ends(const Scene& scene);
+
+/// End factors e of C13 for a list of ends, times the amplitude towards them (C14). Near: some ends
+/// are points or beams. Phases: without them only magnitudes, which is all that intensities need.
+template <bool near, bool phases>
+class EndFactors {
+ public:
+  EndFactors(const Scene& scene, const std::vector<End>& ends);
+
+  std::size_t size() const { return directions_.size(); }
+
+  /// out[j] = A(arrival -> end j) e_j(x), for light that reaches x along `arrival`.
+  template <typename Scattering>
+  void at(Vec2 x, Vec2 arrival, const Scattering& scattering, std::span<Complex> out) {
+    attenuate(x, out);
+    scattering.towards(arrival, directions_, out);
+  }
+
+  /// out[j] = e_j(x) alone.
+  void attenuate(Vec2 x, std::span<Complex> out);
+
+  /// Towards the ends, from where attenuate() was called last, and the logarithm of what is left of
+  /// the field on the way there: -mu_t d/2.
+  Vec2 direction(std::size_t j) const { return directions_[j]; }
+  const Directions& directions() const { return directions_; }
+  double log_attenuation(std::size_t j) const { return log_magnitude_[j]; }
+
+ private:
+  void attenuate_points(Vec2 x, std::span<Complex> out);
+  void attenuate_beams(Vec2 x, std::span<Complex> out);
+
+  Domain domain_;
+  double k_, mu_t_;
+  struct PointEnd {
+    std::size_t number;
+    Vec2 point;
+    Complex strength;
+  };
+  struct BeamEnd {
+    std::size_t number;
+    GaussianBeam beam;
+  };
+  std::vector<PointEnd> points_;
+  std::vector<BeamEnd> beams_;
+  Directions directions_;
+  // Distance to the edge = min((edge - x) per_cosine) over both axes.
+  std::vector<double> edge_x_, edge_z_, per_cosine_x_, per_cosine_z_;
+  std::vector<double> phase_, log_magnitude_, magnitude_;
+  std::vector<double> point_r_, point_phase_, point_log_;
+  std::vector<Complex> point_wave_;
+};
+
+}  // namespace flatspeckle::mc

@@ -1,0 +1,127 @@
+#include "mc/estimators/flux.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <sstream>
+
+#include "mc/ends/scattering.h"
+#include "mc/estimators/flux_walk.h"
+#include "mc/walk/importance.h"
+#include "mc/walk/plan.h"
+#include "mc/walk/walk_setup.h"
+
+namespace flatspeckle::mc {
+
+namespace {
+
+constexpr std::uint64_t paths_per_batch = 200;
+
+template <typename Scattering>
+SummedBatches walks(const std::shared_ptr<const Scene>& scene, const Scattering& scattering,
+                    double kappa, std::uint64_t seed) {
+  return [=](std::uint64_t number, std::span<Complex> sums) {
+    RandomStream random(seed, static_cast<std::uint64_t>(Stream::light_paths), number);
+    const auto lights = scene->request.lights.angles();
+    const std::size_t size = sums.size() / lights.size();
+    for (std::size_t light = 0; light < lights.size(); ++light) {
+      const LightEntry entry(scene->domain, lights[light], kappa);
+      FluxWalk walk(*scene, scattering, entry, random, sums.subspan(light * size, size));
+      // stratified depths of the first collision: errors a tenth smaller
+      for (std::uint64_t path = 0; path < paths_per_batch; ++path)
+        walk.walk((static_cast<double>(path) + random.uniform()) / paths_per_batch);
+    }
+  };
+}
+
+/// Nothing scatters: what collides is absorbed.
+SummedBatches absorption(const std::shared_ptr<const Scene>& scene) {
+  return [scene](std::uint64_t, std::span<Complex> sums) {
+    const auto lights = scene->request.lights.angles();
+    for (std::size_t light = 0; light < lights.size(); ++light)
+      sums[light * (sums.size() / lights.size()) + absorbed] =
+          paths_per_batch * (1 - direct_transmittance(*scene, lights[light]));
+  };
+}
+
+SummedBatches batches(const std::shared_ptr<const Scene>& scene, double kappa, std::uint64_t seed) {
+  if (scene->medium.mu_s == 0) return absorption(scene);
+  SummedBatches chosen;
+  with_scattering(*scene, phase_of(scene->scatterer),
+                  [&](const auto& scattering) { chosen = walks(scene, scattering, kappa, seed); });
+  return chosen;
+}
+
+std::string describe(const BulkMedium& medium, double kappa) {
+  std::ostringstream text;
+  text << "intensity without phases; ";
+  if (medium.mu_s == 0)
+    text << "nothing scatters";
+  else if (kappa > 0)
+    text << "absorbing, decay length of diffuse light " << 1 / kappa;
+  else
+    text << "lossless";
+  text << "; " << paths_per_batch << " paths per batch and light";
+  return text.str();
+}
+
+/// The largest relative error of the shares that are not 0.
+double worst_relative_error(const FluxJob& job, const GroupedSums& sums) {
+  const FluxEstimates flux = flux_estimates(job, sums);
+  double worst = 0;
+  for (const Estimate* share :
+       {&flux.reflectance, &flux.transmittance, &flux.side_loss, &flux.absorptance})
+    for (std::size_t light = 0; light < job.lights; ++light)
+      if (const double value = std::abs(share->value[light]); value > 0)
+        worst = std::max(worst, share->error[light] / value);
+  return worst;
+}
+
+}  // namespace
+
+FluxJob flux_job(const Scene& original, std::size_t angle_bins, std::uint64_t seed) {
+  const auto scene = std::make_shared<const Scene>(original);
+  const BulkMedium& medium = scene->medium;
+  const double kappa = medium.mu_s > 0 ? medium.mu_t * diffusion_rate(medium.albedo, medium.g) : 0;
+  FluxJob job{{}, scene->request.lights.size(), angle_bins, describe(medium, kappa)};
+  job.batches.size = job.lights * (flux_shares + angle_bins);
+  job.batches.samples_per_batch = static_cast<double>(paths_per_batch);
+  job.batches.relative_error = [shape = job](const GroupedSums& sums) {
+    return worst_relative_error(shape, sums);
+  };
+  job.batches.run = batches(scene, kappa, seed);
+  return job;
+}
+
+FluxEstimates flux_estimates(const FluxJob& job, const GroupedSums& sums) {
+  const Estimate all = jackknife(sums, sample_mean);
+  const std::size_t size = flux_shares + job.angle_bins;
+  const double per_radian = static_cast<double>(job.angle_bins) / (2 * std::numbers::pi);
+  FluxEstimates flux;
+  Estimate* const shares[flux_shares] = {&flux.reflectance, &flux.transmittance, &flux.side_loss,
+                                         &flux.absorptance};
+  for (std::size_t entry = 0; entry < all.value.size(); ++entry) {
+    const std::size_t number = entry % size;
+    Estimate& estimate = number < flux_shares ? *shares[number] : flux.exit_radiance;
+    const double factor = number < flux_shares ? 1 : per_radian;
+    estimate.value.push_back(factor * all.value[entry]);
+    estimate.error.push_back(factor * all.error[entry]);
+  }
+  return flux;
+}
+
+double direct_transmittance(const Scene& scene, double light) {
+  const Domain& domain = scene.domain;
+  const double sine = std::abs(std::sin(light)), cosine = std::abs(std::cos(light));
+  if (domain.kind == Domain::Kind::slab)
+    return std::exp(-scene.medium.mu_t * domain.depth / cosine);
+  // Seen along the light, chords rise from 0 to the longest, stay, and fall again.
+  const double face = domain.width * cosine, side = domain.depth * sine;
+  const double longest = scene.medium.mu_t * domain.area() / std::max(face, side);
+  const double rising = longest > 0 ? -std::expm1(-longest) / longest : 1;
+  return (std::abs(face - side) * std::exp(-longest) + 2 * std::min(face, side) * rising) /
+         (face + side);
+}
+
+}  // namespace flatspeckle::mc

@@ -1,0 +1,223 @@
+#include "mc/estimators/gradient.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.h"
+#include "mc/ends/coherent_field.h"
+#include "mc/estimators/gradient_scorer.h"
+#include "mc/estimators/single_scattering.h"
+#include "mc/estimators/tallied_walks.h"
+#include "mc/theory/memory_effect.h"
+
+namespace flatspeckle::mc {
+
+namespace {
+
+using Values = std::vector<Complex>;
+
+/// Those that paths are differentiated by; the optical depth follows from mu_t.
+std::vector<BulkParameter> sampled_parameters(const Scene& scene) {
+  switch (scene.scatterer.kind) {
+    case Scatterer::Kind::hg:
+      return {BulkParameter::mu_t, BulkParameter::g, BulkParameter::albedo};
+    case Scatterer::Kind::point:
+      return {BulkParameter::mu_t, BulkParameter::albedo};
+    default:
+      return {BulkParameter::mu_t};
+  }
+}
+
+std::string name_of(BulkParameter parameter) {
+  switch (parameter) {
+    case BulkParameter::mu_t:
+      return "mu_t";
+    case BulkParameter::g:
+      return "g";
+    default:
+      return "albedo";
+  }
+}
+
+/// Central differences in mu_t of the closed form, of fourth order. It varies over a mean free path
+/// or the whole medium, whichever is less.
+template <typename ClosedForm>
+Values extinction_slope(const Scene& scene, const ClosedForm& closed_form) {
+  const double mu_t = scene.medium.mu_t, across = std::max(scene.domain.depth, scene.domain.width),
+               step = 1e-3 * mu_t / std::max(1.0, mu_t * across);
+  Values slope(scene.request.entries.size());
+  const auto add = [&](double steps, double factor) {
+    Scene other = scene;
+    other.medium.mu_t += steps * step;
+    other.medium.mu_s = scene.medium.albedo * other.medium.mu_t;
+    const Values values = closed_form(other);
+    for (std::size_t e = 0; e < slope.size(); ++e) slope[e] += factor / (12 * step) * values[e];
+  };
+  add(1, 8);
+  add(-1, -8);
+  add(2, -1);
+  add(-2, 1);
+  return slope;
+}
+
+/// d log / dg of the amplitudes' product of every entry, which is all of B = 1 that knows g.
+std::vector<double> amplitude_slopes(const Scene& scene) {
+  const auto lights = light_ends(scene), views = view_ends(scene);
+  std::vector<double> slopes;
+  for (const Entry entry : scene.request.entries) {
+    slopes.push_back(0);
+    for (const auto channel : {entry.a, entry.b}) {
+      const auto [i, v] = scene.request.channels[channel];
+      const Vec2 step = views[v].towards + lights[i].towards;
+      slopes.back() += henyey_greenstein_slope(scene.medium.g, dot(step, step) / 2) / 2;
+    }
+  }
+  return slopes;
+}
+
+/// B = 1 in closed form, [1 + parameter][entry].
+Values closed_form_gradient(const Scene& scene, const Plan& plan,
+                            const std::vector<BulkParameter>& parameters) {
+  Values all;
+  with_scattering(scene, plan.phase, [&](const auto& scattering) {
+    const auto closed_form = [&](const Scene& any) { return single_scattering(any, scattering); };
+    const Values single = closed_form(scene);
+    const auto by_g = amplitude_slopes(scene);
+    all = single;
+    for (const BulkParameter parameter : parameters) {
+      Values slope = single;
+      if (parameter == BulkParameter::mu_t) slope = extinction_slope(scene, closed_form);
+      for (std::size_t e = 0; e < slope.size(); ++e) {
+        if (parameter == BulkParameter::g) slope[e] *= by_g[e];
+        if (parameter == BulkParameter::albedo) slope[e] /= scene.medium.albedo;
+      }
+      all.insert(all.end(), slope.begin(), slope.end());
+    }
+  });
+  return all;
+}
+
+/// [1 + parameter][entry] of all paths.
+Estimator with_single(const Scene& scene, const Plan& plan,
+                      const std::vector<BulkParameter>& parameters) {
+  if (plan.sampled_single) return sample_mean;
+  return [single = closed_form_gradient(scene, plan, parameters)](double samples,
+                                                                  std::span<const Complex> sums) {
+    Values values = sample_mean(samples, sums);
+    std::transform(values.begin(), values.end(), single.begin(), values.begin(), std::plus<>());
+    return values;
+  };
+}
+
+/// [parameter][entry] with the optical depth last.
+Estimator gradient_of(const Scene& scene, const Estimator& all) {
+  return [all, entries = scene.request.entries.size(), depth = scene.domain.depth](
+             double samples, std::span<const Complex> sums) {
+    Values values = all(samples, sums);
+    values.erase(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(entries));
+    for (std::size_t e = 0; e < entries; ++e) values.push_back(values[e] / depth);
+    return values;
+  };
+}
+
+/// What memory_effect() makes of entries: C_E per tilt, then the range.
+Values correlation_and_range(const CovarianceRequest& request, std::span<const Complex> entries) {
+  Values values = field_correlation(request, entries);
+  values.emplace_back(memory_effect_range(request.tilt_q, values).value);
+  return values;
+}
+
+/// Its derivative along that of the entries, by a central difference.
+Values directional_slope(const CovarianceRequest& request, std::span<const Complex> entries,
+                         std::span<const Complex> along) {
+  const auto largest = [](std::span<const Complex> values) {
+    double most = 0;
+    for (const Complex value : values) most = std::max(most, std::abs(value));
+    return most;
+  };
+  Values slope(request.tilts.size() + 1);
+  if (largest(along) == 0) return slope;
+  const double step = 1e-6 * largest(entries) / largest(along);
+  const auto moved = [&](double by) {
+    Values values(entries.begin(), entries.end());
+    for (std::size_t e = 0; e < values.size(); ++e) values[e] += by * along[e];
+    return correlation_and_range(request, values);
+  };
+  const Values above = moved(step), below = moved(-step);
+  for (std::size_t t = 0; t < slope.size(); ++t) slope[t] = (above[t] - below[t]) / (2 * step);
+  return slope;
+}
+
+}  // namespace
+
+Plan gradient_plan(const Scene& scene, ReversedPaths reversed) {
+  if (scene.medium.mu_s == 0)
+    throw InputError("gradient: a medium that does not scatter has no derivatives");
+  constexpr std::size_t most = 20000;
+  if (scene.request.entries.size() > most)
+    throw InputError("gradient: " + std::to_string(scene.request.entries.size()) +
+                     " entries of the covariance are too many, at most " + std::to_string(most));
+  Plan plan = make_plan(scene, reversed);
+  plan.rank_k = false;
+  if (scene.scatterer.kind == Scatterer::Kind::hg) plan.phase = Plan::Phase::henyey_greenstein;
+  return plan;
+}
+
+GradientJob gradient_job(const Scene& scene, const Plan& plan, std::uint64_t seed) {
+  const auto parameters = sampled_parameters(scene);
+  const std::size_t entries = scene.request.entries.size();
+  const Estimator all = with_single(scene, plan, parameters);
+  GradientJob job;
+  for (const BulkParameter parameter : parameters) job.parameters.push_back(name_of(parameter));
+  job.parameters.emplace_back("optical_depth");
+  job.gradient = gradient_of(scene, all);
+  if (has_coherent_field(scene))
+    job.field.mean = [field = coherent_field(scene)](double, std::span<const Complex>) {
+      return field;
+    };
+  job.field.covariance = [all, entries](double samples, std::span<const Complex> sums) {
+    Values values = all(samples, sums);
+    values.resize(entries);
+    return values;
+  };
+  job.field.batches.size = (1 + parameters.size()) * entries;
+  job.field.batches.samples_per_batch = static_cast<double>(plan.paths_per_batch);
+  job.field.batches.run =
+      tallied_walks(scene, plan, seed, GradientTally{scene.medium.g},
+                    [parameters]<typename Scattering, typename Reversed, typename Phases>(
+                        const Scene& same_scene, const Scattering& scattering, Reversed, Phases,
+                        std::span<Complex> sums) {
+                      return GradientScorer<Scattering, Reversed::value, Phases::value>(
+                          same_scene, scattering, parameters, sums);
+                    });
+  job.field.batches.relative_error = [covariance = job.field.covariance](const GroupedSums& sums) {
+    return relative_error(jackknife(sums, covariance));
+  };
+  return job;
+}
+
+CorrelationGradient memory_effect_gradient(const CovarianceRequest& request,
+                                           const GroupedSums& sums, const GradientJob& job) {
+  const std::size_t parameters = job.parameters.size(), entries = request.entries.size();
+  const Estimate slopes = jackknife(sums, [&](double samples, std::span<const Complex> total) {
+    const Values covariance = job.field.covariance(samples, total);
+    const Values gradient = job.gradient(samples, total);
+    Values all;
+    for (std::size_t p = 0; p < parameters; ++p) {
+      const auto along = std::span(gradient).subspan(p * entries, entries);
+      const Values slope = directional_slope(request, covariance, along);
+      all.insert(all.end(), slope.begin(), slope.end());
+    }
+    return all;
+  });
+  CorrelationGradient gradient;
+  const std::size_t tilts = request.tilts.size();
+  for (std::size_t i = 0; i < slopes.value.size(); ++i) {
+    Estimate& part = i % (tilts + 1) < tilts ? gradient.correlation : gradient.range;
+    part.value.push_back(slopes.value[i]);
+    part.error.push_back(slopes.error[i]);
+  }
+  return gradient;
+}
+
+}  // namespace flatspeckle::mc

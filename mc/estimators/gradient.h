@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "flatland/request/field_moments.h"
+#include "flatland/scene/scene.h"
+#include "mc/walk/plan.h"
+
+namespace flatspeckle::mc {
+
+/// What a scene's bulk can be differentiated by, all others held fixed.
+enum class BulkParameter { mu_t, g, albedo };
+
+/// Derivatives of a scene's covariance from the paths that estimate it: the integrand of C14 is
+/// differentiated, the density that the paths are drawn from is not. The parameters are mu_t, g and
+/// albedo where they describe the scatterers as a bulk (all for hg, no g for points, mu_t alone for
+/// cylinders), and the optical depth, mu_t times the depth, at fixed depth.
+struct GradientJob {
+  FieldJob field;  ///< the covariance, as covariance_job() has it
+  std::vector<std::string> parameters;
+  Estimator gradient;  ///< [parameter][entry]
+};
+
+/// As make_plan(), but g = 0 of hg is free to change. Throws InputError for a scene that does not
+/// scatter or a request of too many entries.
+Plan gradient_plan(const Scene& scene, ReversedPaths reversed);
+
+GradientJob gradient_job(const Scene& scene, const Plan& plan, std::uint64_t seed);
+
+/// Derivatives of what memory_effect() gives: of C_E, [parameter][tilt], and of the range,
+/// [parameter]: 0 where it is censored.
+struct CorrelationGradient {
+  Estimate correlation, range;
+};
+CorrelationGradient memory_effect_gradient(const CovarianceRequest& request,
+                                           const GroupedSums& sums, const GradientJob& job);
+
+/// d log p / dg of the phase function of C22 at a scattering angle of known 1 - cos.
+inline double henyey_greenstein_slope(double g, double one_minus_cosine) {
+  const double rest = 1 - g;
+  return 2 * (rest - one_minus_cosine) / (rest * rest + 2 * g * one_minus_cosine) -
+         2 * g / (rest * (1 + g));
+}
+
+}  // namespace flatspeckle::mc

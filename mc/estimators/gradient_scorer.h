@@ -1,0 +1,169 @@
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "flatland/scene/scene.h"
+#include "mc/ends/end_factors.h"
+#include "mc/estimators/gradient.h"
+#include "mc/walk/path_walk.h"
+
+namespace flatspeckle::mc {
+
+/// What the logarithm of a path's integrand mu_s^B prod exp(-mu_t r) prod p depends on.
+struct GradientTally {
+  double g = 0;
+  int scatterers = 1;
+  double length = 0;
+  double phase_slope = 0;  ///< sum of d log p / d g over the inner scatterers
+
+  void flight(double r) {
+    length += r;
+    ++scatterers;
+  }
+  void scattering(Vec2 from, Vec2 to) {
+    const Vec2 step = to - from;
+    phase_slope += henyey_greenstein_slope(g, dot(step, step) / 2);
+  }
+};
+
+/// Adds weight f_a conj(f_b) and its derivatives, [1 + parameter][entry]. Each term of f (C14's F
+/// and R) carries half of the path's own logarithmic derivative, besides those of its end factors.
+template <typename Scattering, bool reversed, bool phases>
+class GradientScorer {
+ public:
+  GradientScorer(const Scene& scene, const Scattering& scattering,
+                 std::span<const BulkParameter> parameters, std::span<Complex> sums)
+      : request_(scene.request),
+        medium_(scene.medium),
+        scattering_(scattering),
+        parameters_(parameters),
+        sums_(sums),
+        lights_(scene, light_ends(scene)),
+        views_(scene, view_ends(scene)),
+        field_(request_.channels.size()),
+        field_slope_(field_.size() * parameters.size()) {}
+
+  /// B = 1 at x.
+  void single(Vec2 x, double weight) {
+    attenuate(lights_, x, light_last_);
+    attenuate(views_, x, view_last_);
+    clear();
+    for (std::size_t c = 0; c < field_.size(); ++c) {
+      const auto [i, v] = request_.channels[c];
+      const Vec2 from = -lights_.direction(i), to = views_.direction(v);
+      GradientTally tally{medium_.g};
+      tally.scattering(from, to);
+      add_term(c, half_slopes(tally), light_last_, view_last_, scattering_.amplitude(from, to));
+    }
+    accumulate(weight);
+  }
+
+  void multiple(const TalliedPath<GradientTally>& path) {
+    if (path.new_start) {
+      at(lights_, path.first, -path.start, light_first_);
+      if constexpr (reversed) at(views_, path.first, -path.start, view_first_);
+    }
+    at(views_, path.last, path.arrival, view_last_);
+    if constexpr (reversed) at(lights_, path.last, path.arrival, light_last_);
+    const Slopes half = half_slopes(path.tally);
+    clear();
+    for (std::size_t c = 0; c < field_.size(); ++c) {
+      add_term(c, half, light_first_, view_last_, 1.0);
+      if constexpr (reversed) add_term(c, half, light_last_, view_first_, 1.0);
+    }
+    accumulate(path.weight);
+  }
+
+ private:
+  using Ends = EndFactors<true, phases>;
+  /// Logarithmic derivatives, by parameter.
+  using Slopes = std::array<double, 3>;
+  /// A e of every end and its slopes.
+  struct EndValues {
+    std::vector<Complex> value;
+    std::vector<Slopes> slopes;
+  };
+
+  void attenuate(Ends& ends, Vec2 x, EndValues& out) const {
+    out.value.resize(ends.size());
+    out.slopes.resize(ends.size());
+    ends.attenuate(x, out.value);
+    for (std::size_t p = 0; p < parameters_.size(); ++p)
+      for (std::size_t j = 0; j < ends.size(); ++j)
+        out.slopes[j][p] =
+            parameters_[p] == BulkParameter::mu_t ? ends.log_attenuation(j) / medium_.mu_t : 0;
+  }
+
+  void at(Ends& ends, Vec2 x, Vec2 arrival, EndValues& out) const {
+    attenuate(ends, x, out);
+    scattering_.towards(arrival, ends.directions(), out.value);
+    for (std::size_t p = 0; p < parameters_.size(); ++p) {
+      if (parameters_[p] != BulkParameter::g) continue;
+      for (std::size_t j = 0; j < ends.size(); ++j) {
+        const Vec2 step = ends.direction(j) - arrival;
+        out.slopes[j][p] = henyey_greenstein_slope(medium_.g, dot(step, step) / 2) / 2;
+      }
+    }
+  }
+
+  Slopes half_slopes(const GradientTally& tally) const {
+    Slopes half{};
+    for (std::size_t p = 0; p < parameters_.size(); ++p) {
+      switch (parameters_[p]) {
+        case BulkParameter::mu_t:
+          half[p] = (tally.scatterers / medium_.mu_t - tally.length) / 2;
+          break;
+        case BulkParameter::g:
+          half[p] = tally.phase_slope / 2;
+          break;
+        case BulkParameter::albedo:
+          half[p] = tally.scatterers / medium_.albedo / 2;
+          break;
+      }
+    }
+    return half;
+  }
+
+  void clear() {
+    std::fill(field_.begin(), field_.end(), 0);
+    std::fill(field_slope_.begin(), field_slope_.end(), 0);
+  }
+
+  template <typename Amplitude>
+  void add_term(std::size_t c, const Slopes& half, const EndValues& lights, const EndValues& views,
+                Amplitude amplitude) {
+    const auto [i, v] = request_.channels[c];
+    const Complex term = product(product(lights.value[i], views.value[v]), amplitude);
+    field_[c] += term;
+    for (std::size_t p = 0; p < parameters_.size(); ++p)
+      field_slope_[p * field_.size() + c] +=
+          (half[p] + lights.slopes[i][p] + views.slopes[v][p]) * term;
+  }
+
+  void accumulate(double weight) {
+    const std::size_t entries = request_.entries.size();
+    for (std::size_t e = 0; e < entries; ++e) {
+      const auto [a, b] = request_.entries[e];
+      sums_[e] += weight * product_with_conjugate(field_[a], field_[b]);
+      for (std::size_t p = 0; p < parameters_.size(); ++p) {
+        const Complex* slope = &field_slope_[p * field_.size()];
+        sums_[(1 + p) * entries + e] += weight * (product_with_conjugate(slope[a], field_[b]) +
+                                                  product_with_conjugate(field_[a], slope[b]));
+      }
+    }
+  }
+
+  const CovarianceRequest& request_;
+  const BulkMedium& medium_;
+  const Scattering& scattering_;
+  std::span<const BulkParameter> parameters_;
+  std::span<Complex> sums_;
+  Ends lights_, views_;
+  EndValues light_first_, light_last_, view_first_, view_last_;
+  std::vector<Complex> field_;        ///< per channel
+  std::vector<Complex> field_slope_;  ///< its derivatives, [parameter][channel]
+};
+
+}  // namespace flatspeckle::mc

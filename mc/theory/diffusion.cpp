@@ -1,0 +1,55 @@
+#include "mc/theory/diffusion.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace flatspeckle::mc {
+
+namespace {
+
+/// log sinh(a) without overflow.
+double log_sinh(double a) {
+  return a + std::log(-std::expm1(-2 * a) / 2);
+}
+
+}  // namespace
+
+double diffusion_field_correlation(const BulkMedium& medium, double thickness, double q) {
+  const double transport_length = medium.transport_mean_free_path();
+  const double source = std::min(transport_length, thickness),
+               extrapolation = 0.818 * transport_length;
+  const double mu_a = medium.mu_t - medium.mu_s;
+  const double kappa2 = 2 * mu_a / transport_length;
+  // f of C20; below the least Q it has its limit at 0 to rounding.
+  const auto log_f = [&](double q2) {
+    const double rate = std::max(std::sqrt(q2), 1e-5 / thickness);
+    return log_sinh(rate * extrapolation) + log_sinh(rate * (source + extrapolation)) -
+           std::log(rate) - log_sinh(rate * (thickness + 2 * extrapolation));
+  };
+  return std::exp(log_f(q * q + kappa2) - log_f(kappa2));
+}
+
+double diffusion_range(const BulkMedium& medium, double thickness) {
+  const auto above = [&](double q) {
+    return std::pow(diffusion_field_correlation(medium, thickness, q), 2) > 0.5;
+  };
+  double low = 0, high = 1 / thickness;
+  while (above(high)) high *= 2;
+  for (int step = 0; step < 60; ++step) {
+    const double middle = (low + high) / 2;
+    (above(middle) ? low : high) = middle;
+  }
+  return (low + high) / 2;
+}
+
+double single_scattering_correlation(double light, const std::vector<double>& views,
+                                     double thickness, double q) {
+  Complex sum = 0;
+  for (double view : views) {
+    const double phase = q * thickness * (std::tan(view) - std::tan(light)) / 2;
+    sum += std::polar(1.0, phase) * (phase == 0 ? 1 : std::sin(phase) / phase);
+  }
+  return std::abs(sum) / static_cast<double>(views.size());
+}
+
+}  // namespace flatspeckle::mc

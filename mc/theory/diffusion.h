@@ -1,0 +1,23 @@
+#pragma once
+
+#include <vector>
+
+#include "flatland/media/medium.h"
+
+namespace flatspeckle::mc {
+
+/// Diffusion theory of C_E for a slab of scatterers between index-matched sides (conventions, C20;
+/// Berkovits and Feng 1994): transmitted light, tilt wavenumber q. The first source lies one
+/// transport mean free path deep, the extrapolation length is 0.818 transport mean free paths. A
+/// limit for thick slabs and small q, not a reference for thin ones.
+double diffusion_field_correlation(const BulkMedium& medium, double thickness, double q);
+
+/// |q| where C_I = C_E^2 of that falls to 1/2.
+double diffusion_range(const BulkMedium& medium, double thickness);
+
+/// C_E by single scattering in a slab without attenuation (C21), tilt wavenumber q with matched
+/// views; the sum over equally bright views is taken before the modulus (C19).
+double single_scattering_correlation(double light, const std::vector<double>& views,
+                                     double thickness, double q);
+
+}  // namespace flatspeckle::mc

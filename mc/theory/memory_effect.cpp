@@ -1,0 +1,100 @@
+#include "mc/theory/memory_effect.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace flatspeckle::mc {
+
+namespace {
+
+struct CurvePoint {
+  double q, intensity_correlation;
+};
+
+/// The curve on one side by rising |q|, with C_I = 1 at q = 0.
+std::vector<CurvePoint> one_side(const std::vector<double>& tilt_q,
+                                 std::span<const Complex> correlation) {
+  const bool positive = std::any_of(tilt_q.begin(), tilt_q.end(), [](double q) { return q > 0; });
+  std::vector<CurvePoint> curve{{0, 1}};
+  for (std::size_t t = 0; t < tilt_q.size(); ++t) {
+    const double q = positive ? tilt_q[t] : -tilt_q[t];
+    if (q > 0) curve.push_back({q, std::norm(correlation[t])});
+  }
+  std::sort(curve.begin(), curve.end(),
+            [](const CurvePoint& a, const CurvePoint& b) { return a.q < b.q; });
+  // a tilt given twice would divide by 0 between the two
+  curve.erase(std::unique(curve.begin(), curve.end(),
+                          [](const CurvePoint& a, const CurvePoint& b) { return a.q == b.q; }),
+              curve.end());
+  return curve;
+}
+
+/// Lagrange interpolation through the (up to four) points around interval i, i+1.
+double interpolate(const std::vector<CurvePoint>& curve, std::size_t i, double q) {
+  const std::size_t first = i > 0 ? i - 1 : 0, last = std::min(i + 2, curve.size() - 1);
+  double sum = 0;
+  for (std::size_t a = first; a <= last; ++a) {
+    double basis = curve[a].intensity_correlation;
+    for (std::size_t b = first; b <= last; ++b)
+      if (b != a) basis *= (q - curve[b].q) / (curve[a].q - curve[b].q);
+    sum += basis;
+  }
+  return sum;
+}
+
+}  // namespace
+
+std::vector<Complex> field_correlation(const CovarianceRequest& request,
+                                       std::span<const Complex> entries) {
+  double reference = 0;
+  for (std::size_t v = 0; v < request.reference_views; ++v)
+    reference += entries[request.reference_intensity(v)].real();
+  std::vector<Complex> correlation;
+  for (std::size_t t = 0; t < request.moves; ++t) {
+    Complex cross = 0;
+    double tilted = 0;
+    for (std::size_t v = 0; v < request.reference_views; ++v) {
+      cross += entries[request.tilted_entry(t, v)];
+      tilted += entries[request.tilted_intensity(t, v)].real();
+    }
+    const double product = reference * tilted;
+    correlation.emplace_back(product > 0 ? std::abs(cross) / std::sqrt(product) : 0);
+  }
+  return correlation;
+}
+
+Range memory_effect_range(const std::vector<double>& tilt_q, std::span<const Complex> correlation) {
+  const auto curve = one_side(tilt_q, correlation);
+  for (std::size_t i = 0; i + 1 < curve.size(); ++i) {
+    if (curve[i + 1].intensity_correlation > 0.5) continue;
+    if (i == 0) return {curve[1].q, Range::Censoring::below_value};
+    double above = curve[i].q, below = curve[i + 1].q;
+    for (int step = 0; step < 60; ++step) {
+      const double middle = (above + below) / 2;
+      (interpolate(curve, i, middle) > 0.5 ? above : below) = middle;
+    }
+    return {(above + below) / 2, Range::Censoring::none};
+  }
+  return {curve.back().q, Range::Censoring::above_value};
+}
+
+MemoryEffect memory_effect(const CovarianceRequest& request, const GroupedSums& sums,
+                           const Estimator& covariance) {
+  const auto& steps =
+      request.kind == CovarianceRequest::Kind::translation ? request.shifts : request.tilt_q;
+  // One jackknife for all: the correlations, then the range.
+  const auto estimate = jackknife(sums, [&](double samples, std::span<const Complex> total) {
+    auto values = field_correlation(request, covariance(samples, total));
+    values.emplace_back(memory_effect_range(steps, values).value);
+    return values;
+  });
+  MemoryEffect effect;
+  const std::span correlation(estimate.value.data(), request.moves);
+  for (Complex value : correlation) effect.correlation.push_back(value.real());
+  effect.correlation_error.assign(estimate.error.begin(), estimate.error.end() - 1);
+  effect.range = memory_effect_range(steps, correlation);
+  effect.range_error = estimate.error.back();
+  return effect;
+}
+
+}  // namespace flatspeckle::mc

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/numbers/statistics.h"
+#include "flatland/request/request.h"
+
+namespace flatspeckle::mc {
+
+/// C_E per move (C19): |sum over views of the covariance of reference and moved field|, over the
+/// square root of the product of their intensities summed over the same views. A function of the
+/// covariance entries of a request with moves, whichever solver they come from. Where an
+/// intensity vanishes the correlation is 0.
+std::vector<Complex> field_correlation(const CovarianceRequest& request,
+                                       std::span<const Complex> entries);
+
+/// Half-width of an intensity-correlation curve.
+struct Range {
+  /// Where the tilts do not reach the half width, or leave it out.
+  enum class Censoring { none, above_value, below_value };
+  double value = 0;  ///< |q| where C_I = C_E^2 falls to 1/2; if censored the last or first tilt's
+  Censoring censored = Censoring::none;
+};
+
+/// Censored above the last tilt if C_I does not fall to 1/2 there, and below the first one that is
+/// not 0 if C_I has fallen already. Else the first crossing of C_I = 1/2 on the side of positive q
+/// (of negative q where there is no positive one), by cubic interpolation of C_I through the four
+/// nearest tilts.
+Range memory_effect_range(const std::vector<double>& tilt_q, std::span<const Complex> correlation);
+
+/// field_correlation and the range with jackknife errors, of a memory_effect or translation
+/// request.
+struct MemoryEffect {
+  std::vector<double> correlation, correlation_error;  ///< per tilt or shift
+  Range range;
+  double range_error = 0;
+};
+MemoryEffect memory_effect(const CovarianceRequest& request, const GroupedSums& sums,
+                           const Estimator& covariance);
+
+}  // namespace flatspeckle::mc

@@ -1,0 +1,172 @@
+#include "mc/walk/importance.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <set>
+
+#include "grin/media/phase_function.h"
+#include "mc/walk/representatives.h"
+
+namespace flatspeckle::mc {
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+/// Whether a rate lies below the smallest root of the dispersion relation
+///   h_0 = 2 s / (h_1 - s / (h_2 - s / ...)),  h_n = 1 - albedo g^n,  s = rate^2 / 4,
+/// the condition that the Fourier moments of the angle decay.
+bool below_root(double albedo, double g, double rate) {
+  const double s = rate * rate / 4;
+  double tail = 1;  // of high moments, which scattering does not feed
+  for (int n = 1000; n >= 1; --n) {
+    tail = 1 - albedo * std::pow(g, n) - s / tail;
+    if (tail <= 0) return false;
+  }
+  return 1 - albedo > 2 * s / tail;
+}
+
+constexpr int nodes = 512;  ///< of the table of importance
+
+/// log [sinh(a) / sinh(b)], 0 < a <= b.
+double log_sinh_ratio(double a, double b) {
+  return a - b + std::log(std::expm1(-2 * a) / std::expm1(-2 * b));
+}
+
+/// exp(-x), more or less and in a third of the time.
+double about_exp(double x) {
+  const double square = (1 + x / 8) * (1 + x / 8), fourth = square * square;
+  return 1 / (fourth * fourth);
+}
+
+/// Where the lights are first scattered.
+std::set<double> first_depths(const Scene& scene) {
+  const double depth = scene.domain.depth,
+               shallow = std::min(scene.medium.mean_free_path(), depth / 2);
+  std::set<double> depths;
+  for (const Light& light : scene.request.lights) {
+    if (light.kind == Light::Kind::point)
+      depths.insert(std::clamp(light.point.z, shallow, depth - shallow));
+    else
+      depths.insert(std::cos(light.angle) > 0 ? shallow : depth - shallow);
+  }
+  return depths;
+}
+
+/// Depths that light has to reach for the views to see it.
+std::set<double> view_depths(const Scene& scene) {
+  std::set<double> depths;
+  const double depth = scene.domain.depth;
+  for (const View& view : scene.request.views) {
+    const double there = std::cos(view.angle) > 0 ? depth : 0;
+    depths.insert(view.near ? std::clamp(view.point.z, 0.0, depth) : there);
+  }
+  return depths;
+}
+
+}  // namespace
+
+double diffusion_rate(double albedo, double g) {
+  if (albedo >= 1) return 0;
+  double low = 0, high = 1;
+  for (int step = 0; step < 60; ++step) {
+    const double middle = (low + high) / 2;
+    (below_root(albedo, g, middle) ? low : high) = middle;
+  }
+  return low;
+}
+
+DepthImportance::DepthImportance(const Scene& scene) : step_(scene.domain.depth / nodes) {
+  const double depth = scene.domain.depth;
+  const auto& medium = scene.medium;
+  const double beyond = 0.818 * medium.transport_mean_free_path();
+  double rate = diffusion_rate(medium.albedo, medium.g) * medium.mu_t;
+  if (scene.domain.kind == Domain::Kind::box)  // what leaves by the sides is lost as well
+    rate = std::hypot(rate, pi / (scene.domain.width + 2 * beyond));
+  rate = std::max(rate, 1e-8 / depth);
+  // Of light from z at a depth, or beyond an edge.
+  const auto log_reaching = [&](double z, double there) {
+    const double way = z < there ? z : depth - z, whole = z < there ? there : depth - there;
+    return log_sinh_ratio(rate * (way + beyond), rate * (whole + beyond));
+  };
+  const auto firsts = first_depths(scene);
+  const auto log_usual = [&](double there) {  // of the light that reaches best
+    double best = -std::numeric_limits<double>::infinity();
+    for (double first : firsts) best = std::max(best, log_reaching(first, there));
+    return best;
+  };
+  const auto destinations = view_depths(scene);
+  for (int i = 0; i <= nodes; ++i) {
+    std::vector<double> logs;
+    for (double there : destinations)
+      logs.push_back(log_reaching(depth * i / nodes, there) - log_usual(there));
+    const double largest = *std::max_element(logs.begin(), logs.end());
+    double worth = 0;
+    for (double log : logs) worth += std::exp(log - largest);
+    log_worth_.push_back(largest + std::log(worth / static_cast<double>(logs.size())));
+  }
+  constexpr double steep = 5;
+  steep_ = *std::max_element(log_worth_.begin(), log_worth_.end()) > steep;
+}
+
+double DepthImportance::log_worth(double z) const {
+  const double position = z / step_;
+  const std::size_t i = interval(z);
+  const double t = position - static_cast<double>(i);
+  return (1 - t) * log_worth_[i] + t * log_worth_[i + 1];
+}
+
+double DepthImportance::slope(double z) const {
+  if (!steep_) return 0;
+  const std::size_t i = interval(z);
+  return (log_worth_[i + 1] - log_worth_[i]) / step_;
+}
+
+double DepthImportance::rise() const {
+  constexpr double worthwhile = 1;
+  const double whole = log_worth_.back() - log_worth_.front();
+  return std::abs(whole) > worthwhile ? whole / (step_ * nodes) : 0;
+}
+
+std::size_t DepthImportance::interval(double z) const {
+  return std::min(static_cast<std::size_t>(z / step_), log_worth_.size() - 2);
+}
+
+ExpectedContribution::ExpectedContribution(const Scene& scene, const std::vector<End>& ends)
+    : domain_(scene.domain), mu_t_(scene.medium.mu_t), g_(scene.medium.g) {
+  always_ = std::any_of(ends.begin(), ends.end(), [](const End& end) { return end.near; });
+  if (always_) return;
+  constexpr std::size_t few = 16;
+  double spacing = std::max(0.5 * (1 - std::abs(g_)), 0.05);
+  const auto choose = [&] {
+    std::vector<Vec2> chosen;  // lights that go where the light leaves, backwards
+    for (const End& end : ends)
+      if (chosen.size() <= few && !reached(scene, -end.towards, chosen, spacing))
+        chosen.push_back(-end.towards);
+    return chosen;
+  };
+  auto chosen = choose();
+  for (; chosen.size() > few && spacing < pi; chosen = choose()) spacing *= 1.5;
+  // No sharper than the representatives are spaced.
+  g_ = std::copysign(std::min(std::abs(g_), std::max(0.0, 1 - spacing)), g_);
+  for (Vec2 w : chosen) towards_.push_back(-w);
+}
+
+double ExpectedContribution::operator()(Vec2 x, Vec2 arrival) const {
+  if (always_) return 1;
+  const grin::HenyeyGreenstein<2> lobe{g_};
+  double largest = 0.01;  // what no representative sees must not wait for one in a million
+  for (Vec2 w : towards_) {
+    double value = about_exp(mu_t_ * domain_.distance_to_edge(x, w));
+    if (g_ != 0) {
+      const Vec2 step = w - arrival;
+      value *= 2 * pi * lobe.density_beside(dot(step, step) / 2);
+    }
+    largest = std::max(largest, value);
+  }
+  return largest;
+}
+
+}  // namespace flatspeckle::mc

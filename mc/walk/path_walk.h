@@ -1,0 +1,219 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "core/numbers/random.h"
+#include "flatland/scene/scene.h"
+#include "grin/media/free_flight.h"
+#include "mc/ends/scattering.h"
+#include "mc/walk/first_scatterer.h"
+#include "mc/walk/importance.h"
+#include "mc/walk/plan.h"
+
+namespace flatspeckle::mc {
+
+/// A path of B >= 2 scatterers as the walk found it. The mean of weight f_a conj(f_b) over walks is
+/// the covariance, with f = F, or F + R with reversed paths (conventions, C14), whose amplitudes
+/// are divided by sqrt(sigma_s).
+struct Path {
+  Vec2 first, start;   ///< the first scatterer and the direction to the second
+  Vec2 last, arrival;  ///< the last one and the direction in which it is reached
+  double weight = 0;
+  bool new_start = false;  ///< the first such path from this first scatterer and start
+};
+
+/// What a walk notes of a path's flights and inner scatterings (not those of the first and last
+/// scatterer): here nothing, at no cost.
+struct NoTally {
+  void flight(double /*length*/) {}
+  void scattering(Vec2 /*from*/, Vec2 /*to*/) {}
+};
+
+template <typename Tally>
+struct TalliedPath : Path {
+  [[no_unique_address]] Tally tally;
+};
+
+/// Walks from the lights through a scene (Bar et al. 2019) and gives what it finds to a scorer:
+///   single(x, weight)   paths of one scatterer, where the plan samples them
+///   multiple(path)      paths of more, with their tally
+/// Steps are cheap and scoring is not, so a contribution that promises little plays roulette first.
+/// Walkers split and die by what their depth is worth.
+///
+/// With reversed paths a path is weighed by the mean of the densities with which the walk would
+/// find it from either end. That is unbiased, because F + R does not change when a path is turned
+/// round, and no |R|^2 can outgrow its weight.
+template <typename Scattering, bool reversed, bool weighted, typename Tally = NoTally>
+class PathWalk {
+ public:
+  /// tally: what every path starts with.
+  PathWalk(const Scene& scene, const Plan& plan, const Scattering& scattering, Tally tally = {})
+      : plan_(plan),
+        domain_(scene.domain),
+        medium_(scene.medium),
+        scattering_(scattering),
+        importance_(scene),
+        first_(scene, weighted ? importance_.rise() : 0),
+        expected_view_(scene, view_ends(scene)),
+        tally_(tally) {}
+
+  /// To be called before a batch's first walk.
+  void begin(RandomStream& random) { ticket_ = random.uniform(); }
+
+  template <typename Scorer>
+  void walk(RandomStream& random, Scorer& scorer) {
+    const auto [x, arrival] = first_.sample(random);
+    if (plan_.sampled_single) scorer.single(x, medium_.mu_s / first_.density(x));
+    path_ = {{x, scattering_.sample(arrival, random), {}, {}, 0, true}, tally_};
+    start_density_ = -1;
+    log_worth_first_ = std::max(importance_.log_worth(x.z), 0.0);
+    if constexpr (reversed) expected_first_ = expected(x, -path_.start);
+    // The first flight stays inside: else most walks of a thin medium would find nothing.
+    const StretchedFlight flight{medium_.mu_t, domain_.distance_to_edge(x, path_.start),
+                                 pull(x, path_.start)};
+    const double length = flight.sample(random.uniform());
+    Tally tally = tally_;
+    tally.flight(length);
+    follow({x + length * path_.start, path_.start, flight.weight(length), 1, tally}, random,
+           scorer);
+    while (!waiting_.empty()) {
+      Walker walker = waiting_.back();
+      if (--waiting_.back().copies == 0) waiting_.pop_back();
+      if (step(walker, random)) follow(walker, random, scorer);
+    }
+  }
+
+ private:
+  /// Weights in units of mu_s^2 / mu_t, that of B = 2.
+  struct Walker {
+    Vec2 x, arrival;
+    double weight;
+    std::uint32_t copies;
+    [[no_unique_address]] Tally tally;
+  };
+
+  /// From where a walker has arrived, until it leaves, dies or splits.
+  template <typename Scorer>
+  void follow(Walker walker, RandomStream& random, Scorer& scorer) {
+    do {
+      score(walker, scorer);
+      if constexpr (weighted) {
+        if (!reweigh(walker, random)) return;
+      }
+    } while (step(walker, random));
+  }
+
+  /// To the next scatterer; false if there is none.
+  bool step(Walker& walker, RandomStream& random) const {
+    const Vec2 w = scattering_.sample(walker.arrival, random);
+    const double flight = sample_flight(walker, w, random);
+    if (flight >= domain_.distance_to_edge(walker.x, w)) return false;
+    walker.tally.scattering(walker.arrival, w);
+    walker.tally.flight(flight);
+    walker.x = walker.x + flight * w;
+    walker.arrival = w;
+    return true;
+  }
+
+  /// Where light dies out with depth, half of the flights towards what is worth more are stretched
+  /// (Dwivedi 1982): else rare long ones would carry most of the result.
+  double sample_flight(Walker& walker, Vec2 w, RandomStream& random) const {
+    const double mu_t = medium_.mu_t;
+    if constexpr (weighted) {
+      if (const double gain = pull(walker.x, w); gain > 0) {
+        const double stretched = 1 - std::min(gain, StretchedFlight::most_pull);
+        const bool stretch = random.uniform() < 0.5;
+        const double flight =
+            grin::sample_free_flight(stretch ? stretched * mu_t : mu_t, random.uniform());
+        walker.weight *= 2 / (1 + stretched * std::exp((1 - stretched) * mu_t * flight));
+        return flight;
+      }
+    }
+    return grin::sample_free_flight(mu_t, random.uniform());
+  }
+
+  /// How fast the worth grows in a direction, per mean free path.
+  double pull(Vec2 x, Vec2 w) const {
+    if constexpr (weighted) return importance_.slope(x.z) * w.z / medium_.mu_t;
+    return 0;
+  }
+
+  /// The weight window: false if the walker died, or waits as several.
+  bool reweigh(Walker& walker, RandomStream& random) {
+    walker.weight *= medium_.albedo;
+    const double worth = walker.weight * importance(walker.x);
+    if (worth < 0.5) {
+      walker.weight /= worth;
+      return random.uniform() < worth;
+    }
+    if (worth < 2) return true;
+    walker.weight /= worth;
+    walker.copies = static_cast<std::uint32_t>(worth + random.uniform());
+    waiting_.push_back(walker);
+    return false;
+  }
+
+  /// Contributions that promise less than a score play systematic roulette: every so many of them,
+  /// measured in what they promise, one is taken for all.
+  template <typename Scorer>
+  void score(const Walker& walker, Scorer& scorer) {
+    double promise = expected(walker.x, walker.arrival), backward_density = 0;
+    if constexpr (reversed) {
+      backward_density = first_.density(walker.x, -walker.arrival, scattering_);
+      const double forward = start_density();
+      promise =
+          (forward * promise + backward_density * expected_first_) / (forward + backward_density);
+    }
+    double weight = walker.weight;
+    const double chance = promise * weight / plan_.score_level;
+    if (chance < 1) {
+      ticket_ += chance;
+      if (ticket_ < 1) return;
+      ticket_ -= 1;
+      weight /= chance;
+    }
+    path_.last = walker.x;
+    path_.arrival = walker.arrival;
+    path_.tally = walker.tally;
+    path_.weight = medium_.mu_s * medium_.albedo * weight / (start_density() + backward_density);
+    scorer.multiple(path_);
+    path_.new_start = false;
+  }
+
+  /// Of x relative to where the walk began, so that a deep beginning is not split at once.
+  double importance(Vec2 x) const {
+    constexpr double largest_log = 600;  // exp of it is finite
+    return std::exp(std::min(importance_.log_worth(x.z) - log_worth_first_, largest_log));
+  }
+
+  /// What a path that ends at x is likely to contribute, for a walker of usual weight there.
+  double expected(Vec2 x, Vec2 arrival) const {
+    const double value = expected_view_(x, arrival);
+    if constexpr (weighted) return value * importance(x);
+    return value;
+  }
+
+  /// Computed when it is first asked for: many walks never score.
+  double start_density() {
+    if (start_density_ < 0) start_density_ = first_.density(path_.first, path_.start, scattering_);
+    return start_density_;
+  }
+
+  const Plan& plan_;
+  Domain domain_;
+  const BulkMedium& medium_;
+  const Scattering& scattering_;
+  DepthImportance importance_;
+  FirstScatterer first_;
+  ExpectedContribution expected_view_;
+  std::vector<Walker> waiting_;
+  [[no_unique_address]] Tally tally_;
+  TalliedPath<Tally> path_;
+  double start_density_ = -1, log_worth_first_ = 0, expected_first_ = 0;
+  double ticket_ = 0;  ///< a score at every whole number
+};
+
+}  // namespace flatspeckle::mc

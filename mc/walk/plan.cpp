@@ -1,0 +1,95 @@
+#include "mc/walk/plan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "mc/walk/importance.h"
+
+namespace flatspeckle::mc {
+
+namespace {
+
+/// More than a right angle away from exact backscattering the reversed paths only add terms that
+/// oscillate away, of the order of the 1/(k mean free path) that the method neglects anyway.
+bool can_see_backscattering(const CovarianceRequest& request) {
+  return std::any_of(request.views.begin(), request.views.end(), [&](const View& view) {
+    if (view.near) return true;
+    return std::any_of(request.lights.begin(), request.lights.end(), [&](const Light& light) {
+      return light.kind == Light::Kind::point ||
+             dot(direction(light.angle), direction(view.angle)) <= 0;
+    });
+  });
+}
+
+/// Twice the mean square of the phase function over the square of its mean: measured to be about
+/// best (bench_efficiency), and flat around it.
+double score_level(double g) {
+  const double square = std::min(g * g, 0.9);
+  return 2 * (1 + square) / (1 - square);
+}
+
+/// Whether a box is so narrow that little reaches the views without absorption either.
+bool loses_by_the_sides(const Scene& scene) {
+  return scene.domain.kind == Domain::Kind::box && scene.medium.mu_s > 0 &&
+         DepthImportance(scene).steep();
+}
+
+/// So many that the sums of a batch cost less to merge than to make.
+std::uint64_t paths_per_batch(const Plan& plan, std::size_t channels) {
+  return plan.rank_k && channels > 100 ? 2000 : 400;
+}
+
+}  // namespace
+
+Plan::Phase phase_of(const Scatterer& scatterer) {
+  if (scatterer.kind == Scatterer::Kind::point) return Plan::Phase::isotropic;
+  if (scatterer.kind != Scatterer::Kind::hg) return Plan::Phase::tabulated;
+  return scatterer.g == 0 ? Plan::Phase::isotropic : Plan::Phase::henyey_greenstein;
+}
+
+Plan make_plan(const Scene& scene, ReversedPaths reversed) {
+  const auto& request = scene.request;
+  Plan plan;
+  plan.domain = scene.domain.kind;
+  plan.phase = phase_of(scene.scatterer);
+  plan.reversed = reversed == ReversedPaths::yes ||
+                  (reversed == ReversedPaths::automatic && can_see_backscattering(request));
+  plan.near = !request.lights.all(Light::Kind::plane) ||
+              std::any_of(request.views.begin(), request.views.end(),
+                          [](const View& view) { return view.near; });
+  plan.rank_k = request.kind == CovarianceRequest::Kind::full;
+  plan.score_level = score_level(scene.medium.g);
+  plan.phases = plan.reversed || request.kind != CovarianceRequest::Kind::intensity;
+  plan.weighted = scene.medium.albedo < 1 - 1e-12 || loses_by_the_sides(scene);
+  constexpr std::size_t few = 20000;  // entries; a millisecond each at the most
+  plan.sampled_single = plan.near || plan.rank_k || request.entries.size() > few;
+  plan.paths_per_batch = paths_per_batch(plan, request.channels.size());
+  return plan;
+}
+
+std::string Plan::describe() const {
+  std::ostringstream text;
+  text << (domain == Domain::Kind::box ? "box" : "slab, transverse position integrated") << "; ";
+  switch (phase) {
+    case Phase::isotropic:
+      text << "isotropic scattering";
+      break;
+    case Phase::henyey_greenstein:
+      text << "Henyey-Greenstein scattering";
+      break;
+    case Phase::tabulated:
+      text << "tabulated amplitude";
+      break;
+  }
+  text << "; " << (weighted ? "walkers split and play roulette" : "walkers of equal weight") << "; "
+       << (sampled_single ? "" : "single scattering in closed form; ")
+       << (phases ? "" : "no phases; ") << (reversed ? "reversed paths" : "no reversed paths")
+       << "; " << (near ? "near field" : "far field only") << "; "
+       << (rank_k ? "full covariance by rank-k updates" : "listed entries only")
+       << "; scores promising less than " << score_level << " play roulette; " << paths_per_batch
+       << " paths per batch";
+  return text.str();
+}
+
+}  // namespace flatspeckle::mc

@@ -1,0 +1,280 @@
+#include "wave_solver/equations/basis_order.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "core/error.h"
+#include "core/numbers/scaled_bessel.h"
+#include "wave_solver/equations/neighbours.h"
+#include "wave_solver/equations/pair_response.h"
+
+namespace flatspeckle::wave {
+
+namespace {
+
+constexpr double nowhere = std::numeric_limits<double>::infinity();
+
+// Orders beyond the oscillating ones of the first try.
+constexpr int first_orders = 16;
+
+// And up to which pairs are solved: the images in hard disks add up, so that their bound is sharp.
+int most_paired(const Scatterer& disk) {
+  return disk.kind == Scatterer::Kind::hard ? 64 : 256;
+}
+
+// For what the nearest neighbour does not tell, all the others: measured on pairs and clusters.
+// Modes of large or dense disks resonate among many.
+double safety(const Scatterer& disk, double k) {
+  const double x = k * disk.radius;
+  const bool penetrable = disk.kind == Scatterer::Kind::tm || disk.kind == Scatterer::Kind::te;
+  if (!penetrable) return 20 + 2 * x;
+  const double contrast = std::max(1.0, (disk.index * disk.index).real() - 1);
+  return (8 + 2 * x) * contrast * contrast;
+}
+constexpr double lone_safety = 3;
+constexpr double near_safety = 5;
+
+// For what the bound leaves out: many orders adding up; between hard disks the error grows with k
+// a.
+double bound_safety(const Scatterer& disk, double k) {
+  const double x = disk.kind == Scatterer::Kind::hard ? k * disk.radius : 0;
+  return 200 * (1 + x * x);
+}
+
+// log2 |H_n(k distance)|, n = 0 .. order; -infinity for nowhere.
+std::vector<double> log_hankel(int order, double k, double distance) {
+  std::vector<double> logs(order + 1, -nowhere);
+  if (distance == nowhere) return logs;
+  const auto h = scaled_hankel(order, k * distance);
+  std::transform(h.begin(), h.end(), logs.begin(), [](const auto& h_n) { return log2(abs(h_n)); });
+  return logs;
+}
+
+// A distinct scatterer of a placement, with T_n as far as asked for up to now.
+struct Species {
+  Scatterer scatterer;
+  double k = 0;
+  int oscillating = 0;
+  double field = 0;  // root of sum (2 - [n=0]) |T_n|^2
+  std::vector<ScaledComplex> t;
+  std::vector<double> log_t;
+
+  void extend(int order) {
+    if (static_cast<int>(t.size()) > order) return;
+    t = scaled_t_matrix(scatterer, k, order);
+    log_t.clear();
+    long double sum = 0;
+    for (const ScaledComplex& t_n : t) {
+      log_t.push_back(log2(abs(t_n)));
+      sum += (log_t.size() == 1 ? 1 : 2) * std::norm(static_cast<ExtendedComplex>(t_n));
+    }
+    field = static_cast<double>(std::sqrt(sum));
+  }
+
+  std::vector<ScaledComplex> up_to(int order) {
+    extend(order);
+    return {t.begin(), t.begin() + order + 1};
+  }
+};
+
+// Two species at a gap of 2^(step/8) times the smaller radius: gaps are rounded down, so that equal
+// disks share what is found out.
+struct Contact {
+  std::size_t first = 0, second = 0;
+  int step = 0;
+
+  auto operator<=>(const Contact&) const = default;
+};
+constexpr double steps = 8;
+constexpr int last_step = 24;  // farther neighbours count as being there
+
+// xi of the bipolar coordinates
+double xi(double radius, double other_radius, double distance) {
+  return std::log(nearest_image(radius, other_radius, distance) / radius);
+}
+
+class BasisOrders {
+ public:
+  BasisOrders(const Placement& placement, double k, double tolerance, std::span<const Vec2> sensors)
+      : placement_(placement), k_(k), tolerance_(tolerance), sensors_(sensors) {
+    for (const auto& placed : placement) species_of_.push_back(species_of(placed.scatterer));
+  }
+
+  std::vector<ScaledComplex> basis(std::size_t j, const Neighbour& neighbour) {
+    const bool disk = placement_[j].scatterer.is_disk();
+    return species_[species_of_[j]].up_to(disk ? order_of(j, neighbour) : 0);
+  }
+
+ private:
+  std::size_t species_of(const Scatterer& scatterer) {
+    if (scatterer.kind == Scatterer::Kind::hg)
+      throw InputError("scatterer", "hg", "the wave solver needs point, soft, hard, tm or te");
+    const auto known = std::find_if(species_.begin(), species_.end(), [&](const Species& species) {
+      return species.scatterer == scatterer;
+    });
+    const auto index = static_cast<std::size_t>(known - species_.begin());
+    if (known == species_.end())
+      species_.push_back({scatterer, k_, oscillating_order(scatterer, k_), 0, {}, {}});
+    return index;
+  }
+
+  double nearest_sensor(std::size_t j) const {
+    double nearest = nowhere;
+    for (const Vec2& sensor : sensors_)
+      nearest = std::min(nearest, length(sensor - placement_[j].position));
+    return nearest;
+  }
+
+  Contact contact_of(std::size_t j, const Neighbour& neighbour) const {
+    const double a = placement_[j].scatterer.radius,
+                 b = placement_[neighbour.scatterer].scatterer.disk_radius();
+    const double relative = (neighbour.distance - a - b) / (b > 0 ? std::min(a, b) : a);
+    const double step = std::floor(steps * std::log2(relative));
+    return {species_of_[j], species_of_[neighbour.scatterer],
+            static_cast<int>(std::min<double>(last_step, step))};
+  }
+
+  double distance_of(const Contact& contact) const {
+    const double a = species_[contact.first].scatterer.radius,
+                 b = species_[contact.second].scatterer.disk_radius();
+    return a + b + (b > 0 ? std::min(a, b) : a) * std::exp2(contact.step / steps);
+  }
+
+  int order_of(std::size_t j, const Neighbour& neighbour) {
+    const double sensor = nearest_sensor(j);
+    Species& own = species_[species_of_[j]];
+    const bool alone = neighbour.distance == nowhere;
+    const Contact contact = alone ? Contact{} : contact_of(j, neighbour);
+    const double factor = alone ? lone_safety : safety(own.scatterer, k_);
+    for (int more = first_orders; alone || more <= most_paired(own.scatterer); more *= 2) {
+      const int size = own.oscillating + more;
+      const auto& strength = alone ? lone_strength(own, size) : pair_strength(contact, size);
+      if (const auto order = order_within(own, strength, sensor, factor)) return *order;
+    }
+    return bounded_order(j, contact, sensor);
+  }
+
+  // Strengths are log2 of what bounds |beta_n|.
+  const std::vector<double>& lone_strength(Species& own, int size) {
+    own.extend(size);
+    lone_.resize(size + 1);
+    for (int n = 0; n <= size; ++n) lone_[n] = own.log_t[n] / 2;
+    return lone_;
+  }
+
+  const std::vector<double>& pair_strength(const Contact& contact, int size) {
+    auto& strength = paired_[{contact, size}];
+    if (!strength.empty()) return strength;
+    Species &own = species_[contact.first], &other = species_[contact.second];
+    const double distance = distance_of(contact), a = own.scatterer.radius,
+                 b = other.scatterer.disk_radius();
+    int other_size = 0;
+    if (b > 0) {  // as far along the series of images
+      const double ratio = xi(a, b, distance) / xi(b, a, distance);
+      const auto more = static_cast<int>(ratio * (size - own.oscillating));
+      other_size = other.oscillating + std::clamp(more, first_orders, highest_order);
+    }
+    strength = pair_response(own.up_to(size), other.up_to(other_size), k_, distance);
+    for (double& s : strength) s = std::log2(s);
+    return strength;
+  }
+
+  // (F |T_n|)^1/2 w_n of the header: images are as strong as the field that causes them.
+  const std::vector<double>& bound(const Contact& contact, int size) {
+    auto& strength = bounds_[{contact, size}];
+    if (!strength.empty()) return strength;
+    Species &own = species_[contact.first], &other = species_[contact.second];
+    const double distance = distance_of(contact), a = own.scatterer.radius,
+                 b = other.scatterer.disk_radius();
+    strength = log_hankel(size, k_, nearest_image(a, b, distance));
+    if (b > 0) {
+      other.extend(size);
+      auto sent = log_hankel(size, k_, nearest_image(b, a, distance));
+      for (int m = 0; m <= size; ++m) sent[m] = other.log_t[m] + std::max(0.0, sent[m]);
+      const auto translation = log_hankel(2 * size, k_, distance);
+      for (int n = 0; n <= size; ++n)
+        for (int m = 0; m <= size; ++m)
+          strength[n] = std::max(strength[n], sent[m] + translation[n + m]);
+    }
+    own.extend(size);
+    for (int n = 0; n <= size; ++n)
+      strength[n] = std::max(0.0, strength[n]) + (own.log_t[n] + std::log2(own.field)) / 2;
+    return strength;
+  }
+
+  // The order beyond which little is left, if the strengths reach far enough to tell.
+  std::optional<int> order_within(Species& own, const std::vector<double>& strength, double sensor,
+                                  double safety_factor) const {
+    if (strength.empty()) return std::nullopt;
+    const int size = static_cast<int>(strength.size()) - 1;
+    own.extend(size);
+    if (own.field == 0) return 0;
+    const auto receiver = log_hankel(size, k_, sensor);
+    const double most = tolerance_ * own.field;
+    double rest = 0;
+    int order = size + 1;
+    while (order > 0 && rest <= most) {
+      --order;
+      const double near = strength[order] + own.log_t[order] / 2 + receiver[order];
+      rest += safety_factor * std::exp2(2 * strength[order]) + near_safety * std::exp2(near);
+    }
+    if (order > own.oscillating + 3 * (size - own.oscillating) / 4) return std::nullopt;
+    return order;
+  }
+
+  int bounded_order(std::size_t j, const Contact& contact, double sensor) {
+    Species& own = species_[contact.first];
+    const double radius = own.scatterer.radius,
+                 other_radius = species_[contact.second].scatterer.disk_radius();
+    const double statics =
+        -std::log(tolerance_) / (2 * xi(radius, other_radius, distance_of(contact)));
+    if (statics > highest_order) refuse(j, statics);
+    for (int size = 128 + own.oscillating + static_cast<int>(1.4 * statics);; size *= 2) {
+      const auto order =
+          order_within(own, bound(contact, size), sensor, bound_safety(own.scatterer, k_));
+      if (order && *order > highest_order) refuse(j, *order);
+      if (order) return *order;
+    }
+  }
+
+  [[noreturn]] void refuse(std::size_t j, double order) const {
+    const auto& [position, scatterer] = placement_[j];
+    throw InputError("radius", scatterer.radius,
+                     "the disk at (" + std::to_string(position.x) + ", " +
+                         std::to_string(position.z) +
+                         ") is so close to a neighbour that it needs basis order " +
+                         std::to_string(static_cast<long long>(std::ceil(order))) + ", more than " +
+                         std::to_string(highest_order) +
+                         "; widen the gap (min_gap) or allow a larger tolerance");
+  }
+
+  const Placement& placement_;
+  double k_, tolerance_;
+  std::span<const Vec2> sensors_;
+  std::vector<std::size_t> species_of_;
+  std::vector<Species> species_;
+  std::map<std::pair<Contact, int>, std::vector<double>> paired_, bounds_;  // by orders solved for
+  std::vector<double> lone_;
+};
+
+}  // namespace
+
+std::vector<std::vector<ScaledComplex>> basis(const Placement& placement, double k,
+                                              double tolerance, std::span<const Vec2> sensors) {
+  BasisOrders orders(placement, k, tolerance, sensors);
+  const bool disks = std::any_of(placement.begin(), placement.end(),
+                                 [](const auto& placed) { return placed.scatterer.is_disk(); });
+  const auto neighbours =
+      disks ? nearest_neighbours(placement) : std::vector<Neighbour>(placement.size());
+  std::vector<std::vector<ScaledComplex>> basis;
+  for (std::size_t j = 0; j < placement.size(); ++j)
+    basis.push_back(orders.basis(j, neighbours[j]));
+  return basis;
+}
+
+}  // namespace flatspeckle::wave

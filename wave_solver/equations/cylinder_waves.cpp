@@ -1,0 +1,226 @@
+#include "wave_solver/equations/cylinder_waves.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.h"
+#include "core/numbers/hankel_array.h"
+#include "core/numbers/scaled_bessel.h"
+
+namespace flatspeckle::wave {
+
+namespace {
+
+// Beyond this |H_m| products with the weights might leave the range of double.
+constexpr double safe = 1e200;
+
+// E_m and O_m of one displacement, m = 0 .. order, and by symmetry for negative m.
+template <typename Number>
+struct Pair {
+  std::vector<Number> cosine, sine;
+
+  void resize(int order) {
+    cosine.resize(order + 1);
+    sine.resize(order + 1);
+  }
+  Number e(int m) const { return m >= 0 ? cosine[m] : (m % 2 == 0 ? cosine[-m] : -cosine[-m]); }
+  Number o(int m) const { return m >= 0 ? sine[m] : (m % 2 == 0 ? -sine[-m] : sine[-m]); }
+
+  Number translation(const Mode& to, const Mode& from) const {
+    const int p = to.order, n = from.order;
+    const Number direct = to.odd == from.odd ? e(n - p) : (to.odd ? -o(n - p) : o(n - p));
+    const Number image = to.odd == from.odd ? e(n + p) : o(n + p);
+    const bool minus = (p % 2 != 0) != (to.odd && from.odd);
+    return minus ? direct - image : direct + image;
+  }
+
+  // From d/ds H_n e^{i n phi} = (k/2) [H_{n-1} e^{i(n-1)phi} e^{i alpha} - H_{n+1} e^{i(n+1)phi}
+  // e^{-i alpha}] along the direction of angle alpha, over k.
+  template <typename Real>
+  Number slope(const Mode& mode, Real cos_alpha, Real sin_alpha) const {
+    const int n = mode.order;
+    const Number along = mode.odd ? o(n - 1) - o(n + 1) : e(n - 1) - e(n + 1);
+    const Number across = mode.odd ? e(n - 1) + e(n + 1) : -(o(n - 1) + o(n + 1));
+    return (along * cos_alpha + across * sin_alpha) * Real(0.5);
+  }
+};
+
+// Pairs beyond the range of double: m up to thousands.
+Pair<ScaledComplex> scaled_pair(double k, Vec2 d, int order) {
+  Pair<ScaledComplex> pair;
+  pair.resize(order);
+  const long double x = d.x, z = d.z, r = std::sqrt(x * x + z * z);
+  const auto h = scaled_hankel(order, static_cast<double>(k * r));
+  const ExtendedComplex turn(z / r, x / r);
+  ExtendedComplex phase = 1;
+  for (int m = 0; m <= order; ++m) {
+    pair.cosine[m] = phase.real() * h[m];
+    pair.sine[m] = phase.imag() * h[m];
+    phase = product(phase, turn);
+  }
+  return pair;
+}
+
+// H_m, cos(m theta) and sin(m theta) of many displacements: [m][displacement].
+class PairTable {
+ public:
+  PairTable(double k, std::span<const Vec2> displacements, int order)
+      : count_(displacements.size()) {
+    const std::size_t size = (order + 1) * count_;
+    for (auto* values : {&h_re_, &h_im_, &cosine_, &sine_}) values->resize(size);
+    std::vector<double> r(count_), turn_re(count_), turn_im(count_);
+    for (std::size_t i = 0; i < count_; ++i) {
+      const auto [x, z] = displacements[i];
+      const double length = std::sqrt(x * x + z * z);
+      turn_re[i] = z / length;
+      turn_im[i] = x / length;
+      r[i] = k * length;
+    }
+    hankel_sets(r, order, h_re_.data(), h_im_.data());
+    std::fill_n(cosine_.begin(), count_, 1.0);
+    for (int m = 1; m <= order; ++m) rotate(m, turn_re, turn_im);
+  }
+
+  bool is_safe(std::size_t i, int order) const {
+    return std::abs(h_im_[order * count_ + i]) < safe;
+  }
+
+  void read(std::size_t i, int order, Pair<Complex>& pair) const {
+    for (int m = 0; m <= order; ++m) {
+      const std::size_t at = m * count_ + i;
+      pair.cosine[m] = {h_re_[at] * cosine_[at], h_im_[at] * cosine_[at]};
+      pair.sine[m] = {h_re_[at] * sine_[at], h_im_[at] * sine_[at]};
+    }
+  }
+
+ private:
+  void rotate(int m, const std::vector<double>& turn_re, const std::vector<double>& turn_im) {
+    const double *re = &cosine_[(m - 1) * count_], *im = &sine_[(m - 1) * count_];
+    double *next_re = &cosine_[m * count_], *next_im = &sine_[m * count_];
+    for (std::size_t i = 0; i < count_; ++i) {
+      next_re[i] = re[i] * turn_re[i] - im[i] * turn_im[i];
+      next_im[i] = re[i] * turn_im[i] + im[i] * turn_re[i];
+    }
+  }
+
+  std::size_t count_;
+  std::vector<double> h_re_, h_im_, cosine_, sine_;
+};
+
+// A displacement and the largest order that is wanted of it.
+struct Displacement {
+  Vec2 d;
+  int order = 0;
+};
+
+bool is_zero(Vec2 d) {
+  return d.x == 0 && d.z == 0;
+}
+
+// element(pair, i) for all displacements, a chunk at a time; a pair of zeros for none.
+template <typename Element>
+void for_each_pair(double k, const std::vector<Displacement>& displacements,
+                   const Element& element) {
+  int order = 0;
+  for (const auto& displacement : displacements) order = std::max(order, displacement.order);
+  const std::size_t chunk = std::max<std::size_t>(8, 2048 / (order + 1));
+  Pair<Complex> pair, nothing;
+  pair.resize(order);
+  nothing.resize(order);
+  std::vector<Vec2> part;
+  for (std::size_t first = 0; first < displacements.size(); first += chunk) {
+    const std::size_t last = std::min(first + chunk, displacements.size());
+    part.clear();
+    for (std::size_t i = first; i < last; ++i)
+      part.push_back(is_zero(displacements[i].d) ? Vec2{1 / k, 0} : displacements[i].d);
+    const PairTable table(k, part, order);
+    for (std::size_t i = first; i < last; ++i) {
+      if (is_zero(displacements[i].d)) {
+        element(nothing, i);
+      } else if (table.is_safe(i - first, displacements[i].order)) {
+        table.read(i - first, displacements[i].order, pair);
+        element(pair, i);
+      } else {
+        element(scaled_pair(k, displacements[i].d, displacements[i].order), i);
+      }
+    }
+  }
+}
+
+// Weights one after the other: their product may underflow where the wave is large.
+Complex weighted(Complex wave, const ScaledReal& to, const ScaledReal& from) {
+  return wave * static_cast<double>(to) * static_cast<double>(from);
+}
+Complex weighted(const ScaledComplex& wave, const ScaledReal& to, const ScaledReal& from) {
+  const auto result = static_cast<Complex>(wave * to * from);
+  if (!std::isfinite(result.real()) || !std::isfinite(result.imag()))
+    throw InputError(
+        "two scatterers are so close at this wavelength that translating their waves "
+        "leaves the range of numbers; widen the gap (min_gap)");
+  return result;
+}
+
+void translate_points(double k, std::span<const ModeSet> receivers, const ModeSet& sender,
+                      Target out) {
+  std::vector<double> r(receivers.size());
+  for (std::size_t i = 0; i < r.size(); ++i) {
+    const Vec2 d = receivers[i].centre - sender.centre;
+    r[i] = is_zero(d) ? 1 : k * std::sqrt(dot(d, d));
+  }
+  hankel0(r, {out.data, r.size()});
+  const auto from = 2 * static_cast<double>(sender.modes[0].weight);
+  for (std::size_t i = 0; i < r.size(); ++i) {
+    const bool apart = !is_zero(receivers[i].centre - sender.centre);
+    out.data[i] *= apart ? from * static_cast<double>(receivers[i].modes[0].weight) : 0;
+  }
+}
+
+bool is_point(const ModeSet& set) {
+  return set.order == 0 && set.modes.size() == 1;
+}
+
+}  // namespace
+
+void translate(double k, std::span<const ModeSet> receivers, const ModeSet& sender, Target out) {
+  if (is_point(sender) && std::all_of(receivers.begin(), receivers.end(), is_point))
+    return translate_points(k, receivers, sender, out);
+  std::vector<Displacement> displacements;
+  std::vector<std::size_t> first_row{0};
+  for (const ModeSet& receiver : receivers) {
+    displacements.push_back({receiver.centre - sender.centre, receiver.order + sender.order});
+    first_row.push_back(first_row.back() + receiver.modes.size());
+  }
+  for_each_pair(k, displacements, [&](const auto& pair, std::size_t i) {
+    for (std::size_t column = 0; column < sender.modes.size(); ++column) {
+      Complex* to = out.data + out.ld * column + first_row[i];
+      const Mode& from = sender.modes[column];
+      for (const Mode& mode : receivers[i].modes)
+        *to++ = weighted(pair.translation(mode, from), mode.weight, from.weight);
+    }
+  });
+}
+
+// The value of the field at a point is the coefficient of J_0 about it.
+void field_at(double k, std::span<const Vec2> points, const ModeSet& sender, Target out) {
+  const Mode value{0, false, root_half};
+  std::vector<ModeSet> receivers;
+  for (const Vec2& point : points) receivers.push_back({point, {&value, 1}, 0});
+  translate(k, receivers, sender, out);
+}
+
+void slopes(double k, std::span<const Vec2> points, std::span<const Vec2> along,
+            const ModeSet& sender, Target out) {
+  std::vector<Displacement> displacements;
+  for (const Vec2& point : points)
+    displacements.push_back({point - sender.centre, sender.order + 1});
+  for_each_pair(k, displacements, [&](const auto& pair, std::size_t i) {
+    for (std::size_t column = 0; column < sender.modes.size(); ++column) {
+      const Mode& mode = sender.modes[column];
+      using Real = typename std::decay_t<decltype(pair.e(0))>::value_type;
+      const auto slope = pair.slope(mode, Real(along[i].z), Real(along[i].x));
+      out.data[out.ld * column + i] = weighted(slope, 2 * root_half, mode.weight);
+    }
+  });
+}
+
+}  // namespace flatspeckle::wave

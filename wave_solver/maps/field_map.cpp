@@ -1,0 +1,205 @@
+#include "wave_solver/maps/field_map.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <sstream>
+#include <utility>
+
+#include "core/run/parallel.h"
+#include "wave_solver/dense/blas.h"
+#include "wave_solver/maps/ring_field.h"
+#include "wave_solver/solutions/interior_field.h"
+
+namespace flatspeckle::wave {
+
+namespace {
+
+constexpr std::uint32_t nowhere = ~std::uint32_t{0};
+constexpr std::size_t chunk = 256;  // points that stay in cache with the waves of a scatterer
+
+using Pixels = std::vector<std::uint32_t>;
+
+bool is_penetrable(const Scatterer& scatterer) {
+  return scatterer.kind == Scatterer::Kind::tm || scatterer.kind == Scatterer::Kind::te;
+}
+
+std::vector<Vec2> positions(const MapGrid& grid, const MapTile& tile, const Pixels& pixels) {
+  std::vector<Vec2> result;
+  for (const std::uint32_t pixel : pixels)
+    result.push_back(grid.pixel(tile.ix + pixel % tile.nx, tile.iz + pixel / tile.nx));
+  return result;
+}
+
+}  // namespace
+
+// The pixels of a tile: those in a disk by disk, the others in a list.
+struct FieldMap::Points {
+  std::vector<Pixels> inside;        // of each scatterer
+  Pixels outside;                    // pixel of each point outside
+  std::vector<std::uint32_t> place;  // of each pixel among those outside
+  std::vector<Vec2> positions;       // of those outside
+};
+
+FieldMap::FieldMap(const WaveSolution& solution, const MapGrid& grid, double tolerance, Route route)
+    : solution_(solution), grid_(grid) {
+  blas_single_thread();
+  if (route == Route::direct || solution.system().unknowns() == 0) return;
+  auto rings = std::make_unique<RingField>(solution, std::max(tolerance, 1e-12),
+                                           grid.step().x * grid.step().z);
+  if (rings->resolved()) rings_ = std::move(rings);
+}
+
+FieldMap::~FieldMap() = default;
+
+// Many pixels at once, because the fast route begins with a cost for all sources.
+std::vector<MapTile> FieldMap::tiles() const {
+  constexpr std::size_t most = std::size_t{1} << 19, values = std::size_t{1} << 22;
+  return wave::tiles(grid_, std::min(most, values / solution_.light_angles().size()));
+}
+
+std::string FieldMap::method() const {
+  std::ostringstream text;
+  text << "map of " << grid_.nx << " x " << grid_.nz << " pixels in " << fast_tiles_ + direct_tiles_
+       << " tiles, " << direct_tiles_ << " summed directly";
+  if (fast_tiles_ > 0)
+    text << ", " << fast_tiles_ << " by FFT over " << rings_->sources() << " sources";
+  return text.str();
+}
+
+// A disk that the waves outside do not pass.
+bool FieldMap::is_solid(std::size_t scatterer) const {
+  const TMatrixSystem& system = solution_.system();
+  return system.placement()[scatterer].scatterer.is_disk() && !is_transparent(system, scatterer);
+}
+
+FieldMap::Points FieldMap::place(const MapTile& tile) const {
+  const TMatrixSystem& system = solution_.system();
+  const Placement& placement = system.placement();
+  Points points;
+  points.inside.resize(placement.size());
+  parallel_for(placement.size(), [&](std::size_t j) {
+    if (is_solid(j))
+      points.inside[j] =
+          ring_of_pixels(grid_, tile, placement[j].position, 0, placement[j].scatterer.radius);
+  });
+  std::vector<bool> covered(tile.pixels());
+  for (const Pixels& inside : points.inside)
+    for (const std::uint32_t pixel : inside) covered[pixel] = true;
+  points.place.assign(tile.pixels(), nowhere);
+  for (std::uint32_t pixel = 0; pixel < tile.pixels(); ++pixel) {
+    if (covered[pixel]) continue;
+    points.place[pixel] = static_cast<std::uint32_t>(points.outside.size());
+    points.outside.push_back(pixel);
+  }
+  points.positions = positions(grid_, tile, points.outside);
+  const double close = on_a_point * 2 * std::numbers::pi / system.k();
+  for (const auto& [position, scatterer] : placement)
+    if (!scatterer.is_disk())
+      for (const std::uint32_t pixel : ring_of_pixels(grid_, tile, position, 0, close))
+        if (!covered[pixel]) points.positions[points.place[pixel]] = position;
+  return points;
+}
+
+std::vector<Complex> FieldMap::field(const MapTile& tile) {
+  const Points points = place(tile);
+  auto beyond = outside(tile, points);
+  add_incident(points, beyond);
+  const std::size_t lights = solution_.light_angles().size(), count = points.outside.size();
+  std::vector<Complex> field(lights * tile.pixels());
+  for (std::size_t light = 0; light < lights; ++light)
+    for (std::size_t i = 0; i < count; ++i)
+      field[light * tile.pixels() + points.outside[i]] = beyond[light * count + i];
+  fill_inside(tile, points, field);
+  return field;
+}
+
+// Scattered field, [light][point].
+std::vector<Complex> FieldMap::outside(const MapTile& tile, const Points& points) {
+  if (rings_) {
+    if (auto field = rings_->sum(points.positions)) {
+      ++fast_tiles_;
+      correct_near(tile, points, *field);
+      return std::move(*field);
+    }
+  }
+  ++direct_tiles_;
+  return direct(points.positions);
+}
+
+std::vector<Complex> FieldMap::direct(const std::vector<Vec2>& points) const {
+  const std::size_t lights = solution_.light_angles().size();
+  std::vector<Complex> field(lights * points.size());
+  parallel_for((points.size() + chunk - 1) / chunk, [&](std::size_t part) {
+    const std::size_t first = part * chunk, count = std::min(chunk, points.size() - first);
+    std::vector<Complex> sum(lights * count);
+    for (std::size_t j = 0; j < solution_.system().placement().size(); ++j)
+      add_scattered(solution_, j, std::span(points).subspan(first, count), sum);
+    for (std::size_t light = 0; light < lights; ++light)
+      std::copy_n(&sum[light * count], count, &field[light * points.size() + first]);
+  });
+  return field;
+}
+
+void FieldMap::correct_near(const MapTile& tile, const Points& points,
+                            std::vector<Complex>& field) const {
+  const Placement& placement = solution_.system().placement();
+  std::vector<Pixels> near(placement.size());
+  std::vector<std::vector<Complex>> corrections(placement.size());
+  parallel_for(placement.size(), [&](std::size_t j) {
+    const auto& [centre, scatterer] = placement[j];
+    const auto ring =
+        ring_of_pixels(grid_, tile, centre, scatterer.disk_radius(), rings_->clearance(j));
+    std::copy_if(ring.begin(), ring.end(), std::back_inserter(near[j]),
+                 [&](std::uint32_t pixel) { return points.place[pixel] != nowhere; });
+    if (!near[j].empty()) corrections[j] = rings_->correction(j, positions(grid_, tile, near[j]));
+  });
+  const std::size_t lights = solution_.light_angles().size(), count = points.outside.size();
+  for (std::size_t j = 0; j < placement.size(); ++j)
+    for (std::size_t light = 0; light < lights; ++light)
+      for (std::size_t i = 0; i < near[j].size(); ++i)
+        field[light * count + points.place[near[j][i]]] +=
+            corrections[j][light * near[j].size() + i];
+}
+
+void FieldMap::add_incident(const Points& points, std::vector<Complex>& field) const {
+  const std::size_t count = points.outside.size();
+  parallel_for(solution_.light_angles().size(), [&](std::size_t light) {
+    const Vec2 wave = solution_.system().k() * direction(solution_.light_angles()[light]);
+    for (std::size_t i = 0; i < count; ++i)
+      field[light * count + i] += std::polar(1.0, dot(wave, points.positions[i]));
+  });
+}
+
+void FieldMap::fill_inside(const MapTile& tile, const Points& points,
+                           std::vector<Complex>& field) const {
+  const TMatrixSystem& system = solution_.system();
+  parallel_for(points.inside.size(), [&](std::size_t j) {
+    const Pixels& pixels = points.inside[j];
+    if (pixels.empty() || !is_penetrable(system.placement()[j].scatterer)) return;
+    const std::size_t modes = system.modes(j).modes.size();
+    std::vector<Complex> waves(pixels.size() * modes);
+    field_inside(system, j, positions(grid_, tile, pixels), {waves.data(), pixels.size()});
+    for (std::size_t light = 0; light < solution_.light_angles().size(); ++light) {
+      const auto beta = solution_.coefficients(light).subspan(system.first(j), modes);
+      for (std::size_t n = 0; n < modes; ++n)
+        for (std::size_t i = 0; i < pixels.size(); ++i)
+          field[light * tile.pixels() + pixels[i]] +=
+              product(beta[n], waves[n * pixels.size() + i]);
+    }
+  });
+}
+
+std::vector<Vec2> map_sensors(const MapGrid& grid, const Placement& placement) {
+  std::vector<Vec2> sensors;
+  for (const auto& [centre, scatterer] : placement) {
+    if (!scatterer.is_disk()) continue;
+    const Vec2 nearest{std::clamp(centre.x, grid.low.x, grid.high.x),
+                       std::clamp(centre.z, grid.low.z, grid.high.z)};
+    const bool touched = length(nearest - centre) <= scatterer.radius;
+    sensors.push_back(touched ? centre + Vec2{scatterer.radius, 0} : nearest);
+  }
+  return sensors;
+}
+
+}  // namespace flatspeckle::wave

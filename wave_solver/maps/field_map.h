@@ -1,0 +1,63 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/numbers/complex.h"
+#include "wave_solver/maps/map_grid.h"
+#include "wave_solver/solutions/wave_solution.h"
+
+namespace flatspeckle::wave {
+
+class RingField;
+
+/// The total field u on a grid: incident and scattered waves outside the scatterers, the
+/// transmitted wave in disks of kind tm and te, 0 in soft and hard ones. On a point scatterer,
+/// where u is infinite, its own wave is left out: what stands there is the field that excites it. A
+/// pixel closer than `on_a_point` wavelengths counts as on it.
+///
+/// A tile is summed over all scatterers for each pixel or, where that is faster, by a RingField.
+///
+/// With the basis orders that map_sensors asks for, u is accurate to the solution's tolerance
+/// outside the disks. Inside, what orders n beyond the basis order miss is larger by J_n / (T_n
+/// H_n): on the rim some hundred times the tolerance; towards the centre it falls as (r / a)^n.
+class FieldMap {
+ public:
+  static constexpr double on_a_point = 1e-8;
+  enum class Route { fastest, direct };
+
+  /// Keeps a reference to the solution. tolerance: of the fast route, relative to the field.
+  FieldMap(const WaveSolution& solution, const MapGrid& grid, double tolerance,
+           Route route = Route::fastest);
+  ~FieldMap();
+
+  const MapGrid& grid() const { return grid_; }
+  /// Tiles in which to ask for the map so that little memory is needed.
+  std::vector<MapTile> tiles() const;
+  /// [light][z][x]. Threaded.
+  std::vector<Complex> field(const MapTile& tile);
+  /// How the tiles up to now were summed, in words.
+  std::string method() const;
+
+ private:
+  struct Points;
+  Points place(const MapTile& tile) const;
+  std::vector<Complex> outside(const MapTile& tile, const Points& points);
+  std::vector<Complex> direct(const std::vector<Vec2>& points) const;
+  void correct_near(const MapTile& tile, const Points& points, std::vector<Complex>& field) const;
+  void add_incident(const Points& points, std::vector<Complex>& field) const;
+  void fill_inside(const MapTile& tile, const Points& points, std::vector<Complex>& field) const;
+  bool is_solid(std::size_t scatterer) const;
+
+  const WaveSolution& solution_;
+  MapGrid grid_;
+  std::unique_ptr<const RingField> rings_;
+  std::size_t fast_tiles_ = 0, direct_tiles_ = 0;
+};
+
+/// Points near which a map asks for the field, one for each scatterer that it touches: sensors for
+/// SolveOptions, so that basis orders resolve the map up to the rims.
+std::vector<Vec2> map_sensors(const MapGrid& grid, const Placement& placement);
+
+}  // namespace flatspeckle::wave

@@ -1,0 +1,259 @@
+#include "wave_solver/skeletons/fast_direct.h"
+
+#include <algorithm>
+#include <cassert>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include <omp.h>
+
+#include "core/error.h"
+#include "core/run/parallel.h"
+#include "core/run/stopwatch.h"
+#include "wave_solver/dense/blas.h"
+#include "wave_solver/dense/symmetric_factor.h"
+#include "wave_solver/equations/tiles.h"
+#include "wave_solver/skeletons/box_tree.h"
+#include "wave_solver/skeletons/skeletonization.h"
+
+namespace flatspeckle::wave {
+
+namespace {
+
+constexpr std::size_t leaf_unknowns = 256;  // smaller boxes would hardly be compressed
+
+std::vector<SortedDisk> disks_of(const TMatrixSystem& system) {
+  std::vector<SortedDisk> disks;
+  for (std::size_t j = 0; j < system.placement().size(); ++j) {
+    const auto& [position, scatterer] = system.placement()[j];
+    disks.push_back({position, scatterer.disk_radius(), system.first(j + 1) - system.first(j)});
+  }
+  return disks;
+}
+
+double square(std::size_t n) {
+  return static_cast<double>(n) * static_cast<double>(n);
+}
+
+}  // namespace
+
+// Works up the tree. active_: of boxes below the current level their skeletons, of others, once
+// they are joined, all that they hold. rest_: of a box that was eliminated, what is left of its
+// block of M.
+class FastDirect::Builder {
+ public:
+  Builder(const TMatrixSystem& system, double tolerance, double memory)
+      : system_(system),
+        memory_(memory),
+        skeletonization_(system, tolerance),
+        disks_(disks_of(system)),
+        tree_(disks_, leaf_unknowns),
+        active_(tree_.boxes().size()),
+        rest_(tree_.boxes().size()),
+        cpu_seconds_(tree_.boxes().size()) {
+    for (std::size_t box = 0; box < active_.size(); ++box)
+      if (tree_.boxes()[box].is_leaf()) active_[box] = own_unknowns(box);
+  }
+
+  void build(FastDirect& result) {
+    for (std::size_t level = tree_.levels(); level-- > 1;) {
+      result.levels_.push_back(eliminate_level(level, result.statistics_.bytes));
+      summarize(level, result);
+    }
+    if (tree_.levels() > 0) factor_root(result);
+    for (double seconds : cpu_seconds_) result.statistics_.cpu_seconds += seconds;
+  }
+
+ private:
+  std::vector<std::size_t> own_unknowns(std::size_t box) const {
+    std::vector<std::size_t> unknowns;
+    for (std::size_t place = tree_.boxes()[box].first; place < tree_.boxes()[box].last; ++place) {
+      const std::size_t disk = tree_.order()[place];
+      for (std::size_t u = system_.first(disk); u < system_.first(disk + 1); ++u)
+        unknowns.push_back(u);
+    }
+    return unknowns;
+  }
+
+  void join_halves(std::size_t level) {
+    for (std::size_t box = tree_.level_begin(level); box < tree_.level_end(level); ++box) {
+      if (tree_.boxes()[box].is_leaf()) continue;
+      for (std::size_t half : {tree_.boxes()[box].child, tree_.boxes()[box].child + 1})
+        active_[box].insert(active_[box].end(), active_[half].begin(), active_[half].end());
+    }
+  }
+
+  // With all unknowns eliminated a box would keep 16 n^2 bytes, with some of them less, what is
+  // left of its block included; while it is worked on it takes three times that.
+  void require_memory(std::size_t level, double held) const {
+    double bytes = held, largest = 0;
+    for (std::size_t box = tree_.level_begin(level); box < tree_.level_end(level); ++box) {
+      const double block = sizeof(Complex) * square(active_[box].size());
+      bytes += block;
+      largest = std::max(largest, block);
+    }
+    bytes += 3 * largest * omp_get_max_threads();
+    if (bytes <= memory_) return;
+    throw InputError("unknowns", system_.unknowns(),
+                     "the fast direct solver may need " +
+                         std::to_string(static_cast<long long>(bytes)) + " bytes, it may have " +
+                         std::to_string(static_cast<long long>(memory_)) +
+                         "; take fewer scatterers or a larger tolerance");
+  }
+
+  // The box's block of M: kernel entries, but between unknowns of one half what is left of it.
+  std::vector<Complex> block(std::size_t box) {
+    const std::span<const std::size_t> unknowns = active_[box];
+    const std::size_t n = unknowns.size();
+    std::vector<Complex> m(n * n);
+    if (tree_.boxes()[box].is_leaf()) {
+      constexpr std::size_t width = 64;
+      for (std::size_t j = 0; j < n; j += width)
+        system_.entries(unknowns.subspan(j), unknowns.subspan(j, std::min(width, n - j)),
+                        &m[j * (n + 1)], n);
+    } else {
+      const std::size_t half = tree_.boxes()[box].child, size = active_[half].size();
+      place_rest(half, m, n, 0);
+      place_rest(half + 1, m, n, size);
+      system_.entries(unknowns.subspan(size), unknowns.first(size), &m[size], n);
+    }
+    mirror_lower(m, n);
+    return m;
+  }
+
+  void place_rest(std::size_t half, std::vector<Complex>& m, std::size_t n, std::size_t first) {
+    const std::size_t size = active_[half].size();
+    for (std::size_t j = 0; j < size; ++j)
+      std::copy_n(&rest_[half][j * size], size, &m[first + n * (first + j)]);
+    std::vector<Complex>().swap(rest_[half]);
+  }
+
+  // Unknowns outside of a box, as they are before its level is begun, of disks whose rim is nearer
+  // to it than a distance.
+  std::vector<std::size_t> near_unknowns(std::size_t box, double distance) const {
+    const auto& boxes = tree_.boxes();
+    const Rectangle& hull = boxes[box].hull;
+    std::vector<std::size_t> found, open{0};
+    while (!open.empty()) {
+      const std::size_t other = open.back();
+      open.pop_back();
+      if (other == box || hull.distance(boxes[other].hull) >= distance) continue;
+      if (boxes[other].level < boxes[box].level && !boxes[other].is_leaf()) {
+        open.push_back(boxes[other].child);
+        open.push_back(boxes[other].child + 1);
+        continue;
+      }
+      for (std::size_t unknown : active_[other]) {
+        const SortedDisk& disk = disks_[system_.scatterer_of(unknown)];
+        if (hull.distance(disk.centre) - disk.radius < distance) found.push_back(unknown);
+      }
+    }
+    return found;
+  }
+
+  SkeletonElimination eliminate(std::size_t box) {
+    const double start = thread_cpu_seconds();
+    const ActiveBox active{tree_.boxes()[box].hull, active_[box]};
+    const auto near = near_unknowns(box, skeletonization_.distance(active));
+    // addressed by the box, so that no thread matters
+    const auto interpolation = skeletonization_(active, near, RandomStream(0, 0, box));
+    SkeletonElimination elimination(active_[box], block(box), interpolation);
+    rest_[box] = elimination.take_rest();
+    cpu_seconds_[box] = thread_cpu_seconds() - start;
+    return elimination;
+  }
+
+  std::vector<SkeletonElimination> eliminate_level(std::size_t level, double held) {
+    join_halves(level);
+    require_memory(level, held);
+    const std::size_t begin = tree_.level_begin(level);
+    std::vector<SkeletonElimination> eliminations(tree_.level_end(level) - begin);
+    parallel_for(eliminations.size(),
+                 [&](std::size_t i) { eliminations[i] = eliminate(begin + i); });
+    return eliminations;
+  }
+
+  void summarize(std::size_t level, FastDirect& result) {
+    const std::size_t begin = tree_.level_begin(level);
+    Level summary;
+    for (const auto& elimination : result.levels_.back()) {
+      auto& active = active_[begin + summary.boxes++];
+      summary.unknowns += active.size();
+      active = elimination.skeleton();
+      summary.skeleton += active.size();
+      summary.largest = std::max(summary.largest, active.size());
+      result.statistics_.bytes += elimination.bytes();
+    }
+    result.statistics_.levels.push_back(summary);
+  }
+
+  void factor_root(FastDirect& result) {
+    join_halves(0);
+    require_memory(0, result.statistics_.bytes);
+    const double start = thread_cpu_seconds();
+    const std::size_t n = active_[0].size();
+    result.root_ = block(0);
+    result.root_unknowns_ = active_[0];
+    if (!factor_symmetric(result.root_.data(), n, n))
+      throw std::runtime_error("the multiple-scattering equations are singular or not finite");
+    result.statistics_.root = n;
+    result.statistics_.bytes += sizeof(Complex) * square(n);
+    cpu_seconds_[0] = thread_cpu_seconds() - start;
+  }
+
+  const TMatrixSystem& system_;
+  double memory_;
+  Skeletonization skeletonization_;
+  std::vector<SortedDisk> disks_;
+  BoxTree tree_;
+  std::vector<std::vector<std::size_t>> active_;
+  std::vector<std::vector<Complex>> rest_;
+  std::vector<double> cpu_seconds_;
+};
+
+FastDirect::FastDirect(const TMatrixSystem& system, double tolerance, double memory)
+    : unknowns_(system.unknowns()) {
+  assert(tolerance > 0 && tolerance < 1);
+  blas_single_thread();
+  const Stopwatch watch;
+  Builder(system, tolerance, memory).build(*this);
+  statistics_.wall_seconds = watch.seconds();
+}
+
+void FastDirect::solve(std::span<Complex> x) const {
+  if (unknowns_ == 0) return;
+  constexpr std::size_t most = 64;  // columns that are solved at once
+  for (std::size_t first = 0; first < x.size(); first += most * unknowns_) {
+    const auto part = x.subspan(first, std::min(most * unknowns_, x.size() - first));
+    const std::size_t columns = part.size() / unknowns_;
+    std::vector<Complex> turned(part.size());  // [unknown][column]
+    for_each_tiled(unknowns_, columns, [&](std::size_t i, std::size_t column) {
+      turned[i * columns + column] = part[column * unknowns_ + i];
+    });
+    for (const auto& level : levels_)
+      parallel_for(level.size(), [&](std::size_t i) { level[i].forward(turned.data(), columns); });
+    solve_root(turned, columns);
+    for (auto level = levels_.rbegin(); level != levels_.rend(); ++level)
+      parallel_for(level->size(),
+                   [&](std::size_t i) { (*level)[i].backward(turned.data(), columns); });
+    for_each_tiled(unknowns_, columns, [&](std::size_t i, std::size_t column) {
+      part[column * unknowns_ + i] = turned[i * columns + column];
+    });
+  }
+}
+
+void FastDirect::solve_root(std::vector<Complex>& x, std::size_t columns) const {
+  const std::size_t n = root_unknowns_.size();
+  std::vector<Complex> part(n * columns);
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t column = 0; column < columns; ++column)
+      part[i + n * column] = x[root_unknowns_[i] * columns + column];
+  solve_forward(root_.data(), n, n, part.data(), columns, n);
+  solve_backward(root_.data(), n, n, part.data(), columns, n);
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t column = 0; column < columns; ++column)
+      x[root_unknowns_[i] * columns + column] = part[i + n * column];
+}
+
+}  // namespace flatspeckle::wave

@@ -1,0 +1,135 @@
+#include "wave_solver/solutions/boundary_residual.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "wave_solver/equations/neighbours.h"
+#include "wave_solver/solutions/interior_field.h"
+#include "wave_solver/solutions/wave_solution.h"
+
+namespace flatspeckle::wave {
+
+namespace {
+
+using Kind = Scatterer::Kind;
+
+// A disk and what comes closest to it.
+struct Rim {
+  std::size_t disk = 0;
+  double gap = 0;
+  double angle = 0;  // towards the neighbour
+};
+
+std::vector<Rim> narrowest(const Placement& placement) {
+  constexpr std::size_t most = 16;
+  const auto neighbours = nearest_neighbours(placement);
+  std::vector<Rim> rims;
+  for (std::size_t j = 0; j < placement.size(); ++j) {
+    if (!placement[j].scatterer.is_disk()) continue;
+    const auto& other = placement[neighbours[j].scatterer];
+    rims.push_back(
+        {j, neighbours[j].distance - placement[j].scatterer.radius - other.scatterer.disk_radius(),
+         angle_of(other.position - placement[j].position)});
+  }
+  std::stable_sort(rims.begin(), rims.end(),
+                   [](const Rim& a, const Rim& b) { return a.gap < b.gap; });
+  rims.resize(std::min(rims.size(), most));
+  return rims;
+}
+
+// A field and its derivative along r, divided by k.
+struct Trace {
+  Complex field, slope;
+};
+
+// Scattered field and slope of all lights at points on a rim: [light][point].
+std::vector<Trace> scattered_traces(const WaveSolution& solution, std::span<const Vec2> points,
+                                    std::span<const Vec2> normals) {
+  const TMatrixSystem& system = solution.system();
+  const std::size_t lights = solution.light_angles().size(), count = points.size();
+  std::vector<Trace> traces(lights * count);
+  for (std::size_t j = 0; j < system.placement().size(); ++j) {
+    const ModeSet sender = system.modes(j);
+    std::vector<Complex> values(count * sender.modes.size()), derivatives(values.size());
+    field_at(system.k(), points, sender, {values.data(), count});
+    slopes(system.k(), points, normals, sender, {derivatives.data(), count});
+    for (std::size_t light = 0; light < lights; ++light) {
+      const auto beta = solution.coefficients(light).subspan(system.first(j));
+      for (std::size_t n = 0; n < sender.modes.size(); ++n)
+        for (std::size_t i = 0; i < count; ++i) {
+          traces[light * count + i].field += beta[n] * values[n * count + i];
+          traces[light * count + i].slope += beta[n] * derivatives[n * count + i];
+        }
+    }
+  }
+  return traces;
+}
+
+Trace incident(double k, double light_angle, Vec2 point, Vec2 normal) {
+  const Vec2 w = direction(light_angle);
+  const Complex wave = std::polar(1.0, k * dot(w, point));
+  return {wave, Complex(0, dot(w, normal)) * wave};
+}
+
+Trace total_inside(std::span<const Complex> beta, const ModeSet& modes,
+                   const std::vector<RimWave>& waves, double angle) {
+  Trace total{0, 0};
+  for (std::size_t i = 0; i < modes.modes.size(); ++i) {
+    const int n = modes.modes[i].order;
+    const double turn = modes.modes[i].odd ? std::sin(n * angle) : std::cos(n * angle);
+    const Complex factor = beta[i] * (n == 0 ? 1 : std::numbers::sqrt2) * turn;
+    total.field += factor * Complex(waves[n].field);
+    total.slope += factor * Complex(waves[n].slope);
+  }
+  return total;
+}
+
+double mismatch(Kind kind, const Trace& outside, const Trace& inside) {
+  if (kind == Kind::soft) return std::abs(outside.field);
+  if (kind == Kind::hard) return std::abs(outside.slope);
+  return std::max(std::abs(outside.field - inside.field), std::abs(outside.slope - inside.slope));
+}
+
+double residual_on(const WaveSolution& solution, const Rim& rim) {
+  const TMatrixSystem& system = solution.system();
+  const auto& [position, scatterer] = system.placement()[rim.disk];
+  const bool penetrable = scatterer.kind == Kind::tm || scatterer.kind == Kind::te;
+  if (penetrable && is_transparent(system, rim.disk)) return 0;
+  const auto inside_waves = penetrable ? rim_waves(system, rim.disk) : std::vector<RimWave>{};
+  const int count = 2 * std::min(system.order(rim.disk), 24) + 8;
+  std::vector<double> angles;
+  std::vector<Vec2> normals, points;
+  for (int i = 0; i < count; ++i) {
+    angles.push_back(rim.angle + 2 * std::numbers::pi * i / count);
+    normals.push_back(direction(angles.back()));
+    points.push_back(position + scatterer.radius * normals.back());
+  }
+  const auto scattered = scattered_traces(solution, points, normals);
+  double worst = 0;
+  for (std::size_t light = 0; light < solution.light_angles().size(); ++light) {
+    const auto beta = solution.coefficients(light).subspan(system.first(rim.disk));
+    for (int i = 0; i < count; ++i) {
+      Trace outside = incident(system.k(), solution.light_angles()[light], points[i], normals[i]);
+      outside.field += scattered[light * count + i].field;
+      outside.slope += scattered[light * count + i].slope;
+      const Trace inside = penetrable
+                               ? total_inside(beta, system.modes(rim.disk), inside_waves, angles[i])
+                               : Trace{};
+      worst = std::max(worst, mismatch(scatterer.kind, outside, inside));
+    }
+  }
+  return worst;
+}
+
+}  // namespace
+
+double boundary_residual(const WaveSolution& solution) {
+  double worst = 0;
+  for (const Rim& rim : narrowest(solution.system().placement()))
+    worst = std::max(worst, residual_on(solution, rim));
+  return worst;
+}
+
+}  // namespace flatspeckle::wave

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/numbers/complex.h"
+#include "wave_solver/equations/t_matrix_system.h"
+
+namespace flatspeckle::wave {
+
+class DenseFactor;
+class FastDirect;
+class FastProduct;
+
+/// How the equations are solved: `dense` by a factored matrix, `fast` by recursive skeletonization,
+/// refined with the fast product, `krylov` by GMRES with that product alone (weak scattering).
+enum class Method { automatic, dense, fast, krylov };
+
+/// What `automatic` means. The fast method is quicker from about 1000 unknowns on; the dense one
+/// leaves residuals of rounding and tells the condition, and is kept for longer where that is
+/// asked.
+Method method_for(std::size_t unknowns, double tolerance);
+
+/// M beta = r, factored once for many right sides.
+class EquationSolver {
+ public:
+  /// Keeps a reference to the system. tolerance: asked of the residual of fast and krylov, from
+  /// 1e-12 on; dense leaves that of rounding. Throws InputError where memory does not suffice.
+  EquationSolver(const TMatrixSystem& system, Method method, double tolerance);
+  ~EquationSolver();
+
+  /// sides: [column][unknown]. Throws std::runtime_error where no finite solution is found, or a
+  /// residual stays more than a hundred times above the tolerance.
+  std::vector<Complex> solve(const std::vector<Complex>& sides);
+
+  /// M x, by the matrix-free product that belongs to the method.
+  std::vector<Complex> product(const std::vector<Complex>& x) const;
+  /// In the 1-norm, an estimate; -1 for methods that do not tell. After a solve.
+  double condition() const;
+  /// What was done, in words.
+  const std::string& description() const { return description_; }
+
+ private:
+  std::vector<Complex> iterate(const std::vector<Complex>& sides);
+
+  const TMatrixSystem& system_;
+  double tolerance_;
+  std::unique_ptr<DenseFactor> dense_;
+  std::unique_ptr<FastDirect> fast_;
+  std::unique_ptr<FastProduct> product_;
+  std::string description_;
+};
+
+}  // namespace flatspeckle::wave

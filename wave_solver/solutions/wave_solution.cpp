@@ -1,0 +1,192 @@
+#include "wave_solver/solutions/wave_solution.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <utility>
+
+#include "wave_solver/dense/blas.h"
+#include "wave_solver/solutions/boundary_residual.h"
+
+namespace flatspeckle::wave {
+
+namespace {
+
+void require_finite(std::span<const Complex> values) {
+  for (const Complex& value : values)
+    if (!std::isfinite(value.real()) || !std::isfinite(value.imag()))
+      throw std::runtime_error("the multiple-scattering equations have no finite solution");
+}
+
+// Rows of the scaled equations times sigma are those of the unscaled ones.
+double unscaled_residual(const TMatrixSystem& system, std::span<const Complex> sides,
+                         std::span<const Complex> product) {
+  double left = 0, given = 0;
+  for (std::size_t i = 0; i < product.size(); ++i) {
+    const std::size_t unknown = i % system.unknowns(), j = system.scatterer_of(unknown);
+    const int n = system.modes(j).modes[unknown - system.first(j)].order;
+    const auto weight = static_cast<double>(std::abs(system.t_matrix(j)[n]));
+    left += weight * std::norm(sides[i] - product[i]);
+    given += weight * std::norm(sides[i]);
+  }
+  return given > 0 ? std::sqrt(left / given) : 0;
+}
+
+// a^T b of matrices with n rows, columns by columns: [column of b][column of a].
+std::vector<Complex> transposed_product(const std::vector<Complex>& a, const Complex* b,
+                                        std::size_t columns_b, std::size_t n) {
+  if (n == 0) return {};
+  const auto columns_a = static_cast<blasint>(a.size() / n),
+             columns = static_cast<blasint>(columns_b), rows = static_cast<blasint>(n);
+  std::vector<Complex> result(columns_b * (a.size() / n));
+  if (result.empty()) return result;
+  const Complex one = 1, zero = 0;
+  cblas_zgemm(CblasColMajor, CblasTrans, CblasNoTrans, columns_a, columns, rows, &one, a.data(),
+              rows, b, rows, &zero, result.data(), columns_a);
+  return result;
+}
+
+// Columns of the basis, n long, to those of all lights.
+std::vector<Complex> expanded(const LightBasis& basis, std::vector<Complex> columns,
+                              std::size_t n) {
+  if (basis.weights.empty() || n == 0) return columns;
+  const auto rank = static_cast<blasint>(basis.size()), rows = static_cast<blasint>(n),
+             lights = static_cast<blasint>(basis.count());
+  std::vector<Complex> all(n * basis.count());
+  const Complex one = 1, zero = 0;
+  cblas_zgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, rows, lights, rank, &one, columns.data(),
+              rows, basis.weights.data(), rank, &zero, all.data(), rows);
+  return all;
+}
+
+std::vector<Complex> transposed(const std::vector<Complex>& matrix, std::size_t rows) {
+  std::vector<Complex> result(matrix.size());
+  const std::size_t columns = rows > 0 ? matrix.size() / rows : 0;
+  for (std::size_t i = 0; i < rows; ++i)
+    for (std::size_t j = 0; j < columns; ++j) result[i * columns + j] = matrix[j * rows + i];
+  return result;
+}
+
+// What each unknown adds in each view: [view][unknown].
+std::vector<Complex> view_rows(const TMatrixSystem& system, std::span<const View> views) {
+  std::vector<Complex> rows;
+  rows.reserve(views.size() * system.unknowns());
+  for (const View& view : views) {
+    const auto row = view.near ? system.near_row(view.point) : system.far_row(view.angle);
+    rows.insert(rows.end(), row.begin(), row.end());
+  }
+  return rows;
+}
+
+// Of the waves and sources of a basis: [basis][unknown].
+std::vector<Complex> right_sides(const TMatrixSystem& system, const LightBasis& basis) {
+  auto sides = system.right_sides(basis.angles);
+  for (const Vec2& source : basis.sources) {
+    const auto side = system.source_side(source);
+    sides.insert(sides.end(), side.begin(), side.end());
+  }
+  return sides;
+}
+
+std::vector<View> far_views(const std::vector<double>& angles) {
+  std::vector<View> views;
+  for (double angle : angles) views.push_back(far_view(angle));
+  return views;
+}
+
+bool all_far(const std::vector<View>& views) {
+  return std::none_of(views.begin(), views.end(), [](const View& view) { return view.near; });
+}
+
+}  // namespace
+
+WaveSolution::WaveSolution(TMatrixSystem system, std::vector<double> light_angles,
+                           std::vector<Complex> coefficients)
+    : system_(std::move(system)),
+      light_angles_(std::move(light_angles)),
+      coefficients_(std::move(coefficients)) {
+  require_finite(coefficients_);
+}
+
+std::vector<int> WaveSolution::basis_order() const {
+  std::vector<int> orders(system_.placement().size());
+  for (std::size_t j = 0; j < orders.size(); ++j) orders[j] = system_.order(j);
+  return orders;
+}
+
+std::span<const Complex> WaveSolution::coefficients(std::size_t light) const {
+  return std::span(coefficients_).subspan(light * system_.unknowns(), system_.unknowns());
+}
+
+Complex WaveSolution::far_field(double view_angle, std::size_t light) const {
+  return fields(std::vector{far_view(view_angle)})[light];
+}
+
+Complex WaveSolution::near_field(Vec2 point, std::size_t light) const {
+  return fields(std::vector{near_sensor(point)})[light];
+}
+
+std::vector<Complex> WaveSolution::fields(std::span<const View> views) const {
+  if (system_.unknowns() == 0) return std::vector<Complex>(light_angles_.size() * views.size());
+  auto fields = transposed_product(view_rows(system_, views), coefficients_.data(),
+                                   light_angles_.size(), system_.unknowns());
+  require_finite(fields);
+  return fields;
+}
+
+WaveSolution solve(const Placement& placement, double k, const std::vector<double>& light_angles,
+                   const SolveOptions& options) {
+  check_no_overlap(placement);
+  TMatrixSystem system(placement, k, options.tolerance, options.sensors);
+  const auto basis = light_basis(light_angles, k, enclosing_circle(placement), options.tolerance);
+  EquationSolver solver(system, options.method, options.tolerance);
+  const auto sides = system.right_sides(basis.angles);
+  auto x = solver.solve(sides);
+  Diagnosis diagnosis;
+  if (options.diagnose)
+    diagnosis = {unscaled_residual(system, sides, solver.product(x)), solver.condition(), -1};
+  x = expanded(basis, std::move(x), system.unknowns());
+  WaveSolution solution(std::move(system), light_angles, std::move(x));
+  if (options.diagnose) diagnosis.boundary_residual = boundary_residual(solution);
+  solution.diagnosis_ = diagnosis;
+  solution.method_ = solver.description();
+  return solution;
+}
+
+FieldPlan make_field_plan(const Lights& lights, std::vector<View> views, double k,
+                          const Circle& circle, double tolerance) {
+  FieldPlan plan{basis_of(lights, k, circle, tolerance), {}, std::move(views)};
+  if (all_far(plan.views)) {
+    std::vector<double> angles;
+    for (const View& view : plan.views) angles.push_back(view.angle + std::numbers::pi);
+    plan.far_views = light_basis(angles, k, circle, tolerance);  // of the lights from there
+    for (double& angle : plan.far_views.angles) angle -= std::numbers::pi;
+  }
+  return plan;
+}
+
+// With R the rows of the views and L the right sides of the lights, R^T M^-1 L either way round.
+std::vector<Complex> scattered_fields(const Placement& placement, double k, const FieldPlan& plan,
+                                      const SolveOptions& options) {
+  const TMatrixSystem system(placement, k, options.tolerance, options.sensors);
+  const std::size_t n = system.unknowns();
+  const bool compressed = !plan.far_views.weights.empty();
+  const auto views = compressed ? far_views(plan.far_views.angles) : plan.views;
+  const auto rows = view_rows(system, views), sides = right_sides(system, plan.lights);
+  const std::size_t lights = plan.lights.size();
+  if (n == 0) return std::vector<Complex>(plan.views.size() * plan.lights.count());
+  EquationSolver solver(system, options.method, options.tolerance);
+  auto fields = views.size() < lights
+                    ? transposed_product(solver.solve(rows), sides.data(), lights, n)
+                    : transposed_product(rows, solver.solve(sides).data(), lights, n);
+  fields = expanded(plan.lights, std::move(fields), views.size());  // [light][basis view]
+  if (compressed)
+    fields =
+        transposed(expanded(plan.far_views, transposed(fields, views.size()), plan.lights.count()),
+                   plan.lights.count());
+  require_finite(fields);
+  return fields;
+}
+
+}  // namespace flatspeckle::wave

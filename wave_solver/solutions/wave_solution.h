@@ -1,0 +1,84 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "flatland/request/sensor.h"
+#include "wave_solver/equations/t_matrix_system.h"
+#include "wave_solver/solutions/equation_solver.h"
+#include "wave_solver/solutions/light_basis.h"
+
+namespace flatspeckle::wave {
+
+struct SolveOptions {
+  /// Relative accuracy asked of far fields, and of near fields at `sensors`; sets the basis orders.
+  double tolerance = 1e-12;
+  std::vector<Vec2> sensors;
+  /// Also estimate residual, condition and boundary residual: about the cost of a second assembly.
+  bool diagnose = true;
+  Method method = Method::automatic;
+};
+
+/// How far a solution can be trusted; NaN-free, -1 where it was not asked for.
+struct Diagnosis {
+  double residual = -1;           ///< ||b - T(a + S b)|| / ||T a||, over all lights (C10)
+  double condition = -1;          ///< of the scaled matrix, in the 1-norm (an estimate)
+  double boundary_residual = -1;  ///< see boundary_residual.h
+};
+
+/// The exact scattered field of one placement under unit plane waves. Light and view angles in
+/// radians (C2), positions in the placement's unit.
+class WaveSolution {
+ public:
+  /// coefficients: beta of TMatrixSystem, [light][unknown].
+  WaveSolution(TMatrixSystem system, std::vector<double> light_angles,
+               std::vector<Complex> coefficients);
+
+  const TMatrixSystem& system() const { return system_; }
+  const std::vector<double>& light_angles() const { return light_angles_; }
+  std::vector<int> basis_order() const;
+  const Diagnosis& diagnosis() const { return diagnosis_; }
+  /// How the equations were solved, in words.
+  const std::string& method() const { return method_; }
+  /// beta of a light: [unknown].
+  std::span<const Complex> coefficients(std::size_t light) const;
+
+  /// Far-field amplitude A of the whole placement (C4), phase origin r = 0.
+  Complex far_field(double view_angle, std::size_t light = 0) const;
+  /// Scattered field, without the incident one. Throws InputError for a point inside a scatterer.
+  Complex near_field(Vec2 point, std::size_t light = 0) const;
+  /// Either, for all lights: [light][view].
+  std::vector<Complex> fields(std::span<const View> views) const;
+
+ private:
+  friend WaveSolution solve(const Placement&, double, const std::vector<double>&,
+                            const SolveOptions&);
+
+  TMatrixSystem system_;
+  std::vector<double> light_angles_;
+  std::vector<Complex> coefficients_;
+  std::string method_;
+  Diagnosis diagnosis_;
+};
+
+/// Throws InputError for overlapping scatterers, disks too close to resolve, or too little memory;
+/// std::runtime_error where no finite solution is found.
+WaveSolution solve(const Placement& placement, double k, const std::vector<double>& light_angles,
+                   const SolveOptions& options = {});
+
+/// What lights and views need of a placement within a circle, found once for a whole ensemble: the
+/// few of many lights, or of many far views, that stand for all (light_basis.h).
+struct FieldPlan {
+  LightBasis lights, far_views;
+  std::vector<View> views;
+};
+FieldPlan make_field_plan(const Lights& lights, std::vector<View> views, double k,
+                          const Circle& circle, double tolerance);
+
+/// Fields of a placement, [light][view], without diagnosis; by reciprocity the equations are solved
+/// for the fewer of lights and views.
+std::vector<Complex> scattered_fields(const Placement& placement, double k, const FieldPlan& plan,
+                                      const SolveOptions& options);
+
+}  // namespace flatspeckle::wave

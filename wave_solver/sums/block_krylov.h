@@ -1,0 +1,75 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "core/numbers/complex.h"
+
+namespace flatspeckle::wave {
+
+/// A matrix, column by column.
+struct ColumnMajor {
+  ColumnMajor(std::size_t r, std::size_t c) : rows(r), columns(c), data(r * c) {}
+  std::size_t rows, columns;
+  std::vector<Complex> data;
+  Complex& operator()(std::size_t i, std::size_t j) { return data[i + rows * j]; }
+  Complex* column(std::size_t j) { return data.data() + rows * j; }
+};
+
+ColumnMajor product(const ColumnMajor& a, const ColumnMajor& b);
+
+/// 2-norms of columns of the given length.
+std::vector<double> column_norms(std::span<const Complex> columns, std::size_t rows);
+
+/// w = q s with orthonormal columns q, which replace w; directions below `drop` are left out.
+ColumnMajor orthonormalize(ColumnMajor& w, double drop);
+
+/// Orthonormal vectors that span a Krylov space, all blocks side by side.
+class KrylovBasis {
+ public:
+  explicit KrylovBasis(std::size_t rows) : rows_(rows) {}
+  std::size_t size() const { return data_.size() / rows_; }
+
+  void append(const ColumnMajor& block);
+  /// The last `count` vectors.
+  std::span<const Complex> last(std::size_t count) const;
+  /// Takes the part of w within the span out of it; returns its coefficients. The result does not
+  /// depend on the number of threads.
+  ColumnMajor project_out(ColumnMajor& w) const;
+  /// Combination of the first y.rows vectors.
+  ColumnMajor combine(const ColumnMajor& y) const;
+
+ private:
+  std::size_t rows_;
+  std::vector<Complex> data_;
+};
+
+/// The least-squares problem min ||g - H y|| with H block upper Hessenberg, kept triangular by one
+/// small Householder factorization a block column.
+class HessenbergLeastSquares {
+ public:
+  explicit HessenbergLeastSquares(ColumnMajor g) : g_(std::move(g)) {}
+
+  /// h: all of the next block column, the last `below` rows under its diagonal block.
+  void append(ColumnMajor h, std::size_t below);
+  /// What no y reaches, of each column of g.
+  std::vector<double> residuals();
+  /// Not finite where H is singular.
+  ColumnMajor solution();
+
+ private:
+  struct Reflection {
+    std::size_t top;
+    ColumnMajor factor;
+    std::vector<Complex> tau;
+  };
+  static void reflect(const Reflection& step, ColumnMajor& target);
+  void grow(std::size_t rows);
+
+  ColumnMajor g_;
+  std::vector<std::vector<Complex>> columns_;  // of the triangle
+  std::vector<Reflection> steps_;
+};
+
+}  // namespace flatspeckle::wave

@@ -1,0 +1,74 @@
+#include "wave_solver/sums/fourier.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fftw3.h>
+#include <mutex>
+
+namespace flatspeckle::wave {
+
+namespace {
+
+// Only execution is thread-safe in FFTW.
+std::mutex& planning() {
+  static std::mutex mutex;
+  return mutex;
+}
+
+fftw_complex* native(Complex* values) {
+  return reinterpret_cast<fftw_complex*>(values);
+}
+
+}  // namespace
+
+struct LineTransform::Plan {
+  explicit Plan(fftw_plan made) : plan(made) {}
+  Plan(const Plan&) = delete;
+  Plan& operator=(const Plan&) = delete;
+  ~Plan() {
+    const std::lock_guard lock(planning());
+    fftw_destroy_plan(plan);
+  }
+  fftw_plan plan;
+};
+
+// All lines begin at multiples of 16 bytes, as this one does; more FFTW does not ask.
+LineTransform::LineTransform(std::size_t size, Direction direction) {
+  std::vector<Complex> line(size);
+  const std::lock_guard lock(planning());
+  plan_ = std::make_shared<Plan>(fftw_plan_dft_1d(
+      static_cast<int>(size), native(line.data()), native(line.data()),
+      direction == Direction::forward ? FFTW_FORWARD : FFTW_BACKWARD, FFTW_ESTIMATE));
+}
+
+void LineTransform::operator()(Complex* line) const {
+  fftw_execute_dft(plan_->plan, native(line), native(line));
+}
+
+void transform_even(std::vector<Complex>& values, std::size_t rows, std::size_t columns) {
+  const int sizes[] = {static_cast<int>(rows / 2 + 1), static_cast<int>(columns / 2 + 1)};
+  const fftw_r2r_kind kinds[] = {FFTW_REDFT00, FFTW_REDFT00};
+  auto* data = reinterpret_cast<double*>(values.data());
+  fftw_plan plan;
+  {
+    const std::lock_guard lock(planning());
+    plan = fftw_plan_many_r2r(2, sizes, 2, data, nullptr, 2, 1, data, nullptr, 2, 1, kinds,
+                              FFTW_ESTIMATE);
+  }
+  fftw_execute(plan);
+  const std::lock_guard lock(planning());
+  fftw_destroy_plan(plan);
+}
+
+std::size_t transform_size(double least) {
+  const auto smooth = [](std::size_t n) {
+    for (const std::size_t prime : {2, 3, 5})
+      while (n % prime == 0) n /= prime;
+    return n == 1;
+  };
+  auto size = 2 * static_cast<std::size_t>(std::max(std::ceil(least / 2), 1.0));
+  while (!smooth(size)) size += 2;
+  return size;
+}
+
+}  // namespace flatspeckle::wave

@@ -1,0 +1,240 @@
+#include "wave_solver/sums/grid_sum.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/run/parallel.h"
+
+namespace flatspeckle::wave {
+
+namespace {
+
+using Direction = LineTransform::Direction;
+
+constexpr int least_width = 4, largest_width = 24;
+constexpr std::size_t slab_rows = 32, together = 8;
+static_assert(slab_rows >= largest_width);
+
+// 1 up to `reach`, falling smoothly to 0 at half the period: at multiples of the step.
+std::vector<double> window(const GridShape::Axis& axis, double step, double beta) {
+  const Quadrature rule = double_exponential_rule(beta);
+  const double middle = (static_cast<double>(axis.size) * step / 2 + axis.reach) / 2;
+  const double half = middle - axis.reach;
+  const auto integral_from = [&](double t) {
+    double sum = 0;
+    for (std::size_t i = 0; i < rule.nodes.size(); ++i)
+      sum += rule.weights[i] * bump(beta, (1 + t) / 2 + (1 - t) / 2 * rule.nodes[i]);
+    return (1 - t) / 2 * sum;
+  };
+  const double whole = integral_from(-1);
+  std::vector<double> values(axis.size / 2 + 1);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const double t = (static_cast<double>(i) * step - middle) / half;
+    values[i] = t <= -1 ? 1 : t >= 1 ? 0 : integral_from(t) / whole;
+  }
+  return values;
+}
+
+// Transform of the spreading kernel at the frequencies of an axis up to half a period.
+std::vector<double> kernel_transform(const GridShape& shape, std::size_t size) {
+  const double half_width = shape.width / 2.0;
+  const Quadrature rule = double_exponential_rule(shape.beta + std::numbers::pi * half_width);
+  std::vector<double> values(size / 2 + 1);
+  for (std::size_t m = 0; m < values.size(); ++m) {
+    const double phase =
+        2 * std::numbers::pi * static_cast<double>(m) / static_cast<double>(size) * half_width;
+    for (std::size_t i = 0; i < rule.nodes.size(); ++i)
+      values[m] += half_width * rule.weights[i] * bump(shape.beta, rule.nodes[i]) *
+                   std::cos(phase * rule.nodes[i]);
+  }
+  return values;
+}
+
+GridShape::Axis axis(double low, double high, double step, int width, double range, double margin) {
+  const double reach = std::max(high - low, 2 * range);
+  return {.low = low - width * step / 2,
+          .reach = reach,
+          .size = transform_size(2 * (reach + margin) / step),
+          .used = static_cast<std::size_t>((high - low) / step) + width + 1};
+}
+
+}  // namespace
+
+// The kernel resolves frequencies up to `resolved` to the full accuracy: those near k, which carry
+// almost everything. From there to the edge of the band it loses digits no faster than far itself
+// falls off, so that little more than the band's own grid is enough.
+GridShape::GridShape(double k, double range, double tolerance, const Extent& box) {
+  const double exponent = bump_exponent(tolerance), band = KernelSplit::band(k, range, tolerance);
+  constexpr double oversampling = 1.2;
+  const double resolved = std::max(0.8 * band, (k + band) / 2);
+  step = std::numbers::pi / (oversampling * band);
+  const double kept = resolved / (oversampling * band);
+  const int needed =
+      static_cast<int>(std::ceil(exponent / (std::numbers::pi * std::sqrt(1 - kept))));
+  width = std::clamp(needed + needed % 2, least_width, largest_width);
+  beta = std::numbers::pi * width * (1 - kept / 2);
+  const double margin = 2 * exponent / (band - k);
+  x = axis(box.low.x, box.high.x, step, width, range, margin);
+  z = axis(box.low.z, box.high.z, step, width, range, margin);
+}
+
+GridSum::GridSum(const KernelSplit& split, const GridShape& shape, double tolerance,
+                 std::span<const Vec2> sources, std::span<const Vec2> targets)
+    : shape_(shape),
+      sources_(footprints(sources)),
+      targets_(footprints(targets)),
+      along_z_(shape.z.size, Direction::forward),
+      along_x_(shape.x.size, Direction::forward),
+      back_along_z_(shape.z.size, Direction::backward),
+      back_along_x_(shape.x.size, Direction::backward) {
+  sort_into_slabs();
+  make_multiplier(split, tolerance);
+}
+
+GridSum::Footprints GridSum::footprints(std::span<const Vec2> points) const {
+  Footprints made;
+  const int width = shape_.width;
+  made.row.resize(points.size());
+  made.column.resize(points.size());
+  made.row_weights.resize(points.size() * width);
+  made.column_weights.resize(points.size() * width);
+  const auto touch = [&](double position, std::uint32_t& line, double* weights) {
+    line = static_cast<std::uint32_t>(std::max(position - width / 2.0 + 1, 0.0));
+    for (int i = 0; i < width; ++i)
+      weights[i] = bump(shape_.beta, (line + i - position) / (width / 2.0));
+  };
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    touch((points[i].x - shape_.x.low) / shape_.step, made.row[i], &made.row_weights[i * width]);
+    touch((points[i].z - shape_.z.low) / shape_.step, made.column[i],
+          &made.column_weights[i * width]);
+  }
+  return made;
+}
+
+void GridSum::sort_into_slabs() {
+  const std::size_t slabs = (shape_.x.used + slab_rows - 1) / slab_rows;
+  slab_first_.assign(slabs + 1, 0);
+  for (const auto row : sources_.row) ++slab_first_[row / slab_rows + 1];
+  for (std::size_t s = 0; s < slabs; ++s) slab_first_[s + 1] += slab_first_[s];
+  std::vector<std::uint32_t> next(slab_first_.begin(), slab_first_.end() - 1);
+  slab_points_.resize(sources_.row.size());
+  for (std::size_t i = 0; i < sources_.row.size(); ++i)
+    slab_points_[next[sources_.row[i] / slab_rows]++] = static_cast<std::uint32_t>(i);
+}
+
+void GridSum::make_multiplier(const KernelSplit& split, double tolerance) {
+  const double beta = bump_exponent(tolerance);
+  const auto window_x = window(shape_.x, shape_.step, beta);
+  const auto window_z = window(shape_.z, shape_.step, beta);
+  const std::size_t rows = window_x.size(), columns = window_z.size();
+  multiplier_.resize(rows * columns);
+  parallel_for(columns, [&](std::size_t m) {
+    std::vector<double> distance(rows);
+    for (std::size_t i = 0; i < rows; ++i)
+      distance[i] = shape_.step * std::hypot(static_cast<double>(i), static_cast<double>(m));
+    const auto line = std::span(multiplier_).subspan(m * rows, rows);
+    split.far(distance, line);
+    for (std::size_t i = 0; i < rows; ++i) line[i] *= window_x[i] * window_z[m];
+  });
+  transform_even(multiplier_, shape_.z.size, shape_.x.size);
+  const auto kernel_x = kernel_transform(shape_, shape_.x.size);
+  const auto kernel_z = kernel_transform(shape_, shape_.z.size);
+  const double norm = 1 / static_cast<double>(shape_.x.size * shape_.z.size);
+  for (std::size_t m = 0; m < columns; ++m)
+    for (std::size_t i = 0; i < rows; ++i) {
+      const double spread_twice = kernel_x[i] * kernel_z[m];
+      multiplier_[m * rows + i] *= norm / (spread_twice * spread_twice);
+    }
+}
+
+// Slab by slab; a line receives its contributions in the order of the points whoever adds them.
+template <int width>
+void GridSum::spread(std::span<const Complex> charges, std::span<Complex> grid) const {
+  parallel_for(slab_first_.size() - 1, is_large(), [&](std::size_t slab) {
+    const std::size_t begin = slab * slab_rows, end = std::min(begin + slab_rows, shape_.x.used);
+    std::fill(&grid[begin * shape_.z.size], &grid[0] + end * shape_.z.size, Complex());
+    for (std::uint32_t p = slab_first_[slab == 0 ? 0 : slab - 1]; p < slab_first_[slab + 1]; ++p) {
+      const std::size_t i = slab_points_[p], row = sources_.row[i];
+      const double* weights = &sources_.column_weights[i * width];
+      for (std::size_t r = std::max(row, begin); r < std::min(row + width, end); ++r) {
+        const Complex charge = charges[i] * sources_.row_weights[i * width + (r - row)];
+        auto* line = reinterpret_cast<double*>(&grid[r * shape_.z.size + sources_.column[i]]);
+        for (int m = 0; m < width; ++m) {
+          line[2 * m] += weights[m] * charge.real();
+          line[2 * m + 1] += weights[m] * charge.imag();
+        }
+      }
+    }
+  });
+}
+
+template <int width>
+void GridSum::read(std::span<const Complex> grid, std::span<Complex> sums) const {
+  constexpr std::size_t chunk = 1024;
+  parallel_for((sums.size() + chunk - 1) / chunk, is_large(), [&](std::size_t c) {
+    for (std::size_t i = c * chunk; i < std::min((c + 1) * chunk, sums.size()); ++i) {
+      double lines[2 * width] = {};
+      for (int r = 0; r < width; ++r) {
+        const double weight = targets_.row_weights[i * width + r];
+        const auto* line = reinterpret_cast<const double*>(
+            &grid[(targets_.row[i] + r) * shape_.z.size + targets_.column[i]]);
+        for (int m = 0; m < 2 * width; ++m) lines[m] += weight * line[m];
+      }
+      Complex sum = 0;
+      for (int m = 0; m < width; ++m)
+        sum += targets_.column_weights[i * width + m] * Complex(lines[2 * m], lines[2 * m + 1]);
+      sums[i] += sum;
+    }
+  });
+}
+
+void GridSum::convolve(std::span<Complex> grid) const {
+  const std::size_t row = shape_.z.size;
+  parallel_for(shape_.x.used, is_large(), [&](std::size_t i) { along_z_(&grid[i * row]); });
+  parallel_for((row + together - 1) / together, is_large(), [&](std::size_t block) {
+    const std::size_t first = block * together;
+    convolve_columns(grid, first, std::min(together, row - first));
+  });
+  parallel_for(shape_.x.used, is_large(), [&](std::size_t i) { back_along_z_(&grid[i * row]); });
+}
+
+void GridSum::convolve_columns(std::span<Complex> grid, std::size_t first,
+                               std::size_t count) const {
+  const std::size_t size = shape_.x.size, half = size / 2, row = shape_.z.size;
+  std::vector<Complex> lines(count * size);
+  for (std::size_t i = 0; i < shape_.x.used; ++i)
+    for (std::size_t c = 0; c < count; ++c) lines[c * size + i] = grid[i * row + first + c];
+  for (std::size_t c = 0; c < count; ++c) {
+    Complex* line = &lines[c * size];
+    const std::size_t m = first + c;
+    const Complex* factor = &multiplier_[std::min(m, row - m) * (half + 1)];
+    along_x_(line);
+    for (std::size_t i = 0; i <= half; ++i) line[i] = product(line[i], factor[i]);
+    for (std::size_t i = half + 1; i < size; ++i) line[i] = product(line[i], factor[size - i]);
+    back_along_x_(line);
+  }
+  for (std::size_t i = 0; i < shape_.x.used; ++i)
+    for (std::size_t c = 0; c < count; ++c) grid[i * row + first + c] = lines[c * size + i];
+}
+
+template <int width>
+void GridSum::add_columns(std::span<const Complex> charges, std::span<Complex> sums) const {
+  if constexpr (width < largest_width) {
+    if (shape_.width > width) return add_columns<width + 2>(charges, sums);
+  }
+  const std::size_t from = sources_.row.size(), to = targets_.row.size();
+  std::vector<Complex> grid(shape_.x.used * shape_.z.size);
+  for (std::size_t column = 0; column * from < charges.size(); ++column) {
+    spread<width>(charges.subspan(column * from, from), grid);
+    convolve(grid);
+    read<width>(grid, sums.subspan(column * to, to));
+  }
+}
+
+void GridSum::add(std::span<const Complex> charges, std::span<Complex> sums) const {
+  if (sources_.row.empty() || targets_.row.empty()) return;
+  add_columns<least_width>(charges, sums);
+}
+
+}  // namespace flatspeckle::wave

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/numbers/complex.h"
+#include "flatland/media/domain.h"
+#include "wave_solver/sums/fourier.h"
+#include "wave_solver/sums/kernel_split.h"
+
+namespace flatspeckle::wave {
+
+struct Extent {
+  Vec2 low, high;
+};
+
+/// The periodic grid on which the far part of a KernelSplit is summed between points of a
+/// rectangle, and the kernel that carries charges to it.
+struct GridShape {
+  struct Axis {
+    double low;        // coordinate of the first used grid line
+    double reach;      // largest distance between points
+    std::size_t size;  // of one period; lines from `used` on carry nothing
+    std::size_t used;
+  };
+  GridShape(double k, double range, double tolerance, const Extent& box);
+
+  double step;
+  int width;    // of the spreading kernel, in steps; even
+  double beta;  // of its bump
+  Axis x, z;
+};
+
+/// u_i = sum_j far(|x_i - y_j|) q_j, all pairs included: charges are spread onto the grid,
+/// convolved there by FFT and read back. Lines of equal x are rows of the grid. The relative
+/// accuracy is the tolerance down to about 1e-13.
+class GridSum {
+ public:
+  GridSum(const KernelSplit& split, const GridShape& shape, double tolerance,
+          std::span<const Vec2> sources, std::span<const Vec2> targets);
+
+  /// Adds to sums, [column][target], the sums over charges, [column][source]. Threaded unless
+  /// called from a parallel region; the result does not depend on the number of threads.
+  void add(std::span<const Complex> charges, std::span<Complex> sums) const;
+
+ private:
+  // Where points touch the grid: their first line, and the kernel on `width` lines.
+  struct Footprints {
+    std::vector<std::uint32_t> row, column;
+    std::vector<double> row_weights, column_weights;
+  };
+  // Where threads pay: from about a millisecond on.
+  bool is_large() const { return shape_.x.used * shape_.z.size > 50000; }
+  Footprints footprints(std::span<const Vec2> points) const;
+  void sort_into_slabs();
+  void make_multiplier(const KernelSplit& split, double tolerance);
+  template <int width>
+  void spread(std::span<const Complex> charges, std::span<Complex> grid) const;
+  template <int width>
+  void read(std::span<const Complex> grid, std::span<Complex> sums) const;
+  template <int width>
+  void add_columns(std::span<const Complex> charges, std::span<Complex> sums) const;
+  void convolve(std::span<Complex> grid) const;
+  void convolve_columns(std::span<Complex> grid, std::size_t first, std::size_t count) const;
+
+  GridShape shape_;
+  Footprints sources_, targets_;
+  std::vector<std::uint32_t> slab_first_, slab_points_;  // sources by slabs of rows
+  std::vector<Complex> multiplier_;  // [z frequency][x frequency], both up to half a period
+  LineTransform along_z_, along_x_, back_along_z_, back_along_x_;
+};
+
+}  // namespace flatspeckle::wave
