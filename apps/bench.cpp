@@ -6,20 +6,16 @@
 
 #include "apps/bench_log.h"
 #include "apps/bench_output.h"
-#include "apps/run_options.h"
 #include "apps/subcommands.h"
 #include "core/error.h"
-#include "core/result/provenance.h"
-#include "core/result/result_file.h"
 #include "core/run/parallel.h"
-#include "core/run/stopwatch.h"
+#include "core/session/session.h"
 
 namespace flatspeckle::apps {
 
 namespace {
 
 struct BenchKeys {
-  std::string kind;
   bool quick = false;
   RunSettings run;
 };
@@ -152,61 +148,53 @@ Outcome what_plans_leave_out(ResultFile& file, bool quick) {
           rows.size(), static_cast<std::size_t>(failed)};
 }
 
-Outcome run_kind(ResultFile& file, const BenchKeys& keys) {
-  if (keys.kind == "error") return error_against_time(file, keys.quick);
-  if (keys.kind == "stability") return stability(file, keys.quick);
-  return what_plans_leave_out(file, keys.quick);
+using Kind = Outcome (*)(ResultFile&, bool quick);
+
+Kind kind_named(const std::string& word) {
+  if (word == "error") return error_against_time;
+  if (word == "stability") return stability;
+  if (word == "plan") return what_plans_leave_out;
+  throw InputError("bench", word, "must be one of error stability plan");
 }
 
-void add_options(Options& options, BenchKeys& keys) {
-  options.add("kind", keys.kind, "error, stability or plan");
-  options.keep_out_of_scene_file("kind");
-  options.add_flag("--quick", keys.quick, "Only a look: seconds in place of minutes");
-  add_thread_option(options, keys.run);
-  add_output_option(options, keys.run);
-}
-
-void check(const BenchKeys& keys) {
-  if (keys.kind.empty()) throw InputError("bench: must be followed by error, stability or plan");
-  if (keys.kind != "error" && keys.kind != "stability" && keys.kind != "plan")
-    throw InputError("bench", keys.kind, "must be one of error stability plan");
-  if (keys.run.out.empty())
-    throw InputError("out is not given: name the result file (--out FILE.h5)");
-  check_result_path(keys.run.out);
-}
-
-void write_bench_provenance(ResultFile& file, const CommandLine& command_line,
-                            const BenchKeys& keys, const std::string& started,
-                            const Outcome& outcome, const Stopwatch& clock) {
-  Provenance provenance{command_line.text, command_line.config,  seed_of(keys.run),
-                        outcome.plan,      threads_of(keys.run), started};
-  provenance.wall_s = clock.seconds();
-  provenance.cpu_s = process_cpu_seconds();
-  provenance.samples = static_cast<double>(outcome.count);
-  provenance.converged = outcome.failed == 0;
-  write_provenance(file, provenance);
+void add_keys(Keys& keys, BenchKeys& values) {
+  keys.group("Benchmark");
+  keys.add("quick", values.quick, "Only a look: seconds in place of minutes");
+  add_thread_key(keys, values.run);
+  add_output_key(keys, values.run);
 }
 
 }  // namespace
 
 int bench(const Arguments& arguments) {
-  const Stopwatch clock;
-  const std::string started = utc_now();
-  BenchKeys keys;
-  Subcommand command("bench",
-                     "What accuracy costs (error), where it breaks (stability), and what leaving "
-                     "things out saves (plan)");
-  add_options(command.options(), keys);
-  if (!command.parse(arguments)) return ExitStatus::done;
-  check(keys);
-  omp_set_num_threads(threads_of(keys.run));
-  ResultFile file(keys.run.out);
-  const Outcome outcome = run_kind(file, keys);
-  write_bench_provenance(file, command.command_line(), keys, started, outcome, clock);
-  file.commit();
-  std::printf("%zu %s, %zu failed, %.0f s\nwrote %s\n", outcome.count, outcome.parts.c_str(),
-              outcome.failed, clock.seconds(), keys.run.out.c_str());
-  return outcome.failed == 0 ? ExitStatus::done : ExitStatus::row_failed;
+  BenchKeys values;
+  Subcommand command(
+      "bench",
+      "What accuracy costs (bench error), where it breaks (bench stability), and what "
+      "leaving things out saves (bench plan)");
+  Keys& keys = command.keys();
+  add_keys(keys, values);
+  Arguments flags = arguments;
+  std::string word;
+  if (flags.size() > 2 && !flags[2].starts_with('-')) {
+    word = flags[2];
+    flags.erase(flags.begin() + 2);
+  }
+  if (!command.parse(flags)) return ExitStatus::done;
+  if (word.empty()) throw InputError("bench: must be followed by error, stability or plan");
+  const Kind kind = kind_named(word);
+  const Session session(command.text(), keys, values.run, command.only_prints());
+  keys.read(values.quick);
+  if (!command.settle()) return ExitStatus::done;
+  omp_set_num_threads(session.threads());
+  return session.once(ResultFile::Storage::memory, [&](ResultFile& file) -> std::optional<Made> {
+    const Stopwatch clock;
+    const Outcome outcome = kind(file, values.quick);
+    std::printf("%zu %s, %zu failed, %.0f s\n", outcome.count, outcome.parts.c_str(),
+                outcome.failed, clock.seconds());
+    return Made{outcome.plan, static_cast<double>(outcome.count),
+                outcome.failed == 0 ? ExitStatus::done : ExitStatus::row_failed};
+  });
 }
 
 }  // namespace flatspeckle::apps

@@ -4,10 +4,8 @@
 #include <iostream>
 #include <set>
 
-#include "apps/subcommands.h"
 #include "apps/sweep_table.h"
 #include "core/error.h"
-#include "core/result/provenance.h"
 #include "core/run/ranks.h"
 
 namespace flatspeckle::apps {
@@ -18,14 +16,9 @@ using Part = ShardFolder::Part;
 
 /// How the whole was made: the costs of all points, and each plan once.
 Provenance made_of(const SweepPlan& plan, const SweepResults& results, double wall_s) {
-  Provenance made{.command_line = plan.command.text,
-                  .config = plan.command.config,
-                  .seed = seed_of(plan.settings),
-                  .plan = {},
-                  .threads = threads_of(plan.settings),
-                  .started = utc_now(),
-                  .wall_s = wall_s,
-                  .converged = true};
+  Provenance made = plan.provenance();
+  made.wall_s = wall_s;
+  made.converged = true;
   std::set<std::string> plans;
   for (const auto& result : results) {
     made.converged = made.converged && result && result->reached;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/keys/number_text.h"
+
 namespace flatspeckle::apps {
 
 namespace {

@@ -178,14 +178,9 @@ Key& Key::swept() {
 }
 
 bool Key::is_list() const {
-  return std::visit(
-             [](const auto* member) {
-               return requires {
-                 member->push_back({});
-               };
-             },
-             member_) &&
-         !std::holds_alternative<std::string*>(member_);
+  return std::holds_alternative<std::vector<double>*>(member_) ||
+         std::holds_alternative<std::vector<std::int64_t>*>(member_) ||
+         std::holds_alternative<std::vector<std::string>*>(member_);
 }
 
 bool Key::is_whole() const {

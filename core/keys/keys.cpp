@@ -1,7 +1,6 @@
 #include "core/keys/keys.h"
 
 #include <algorithm>
-#include <cassert>
 
 namespace flatspeckle {
 
@@ -20,19 +19,19 @@ const Key* Keys::find(const std::string& name) const {
   return found == rows_.end() ? nullptr : &*found;
 }
 
-const Key& Keys::row_of(const void* member) const {
+const Key* Keys::row_of(const void* member) const {
   const auto found = std::find_if(rows_.begin(), rows_.end(),
                                   [&](const Key& key) { return key.address() == member; });
-  assert(found != rows_.end());
-  return *found;
+  return found == rows_.end() ? nullptr : &*found;
 }
 
 void Keys::check() const {
   for (const Key& key : rows_) key.check();
 }
 
-void Keys::require_set(const Key& key) const {
-  if (key.value().empty()) throw InputError(key.name() + " is not given: " + key.accepted());
+void Keys::require_set(const Key* key) {
+  if (key != nullptr && key->value().empty())
+    throw InputError(key->name() + " is not given: " + key->accepted());
 }
 
 /// "luneburg, fisheye", of all rows of a name; empty where one of them is for all.
@@ -60,14 +59,21 @@ void Keys::join_reads(const Keys& others) const {
   read_.insert(others.read_.begin(), others.read_.end());
 }
 
-std::string Keys::lines(bool with_effort) const {
-  std::set<std::string> seen;
+std::string Keys::config(const std::set<std::string>& without) const {
+  std::set<std::string> left_out = without;
   std::string text;
   for (const Key& key : rows_)
     if (key.is_in_files() && read_.contains(key.name()) && !key.value().empty() &&
-        (with_effort || !key.is_effort()) && seen.insert(key.name()).second)
+        left_out.insert(key.name()).second)
       text += key.line() + '\n';
   return text;
+}
+
+std::string Keys::identity() const {
+  std::set<std::string> effort;
+  for (const Key& key : rows_)
+    if (key.is_effort()) effort.insert(key.name());
+  return config(effort);
 }
 
 }  // namespace flatspeckle

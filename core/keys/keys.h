@@ -35,12 +35,13 @@ class Keys {
   const std::deque<Key>& rows() const { return rows_; }
   /// nullptr where there is none.
   const Key* find(const std::string& name) const;
-  const Key& row_of(const void* member) const;
+  /// nullptr of a member that this subcommand leaves at its value.
+  const Key* row_of(const void* member) const;
 
   /// Value of a bound member, whose key then is read.
   template <typename Member>
   const Member& read(const Member& member) const {
-    read_.insert(row_of(&member).name());
+    if (const Key* const key = row_of(&member)) read_.insert(key->name());
     return member;
   }
   /// The same, where there must be one. Throws InputError.
@@ -55,9 +56,12 @@ class Keys {
     require_set(row_of(&member));
     return read(member);
   }
-  bool given(const auto& member) const { return row_of(&member).given(); }
-  /// Of a member, for messages.
-  const std::string& name(const auto& member) const { return row_of(&member).name(); }
+  bool given(const auto& member) const {
+    const Key* const key = row_of(&member);
+    return key != nullptr && key->given();
+  }
+  /// Of a member with a row, for messages.
+  const std::string& name(const auto& member) const { return row_of(&member)->name(); }
 
   /// Throws InputError for the first value that its row does not accept.
   void check() const;
@@ -66,15 +70,14 @@ class Keys {
   /// Counts as read what others have read of keys of the same names.
   void join_reads(const Keys& others) const;
 
-  /// The lines of a scene file that makes the same again: what was read.
-  std::string config() const { return lines(true); }
+  /// The lines of a scene file that makes the same again: what was read, less some keys.
+  std::string config(const std::set<std::string>& without = {}) const;
   /// Those of them that change the result.
-  std::string identity() const { return lines(false); }
+  std::string identity() const;
 
  private:
   std::string only_of(const std::string& name) const;
-  std::string lines(bool with_effort) const;
-  void require_set(const Key& key) const;
+  static void require_set(const Key* key);
 
   std::string group_;
   std::deque<Key> rows_;

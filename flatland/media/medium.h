@@ -27,6 +27,8 @@ struct BulkMedium {
 
 /// A medium of scatterers with a T-matrix, at a number per area.
 BulkMedium bulk_medium(const Scatterer& scatterer, double k, double density);
+/// Gives a medium of scatterers another number per area.
+void set_density(BulkMedium& medium, const Scatterer& scatterer, double k, double density);
 /// A Henyey-Greenstein medium of given extinction.
 BulkMedium bulk_medium(const Scatterer& henyey_greenstein, double mu_t);
 

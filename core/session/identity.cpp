@@ -1,9 +1,9 @@
-#include "apps/identity.h"
+#include "core/session/identity.h"
 
 #include <set>
 #include <sstream>
 
-namespace flatspeckle::apps {
+namespace flatspeckle {
 
 std::string first_difference(const std::string& there, const std::string& here) {
   std::istringstream ours(here), lines(there);
@@ -14,4 +14,4 @@ std::string first_difference(const std::string& there, const std::string& here) 
   return "fewer keys";
 }
 
-}  // namespace flatspeckle::apps
+}  // namespace flatspeckle

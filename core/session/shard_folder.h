@@ -10,7 +10,7 @@
 #include "core/result/result_file.h"
 #include "core/result/result_reader.h"
 
-namespace flatspeckle::apps {
+namespace flatspeckle {
 
 /// What a sweep has finished or begun: a sealed file for each point and method, NAME.h5, while it
 /// is unfinished NAME.part.h5. For any thread.
@@ -48,4 +48,4 @@ class ShardFolder {
   std::mutex mutex_;  // HDF5 is for one thread at a time
 };
 
-}  // namespace flatspeckle::apps
+}  // namespace flatspeckle

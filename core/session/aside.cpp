@@ -1,8 +1,8 @@
-#include "apps/aside.h"
+#include "core/session/aside.h"
 
 #include <string>
 
-namespace flatspeckle::apps {
+namespace flatspeckle {
 
 std::filesystem::path free_aside(const std::filesystem::path& path) {
   for (int number = 1;; ++number) {
@@ -11,4 +11,4 @@ std::filesystem::path free_aside(const std::filesystem::path& path) {
   }
 }
 
-}  // namespace flatspeckle::apps
+}  // namespace flatspeckle

@@ -1,14 +1,14 @@
-#include "apps/shard_folder.h"
+#include "core/session/shard_folder.h"
 
 #include <iostream>
 #include <vector>
 
-#include "apps/aside.h"
-#include "apps/identity.h"
 #include "core/error.h"
 #include "core/result/sealed_file.h"
+#include "core/session/aside.h"
+#include "core/session/identity.h"
 
-namespace flatspeckle::apps {
+namespace flatspeckle {
 
 namespace fs = std::filesystem;
 
@@ -96,4 +96,4 @@ void ShardFolder::remove(const std::set<std::string>& names) const {
   fs::remove(folder_, not_empty);
 }
 
-}  // namespace flatspeckle::apps
+}  // namespace flatspeckle

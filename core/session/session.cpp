@@ -1,25 +1,20 @@
-#include "apps/session.h"
+#include "core/session/session.h"
 
 #include <filesystem>
 #include <iostream>
 
-#include "apps/aside.h"
-#include "apps/identity.h"
-#include "apps/subcommands.h"
 #include "core/error.h"
 #include "core/result/result_reader.h"
 #include "core/result/run_state_file.h"
 #include "core/result/sealed_file.h"
 #include "core/result/version.h"
 #include "core/run/interrupt.h"
+#include "core/session/aside.h"
+#include "core/session/identity.h"
 
-namespace flatspeckle::apps {
+namespace flatspeckle {
 
 namespace {
-
-/// Keys that say how long and on what to run, not what.
-const std::vector<std::string> keys_of_the_stop = {"samples",      "wave_samples", "seconds",
-                                                   "target_error", "threads",      "resume"};
 
 std::string trace_group(const std::string& run) {
   return run.empty() ? "trace" : run + "/trace";
@@ -30,30 +25,56 @@ std::string state_group(const std::string& run) {
 
 }  // namespace
 
-Session::Session(const CommandLine& command_line, const RunSettings& settings, std::string plan,
-                 std::vector<PlannedRun> runs, const std::string& inputs)
-    : settings_(settings), runs_(std::move(runs)) {
-  identity_ = "flatspeckle " + version() + '\n' +
-              without_keys(command_line.config, keys_of_the_stop) + inputs;
-  if (settings_.out.empty())
-    throw InputError("out is not given: name the result file (--out FILE.h5)");
-  settings_.resume ? check_writable(settings_.out) : check_result_path(settings_.out);
-  catch_interrupts();
-  provenance_.command_line = command_line.text;
-  provenance_.config = command_line.config;
-  provenance_.seed = seed_of(settings);
-  provenance_.plan = std::move(plan);
-  provenance_.threads = threads_of(settings);
-  provenance_.started = utc_now();
-  for (const auto& run : runs_) states_[run.name];
-  const bool exists = std::filesystem::exists(settings_.out);
-  has_older_ = exists && !settings_.resume;
-  if (exists && settings_.resume) resume(settings_.out);
+Session::Session(std::string command_line, const Keys& keys, const RunSettings& settings,
+                 bool only_prints, Out kind)
+    : command_line_(std::move(command_line)),
+      keys_(keys),
+      settings_(settings),
+      seed_(keys.find("seed") ? seed_of(keys, settings) : 0),
+      threads_(keys.find("threads") ? threads_of(keys, settings) : 1),
+      started_(utc_now()) {
+  keys.read(settings.out);
+  if (keys.find("resume")) keys.read(settings.resume);
+  if (only_prints) return;
+  if (settings.out.empty())
+    throw InputError("out is not given: name the " +
+                     std::string(kind == Out::result ? "result file (--out FILE.h5)"
+                                                     : "placement file (--out FILE.csv)"));
+  settings.resume || kind == Out::other ? check_writable(settings.out)
+                                        : check_result_path(settings.out);
+}
+
+Provenance Session::provenance() const {
+  Provenance provenance;
+  provenance.command_line = command_line_;
+  provenance.config = keys_.config();
+  provenance.seed = seed_;
+  provenance.threads = threads_;
+  provenance.started = started_;
+  return provenance;
+}
+
+int Session::once(ResultFile::Storage storage,
+                  const std::function<std::optional<Made>(ResultFile&)>& make) const {
+  ResultFile file(settings_.out, storage);
+  const auto made = make(file);
+  if (!made) return ExitStatus::interrupted_for_good;
+  Provenance provenance = this->provenance();
+  provenance.plan = made->plan;
+  provenance.samples = made->samples;
+  provenance.wall_s = clock_.seconds();
+  provenance.cpu_s = process_cpu_seconds();
+  provenance.converged = made->status == ExitStatus::done;
+  write_provenance(file, provenance);
+  file.commit();
+  std::cout << "wrote " << settings_.out << '\n';
+  return made->status;
 }
 
 /// All states at once: what is saved while one run goes on must hold those of the others. HDF5,
 /// which may crash on a damaged file, sees none.
-void Session::resume(const std::string& path) {
+void Session::resume() {
+  const std::string& path = settings_.out;
   if (!is_sealed(path))
     throw InputError("resume: " + path + " is damaged, or never held a run of this program");
   const ResultReader file(path);
@@ -70,14 +91,22 @@ void Session::resume(const std::string& path) {
       states_[name] = read_state(file, group, job.size);
 }
 
-int Session::run(const std::function<void(ResultFile&)>& contents) {
+int Session::run(std::string plan, std::vector<PlannedRun> runs, const std::string& inputs,
+                 const std::function<void(ResultFile&)>& contents) {
+  catch_interrupts();
+  plan_ = std::move(plan);
+  runs_ = std::move(runs);
+  identity_ = "flatspeckle " + version() + '\n' + keys_.identity() + inputs;
+  for (const auto& run : runs_) states_[run.name];
+  const bool exists = std::filesystem::exists(settings_.out);
+  has_older_ = exists && !settings_.resume;
+  if (exists && settings_.resume) resume();
   if (already_complete_) {
     std::cout << settings_.out << " is complete; nothing to resume (for more samples run it "
               << "afresh, without --resume)\n";
     return ExitStatus::done;
   }
-  // A sweep's plans, one for each point, are in the file alone.
-  if (runs_.size() <= 2) std::cout << provenance_.plan << '\n' << std::flush;
+  std::cout << plan_ << '\n' << std::flush;
   for (const auto& run : runs_)
     if (!interrupted_) run_one(run);
   return finish(contents);
@@ -85,7 +114,7 @@ int Session::run(const std::function<void(ResultFile&)>& contents) {
 
 void Session::run_one(const PlannedRun& run) {
   RunState& state = states_[run.name];
-  const RunOptions options{run.stop, settings_.threads, run.label,
+  const RunOptions options{run.stop, threads_, run.label,
                            [this](const RunState&) { save_resumable(); }};
   const StopReason reason = run_batches(run.job, options, state);
   interrupted_ = reason == StopReason::interrupted;
@@ -117,7 +146,8 @@ int Session::finish(const std::function<void(ResultFile&)>& contents) {
 }
 
 void Session::write_common(ResultFile& file, bool converged) const {
-  Provenance provenance = provenance_;
+  Provenance provenance = this->provenance();
+  provenance.plan = plan_;
   for (const auto& [name, state] : states_) {
     provenance.wall_s += state.wall_s;
     provenance.cpu_s += state.cpu_s;
@@ -152,4 +182,4 @@ void Session::write_states(ResultFile& file) const {
     if (state.sums.batches() > 0) write_state(file, state_group(name), state);
 }
 
-}  // namespace flatspeckle::apps
+}  // namespace flatspeckle
