@@ -5,9 +5,8 @@
 #include <string>
 
 #include "apps/estimate_output.h"
-#include "apps/light_speed.h"
-#include "apps/sensor_options.h"
 #include "apps/trials_output.h"
+#include "grin/rays/light_speed.h"
 
 namespace flatspeckle::apps {
 
@@ -49,7 +48,7 @@ class Writer {
     for (int bin = 0; bin < bins.count; ++bin)
       paths.push_back(bins.first + (bins.last - bins.first) * (bin + 0.5) / bins.count);
     file_.scale("optical_path", paths, "length", "middle of the bin of optical path");
-    for (double path : paths) times.push_back(path * length_unit.value_or(0) / light_speed);
+    for (double path : paths) times.push_back(path * length_unit.value_or(0) / grin::light_speed);
     if (length_unit)
       file_.dataset("time", times, {"optical_path"}, "s", "optical path over the speed of light");
     estimate("transient", result.picture.bins, {"row", "column", "optical_path"}, axes_.image_units,
@@ -61,7 +60,7 @@ class Writer {
 
  private:
   ResultFile& file_;
-  SensorAxes axes_;
+  grin::SensorAxes axes_;
 };
 
 void write_counts(ResultFile& file, const grin::TransportCounts& counts) {
@@ -113,7 +112,7 @@ void print_row(const char* name, const Estimate& estimate, std::size_t entry,
 
 RenderResult render_result(const grin::RenderScene& scene, const grin::RenderJob& job,
                            const GroupedSums& sums) {
-  const SensorAxes axes = axes_of(scene.sensor);
+  const grin::SensorAxes axes = axes_of(scene.sensor);
   const int pixels = job.pixels.count(), bins = job.bins.count;
   RenderResult result{rendered_picture(job, sums), pixel_mean(sums, pixels, 1, 1), {}, {}};
   if (axes.area) result.total = pixel_mean(sums, pixels, 1, *axes.area);
@@ -135,7 +134,7 @@ void write_render(ResultFile& file, const grin::RenderScene& scene, const grin::
 
 void print_render(const grin::RenderScene& scene, const grin::RenderJob& job,
                   const RenderResult& result) {
-  const SensorAxes axes = axes_of(scene.sensor);
+  const grin::SensorAxes axes = axes_of(scene.sensor);
   const auto& image = result.picture.steady;
   const auto brightest =
       std::max_element(image.value.begin(), image.value.end(),

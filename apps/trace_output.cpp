@@ -2,14 +2,14 @@
 
 #include <algorithm>
 
-#include "apps/light_speed.h"
 #include "apps/trials_output.h"
+#include "grin/rays/light_speed.h"
 
 namespace flatspeckle::apps {
 
 namespace {
 
-using grin::Vec3;
+using namespace grin;
 
 /// One column of a table over the things of an axis.
 class Columns {

@@ -4,7 +4,7 @@
 
 #include "bench/cost_curves.h"
 #include "bench/cost_measure.h"
-#include "grin/fields/lenses.h"
+#include "grin/fields/luneburg.h"
 #include "grin/rays/ray_step.h"
 
 namespace flatspeckle::bench {

@@ -1,18 +1,21 @@
 #pragma once
 
+#include <numbers>
 #include <optional>
 
 #include "grin/ends/boundary_patch.h"
-#include "grin/ends/path_end.h"
-#include "grin/ends/pixel_grid.h"
+#include "grin/ends/sensor_kind.h"
 
 namespace flatspeckle::grin {
+
+class AreaDetectorEnd;
 
 /// A rectangle on a face of a box boundary, or the part of a sphere's boundary in front of a
 /// rectangle in the tangent plane: irradiance averaged over each pixel of the rectangle, of light
 /// that arrives within `acceptance` of the outward normal. Columns along outward normal x up: as
 /// light sees it that arrives.
 struct AreaDetector {
+  using End = AreaDetectorEnd;
   Vec3 centre, up;
   double width, height;
   PixelGrid pixels;
@@ -50,5 +53,17 @@ class AreaDetectorEnd {
   double tangent_;       ///< the same; infinite for all directions
   std::optional<Surface> body_;
 };
+
+SensorAxes axes_of(const AreaDetector& detector);
+
+struct AreaValues {
+  using Sensor = AreaDetector;
+  static constexpr const char* word = "area";
+  std::vector<double> sensor_at{}, sensor_size{};
+  double acceptance = std::numbers::pi / 2;
+};
+
+void add_keys(Keys& keys, AreaValues& values);
+AreaDetector make_sensor(const Keys& keys, const AreaValues& values, const Picture& picture);
 
 }  // namespace flatspeckle::grin

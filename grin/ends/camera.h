@@ -3,13 +3,15 @@
 #include <optional>
 
 #include "grin/ends/boundary_patch.h"
-#include "grin/ends/path_end.h"
-#include "grin/ends/pixel_grid.h"
+#include "grin/ends/sensor_kind.h"
 
 namespace flatspeckle::grin {
 
+class CameraEnd;
+
 /// A camera that looks along `forward`: L/n^2 averaged over each pixel of its film.
 struct Camera {
+  using End = CameraEnd;
   Vec3 x, forward, up;
   double field_of_view;  ///< across the columns, full angle, rad, < pi
   PixelGrid pixels;
@@ -33,7 +35,8 @@ class CameraEnd {
   EndDirection sample_direction(const EndPosition& at, double stratum, RandomStream& random) const;
   EndDirection towards(const EndPosition& at, const Vec3& direction) const;
   std::optional<EndPosition> position_at(const Vec3& x) const;
-  bool is_pinhole() const { return !lens_; }
+  /// A pinhole cannot.
+  bool can_be_hit() const { return lens_.has_value(); }
 
  private:
   void place_lens(const Camera& camera, const Stage& stage);
@@ -47,5 +50,17 @@ class CameraEnd {
   std::optional<BoundaryPatch> lens_;
   std::optional<Surface> body_;
 };
+
+SensorAxes axes_of(const Camera& camera);
+
+struct CameraValues {
+  using Sensor = Camera;
+  static constexpr const char* word = "camera";
+  std::vector<double> sensor_at{}, sensor_direction{0, 0, 1};
+  std::optional<double> field_of_view = {}, lens_radius = {}, focus_distance = {};
+};
+
+void add_keys(Keys& keys, CameraValues& values);
+Camera make_sensor(const Keys& keys, const CameraValues& values, const Picture& picture);
 
 }  // namespace flatspeckle::grin

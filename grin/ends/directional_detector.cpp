@@ -5,21 +5,9 @@
 
 namespace flatspeckle::grin {
 
-namespace {
-
-PixelRectangle picture(const DirectionalDetector& detector) {
-  constexpr double right_angle = std::numbers::pi / 2;
-  if (!(detector.half_angle > 0 && detector.half_angle <= right_angle * (1 + 1e-12)))
-    throw InputError("half_angle", detector.half_angle, "must be in (0, pi/2]");
-  const double sine = std::sin(std::min(detector.half_angle, right_angle));
-  return {detector.pixels, sine, sine};
-}
-
-}  // namespace
-
 DirectionalEnd::DirectionalEnd(const DirectionalDetector& detector, const Stage& stage)
     : view_("sensor_direction", detector.forward, detector.up),
-      picture_(picture(detector)),
+      picture_(detector.pixels, std::sin(detector.half_angle), std::sin(detector.half_angle)),
       boundary_(stage.boundary, "sensor"),
       body_(body_surface(stage)) {}
 
@@ -64,6 +52,30 @@ EndDirection DirectionalEnd::towards(const EndPosition& at, const Vec3& directio
                         : -1;
   if (pixel < 0) return {.direction = direction};
   return along(at, direction, pixel);
+}
+
+SensorAxes axes_of(const DirectionalDetector& detector) {
+  const double half = std::sin(detector.half_angle);
+  SensorAxes axes = axes_of(detector.pixels, half, half);
+  axes.units = "1";
+  axes.row_name = "component of the direction along sensor_up";
+  axes.column_name = "component of the direction along sensor_direction x sensor_up";
+  axes.image_units = "1/sr";
+  axes.image_name = "power per solid angle averaged over the pixel";
+  return axes;
+}
+
+void add_keys(Keys& keys, DirectionalValues& values) {
+  add_vector(keys, "sensor_direction", values.sensor_direction, "Middle of the directions");
+  keys.add("half_angle", values.half_angle, "Angle of the middle of a side")
+      .positive_to(std::numbers::pi / 2)
+      .unit("rad");
+}
+
+DirectionalDetector make_sensor(const Keys& keys, const DirectionalValues& values,
+                                const Picture& picture) {
+  return {vector_of(keys.read(values.sensor_direction)), picture.up, keys.read(values.half_angle),
+          picture.pixels};
 }
 
 }  // namespace flatspeckle::grin

@@ -5,8 +5,9 @@
 
 #include "core/numbers/random.h"
 #include "grin/connections/geometric_spreading.h"
-#include "grin/fields/guides.h"
-#include "grin/fields/lenses.h"
+#include "grin/fields/fisheye.h"
+#include "grin/fields/luneburg.h"
+#include "grin/fields/parabolic.h"
 #include "grin/media/start_directions.h"
 #include "grin/rays/ray_step.h"
 #include "tests/grin/closed_fields.h"
