@@ -44,6 +44,7 @@ int covariance(const Arguments& arguments) {
   const auto reversed = reversed_paths(keys, methods);
   const double tolerance = keys.read(methods.wave_tolerance);
   keys.read(methods.wave_samples);
+  keys.read(run.samples);
   if (by_mc) read_extras(keys, extras);
   const Scene scene = make_scene(keys, spec);
   const auto [estimation, write_extras] =

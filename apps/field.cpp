@@ -82,9 +82,11 @@ Scene field_scene(const Keys& keys, SceneSpec& spec) {
   if (spec.domain == "slab")
     throw InputError("domain", spec.domain,
                      "fields need a box: an infinite slab's speckles are infinitely fine");
-  keys.read(spec.tilts);
+  const auto light = keys.read(spec.light_angles), tilts = keys.read(spec.tilts);
   settle_tilts(spec);
   Scene scene = make_scene(keys, spec);
+  spec.light_angles = light;  // the keys stay as they were given
+  spec.tilts = tilts;
   scene.request = mc::field_request(scene.request.lights, scene.request.views);
   return scene;
 }

@@ -47,7 +47,7 @@ void add_keys(Keys& keys, PlaceKeys& values) {
   keys.add("packing_fraction", values.packing_fraction,
            "Share of the box's area that the disks cover, instead of count")
       .positive()
-      .only_of("disks; points cover nothing; give count");
+      .only_of("disks");
   keys.add("placement", values.placement,
            "Of points poisson; of disks hard_disk (one after the other) or equilibrium (the fluid "
            "of "
@@ -110,8 +110,10 @@ std::vector<double> shares(const Keys& keys, const PlaceKeys& values) {
 
 /// From count, or from packing_fraction and the mean area of a disk.
 std::size_t number_of(const PlaceKeys& values, const Domain& box, double mean_area) {
-  const bool covered = values.packing_fraction && mean_area > 0;
-  if (values.count.has_value() == covered)
+  if (values.packing_fraction && mean_area == 0)
+    throw InputError("packing_fraction", *values.packing_fraction,
+                     "points cover nothing; give count");
+  if (values.count.has_value() == values.packing_fraction.has_value())
     throw InputError(values.count
                          ? "count, packing_fraction: give one of them"
                          : "no number is given: give count or (for disks) packing_fraction");
