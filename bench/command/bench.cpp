@@ -1,0 +1,212 @@
+#include <algorithm>
+#include <cstdio>
+#include <numeric>
+
+#include <omp.h>
+
+#include "apps/run_options.h"
+#include "apps/subcommands.h"
+#include "bench/command/bench_log.h"
+#include "bench/command/bench_output.h"
+#include "core/error.h"
+#include "core/result/provenance.h"
+#include "core/result/result_file.h"
+#include "core/run/parallel.h"
+#include "core/run/stopwatch.h"
+
+namespace flatspeckle::apps {
+
+namespace {
+
+struct BenchKeys {
+  std::string kind;
+  bool quick = false;
+  RunSettings run;
+};
+
+/// What a kind of benchmark came to.
+struct Outcome {
+  std::string plan, parts;
+  std::size_t count, failed;
+};
+
+template <typename... Values>
+std::string text(const char* format, Values... values) {
+  char line[400];
+  std::snprintf(line, sizeof line, format, values...);
+  return line;
+}
+
+/// run(i) for all i in this order, side by side.
+template <typename Run>
+void run_all(const std::vector<std::size_t>& order, const Run& run) {
+  parallel_for(order.size(), [&](std::size_t i) { run(order[i]); });
+}
+
+std::vector<std::size_t> in_order(std::size_t count) {
+  std::vector<std::size_t> order(count);
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  return order;
+}
+
+std::string line_of(const bench::ErrorCurve& curve, bool good) {
+  return text("%-24s %-22s slope %6.3f +- %5.3f, efficiency %9.3g /s%s", curve.scene.c_str(),
+              curve.method.c_str(), curve.slope, curve.slope_error, curve.efficiency,
+              good ? "" : "  FAILED");
+}
+
+std::string line_of(const bench::CostCurve& cost) {
+  return text("%-47s cost grows as %s^(%.2f +- %.2f), expected %.2f", cost.what.c_str(),
+              cost.size_name.c_str(), cost.exponent, cost.exponent_error, cost.expected);
+}
+
+std::string line_of(const ExaminedCase& row, bool good) {
+  const auto& [extreme, finding, cpu_s] = row;
+  const std::string head = text("%-12s %-52s %-44s ", extreme.room.c_str(), extreme.name.c_str(),
+                                extreme.invariant.c_str());
+  if (finding.refusal.empty())
+    return head +
+           text("%10.1e %10.1e %s", finding.figure, finding.limit, good ? "passed" : "FAILED");
+  return head + (good ? "refused: " : "FAILED, refused: ") + finding.refusal;
+}
+
+std::string line_of(const bench::PlanRow& row) {
+  return text(
+      "%-12s %-30s %-34s %10.3g %10.3g s per %-10s ratio %6.2f +- %4.2f, difference %.1e %s%s",
+      row.room.c_str(), row.left_out.c_str(), row.scene.c_str(), row.general_s, row.special_s,
+      row.per.c_str(), row.ratio, row.ratio_spread, row.difference, row.difference_in.c_str(),
+      passes(row) ? "" : "  FAILED");
+}
+
+/// Of a Monte Carlo curve; from times too short for that, none is judged.
+bool has_slope_of_sampling(const bench::ErrorCurve& curve) {
+  constexpr double tolerance = 0.05;
+  return !curve.is_monte_carlo || std::abs(curve.slope + 0.5) <= tolerance;
+}
+
+Outcome error_against_time(ResultFile& file, bool quick) {
+  const double cpu_seconds = quick ? 0.05 : 30;
+  auto runs = bench::error_runs();
+  if (quick) std::erase_if(runs, [](const auto& run) { return run.slow; });
+  const auto costs = bench::cost_runs();
+  std::vector<bench::ErrorCurve> curves(runs.size());
+  std::vector<bench::CostCurve> growth(costs.size());
+  BenchLog log(runs.size() + costs.size(), "curves");
+  run_all(in_order(runs.size() + costs.size()), [&](std::size_t i) {
+    if (i < runs.size()) {
+      curves[i] = runs[i].run(cpu_seconds);
+      log.finished(line_of(curves[i], quick || has_slope_of_sampling(curves[i])));
+    } else {
+      auto& cost = growth[i - runs.size()];
+      cost = costs[i - runs.size()].run(cpu_seconds);
+      log.finished(line_of(cost));
+    }
+  });
+  write_error_curves(file, curves);
+  write_cost_curves(file, growth);
+  const auto failed = std::count_if(curves.begin(), curves.end(), [&](const auto& curve) {
+    return !quick && !has_slope_of_sampling(curve);
+  });
+  return {
+      text("%g CPU seconds for each curve%s", cpu_seconds, quick ? ", none of the slow ones" : ""),
+      "curves", runs.size() + costs.size(), static_cast<std::size_t>(failed)};
+}
+
+Outcome stability(ResultFile& file, bool quick) {
+  std::vector<ExaminedCase> cases;
+  for (auto& extreme : bench::extreme_cases())
+    if (!quick || !extreme.slow) cases.push_back({std::move(extreme), {}});
+  auto order = in_order(cases.size());
+  std::stable_partition(order.begin(), order.end(),
+                        [&](std::size_t i) { return cases[i].extreme.slow; });
+  BenchLog log(cases.size(), "cases");
+  run_all(order, [&](std::size_t i) {
+    const double start = thread_cpu_seconds();
+    cases[i].finding = examine(cases[i].extreme);
+    cases[i].cpu_s = thread_cpu_seconds() - start;
+    log.finished(line_of(cases[i], passes(cases[i].extreme, cases[i].finding)));
+  });
+  write_cases(file, cases);
+  const auto failed = std::count_if(cases.begin(), cases.end(), [](const auto& row) {
+    return !passes(row.extreme, row.finding);
+  });
+  return {quick ? "without the slow cases" : "all cases", "cases", cases.size(),
+          static_cast<std::size_t>(failed)};
+}
+
+/// One at a time, for kernels that compete for the memory would wait for each other.
+Outcome what_plans_leave_out(ResultFile& file, bool quick) {
+  const double cpu_seconds = quick ? 0.02 : 4;
+  omp_set_num_threads(1);
+  std::vector<bench::PlanRow> rows;
+  const auto cases = bench::plan_cases();
+  BenchLog log(cases.size(), "comparisons");
+  for (const auto& comparison : cases) {
+    rows.push_back(comparison.run(cpu_seconds));
+    log.finished(line_of(rows.back()));
+  }
+  write_plan_rows(file, rows);
+  const auto failed =
+      std::count_if(rows.begin(), rows.end(), [](const auto& row) { return !passes(row); });
+  return {text("%g CPU seconds for each comparison, one at a time", cpu_seconds), "comparisons",
+          rows.size(), static_cast<std::size_t>(failed)};
+}
+
+Outcome run_kind(ResultFile& file, const BenchKeys& keys) {
+  if (keys.kind == "error") return error_against_time(file, keys.quick);
+  if (keys.kind == "stability") return stability(file, keys.quick);
+  return what_plans_leave_out(file, keys.quick);
+}
+
+void add_options(Options& options, BenchKeys& keys) {
+  options.add("kind", keys.kind, "error, stability or plan");
+  options.keep_out_of_scene_file("kind");
+  options.add_flag("--quick", keys.quick, "Only a look: seconds in place of minutes");
+  add_thread_option(options, keys.run);
+  add_output_option(options, keys.run);
+}
+
+void check(const BenchKeys& keys) {
+  if (keys.kind.empty()) throw InputError("bench: must be followed by error, stability or plan");
+  if (keys.kind != "error" && keys.kind != "stability" && keys.kind != "plan")
+    throw InputError("bench", keys.kind, "must be one of error stability plan");
+  if (keys.run.out.empty())
+    throw InputError("out is not given: name the result file (--out FILE.h5)");
+  check_result_path(keys.run.out);
+}
+
+void write_bench_provenance(ResultFile& file, const CommandLine& command_line,
+                            const BenchKeys& keys, const std::string& started,
+                            const Outcome& outcome, const Stopwatch& clock) {
+  Provenance provenance{command_line.text, command_line.config,  seed_of(keys.run),
+                        outcome.plan,      threads_of(keys.run), started};
+  provenance.wall_s = clock.seconds();
+  provenance.cpu_s = process_cpu_seconds();
+  provenance.samples = static_cast<double>(outcome.count);
+  provenance.converged = outcome.failed == 0;
+  write_provenance(file, provenance);
+}
+
+}  // namespace
+
+int bench(const Arguments& arguments) {
+  const Stopwatch clock;
+  const std::string started = utc_now();
+  BenchKeys keys;
+  Subcommand command("bench",
+                     "What accuracy costs (error), where it breaks (stability), and what leaving "
+                     "things out saves (plan)");
+  add_options(command.options(), keys);
+  if (!command.parse(arguments)) return ExitStatus::done;
+  check(keys);
+  omp_set_num_threads(threads_of(keys.run));
+  ResultFile file(keys.run.out);
+  const Outcome outcome = run_kind(file, keys);
+  write_bench_provenance(file, command.command_line(), keys, started, outcome, clock);
+  file.commit();
+  std::printf("%zu %s, %zu failed, %.0f s\nwrote %s\n", outcome.count, outcome.parts.c_str(),
+              outcome.failed, clock.seconds(), keys.run.out.c_str());
+  return outcome.failed == 0 ? ExitStatus::done : ExitStatus::row_failed;
+}
+
+}  // namespace flatspeckle::apps
