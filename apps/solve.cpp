@@ -67,7 +67,7 @@ bool is_placement_rule(const SceneSpec& spec) {
 /// A file brings its own positions: keys that would place scatterers find no use.
 Placement placement_of_file(const Keys& keys, const SceneSpec& spec) {
   const Scatterer scatterer = make_scatterer(keys, spec);
-  if (scatterer.kind == Scatterer::Kind::hg) refuse_bulk(spec);
+  if (scatterer.is_bulk()) refuse_bulk(spec);
   const std::string& path = *keys.read(spec.placement);
   try {
     keys.refuse_unread();
