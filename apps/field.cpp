@@ -1,9 +1,8 @@
+#include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "apps/estimation.h"
-#include "apps/field_drawing.h"
-#include "apps/field_output.h"
-#include "apps/moments_output.h"
 #include "apps/scene_options.h"
 #include "apps/subcommands.h"
 #include "core/error.h"
@@ -11,6 +10,8 @@
 #include "core/result/provenance.h"
 #include "core/result/result_file.h"
 #include "core/run/interrupt.h"
+#include "flatland/scene/scene_datasets.h"
+#include "mc/speckle/field_datasets.h"
 #include "mc/speckle/speckle_field.h"
 
 namespace flatspeckle::apps {
@@ -115,7 +116,7 @@ void check_memory(const Scene& scene, const mc::FieldDemand& demand) {
 
 void write_field_provenance(ResultFile& file, const Subcommand& command, const FieldKeys& keys,
                             const std::string& started, const std::string& plan,
-                            const DrawnFields& drawn) {
+                            const mc::DrawnFields& drawn) {
   Provenance provenance{command.command_line().text, command.command_line().config,
                         seed_of(keys.run),           "mc: " + plan + "; " + drawn.plan.describe(),
                         threads_of(keys.run),        started};
@@ -124,6 +125,27 @@ void write_field_provenance(ResultFile& file, const Subcommand& command, const F
   provenance.samples = static_cast<double>(keys.fields);
   provenance.converged = true;
   write_provenance(file, provenance);
+}
+
+/// How the statistics of all fields compare with those of a circular Gaussian field.
+void print_summary(const mc::DrawnFields& drawn, const mc::FieldSummary& summary) {
+  const auto& [contrast, circularity, found] = summary;
+  std::printf("contrast %.4f +- %.2g, |<u u>| / <I> %.2g +- %.2g (Gaussian: 1 and 0)\n",
+              contrast.value[0].real(), contrast.error[0], std::abs(circularity.value[0]),
+              circularity.error[0]);
+  const Estimate& siegert = drawn.siegert;
+  if (found.value.empty() || siegert.value.empty()) return;
+  const bool by_paths = drawn.plan.method == mc::FieldMethod::paths;
+  const double excess = by_paths ? drawn.plan.excess : 0;
+  double deviation = 0;
+  for (std::size_t d = 0; d < found.value.size(); ++d) {
+    const double beyond = std::abs(found.value[d] - siegert.value[d]) - excess;
+    const double error = std::hypot(found.error[d], siegert.error[d]);
+    if (beyond > 0 && error > 0) deviation = std::max(deviation, beyond / error);
+  }
+  std::printf(
+      "autocorrelation of the intensity: Siegert's relation within %.1f standard errors%s\n",
+      deviation, by_paths ? " and the excess kurtosis" : "");
 }
 
 }  // namespace
@@ -139,20 +161,23 @@ int field(const Arguments& arguments) {
   const Scene scene = field_scene(keys.spec);
   const auto demand = demand_of(keys);
   check_memory(scene, demand);
-  const DrawingSettings settings{reversed_paths(keys.estimation), seed_of(keys.run),
-                                 threads_of(keys.run)};
+  const mc::DrawingSettings settings{reversed_paths(keys.estimation), seed_of(keys.run),
+                                     threads_of(keys.run)};
   const std::string plan = mc::make_plan(scene, settings.reversed).describe();
   const std::string& out = keys.run.out;
   if (out.empty()) throw InputError("out is not given: name the result file (--out FILE.h5)");
   check_result_path(out);
   catch_interrupts();
-  const auto drawn = draw_fields(scene, demand, settings);
+  const auto drawn = mc::draw_fields(scene, demand, settings, [](const mc::FieldPlan& chosen) {
+    std::printf("%s\n", chosen.describe().c_str());
+    std::fflush(stdout);
+  });
   if (!drawn) return ExitStatus::interrupted_for_good;
 
   ResultFile file(out, ResultFile::Storage::disk);
   write_field_provenance(file, command, keys, started, plan, *drawn);
   write_medium(file, scene);
-  write_fields(file, scene, keys.spec.tilts, *drawn);
+  print_summary(*drawn, mc::write_fields(file, scene, keys.spec.tilts, *drawn));
   file.commit();
   std::printf("wrote %s\n", out.c_str());
   return ExitStatus::done;

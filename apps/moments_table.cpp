@@ -50,4 +50,28 @@ void print_entries(const CovarianceRequest& request, const Estimate& estimate,
   if (entries > most_rows) std::printf("... and %zu more\n", entries - most_rows);
 }
 
+void print_ranges(const std::string& group, const std::vector<mc::WrittenRange>& ranges) {
+  for (const auto& [long_name, estimate, few_steps] : ranges) {
+    if (few_steps)
+      std::fputs(
+          "note: a range is read off a curve with fewer than four points below it; its error bar "
+          "does not know what the curve does between them\n",
+          stderr);
+    std::printf("%s%s%s: %s\n", group.c_str(), group.empty() ? "" : "/", long_name.c_str(),
+                range_text(estimate.range, estimate.error).c_str());
+  }
+}
+
+std::string range_text(const mc::Range& range, double error) {
+  using Censoring = mc::Range::Censoring;
+  char text[64];
+  if (range.censored == Censoring::above_value)
+    std::snprintf(text, sizeof text, "above %.4g, the largest step", range.value);
+  else if (range.censored == Censoring::below_value)
+    std::snprintf(text, sizeof text, "below %.4g, the smallest step", range.value);
+  else
+    std::snprintf(text, sizeof text, "%.4g +- %.2g", range.value, error);
+  return text;
+}
+
 }  // namespace flatspeckle::apps

@@ -21,9 +21,9 @@ int render(const Arguments& arguments) {
   Session session(command.command_line(), settings, "render: " + spec.method + ": " + job.plan,
                   {{"", "render", job.batches, stop_rule(settings)}}, inputs_text(spec));
   return session.run([&](ResultFile& file) {
-    const RenderResult result = render_result(scene, job, session.state("").sums);
+    const grin::RenderResult result = grin::render_result(scene, job, session.state("").sums);
     print_render(scene, job, result);
-    write_render(file, scene, job, result, length_unit);
+    grin::write_render(file, scene, job, result, length_unit);
   });
 }
 

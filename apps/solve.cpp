@@ -5,16 +5,17 @@
 #include <omp.h>
 
 #include "apps/field_map_output.h"
-#include "apps/moments_output.h"
 #include "apps/run_options.h"
 #include "apps/scene_options.h"
 #include "apps/subcommands.h"
 #include "core/error.h"
 #include "core/result/provenance.h"
-#include "core/result/result_file.h"
+#include "core/result/result_group.h"
 #include "core/run/interrupt.h"
 #include "core/run/stopwatch.h"
-#include "wave_solver/solutions/wave_solution.h"
+#include "flatland/scene/scene_datasets.h"
+#include "wave_solver/maps/map_datasets.h"
+#include "wave_solver/solutions/solution_datasets.h"
 
 namespace flatspeckle::apps {
 
@@ -65,53 +66,6 @@ Placement make_placement(const SceneSpec& spec, const Subcommand& command, std::
         "is a bulk phase function; the exact solver needs point, soft, hard, tm or te");
   RandomStream random(seed, static_cast<std::uint64_t>(Stream::placement), 0);
   return draw_placement(scene.domain, scene.scatterer, scene.placement, random);
-}
-
-void write_placement(ResultFile& file, const wave::WaveSolution& solution) {
-  const Placement& placement = solution.system().placement();
-  std::vector<double> x, z, radius;
-  for (const auto& [position, scatterer] : placement) {
-    x.push_back(position.x);
-    z.push_back(position.z);
-    radius.push_back(scatterer.disk_radius());
-  }
-  file.numbered_scale("scatterer", placement.size(), "number of the scatterer");
-  const std::vector<Axis> axes = {"scatterer"};
-  file.dataset("placement/x", x, axes, "length", "transverse position");
-  file.dataset("placement/z", z, axes, "length", "depth");
-  file.dataset("placement/radius", radius, axes, "length", "radius, 0 for a point");
-  std::vector<std::uint64_t> orders;
-  for (int order : solution.basis_order()) orders.push_back(static_cast<std::uint64_t>(order));
-  file.dataset("solve/basis_order", orders, axes, "1", "highest angular order per scatterer");
-}
-
-void write_diagnosis(ResultFile& file, const wave::Diagnosis& diagnosis) {
-  const auto scalar = [&](const char* name, double value, const char* long_name) {
-    file.dataset(std::string("solve/") + name, std::vector<double>{value}, {}, "1", long_name);
-  };
-  scalar("residual", diagnosis.residual, "relative residual of the unscaled equations");
-  if (diagnosis.condition >= 0)
-    scalar("condition", diagnosis.condition, "condition estimate of the scaled matrix, 1-norm");
-  scalar("boundary_residual", diagnosis.boundary_residual,
-         "largest mismatch of the boundary conditions, unit incident waves");
-}
-
-void write_fields(ResultFile& file, const SceneSpec& spec, const wave::WaveSolution& solution,
-                  const std::vector<Vec2>& sensors) {
-  file.scale("light_angle", spec.light_angles, "rad", "direction of the light, from +z towards +x");
-  if (!spec.view_angles.empty()) {
-    std::vector<View> views;
-    for (double angle : spec.view_angles) views.push_back(far_view(angle));
-    write_view_axis(file, views);
-    file.dataset("far_field", solution.fields(views), {"light_angle", "view_angle"}, "length^(1/2)",
-                 "far-field amplitude A, phase origin at r = 0");
-  }
-  if (sensors.empty()) return;
-  std::vector<View> views;
-  for (const Vec2& point : sensors) views.push_back(near_sensor(point));
-  write_view_axis(file, views);
-  file.dataset("near_field", solution.fields(views), {"light_angle", "sensor"}, "1",
-               "scattered field, without the incident wave");
 }
 
 void write_solve_provenance(ResultFile& file, const CommandLine& command_line,
@@ -217,21 +171,19 @@ int solve(const Arguments& arguments) {
   if (grid) catch_interrupts();  // which must not leave the file that a map is written to
   const std::string& out = keys.settings.out;
   ResultFile file(out, grid ? ResultFile::Storage::disk : ResultFile::Storage::memory);
-  write_fields(file, keys.spec, solution, sensors);
+  wave::write_solution(file, solution, keys.spec.view_angles, sensors);
   std::string map_method;
   if (grid) {
-    const auto method = write_map(file, solution, *grid, keys.tolerance);
+    const auto method = wave::write_map(file, solution, *grid, keys.tolerance);
     if (!method) return ExitStatus::interrupted_for_good;
     map_method = *method;
   }
-  write_placement(file, solution);
-  write_diagnosis(file, solution.diagnosis());
   write_solve_provenance(file, command.command_line(), keys.settings, started, solution, map_method,
                          clock);
   if (is_placement_rule(keys.spec))
     write_medium(file, make_scene(keys.spec));
   else
-    file.attribute("/", "wavelength", keys.spec.wavelength);
+    ResultGroup(file, scene_table).attribute("wavelength", keys.spec.wavelength);
   file.commit();
   print_summary(solution);
   if (grid) std::printf("%s\n", map_method.c_str());

@@ -318,6 +318,12 @@ void ResultFile::group(const std::string& name) {
   Writer(file_.get(), path_.string(), name).group();
 }
 
+const std::vector<Axis>& ResultFile::bound(const std::string& role) const {
+  const auto found = roles_.find(role);
+  if (found == roles_.end()) throw std::logic_error(role + ": stands for nothing here");
+  return found->second;
+}
+
 void ResultFile::attribute(const std::string& object, const std::string& name,
                            const Attribute& value) {
   make_room(0);

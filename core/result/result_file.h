@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <span>
 #include <string>
@@ -43,6 +44,11 @@ class ResultFile {
   ~ResultFile();
 
   void group(const std::string& name);
+
+  /// What a role (core/result/dataset_row.h) stands for from here on: axes, or one unit.
+  void bind(const std::string& role, const std::vector<Axis>& names) { roles_[role] = names; }
+  /// Throws std::logic_error for a role that is not bound.
+  const std::vector<Axis>& bound(const std::string& role) const;
 
   /// Of a group (made as needed) or dataset.
   void attribute(const std::string& object, const std::string& name, const Attribute& value);
@@ -92,6 +98,7 @@ class ResultFile {
   std::filesystem::path path_;
   std::unique_ptr<FileBeside> beside_;  // outlives file_
   std::unique_ptr<Hdf5Handle> file_;
+  std::map<std::string, std::vector<Axis>> roles_;
 };
 
 /// check_writable, and throws InputError where another kind of file is, which would be lost.
