@@ -1,6 +1,6 @@
 #include "apps/extras.h"
 
-#include "apps/extras_table.h"
+#include "apps/moments_table.h"
 #include "core/error.h"
 
 namespace flatspeckle::apps {

@@ -33,6 +33,7 @@ const char* const usage =
   field        speckle fields drawn with the covariance of a scene, also over tilts of the light
   trace        rays and the curves between two points in a gradient-index field
   render       pictures of scattering media with a gradient index: 3D refractive path tracing
+  datasets     what result files hold, as in docs/format.md
   bench        what accuracy costs, where it breaks, what plans leave out: error, stability, plan
 
   flatspeckle SUBCOMMAND --help lists the keys; flatspeckle --version tells the version.
@@ -45,7 +46,7 @@ int run(const Arguments& arguments) {
       {"place", place},   {"solve", solve},       {"covariance", covariance},
       {"flux", flux},     {"validate", validate}, {"sweep", sweep},
       {"field", field},   {"merge", merge},       {"trace", trace},
-      {"render", render}, {"bench", bench}};
+      {"render", render}, {"bench", bench},       {"datasets", datasets}};
   const std::string word = arguments.size() > 1 ? arguments[1] : "--help";
   if (word == "--help" || word == "-h" || word == "help") {
     std::cout << usage;
@@ -59,7 +60,7 @@ int run(const Arguments& arguments) {
   if (subcommand == subcommands.end())
     throw InputError(
         "subcommand", word,
-        "must be one of bench covariance field flux merge place render solve sweep trace "
+        "must be one of bench covariance datasets field flux merge place render solve sweep trace "
         "validate");
   if (word != "sweep" && launched_ranks().size > 1)
     throw InputError("subcommand", word, "runs as one process; of these, sweep alone takes many");

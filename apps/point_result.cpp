@@ -48,7 +48,7 @@ void write_point(ResultFile& file, const PointResult& point, const Scene& scene)
   file.bind("MOVES", {"tilt"});
   const ResultGroup root(file, mc::moves_table);
   root.put("field_correlation", point.correlation, point.correlation_error);
-  root.put("memory_effect_range", point.range, std::span(&point.range_error, 1));
+  root.put("memory_effect_range", point.range, point.range_error);
   file.attribute("/", "range_censored", point.range_censored);
   file.attribute("/", "relative_error", point.relative_error);
   file.attribute("/", "reached", point.reached);

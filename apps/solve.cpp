@@ -15,7 +15,7 @@
 #include "core/run/stopwatch.h"
 #include "flatland/scene/scene_datasets.h"
 #include "wave_solver/maps/map_datasets.h"
-#include "wave_solver/solutions/solution_datasets.h"
+#include "wave_solver/solutions/wave_solution.h"
 
 namespace flatspeckle::apps {
 

@@ -27,5 +27,6 @@ int field(const Arguments& arguments);
 int trace(const Arguments& arguments);
 int render(const Arguments& arguments);
 int bench(const Arguments& arguments);
+int datasets(const Arguments& arguments);
 
 }  // namespace flatspeckle::apps

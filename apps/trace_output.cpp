@@ -4,7 +4,6 @@
 
 #include "apps/datasets.h"
 #include "core/result/result_group.h"
-#include "grin/connections/trials_datasets.h"
 #include "grin/rays/light_speed.h"
 
 namespace flatspeckle::apps {

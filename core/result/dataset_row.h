@@ -5,6 +5,8 @@
 
 namespace flatspeckle {
 
+class ResultFile;
+
 /// What a dataset holds: an axis (numbers: one that only counts, 0, 1, ...), values, or estimates,
 /// whose standard errors stand beside them under the name with _error.
 enum class Data { scale, numbers, real, complex, count, text, estimate, complex_estimate };

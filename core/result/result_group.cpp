@@ -10,8 +10,7 @@ namespace flatspeckle {
 namespace {
 
 /// By the alternative of Values, as type_name.
-constexpr const char* value_types[] = {"float64", "complex", "uint64",
-                                       "texts",   "float64", "uint64"};
+constexpr const char* value_types[] = {"float64", "complex", "uint64", "texts"};
 /// By that of Attribute, as AttributeRow has it.
 constexpr const char* attribute_types[] = {"bool", "int64",    "uint64",  "float64",
                                            "text", "float64s", "uint64s", "texts"};
@@ -65,10 +64,8 @@ void ResultGroup::put(const std::string& path, const Estimate& estimate) const {
 }
 
 void ResultGroup::number(const std::string& path, std::size_t count) const {
-  std::vector<double> numbers;
-  for (std::size_t i = 0; i < count; ++i) numbers.push_back(static_cast<double>(i));
   if (row(path).data != Data::numbers) throw std::logic_error(path + ": its row is no count");
-  write(row(path), numbers);
+  file_.numbered_scale(prefix_ + path, count, row(path).long_name);
 }
 
 void ResultGroup::begin(const std::string& path, const std::vector<std::size_t>& chunk) const {
@@ -95,17 +92,9 @@ void ResultGroup::write(const DatasetRow& row, const Values& values) const {
   if (value_types[values.index()] != type_name(row.data))
     throw std::logic_error(name + ": its row wants " + type_name(row.data));
   if (row.data == Data::scale || row.data == Data::numbers)
-    return file_.scale(name, std::get<0>(values), unit(row), row.long_name);
-  std::visit(
-      [&]<typename Given>(const Given& given) {
-        if constexpr (std::is_same_v<Given, std::span<const std::string>>)
-          file_.dataset(name, {given.begin(), given.end()}, axes(row), row.long_name);
-        else if constexpr (std::is_arithmetic_v<Given>)
-          file_.dataset(name, std::span(&given, 1), axes(row), unit(row), row.long_name);
-        else
-          file_.dataset(name, given, axes(row), unit(row), row.long_name);
-      },
-      values);
+    file_.scale(name, std::get<0>(values), unit(row), row.long_name);
+  else
+    file_.dataset(name, values, axes(row), unit(row), row.long_name);
 }
 
 std::vector<Axis> ResultGroup::axes(const DatasetRow& row) const {

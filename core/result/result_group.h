@@ -5,7 +5,6 @@
 #include <span>
 #include <string>
 #include <type_traits>
-#include <variant>
 #include <vector>
 
 #include "core/numbers/statistics.h"
@@ -13,11 +12,6 @@
 #include "core/result/result_file.h"
 
 namespace flatspeckle {
-
-/// Values of a dataset in row-major order, or of a scalar.
-using Values =
-    std::variant<std::span<const double>, std::span<const Complex>, std::span<const std::uint64_t>,
-                 std::span<const std::string>, double, std::uint64_t>;
 
 /// The root of a result file or one of its groups, and the table of what may be written there:
 /// units, long names, axes and companions come from its rows. Throws std::logic_error for a name
@@ -28,7 +22,14 @@ class ResultGroup {
   ResultGroup(ResultFile& file, const DatasetTable& table, const std::string& group = "");
 
   void put(const std::string& path, const Values& values) const;
+  void put(const std::string& path, double scalar) const { put(path, std::span(&scalar, 1)); }
+  void put(const std::string& path, std::uint64_t scalar) const {
+    put(path, std::span(&scalar, 1));
+  }
   void put(const std::string& path, const Values& values, std::span<const double> errors) const;
+  void put(const std::string& path, double scalar, double error) const {
+    put(path, std::span<const double>(&scalar, 1), std::span<const double>(&error, 1));
+  }
   /// Of an estimate that is real: the real parts.
   void put(const std::string& path, const Estimate& estimate) const;
   /// An axis 0, 1, ..., count - 1.

@@ -3,7 +3,6 @@
 #include <string>
 
 #include "core/result/dataset_row.h"
-#include "core/result/result_file.h"
 #include "core/result/result_reader.h"
 #include "core/run/runner.h"
 

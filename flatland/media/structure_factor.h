@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "core/result/dataset_row.h"
-#include "core/result/result_file.h"
 #include "flatland/media/domain.h"
 
 namespace flatspeckle {

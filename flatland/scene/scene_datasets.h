@@ -1,7 +1,6 @@
 #pragma once
 
 #include "core/result/dataset_row.h"
-#include "core/result/result_file.h"
 #include "flatland/scene/scene.h"
 
 namespace flatspeckle {

@@ -1,8 +1,6 @@
 #include "grin/estimators/render_datasets.h"
 
 #include "core/result/result_group.h"
-#include "grin/connections/trials_datasets.h"
-#include "grin/ends/sensor_datasets.h"
 #include "grin/rays/light_speed.h"
 
 namespace flatspeckle::grin {
@@ -59,21 +57,22 @@ void write_counts(ResultFile& file, const RenderJob& job) {
 
 RenderResult render_result(const RenderScene& scene, const RenderJob& job,
                            const GroupedSums& sums) {
-  const auto area = axes_of(scene.sensor).area;
+  const double area = picture_of(scene.sensor).area();
+  const bool is_area = std::holds_alternative<AreaDetector>(scene.sensor);
   const int pixels = job.pixels.count(), bins = job.bins.count;
   RenderResult result{rendered_picture(job, sums), pixel_mean(sums, pixels, 1, 1), {}, {}};
-  if (area) result.total = pixel_mean(sums, pixels, 1, *area);
-  if (bins > 1) result.pulse = pixel_mean(sums, pixels, bins, area.value_or(1));
+  if (is_area) result.total = pixel_mean(sums, pixels, 1, area);
+  if (bins > 1) result.pulse = pixel_mean(sums, pixels, bins, is_area ? area : 1);
   return result;
 }
 
 void write_render(ResultFile& file, const RenderScene& scene, const RenderJob& job,
                   const RenderResult& result, const std::optional<double>& length_unit) {
   const ResultGroup root(file, render_table), sensor(file, table_of(scene.sensor));
-  const SensorAxes axes = axes_of(scene.sensor);
+  const PixelRectangle pixels = picture_of(scene.sensor);
   if (length_unit) root.attribute("length_unit", *length_unit);
-  sensor.put("row", axes.row);
-  sensor.put("column", axes.column);
+  sensor.put("row", pixels.row_centres());
+  sensor.put("column", pixels.column_centres());
   sensor.put("image", result.picture.steady);
   sensor.put("mean", result.mean);
   if (result.total) sensor.put("total", *result.total);

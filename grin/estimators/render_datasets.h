@@ -3,7 +3,6 @@
 #include <optional>
 
 #include "core/result/dataset_row.h"
-#include "core/result/result_file.h"
 #include "grin/estimators/render_job.h"
 
 namespace flatspeckle::grin {

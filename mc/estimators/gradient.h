@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "core/result/dataset_row.h"
-#include "core/result/result_file.h"
 #include "flatland/request/field_moments.h"
 #include "flatland/scene/scene.h"
 #include "mc/walk/plan.h"

@@ -3,7 +3,6 @@
 #include <vector>
 
 #include "core/result/dataset_row.h"
-#include "core/result/result_file.h"
 #include "mc/speckle/field_drawing.h"
 
 namespace flatspeckle::mc {

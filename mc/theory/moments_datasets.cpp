@@ -141,7 +141,7 @@ class MovesWriter {
   void range(const std::string& path, RangeEstimate estimate, double scale) {
     estimate.range.value *= scale;
     estimate.error *= scale;
-    out_.put(path, estimate.range.value, std::span(&estimate.error, 1));
+    out_.put(path, estimate.range.value, estimate.error);
     out_.attribute(path, "censored", static_cast<std::uint64_t>(estimate.range.censored));
     ranges_.push_back({out_.row(path).long_name, estimate});
   }

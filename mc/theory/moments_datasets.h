@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "core/result/dataset_row.h"
-#include "core/result/result_file.h"
 #include "flatland/request/field_moments.h"
 #include "flatland/scene/scene.h"
 #include "mc/theory/tilt_shift.h"

@@ -20,12 +20,11 @@ const DatasetTable map_table{
 
 namespace {
 
-void write_pixels(const ResultGroup& root, const MapGrid& grid) {
-  std::vector<double> z, x;
-  for (std::size_t i = 0; i < grid.nz; ++i) z.push_back(grid.pixel(0, i).z);
-  for (std::size_t i = 0; i < grid.nx; ++i) x.push_back(grid.pixel(i, 0).x);
-  root.put("map_z", z);
-  root.put("map_x", x);
+std::vector<double> pixel_centres(const MapGrid& grid, std::size_t count, bool along_z) {
+  std::vector<double> centres;
+  for (std::size_t i = 0; i < count; ++i)
+    centres.push_back(along_z ? grid.pixel(0, i).z : grid.pixel(i, 0).x);
+  return centres;
 }
 
 }  // namespace
@@ -34,7 +33,8 @@ std::optional<std::string> write_map(ResultFile& file, const WaveSolution& solut
                                      const MapGrid& grid, double tolerance) {
   FieldMap map(solution, grid, tolerance);
   const ResultGroup root(file, map_table);
-  write_pixels(root, grid);
+  root.put("map_z", pixel_centres(grid, grid.nz, true));
+  root.put("map_x", pixel_centres(grid, grid.nx, false));
   root.begin("total_field", {1, map_chunk, map_chunk});
   root.attribute("total_field", "wavelength", 2 * std::numbers::pi / solution.system().k());
   const double all = static_cast<double>(grid.nx) * static_cast<double>(grid.nz);

@@ -4,7 +4,6 @@
 #include <string>
 
 #include "core/result/dataset_row.h"
-#include "core/result/result_file.h"
 #include "wave_solver/maps/field_map.h"
 
 namespace flatspeckle::wave {
