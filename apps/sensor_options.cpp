@@ -111,56 +111,6 @@ grin::DirectionalDetector directional(const SensorSpec& spec) {
           pixels_of(spec)};
 }
 
-/// Centres of `count` equal parts of (-half, half), rising or falling.
-std::vector<double> centres(double half, int count, bool rising) {
-  std::vector<double> values;
-  for (int i = 0; i < count; ++i) {
-    const double x = half * ((2 * i + 1.0) / count - 1);
-    values.push_back(rising ? x : -x);
-  }
-  return values;
-}
-
-SensorAxes sides(double half_width, double half_height, const grin::PixelGrid& pixels) {
-  SensorAxes axes;
-  axes.column = centres(half_width, pixels.columns, true);
-  axes.row = centres(half_height, pixels.rows, false);
-  return axes;
-}
-
-SensorAxes axes_of_kind(const grin::Camera& camera) {
-  const double half = std::tan(camera.field_of_view / 2);
-  SensorAxes axes = sides(half, half * camera.pixels.rows / camera.pixels.columns, camera.pixels);
-  axes.units = "1";
-  axes.row_name = "tangent of the angle above the line of sight";
-  axes.column_name = "tangent of the angle to the right of it";
-  axes.image_units = "1/(length^2 sr)";
-  axes.image_name = "L/n^2 averaged over the pixel";
-  return axes;
-}
-
-SensorAxes axes_of_kind(const grin::AreaDetector& detector) {
-  SensorAxes axes = sides(detector.width / 2, detector.height / 2, detector.pixels);
-  axes.units = "length";
-  axes.row_name = "height on the detector, along sensor_up";
-  axes.column_name = "position to the right, as light that arrives sees it";
-  axes.image_units = "1/length^2";
-  axes.image_name = "irradiance averaged over the pixel";
-  axes.area = detector.width * detector.height;
-  return axes;
-}
-
-SensorAxes axes_of_kind(const grin::DirectionalDetector& detector) {
-  const double half = std::sin(detector.half_angle);
-  SensorAxes axes = sides(half, half, detector.pixels);
-  axes.units = "1";
-  axes.row_name = "component of the direction along sensor_up";
-  axes.column_name = "component of the direction along sensor_direction x sensor_up";
-  axes.image_units = "1/sr";
-  axes.image_name = "power per solid angle averaged over the pixel";
-  return axes;
-}
-
 }  // namespace
 
 void add_sensor_options(Options& options, SensorSpec& spec) {
@@ -188,10 +138,6 @@ grin::Sensor make_sensor(const Subcommand& command, const SensorSpec& spec) {
   if (spec.kind == "camera") return camera(command, spec);
   if (spec.kind == "area") return area(spec);
   return directional(spec);
-}
-
-SensorAxes axes_of(const grin::Sensor& sensor) {
-  return std::visit([](const auto& kind) { return axes_of_kind(kind); }, sensor);
 }
 
 }  // namespace flatspeckle::apps

@@ -23,14 +23,4 @@ void add_sensor_options(Options& options, SensorSpec& spec);
 /// Throws InputError, also for keys that the sensor has no use for.
 grin::Sensor make_sensor(const Subcommand& command, const SensorSpec& spec);
 
-/// Centres of the pixels along rows and columns, and what they measure.
-struct SensorAxes {
-  std::vector<double> row, column;
-  const char* units = "";                          ///< of row and column
-  const char *row_name = "", *column_name = "";    ///< in words
-  const char *image_units = "", *image_name = "";  ///< of a pixel, for lights of power 1
-  std::optional<double> area = {};                 ///< over which an irradiance adds up to a power
-};
-SensorAxes axes_of(const grin::Sensor& sensor);
-
 }  // namespace flatspeckle::apps

@@ -7,7 +7,6 @@
 #include <omp.h>
 
 #include "apps/key_values.h"
-#include "apps/light_speed.h"
 #include "apps/ray_connections.h"
 #include "apps/ray_tracing.h"
 #include "apps/run_options.h"
@@ -18,6 +17,7 @@
 #include "core/result/provenance.h"
 #include "core/result/result_file.h"
 #include "core/run/stopwatch.h"
+#include "grin/rays/light_speed.h"
 
 namespace flatspeckle::apps {
 
@@ -138,7 +138,7 @@ std::string ends_of(const std::vector<TracedRay>& rays, double length_unit) {
     text << std::setprecision(3) << ", spread " << high - low << name;
   };
   range("optical path ", 1, "");
-  if (length_unit != 1) range("time ", length_unit / light_speed, " s");
+  if (length_unit != 1) range("time ", length_unit / grin::light_speed, " s");
   return text.str();
 }
 
@@ -149,7 +149,7 @@ Outcome trace_light(const Subcommand& command, const TraceKeys& keys, ResultFile
   const RaySteps steps = make_ray_steps(keys.stops, scene.scale);
   const auto rays = trace_rays(scene, stops, steps, starts, path_points(keys));
   write_rays(file, scene, starts, rays, keys.length_unit);
-  if (keys.path_points > 0) write_paths(file, scene, "ray", rays);
+  if (keys.path_points > 0) write_paths(file, scene, rays);
   return {std::to_string(rays.size()) + (rays.size() == 1 ? " ray: " : " rays: ") + plan_of(steps),
           ends_of(rays, keys.length_unit), static_cast<double>(rays.size())};
 }
@@ -210,7 +210,7 @@ Outcome trace_curves(const Subcommand& command, const TraceKeys& keys, ResultFil
   write_connections(file, found, keys.length_unit);
   scene.rim.reset();  // curves stay inside
   if (keys.path_points > 0 && !found.curves.empty())
-    write_paths(file, scene, "curve", curve_rays(scene, keys, found, step));
+    write_paths(file, scene, curve_rays(scene, keys, found, step));
   std::ostringstream plan;
   plan << keys.connect.trials << " trials: sharma, step " << step;
   return {plan.str(), table_of(found), static_cast<double>(keys.connect.trials)};

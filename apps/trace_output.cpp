@@ -2,101 +2,125 @@
 
 #include <algorithm>
 
-#include "apps/light_speed.h"
-#include "apps/trials_output.h"
+#include "apps/datasets.h"
+#include "core/result/result_group.h"
+#include "grin/rays/light_speed.h"
 
 namespace flatspeckle::apps {
+
+const DatasetTable rays_table{
+    .name = "rays",
+    .rows = {{"ray", Data::numbers, "", "1", "number of the ray"},
+             {"curve", Data::numbers, "", "1", "number of the curve, by optical path"},
+             {"start/x", Data::real, "ray", "length", "x of the start"},
+             {"start/y", Data::real, "ray", "length", "y of the start"},
+             {"start/z", Data::real, "ray", "length", "z of the start"},
+             {"start/dx", Data::real, "THING", "1", "x of the unit tangent at the start"},
+             {"start/dy", Data::real, "THING", "1", "y of the unit tangent at the start"},
+             {"start/dz", Data::real, "THING", "1", "z of the unit tangent at the start"},
+             {"exit/x", Data::real, "ray", "length", "x of the end"},
+             {"exit/y", Data::real, "ray", "length", "y of the end"},
+             {"exit/z", Data::real, "ray", "length", "z of the end"},
+             {"exit/dx", Data::real, "THING", "1", "x of the unit tangent at the end"},
+             {"exit/dy", Data::real, "THING", "1", "y of the unit tangent at the end"},
+             {"exit/dz", Data::real, "THING", "1", "z of the unit tangent at the end"},
+             {"arc_length", Data::real, "THING", "length", "length of the curve"},
+             {"optical_path", Data::real, "THING", "length",
+              "integral of the index along the curve"},
+             {"time", Data::real, "THING", "s", "optical path over the speed of light"},
+             {"status", Data::count, "ray", "1",
+              "0: ended on a stop surface, 1: at max_length, 2: at the edge of the grid"},
+             {"surface", Data::count, "ray", "1",
+              "number of the surface: planes, spheres, boxes; of status 1 and 2, how many there "
+              "are"},
+             {"steps", Data::count, "ray", "1", "steps of the integrator"},
+             {"invariants/index_mismatch", Data::real, "ray", "1",
+              "largest difference of |v| and the index at a step's end"},
+             {"invariants/angular_momentum", Data::real, "ray", "length",
+              "length of (x - centre) cross v, at the start"},
+             {"invariants/angular_momentum_change", Data::real, "ray", "length",
+              "how far it is off at the end"},
+             {"invariants/axial_momentum", Data::real, "ray", "1",
+              "size of v along the axis, at the start"},
+             {"invariants/axial_momentum_change", Data::real, "ray", "1",
+              "how far it is off at the end"},
+             {"invariants/axial_rotation", Data::real, "ray", "length",
+              "size of the angular momentum along the axis, at the start"},
+             {"invariants/axial_rotation_change", Data::real, "ray", "length",
+              "how far it is off at the end"},
+             {"invariants/transverse_momentum", Data::real, "ray", "1",
+              "length of v across the gradient, n sin(angle), at the start"},
+             {"invariants/transverse_momentum_change", Data::real, "ray", "1",
+              "how far it is off at the end"},
+             {"spreading", Data::real, "curve", "length^2",
+              "|J|: area across the curve at its end per solid angle at its start"},
+             {"caustics", Data::count, "curve", "1", "caustics on the way"},
+             {"found", Data::count, "curve", "1", "trials that ended on it"},
+             {"path_point", Data::numbers, "", "1", "number of a point, evenly in arc length"},
+             {"path/x", Data::real, "THING path_point", "length", "x of the points"},
+             {"path/y", Data::real, "THING path_point", "length", "y of the points"},
+             {"path/z", Data::real, "THING path_point", "length", "z of the points"},
+             {"map_z", Data::scale, "", "length", "depth of the index map's points"},
+             {"map_x", Data::scale, "", "length", "x of the index map's points"},
+             {"map_y", Data::scale, "", "length", "y of the index map's points"},
+             {"index_map", Data::real, "ACROSS map_z", "1",
+              "index in a plane, 0 where there is no field"}},
+    .attributes = {{"index_map", "x", "float64", "where its plane lies, if across x"},
+                   {"index_map", "y", "float64", "where its plane lies, if across y"}},
+    .roles = {{"THING", {"ray", "curve"}}, {"ACROSS", {"map_x", "map_y"}}}};
 
 namespace {
 
 using grin::Vec3;
 
-/// One column of a table over the things of an axis.
-class Columns {
- public:
-  Columns(ResultFile& file, std::string axis) : file_(file), axis_(std::move(axis)) {}
-
-  template <class Things, class Value>
-  void numbers(const Things& things, const std::string& name, const Value& value,
-               const std::string& units, const std::string& long_name) {
-    std::vector<double> values;
-    for (const auto& thing : things) values.push_back(value(thing));
-    file_.dataset(name, values, {axis_}, units, long_name);
-  }
-  template <class Things, class Value>
-  void counts(const Things& things, const std::string& name, const Value& value,
-              const std::string& long_name) {
-    std::vector<std::uint64_t> values;
-    for (const auto& thing : things) values.push_back(static_cast<std::uint64_t>(value(thing)));
-    file_.dataset(name, values, {axis_}, "1", long_name);
-  }
-  /// name + "x", "y", "z"
-  template <class Things, class Value>
-  void vectors(const Things& things, const std::string& name, const Value& value,
-               const std::string& units, const std::string& long_name) {
-    for (int i = 0; i < 3; ++i)
-      numbers(
-          things, name + "xyz"[i], [&](const auto& thing) { return Vec3(value(thing))[i]; }, units,
-          std::string(1, "xyz"[i]) + " of " + long_name);
-  }
-
- private:
-  ResultFile& file_;
-  std::string axis_;
-};
+/// name + "x", "y", "z"
+template <class Things, class Value>
+void put_vectors(const ResultGroup& root, const std::string& name, const Things& things,
+                 const Value& value) {
+  for (int i = 0; i < 3; ++i)
+    root.put(name + "xyz"[i],
+             column(things, [&](const auto& thing) { return Vec3(value(thing))[i]; }));
+}
 
 using Invariant = Vec3 (*)(const grin::RayInvariants&);
 
 /// An invariant at the start, and how far the end is off it.
-void write_invariant(Columns& columns, const std::vector<TracedRay>& rays, const std::string& name,
-                     const std::string& units, Invariant value, const std::string& long_name) {
-  const std::string start = "invariants/" + name;
-  columns.numbers(
-      rays, start, [&](const TracedRay& ray) { return value(ray.first).norm(); }, units,
-      long_name + ", at the start");
-  columns.numbers(
-      rays, start + "_change",
-      [&](const TracedRay& ray) { return (value(ray.last) - value(ray.first)).norm(); }, units,
-      "how far it is off at the end");
+void put_invariant(const ResultGroup& root, const std::vector<TracedRay>& rays,
+                   const std::string& name, Invariant value) {
+  root.put("invariants/" + name,
+           column(rays, [&](const TracedRay& ray) { return value(ray.first).norm(); }));
+  root.put("invariants/" + name + "_change", column(rays, [&](const TracedRay& ray) {
+             return (value(ray.last) - value(ray.first)).norm();
+           }));
 }
 
-void write_invariants(Columns& columns, Symmetry symmetry, const std::vector<TracedRay>& rays) {
-  columns.numbers(
-      rays, "invariants/index_mismatch", [](const TracedRay& ray) { return ray.index_mismatch; },
-      "1", "largest difference of |v| and the index at a step's end");
+void write_invariants(const ResultGroup& root, Symmetry symmetry,
+                      const std::vector<TracedRay>& rays) {
+  using Invariants = grin::RayInvariants;
+  root.put("invariants/index_mismatch", column(rays, &TracedRay::index_mismatch));
   if (symmetry == Symmetry::sphere)
-    write_invariant(
-        columns, rays, "angular_momentum", "length",
-        [](const grin::RayInvariants& i) -> Vec3 { return i.angular_momentum; },
-        "length of (x - centre) cross v");
+    put_invariant(root, rays, "angular_momentum",
+                  [](const Invariants& i) -> Vec3 { return i.angular_momentum; });
   if (symmetry == Symmetry::guide || symmetry == Symmetry::round_guide)
-    write_invariant(
-        columns, rays, "axial_momentum", "1",
-        [](const grin::RayInvariants& i) { return Vec3(i.axial_momentum, 0, 0); },
-        "size of v along the axis");
+    put_invariant(root, rays, "axial_momentum",
+                  [](const Invariants& i) { return Vec3(i.axial_momentum, 0, 0); });
   if (symmetry == Symmetry::round_guide)
-    write_invariant(
-        columns, rays, "axial_rotation", "length",
-        [](const grin::RayInvariants& i) { return Vec3(i.axial_rotation, 0, 0); },
-        "size of the angular momentum along the axis");
+    put_invariant(root, rays, "axial_rotation",
+                  [](const Invariants& i) { return Vec3(i.axial_rotation, 0, 0); });
   if (symmetry == Symmetry::stratified)
-    write_invariant(
-        columns, rays, "transverse_momentum", "1",
-        [](const grin::RayInvariants& i) -> Vec3 { return i.transverse; },
-        "length of v across the gradient, n sin(angle)");
+    put_invariant(root, rays, "transverse_momentum",
+                  [](const Invariants& i) -> Vec3 { return i.transverse; });
 }
 
-void write_lengths(Columns& columns, const auto& things, const auto& end_of, double length_unit) {
-  columns.numbers(
-      things, "arc_length", [&](const auto& t) { return end_of(t).arc_length; }, "length",
-      "length of the curve");
-  columns.numbers(
-      things, "optical_path", [&](const auto& t) { return end_of(t).optical_path; }, "length",
-      "integral of the index along the curve");
-  columns.numbers(
-      things, "time",
-      [&](const auto& t) { return end_of(t).optical_path * length_unit / light_speed; }, "s",
-      "optical path over the speed of light");
+template <class Things, class End>
+void write_lengths(const ResultGroup& root, const Things& things, const End& end_of,
+                   double length_unit) {
+  const auto path = [&](const auto& thing) { return end_of(thing).optical_path; };
+  root.put("arc_length", column(things, [&](const auto& t) { return end_of(t).arc_length; }));
+  root.put("optical_path", column(things, path));
+  root.put("time", column(things, [&](const auto& t) {
+             return path(t) * length_unit / grin::light_speed;
+           }));
 }
 
 /// A rectangle in z and one transverse axis at a value of the other.
@@ -150,76 +174,56 @@ void write_index_map(ResultFile& file, const SceneField& scene,
       x[plane.out] = plane.at;
       map.push_back(index_at(scene, x));
     }
-  file.scale("map_z", z, "length", "depth of the index map's points");
-  file.scale("map_" + up, across, "length", up + " of the index map's points");
-  file.dataset("index_map", map, {"map_" + up, "map_z"}, "1",
-               "index in a plane, 0 where there is no field");
-  file.attribute("index_map", out, plane.at);
+  const ResultGroup root(file, rays_table);
+  root.put("map_z", z);
+  root.put("map_" + up, across);
+  file.bind("ACROSS", {"map_" + up});
+  root.put("index_map", map);
+  root.attribute("index_map", out, plane.at);
 }
 
 }  // namespace
 
 void write_rays(ResultFile& file, const SceneField& scene, const std::vector<RayStart>& starts,
                 const std::vector<TracedRay>& rays, double length_unit) {
-  file.numbered_scale("ray", rays.size(), "number of the ray");
-  Columns columns(file, "ray");
-  columns.vectors(
-      starts, "start/", [](const RayStart& s) { return s.x; }, "length", "the start");
-  columns.vectors(
-      starts, "start/d", [](const RayStart& s) { return s.direction; }, "1",
-      "the unit tangent at the start");
-  columns.vectors(
-      rays, "exit/", [](const TracedRay& r) { return r.end.x; }, "length", "the end");
-  columns.vectors(
-      rays, "exit/d", [](const TracedRay& r) { return r.end.v.normalized(); }, "1",
-      "the unit tangent at the end");
-  write_lengths(
-      columns, rays, [](const TracedRay& r) { return r.end; }, length_unit);
-  columns.counts(
-      rays, "status", [](const TracedRay& r) { return r.status; },
-      "0: ended on a stop surface, 1: at max_length, 2: at the edge of the grid");
-  columns.counts(
-      rays, "surface", [](const TracedRay& r) { return r.surface; },
-      "number of the surface: planes, spheres, boxes; of status 1 and 2, how many there are");
-  columns.counts(
-      rays, "steps", [](const TracedRay& r) { return r.steps; }, "steps of the integrator");
-  write_invariants(columns, scene.symmetry, rays);
+  const ResultGroup root(file, rays_table);
+  root.number("ray", rays.size());
+  file.bind("THING", {"ray"});
+  put_vectors(root, "start/", starts, [](const RayStart& s) { return s.x; });
+  put_vectors(root, "start/d", starts, [](const RayStart& s) { return s.direction; });
+  put_vectors(root, "exit/", rays, [](const TracedRay& r) { return r.end.x; });
+  put_vectors(root, "exit/d", rays, [](const TracedRay& r) { return r.end.v.normalized(); });
+  write_lengths(root, rays, std::mem_fn(&TracedRay::end), length_unit);
+  root.put("status", column(rays, &TracedRay::status));
+  root.put("surface", column(rays, &TracedRay::surface));
+  root.put("steps", column(rays, &TracedRay::steps));
+  write_invariants(root, scene.symmetry, rays);
 }
 
 void write_connections(ResultFile& file, const FoundConnections& found, double length_unit) {
   write_trials(file, found.statistics);
   if (found.curves.empty()) return;
-  using Found = grin::FoundConnection;
-  file.numbered_scale("curve", found.curves.size(), "number of the curve, by optical path");
-  Columns columns(file, "curve");
-  columns.vectors(
-      found.curves, "start/d", [](const Found& f) { return f.curve.start_direction; }, "1",
-      "the unit tangent at the start");
-  columns.vectors(
-      found.curves, "exit/d", [](const Found& f) { return f.curve.end_direction; }, "1",
-      "the unit tangent at the end");
-  write_lengths(
-      columns, found.curves, [](const Found& f) { return f.curve; }, length_unit);
-  columns.numbers(
-      found.curves, "spreading", [](const Found& f) { return f.curve.spreading; }, "length^2",
-      "|J|: area across the curve at its end per solid angle at its start");
-  columns.counts(
-      found.curves, "caustics", [](const Found& f) { return f.curve.caustics; },
-      "caustics on the way");
-  columns.counts(
-      found.curves, "found", [](const Found& f) { return f.found; }, "trials that ended on it");
+  std::vector<grin::Connection> curves;
+  for (const auto& [curve, times] : found.curves) curves.push_back(curve);
+  const ResultGroup root(file, rays_table);
+  root.number("curve", curves.size());
+  file.bind("THING", {"curve"});
+  put_vectors(root, "start/d", curves, std::mem_fn(&grin::Connection::start_direction));
+  put_vectors(root, "exit/d", curves, std::mem_fn(&grin::Connection::end_direction));
+  write_lengths(root, curves, std::identity(), length_unit);
+  root.put("spreading", column(curves, &grin::Connection::spreading));
+  root.put("caustics", column(curves, &grin::Connection::caustics));
+  root.put("found", column(found.curves, &grin::FoundConnection::found));
 }
 
-void write_paths(ResultFile& file, const SceneField& scene, const std::string& axis,
-                 const std::vector<TracedRay>& rays) {
-  const std::size_t points = rays.front().path.size();
-  file.numbered_scale("path_point", points, "number of a point, evenly in arc length");
+void write_paths(ResultFile& file, const SceneField& scene, const std::vector<TracedRay>& rays) {
+  const ResultGroup root(file, rays_table);
+  root.number("path_point", rays.front().path.size());
   for (int i = 0; i < 3; ++i) {
     std::vector<double> values;
     for (const auto& ray : rays)
       for (const Vec3& x : ray.path) values.push_back(x[i]);
-    const std::string name(1, "xyz"[i]);
-    file.dataset("path/" + name, values, {axis, "path_point"}, "length", name + " of the points");
+    root.put(std::string("path/") + "xyz"[i], values);
   }
   write_index_map(file, scene, rays);
 }

@@ -18,8 +18,7 @@ void write_rays(ResultFile& file, const SceneField& scene, const std::vector<Ray
 void write_connections(ResultFile& file, const FoundConnections& found, double length_unit);
 
 /// Stored points of rays or curves, and the index over the rectangle in z and the transverse axis
-/// that they span most, so that they can be drawn. axis: "ray" or "curve".
-void write_paths(ResultFile& file, const SceneField& scene, const std::string& axis,
-                 const std::vector<TracedRay>& rays);
+/// that they span most, so that they can be drawn. The rays or curves must have been written.
+void write_paths(ResultFile& file, const SceneField& scene, const std::vector<TracedRay>& rays);
 
 }  // namespace flatspeckle::apps

@@ -23,12 +23,6 @@ BoundaryPoint centre_on(const Surface& boundary, const Vec3& centre) {
   return *at;
 }
 
-PixelRectangle rectangle(const AreaDetector& detector) {
-  require_positive("sensor_size", detector.width);
-  require_positive("sensor_size", detector.height);
-  return {detector.pixels, detector.width / 2, detector.height / 2};
-}
-
 double sine_squared_of_acceptance(double acceptance) {
   if (!(acceptance > 0 && acceptance <= pi / 2 * (1 + 1e-12)))
     throw InputError("acceptance", acceptance, "must be in (0, pi/2]");
@@ -38,8 +32,25 @@ double sine_squared_of_acceptance(double acceptance) {
 
 }  // namespace
 
+const DatasetTable area_table{
+    "area",
+    {{"row", Data::scale, "", "length", "height on the detector, along sensor_up"},
+     {"column", Data::scale, "", "length", "position to the right, as light that arrives sees it"},
+     {"image", Data::estimate, "row column", "1/length^2", "irradiance averaged over the pixel"},
+     {"mean", Data::estimate, "", "1/length^2", "mean over the pixels"},
+     {"total", Data::estimate, "", "1", "power on the detector"},
+     {"transient", Data::estimate, "row column optical_path", "1/length^2",
+      "irradiance averaged over the pixel, in the bin"},
+     {"pulse", Data::estimate, "optical_path", "1", "power on the detector, in the bin"}}};
+
+PixelRectangle picture_of(const AreaDetector& detector) {
+  require_positive("sensor_size", detector.width);
+  require_positive("sensor_size", detector.height);
+  return {detector.pixels, detector.width / 2, detector.height / 2};
+}
+
 AreaDetectorEnd::AreaDetectorEnd(const AreaDetector& detector, const Stage& stage)
-    : face_(rectangle(detector)),
+    : face_(picture_of(detector)),
       boundary_(stage.boundary),
       centre_(centre_on(stage.boundary, detector.centre).x),
       view_("sensor_at", -centre_on(stage.boundary, detector.centre).inward, detector.up),

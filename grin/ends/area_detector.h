@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "core/result/dataset_row.h"
 #include "grin/ends/boundary_patch.h"
 #include "grin/ends/path_end.h"
 #include "grin/ends/pixel_grid.h"
@@ -18,6 +19,11 @@ struct AreaDetector {
   PixelGrid pixels;
   double acceptance;  ///< half angle, rad, up to pi/2
 };
+
+extern const DatasetTable area_table;
+
+/// Throws InputError for sizes that are not positive.
+PixelRectangle picture_of(const AreaDetector& detector);
 
 /// With u, v on the rectangle, W = (du dv / dA) / pixel area; du dv / dA is the cosine between the
 /// normals at the point and at the centre, 1 on a box.

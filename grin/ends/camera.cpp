@@ -5,20 +5,27 @@
 
 namespace flatspeckle::grin {
 
-namespace {
+const DatasetTable camera_table{
+    "camera",
+    {{"row", Data::scale, "", "1", "tangent of the angle above the line of sight"},
+     {"column", Data::scale, "", "1", "tangent of the angle to the right of it"},
+     {"image", Data::estimate, "row column", "1/(length^2 sr)", "L/n^2 averaged over the pixel"},
+     {"mean", Data::estimate, "", "1/(length^2 sr)", "mean over the pixels"},
+     {"transient", Data::estimate, "row column optical_path", "1/(length^2 sr)",
+      "L/n^2 averaged over the pixel, in the bin"},
+     {"pulse", Data::estimate, "optical_path", "1/(length^2 sr)",
+      "mean over the pixels, in the bin"}}};
 
-PixelRectangle film(const Camera& camera) {
+PixelRectangle picture_of(const Camera& camera) {
   if (!(camera.field_of_view > 0 && camera.field_of_view < std::numbers::pi))
     throw InputError("field_of_view", camera.field_of_view, "must be in (0, pi)");
   const double half_width = std::tan(camera.field_of_view / 2);
   return {camera.pixels, half_width, half_width * camera.pixels.rows / camera.pixels.columns};
 }
 
-}  // namespace
-
 CameraEnd::CameraEnd(const Camera& camera, const Stage& stage)
     : view_("sensor_direction", camera.forward, camera.up),
-      film_(film(camera)),
+      film_(picture_of(camera)),
       centre_(camera.x),
       focus_distance_(1),
       body_(body_surface(stage)) {

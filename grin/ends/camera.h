@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "core/result/dataset_row.h"
 #include "grin/ends/boundary_patch.h"
 #include "grin/ends/path_end.h"
 #include "grin/ends/pixel_grid.h"
@@ -17,6 +18,11 @@ struct Camera {
                               ///< can be hit; the average is over it, too
   double focus_distance = 1;  ///< of the lens, along forward, more than its radius
 };
+
+extern const DatasetTable camera_table;
+
+/// Throws InputError for sizes that are not positive.
+PixelRectangle picture_of(const Camera& camera);
 
 /// The film is the plane of focus, seen from the camera's centre: u and v are tangents. A ray from
 /// x on the lens along d meets the plane at x + t d, t = F' / cos(theta), F' = F - (x - centre).

@@ -5,9 +5,19 @@
 
 namespace flatspeckle::grin {
 
-namespace {
+const DatasetTable directional_table{
+    "directional",
+    {{"row", Data::scale, "", "1", "component of the direction along sensor_up"},
+     {"column", Data::scale, "", "1",
+      "component of the direction along sensor_direction x sensor_up"},
+     {"image", Data::estimate, "row column", "1/sr",
+      "power per solid angle averaged over the pixel"},
+     {"mean", Data::estimate, "", "1/sr", "mean over the pixels"},
+     {"transient", Data::estimate, "row column optical_path", "1/sr",
+      "power per solid angle averaged over the pixel, in the bin"},
+     {"pulse", Data::estimate, "optical_path", "1/sr", "mean over the pixels, in the bin"}}};
 
-PixelRectangle picture(const DirectionalDetector& detector) {
+PixelRectangle picture_of(const DirectionalDetector& detector) {
   constexpr double right_angle = std::numbers::pi / 2;
   if (!(detector.half_angle > 0 && detector.half_angle <= right_angle * (1 + 1e-12)))
     throw InputError("half_angle", detector.half_angle, "must be in (0, pi/2]");
@@ -15,11 +25,9 @@ PixelRectangle picture(const DirectionalDetector& detector) {
   return {detector.pixels, sine, sine};
 }
 
-}  // namespace
-
 DirectionalEnd::DirectionalEnd(const DirectionalDetector& detector, const Stage& stage)
     : view_("sensor_direction", detector.forward, detector.up),
-      picture_(picture(detector)),
+      picture_(picture_of(detector)),
       boundary_(stage.boundary, "sensor"),
       body_(body_surface(stage)) {}
 

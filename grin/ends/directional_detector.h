@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "core/result/dataset_row.h"
 #include "grin/ends/boundary_patch.h"
 #include "grin/ends/path_end.h"
 #include "grin/ends/pixel_grid.h"
@@ -16,6 +17,11 @@ struct DirectionalDetector {
   double half_angle;  ///< of the square's half side, its sine; up to pi/2
   PixelGrid pixels;
 };
+
+extern const DatasetTable directional_table;
+
+/// Throws InputError for sizes that are not positive.
+PixelRectangle picture_of(const DirectionalDetector& detector);
 
 /// With u, v the components of the outward direction, du dv = cos(theta) dw, theta from forward:
 /// W = cos(theta) / pixel area. Pixels beyond the horizon, in the corners, stay dark.

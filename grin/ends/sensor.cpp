@@ -18,6 +18,15 @@ End sensor_end(const DirectionalDetector& detector, const Stage& stage) {
 
 }  // namespace
 
+const DatasetTable& table_of(const Sensor& sensor) {
+  static constexpr const DatasetTable* tables[] = {&camera_table, &area_table, &directional_table};
+  return *tables[sensor.index()];
+}
+
+PixelRectangle picture_of(const Sensor& sensor) {
+  return std::visit([](const auto& kind) { return picture_of(kind); }, sensor);
+}
+
 SensorEnd::SensorEnd(const Sensor& sensor, const Stage& stage)
     : end_(std::visit([&](const auto& s) { return sensor_end(s, stage); }, sensor)) {}
 

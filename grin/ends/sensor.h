@@ -10,6 +10,11 @@ namespace flatspeckle::grin {
 
 using Sensor = std::variant<Camera, AreaDetector, DirectionalDetector>;
 
+/// What the file of a sensor has.
+const DatasetTable& table_of(const Sensor& sensor);
+/// Its pixels. Throws InputError for sizes that are not positive.
+PixelRectangle picture_of(const Sensor& sensor);
+
 /// The sensor of a scene as an end of paths; same interface as Lights.
 ///
 /// `stratum`, the same number in (0, 1) for the position and the direction, picks the pixel: evenly

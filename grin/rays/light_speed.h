@@ -1,7 +1,7 @@
 #pragma once
 
-namespace flatspeckle::apps {
+namespace flatspeckle::grin {
 
 inline constexpr double light_speed = 299'792'458;  ///< m/s
 
-}  // namespace flatspeckle::apps
+}  // namespace flatspeckle::grin

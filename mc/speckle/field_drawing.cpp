@@ -1,7 +1,6 @@
-#include "apps/field_drawing.h"
+#include "mc/speckle/field_drawing.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <limits>
 
 #include "core/run/interrupt.h"
@@ -9,7 +8,7 @@
 #include "mc/speckle/field_statistics.h"
 #include "mc/speckle/speckle_field.h"
 
-namespace flatspeckle::apps {
+namespace flatspeckle::mc {
 
 namespace {
 
@@ -29,18 +28,17 @@ double unknown_error(const GroupedSums&) {
 class Drawing {
  public:
   Drawing(const Scene& scene, const DrawingSettings& settings)
-      : scene_(scene), settings_(settings), plan_(mc::make_plan(scene, settings.reversed)) {}
+      : scene_(scene), settings_(settings), plan_(make_plan(scene, settings.reversed)) {}
 
-  std::optional<DrawnFields> draw(const mc::FieldDemand& demand) {
-    const RunState survey =
-        run("survey", mc::survey_job(scene_, plan_, settings_.seed), mc::survey_paths);
+  std::optional<DrawnFields> draw(const FieldDemand& demand,
+                                  const std::function<void(const FieldPlan&)>& planned) {
+    const RunState survey = run("survey", survey_job(scene_, plan_, settings_.seed), survey_paths);
     if (interrupted()) return std::nullopt;
-    drawn_.plan = mc::make_field_plan(scene_, mc::read_survey(survey.sums), demand);
-    std::printf("%s\n", drawn_.plan.describe().c_str());
-    std::fflush(stdout);
-    const bool by_paths = drawn_.plan.method == mc::FieldMethod::paths;
+    drawn_.plan = make_field_plan(scene_, read_survey(survey.sums), demand);
+    planned(drawn_.plan);
+    const bool by_paths = drawn_.plan.method == FieldMethod::paths;
     const auto source =
-        by_paths ? mc::fields_by_paths(scene_, plan_, settings_.seed, drawn_.plan.paths_per_field)
+        by_paths ? fields_by_paths(scene_, plan_, settings_.seed, drawn_.plan.paths_per_field)
                  : from_covariance();
     if (interrupted()) return std::nullopt;
     const RunState fields = run("fields", field_job(source, demand.fields), demand.fields);
@@ -62,26 +60,24 @@ class Drawing {
   }
 
   bool siegert_applies() const {
-    return mc::equal_step(scene_.request.views) &&
-           scene_.request.views.size() <= most_siegert_views;
+    return equal_step(scene_.request.views) && scene_.request.views.size() <= most_siegert_views;
   }
 
   /// Of all views under these lights, the first of which is the scene's first.
   std::pair<FieldJob, RunState> covariance(const Lights& lights, std::uint64_t paths) {
     Scene scene = scene_;
     scene.request = full_request(lights, scene_.request.views);
-    mc::Plan plan = mc::make_plan(scene, settings_.reversed);
+    Plan plan = make_plan(scene, settings_.reversed);
     plan.paths_per_batch = (paths + covariance_batches - 1) / covariance_batches;
-    FieldJob job = mc::covariance_job(scene, plan, settings_.seed);
+    FieldJob job = covariance_job(scene, plan, settings_.seed);
     job.batches.relative_error = unknown_error;
     RunState state = run("covariance", job.batches, paths);
     if (siegert_applies())
-      drawn_.siegert =
-          mc::siegert_relation(state.sums, job.covariance, scene_.request.views.size());
+      drawn_.siegert = siegert_relation(state.sums, job.covariance, scene_.request.views.size());
     return {job, std::move(state)};
   }
 
-  mc::FieldDraw from_covariance() {
+  FieldDraw from_covariance() {
     const auto [job, state] = covariance(scene_.request.lights, drawn_.plan.covariance_paths);
     const std::size_t channels = scene_.request.channels.size();
     drawn_.intensity = jackknife(
@@ -92,11 +88,11 @@ class Drawing {
           return diagonal;
         });
     const auto lower = job.covariance(state.sums.total_samples(), state.sums.total());
-    return mc::fields_from_covariance(mc::CovarianceFactor(channels, lower), settings_.seed);
+    return fields_from_covariance(CovarianceFactor(channels, lower), settings_.seed);
   }
 
   /// A batch is a field; its sums are the intensities that it was drawn with.
-  BatchJob field_job(const mc::FieldDraw& draw, std::uint64_t fields) {
+  BatchJob field_job(const FieldDraw& draw, std::uint64_t fields) {
     const std::size_t channels = scene_.request.channels.size();
     drawn_.field.resize(fields * channels);
     BatchJob job;
@@ -112,15 +108,16 @@ class Drawing {
 
   const Scene& scene_;
   const DrawingSettings& settings_;
-  mc::Plan plan_;
+  Plan plan_;
   DrawnFields drawn_;
 };
 
 }  // namespace
 
-std::optional<DrawnFields> draw_fields(const Scene& scene, const mc::FieldDemand& demand,
-                                       const DrawingSettings& settings) {
-  return Drawing(scene, settings).draw(demand);
+std::optional<DrawnFields> draw_fields(const Scene& scene, const FieldDemand& demand,
+                                       const DrawingSettings& settings,
+                                       const std::function<void(const FieldPlan&)>& planned) {
+  return Drawing(scene, settings).draw(demand, planned);
 }
 
-}  // namespace flatspeckle::apps
+}  // namespace flatspeckle::mc

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -9,11 +10,11 @@
 #include "mc/speckle/field_plan.h"
 #include "mc/walk/plan.h"
 
-namespace flatspeckle::apps {
+namespace flatspeckle::mc {
 
 /// Fields that were drawn, [realization][light][view], and what they are to be compared with.
 struct DrawnFields {
-  mc::FieldPlan plan;
+  FieldPlan plan;
   std::vector<Complex> field;
   Estimate intensity;  ///< E|u|^2 per channel, from light paths: without the noise of speckle
   Estimate siegert;    ///< what the autocorrelation should be, where it is formed
@@ -22,14 +23,15 @@ struct DrawnFields {
 
 /// How many lights' paths, on how many threads.
 struct DrawingSettings {
-  mc::ReversedPaths reversed = mc::ReversedPaths::automatic;
+  ReversedPaths reversed = ReversedPaths::automatic;
   std::uint64_t seed = 1;
   int threads = 1;
 };
 
-/// Surveys the scene's paths, chooses how to draw (and says so on standard output), and draws.
-/// Nothing where a signal came (catch_interrupts).
-std::optional<DrawnFields> draw_fields(const Scene& scene, const mc::FieldDemand& demand,
-                                       const DrawingSettings& settings);
+/// Surveys the scene's paths, chooses how to draw, tells `planned`, and draws. Nothing where a
+/// signal came (catch_interrupts).
+std::optional<DrawnFields> draw_fields(const Scene& scene, const FieldDemand& demand,
+                                       const DrawingSettings& settings,
+                                       const std::function<void(const FieldPlan&)>& planned);
 
-}  // namespace flatspeckle::apps
+}  // namespace flatspeckle::mc
