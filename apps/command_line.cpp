@@ -85,7 +85,8 @@ void Subcommand::add_flags() {
     CLI::Option* const option =
         key.is_switch() ? app_->add_flag(flag)
                         : app_->add_option(flag, CLI::callback_t([](const auto&) { return true; }));
-    if (key.is_list()) option->expected(1, CLI::detail::expected_max_vector_size);
+    if (key.is_list())
+      option->expected(1, CLI::detail::expected_max_vector_size)->allow_extra_args();
     option->configurable(key.is_in_files());
   }
 }
@@ -100,7 +101,6 @@ void Subcommand::take_results() {
         throw InputError(key.name(), '"' + value + '"', "must have a value");
     key.set(option->results());
   }
-  keys_.check();
 }
 
 /// Turns CLI11's complaints into ours; CallForHelp passes.
@@ -114,8 +114,9 @@ void Subcommand::parse_by(const Parser& parser) {
   } catch (const CLI::ParseError& error) {
     throw InputError(explain(*app_, error));
   }
-  refuse_strays(app_->remaining());
   take_results();
+  refuse_strays(app_->remaining());
+  keys_.check();
 }
 
 bool Subcommand::parse(const Arguments& arguments) {

@@ -1,10 +1,10 @@
 #include <cstdio>
 
 #include "apps/extras.h"
-#include "apps/moments_output.h"
 #include "apps/moments_table.h"
 #include "apps/subcommands.h"
 #include "core/session/session.h"
+#include "flatland/scene/scene_datasets.h"
 
 namespace flatspeckle::apps {
 
@@ -44,6 +44,7 @@ int covariance(const Arguments& arguments) {
   const auto reversed = reversed_paths(keys, methods);
   const double tolerance = keys.read(methods.wave_tolerance);
   keys.read(methods.wave_samples);
+  keys.read(run.samples);
   if (by_mc) read_extras(keys, extras);
   const Scene scene = make_scene(keys, spec);
   const auto [estimation, write_extras] =
@@ -65,8 +66,8 @@ int covariance(const Arguments& arguments) {
                        print_medium(scene);
                        print_entries(scene.request, moments.covariance);
                        write_medium(file, scene);
-                       write_axes(file, scene.request);
-                       write_moments(file, "", job, scene, sums, moments);
+                       write_axes(file, scene);
+                       print_ranges("", mc::write_moments(file, "", job, scene, sums, moments));
                        if (write) write(file, sums);
                      });
 }

@@ -1,7 +1,6 @@
 #include "apps/extras.h"
 
-#include "apps/delay_output.h"
-#include "apps/gradient_output.h"
+#include "apps/moments_table.h"
 #include "core/error.h"
 
 namespace flatspeckle::apps {
@@ -22,7 +21,9 @@ ExtendedEstimation with_gradient(const Scene& scene, mc::ReversedPaths reversed,
   std::string text = "mc: " + plan.describe() + "; derivatives by";
   for (const auto& parameter : job.parameters) text += ' ' + parameter;
   return {{job.field, text}, [scene, job](ResultFile& file, const GroupedSums& sums) {
-            write_gradient(file, scene, job, sums);
+            const auto gradient = mc::gradient_estimates(scene, sums, job);
+            print_gradient(scene.request, job, gradient);
+            mc::write_gradient(file, scene.request, job, gradient);
           }};
 }
 
@@ -33,7 +34,9 @@ ExtendedEstimation with_delays(const Scene& scene, mc::ReversedPaths reversed,
   const auto job = mc::delay_job(scene, plan, delays, seed);
   return {{job.field, "mc: " + plan.describe() + "; scatterers diffuse"},
           [scene, job, delays](ResultFile& file, const GroupedSums& sums) {
-            write_delays(file, scene, job, delays, sums);
+            const auto found = mc::delay_estimates(job, sums);
+            print_delays(scene.request, delays, found.correlation);
+            mc::write_delays(file, scene, delays, found);
           }};
 }
 

@@ -1,14 +1,16 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
 #include <limits>
 
 #include "apps/estimation.h"
-#include "apps/field_drawing.h"
-#include "apps/field_output.h"
-#include "apps/moments_output.h"
 #include "apps/subcommands.h"
 #include "core/error.h"
 #include "core/numbers/memory.h"
 #include "core/run/interrupt.h"
 #include "core/session/session.h"
+#include "flatland/scene/scene_datasets.h"
+#include "mc/speckle/field_datasets.h"
 #include "mc/speckle/speckle_field.h"
 
 namespace flatspeckle::apps {
@@ -82,9 +84,11 @@ Scene field_scene(const Keys& keys, SceneSpec& spec) {
   if (spec.domain == "slab")
     throw InputError("domain", spec.domain,
                      "fields need a box: an infinite slab's speckles are infinitely fine");
-  keys.read(spec.tilts);
+  const auto light = keys.read(spec.light_angles), tilts = keys.read(spec.tilts);
   settle_tilts(spec);
   Scene scene = make_scene(keys, spec);
+  spec.light_angles = light;  // the keys stay as they were given
+  spec.tilts = tilts;
   scene.request = mc::field_request(scene.request.lights, scene.request.views);
   return scene;
 }
@@ -103,6 +107,27 @@ void check_memory(const Scene& scene, const mc::FieldDemand& demand) {
     full_request(scene.request.lights, scene.request.views);  // throws where that does not fit
 }
 
+/// How the statistics of all fields compare with those of a circular Gaussian field.
+void print_summary(const mc::DrawnFields& drawn, const mc::FieldSummary& summary) {
+  const auto& [contrast, circularity, found] = summary;
+  std::printf("contrast %.4f +- %.2g, |<u u>| / <I> %.2g +- %.2g (Gaussian: 1 and 0)\n",
+              contrast.value[0].real(), contrast.error[0], std::abs(circularity.value[0]),
+              circularity.error[0]);
+  const Estimate& siegert = drawn.siegert;
+  if (found.value.empty() || siegert.value.empty()) return;
+  const bool by_paths = drawn.plan.method == mc::FieldMethod::paths;
+  const double excess = by_paths ? drawn.plan.excess : 0;
+  double deviation = 0;
+  for (std::size_t d = 0; d < found.value.size(); ++d) {
+    const double beyond = std::abs(found.value[d] - siegert.value[d]) - excess;
+    const double error = std::hypot(found.error[d], siegert.error[d]);
+    if (beyond > 0 && error > 0) deviation = std::max(deviation, beyond / error);
+  }
+  std::printf(
+      "autocorrelation of the intensity: Siegert's relation within %.1f standard errors%s\n",
+      deviation, by_paths ? " and the excess kurtosis" : "");
+}
+
 }  // namespace
 
 int field(const Arguments& arguments) {
@@ -114,17 +139,20 @@ int field(const Arguments& arguments) {
 
   const Session session(command.text(), keys, values.run, command.only_prints());
   const auto demand = demand_of(keys, values);
-  const DrawingSettings settings{reversed_paths(keys, values.estimation), session.seed(),
-                                 session.threads()};
+  const mc::DrawingSettings settings{reversed_paths(keys, values.estimation), session.seed(),
+                                     session.threads()};
   const Scene scene = field_scene(keys, values.spec);
   check_memory(scene, demand);
   if (!command.settle()) return ExitStatus::done;
   catch_interrupts();
   return session.once(ResultFile::Storage::disk, [&](ResultFile& file) -> std::optional<Made> {
-    const auto drawn = draw_fields(scene, demand, settings);
+    const auto drawn = mc::draw_fields(scene, demand, settings, [](const mc::FieldPlan& chosen) {
+      std::printf("%s\n", chosen.describe().c_str());
+      std::fflush(stdout);
+    });
     if (!drawn) return std::nullopt;
     write_medium(file, scene);
-    write_fields(file, scene, values.spec.tilts, *drawn);
+    print_summary(*drawn, mc::write_fields(file, scene, values.spec.tilts, *drawn));
     return Made{
         "mc: " + mc::make_plan(scene, settings.reversed).describe() + "; " + drawn->plan.describe(),
         static_cast<double>(demand.fields)};

@@ -2,12 +2,10 @@
 
 #include <cstdint>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "core/keys/keys.h"
-#include "core/result/result_file.h"
-#include "wave_solver/maps/field_map.h"
+#include "wave_solver/maps/map_grid.h"
 
 namespace flatspeckle::apps {
 
@@ -21,10 +19,5 @@ void add_map_keys(Keys& keys, MapSettings& settings);
 /// None where no map is asked for. Throws InputError.
 std::optional<wave::MapGrid> map_grid(const Keys& keys, const MapSettings& settings,
                                       double wavelength);
-
-/// Writes total_field [light_angle, map_z, map_x] tile by tile, with progress on standard error,
-/// and returns how it was summed; none where a signal came (catch_interrupts).
-std::optional<std::string> write_map(ResultFile& file, const wave::WaveSolution& solution,
-                                     const wave::MapGrid& grid, double tolerance);
 
 }  // namespace flatspeckle::apps

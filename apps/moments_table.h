@@ -4,6 +4,9 @@
 
 #include "core/numbers/statistics.h"
 #include "flatland/request/request.h"
+#include "mc/estimators/brownian.h"
+#include "mc/estimators/gradient.h"
+#include "mc/theory/moments_datasets.h"
 
 namespace flatspeckle::apps {
 
@@ -22,5 +25,18 @@ inline constexpr std::size_t most_rows = 60;
 /// Prints the covariance entries of a request, or what goes with each of them, with their errors.
 void print_entries(const CovarianceRequest& request, const Estimate& estimate,
                    const std::string& name = "covariance");
+
+/// The ranges of a group (empty: the root), and on standard error which rest on too few steps.
+void print_ranges(const std::string& group, const std::vector<mc::WrittenRange>& ranges);
+/// "1.36 +- 0.01", or which steps are missing.
+std::string range_text(const mc::Range& range, double error);
+
+/// Derivatives of the entries, and of the range where it is not censored.
+void print_gradient(const CovarianceRequest& request, const mc::GradientJob& job,
+                    const mc::GradientEstimates& gradient);
+
+/// The correlation after each delay.
+void print_delays(const CovarianceRequest& request, const std::vector<double>& delays,
+                  const Estimate& correlation);
 
 }  // namespace flatspeckle::apps

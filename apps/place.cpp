@@ -6,17 +6,26 @@
 #include <numeric>
 #include <sstream>
 
+#include "apps/datasets.h"
 #include "apps/subcommands.h"
 #include "core/error.h"
 #include "core/keys/number_text.h"
 #include "core/result/atomic_file.h"
+#include "core/result/result_group.h"
 #include "core/result/version.h"
 #include "core/session/session.h"
 #include "flatland/media/structure_factor.h"
 #include "flatland/placement/placement.h"
-#include "flatland/scene/scene.h"
+#include "flatland/scene/scene_datasets.h"
 
 namespace flatspeckle::apps {
+
+const DatasetTable placement_table{
+    .name = "placement",
+    .rows = {},
+    .attributes = {{"", "placement", "text", "rule"},
+                   {"", "count", "uint64", "number of scatterers"},
+                   {"", "min_gap", "float64", "least distance between the rims of disks"}}};
 
 namespace {
 
@@ -47,7 +56,7 @@ void add_keys(Keys& keys, PlaceKeys& values) {
   keys.add("packing_fraction", values.packing_fraction,
            "Share of the box's area that the disks cover, instead of count")
       .positive()
-      .only_of("disks; points cover nothing; give count");
+      .only_of("disks");
   keys.add("placement", values.placement,
            "Of points poisson; of disks hard_disk (one after the other) or equilibrium (the fluid "
            "of "
@@ -110,8 +119,10 @@ std::vector<double> shares(const Keys& keys, const PlaceKeys& values) {
 
 /// From count, or from packing_fraction and the mean area of a disk.
 std::size_t number_of(const PlaceKeys& values, const Domain& box, double mean_area) {
-  const bool covered = values.packing_fraction && mean_area > 0;
-  if (values.count.has_value() == covered)
+  if (values.packing_fraction && mean_area == 0)
+    throw InputError("packing_fraction", *values.packing_fraction,
+                     "points cover nothing; give count");
+  if (values.count.has_value() == values.packing_fraction.has_value())
     throw InputError(values.count
                          ? "count, packing_fraction: give one of them"
                          : "no number is given: give count or (for disks) packing_fraction");
@@ -193,32 +204,25 @@ MeasuredStructureFactor measure(const Drawing& drawing, std::uint64_t seed,
   return measured;
 }
 
-void write_structure(ResultFile& file, const Drawing& drawing,
-                     const MeasuredStructureFactor& measured) {
-  file.scale("q", measured.shell_means([](double q) { return q; }), "1/length",
-             "wavenumber, mean of a shell of wavevectors that fit the box");
-  file.dataset("structure_factor", measured.values(), {"q"}, "1", "structure factor S(q)");
-  file.dataset("structure_factor_error", measured.errors(), {"q"}, "1", "standard error");
-  if (drawing.kind == Kind::equilibrium && drawing.equal_disks()) {
-    const HardDiskFluid fluid(drawing.packing(drawing.min_gap),
-                              2 * drawing.radii.front() + drawing.min_gap);
-    const auto theory = measured.shell_means([&](double q) { return fluid.structure_factor(q); });
-    file.dataset("structure_factor_theory", theory, {"q"}, "1",
-                 "S(q) of the equilibrium fluid, Baus and Colot 1987");
-  }
-  file.attribute("/", "placement", std::string(placement_word(drawing.kind)));
-  file.attribute("/", "count", static_cast<std::uint64_t>(drawing.count));
-  file.attribute("/", "packing_fraction", drawing.packing(0));
-  file.attribute("/", "min_gap", drawing.min_gap);
-  file.attribute("/", "width", drawing.box.width);
-  file.attribute("/", "depth", drawing.box.depth);
+void write_drawing(ResultFile& file, const Drawing& drawing) {
+  const ResultGroup root(file, placement_table), scene(file, scene_table);
+  root.attribute("placement", std::string(placement_word(drawing.kind)));
+  root.attribute("count", static_cast<std::uint64_t>(drawing.count));
+  root.attribute("min_gap", drawing.min_gap);
+  scene.attribute("packing_fraction", drawing.packing(0));
+  scene.attribute("width", drawing.box.width);
+  scene.attribute("depth", drawing.box.depth);
 }
 
 void save_structure(const PlaceKeys& values, const Drawing& drawing, Provenance provenance) {
   const Stopwatch clock;
   const auto realizations = static_cast<std::uint64_t>(values.realizations);
   ResultFile file(values.structure);
-  write_structure(file, drawing, measure(drawing, provenance.seed, realizations));
+  std::optional<HardDiskFluid> fluid;
+  if (drawing.kind == Kind::equilibrium && drawing.equal_disks())
+    fluid.emplace(drawing.packing(drawing.min_gap), 2 * drawing.radii.front() + drawing.min_gap);
+  write_structure(file, measure(drawing, provenance.seed, realizations), fluid ? &*fluid : nullptr);
+  write_drawing(file, drawing);
   provenance.plan = "structure factor of drawn placements";
   provenance.wall_s = clock.seconds();
   provenance.cpu_s = thread_cpu_seconds();

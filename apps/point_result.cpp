@@ -2,9 +2,11 @@
 
 #include <cmath>
 
-#include "apps/moments_output.h"
 #include "core/error.h"
+#include "core/result/result_group.h"
 #include "core/result/run_state_file.h"
+#include "flatland/scene/scene_datasets.h"
+#include "mc/theory/moments_datasets.h"
 
 namespace flatspeckle::apps {
 
@@ -41,17 +43,12 @@ std::vector<double> deviation(const PointResult& mc, const PointResult& wave) {
   return deviation;
 }
 
-void write_point(ResultFile& file, const PointResult& point, const CovarianceRequest& request) {
-  write_axes(file, request);
-  const std::vector<Axis> curve{"tilt"};
-  const auto scalar = [&](const char* name, double value, const char* long_name) {
-    file.dataset(name, std::vector{value}, {}, "1", long_name);
-  };
-  file.dataset("field_correlation", point.correlation, curve, "1", "field correlation C_E");
-  file.dataset("field_correlation_error", point.correlation_error, curve, "1",
-               "standard error: field correlation C_E");
-  scalar("memory_effect_range", point.range, "q L at C_I = 1/2");
-  scalar("memory_effect_range_error", point.range_error, "standard error: q L at C_I = 1/2");
+void write_point(ResultFile& file, const PointResult& point, const Scene& scene) {
+  write_axes(file, scene);
+  file.bind("MOVES", {"tilt"});
+  const ResultGroup root(file, mc::moves_table);
+  root.put("field_correlation", point.correlation, point.correlation_error);
+  root.put("memory_effect_range", point.range, point.range_error);
   file.attribute("/", "range_censored", point.range_censored);
   file.attribute("/", "relative_error", point.relative_error);
   file.attribute("/", "reached", point.reached);

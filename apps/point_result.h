@@ -34,7 +34,7 @@ mc::Range range_in_q(const Scene& scene, const PointResult& point);
 std::vector<double> deviation(const PointResult& mc, const PointResult& wave);
 
 /// The datasets of a shard, under the names that they have in the result of a sweep.
-void write_point(ResultFile& file, const PointResult& point, const CovarianceRequest& request);
+void write_point(ResultFile& file, const PointResult& point, const Scene& scene);
 /// Throws InputError.
 PointResult read_point(const ResultReader& file);
 

@@ -1,10 +1,71 @@
-#include "apps/render_output.h"
+#include <algorithm>
+#include <cstdio>
+
 #include "apps/subcommands.h"
 #include "core/session/identity.h"
 #include "core/session/session.h"
+#include "grin/estimators/render_datasets.h"
 #include "grin/scene/render_values.h"
 
 namespace flatspeckle::apps {
+
+namespace {
+
+/// What is missing from a picture is not passed over in silence.
+void note_losses(const grin::TransportCounts& counts) {
+  if (counts.lost_flights > 0)
+    std::fprintf(
+        stderr,
+        "note: %.2g %% of the flights were longer than max_length, trapped in a body, or came to "
+        "where the index is not positive; their light is missing\n",
+        100 * static_cast<double>(counts.lost_flights) / static_cast<double>(counts.flights));
+  if (counts.lost_values > 0)
+    std::fprintf(stderr, "note: %llu contributions were not finite and are left out\n",
+                 static_cast<unsigned long long>(counts.lost_values));
+}
+
+/// A dark picture is more often a mistake than a result.
+void note_darkness(const grin::Stage& stage) {
+  std::fputs("note: no light came to the sensor\n", stderr);
+  if (stage.body)
+    std::fputs(
+        "note: points are not joined across the surface of a body: a pinhole does not see a point "
+        "or beam through it, a camera with a lens or an area sensor does\n",
+        stderr);
+}
+
+void print_row(const char* name, const Estimate& estimate, std::size_t entry,
+               const std::string& units) {
+  std::printf("%-16s %-13.6g %-10.2g %s\n", name, estimate.value[entry].real(),
+              estimate.error[entry], units.c_str());
+}
+
+/// Total, mean, brightest pixel, and what the search for curves cost.
+void print_render(const grin::RenderScene& scene, const grin::RenderJob& job,
+                  const grin::RenderResult& result) {
+  const std::string& units = row_of(grin::table_of(scene.sensor), "image").unit;
+  const auto& image = result.picture.steady;
+  const auto brightest =
+      std::max_element(image.value.begin(), image.value.end(),
+                       [](const Complex& a, const Complex& b) { return a.real() < b.real(); });
+  std::printf("%-16s %-13s %-10s\n", "", "value", "error");
+  if (result.total) print_row("total power", *result.total, 0, "");
+  print_row("mean of pixels", result.mean, 0, units);
+  print_row("brightest pixel", image, static_cast<std::size_t>(brightest - image.value.begin()),
+            units);
+  if (brightest->real() > 0)
+    std::printf("pixels: relative error %.2g %%\n", 100 * relative_error(image));
+  else
+    note_darkness(scene.stage);
+  if (job.counts) note_losses(*job.counts);
+  if (!grin::has_trials(job)) return;
+  const auto& curves = job.counts->connections;
+  std::printf("curves: %llu pairs, %.3g %% of trials converged, %.3g further trials each\n",
+              static_cast<unsigned long long>(curves.pairs), 100 * curves.success_rate(),
+              curves.mean_refind());
+}
+
+}  // namespace
 
 int render(const Arguments& arguments) {
   grin::RenderValues values;
@@ -28,7 +89,8 @@ int render(const Arguments& arguments) {
   const grin::RenderJob job = render_job(scene, request, session.seed());
   return session.run("render: " + request_values.method + ": " + job.plan,
                      {{"", "render", job.batches, stop}}, inputs_text(keys), [&](ResultFile& file) {
-                       const RenderResult result = render_result(scene, job, session.sums(""));
+                       const grin::RenderResult result =
+                           render_result(scene, job, session.sums(""));
                        print_render(scene, job, result);
                        write_render(file, scene, job, result, scene.length_unit);
                      });

@@ -7,12 +7,14 @@
 #include <omp.h>
 
 #include "apps/field_map_output.h"
-#include "apps/moments_output.h"
 #include "apps/subcommands.h"
 #include "core/error.h"
+#include "core/result/result_group.h"
 #include "core/run/interrupt.h"
 #include "core/session/session.h"
 #include "flatland/scene/scene_checks.h"
+#include "flatland/scene/scene_datasets.h"
+#include "wave_solver/maps/map_datasets.h"
 #include "wave_solver/solutions/wave_solution.h"
 
 namespace flatspeckle::apps {
@@ -67,7 +69,7 @@ bool is_placement_rule(const SceneSpec& spec) {
 /// A file brings its own positions: keys that would place scatterers find no use.
 Placement placement_of_file(const Keys& keys, const SceneSpec& spec) {
   const Scatterer scatterer = make_scatterer(keys, spec);
-  if (scatterer.kind == Scatterer::Kind::hg) refuse_bulk(spec);
+  if (scatterer.is_bulk()) refuse_bulk(spec);
   const std::string& path = *keys.read(spec.placement);
   try {
     keys.refuse_unread();
@@ -83,35 +85,6 @@ Placement drawn_placement(const SceneSpec& spec, const Scene& scene, std::uint64
   if (!scene.medium.has_scatterers) refuse_bulk(spec);
   RandomStream random(seed, static_cast<std::uint64_t>(Stream::placement), 0);
   return draw_placement(scene.domain, scene.scatterer, scene.placement, random);
-}
-
-void write_placement(ResultFile& file, const wave::WaveSolution& solution) {
-  const Placement& placement = solution.system().placement();
-  std::vector<double> x, z, radius;
-  for (const auto& [position, scatterer] : placement) {
-    x.push_back(position.x);
-    z.push_back(position.z);
-    radius.push_back(scatterer.disk_radius());
-  }
-  file.numbered_scale("scatterer", placement.size(), "number of the scatterer");
-  const std::vector<Axis> axes = {"scatterer"};
-  file.dataset("placement/x", x, axes, "length", "transverse position");
-  file.dataset("placement/z", z, axes, "length", "depth");
-  file.dataset("placement/radius", radius, axes, "length", "radius, 0 for a point");
-  std::vector<std::uint64_t> orders;
-  for (int order : solution.basis_order()) orders.push_back(static_cast<std::uint64_t>(order));
-  file.dataset("solve/basis_order", orders, axes, "1", "highest angular order per scatterer");
-}
-
-void write_diagnosis(ResultFile& file, const wave::Diagnosis& diagnosis) {
-  const auto scalar = [&](const char* name, double value, const char* long_name) {
-    file.dataset(std::string("solve/") + name, std::vector<double>{value}, {}, "1", long_name);
-  };
-  scalar("residual", diagnosis.residual, "relative residual of the unscaled equations");
-  if (diagnosis.condition >= 0)
-    scalar("condition", diagnosis.condition, "condition estimate of the scaled matrix, 1-norm");
-  scalar("boundary_residual", diagnosis.boundary_residual,
-         "largest mismatch of the boundary conditions, unit incident waves");
 }
 
 std::string plan_of(const wave::WaveSolution& solution, const std::string& map) {
@@ -144,24 +117,6 @@ Sensors sensors_of(const Keys& keys, const SceneSpec& spec) {
     sensors.angles = spec.view_angles;
   if (!spec.near_sensors.empty()) sensors.points = read_points(spec.near_sensors);
   return sensors;
-}
-
-void write_fields(ResultFile& file, const std::vector<double>& lights, const Sensors& sensors,
-                  const wave::WaveSolution& solution) {
-  file.scale("light_angle", lights, "rad", "direction of the light, from +z towards +x");
-  if (!sensors.angles.empty()) {
-    std::vector<View> views;
-    for (double angle : sensors.angles) views.push_back(far_view(angle));
-    write_view_axis(file, views);
-    file.dataset("far_field", solution.fields(views), {"light_angle", "view_angle"}, "length^(1/2)",
-                 "far-field amplitude A, phase origin at r = 0");
-  }
-  if (sensors.points.empty()) return;
-  std::vector<View> views;
-  for (const Vec2& point : sensors.points) views.push_back(near_sensor(point));
-  write_view_axis(file, views);
-  file.dataset("near_field", solution.fields(views), {"light_angle", "sensor"}, "1",
-               "scattered field, without the incident wave");
 }
 
 wave::WaveSolution solved(const SolveKeys& values, const Placement& placement,
@@ -201,19 +156,17 @@ int solve(const Arguments& arguments) {
   if (grid) catch_interrupts();  // which must not leave the file that a map is written to
   const auto storage = grid ? ResultFile::Storage::disk : ResultFile::Storage::memory;
   return session.once(storage, [&](ResultFile& file) -> std::optional<Made> {
-    write_fields(file, spec.light_angles, sensors, solution);
+    wave::write_solution(file, solution, sensors.angles, sensors.points);
     std::string map_method;
     if (grid) {
-      const auto method = write_map(file, solution, *grid, values.tolerance);
+      const auto method = wave::write_map(file, solution, *grid, values.tolerance);
       if (!method) return std::nullopt;
       map_method = *method;
     }
-    write_placement(file, solution);
-    write_diagnosis(file, solution.diagnosis());
     if (scene)
       write_medium(file, *scene);
     else
-      file.attribute("/", "wavelength", spec.wavelength);
+      ResultGroup(file, scene_table).attribute("wavelength", spec.wavelength);
     print_summary(solution);
     if (grid) std::printf("%s\n", map_method.c_str());
     return Made{plan_of(solution, map_method), 1};

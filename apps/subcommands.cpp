@@ -14,6 +14,7 @@ int trace(const Arguments& arguments);
 int render(const Arguments& arguments);
 int bench(const Arguments& arguments);
 int list_keys(const Arguments& arguments);
+int datasets(const Arguments& arguments);
 
 std::span<const SubcommandEntry> subcommands() {
   static constexpr SubcommandEntry entries[] = {
@@ -35,7 +36,8 @@ std::span<const SubcommandEntry> subcommands() {
       {"bench",
        "what accuracy costs, where it breaks, what plans leave out: error, stability, plan", bench},
       {"keys", "the keys of all subcommands, for programs: json, markdown, completion, dictionary",
-       list_keys}};
+       list_keys},
+      {"datasets", "what result files hold, as in docs/format.md", datasets}};
   return entries;
 }
 

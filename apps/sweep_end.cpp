@@ -4,8 +4,10 @@
 #include <iostream>
 #include <set>
 
+#include "apps/datasets.h"
 #include "apps/sweep_table.h"
 #include "core/error.h"
+#include "core/result/result_group.h"
 #include "core/run/ranks.h"
 
 namespace flatspeckle::apps {
@@ -74,9 +76,10 @@ int write_result(const SweepPlan& plan, const SweepResults& results, double wall
   ResultFile file(plan.settings.out);
   write_provenance(file, made);
   file.attribute("/", "identity", plan.identity());
-  file.attribute("/", "format", std::uint64_t{2});
-  file.attribute("/", "complete", is_whole(results));
-  file.attribute("/", "ranks", std::int64_t{ranks().size});
+  const ResultGroup root(file, sweep_table);
+  root.attribute("format", std::uint64_t{2});
+  root.attribute("complete", is_whole(results));
+  root.attribute("ranks", std::int64_t{ranks().size});
   write_sweep(file, plan, results);
   file.commit();
   std::cout << "wrote " << plan.settings.out << " (" << count_text(plan, results) << ")\n";

@@ -2,46 +2,47 @@
 
 #include <algorithm>
 
+#include "apps/datasets.h"
 #include "core/keys/number_text.h"
+#include "core/result/result_group.h"
 
 namespace flatspeckle::apps {
+
+const DatasetTable sweep_axes_table{
+    "sweep axes",
+    {{"density", Data::scale, "", "1/length^2", "scatterers per area"},
+     {"radius", Data::scale, "", "length", "radius of the disks"},
+     {"index", Data::scale, "", "1", "relative index, real part"},
+     {"optical_depth", Data::scale, "", "1", "optical depth mu_t L"},
+     {"g", Data::scale, "", "1", "mean cosine of scattering"},
+     {"albedo", Data::scale, "", "1", "single-scattering albedo"},
+     {"point", Data::numbers, "", "1", "number of the point"}}};
 
 namespace {
 
 /// What has a value at each point.
 struct Quantity {
-  std::string name, units, long_name;
+  std::string name;
   double (*value)(const Scene&);
 };
 
 /// Of the scatterers: an axis where they are swept.
-const Quantity settings[] = {{"density", "1/length^2", "scatterers per area",
-                              [](const Scene& scene) { return scene.medium.density; }},
-                             {"radius", "length", "radius of the disks",
-                              [](const Scene& scene) { return scene.scatterer.radius; }},
-                             {"index", "1", "relative index, real part",
-                              [](const Scene& scene) { return scene.scatterer.index.real(); }}};
+const Quantity settings[] = {
+    {"density", [](const Scene& scene) { return scene.medium.density; }},
+    {"radius", [](const Scene& scene) { return scene.scatterer.radius; }},
+    {"index", [](const Scene& scene) { return scene.scatterer.index.real(); }}};
 
 /// Of the bulk: an axis where it is swept or the same everywhere.
 const Quantity bulk[] = {
-    {"optical_depth", "1", "optical depth mu_t L",
-     [](const Scene& scene) { return scene.medium.mu_t * scene.domain.depth; }},
-    {"g", "1", "mean cosine of scattering", [](const Scene& scene) { return scene.medium.g; }},
-    {"albedo", "1", "single-scattering albedo",
-     [](const Scene& scene) { return scene.medium.albedo; }}};
+    {"optical_depth", [](const Scene& scene) { return scene.medium.mu_t * scene.domain.depth; }},
+    {"g", [](const Scene& scene) { return scene.medium.g; }},
+    {"albedo", [](const Scene& scene) { return scene.medium.albedo; }}};
 
 const Quantity small_parameter = {
-    "k_mean_free_path", "1", "wavenumber times mean free path",
-    [](const Scene& scene) { return scene.k * scene.medium.mean_free_path(); }};
+    "k_mean_free_path", [](const Scene& scene) { return scene.k * scene.medium.mean_free_path(); }};
 
-const Quantity absorbing_index = {"index_imaginary", "1", "relative index, imaginary part",
+const Quantity absorbing_index = {"index_imaginary",
                                   [](const Scene& scene) { return scene.scatterer.index.imag(); }};
-
-std::vector<double> values_of(const Quantity& quantity, const std::vector<Scene>& scenes) {
-  std::vector<double> values;
-  std::transform(scenes.begin(), scenes.end(), std::back_inserter(values), quantity.value);
-  return values;
-}
 
 bool is_constant(const std::vector<double>& values) {
   return std::equal(values.begin() + 1, values.end(), values.begin());
@@ -58,42 +59,35 @@ std::vector<double> swept_values(const SweepPlan& plan, const std::string& key) 
 
 }  // namespace
 
-std::vector<Axis> write_sweep_grid(ResultFile& file, const SweepPlan& plan,
-                                   const std::vector<Scene>& scenes, bool as_list) {
+void write_sweep_grid(ResultFile& file, const SweepPlan& plan, const std::vector<Scene>& scenes,
+                      bool as_list) {
+  const ResultGroup axes(file, sweep_axes_table), root(file, sweep_table);
   std::vector<Axis> grid;
-  const auto add_axis = [&](const Quantity& quantity, const std::vector<double>& values) {
-    file.scale(quantity.name, values, quantity.units, quantity.long_name);
-    grid.emplace_back(quantity.name);
-  };
-  std::vector<Quantity> beside;
+  std::vector<Quantity> beside{small_parameter};
   if (as_list) {
-    file.numbered_scale("point", scenes.size(), "number of the point");
+    axes.number("point", scenes.size());
     grid.emplace_back("point");
   }
+  const auto add = [&](const Quantity& quantity, const std::vector<double>& values, bool is_axis) {
+    if (as_list || !is_axis) return beside.push_back(quantity);
+    axes.put(quantity.name, values);
+    grid.emplace_back(quantity.name);
+  };
   for (const Quantity& quantity : settings) {
     const auto swept = swept_values(plan, quantity.name);
     if (swept.size() < 2) continue;
-    if (as_list)
-      beside.push_back(quantity);
-    else
-      add_axis(quantity, swept);
-    const bool lossless = is_constant(values_of(absorbing_index, scenes)) &&
-                          scenes.front().scatterer.index.imag() == 0;
-    if (quantity.name == "index" && !lossless) beside.push_back(absorbing_index);
+    add(quantity, swept, true);
+    const auto absorbing = column(scenes, absorbing_index.value);
+    if (quantity.name == "index" && (!is_constant(absorbing) || absorbing.front() != 0))
+      beside.push_back(absorbing_index);
   }
   for (const Quantity& quantity : bulk) {
-    const auto swept = swept_values(plan, quantity.name);
-    const auto values = values_of(quantity, scenes);
-    if (as_list || (swept.empty() && !is_constant(values)))
-      beside.push_back(quantity);
-    else
-      add_axis(quantity, swept.empty() ? std::vector{values.front()} : swept);
+    const auto swept = swept_values(plan, quantity.name), values = column(scenes, quantity.value);
+    add(quantity, swept.empty() ? std::vector{values.front()} : swept,
+        !swept.empty() || is_constant(values));
   }
-  beside.push_back(small_parameter);
-  for (const Quantity& quantity : beside)
-    file.dataset(quantity.name, values_of(quantity, scenes), grid, quantity.units,
-                 quantity.long_name);
-  return grid;
+  file.bind("GRID", grid);
+  for (const Quantity& quantity : beside) root.put(quantity.name, column(scenes, quantity.value));
 }
 
 }  // namespace flatspeckle::apps

@@ -7,10 +7,10 @@
 
 namespace flatspeckle::apps {
 
-/// Writes the axes of a sweep and what else tells its points apart, and returns the axes that a
+/// Writes the axes of a sweep and what else tells its points apart, and binds GRID, the axes that a
 /// quantity per point stands on: those of the sweep, or, as a list, `point` alone. scenes: of the
 /// points that are written, all of them unless as a list.
-std::vector<Axis> write_sweep_grid(ResultFile& file, const SweepPlan& plan,
-                                   const std::vector<Scene>& scenes, bool as_list);
+void write_sweep_grid(ResultFile& file, const SweepPlan& plan, const std::vector<Scene>& scenes,
+                      bool as_list);
 
 }  // namespace flatspeckle::apps

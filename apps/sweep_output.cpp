@@ -4,211 +4,198 @@
 #include <cmath>
 #include <functional>
 
-#include "apps/moments_output.h"
+#include "apps/datasets.h"
 #include "apps/sweep_grid.h"
+#include "core/result/result_group.h"
 #include "core/result/run_state_file.h"
+#include "flatland/scene/scene_datasets.h"
 #include "mc/theory/diffusion.h"
-#include "mc/theory/memory_effect.h"
+#include "mc/theory/moments_datasets.h"
 
 namespace flatspeckle::apps {
 
+const DatasetTable sweep_table{
+    .name = "sweep",
+    .rows = {{"density", Data::real, "GRID", "1/length^2", "scatterers per area"},
+             {"radius", Data::real, "GRID", "length", "radius of the disks"},
+             {"index", Data::real, "GRID", "1", "relative index, real part"},
+             {"index_imaginary", Data::real, "GRID", "1", "relative index, imaginary part"},
+             {"optical_depth", Data::real, "GRID", "1", "optical depth mu_t L"},
+             {"g", Data::real, "GRID", "1", "mean cosine of scattering"},
+             {"albedo", Data::real, "GRID", "1", "single-scattering albedo"},
+             {"k_mean_free_path", Data::real, "GRID", "1", "wavenumber times mean free path"},
+             {"diffusion_theory", Data::real, "GRID tilt", "1", "C_E in diffusion theory"},
+             {"diffusion_range", Data::real, "GRID", "1", "q L at C_I = 1/2 in diffusion theory"},
+             {"single_scattering", Data::real, "tilt", "1",
+              "C_E of single scattering in a slab without attenuation"},
+             {"single_scattering_range", Data::real, "", "1",
+              "q L at C_I = 1/2 by single scattering"},
+             {"field_correlation", Data::estimate, "GRID tilt", "1",
+              "field correlation C_E, summed over views"},
+             {"memory_effect_range", Data::estimate, "GRID", "1",
+              "q L at C_I = 1/2 with matched views, L the depth"},
+             {"memory_effect_angle", Data::estimate, "GRID", "rad",
+              "rotation of the light at C_I = 1/2"},
+             {"range_censored", Data::count, "GRID", "1",
+              "0: range found; 1: C_I stays above 1/2, a lower bound; 2: it is below at the first "
+              "step, an upper bound"},
+             {"range_steps", Data::count, "GRID", "1",
+              "tilts between 0 and the range: fewer than 4 are too few to trust its error"},
+             {"relative_error", Data::real, "GRID", "1",
+              "RMS standard error of the covariances relative to their RMS magnitude"},
+             {"samples", Data::real, "GRID", "1", "samples"},
+             {"cpu_s", Data::real, "GRID", "s", "processor time, all threads"},
+             {"wall_s", Data::real, "GRID", "s",
+              "time from the first batch to the last, other points' included"},
+             {"trace/of_point", Data::count, "trace/checkpoint", "1",
+              "number of the point, in the order of the grid"},
+             {"deviation", Data::real, "GRID tilt", "1",
+              "mc less wave, in combined standard errors"}},
+    .attributes = {{"", "format", "uint64", "2; sweeps without it have an older layout"},
+                   {"", "complete", "bool", "0: points are missing"},
+                   {"", "ranks", "int64", "processes that worked on it (MPI)"},
+                   {"", "target_error", "float64", "that each point was to reach, if any"},
+                   {"single_scattering_range", "censored", "uint64", mc::censored_meaning}},
+    .roles = {{"GRID", {"density radius index optical_depth g albedo", "point"}}}};
+
 namespace {
 
-using Axes = std::vector<Axis>;
+using Points = std::vector<std::reference_wrapper<const PointResult>>;
 
-/// Diffusion theory is that of transmitted light.
-bool transmission_only(const CovarianceRequest& request) {
-  return std::all_of(request.views.begin(), request.views.end(),
-                     [](const View& view) { return std::cos(view.angle) > 0; });
-}
-
-Axes with(Axes axes, const std::string& last) {
-  axes.emplace_back(last);
-  return axes;
+/// The curves of all points, one after the other.
+std::vector<double> joined(const Points& points, std::vector<double> PointResult::*curve) {
+  std::vector<double> values;
+  for (const PointResult& point : points)
+    values.insert(values.end(), (point.*curve).begin(), (point.*curve).end());
+  return values;
 }
 
 /// Writes the result of a sweep, over the points that are finished.
 class SweepWriter {
  public:
   SweepWriter(ResultFile& file, const SweepPlan& plan, const SweepResults& results)
-      : file_(file), plan_(plan), results_(results), points_(finished_points(plan, results)) {
-    for (std::size_t point : points_) {
+      : file_(file), plan_(plan) {
+    const auto finished = finished_points(plan, results);
+    for (std::size_t point : finished) {
       scenes_.push_back(plan.scene(point));
       if (scenes_.size() > 1) scenes_.back().request = {};  // the same at all points, and large
+    }
+    for (std::size_t method = 0; method < plan.method_words.size(); ++method) {
+      results_.emplace_back();
+      for (std::size_t point : finished)
+        results_.back().emplace_back(*results[plan.run(method, point)]);
     }
   }
 
   void write() {
     write_domain(file_, scenes_.front());
-    const bool whole = points_.size() == plan_.points.points.size();
-    grid_ = write_sweep_grid(file_, plan_, scenes_, plan_.points.is_list || !whole);
-    write_axes(file_, scenes_.front().request);
+    const bool whole = scenes_.size() == plan_.points.points.size();
+    write_sweep_grid(file_, plan_, scenes_, plan_.points.is_list || !whole);
+    write_axes(file_, scenes_.front());
     write_theory();
-    const bool both = plan_.method_words.size() > 1;
-    for (std::size_t method = 0; method < plan_.method_words.size(); ++method)
-      write_method(method, both ? plan_.method_words[method] + '/' : "");
+    const bool both = results_.size() > 1;
+    for (std::size_t method = 0; method < results_.size(); ++method)
+      write_method(method, both ? plan_.method_words[method] : "");
     if (both) write_deviation();
   }
 
  private:
-  const PointResult& result(std::size_t method, std::size_t i) const {
-    return *results_[plan_.run(method, points_[i])];
-  }
-
-  std::vector<double> per_point(const std::function<double(const Scene&)>& value) const {
-    std::vector<double> values;
-    std::transform(scenes_.begin(), scenes_.end(), std::back_inserter(values), value);
-    return values;
-  }
-  std::vector<double> per_point(std::size_t method,
-                                const std::function<double(const PointResult&)>& value) const {
-    std::vector<double> values;
-    for (std::size_t i = 0; i < points_.size(); ++i) values.push_back(value(result(method, i)));
-    return values;
-  }
-
-  void write_theory() {
+  void write_theory() const {
+    const ResultGroup root(file_, sweep_table);
     const auto& request = scenes_.front().request;
     const double depth = scenes_.front().domain.depth;
-    write_single_scattering(request, depth);
-    if (!transmission_only(request)) return;
+    write_single_scattering(root, request, depth);
+    if (!request.transmission_only()) return;
     std::vector<double> curves;
     for (const Scene& scene : scenes_)
       for (double q : request.tilt_q)
         curves.push_back(mc::diffusion_field_correlation(scene.medium, depth, q));
-    file_.dataset("diffusion_theory", curves, with(grid_, "tilt"), "1", "C_E in diffusion theory");
-    file_.dataset("diffusion_range", per_point([&](const Scene& scene) {
-                    return mc::diffusion_range(scene.medium, depth) * depth;
-                  }),
-                  grid_, "1", "q L at C_I = 1/2 in diffusion theory");
+    root.put("diffusion_theory", curves);
+    root.put("diffusion_range", column(scenes_, [&](const Scene& scene) {
+               return mc::diffusion_range(scene.medium, depth) * depth;
+             }));
   }
 
-  void write_single_scattering(const CovarianceRequest& request, double depth) {
-    std::vector<double> views, curve;
-    for (std::size_t v = 0; v < request.reference_views; ++v)
-      views.push_back(request.views[v].angle);
-    for (double q : request.tilt_q)
-      curve.push_back(
-          mc::single_scattering_correlation(request.lights.front().angle, views, depth, q));
-    file_.dataset("single_scattering", curve, {"tilt"}, "1",
-                  "C_E of single scattering in a slab without attenuation");
+  static void write_single_scattering(const ResultGroup& root, const CovarianceRequest& request,
+                                      double depth) {
+    const auto views = request.reference_angles();
+    const auto curve = column(request.tilt_q, [&](double q) {
+      return mc::single_scattering_correlation(request.lights.front().angle, views, depth, q);
+    });
     const auto range =
         mc::memory_effect_range(request.tilt_q, std::vector<Complex>(curve.begin(), curve.end()));
-    file_.dataset("single_scattering_range", std::vector{range.value * depth}, {}, "1",
-                  "q L at C_I = 1/2 by single scattering");
-    file_.attribute("single_scattering_range", "censored",
-                    static_cast<std::uint64_t>(range.censored));
+    root.put("single_scattering", curve);
+    root.put("single_scattering_range", range.value * depth);
+    root.attribute("single_scattering_range", "censored",
+                   static_cast<std::uint64_t>(range.censored));
   }
 
-  void write_method(std::size_t method, const std::string& prefix) {
-    write_curves(method, prefix);
-    write_ranges(method, prefix);
-    write_costs(method, prefix);
-    write_traces(method, prefix + "trace");
-  }
-
-  void write_curves(std::size_t method, const std::string& prefix) {
-    const auto curve = [&](const char* name, auto member, const char* long_name) {
-      std::vector<double> values;
-      for (std::size_t i = 0; i < points_.size(); ++i) {
-        const auto& own = result(method, i).*member;
-        values.insert(values.end(), own.begin(), own.end());
-      }
-      file_.dataset(prefix + name, values, with(grid_, "tilt"), "1", long_name);
-    };
-    curve("field_correlation", &PointResult::correlation, "field correlation C_E");
-    curve("field_correlation_error", &PointResult::correlation_error,
-          "standard error: field correlation C_E");
-  }
-
-  /// One number per point.
-  void write_member(std::size_t method, const std::string& name, double PointResult::*member,
-                    const char* units, const char* long_name) {
-    file_.dataset(name, per_point(method, std::mem_fn(member)), grid_, units, long_name);
-  }
-
-  void write_ranges(std::size_t method, const std::string& prefix) {
-    write_member(method, prefix + "memory_effect_range", &PointResult::range, "1",
-                 "q L at C_I = 1/2");
-    write_member(method, prefix + "memory_effect_range_error", &PointResult::range_error, "1",
-                 "standard error: q L at C_I = 1/2");
-    std::vector<std::uint64_t> censored, steps;
+  void write_method(std::size_t method, const std::string& group) const {
+    const Points& points = results_[method];
     const Scene& scene = scenes_.front();
-    for (std::size_t i = 0; i < points_.size(); ++i) {
-      const PointResult& point = result(method, i);
-      censored.push_back(point.range_censored);
-      steps.push_back(steps_below(scene.request.tilt_q, range_in_q(scene, point)));
-    }
-    file_.dataset(prefix + "range_censored", censored, grid_, "1",
-                  "0: range found; 1: C_I stays above 1/2, a lower bound; 2: it is below at the "
-                  "first step, an upper bound");
-    file_.dataset(prefix + "range_steps", steps, grid_, "1",
-                  "tilts between 0 and the range: fewer than 4 are too few to trust its error");
-    write_angles(method, prefix);
-  }
-
-  void write_costs(std::size_t method, const std::string& prefix) {
-    write_member(method, prefix + "relative_error", &PointResult::relative_error, "1",
-                 "RMS standard error of the covariances relative to their RMS magnitude");
-    write_member(method, prefix + "samples", &PointResult::samples, "1", "samples");
-    write_member(method, prefix + "cpu_s", &PointResult::cpu_s, "s", "processor time, all threads");
-    write_member(method, prefix + "wall_s", &PointResult::wall_s, "s",
-                 "time from the first batch to the last, other points' included");
+    const ResultGroup out(file_, sweep_table, group);
+    const auto steps = [&](const PointResult& point) {
+      return mc::steps_below(scene.request.tilt_q, range_in_q(scene, point));
+    };
+    out.put("field_correlation", joined(points, &PointResult::correlation),
+            joined(points, &PointResult::correlation_error));
+    out.put("memory_effect_range", column(points, &PointResult::range),
+            column(points, &PointResult::range_error));
+    out.put("range_censored", column(points, &PointResult::range_censored));
+    out.put("range_steps", column(points, steps));
+    write_angles(out, points);
+    out.put("relative_error", column(points, &PointResult::relative_error));
+    out.put("samples", column(points, &PointResult::samples));
+    out.put("cpu_s", column(points, &PointResult::cpu_s));
+    out.put("wall_s", column(points, &PointResult::wall_s));
     if (const auto target = plan_.stop(plan_.run(method, 0)).target_error)
-      file_.attribute(prefix.empty() ? "/" : plan_.method_words[method], "target_error", *target);
+      out.attribute("target_error", *target);
+    write_traces(out, points, group);
   }
 
   /// The ranges as rotations of the light, to the side on which they were read off.
-  void write_angles(std::size_t method, const std::string& prefix) {
+  void write_angles(const ResultGroup& out, const Points& points) const {
     const Scene& scene = scenes_.front();
     const auto& q = scene.request.tilt_q;
     const bool positive = std::any_of(q.begin(), q.end(), [](double each) { return each > 0; });
     const double light = scene.request.lights.front().angle;
     const double per_range = 1 / (scene.domain.depth * scene.k);
     std::vector<double> angles, errors;
-    for (std::size_t i = 0; i < points_.size(); ++i) {
-      const PointResult& point = result(method, i);
+    for (const PointResult& point : points) {
       const double sine = std::sin(light) + (positive ? 1 : -1) * point.range * per_range;
       const double turned = std::asin(std::clamp(sine, -1.0, 1.0));
       angles.push_back(std::abs(turned - light));
       errors.push_back(point.range_error * per_range / std::cos(turned));
     }
-    file_.dataset(prefix + "memory_effect_angle", angles, grid_, "rad",
-                  "rotation of the light at C_I = 1/2");
-    file_.dataset(prefix + "memory_effect_angle_error", errors, grid_, "rad",
-                  "standard error: rotation of the light at C_I = 1/2");
+    out.put("memory_effect_angle", angles, errors);
   }
 
-  void write_traces(std::size_t method, const std::string& group) {
-    std::vector<std::uint64_t> point;
+  void write_traces(const ResultGroup& out, const Points& points, const std::string& group) const {
+    std::vector<std::uint64_t> of_point;
     Trace all;
-    for (std::size_t i = 0; i < points_.size(); ++i) {
-      const Trace& own = result(method, i).trace;
-      point.insert(point.end(), own.samples.size(), i);
-      for (auto column : {&Trace::wall_s, &Trace::cpu_s, &Trace::samples, &Trace::relative_error})
-        (all.*column).insert((all.*column).end(), (own.*column).begin(), (own.*column).end());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const Trace& own = points[i].get().trace;
+      of_point.insert(of_point.end(), own.samples.size(), i);
+      for (auto part : {&Trace::wall_s, &Trace::cpu_s, &Trace::samples, &Trace::relative_error})
+        (all.*part).insert((all.*part).end(), (own.*part).begin(), (own.*part).end());
     }
-    write_trace(file_, group, all);
-    file_.dataset(group + "/of_point", point, {group + "/checkpoint"}, "1",
-                  "number of the point, in the order of the grid");
+    write_trace(file_, group.empty() ? "trace" : group + "/trace", all);
+    out.put("trace/of_point", of_point);
   }
 
-  void write_deviation() {
+  void write_deviation() const {
     std::vector<double> all;
-    for (std::size_t i = 0; i < points_.size(); ++i) {
-      const auto own = deviation(result(0, i), result(1, i));
+    for (std::size_t i = 0; i < scenes_.size(); ++i) {
+      const auto own = deviation(results_[0][i], results_[1][i]);
       all.insert(all.end(), own.begin(), own.end());
     }
-    file_.dataset("deviation", all, with(grid_, "tilt"), "1",
-                  "mc less wave, in combined standard errors");
+    ResultGroup(file_, sweep_table).put("deviation", all);
   }
 
   ResultFile& file_;
   const SweepPlan& plan_;
-  const SweepResults& results_;
-  std::vector<std::size_t> points_;
   std::vector<Scene> scenes_;
-  Axes grid_;
+  std::vector<Points> results_;  ///< [method][point]
 };
 
 }  // namespace

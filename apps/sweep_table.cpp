@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "apps/moments_output.h"
+#include "apps/moments_table.h"
 
 namespace flatspeckle::apps {
 
@@ -32,7 +32,7 @@ class SweepTable {
     return *results_[plan_.run(method, point)];
   }
   bool is_rough(const PointResult& result) const {
-    return few_steps(scene_.request.tilt_q, range_in_q(scene_, result));
+    return mc::few_steps(scene_.request.tilt_q, range_in_q(scene_, result));
   }
 
   void note_few() const {

@@ -74,7 +74,7 @@ void SweepWork::ended(std::size_t number) {
   folder_.write(plan_.name(number), Part::finished, plan_.identity(number), durable,
                 [&](ResultFile& file) {
                   write_made(file, open, point.reached);
-                  write_point(file, point, open.scene.request);
+                  write_point(file, point, open.scene);
                 });
   const std::lock_guard lock(mutex_);
   open_.erase(number);

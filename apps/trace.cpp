@@ -6,10 +6,9 @@
 #include <omp.h>
 
 #include "apps/subcommands.h"
-#include "apps/trace_output.h"
 #include "core/session/session.h"
 #include "grin/rays/light_speed.h"
-#include "grin/scene/trace_scene.h"
+#include "grin/scene/trace_datasets.h"
 
 namespace flatspeckle::apps {
 
@@ -42,8 +41,8 @@ std::string ends_of(const std::vector<TracedRay>& rays, double length_unit) {
 
 Made trace_light(const TraceScene& scene, ResultFile& file) {
   const auto rays = trace_rays(scene);
-  write_rays(file, scene.field, scene.starts, rays, scene.length_unit);
-  if (scene.path_points > 0) write_paths(file, scene.field, "ray", rays);
+  write_rays(file, scene, rays);
+  if (scene.path_points > 0) write_paths(file, scene.field, rays);
   std::string plan = std::to_string(rays.size()) + (rays.size() == 1 ? " ray: " : " rays: ") +
                      describe(scene.steps);
   std::printf("%s\n%s\n", plan.c_str(), ends_of(rays, scene.length_unit).c_str());
@@ -86,9 +85,9 @@ std::string table_of(const FoundConnections& found) {
 
 Made trace_curves(const TraceScene& scene, ResultFile& file, std::uint64_t seed) {
   const auto found = find_connections(scene, seed);
-  write_connections(file, found, scene.length_unit);
+  write_connections(file, scene, found);
   if (scene.path_points > 0 && !found.curves.empty())
-    write_paths(file, scene.field, "curve", rays_along(scene, found));
+    write_paths(file, scene.field, rays_along(scene, found));
   const auto trials = scene.curves->trials;
   std::string plan = std::to_string(trials) + " trials: " + describe(scene.steps);
   std::printf("%s\n%s\n", plan.c_str(), table_of(found).c_str());

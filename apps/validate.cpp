@@ -3,14 +3,24 @@
 #include <cstdio>
 #include <numbers>
 
+#include "apps/datasets.h"
 #include "apps/estimation.h"
-#include "apps/moments_output.h"
 #include "apps/moments_table.h"
 #include "apps/subcommands.h"
 #include "core/error.h"
+#include "core/result/result_group.h"
 #include "core/session/session.h"
+#include "flatland/scene/scene_datasets.h"
 
 namespace flatspeckle::apps {
+
+const DatasetTable validate_table{
+    .name = "validate",
+    .rows = {{"entry", Data::numbers, "", "1", "number of the entry"},
+             {"deviation", Data::real, "entry", "1",
+              "|mc - wave| in combined standard errors, per entry in the order of the request"}},
+    .attributes = {
+        {"", "bias_allowance", "float64", "relative size of what Monte Carlo neglects"}}};
 
 namespace {
 
@@ -92,13 +102,13 @@ void print_comparison(const Scene& scene, const Comparison& comparison) {
 }
 
 void write_comparison(ResultFile& file, const Comparison& comparison) {
-  const std::size_t entries = comparison.wave.value.size();
+  const ResultGroup root(file, validate_table);
   std::vector<double> deviation;
-  for (std::size_t e = 0; e < entries; ++e) deviation.push_back(comparison.deviation(e));
-  file.numbered_scale("entry", entries, "number of the entry");
-  file.dataset("deviation", deviation, {"entry"}, "1",
-               "|mc - wave| in combined standard errors, per entry in the order of the request");
-  file.attribute("/", "bias_allowance", comparison.bias);
+  for (std::size_t e = 0; e < comparison.wave.value.size(); ++e)
+    deviation.push_back(comparison.deviation(e));
+  root.number("entry", deviation.size());
+  root.put("deviation", deviation);
+  root.attribute("bias_allowance", comparison.bias);
 }
 
 }  // namespace
@@ -138,9 +148,10 @@ int validate(const Arguments& arguments) {
                                     bias_allowance(scene)};
         print_comparison(scene, comparison);
         write_medium(file, scene);
-        write_axes(file, scene.request);
-        write_moments(file, "mc", mc.job, scene, mc_sums, mc_moments);
-        write_moments(file, "wave", wave.job, scene, wave_sums, wave_moments);
+        write_axes(file, scene);
+        print_ranges("mc", mc::write_moments(file, "mc", mc.job, scene, mc_sums, mc_moments));
+        print_ranges("wave",
+                     mc::write_moments(file, "wave", wave.job, scene, wave_sums, wave_moments));
         write_comparison(file, comparison);
       });
 }

@@ -275,10 +275,12 @@ void Key::check() const {
   if (each_ > 0 && numbers.size() % each_ != 0)
     throw InputError(name_, shown(),
                      "must be " + std::to_string(each_) + " numbers for each: " + shape_);
-  for (const double number : numbers) {
-    if (!allows(number)) throw InputError(name_, number, range());
+  const auto texts = value();
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    const double number = numbers[i];
+    if (!allows(number)) throw InputError(name_, exactly_ > 0 ? shown() : texts[i], range());
     if (low_open_ && low_ == 0 && high_ == infinity && (number > most || number < 1 / most))
-      throw InputError(name_, number, "must be from 1e-50 to 1e50");
+      throw InputError(name_, texts[i], "must be from 1e-50 to 1e50");
   }
 }
 

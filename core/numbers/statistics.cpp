@@ -73,6 +73,19 @@ std::vector<Complex> sample_mean(double samples, std::span<const Complex> sums) 
   return mean;
 }
 
+std::vector<double> real_parts(std::span<const Complex> values) {
+  std::vector<double> real;
+  for (const Complex value : values) real.push_back(value.real());
+  return real;
+}
+
+Estimate part(const Estimate& all, std::size_t first, std::size_t count) {
+  const auto from = static_cast<std::ptrdiff_t>(first),
+             to = from + static_cast<std::ptrdiff_t>(count);
+  return {{all.value.begin() + from, all.value.begin() + to},
+          {all.error.begin() + from, all.error.begin() + to}};
+}
+
 Estimate jackknife(const GroupedSums& sums, const Estimator& theta) {
   const double samples = sums.total_samples();
   const std::vector<Complex> total = sums.total();

@@ -55,6 +55,10 @@ struct Estimate {
   std::vector<double> error;
 };
 
+std::vector<double> real_parts(std::span<const Complex> values);
+/// Entries [first, first + count).
+Estimate part(const Estimate& all, std::size_t first, std::size_t count);
+
 /// What is estimated, as a function of summed samples: theta(samples, sums) -> values.
 using Estimator =
     std::function<std::vector<Complex>(double samples, std::span<const Complex> sums)>;

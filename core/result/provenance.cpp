@@ -4,25 +4,48 @@
 #include <fstream>
 #include <thread>
 
+#include "core/result/result_group.h"
 #include "core/result/version.h"
 
 namespace flatspeckle {
 
+const DatasetTable provenance_table{
+    .name = "provenance",
+    .rows = {},
+    .attributes = {
+        {"", "program", "text", "flatspeckle"},
+        {"", "version", "text", "of the program"},
+        {"", "git_commit", "text", "that it was built from"},
+        {"", "command_line", "text", "as it was called"},
+        {"", "config", "text", "resolved scene: give it to --config to run the same again"},
+        {"", "seed", "uint64", "of all random numbers"},
+        {"", "plan", "text", "how the numbers were found, a line for each run"},
+        {"", "machine", "text", "processor and cores"},
+        {"", "threads", "int64", "that the runs had"},
+        {"", "started", "text", "UTC, 2024-05-01T12:00:00Z"},
+        {"", "wall_s", "float64", "time taken by samples or solutions"},
+        {"", "cpu_s", "float64", "processor time of all threads"},
+        {"", "samples", "float64", "light paths, placements, fields, rays, trials, camera paths"},
+        {"", "identity", "text", "what --resume compares"},
+        {"", "converged", "bool", "0: stopped before the target error, or interrupted"},
+    }};
+
 void write_provenance(ResultFile& file, const Provenance& provenance) {
-  file.attribute("/", "program", "flatspeckle");
-  file.attribute("/", "version", version());
-  file.attribute("/", "git_commit", git_commit());
-  file.attribute("/", "command_line", provenance.command_line);
-  file.attribute("/", "config", provenance.config);
-  file.attribute("/", "seed", provenance.seed);
-  file.attribute("/", "plan", provenance.plan);
-  file.attribute("/", "machine", machine_description());
-  file.attribute("/", "threads", provenance.threads);
-  file.attribute("/", "started", provenance.started);
-  file.attribute("/", "wall_s", provenance.wall_s);
-  file.attribute("/", "cpu_s", provenance.cpu_s);
-  file.attribute("/", "samples", provenance.samples);
-  file.attribute("/", "converged", provenance.converged);
+  const ResultGroup root(file, provenance_table);
+  root.attribute("program", "flatspeckle");
+  root.attribute("version", version());
+  root.attribute("git_commit", git_commit());
+  root.attribute("command_line", provenance.command_line);
+  root.attribute("config", provenance.config);
+  root.attribute("seed", provenance.seed);
+  root.attribute("plan", provenance.plan);
+  root.attribute("machine", machine_description());
+  root.attribute("threads", provenance.threads);
+  root.attribute("started", provenance.started);
+  root.attribute("wall_s", provenance.wall_s);
+  root.attribute("cpu_s", provenance.cpu_s);
+  root.attribute("samples", provenance.samples);
+  root.attribute("converged", provenance.converged);
 }
 
 std::string utc_now() {

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <string>
 
-#include "core/result/result_file.h"
+#include "core/result/dataset_row.h"
 
 namespace flatspeckle {
 
@@ -20,6 +20,7 @@ struct Provenance {
   bool converged = false;  ///< reached what was asked for
 };
 
+extern const DatasetTable provenance_table;
 /// Root attributes: the members of Provenance under their names, and program, version, git_commit,
 /// machine.
 void write_provenance(ResultFile& file, const Provenance& provenance);

@@ -118,7 +118,7 @@ class Writer {
   }
 
   /// Of few; HDF5 keeps texts apart from the dataset, where filters do not reach them.
-  void dataset(const std::vector<std::string>& texts, const std::vector<Axis>& axes) const {
+  void dataset(std::span<const std::string> texts, const std::vector<Axis>& axes) const {
     if (exists(file_, name_)) throw std::logic_error(name_ + ": written twice");
     const auto shape = shape_of(axes);
     if (std::accumulate(shape.begin(), shape.end(), hsize_t{1}, std::multiplies<>()) !=
@@ -268,6 +268,16 @@ class Writer {
   hid_t file_ = -1;
 };
 
+template <typename Number>
+std::size_t bytes_of(std::span<const Number> numbers) {
+  return numbers.size_bytes();
+}
+std::size_t bytes_of(std::span<const std::string> texts) {
+  std::size_t bytes = 0;
+  for (const std::string& text : texts) bytes += text.size() + sizeof(std::uint64_t) * 4;
+  return bytes;
+}
+
 /// An empty HDF5 file in memory: a full disk can then only show where we write it ourselves, in
 /// commit(), and not while HDF5 closes its objects.
 std::unique_ptr<Hdf5Handle> file_in_memory() {
@@ -318,6 +328,12 @@ void ResultFile::group(const std::string& name) {
   Writer(file_.get(), path_.string(), name).group();
 }
 
+const std::vector<Axis>& ResultFile::bound(const std::string& role) const {
+  const auto found = roles_.find(role);
+  if (found == roles_.end()) throw std::logic_error(role + ": stands for nothing here");
+  return found->second;
+}
+
 void ResultFile::attribute(const std::string& object, const std::string& name,
                            const Attribute& value) {
   make_room(0);
@@ -339,41 +355,13 @@ void ResultFile::numbered_scale(const std::string& name, std::size_t count,
   scale(name, numbers, "1", long_name);
 }
 
-void ResultFile::dataset(const std::string& name, std::span<const double> values,
+void ResultFile::dataset(const std::string& name, const Values& values,
                          const std::vector<Axis>& axes, const std::string& units,
                          const std::string& long_name) {
-  make_room(values.size_bytes());
+  make_room(std::visit([](const auto& given) { return bytes_of(given); }, values));
   const Writer writer(file_.get(), path_.string(), name);
-  writer.dataset(values, axes);
+  std::visit([&](const auto& given) { writer.dataset(given, axes); }, values);
   writer.describe(units, long_name);
-}
-
-void ResultFile::dataset(const std::string& name, std::span<const Complex> values,
-                         const std::vector<Axis>& axes, const std::string& units,
-                         const std::string& long_name) {
-  make_room(values.size_bytes());
-  const Writer writer(file_.get(), path_.string(), name);
-  writer.dataset(values, axes);
-  writer.describe(units, long_name);
-}
-
-void ResultFile::dataset(const std::string& name, std::span<const std::uint64_t> values,
-                         const std::vector<Axis>& axes, const std::string& units,
-                         const std::string& long_name) {
-  make_room(values.size_bytes());
-  const Writer writer(file_.get(), path_.string(), name);
-  writer.dataset(values, axes);
-  writer.describe(units, long_name);
-}
-
-void ResultFile::dataset(const std::string& name, const std::vector<std::string>& texts,
-                         const std::vector<Axis>& axes, const std::string& long_name) {
-  std::size_t bytes = 0;
-  for (const std::string& text : texts) bytes += text.size() + sizeof(std::uint64_t) * 4;
-  make_room(bytes);
-  const Writer writer(file_.get(), path_.string(), name);
-  writer.dataset(texts, axes);
-  writer.describe("", long_name);
 }
 
 void ResultFile::begin_dataset(const std::string& name, const std::vector<std::string>& axes,

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <span>
 #include <string>
@@ -17,6 +18,10 @@ class Hdf5Handle;
 
 /// One axis of a dataset: the name of a scale written before, or a plain extent.
 using Axis = std::variant<std::size_t, std::string>;
+
+/// Values of a dataset in row-major order (last axis fastest). Texts are UTF-8.
+using Values = std::variant<std::span<const double>, std::span<const Complex>,
+                            std::span<const std::uint64_t>, std::span<const std::string>>;
 
 /// Value of an attribute; bool is stored as uint8.
 using Attribute =
@@ -44,6 +49,11 @@ class ResultFile {
 
   void group(const std::string& name);
 
+  /// What a role (core/result/dataset_row.h) stands for from here on: axes, or one unit.
+  void bind(const std::string& role, const std::vector<Axis>& names) { roles_[role] = names; }
+  /// Throws std::logic_error for a role that is not bound.
+  const std::vector<Axis>& bound(const std::string& role) const;
+
   /// Of a group (made as needed) or dataset.
   void attribute(const std::string& object, const std::string& name, const Attribute& value);
 
@@ -54,20 +64,14 @@ class ResultFile {
   /// An axis of things that are only counted: 0, 1, ...
   void numbered_scale(const std::string& name, std::size_t count, const std::string& long_name);
 
-  /// Values in row-major order (last axis fastest). No axes: one scalar.
-  void dataset(const std::string& name, std::span<const double> values,
-               const std::vector<Axis>& axes, const std::string& units,
-               const std::string& long_name);
-  void dataset(const std::string& name, std::span<const Complex> values,
-               const std::vector<Axis>& axes, const std::string& units,
-               const std::string& long_name);
-  void dataset(const std::string& name, std::span<const std::uint64_t> values,
-               const std::vector<Axis>& axes, const std::string& units,
-               const std::string& long_name);
-
-  /// Texts, UTF-8.
+  /// No axes: one scalar.
+  void dataset(const std::string& name, const Values& values, const std::vector<Axis>& axes,
+               const std::string& units, const std::string& long_name);
+  /// Texts have no units.
   void dataset(const std::string& name, const std::vector<std::string>& texts,
-               const std::vector<Axis>& axes, const std::string& long_name);
+               const std::vector<Axis>& axes, const std::string& long_name) {
+    dataset(name, texts, axes, "", long_name);
+  }
 
   /// A complex dataset whose values come in blocks, compressed by chunks of this shape. Axes with
   /// scales only. What no block brings is 0.
@@ -92,6 +96,7 @@ class ResultFile {
   std::filesystem::path path_;
   std::unique_ptr<FileBeside> beside_;  // outlives file_
   std::unique_ptr<Hdf5Handle> file_;
+  std::map<std::string, std::vector<Axis>> roles_;
 };
 
 /// check_writable, and throws InputError where another kind of file is, which would be lost.

@@ -1,9 +1,11 @@
 #include "core/result/run_state_file.h"
 
 #include <cmath>
+#include <filesystem>
 #include <utility>
 
 #include "core/error.h"
+#include "core/result/result_group.h"
 
 namespace flatspeckle {
 
@@ -23,16 +25,32 @@ Trace finite_rows(const Trace& trace) {
 
 }  // namespace
 
+const DatasetTable trace_table{
+    "trace",
+    {{"trace/checkpoint", Data::numbers, "", "1", "number of the checkpoint"},
+     {"trace/wall_s", Data::real, "trace/checkpoint", "s", "elapsed time"},
+     {"trace/cpu_s", Data::real, "trace/checkpoint", "s", "processor time, all threads"},
+     {"trace/samples", Data::real, "trace/checkpoint", "1", "samples"},
+     {"trace/relative_error", Data::real, "trace/checkpoint", "1",
+      "RMS standard error relative to the RMS magnitude"}}};
+
+const DatasetTable state_table{
+    .name = "state",
+    .rows = {{"group_samples", Data::real, "GROUPS", "1", "samples of each group"},
+             {"group_sums", Data::complex, "GROUPS SUMS", "", "sums of each group"}},
+    .attributes = {{"", "batches", "uint64", "what is done"},
+                   {"", "wall_s", "float64", "elapsed time so far"},
+                   {"", "cpu_s", "float64", "processor time so far"}},
+    .roles = {{"GROUPS", {"no scale"}}, {"SUMS", {"no scale"}}}};
+
 void write_trace(ResultFile& file, const std::string& group, const Trace& trace) {
   const Trace rows = finite_rows(trace);
-  const std::string checkpoint = group + "/checkpoint";
-  file.numbered_scale(checkpoint, rows.wall_s.size(), "number of the checkpoint");
-  const std::vector<Axis> checkpoints{checkpoint};
-  file.dataset(group + "/wall_s", rows.wall_s, checkpoints, "s", "elapsed time");
-  file.dataset(group + "/cpu_s", rows.cpu_s, checkpoints, "s", "processor time, all threads");
-  file.dataset(group + "/samples", rows.samples, checkpoints, "1", "samples");
-  file.dataset(group + "/relative_error", rows.relative_error, checkpoints, "1",
-               "RMS standard error relative to the RMS magnitude");
+  const ResultGroup parent(file, trace_table, std::filesystem::path(group).parent_path().string());
+  parent.number("trace/checkpoint", rows.wall_s.size());
+  parent.put("trace/wall_s", rows.wall_s);
+  parent.put("trace/cpu_s", rows.cpu_s);
+  parent.put("trace/samples", rows.samples);
+  parent.put("trace/relative_error", rows.relative_error);
 }
 
 Trace read_trace(const ResultReader& file, const std::string& group) {
@@ -53,13 +71,14 @@ Trace read_trace(const ResultReader& file, const std::string& group) {
 
 void write_state(ResultFile& file, const std::string& group, const RunState& state) {
   const GroupedSums::State sums = state.sums.state();
-  const std::size_t groups = sums.samples.size();
-  file.attribute(group, "batches", sums.batches);
-  file.attribute(group, "wall_s", state.wall_s);
-  file.attribute(group, "cpu_s", state.cpu_s);
-  file.dataset(group + "/group_samples", sums.samples, {groups}, "1", "samples of each group");
-  file.dataset(group + "/group_sums", sums.sums, {groups, state.sums.size()}, "",
-               "sums of each group");
+  const ResultGroup out(file, state_table, group);
+  out.attribute("batches", sums.batches);
+  out.attribute("wall_s", state.wall_s);
+  out.attribute("cpu_s", state.cpu_s);
+  file.bind("GROUPS", {sums.samples.size()});
+  file.bind("SUMS", {state.sums.size()});
+  out.put("group_samples", sums.samples);
+  out.put("group_sums", sums.sums);
   write_trace(file, group + "/trace", state.trace);
 }
 

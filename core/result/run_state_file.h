@@ -2,13 +2,15 @@
 
 #include <string>
 
-#include "core/result/result_file.h"
+#include "core/result/dataset_row.h"
 #include "core/result/result_reader.h"
 #include "core/run/runner.h"
 
 namespace flatspeckle {
 
-/// Writes group/wall_s, cpu_s [s], samples and relative_error on the scale group/checkpoint. Rows
+extern const DatasetTable trace_table, state_table;
+
+/// group: "trace" or a group's name and "/trace". Rows
 /// without a finite error (fewer than two groups of batches) are left out.
 void write_trace(ResultFile& file, const std::string& group, const Trace& trace);
 

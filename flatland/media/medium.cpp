@@ -42,12 +42,13 @@ void set_density(BulkMedium& medium, const Scatterer& scatterer, double k, doubl
   medium.k_shift = 2 * density / k * static_cast<double>(sum_imag);
 }
 
-BulkMedium bulk_medium(const Scatterer& henyey_greenstein, double mu_t) {
+BulkMedium bulk_medium(const Scatterer& bulk, const BulkPhase& phase, double mu_t) {
   BulkMedium medium;
   medium.mu_t = mu_t;
-  medium.albedo = henyey_greenstein.albedo;
+  medium.albedo = bulk.albedo;
   medium.mu_s = medium.albedo * mu_t;
-  medium.g = henyey_greenstein.g;
+  medium.g = phase.density ? phase.g : bulk.g;
+  medium.phase = phase;
   return medium;
 }
 
@@ -80,9 +81,15 @@ Complex scattering_amplitude(const BulkMedium& medium, double k, double theta) {
 
 std::vector<Complex> normalised_amplitudes(const BulkMedium& medium, double k,
                                            std::size_t intervals) {
+  const double step = std::numbers::pi / static_cast<double>(intervals);
+  if (medium.phase.density) {
+    std::vector<Complex> roots;
+    for (std::size_t i = 0; i <= intervals; ++i)
+      roots.emplace_back(std::sqrt(medium.phase.density(static_cast<double>(i) * step)));
+    return roots;
+  }
   auto values = amplitudes(medium.t_matrix, k, intervals);
   const double scale = std::sqrt(medium.density / medium.mu_s);
-  const double step = std::numbers::pi / static_cast<double>(intervals);
   for (std::size_t i = 0; i <= intervals; ++i)
     values[i] *= scale * structure_amplitude(medium.structure, k, static_cast<double>(i) * step);
   return values;

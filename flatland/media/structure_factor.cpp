@@ -5,6 +5,8 @@
 #include <map>
 #include <numbers>
 
+#include "core/result/result_group.h"
+
 namespace flatspeckle {
 
 namespace {
@@ -171,6 +173,24 @@ std::vector<double> MeasuredStructureFactor::errors() const {
   std::vector<double> errors;
   for (double squares : squares_) errors.push_back(std::sqrt(squares / (n * (n - 1))));
   return errors;
+}
+
+const DatasetTable structure_factor_table{
+    "structure factor",
+    {{"q", Data::scale, "", "1/length",
+      "wavenumber, mean of a shell of wavevectors that fit the box"},
+     {"structure_factor", Data::estimate, "q", "1", "structure factor S(q)"},
+     {"structure_factor_theory", Data::real, "q", "1",
+      "S(q) of the equilibrium fluid, Baus and Colot 1987"}}};
+
+void write_structure(ResultFile& file, const MeasuredStructureFactor& measured,
+                     const HardDiskFluid* fluid) {
+  const ResultGroup root(file, structure_factor_table);
+  root.put("q", measured.shell_means([](double q) { return q; }));
+  root.put("structure_factor", measured.values(), measured.errors());
+  if (fluid != nullptr)
+    root.put("structure_factor_theory",
+             measured.shell_means([&](double q) { return fluid->structure_factor(q); }));
 }
 
 }  // namespace flatspeckle

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "core/result/dataset_row.h"
 #include "flatland/media/domain.h"
 
 namespace flatspeckle {
@@ -64,5 +65,10 @@ class MeasuredStructureFactor {
   std::uint64_t realizations_ = 0;
   std::vector<double> members_, mean_, squares_;  ///< per shell; squares of deviations
 };
+
+extern const DatasetTable structure_factor_table;
+/// Writes it over q. fluid: theory to stand beside it, or nullptr.
+void write_structure(ResultFile& file, const MeasuredStructureFactor& measured,
+                     const HardDiskFluid* fluid);
 
 }  // namespace flatspeckle

@@ -1,5 +1,6 @@
 #include "flatland/request/request.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -147,6 +148,17 @@ void set_tilts(CovarianceRequest& request, double k, const Light& light,
 }
 
 }  // namespace
+
+bool CovarianceRequest::transmission_only() const {
+  return std::all_of(views.begin(), views.end(),
+                     [](const View& view) { return std::cos(view.angle) > 0; });
+}
+
+std::vector<double> CovarianceRequest::reference_angles() const {
+  std::vector<double> angles;
+  for (std::size_t v = 0; v < reference_views; ++v) angles.push_back(views[v].angle);
+  return angles;
+}
 
 CovarianceRequest intensity_request(Lights lights, std::vector<View> views) {
   auto request = every_channel(std::move(lights), std::move(views));

@@ -41,6 +41,10 @@ struct CovarianceRequest {
   std::vector<double> shifts;  ///< of k sin(view), or along x
   std::size_t moves = 0, reference_views = 0;
 
+  /// Whether all views are on the side that light is transmitted to.
+  bool transmission_only() const;
+  /// Of far views.
+  std::vector<double> reference_angles() const;
   bool has_reference() const { return moves > 0; }
   std::size_t tilted_entry(std::size_t move, std::size_t view) const {
     return move * reference_views + view;

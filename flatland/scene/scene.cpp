@@ -67,9 +67,8 @@ double number_density(const SceneSpec& spec, const Domain& domain, double sigma_
   return *stated_extinction(spec, domain) / sigma_e;
 }
 
-BulkMedium make_medium(const SceneSpec& spec, const Scatterer& scatterer, const Domain& domain,
-                       double k) {
-  if (scatterer.kind == Kind::hg) return bulk_medium(scatterer, *stated_extinction(spec, domain));
+BulkMedium medium_of_scatterers(const SceneSpec& spec, const Scatterer& scatterer,
+                                const Domain& domain, double k) {
   BulkMedium medium = bulk_medium(scatterer, k, 1);
   set_density(medium, scatterer, k, number_density(spec, domain, medium.cross_sections.extinction));
   return medium;
@@ -150,8 +149,12 @@ Scene without_bulk(const Keys& keys, const SceneSpec& spec) {
   scene.k = 2 * std::numbers::pi / spec.wavelength;
   scene.domain = make_domain(keys, spec);
   check_density_keys(keys, spec);
-  if (scene.scatterer.kind == Kind::hg && !stated_extinction(spec, scene.domain))
-    throw InputError("scatterer = hg: give mean_free_path or optical_depth");
+  if (scene.scatterer.is_bulk()) {
+    const auto mu_t = stated_extinction(spec, scene.domain);
+    if (!mu_t)
+      throw InputError("scatterer", spec.scatterer, "give mean_free_path or optical_depth");
+    scene.medium = bulk_medium(scene.scatterer, make_phase(keys, spec.bulk, spec.scatterer), *mu_t);
+  }
   if (spec.count && scene.domain.kind == Domain::Kind::slab)
     throw InputError("count", *spec.count, "an infinite slab has no count; give a density");
   scene.placement = make_placement_rule(keys, spec, scene.scatterer);
@@ -167,7 +170,11 @@ Scene without_bulk(const Keys& keys, const SceneSpec& spec) {
 Scatterer make_scatterer(const Keys& keys, const SceneSpec& spec) {
   keys.read(spec.wavelength);
   Scatterer scatterer;
-  scatterer.kind = chosen(scatterers, keys.read(spec.scatterer));
+  const std::string& word = keys.read(spec.scatterer);
+  const auto bulk = bulk_phase_words();
+  scatterer.kind = std::find(bulk.begin(), bulk.end(), word) != bulk.end()
+                       ? Kind::other_bulk
+                       : chosen(scatterers, word);
   if (scatterer.is_disk()) scatterer.radius = keys.read(spec.radius).value_or(0);
   if (scatterer.kind == Kind::tm || scatterer.kind == Kind::te)
     if (const auto& index = keys.read(spec.index)) {
@@ -178,7 +185,7 @@ Scatterer make_scatterer(const Keys& keys, const SceneSpec& spec) {
   if (scatterer.kind == Kind::hg) scatterer.g = keys.read(spec.g).value_or(0);
   if (scatterer.is_disk()) return scatterer;
   scatterer.albedo = keys.read(spec.albedo).value_or(1);
-  if (scatterer.kind == Kind::hg) return scatterer;
+  if (scatterer.is_bulk()) return scatterer;
   if (scatterer.albedo == 0) throw InputError("albedo", 0, "of points must be in (0, 1]");
   const auto& phase_shift = keys.read(spec.phase_shift);
   if (phase_shift && scatterer.albedo != 1)
@@ -190,7 +197,8 @@ Scatterer make_scatterer(const Keys& keys, const SceneSpec& spec) {
 Scene make_scene(const Keys& keys, const SceneSpec& spec) {
   Scene scene = without_bulk(keys, spec);
   keys.refuse_unread();
-  scene.medium = make_medium(spec, scene.scatterer, scene.domain, scene.k);
+  if (!scene.scatterer.is_bulk())
+    scene.medium = medium_of_scatterers(spec, scene.scatterer, scene.domain, scene.k);
   scene.placement.mean_count = scene.medium.density * scene.domain.area();
   check_packing(scene);
   if (spec.structure != "none") scene.medium = correlated(spec.structure, scene);
@@ -219,11 +227,14 @@ std::string inputs_text(const Scene& scene) {
     text += "source ";
     add(light.point);
   }
-  return text + scene.medium.structure.text();
+  return text + scene.medium.structure.text() + scene.medium.phase.text;
 }
 
 std::vector<std::string> scatterer_words() {
-  return words_of(scatterers);
+  auto words = words_of(scatterers);
+  const auto bulk = bulk_phase_words();
+  words.insert(words.end(), bulk.begin(), bulk.end());
+  return words;
 }
 
 std::vector<std::string> placement_words() {

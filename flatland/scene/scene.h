@@ -10,6 +10,7 @@
 #include "flatland/media/medium.h"
 #include "flatland/placement/placement.h"
 #include "flatland/request/request.h"
+#include "flatland/scatterers/bulk_phases.h"
 #include "flatland/scatterers/scatterer.h"
 
 namespace flatspeckle {
@@ -37,6 +38,7 @@ struct SceneSpec {
   std::vector<double> tilts{}, shifts{};
   std::string covariance = "intensity";
   std::vector<double> pairs{};
+  BulkPhases bulk{};
 };
 
 /// All that a solver is told: one scene, two eyes.

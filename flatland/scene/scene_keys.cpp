@@ -31,9 +31,10 @@ void add_bulk_keys(Keys& keys, SceneSpec& spec) {
   keys.group("Bulk");
   keys.add("optical_depth", spec.optical_depth, "Density from mu_t x depth").positive().swept();
   keys.add("g", spec.g, "Mean cosine (default 0)").between(-1, 1).only_of("hg").swept();
+  add_keys(keys, spec.bulk);
   keys.add("albedo", spec.albedo, "Albedo; of points, which are resonant, above 0 (default 1)")
       .from(0, 1)
-      .only_of("hg and point")
+      .only_of("points and phase functions of the bulk")
       .swept();
 }
 

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/result/dataset_row.h"
 #include "grin/geometry/vec3.h"
 #include "grin/media/start_directions.h"
 
@@ -84,6 +85,12 @@ struct ConnectionStatistics {
   void record_refind(std::uint64_t further_trials);
   ConnectionStatistics& operator+=(const ConnectionStatistics& other);
 };
+
+extern const DatasetTable trials_table;
+/// How the trials of curves ended, and their iterations.
+void write_trials(ResultFile& file, const ConnectionStatistics& statistics);
+/// The pairs of points that curves were sought between, and what K cost (C26).
+void write_pairs(ResultFile& file, const ConnectionStatistics& statistics);
 
 /// One random curve from P to Q and its weight: f(curve) multiplicity is unbiased for the sum of f
 /// over all curves (C26). Without a curve the estimate is 0.

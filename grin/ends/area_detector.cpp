@@ -30,8 +30,23 @@ double sine_squared(double angle) {
 
 }  // namespace
 
+const DatasetTable area_table{
+    "area",
+    {{"row", Data::scale, "", "length", "height on the detector, along sensor_up"},
+     {"column", Data::scale, "", "length", "position to the right, as light that arrives sees it"},
+     {"image", Data::estimate, "row column", "1/length^2", "irradiance averaged over the pixel"},
+     {"mean", Data::estimate, "", "1/length^2", "mean over the pixels"},
+     {"total", Data::estimate, "", "1", "power on the detector"},
+     {"transient", Data::estimate, "row column optical_path", "1/length^2",
+      "irradiance averaged over the pixel, in the bin"},
+     {"pulse", Data::estimate, "optical_path", "1", "power on the detector, in the bin"}}};
+
+PixelRectangle picture_of(const AreaDetector& detector) {
+  return {detector.pixels, detector.width / 2, detector.height / 2};
+}
+
 AreaDetectorEnd::AreaDetectorEnd(const AreaDetector& detector, const Stage& stage)
-    : face_(detector.pixels, detector.width / 2, detector.height / 2),
+    : face_(picture_of(detector)),
       boundary_(stage.boundary),
       centre_(centre_on(stage.boundary, detector.centre).x),
       view_("sensor_at", -centre_on(stage.boundary, detector.centre).inward, detector.up),
@@ -131,17 +146,6 @@ EndDirection AreaDetectorEnd::towards(const EndPosition& at, const Vec3& directi
   to.pixel = at.pixel;
   to.strength = at.index * at.index * cosine * at.position_density * pixels().count();
   return to;
-}
-
-SensorAxes axes_of(const AreaDetector& detector) {
-  SensorAxes axes = axes_of(detector.pixels, detector.width / 2, detector.height / 2);
-  axes.units = "length";
-  axes.row_name = "height on the detector, along sensor_up";
-  axes.column_name = "position to the right, as light that arrives sees it";
-  axes.image_units = "1/length^2";
-  axes.image_name = "irradiance averaged over the pixel";
-  axes.area = detector.width * detector.height;
-  return axes;
 }
 
 void add_keys(Keys& keys, AreaValues& values) {

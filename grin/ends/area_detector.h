@@ -22,6 +22,12 @@ struct AreaDetector {
   double acceptance;  ///< half angle, rad, up to pi/2
 };
 
+extern const DatasetTable area_table;
+inline const DatasetTable& table_of(const AreaDetector&) {
+  return area_table;
+}
+PixelRectangle picture_of(const AreaDetector& detector);
+
 /// With u, v on the rectangle, W = (du dv / dA) / pixel area; du dv / dA is the cosine between the
 /// normals at the point and at the centre, 1 on a box.
 class AreaDetectorEnd {
@@ -53,8 +59,6 @@ class AreaDetectorEnd {
   double tangent_;       ///< the same; infinite for all directions
   std::optional<Surface> body_;
 };
-
-SensorAxes axes_of(const AreaDetector& detector);
 
 struct AreaValues {
   using Sensor = AreaDetector;

@@ -5,18 +5,25 @@
 
 namespace flatspeckle::grin {
 
-namespace {
+const DatasetTable camera_table{
+    "camera",
+    {{"row", Data::scale, "", "1", "tangent of the angle above the line of sight"},
+     {"column", Data::scale, "", "1", "tangent of the angle to the right of it"},
+     {"image", Data::estimate, "row column", "1/(length^2 sr)", "L/n^2 averaged over the pixel"},
+     {"mean", Data::estimate, "", "1/(length^2 sr)", "mean over the pixels"},
+     {"transient", Data::estimate, "row column optical_path", "1/(length^2 sr)",
+      "L/n^2 averaged over the pixel, in the bin"},
+     {"pulse", Data::estimate, "optical_path", "1/(length^2 sr)",
+      "mean over the pixels, in the bin"}}};
 
-PixelRectangle film(const Camera& camera) {
+PixelRectangle picture_of(const Camera& camera) {
   const double half_width = std::tan(camera.field_of_view / 2);
   return {camera.pixels, half_width, half_width * camera.pixels.rows / camera.pixels.columns};
 }
 
-}  // namespace
-
 CameraEnd::CameraEnd(const Camera& camera, const Stage& stage)
     : view_("sensor_direction", camera.forward, camera.up),
-      film_(film(camera)),
+      film_(picture_of(camera)),
       centre_(camera.x),
       focus_distance_(1),
       body_(body_surface(stage)) {
@@ -81,17 +88,6 @@ EndDirection CameraEnd::towards(const EndPosition& at, const Vec3& direction) co
   const int pixel = film_.pixel_at(focus.dot(view_.right), focus.dot(view_.up));
   if (pixel < 0) return {.direction = direction};
   return along(at, direction, pixel);
-}
-
-SensorAxes axes_of(const Camera& camera) {
-  const double half = std::tan(camera.field_of_view / 2);
-  SensorAxes axes = axes_of(camera.pixels, half, half * camera.pixels.rows / camera.pixels.columns);
-  axes.units = "1";
-  axes.row_name = "tangent of the angle above the line of sight";
-  axes.column_name = "tangent of the angle to the right of it";
-  axes.image_units = "1/(length^2 sr)";
-  axes.image_name = "L/n^2 averaged over the pixel";
-  return axes;
 }
 
 void add_keys(Keys& keys, CameraValues& values) {

@@ -20,6 +20,12 @@ struct Camera {
   double focus_distance = 1;  ///< of the lens, along forward, more than its radius
 };
 
+extern const DatasetTable camera_table;
+inline const DatasetTable& table_of(const Camera&) {
+  return camera_table;
+}
+PixelRectangle picture_of(const Camera& camera);
+
 /// The film is the plane of focus, seen from the camera's centre: u and v are tangents. A ray from
 /// x on the lens along d meets the plane at x + t d, t = F' / cos(theta), F' = F - (x - centre).
 /// forward, so that du dv / dw = t^2 / (F^2 cos(theta)) = (F'/F)^2 / cos^3(theta), theta from
@@ -50,8 +56,6 @@ class CameraEnd {
   std::optional<BoundaryPatch> lens_;
   std::optional<Surface> body_;
 };
-
-SensorAxes axes_of(const Camera& camera);
 
 struct CameraValues {
   using Sensor = Camera;

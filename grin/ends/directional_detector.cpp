@@ -5,9 +5,26 @@
 
 namespace flatspeckle::grin {
 
+const DatasetTable directional_table{
+    "directional",
+    {{"row", Data::scale, "", "1", "component of the direction along sensor_up"},
+     {"column", Data::scale, "", "1",
+      "component of the direction along sensor_direction x sensor_up"},
+     {"image", Data::estimate, "row column", "1/sr",
+      "power per solid angle averaged over the pixel"},
+     {"mean", Data::estimate, "", "1/sr", "mean over the pixels"},
+     {"transient", Data::estimate, "row column optical_path", "1/sr",
+      "power per solid angle averaged over the pixel, in the bin"},
+     {"pulse", Data::estimate, "optical_path", "1/sr", "mean over the pixels, in the bin"}}};
+
+PixelRectangle picture_of(const DirectionalDetector& detector) {
+  const double sine = std::sin(detector.half_angle);
+  return {detector.pixels, sine, sine};
+}
+
 DirectionalEnd::DirectionalEnd(const DirectionalDetector& detector, const Stage& stage)
     : view_("sensor_direction", detector.forward, detector.up),
-      picture_(detector.pixels, std::sin(detector.half_angle), std::sin(detector.half_angle)),
+      picture_(picture_of(detector)),
       boundary_(stage.boundary, "sensor"),
       body_(body_surface(stage)) {}
 
@@ -52,17 +69,6 @@ EndDirection DirectionalEnd::towards(const EndPosition& at, const Vec3& directio
                         : -1;
   if (pixel < 0) return {.direction = direction};
   return along(at, direction, pixel);
-}
-
-SensorAxes axes_of(const DirectionalDetector& detector) {
-  const double half = std::sin(detector.half_angle);
-  SensorAxes axes = axes_of(detector.pixels, half, half);
-  axes.units = "1";
-  axes.row_name = "component of the direction along sensor_up";
-  axes.column_name = "component of the direction along sensor_direction x sensor_up";
-  axes.image_units = "1/sr";
-  axes.image_name = "power per solid angle averaged over the pixel";
-  return axes;
 }
 
 void add_keys(Keys& keys, DirectionalValues& values) {

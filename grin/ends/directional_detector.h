@@ -20,6 +20,12 @@ struct DirectionalDetector {
   PixelGrid pixels;
 };
 
+extern const DatasetTable directional_table;
+inline const DatasetTable& table_of(const DirectionalDetector&) {
+  return directional_table;
+}
+PixelRectangle picture_of(const DirectionalDetector& detector);
+
 /// With u, v the components of the outward direction, du dv = cos(theta) dw, theta from forward:
 /// W = cos(theta) / pixel area. Pixels beyond the horizon, in the corners, stay dark.
 class DirectionalEnd {
@@ -42,8 +48,6 @@ class DirectionalEnd {
   BoundaryPatch boundary_;
   std::optional<Surface> body_;
 };
-
-SensorAxes axes_of(const DirectionalDetector& detector);
 
 struct DirectionalValues {
   using Sensor = DirectionalDetector;

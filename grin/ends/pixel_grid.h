@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include <Eigen/Geometry>
 
@@ -52,6 +53,14 @@ class PixelRectangle {
   Window all() const { return {-half_width_, half_width_, -half_height_, half_height_}; }
   double pixel_area() const { return area() / grid_.count(); }
 
+  /// From left to right, and from top to bottom.
+  std::vector<double> column_centres() const { return centres(half_width_, grid_.columns); }
+  std::vector<double> row_centres() const {
+    auto rows = centres(half_height_, grid_.rows);
+    for (double& v : rows) v = -v;
+    return rows;
+  }
+
   /// -1 outside.
   int pixel_at(double u, double v) const {
     const double column = (u / half_width_ + 1) / 2 * grid_.columns;
@@ -71,6 +80,13 @@ class PixelRectangle {
   }
 
  private:
+  /// Of `count` equal parts of (-half, half).
+  static std::vector<double> centres(double half, int count) {
+    std::vector<double> values;
+    for (int i = 0; i < count; ++i) values.push_back(half * ((2 * i + 1.0) / count - 1));
+    return values;
+  }
+
   PixelGrid grid_;
   double half_width_, half_height_;
 };

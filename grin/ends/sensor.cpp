@@ -9,17 +9,15 @@ std::vector<std::string> words() {
                     SensorKinds());
 }
 
-/// Centres of `count` equal parts of (-half, half), rising or falling.
-std::vector<double> centres(double half, int count, bool rising) {
-  std::vector<double> values;
-  for (int i = 0; i < count; ++i) {
-    const double x = half * ((2 * i + 1.0) / count - 1);
-    values.push_back(rising ? x : -x);
-  }
-  return values;
+}  // namespace
+
+const DatasetTable& table_of(const Sensor& sensor) {
+  return std::visit([](const auto& kind) -> const DatasetTable& { return table_of(kind); }, sensor);
 }
 
-}  // namespace
+PixelRectangle picture_of(const Sensor& sensor) {
+  return std::visit([](const auto& kind) { return picture_of(kind); }, sensor);
+}
 
 SensorEnd::SensorEnd(const Sensor& sensor, const Stage& stage)
     : end_(std::visit([&]<class S>(const S& of)
@@ -85,17 +83,6 @@ Sensor make_sensor(const Keys& keys, const SensorValues& values) {
   };
   std::apply([&](const auto&... kind) { (make(kind), ...); }, values.kinds);
   return sensor;
-}
-
-SensorAxes axes_of(const PixelGrid& pixels, double half_width, double half_height) {
-  SensorAxes axes;
-  axes.column = centres(half_width, pixels.columns, true);
-  axes.row = centres(half_height, pixels.rows, false);
-  return axes;
-}
-
-SensorAxes axes_of(const Sensor& sensor) {
-  return std::visit([](const auto& kind) { return axes_of(kind); }, sensor);
 }
 
 }  // namespace flatspeckle::grin

@@ -41,7 +41,10 @@ void add_keys(Keys& keys, SensorValues& values);
 /// Throws InputError.
 Sensor make_sensor(const Keys& keys, const SensorValues& values);
 
-SensorAxes axes_of(const Sensor& sensor);
+/// What the file of a sensor has.
+const DatasetTable& table_of(const Sensor& sensor);
+/// Its pixels.
+PixelRectangle picture_of(const Sensor& sensor);
 
 /// The sensor of a scene as an end of paths; same interface as Lights.
 ///

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/result/result_group.h"
 #include "mc/ends/coherent_field.h"
 #include "mc/estimators/delay_scorer.h"
 #include "mc/estimators/single_scattering.h"
@@ -97,6 +98,31 @@ DelayJob delay_job(const Scene& scene, const Plan& plan, const std::vector<doubl
     return relative_error(jackknife(sums, all));
   };
   return job;
+}
+
+DelayEstimates delay_estimates(const DelayJob& job, const GroupedSums& sums) {
+  return {jackknife(sums, job.covariance), jackknife(sums, job.correlation)};
+}
+
+const DatasetTable delays_table{"delays",
+                                {{"delay", Data::scale, "", "1", "k^2 D tau"},
+                                 {"covariance", Data::estimate, "delay LIGHT VIEW", "COVARIANCE",
+                                  "covariance of the field with itself after a delay"},
+                                 {"field_correlation", Data::estimate, "delay LIGHT VIEW", "1",
+                                  "field correlation after a delay"},
+                                 {"diffusion_theory", Data::real, "delay", "1",
+                                  "field correlation of transmitted light in diffusion theory"}}};
+
+void write_delays(ResultFile& file, const Scene& scene, const std::vector<double>& delays,
+                  const DelayEstimates& found) {
+  const ResultGroup root(file, delays_table);
+  root.put("delay", delays);
+  root.put("covariance", found.covariance);
+  root.put("field_correlation", found.correlation);
+  if (scene.domain.kind != Domain::Kind::slab || !scene.request.transmission_only()) return;
+  root.put("diffusion_theory", column(delays, [&](double delay) {
+             return diffusion_delay_correlation(scene.medium, scene.domain.depth, delay);
+           }));
 }
 
 double diffusion_delay_correlation(const BulkMedium& medium, double thickness, double delay) {

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/result/dataset_row.h"
 #include "flatland/request/field_moments.h"
 #include "flatland/scene/scene.h"
 #include "mc/walk/plan.h"
@@ -22,6 +23,17 @@ struct DelayJob {
 /// For an intensity request. Throws InputError for another, and for negative delays.
 DelayJob delay_job(const Scene& scene, const Plan& plan, const std::vector<double>& delays,
                    std::uint64_t seed);
+
+/// The two, [delay][channel].
+struct DelayEstimates {
+  Estimate covariance, correlation;
+};
+DelayEstimates delay_estimates(const DelayJob& job, const GroupedSums& sums);
+
+extern const DatasetTable delays_table;
+/// With diffusion theory for light through a slab. The request's axes must have been written.
+void write_delays(ResultFile& file, const Scene& scene, const std::vector<double>& delays,
+                  const DelayEstimates& found);
 
 /// Diffusion theory of the correlation in transmission through a slab: motion is absorption 2 t (1
 /// - g) mu_s, which is added to mu_a in the kappa^2 of C20. A limit for thick slabs and small t.

@@ -6,6 +6,8 @@
 #include <numbers>
 #include <sstream>
 
+#include "core/result/result_group.h"
+#include "flatland/scene/scene_datasets.h"
 #include "mc/ends/scattering.h"
 #include "mc/estimators/flux_walk.h"
 #include "mc/walk/importance.h"
@@ -122,6 +124,44 @@ double direct_transmittance(const Scene& scene, double light) {
   const double rising = longest > 0 ? -std::expm1(-longest) / longest : 1;
   return (std::abs(face - side) * std::exp(-longest) + 2 * std::min(face, side) * rising) /
          (face + side);
+}
+
+std::vector<double> direct_transmittances(const Scene& scene) {
+  return column(scene.request.lights,
+                [&](const Light& light) { return direct_transmittance(scene, light.angle); });
+}
+
+const DatasetTable flux_table{
+    "flux",
+    {{"reflectance", Data::estimate, "light_angle", "1",
+      "share of the light scattered out through z = 0"},
+     {"transmittance", Data::estimate, "light_angle", "1",
+      "share of the light scattered out through z = depth"},
+     {"side_loss", Data::estimate, "light_angle", "1",
+      "share of the light scattered out through the sides"},
+     {"absorptance", Data::estimate, "light_angle", "1", "share of the light that is absorbed"},
+     {"direct_transmittance", Data::estimate, "light_angle", "1",
+      "share of the light that meets no scatterer"},
+     {"exit_angle", Data::scale, "", "rad", "middle of the bin of exit directions"},
+     {"exit_radiance", Data::estimate, "light_angle exit_angle", "1/rad",
+      "share of the light scattered out per radian of exit direction"}}};
+
+void write_flux(ResultFile& file, const Scene& scene, const FluxEstimates& flux) {
+  const std::size_t lights = scene.request.lights.size(),
+                    bins = flux.exit_radiance.value.size() / lights;
+  write_light_axis(file, scene.request.lights);
+  const ResultGroup root(file, flux_table);
+  std::vector<double> middles;
+  for (std::size_t bin = 0; bin < bins; ++bin)
+    middles.push_back(std::numbers::pi *
+                      (static_cast<double>(2 * bin + 1) / static_cast<double>(bins) - 1));
+  root.put("exit_angle", middles);
+  root.put("reflectance", flux.reflectance);
+  root.put("transmittance", flux.transmittance);
+  root.put("absorptance", flux.absorptance);
+  if (scene.domain.kind == Domain::Kind::box) root.put("side_loss", flux.side_loss);
+  root.put("direct_transmittance", direct_transmittances(scene), std::vector<double>(lights));
+  root.put("exit_radiance", flux.exit_radiance);
 }
 
 }  // namespace flatspeckle::mc

@@ -2,7 +2,9 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
+#include "core/result/dataset_row.h"
 #include "core/run/runner.h"
 #include "flatland/scene/scene.h"
 
@@ -29,8 +31,13 @@ struct FluxEstimates {
 };
 FluxEstimates flux_estimates(const FluxJob& job, const GroupedSums& sums);
 
+extern const DatasetTable flux_table;
+/// With the axes of lights and exit directions.
+void write_flux(ResultFile& file, const Scene& scene, const FluxEstimates& flux);
+
 /// Share of a light that crosses the medium unscattered and not absorbed (ballistic), in closed
 /// form.
 double direct_transmittance(const Scene& scene, double light);
+std::vector<double> direct_transmittances(const Scene& scene);
 
 }  // namespace flatspeckle::mc

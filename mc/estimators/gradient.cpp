@@ -4,11 +4,13 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/result/result_group.h"
 #include "mc/ends/coherent_field.h"
 #include "mc/estimators/gradient_scorer.h"
 #include "mc/estimators/single_scattering.h"
 #include "mc/estimators/tallied_walks.h"
 #include "mc/theory/memory_effect.h"
+#include "mc/theory/moments_datasets.h"
 
 namespace flatspeckle::mc {
 
@@ -21,6 +23,7 @@ std::vector<BulkParameter> sampled_parameters(const Scene& scene) {
   switch (scene.scatterer.kind) {
     case Scatterer::Kind::hg:
       return {BulkParameter::mu_t, BulkParameter::g, BulkParameter::albedo};
+    case Scatterer::Kind::other_bulk:
     case Scatterer::Kind::point:
       return {BulkParameter::mu_t, BulkParameter::albedo};
     default:
@@ -148,6 +151,19 @@ Values directional_slope(const CovarianceRequest& request, std::span<const Compl
   return slope;
 }
 
+/// What f makes of the estimates of each parameter, one after the other.
+Estimate each(const Estimate& all, std::size_t parameters,
+              const std::function<Estimate(const Estimate&)>& f) {
+  const std::size_t size = all.value.size() / parameters;
+  Estimate made;
+  for (std::size_t p = 0; p < parameters; ++p) {
+    const Estimate one = f(part(all, p * size, size));
+    made.value.insert(made.value.end(), one.value.begin(), one.value.end());
+    made.error.insert(made.error.end(), one.error.begin(), one.error.end());
+  }
+  return made;
+}
+
 }  // namespace
 
 Plan gradient_plan(const Scene& scene, ReversedPaths reversed) {
@@ -218,6 +234,46 @@ CorrelationGradient memory_effect_gradient(const CovarianceRequest& request,
     part.error.push_back(slopes.error[i]);
   }
   return gradient;
+}
+
+GradientEstimates gradient_estimates(const Scene& scene, const GroupedSums& sums,
+                                     const GradientJob& job) {
+  GradientEstimates gradient{jackknife(sums, job.gradient), {}};
+  if (scene.request.kind != CovarianceRequest::Kind::memory_effect) return gradient;
+  gradient.effect = memory_effect_gradient(scene.request, sums, job);
+  for (Complex& slope : gradient.effect.range.value) slope *= scene.domain.depth;
+  for (double& error : gradient.effect.range.error) error *= scene.domain.depth;
+  return gradient;
+}
+
+const DatasetTable gradient_table{
+    .name = "gradient",
+    .rows = {{"parameter", Data::numbers, "", "1",
+              "what derivatives are by: see the attribute names"}},
+    .attributes = {{"parameter", "names", "texts",
+                    "mu_t, g, albedo, optical_depth, as far as the scene has them"}}};
+
+void write_gradient(ResultFile& file, const CovarianceRequest& request, const GradientJob& job,
+                    const GradientEstimates& gradient) {
+  using Kind = CovarianceRequest::Kind;
+  const std::size_t parameters = job.parameters.size(), views = request.reference_views,
+                    moved = request.moves * views;
+  const ResultGroup root(file, gradient_table), out(file, request_table(request.kind));
+  root.number("parameter", parameters);
+  root.attribute("parameter", "names", job.parameters);
+  const auto of_each = [&](const auto& f) { return each(gradient.entries, parameters, f); };
+  if (request.kind == Kind::full)
+    return out.put("gradient",
+                   of_each([&](const Estimate& lower) { return unpack_full(request, lower); }));
+  if (request.kind != Kind::memory_effect) return out.put("gradient", gradient.entries);
+  const auto entries = [&](std::size_t first, std::size_t count) {
+    return of_each([&](const Estimate& all) { return part(all, first, count); });
+  };
+  out.put("gradient", entries(0, moved));
+  out.put("reference_intensity_gradient", entries(request.reference_intensity(0), views));
+  out.put("tilted_intensity_gradient", entries(request.tilted_intensity(0, 0), moved));
+  out.put("field_correlation_gradient", gradient.effect.correlation);
+  out.put("memory_effect_range_gradient", gradient.effect.range);
 }
 
 }  // namespace flatspeckle::mc

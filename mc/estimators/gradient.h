@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "core/result/dataset_row.h"
 #include "flatland/request/field_moments.h"
 #include "flatland/scene/scene.h"
 #include "mc/walk/plan.h"
@@ -36,6 +37,19 @@ struct CorrelationGradient {
 };
 CorrelationGradient memory_effect_gradient(const CovarianceRequest& request,
                                            const GroupedSums& sums, const GradientJob& job);
+
+/// Derivatives of all that a gradient's file has, [parameter] first; range of q L.
+struct GradientEstimates {
+  Estimate entries;
+  CorrelationGradient effect;  ///< of a memory_effect request
+};
+GradientEstimates gradient_estimates(const Scene& scene, const GroupedSums& sums,
+                                     const GradientJob& job);
+
+extern const DatasetTable gradient_table;
+/// The request's axes must have been written.
+void write_gradient(ResultFile& file, const CovarianceRequest& request, const GradientJob& job,
+                    const GradientEstimates& gradient);
 
 /// d log p / dg of the phase function of C22 at a scattering angle of known 1 - cos.
 inline double henyey_greenstein_slope(double g, double one_minus_cosine) {

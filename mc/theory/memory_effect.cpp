@@ -78,6 +78,17 @@ Range memory_effect_range(const std::vector<double>& tilt_q, std::span<const Com
   return {curve.back().q, Range::Censoring::above_value};
 }
 
+std::size_t steps_below(const std::vector<double>& steps, const Range& range) {
+  return static_cast<std::size_t>(std::count_if(steps.begin(), steps.end(), [&](double step) {
+    return std::abs(step) > 0 && std::abs(step) < range.value;
+  }));
+}
+
+bool few_steps(const std::vector<double>& steps, const Range& range) {
+  constexpr std::size_t enough = 4;
+  return range.censored == Range::Censoring::none && steps_below(steps, range) < enough;
+}
+
 MemoryEffect memory_effect(const CovarianceRequest& request, const GroupedSums& sums,
                            const Estimator& covariance) {
   const auto& steps =

@@ -29,6 +29,12 @@ struct Range {
 /// nearest tilts.
 Range memory_effect_range(const std::vector<double>& tilt_q, std::span<const Complex> correlation);
 
+/// Steps between 0 and a range.
+std::size_t steps_below(const std::vector<double>& steps, const Range& range);
+/// Whether a range rests on so few steps below it that its error bar, which does not know what the
+/// curve does between them, says too little.
+bool few_steps(const std::vector<double>& steps, const Range& range);
+
 /// field_correlation and the range with jackknife errors, of a memory_effect or translation
 /// request.
 struct MemoryEffect {

@@ -25,12 +25,6 @@ std::array<Range, 3> ranges(const CovarianceRequest& request, std::span<const Co
           matched.empty() ? Range{} : memory_effect_range(request.tilt_q, matched)};
 }
 
-std::vector<double> real_parts(std::span<const Complex> values) {
-  std::vector<double> real;
-  for (Complex value : values) real.push_back(value.real());
-  return real;
-}
-
 }  // namespace
 
 TiltShift tilt_shift(const CovarianceRequest& request, const GroupedSums& sums,

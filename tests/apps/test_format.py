@@ -1,24 +1,23 @@
-"""Result files are what docs/format.md says: every dataset and attribute of every subcommand's
-files is in its tables, and every entry of the tables is met by some file."""
+"""docs/format.md shows the tables of the program, and result files are what these say: every
+dataset and attribute has a row, and every row is met by some file. With --update puts the tables
+of the program into the document."""
 
+import itertools
+import re
+import subprocess
+import sys
 import unittest
 
 import h5py
 import numpy as np
 
-from format_document import Document, Found
 from format_scenes import ResultsTest
-from program import DATA
+from program import DATA, PROGRAM
 
-DOCUMENT = Document(DATA.parent / "docs" / "format.md")
+DOCUMENT = DATA.parent / "docs" / "format.md"
+MARKED = re.compile(r"<!-- datasets: (.*?) -->\n.*?<!-- end -->\n", re.DOTALL)
 OF_HDF5 = {"CLASS", "NAME", "DIMENSION_LIST", "DIMENSION_LABELS", "REFERENCE_LIST"}
-TYPES = {np.dtype("float64"): "float64", np.dtype("complex128"): "complex",
-         np.dtype("uint64"): "uint64", np.dtype(object): "texts"}
-NUMBERED = {"light", "sensor", "pair", "parameter", "checkpoint", "point", "realization", "entry",
-            "scatterer", "ray", "curve", "path_point", "curve_point", "cost", "cost_point", "case",
-            "comparison"}
-SMALL, CHUNK = 4096, 1 << 20  # bytes
-ALWAYS_CHUNKED = {"field", "total_field"}
+TABLES = subprocess.run([PROGRAM, "datasets"], capture_output=True, text=True, check=True).stdout
 
 
 def members(file, kind=h5py.Dataset):
@@ -28,164 +27,125 @@ def members(file, kind=h5py.Dataset):
     return found
 
 
-def without_method(name):
-    return name.removeprefix("mc/").removeprefix("wave/")
-
-
 def is_scale(dataset):
     return dataset.attrs.get("CLASS") == b"DIMENSION_SCALE"
 
 
-def describe(dataset):
-    """Axes by the full names of their scales, less the group of the dataset's method."""
-    axes = tuple(without_method(axis[0].name[1:]) if len(axis) else None for axis in dataset.dims)
-    return Found(TYPES.get(dataset.dtype), "scale" if is_scale(dataset) else axes,
-                 dataset.attrs.get("units", "none"))
+def of_method(name):
+    """The name that a row has for it: tables do not tell groups of methods and states apart."""
+    return re.sub(r"^(mc|wave|state/\w+)(/|$)", "", name)
 
 
-def attribute_type(attribute):
-    """In the words of the document."""
-    dtype = attribute.dtype
-    if h5py.check_string_dtype(dtype):
-        return "text" if attribute.shape == () else "texts"
-    return "bool" if dtype == np.uint8 else dtype.name
+def cells_of_tables():
+    """Cells of each row, by the heading of their first column."""
+    found = {"word": [], "dataset": [], "attribute": []}
+    for line in TABLES.splitlines():
+        cells = [cell.replace("\\|", "|").replace("`", "").strip()
+                 for cell in re.split(r"(?<!\\)\|", line)[1:-1]]
+        if cells and cells[0] in found:
+            heading = cells[0]
+        elif cells and not cells[0].startswith("---"):
+            found[heading].append(cells)
+    return found
+
+
+CELLS = cells_of_tables()
+ROLES = {word: meanings.split(" or ") for word, meanings in CELLS["word"]}
+
+
+def meanings(words):
+    """What axes or a unit may be: for the axes of a sweep, any of them in their order."""
+    choices = [ROLES.get(word, [word]) for word in words.split()]
+    for choice in itertools.product(*choices):
+        every = " ".join(choice).split()
+        optional = ROLES["GRID"][0].split() if "GRID" in words else []
+        for count in range(len(optional) + 1):
+            for left_out in itertools.combinations(optional, count):
+                yield " ".join(word for word in every if word not in left_out)
+
+
+def expected_datasets():
+    """(name, type, axes, units, long name) -> the row that says so."""
+    found = {}
+    for number, (name, kind, axes, units, long_name) in enumerate(CELLS["dataset"]):
+        for both in itertools.product(meanings(axes), meanings(units)):
+            found[name.removesuffix(" ±"), kind, *both, long_name] = number
+            if name.endswith(" ±"):
+                found[name[:-2] + "_error", "float64", *both, "standard error: " + long_name] = number
+    return found
+
+
+EXPECTED = expected_datasets()
+ATTRIBUTES = {(of, name, kind) for name, of, kind, _ in CELLS["attribute"]}
+
+
+def type_of(item):
+    if h5py.check_string_dtype(item.dtype):
+        return "text" if item.shape == () else "texts"
+    return {"complex128": "complex", "uint8": "bool"}.get(item.dtype.name, item.dtype.name)
+
+
+def axes_of(dataset):
+    if is_scale(dataset):
+        numbers = np.array_equal(dataset[()], np.arange(len(dataset)))
+        return ("0, 1, ...", "scale") if numbers else ("scale",)
+    names = [of_method(axis[0].name[1:]) if len(axis) else "no scale" for axis in dataset.dims]
+    return (" ".join(names) or "scalar",)
+
+
+class Document(unittest.TestCase):
+    def test_document(self):
+        marked = "".join(found.group() for found in MARKED.finditer(DOCUMENT.read_text()))
+        self.assertEqual(marked, TABLES, "put what `flatspeckle datasets` prints there (--update)")
 
 
 class Format(ResultsTest):
-    def row_of(self, run, dataset):
-        """The one row of the run's sections that says what this dataset is, or nothing."""
-        name = dataset.name[1:]
-        of_method = name != without_method(name)
-        rows = [row for star in ([of_method] if run.by_method else [False, True])
-                for row in DOCUMENT.candidates(run.sections, without_method(name), star)]
-        found = describe(dataset)
-        matching = [row for row in rows if row.matches(without_method(name), found)]
-        self.assertLessEqual(len(matching), 1, f"{name}: two rows say the same")
-        if matching:
-            matching[0].met.append(found)
-            return matching[0]
-        self.assertTrue(name.endswith("_error") and not rows,
-                        f"{name} is {found}; rows: {[str(row) for row in rows]}")
-        return None
-
-    def check_datasets(self, run, file):
+    def check_datasets(self, file):
         for name, dataset in members(file).items():
-            row = self.row_of(run, dataset)
-            if row is None:
-                self.check_error(run, file, name.removesuffix("_error"))
-            else:
-                self.assertEqual(name + "_error" in file, row.has_error, name)
-
-    def check_error(self, run, file, name):
-        self.assertIn(name, file)
-        estimate, error = file[name], file[name + "_error"]
-        self.assertTrue(self.row_of(run, estimate).has_error, name)
-        expected = describe(estimate)
-        self.assertEqual(describe(error), Found("float64", expected.axes, expected.units), name)
-        self.assertEqual(error.shape, estimate.shape, name)
-        self.assertTrue(np.all(error[()] >= 0), name)
-        self.assertTrue(error.attrs["long_name"].startswith("standard error"), name)
+            found = [(of_method(name), type_of(dataset), axes, dataset.attrs.get("units", ""),
+                      dataset.attrs["long_name"]) for axes in axes_of(dataset)]
+            rows = [EXPECTED[each] for each in found if each in EXPECTED]
+            self.assertEqual(len(rows), 1, found)
+            self.met.update(rows)
+            self.seen.update(axes_of(dataset), [dataset.attrs.get("units", "")])
 
     def test_datasets(self):
-        """And the document is in the files: each row, in all its units and kinds of axes."""
+        self.met, self.seen = set(), set()
         self.on_each_file(self.check_datasets)
-        for row in DOCUMENT.rows:
-            with self.subTest(row=str(row)):
-                self.assertEqual(row.unmet(), [])
+        for number, row in enumerate(CELLS["dataset"]):
+            self.assertIn(number, self.met, row)
+        axes = set(" ".join(self.seen).split())
+        for word, choices in ROLES.items():
+            for name in " ".join(choices).split():
+                self.assertIn(name, axes, word)
 
-    def check_values(self, _, file):
+    def check_attributes(self, file):
+        for name, item in [("", file), *members(file, (h5py.Dataset, h5py.Group)).items()]:
+            for key in set(item.attrs) - OF_HDF5 - {"units", "long_name"}:
+                self.met.add((of_method(name), key, type_of(item.attrs.get_id(key))))
+
+    def test_attributes(self):
+        self.met = set()
+        self.on_each_file(self.check_attributes)
+        self.assertEqual(self.met, ATTRIBUTES)
+
+    def check_values(self, file):
         for name, dataset in members(file).items():
             if dataset.dtype != object:
                 self.assertTrue(np.all(np.isfinite(dataset[()])), name)
-            self.assertTrue(dataset.attrs["long_name"], name)
-
-    def test_finite_and_described(self):
-        self.on_each_file(self.check_values)
-
-    def check_axes(self, _, file):
-        for name, dataset in members(file).items():
-            scales = [axis[0].name for axis in dataset.dims if len(axis) > 0]
-            self.assertEqual(len(set(scales)), len(scales), f"{name}: one scale on two axes")
             for axis, extent in zip(dataset.dims, dataset.shape):
                 if len(axis) > 0:
-                    self.check_scale(axis, extent)
+                    self.assertEqual((len(axis), axis[0].shape), (1, (extent,)), name)
+                    self.assertEqual(axis.label, axis[0].name.split("/")[-1])
 
-    def check_scale(self, axis, extent):
-        scale = axis[0]
-        self.assertEqual(len(axis), 1)
-        self.assertEqual(axis.label, scale.name.split("/")[-1])
-        self.assertTrue(is_scale(scale), scale.name)
-        self.assertEqual(scale.dtype, np.float64)
-        self.assertEqual(scale.shape, (extent,))
-        self.assertTrue(scale.attrs["units"] and scale.attrs["long_name"], scale.name)
-        first = axis.label.removesuffix("_2")
-        if first in NUMBERED:
-            np.testing.assert_array_equal(scale[()], np.arange(extent))
-        if first != axis.label:
-            np.testing.assert_array_equal(scale[()], scale.file[first][()])
+    def test_finite_and_on_scales(self):
+        self.on_each_file(self.check_values)
 
-    def test_axes(self):
-        """One scale for each, whose name is the label, and none of them twice in a dataset."""
-        self.on_each_file(self.check_axes)
 
-    def check_storage(self, _, file):
-        self.assertEqual(file.id.get_create_plist().get_version()[0], 0)
-        for name, dataset in members(file).items():
-            self.check_complex(dataset.id.get_type())
-            small = dataset.nbytes <= SMALL and name not in ALWAYS_CHUNKED
-            if small or dataset.dtype == object:
-                self.assertIsNone(dataset.chunks, name)
-                continue
-            self.large += 1
-            filters = (dataset.shuffle, dataset.compression, dataset.compression_opts,
-                       dataset.fletcher32)
-            self.assertEqual(filters, (True, "gzip", 1, True), name)
-            self.assertLessEqual(np.prod(dataset.chunks) * dataset.dtype.itemsize, CHUNK, name)
-
-    def check_complex(self, stored):
-        if isinstance(stored, h5py.h5t.TypeCompoundID):
-            parts = [(stored.get_member_name(i), stored.get_member_offset(i),
-                      stored.get_member_type(i).get_size()) for i in range(stored.get_nmembers())]
-            self.assertEqual(parts, [(b"r", 0, 8), (b"i", 8, 8)])
-
-    def test_storage(self):
-        self.large = 0
-        self.on_each_file(self.check_storage)
-        self.assertGreater(self.large, 5)
-
-    def check_root(self, _, file):
-        for name, value in file.attrs.items():
-            self.assertIn(name, DOCUMENT.root)
-            found = attribute_type(file.attrs.get_id(name))
-            self.assertEqual(found, DOCUMENT.root[name].type, name)
-            self.assertTrue(found != "float64" or np.isfinite(value), name)
-            DOCUMENT.root[name].met = True
-        for name, attribute in DOCUMENT.root.items():
-            self.assertTrue(attribute.of != "all" or name in file.attrs, name)
-
-    def test_root_attributes(self):
-        self.on_each_file(self.check_root)
-        for name, attribute in DOCUMENT.root.items():
-            self.assertTrue(attribute.met, name)
-
-    def check_attributes(self, _, file):
-        for name, item in members(file, (h5py.Dataset, h5py.Group)).items():
-            in_document = "state/..." if name.startswith("state/") else without_method(name)
-            for key in set(item.attrs) - OF_HDF5:
-                found = attribute_type(item.attrs.get_id(key))
-                if key in ("units", "long_name"):
-                    self.assertEqual(found, "text", name)
-                    continue
-                self.assertIn((in_document, key), DOCUMENT.attributes)
-                attribute = DOCUMENT.attributes[in_document, key]
-                self.assertEqual(found, attribute.type, f"{name}: {key}")
-                attribute.met = True
-
-    def test_attributes(self):
-        self.on_each_file(self.check_attributes)
-        for name, attribute in DOCUMENT.attributes.items():
-            self.assertTrue(attribute.met, name)
+def update():
+    tables = {found.group(1): found.group() for found in MARKED.finditer(TABLES)}
+    DOCUMENT.write_text(MARKED.sub(lambda found: tables[found.group(1)], DOCUMENT.read_text()))
 
 
 if __name__ == "__main__":
-    unittest.main()
+    update() if sys.argv[1:] == ["--update"] else unittest.main()

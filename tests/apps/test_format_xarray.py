@@ -34,7 +34,7 @@ class Xarray(ResultsTest):
         return dataset.assign_coords({name: values for name, values in
                                       self.open(path).coords.items() if name in dataset.dims})
 
-    def check_file(self, _, file):
+    def check_file(self, file):
         for group in groups_with_datasets(file):
             stored = own_datasets(file[group])
             opened = self.open(file.filename, group)

@@ -121,9 +121,9 @@ int render_scene(const Arguments& arguments) {
   const grin::SensorEnd sensor(scene.sensor, scene.stage);
   const grin::Lights lights(scene.lights, scene.stage, [](const auto&) { return 1.0; });
   fuzz::require_finite(lights.power());
-  const SensorAxes axes = axes_of(scene.sensor);
-  for (const auto* centres : {&axes.row, &axes.column})
-    for (double centre : *centres) fuzz::require_finite(centre);
+  const grin::PixelRectangle picture = grin::picture_of(scene.sensor);
+  for (const auto& centres : {picture.row_centres(), picture.column_centres()})
+    for (double centre : centres) fuzz::require_finite(centre);
   if (arguments[1] == "picture" && is_small(scene, request))
     make_small_picture(scene, request, length_unit);
   return ExitStatus::done;

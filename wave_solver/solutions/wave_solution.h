@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "core/result/dataset_row.h"
 #include "flatland/request/sensor.h"
 #include "wave_solver/equations/t_matrix_system.h"
 #include "wave_solver/solutions/equation_solver.h"
@@ -66,6 +67,12 @@ class WaveSolution {
 /// std::runtime_error where no finite solution is found.
 WaveSolution solve(const Placement& placement, double k, const std::vector<double>& light_angles,
                    const SolveOptions& options = {});
+
+extern const DatasetTable solution_table;
+/// Writes the fields in these directions and at these points (either may be empty) with their axes,
+/// the placement, and how far the solution can be trusted.
+void write_solution(ResultFile& file, const WaveSolution& solution,
+                    const std::vector<double>& view_angles, const std::vector<Vec2>& sensors);
 
 /// What lights and views need of a placement within a circle, found once for a whole ensemble: the
 /// few of many lights, or of many far views, that stand for all (light_basis.h).

@@ -1,0 +1,10 @@
+#pragma once
+
+#include "core/result/dataset_row.h"
+
+namespace flatspeckle::apps {
+
+// Tables of what subcommands write themselves; those of estimators stand beside these.
+extern const DatasetTable validate_table, sweep_axes_table, sweep_table, placement_table;
+
+}  // namespace flatspeckle::apps

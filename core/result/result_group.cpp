@@ -1,0 +1,118 @@
+#include "core/result/result_group.h"
+
+#include <algorithm>
+#include <cctype>
+#include <sstream>
+#include <stdexcept>
+
+namespace flatspeckle {
+
+namespace {
+
+/// By the alternative of Values, as type_name.
+constexpr const char* value_types[] = {"float64", "complex", "uint64", "texts"};
+/// By that of Attribute, as AttributeRow has it.
+constexpr const char* attribute_types[] = {"bool", "int64",    "uint64",  "float64",
+                                           "text", "float64s", "uint64s", "texts"};
+
+bool is_role(const std::string& word) {
+  return !word.empty() && std::isupper(static_cast<unsigned char>(word.front())) != 0;
+}
+
+}  // namespace
+
+std::string type_name(Data data) {
+  static constexpr const char* names[] = {"float64", "float64", "float64", "complex",
+                                          "uint64",  "texts",   "float64", "complex"};
+  return names[static_cast<std::size_t>(data)];
+}
+
+bool has_error(Data data) {
+  return data == Data::estimate || data == Data::complex_estimate;
+}
+
+const DatasetRow& row_of(const DatasetTable& table, const std::string& path) {
+  const auto found = std::find_if(table.rows.begin(), table.rows.end(),
+                                  [&](const DatasetRow& row) { return row.path == path; });
+  if (found == table.rows.end()) throw std::logic_error(path + ": no row for it in " + table.name);
+  return *found;
+}
+
+ResultGroup::ResultGroup(ResultFile& file, const DatasetTable& table, const std::string& group)
+    : file_(file), table_(table), prefix_(group.empty() ? "" : group + '/') {}
+
+void ResultGroup::put(const std::string& path, const Values& values) const {
+  if (has_error(row(path).data))
+    throw std::logic_error(path + ": its standard errors are not given");
+  write(row(path), values);
+}
+
+void ResultGroup::put(const std::string& path, const Values& values,
+                      std::span<const double> errors) const {
+  const DatasetRow& found = row(path);
+  if (!has_error(found.data)) throw std::logic_error(path + ": its row has no standard errors");
+  write(found, values);
+  write({path + "_error", Data::real, found.axes, found.unit, "standard error: " + found.long_name},
+        errors);
+}
+
+void ResultGroup::put(const std::string& path, const Estimate& estimate) const {
+  if (row(path).data == Data::complex_estimate)
+    put(path, estimate.value, estimate.error);
+  else
+    put(path, real_parts(estimate.value), estimate.error);
+}
+
+void ResultGroup::number(const std::string& path, std::size_t count) const {
+  if (row(path).data != Data::numbers) throw std::logic_error(path + ": its row is no count");
+  file_.numbered_scale(prefix_ + path, count, row(path).long_name);
+}
+
+void ResultGroup::begin(const std::string& path, const std::vector<std::size_t>& chunk) const {
+  const DatasetRow& found = row(path);
+  std::vector<std::string> scales;
+  for (const Axis& axis : axes(found)) scales.push_back(std::get<std::string>(axis));
+  file_.begin_dataset(prefix_ + path, scales, chunk, unit(found), found.long_name);
+}
+
+void ResultGroup::attribute(const std::string& object, const std::string& name,
+                            const Attribute& value) const {
+  const auto& all = table_.attributes;
+  const auto found = std::find_if(all.begin(), all.end(), [&](const AttributeRow& row) {
+    return row.object == object && row.name == name && row.type == attribute_types[value.index()];
+  });
+  if (found == all.end())
+    throw std::logic_error(object + ": no row for its attribute " + name + " in " + table_.name);
+  const std::string path = prefix_ + object;
+  file_.attribute(path.empty() ? "/" : path, name, value);
+}
+
+void ResultGroup::write(const DatasetRow& row, const Values& values) const {
+  const std::string name = prefix_ + row.path;
+  if (value_types[values.index()] != type_name(row.data))
+    throw std::logic_error(name + ": its row wants " + type_name(row.data));
+  if (row.data == Data::scale || row.data == Data::numbers)
+    file_.scale(name, std::get<0>(values), unit(row), row.long_name);
+  else
+    file_.dataset(name, values, axes(row), unit(row), row.long_name);
+}
+
+std::vector<Axis> ResultGroup::axes(const DatasetRow& row) const {
+  std::vector<Axis> axes;
+  std::istringstream words(row.axes);
+  for (std::string word; words >> word;) {
+    if (is_role(word)) {
+      const auto& bound = file_.bound(word);
+      axes.insert(axes.end(), bound.begin(), bound.end());
+    } else {
+      axes.emplace_back(word.find('/') == word.npos ? word : prefix_ + word);
+    }
+  }
+  return axes;
+}
+
+std::string ResultGroup::unit(const DatasetRow& row) const {
+  return is_role(row.unit) ? std::get<std::string>(file_.bound(row.unit).at(0)) : row.unit;
+}
+
+}  // namespace flatspeckle

@@ -1,0 +1,181 @@
+#include "flatland/scene/scene_datasets.h"
+
+#include "core/result/result_group.h"
+
+namespace flatspeckle {
+
+const DatasetTable scene_table{
+    .name = "scene",
+    .rows = {},
+    .attributes = {
+        {"", "wavelength", "float64", "in vacuum, in the unit of the scene's lengths"},
+        {"", "depth", "float64", "of the medium: the L of q L"},
+        {"", "width", "float64", "of a box"},
+        {"", "optical_depth", "float64", "mu_t L"},
+        {"", "g", "float64", "mean cosine of scattering"},
+        {"", "albedo", "float64", "mu_s/mu_t"},
+        {"", "mean_free_path", "float64", "1/mu_t, of what scatters"},
+        {"", "transport_mean_free_path", "float64", "1/(mu_a + mu_s (1 - g))"},
+        {"", "k_mean_free_path", "float64", "k/mu_t"},
+        {"", "sigma_s", "float64", "scattering cross section (in 2D a length) of one scatterer"},
+        {"", "sigma_e", "float64", "extinction cross section of one scatterer"},
+        {"", "density", "float64", "scatterers per area"},
+        {"", "packing_fraction", "float64", "share of the area that scatterers cover"},
+        {"", "k_shift", "float64", "real part of the effective wavenumber less k"},
+    }};
+
+const DatasetTable axes_table{
+    .name = "axes",
+    .rows = {{"light_angle", Data::scale, "", "rad", "direction of the light, from +z towards +x"},
+             {"light", Data::numbers, "", "1", "number of the beam or point source"},
+             {"light_x", Data::real, "light", "length",
+              "transverse position of the focus or source"},
+             {"light_z", Data::real, "light", "length", "depth of the focus or source"},
+             {"view_angle", Data::scale, "", "rad", "direction of view, from +z towards +x"},
+             {"sensor", Data::numbers, "", "1", "near-field sensor"},
+             {"sensor_x", Data::real, "sensor", "length", "transverse position"},
+             {"sensor_z", Data::real, "sensor", "length", "depth"},
+             {"light_angle_2", Data::scale, "", "rad", "direction of the second light"},
+             {"light_2", Data::numbers, "", "1", "second light"},
+             {"view_angle_2", Data::scale, "", "rad", "direction of the second view"},
+             {"sensor_2", Data::numbers, "", "1", "second near-field sensor"},
+             {"pair", Data::numbers, "", "1", "requested pair"},
+             {"pair_light_1", Data::real, "pair", "rad", "angle"},
+             {"pair_view_1", Data::real, "pair", "rad", "angle"},
+             {"pair_light_2", Data::real, "pair", "rad", "angle"},
+             {"pair_view_2", Data::real, "pair", "rad", "angle"},
+             {"tilt", Data::scale, "", "rad", "rotation of the light"},
+             {"tilt_q", Data::real, "tilt", "1/length", "transverse wavenumber of the tilt"},
+             {"shift", Data::scale, "", "SHIFT", "change of k sin(view), or translation along x"}},
+    .roles = {{"LIGHT", {"light_angle", "light"}},
+              {"VIEW", {"view_angle", "sensor"}},
+              {"LIGHT_2", {"light_angle_2", "light_2"}},
+              {"VIEW_2", {"view_angle_2", "sensor_2"}},
+              {"SHIFT", {"1/length", "length"}},
+              {"FIELD", {"length^(1/2)", "1"}},
+              {"COVARIANCE", {"length", "1"}}}};
+
+const DatasetTable beams_table{
+    .name = "beams",
+    .rows = {{"light_angle", Data::real, "light", "rad",
+              "direction of the light, from +z towards +x"}},
+    .attributes = {{"", "beam_waist", "float64", "1/e radius of the field"}}};
+
+namespace {
+
+using Kind = CovarianceRequest::Kind;
+
+// Each axis has a scale of its own: xarray cannot tell two axes of one name apart.
+void write_second_axes(ResultFile& file, const CovarianceRequest& request) {
+  const ResultGroup root(file, axes_table);
+  const bool plane = request.lights.all(Light::Kind::plane), near = request.views.front().near;
+  file.bind("LIGHT_2", {plane ? "light_angle_2" : "light_2"});
+  file.bind("VIEW_2", {near ? "sensor_2" : "view_angle_2"});
+  if (plane) root.put("light_angle_2", request.lights.angles());
+  if (!plane) root.number("light_2", request.lights.size());
+  if (near) root.number("sensor_2", request.views.size());
+  if (!near) root.put("view_angle_2", column(request.views, &View::angle));
+}
+
+void write_pair_axis(const ResultGroup& root, const CovarianceRequest& request) {
+  root.number("pair", request.entries.size());
+  const auto write = [&](const std::string& number, std::uint32_t Entry::*end) {
+    const auto channel = [&](const Entry& entry) { return request.channels[entry.*end]; };
+    root.put("pair_light_" + number, column(request.entries, [&](const Entry& entry) {
+               return request.lights[channel(entry).light].angle;
+             }));
+    root.put("pair_view_" + number, column(request.entries, [&](const Entry& entry) {
+               return request.views[channel(entry).view].angle;
+             }));
+  };
+  write("1", &Entry::a);
+  write("2", &Entry::b);
+}
+
+void write_move_axes(ResultFile& file, const CovarianceRequest& request) {
+  const ResultGroup root(file, axes_table);
+  if (!request.tilts.empty()) {
+    root.put("tilt", request.tilts);
+    root.put("tilt_q", request.tilt_q);
+  }
+  const bool far = request.kind == Kind::tilt_shift && !request.views.front().near;
+  file.bind("SHIFT", {far ? "1/length" : "length"});
+  if (!request.shifts.empty()) root.put("shift", request.shifts);
+}
+
+}  // namespace
+
+void write_domain(ResultFile& file, const Scene& scene) {
+  const ResultGroup root(file, scene_table);
+  root.attribute("wavelength", scene.wavelength);
+  root.attribute("depth", scene.domain.depth);
+  if (scene.domain.kind == Domain::Kind::box) root.attribute("width", scene.domain.width);
+}
+
+void write_medium(ResultFile& file, const Scene& scene) {
+  const auto& medium = scene.medium;
+  const ResultGroup root(file, scene_table);
+  write_domain(file, scene);
+  root.attribute("g", medium.g);
+  root.attribute("albedo", medium.albedo);
+  root.attribute("optical_depth", medium.mu_t * scene.domain.depth);
+  if (medium.mu_t > 0) {
+    root.attribute("mean_free_path", medium.mean_free_path());
+    root.attribute("transport_mean_free_path", medium.transport_mean_free_path());
+    root.attribute("k_mean_free_path", scene.k * medium.mean_free_path());
+  }
+  if (!medium.has_scatterers) return;
+  root.attribute("sigma_s", medium.cross_sections.scattering);
+  root.attribute("sigma_e", medium.cross_sections.extinction);
+  root.attribute("density", medium.density);
+  root.attribute("packing_fraction", medium.packing_fraction);
+  root.attribute("k_shift", medium.k_shift);
+}
+
+void bind_units(ResultFile& file, const Scene& scene) {
+  const bool lengths = !scene.request.views.front().near && scene.domain.kind == Domain::Kind::box;
+  file.bind("FIELD", {lengths ? "length^(1/2)" : "1"});
+  file.bind("COVARIANCE", {lengths ? "length" : "1"});
+}
+
+void write_light_axis(ResultFile& file, const Lights& lights) {
+  const ResultGroup root(file, axes_table);
+  const bool plane = lights.all(Light::Kind::plane);
+  file.bind("LIGHT", {plane ? "light_angle" : "light"});
+  if (plane) return root.put("light_angle", lights.angles());
+  root.number("light", lights.size());
+  root.put("light_x", column(lights, [](const Light& light) { return light.point.x; }));
+  root.put("light_z", column(lights, [](const Light& light) { return light.point.z; }));
+  if (!lights.all(Light::Kind::beam)) return;
+  const ResultGroup beams(file, beams_table);
+  beams.put("light_angle", lights.angles());
+  beams.attribute("beam_waist", lights.front().waist);
+}
+
+void write_view_axis(ResultFile& file, const std::vector<View>& views) {
+  const ResultGroup root(file, axes_table);
+  const bool near = views.front().near;
+  file.bind("VIEW", {near ? "sensor" : "view_angle"});
+  if (!near) return root.put("view_angle", column(views, &View::angle));
+  root.number("sensor", views.size());
+  root.put("sensor_x", column(views, [](const View& view) { return view.point.x; }));
+  root.put("sensor_z", column(views, [](const View& view) { return view.point.z; }));
+}
+
+void write_axes(ResultFile& file, const Scene& scene) {
+  const CovarianceRequest& request = scene.request;
+  bind_units(file, scene);
+  if (request.kind == Kind::pairs) return write_pair_axis({file, axes_table}, request);
+  Lights lights = request.lights;
+  auto views = request.views;
+  if (request.has_reference()) {
+    lights.resize(1);
+    views.resize(request.reference_views);
+  }
+  write_light_axis(file, lights);
+  write_view_axis(file, views);
+  write_move_axes(file, request);
+  if (request.kind == Kind::full) write_second_axes(file, request);
+}
+
+}  // namespace flatspeckle

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <optional>
+
+#include "core/result/dataset_row.h"
+#include "grin/estimators/render_job.h"
+
+namespace flatspeckle::grin {
+
+extern const DatasetTable render_table;
+
+/// What a run has found.
+struct RenderResult {
+  RenderedPicture picture;
+  Estimate mean;                  ///< over the pixels
+  std::optional<Estimate> total;  ///< power on an area detector
+  Estimate pulse;                 ///< mean or total by bin; empty in a steady state
+};
+RenderResult render_result(const RenderScene& scene, const RenderJob& job, const GroupedSums& sums);
+
+/// Pictures, what they add up to, and what the paths cost. length_unit: metres.
+void write_render(ResultFile& file, const RenderScene& scene, const RenderJob& job,
+                  const RenderResult& result, const std::optional<double>& length_unit);
+
+/// Whether curves between two points had to be sought.
+bool has_trials(const RenderJob& job);
+
+}  // namespace flatspeckle::grin

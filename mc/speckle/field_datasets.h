@@ -1,0 +1,23 @@
+#pragma once
+
+#include <vector>
+
+#include "core/result/dataset_row.h"
+#include "mc/speckle/field_drawing.h"
+
+namespace flatspeckle::mc {
+
+extern const DatasetTable field_table;
+
+/// Statistics of all fields (field_statistics.h). No autocorrelation where views are not equally
+/// spaced.
+struct FieldSummary {
+  Estimate mean_contrast, circularity, autocorrelation;
+};
+
+/// Writes axes, fields and their statistics. tilts: rotations of the light that make the light
+/// axis, or none.
+FieldSummary write_fields(ResultFile& file, const Scene& scene, const std::vector<double>& tilts,
+                          const DrawnFields& drawn);
+
+}  // namespace flatspeckle::mc

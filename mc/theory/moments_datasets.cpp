@@ -1,0 +1,222 @@
+#include "mc/theory/moments_datasets.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/result/result_group.h"
+#include "mc/theory/diffusion.h"
+
+namespace flatspeckle::mc {
+
+const DatasetTable mean_table{
+    "mean field",
+    {{"mean_field", Data::complex_estimate, "LIGHT VIEW", "FIELD", "mean scattered field"}}};
+
+const DatasetTable intensity_table{
+    "intensity",
+    {{"intensity", Data::estimate, "LIGHT VIEW", "COVARIANCE", "variance of the field"},
+     {"gradient", Data::estimate, "parameter LIGHT VIEW", "",
+      "derivative of the variance of the field"}}};
+
+const DatasetTable pairs_table{
+    "pairs",
+    {{"covariance", Data::complex_estimate, "pair", "COVARIANCE", "covariance of the pair"},
+     {"gradient", Data::complex_estimate, "parameter pair", "",
+      "derivative of the covariance of the pair"}}};
+
+const DatasetTable full_table{
+    "full",
+    {{"covariance", Data::complex_estimate, "LIGHT VIEW LIGHT_2 VIEW_2", "COVARIANCE",
+      "covariance of the fields"},
+     {"gradient", Data::complex_estimate, "parameter LIGHT VIEW LIGHT_2 VIEW_2", "",
+      "derivative of the covariance of the fields"}}};
+
+const DatasetTable moves_table{
+    .name = "moves",
+    .rows = {{"covariance", Data::complex_estimate, "MOVES VIEW", "COVARIANCE",
+              "covariance of reference and moved field"},
+             {"reference_intensity", Data::estimate, "VIEW", "COVARIANCE",
+              "variance of the reference field"},
+             {"tilted_intensity", Data::estimate, "tilt VIEW", "COVARIANCE",
+              "variance of the moved field"},
+             {"moved_intensity", Data::estimate, "MOVES VIEW", "COVARIANCE",
+              "variance of the moved field"},
+             {"field_correlation", Data::estimate, "MOVES", "1",
+              "field correlation C_E, summed over views"},
+             {"memory_effect_range", Data::estimate, "", "1",
+              "q L at C_I = 1/2 with matched views, L the depth"},
+             {"tilt_range", Data::estimate, "", "1",
+              "q L at C_I = 1/2 where the views stay, L the depth"},
+             {"shift_range", Data::estimate, "", "SHIFT_RANGE",
+              "shift, of far views times the depth L, at C_I = 1/2 where the light stays"},
+             {"translation_range", Data::estimate, "", "length", "translation at C_I = 1/2"},
+             {"matched_covariance", Data::complex_estimate, "tilt view_angle", "COVARIANCE",
+              "covariance of reference and moved field"},
+             {"matched_moved_intensity", Data::estimate, "tilt view_angle", "COVARIANCE",
+              "variance of the moved field"},
+             {"matched_correlation", Data::estimate, "tilt", "1",
+              "field correlation C_E with matched views, summed over views"},
+             {"diffusion_theory", Data::real, "tilt", "1",
+              "C_E of matched views in diffusion theory of a slab"},
+             {"single_scattering", Data::real, "tilt", "1",
+              "C_E of matched views by single scattering in a slab without attenuation"},
+             {"gradient", Data::complex_estimate, "parameter tilt VIEW", "",
+              "derivative of the covariance of reference and tilted field"},
+             {"reference_intensity_gradient", Data::estimate, "parameter VIEW", "",
+              "derivative of the variance of the reference field"},
+             {"tilted_intensity_gradient", Data::estimate, "parameter tilt VIEW", "",
+              "derivative of the variance of the tilted field in the matched view"},
+             {"field_correlation_gradient", Data::estimate, "parameter tilt", "",
+              "derivative of the field correlation C_E, summed over views"},
+             {"memory_effect_range_gradient", Data::estimate, "parameter", "",
+              "derivative of the range q L at C_I = 1/2; 0 where that is censored"}},
+    .attributes = {{"memory_effect_range", "censored", "uint64", censored_meaning},
+                   {"tilt_range", "censored", "uint64", censored_meaning},
+                   {"shift_range", "censored", "uint64", censored_meaning},
+                   {"translation_range", "censored", "uint64", censored_meaning}},
+    .roles = {{"MOVES", {"tilt", "tilt shift", "shift"}}, {"SHIFT_RANGE", {"1", "length"}}}};
+
+namespace {
+
+using Kind = CovarianceRequest::Kind;
+
+/// The mean field in the channels that stand on the light and view axes.
+void write_mean(const ResultGroup& out, const CovarianceRequest& request, const Estimate& mean) {
+  if (mean.value.empty() || request.kind == Kind::pairs) return;
+  if (!request.has_reference()) return out.put("mean_field", mean);
+  Estimate reference;
+  for (std::size_t v = 0; v < request.reference_views; ++v) {
+    const auto channel = request.entries[request.reference_intensity(v)].a;
+    reference.value.push_back(mean.value[channel]);
+    reference.error.push_back(mean.error[channel]);
+  }
+  out.put("mean_field", reference);
+}
+
+/// Writes what memory_effect, tilt_shift and translation requests ask for.
+class MovesWriter {
+ public:
+  MovesWriter(const ResultGroup& out, const Scene& scene, const Estimate& covariance)
+      : out_(out), scene_(scene), request_(scene.request), covariance_(covariance) {
+    out_.put("reference_intensity",
+             part(covariance, request_.reference_intensity(0), request_.reference_views));
+  }
+
+  /// Tilts with matched views, or translations: one curve.
+  void curve(const MemoryEffect& effect) {
+    const bool tilts = request_.kind == Kind::memory_effect;
+    entries("covariance", tilts ? "tilted_intensity" : "moved_intensity", 0, request_.moves);
+    out_.put("field_correlation", effect.correlation, effect.correlation_error);
+    tilts ? range("memory_effect_range", {effect.range, effect.range_error}, scene_.domain.depth)
+          : range("translation_range", {effect.range, effect.range_error}, 1);
+    ranges_.back().few_steps = few_steps(tilts ? request_.tilt_q : request_.shifts, effect.range);
+  }
+
+  void map(const TiltShift& found) {
+    const std::size_t tilts = request_.tilts.size(), map = tilts * request_.shifts.size();
+    const double depth = scene_.domain.depth;
+    const bool far = !request_.views.front().near;
+    entries("covariance", "moved_intensity", 0, map);
+    out_.put("field_correlation", found.correlation, found.correlation_error);
+    range("tilt_range", found.along_tilts, depth);
+    range("shift_range", found.along_shifts, far ? depth : 1);
+    if (!far) return;
+    entries("matched_covariance", "matched_moved_intensity", map, tilts);
+    out_.put("matched_correlation", found.matched, found.matched_error);
+    range("memory_effect_range", found.along_matched, depth);
+    if (request_.lights.all(Light::Kind::plane)) theory();
+  }
+
+  const std::vector<WrittenRange>& ranges() const { return ranges_; }
+
+ private:
+  /// Covariances and intensities of moves from `first` on.
+  void entries(const std::string& covariance, const std::string& intensity, std::size_t first,
+               std::size_t moves) const {
+    const std::size_t count = moves * request_.reference_views;
+    out_.put(covariance, part(covariance_, request_.tilted_entry(first, 0), count));
+    out_.put(intensity, part(covariance_, request_.tilted_intensity(first, 0), count));
+  }
+
+  void range(const std::string& path, RangeEstimate estimate, double scale) {
+    estimate.range.value *= scale;
+    estimate.error *= scale;
+    out_.put(path, estimate.range.value, estimate.error);
+    out_.attribute(path, "censored", static_cast<std::uint64_t>(estimate.range.censored));
+    ranges_.push_back({out_.row(path).long_name, estimate});
+  }
+
+  /// Diffusion theory where it holds, in transmission, and single scattering, both for matched
+  /// views of plane waves.
+  void theory() const {
+    const auto views = request_.reference_angles();
+    const double depth = scene_.domain.depth, light = request_.lights.front().angle;
+    if (request_.transmission_only())
+      out_.put("diffusion_theory", column(request_.tilt_q, [&](double q) {
+                 return diffusion_field_correlation(scene_.medium, depth, q);
+               }));
+    out_.put("single_scattering", column(request_.tilt_q, [&](double q) {
+               return single_scattering_correlation(light, views, depth, q);
+             }));
+  }
+
+  const ResultGroup& out_;
+  const Scene& scene_;
+  const CovarianceRequest& request_;
+  const Estimate& covariance_;
+  std::vector<WrittenRange> ranges_;
+};
+
+std::vector<Axis> moves_of(const CovarianceRequest& request) {
+  if (request.kind == Kind::tilt_shift) return {"tilt", "shift"};
+  return {request.kind == Kind::translation ? "shift" : "tilt"};
+}
+
+}  // namespace
+
+const DatasetTable& request_table(Kind kind) {
+  switch (kind) {
+    case Kind::intensity:
+      return intensity_table;
+    case Kind::pairs:
+      return pairs_table;
+    case Kind::full:
+      return full_table;
+    default:
+      return moves_table;
+  }
+}
+
+Estimate unpack_full(const CovarianceRequest& request, const Estimate& triangle) {
+  const std::size_t n = request.channels.size();
+  Estimate full{std::vector<Complex>(n * n), std::vector<double>(n * n)};
+  std::size_t entry = 0;
+  for (std::size_t a = 0; a < n; ++a) {
+    for (std::size_t b = 0; b <= a; ++b, ++entry) {
+      full.value[b * n + a] = std::conj(triangle.value[entry]);
+      full.value[a * n + b] = triangle.value[entry];
+      full.error[a * n + b] = full.error[b * n + a] = triangle.error[entry];
+    }
+  }
+  return full;
+}
+
+std::vector<WrittenRange> write_moments(ResultFile& file, const std::string& group,
+                                        const FieldJob& job, const Scene& scene,
+                                        const GroupedSums& sums, const FieldMoments& moments) {
+  const CovarianceRequest& request = scene.request;
+  write_mean({file, mean_table, group}, request, moments.mean);
+  const ResultGroup out(file, request_table(request.kind), group);
+  if (request.kind == Kind::intensity) out.put("intensity", moments.covariance);
+  if (request.kind == Kind::pairs) out.put("covariance", moments.covariance);
+  if (request.kind == Kind::full) out.put("covariance", unpack_full(request, moments.covariance));
+  if (!request.has_reference()) return {};
+  file.bind("MOVES", moves_of(request));
+  file.bind("SHIFT_RANGE", {request.views.front().near ? "length" : "1"});
+  MovesWriter writer(out, scene, moments.covariance);
+  request.kind == Kind::tilt_shift ? writer.map(tilt_shift(request, sums, job.covariance))
+                                   : writer.curve(memory_effect(request, sums, job.covariance));
+  return writer.ranges();
+}
+
+}  // namespace flatspeckle::mc
