@@ -13,14 +13,13 @@ std::unique_ptr<const RayField> ray_field_within(const AnyIndexField& field,
                                                  const Surface& container) {
   const Sphere* const end = std::get_if<Sphere>(&container);
   if (!end) return make_ray_field(field);
-  return std::visit(
-      [&](const auto& of) {
-        if constexpr (requires { smooth_within(of, *end); })
-          return make_ray_field(smooth_within(of, *end));
-        else
-          return make_ray_field(of);
-      },
-      field);
+  const auto smooth = [&](const auto& of) -> std::unique_ptr<const RayField> {
+    if constexpr (requires { smooth_within(of, *end); })
+      return make_ray_field(smooth_within(of, *end));
+    else
+      return make_ray_field(field);
+  };
+  return std::visit(smooth, field);
 }
 
 }  // namespace

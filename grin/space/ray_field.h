@@ -31,8 +31,8 @@ class RayField {
   virtual IndexHessian hessian(const Vec3& x) const = 0;
 
   /// trace().
-  virtual TraceEnd follow(std::span<const Surface> surfaces, const TraceLimits& limits,
-                          LoggedSteps& steps, RayState& ray) const = 0;
+  virtual TraceEnd follow(std::span<const Surface> surfaces, const TraceLimits& limits, RayLog& log,
+                          RayState& ray) const = 0;
 
   /// CurvedLeg::go(), with a tangent where there is one.
   virtual LegStop fly(const LegRoom& room, double longest, double& weight, RandomStream& random,

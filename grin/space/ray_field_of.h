@@ -17,10 +17,14 @@ class RayFieldOf final : public RayField {
   IndexGradient gradient(const Vec3& x) const override { return field_.gradient(x); }
   IndexHessian hessian(const Vec3& x) const override { return field_.hessian(x); }
 
-  TraceEnd follow(std::span<const Surface> surfaces, const TraceLimits& limits, LoggedSteps& steps,
+  TraceEnd follow(std::span<const Surface> surfaces, const TraceLimits& limits, RayLog& log,
                   RayState& ray) const override {
-    const TraceEnd end = trace(field_, surfaces, limits, steps, ray);
-    steps.end(field_, ray);
+    const auto by = [&]<class Integrator>(const Integrator&) {
+      LoggedSteps<Integrator> steps(log);
+      return trace(field_, surfaces, limits, steps, ray);
+    };
+    const TraceEnd end = std::visit(by, log.steps().integrator);
+    log.end(field_, ray);
     return end;
   }
 
