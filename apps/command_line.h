@@ -1,50 +1,57 @@
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
-#include "apps/options.h"
+#include "core/keys/keys.h"
+
+namespace CLI {
+class App;
+}
 
 namespace flatspeckle::apps {
 
 /// argv of the program; [1] is the subcommand.
 using Arguments = std::vector<std::string>;
 
-/// What the command line settles before any work is done.
-struct CommandLine {
-  std::string config;  ///< resolved, as TOML; give it to --config to run the same again
-  std::string text;    ///< as typed
-};
-
-/// The parser of a subcommand: a scene file (--config) holds the flags as flat keys, a flag beats
-/// the file, unknown keys are errors.
+/// The parser of a subcommand: flags, scene file, help and resolved scene, all by the rows of its
+/// keys. A scene file (--config) holds the flags as flat keys, a flag beats the file, unknown keys
+/// are errors.
 class Subcommand {
  public:
-  Subcommand(const std::string& name, const std::string& purpose);
+  Subcommand(std::string name, std::string purpose);
   ~Subcommand();
 
-  Options& options() { return options_; }
+  Keys& keys() { return keys_; }
+  const Keys& keys() const { return keys_; }
 
-  /// Throws InputError for what cannot be parsed. --help and --print-config print and return false.
+  /// Fills the members of the keys and checks what their rows accept. Throws InputError. False
+  /// where there is no more to do: after --help and the like.
   bool parse(const Arguments& arguments);
-  /// The same for a resolved configuration alone.
+  /// The same for the text of a scene file alone.
   void parse_config(const std::string& config);
-  const CommandLine& command_line() const { return command_line_; }
-  /// Whether a key was given, in the file or as a flag.
-  bool given(const std::string& key) const;
+
+  /// After all that is asked for has been made of the keys: throws InputError for those that
+  /// nothing read. False where no more is wanted than the resolved scene (--print-config).
+  bool settle() const;
+  /// Before that: whether it is.
+  bool only_prints() const { return print_config_; }
+
+  /// As typed.
+  const std::string& text() const { return text_; }
 
  private:
-  void parse_by(const std::function<void()>& parser);
+  void add_flags();
+  void take_results();
+  void print_help() const;
+  template <typename Parser>
+  void parse_by(const Parser& parser);
 
+  std::string name_, purpose_, text_;
   std::unique_ptr<CLI::App> app_;
-  Options options_;
+  Keys keys_;
   bool print_config_ = false;
-  CommandLine command_line_;
 };
-
-/// The lines of a resolved configuration less those of some keys.
-std::string without_keys(const std::string& config, const std::vector<std::string>& keys);
 
 }  // namespace flatspeckle::apps

@@ -8,6 +8,7 @@
 #include "flatland/media/structure_factor.h"
 #include "flatland/scene/scene_datasets.h"
 #include "grin/estimators/render_datasets.h"
+#include "grin/rays/ray_datasets.h"
 #include "mc/estimators/brownian.h"
 #include "mc/estimators/flux.h"
 #include "mc/estimators/gradient.h"
@@ -41,7 +42,7 @@ const DatasetTable* const tables[] = {&provenance_table,
                                       &sweep_table,
                                       &placement_table,
                                       &structure_factor_table,
-                                      &rays_table,
+                                      &grin::rays_table,
                                       &grin::trials_table,
                                       &grin::camera_table,
                                       &grin::area_table,

@@ -5,7 +5,6 @@
 namespace flatspeckle::apps {
 
 // Tables of what subcommands write themselves; those of estimators stand beside these.
-extern const DatasetTable validate_table, sweep_axes_table, sweep_table, rays_table,
-    placement_table;
+extern const DatasetTable validate_table, sweep_axes_table, sweep_table, placement_table;
 
 }  // namespace flatspeckle::apps

@@ -11,25 +11,30 @@
 
 namespace flatspeckle::apps {
 
-mc::ReversedPaths reversed_paths(const MethodSettings& settings) {
-  const std::string& word = settings.reversed_paths;
-  if (word == "auto") return mc::ReversedPaths::automatic;
-  if (word == "yes") return mc::ReversedPaths::yes;
-  if (word == "no") return mc::ReversedPaths::no;
-  throw InputError("reversed_paths", word, "must be one of auto yes no");
+mc::ReversedPaths reversed_paths(const Keys& keys, const MethodSettings& settings) {
+  const std::string& word = keys.read(settings.reversed_paths);
+  return word == "yes"  ? mc::ReversedPaths::yes
+         : word == "no" ? mc::ReversedPaths::no
+                        : mc::ReversedPaths::automatic;
 }
 
-void add_mc_options(Options& options, MethodSettings& settings) {
-  options.add_with_default(
-      "--reversed_paths", settings.reversed_paths,
-      "Coherent backscattering in Monte Carlo: auto (where a view may see it), yes, no");
+void add_mc_keys(Keys& keys, MethodSettings& settings) {
+  keys.group("Methods");
+  keys.add("reversed_paths", settings.reversed_paths,
+           "Coherent backscattering in Monte Carlo; auto: where a view may see it")
+      .one_of({"auto", "yes", "no"});
 }
 
-void add_wave_options(Options& options, MethodSettings& settings) {
-  options.add_with_default("--wave_tolerance", settings.wave_tolerance,
-                           "Accuracy of each exact solution, relative");
-  options.add("--wave_samples", settings.wave_samples,
-              "Placements of the exact solver, where samples counts light paths");
+void add_wave_keys(Keys& keys, MethodSettings& settings) {
+  keys.group("Methods");
+  keys.add("wave_tolerance", settings.wave_tolerance, "Accuracy of each exact solution, relative")
+      .between(0, 1)
+      .only_of("the exact solver");
+  keys.add("wave_samples", settings.wave_samples,
+           "Placements of the exact solver, where samples counts light paths")
+      .positive()
+      .effort()
+      .only_of("the exact solver");
 }
 
 void note_rounding(const Scene& scene) {
@@ -58,28 +63,28 @@ void note(const Neglected& neglected) {
            "neglects terms of that order (structure = hard_disks takes them in)\n";
 }
 
-void round_density(SceneSpec& spec) {
-  const Scene scene = make_scene(spec);
-  if (scene.placement.kind == PlacementRule::Kind::poisson || spec.count) return;
-  spec.density = spec.mean_free_path = spec.optical_depth = std::nullopt;
-  spec.count = std::llround(scene.placement.mean_count);
+Scene rounded_scene(const Keys& keys, const SceneSpec& spec) {
+  const Scene scene = make_scene(keys, spec);
+  if (scene.placement.kind == PlacementRule::Kind::poisson || spec.count) return scene;
+  SceneSpec rounded = spec;
+  rounded.density = rounded.mean_free_path = rounded.optical_depth = std::nullopt;
+  rounded.count = std::llround(scene.placement.mean_count);
+  return make_scene(rounded);
 }
 
-Estimation mc_estimation(const Scene& scene, const MethodSettings& settings, std::uint64_t seed) {
-  const auto plan = mc::make_plan(scene, reversed_paths(settings));
+Estimation mc_estimation(const Scene& scene, mc::ReversedPaths reversed, std::uint64_t seed) {
+  const auto plan = mc::make_plan(scene, reversed);
   const auto& structure = scene.medium.structure;
   return {mc::covariance_job(scene, plan, seed),
           "mc: " + plan.describe() +
               (structure.independent() ? "" : "; structure factor " + structure.origin())};
 }
 
-Estimation wave_estimation(const Scene& scene, const MethodSettings& settings, std::uint64_t seed) {
-  if (!(settings.wave_tolerance > 0 && settings.wave_tolerance < 1))
-    throw InputError("wave_tolerance", settings.wave_tolerance, "must be in (0, 1)");
+Estimation wave_estimation(const Scene& scene, double tolerance, std::uint64_t seed) {
   std::ostringstream plan;
   plan << "wave: dense T-matrix solutions of " << placement_word(scene.placement.kind)
-       << " placements, tolerance " << settings.wave_tolerance << "; sample mean removed";
-  return {wave::wave_job(scene, seed, settings.wave_tolerance), plan.str()};
+       << " placements, tolerance " << tolerance << "; sample mean removed";
+  return {wave::wave_job(scene, seed, tolerance), plan.str()};
 }
 
 }  // namespace flatspeckle::apps

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "apps/run_options.h"
+#include "core/keys/keys.h"
 #include "flatland/request/field_moments.h"
 #include "flatland/scene/scene.h"
 #include "mc/walk/plan.h"
@@ -18,11 +18,10 @@ struct MethodSettings {
   std::optional<std::int64_t> wave_samples;
 };
 
-void add_mc_options(Options& options, MethodSettings& settings);
-void add_wave_options(Options& options, MethodSettings& settings);
+void add_mc_keys(Keys& keys, MethodSettings& settings);
+void add_wave_keys(Keys& keys, MethodSettings& settings);
 
-/// Throws InputError.
-mc::ReversedPaths reversed_paths(const MethodSettings& settings);
+mc::ReversedPaths reversed_paths(const Keys& keys, const MethodSettings& settings);
 
 /// A method applied to a scene: what the runner needs, and in words what was planned.
 struct Estimation {
@@ -44,10 +43,11 @@ struct Neglected {
 /// Says so on standard error where that is much.
 void note(const Neglected& neglected);
 
-/// Gives the rounded number instead, so that both solvers have the same density.
-void round_density(SceneSpec& spec);
+/// The scene with the rounded number in place of its density, so that both solvers have the same.
+Scene rounded_scene(const Keys& keys, const SceneSpec& spec);
 
-Estimation mc_estimation(const Scene& scene, const MethodSettings& settings, std::uint64_t seed);
-Estimation wave_estimation(const Scene& scene, const MethodSettings& settings, std::uint64_t seed);
+Estimation mc_estimation(const Scene& scene, mc::ReversedPaths reversed, std::uint64_t seed);
+/// Throws InputError.
+Estimation wave_estimation(const Scene& scene, double tolerance, std::uint64_t seed);
 
 }  // namespace flatspeckle::apps

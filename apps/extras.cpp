@@ -13,10 +13,10 @@ void require_plane_waves(const std::string& key, const CovarianceRequest& reques
     throw InputError(key + ": needs plane waves, and no tilt_shift");
 }
 
-ExtendedEstimation with_gradient(const Scene& scene, const MethodSettings& settings,
+ExtendedEstimation with_gradient(const Scene& scene, mc::ReversedPaths reversed,
                                  std::uint64_t seed) {
   require_plane_waves("gradient", scene.request);
-  const auto plan = mc::gradient_plan(scene, reversed_paths(settings));
+  const auto plan = mc::gradient_plan(scene, reversed);
   const auto job = mc::gradient_job(scene, plan, seed);
   std::string text = "mc: " + plan.describe() + "; derivatives by";
   for (const auto& parameter : job.parameters) text += ' ' + parameter;
@@ -27,10 +27,10 @@ ExtendedEstimation with_gradient(const Scene& scene, const MethodSettings& setti
           }};
 }
 
-ExtendedEstimation with_delays(const Scene& scene, const MethodSettings& settings,
+ExtendedEstimation with_delays(const Scene& scene, mc::ReversedPaths reversed,
                                const std::vector<double>& delays, std::uint64_t seed) {
   require_plane_waves("delays", scene.request);
-  const auto plan = mc::make_plan(scene, reversed_paths(settings));
+  const auto plan = mc::make_plan(scene, reversed);
   const auto job = mc::delay_job(scene, plan, delays, seed);
   return {{job.field, "mc: " + plan.describe() + "; scatterers diffuse"},
           [scene, job, delays](ResultFile& file, const GroupedSums& sums) {
@@ -42,25 +42,27 @@ ExtendedEstimation with_delays(const Scene& scene, const MethodSettings& setting
 
 }  // namespace
 
-void add_extra_options(Options& options, Extras& extras) {
-  options.add_flag("--gradient", extras.gradient,
-                   "Also derivatives of the covariance by mu_t, g, albedo and optical depth");
-  options.add("--delays", extras.delays,
-              "Also the field's correlation after delays, as the scatterers diffuse: k^2 D tau");
+void add_extra_keys(Keys& keys, Extras& extras) {
+  keys.group("Methods");
+  keys.add("gradient", extras.gradient,
+           "Also derivatives of the covariance by mu_t, g, albedo and optical depth")
+      .only_of("method = mc");
+  keys.add("delays", extras.delays,
+           "Also the field's correlation after delays, as the scatterers diffuse: k^2 D tau")
+      .not_negative()
+      .only_of("method = mc");
 }
 
-ExtendedEstimation extended_estimation(const Scene& scene, const MethodSettings& settings,
+void read_extras(const Keys& keys, const Extras& extras) {
+  const bool delays = !keys.read(extras.delays).empty();
+  if (keys.read(extras.gradient) && delays) throw InputError("gradient, delays: give one of them");
+}
+
+ExtendedEstimation extended_estimation(const Scene& scene, mc::ReversedPaths reversed,
                                        const Extras& extras, std::uint64_t seed) {
-  if (extras.gradient && !extras.delays.empty())
-    throw InputError("gradient, delays: give one of them");
-  if (!extras.gradient && extras.delays.empty()) return {mc_estimation(scene, settings, seed), {}};
-  return extras.gradient ? with_gradient(scene, settings, seed)
-                         : with_delays(scene, settings, extras.delays, seed);
-}
-
-void refuse_extras(const Extras& extras) {
-  if (extras.gradient || !extras.delays.empty())
-    throw InputError(std::string(extras.gradient ? "gradient" : "delays") + ": needs method = mc");
+  if (extras.gradient) return with_gradient(scene, reversed, seed);
+  if (!extras.delays.empty()) return with_delays(scene, reversed, extras.delays, seed);
+  return {mc_estimation(scene, reversed, seed), {}};
 }
 
 }  // namespace flatspeckle::apps

@@ -3,7 +3,6 @@
 #include <functional>
 #include <vector>
 
-#include "apps/command_line.h"
 #include "apps/estimation.h"
 #include "core/result/result_file.h"
 
@@ -14,7 +13,7 @@ struct Extras {
   bool gradient = false;
   std::vector<double> delays;
 };
-void add_extra_options(Options& options, Extras& extras);
+void add_extra_keys(Keys& keys, Extras& extras);
 
 /// An estimation and how its extra results are printed and written; write is empty without extras.
 struct ExtendedEstimation {
@@ -22,10 +21,11 @@ struct ExtendedEstimation {
   std::function<void(ResultFile&, const GroupedSums&)> write;
 };
 
-/// Throws InputError for extras that exclude each other, or that the scene cannot have.
-ExtendedEstimation extended_estimation(const Scene& scene, const MethodSettings& settings,
+/// Reads the keys. Throws InputError for extras that exclude each other.
+void read_extras(const Keys& keys, const Extras& extras);
+
+/// Throws InputError for extras that the scene cannot have.
+ExtendedEstimation extended_estimation(const Scene& scene, mc::ReversedPaths reversed,
                                        const Extras& extras, std::uint64_t seed);
-/// Throws InputError where there are any: other methods have none.
-void refuse_extras(const Extras& extras);
 
 }  // namespace flatspeckle::apps

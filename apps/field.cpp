@@ -1,15 +1,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 
 #include "apps/estimation.h"
-#include "apps/scene_options.h"
 #include "apps/subcommands.h"
 #include "core/error.h"
 #include "core/numbers/memory.h"
-#include "core/result/provenance.h"
-#include "core/result/result_file.h"
 #include "core/run/interrupt.h"
+#include "core/session/session.h"
 #include "flatland/scene/scene_datasets.h"
 #include "mc/speckle/field_datasets.h"
 #include "mc/speckle/speckle_field.h"
@@ -29,50 +28,45 @@ struct FieldKeys {
   RunSettings run;
 };
 
-void add_options(Options& options, FieldKeys& keys) {
-  add_scatterer_options(options, keys.spec);
-  add_bulk_options(options, keys.spec);
-  add_medium_options(options, keys.spec);
-  add_structure_option(options, keys.spec);
-  add_view_options(options, keys.spec);
-  options.add("--tilts", keys.spec.tilts,
-              "Rotations of the light, radians: fields under each, in the same views");
-  options.add_with_default("--fields", keys.fields, "How many realizations");
-  options.add_with_default(
-      "--method", keys.method,
-      "paths (each field from light paths of its own), covariance (estimated first, "
-      "then Cholesky) or auto (the cheaper)");
-  options.add("--paths_per_field", keys.paths_per_field,
-              "Light paths of each field (default: so many that the excess kurtosis is 0.01)");
-  options.add_with_default("--target_error", keys.target_error,
-                           "Relative error of the covariance that fields are drawn from");
-  add_mc_options(options, keys.estimation);
-  options.add_with_default("--seed", keys.run.seed, "Seed; field n of a seed is always the same");
-  add_thread_option(options, keys.run);
-  add_output_option(options, keys.run);
+void add_keys(Keys& keys, FieldKeys& values) {
+  add_scatterer_keys(keys, values.spec);
+  add_bulk_keys(keys, values.spec);
+  add_medium_keys(keys, values.spec);
+  add_structure_key(keys, values.spec);
+  add_view_keys(keys, values.spec);
+  keys.add("tilts", values.spec.tilts,
+           "Rotations of the light: fields under each, in the same views")
+      .unit("rad");
+  keys.group("Fields");
+  keys.add("fields", values.fields, "How many realizations, for errors at least 2")
+      .from(2, std::numeric_limits<double>::infinity());
+  keys.add(
+          "method", values.method,
+          "By light paths of each field's own, by the covariance (estimated first, then Cholesky), "
+          "or the cheaper")
+      .one_of({"auto", "paths", "covariance"});
+  keys.add("paths_per_field", values.paths_per_field,
+           "Light paths of each field (default: so many that the excess kurtosis is 0.01)")
+      .positive();
+  keys.add("target_error", values.target_error,
+           "Relative error of the covariance that fields are drawn from")
+      .between(0, 1);
+  add_mc_keys(keys, values.estimation);
+  add_seed_key(keys, values.run, "Seed; field n of a seed is always the same");
+  add_thread_key(keys, values.run);
+  add_output_key(keys, values.run);
 }
 
-mc::FieldMethod method_named(const std::string& name) {
+mc::FieldDemand demand_of(const Keys& keys, const FieldKeys& values) {
   using enum mc::FieldMethod;
-  if (name == "auto") return automatic;
-  if (name == "paths") return paths;
-  if (name == "covariance") return covariance;
-  throw InputError("method", name, "must be one of auto paths covariance");
-}
-
-mc::FieldDemand demand_of(const FieldKeys& keys) {
-  mc::FieldDemand demand{.method = method_named(keys.method)};
-  if (keys.fields < 2)
-    throw InputError("fields", keys.fields, "must be at least 2, so that statistics have errors");
-  demand.fields = static_cast<std::uint64_t>(keys.fields);
-  if (keys.paths_per_field) {
-    if (*keys.paths_per_field < 1)
-      throw InputError("paths_per_field", *keys.paths_per_field, "must be positive");
-    demand.paths_per_field = static_cast<std::uint64_t>(*keys.paths_per_field);
-  }
-  if (!(keys.target_error > 0 && keys.target_error < 1))
-    throw InputError("target_error", keys.target_error, "must be in (0, 1)");
-  demand.covariance_error = keys.target_error;
+  const std::string& method = keys.read(values.method);
+  mc::FieldDemand demand{.method = method == "paths"        ? paths
+                                   : method == "covariance" ? covariance
+                                                            : automatic};
+  demand.fields = static_cast<std::uint64_t>(keys.read(values.fields));
+  if (const auto& paths_each = keys.read(values.paths_per_field))
+    demand.paths_per_field = static_cast<std::uint64_t>(*paths_each);
+  demand.covariance_error = keys.read(values.target_error);
   return demand;
 }
 
@@ -83,19 +77,18 @@ void settle_tilts(SceneSpec& spec) {
     throw InputError("tilts rotate one light: give one angle in light_angles");
   const double reference = spec.light_angles.front();
   spec.light_angles.clear();
-  for (double tilt : spec.tilts) {
-    if (!std::isfinite(tilt)) throw InputError("tilts", tilt, "must be finite");
-    spec.light_angles.push_back(reference + tilt);
-  }
-  spec.tilts.clear();
+  for (double tilt : spec.tilts) spec.light_angles.push_back(reference + tilt);
 }
 
-Scene field_scene(SceneSpec spec) {
+Scene field_scene(const Keys& keys, SceneSpec& spec) {
   if (spec.domain == "slab")
     throw InputError("domain", spec.domain,
                      "fields need a box: an infinite slab's speckles are infinitely fine");
+  const auto light = keys.read(spec.light_angles), tilts = keys.read(spec.tilts);
   settle_tilts(spec);
-  Scene scene = make_scene(spec);
+  Scene scene = make_scene(keys, spec);
+  spec.light_angles = light;  // the keys stay as they were given
+  spec.tilts = tilts;
   scene.request = mc::field_request(scene.request.lights, scene.request.views);
   return scene;
 }
@@ -112,19 +105,6 @@ void check_memory(const Scene& scene, const mc::FieldDemand& demand) {
                          std::to_string(memory / 1e9));
   if (demand.method == mc::FieldMethod::covariance)
     full_request(scene.request.lights, scene.request.views);  // throws where that does not fit
-}
-
-void write_field_provenance(ResultFile& file, const Subcommand& command, const FieldKeys& keys,
-                            const std::string& started, const std::string& plan,
-                            const mc::DrawnFields& drawn) {
-  Provenance provenance{command.command_line().text, command.command_line().config,
-                        seed_of(keys.run),           "mc: " + plan + "; " + drawn.plan.describe(),
-                        threads_of(keys.run),        started};
-  provenance.wall_s = drawn.wall_s;
-  provenance.cpu_s = drawn.cpu_s;
-  provenance.samples = static_cast<double>(keys.fields);
-  provenance.converged = true;
-  write_provenance(file, provenance);
 }
 
 /// How the statistics of all fields compare with those of a circular Gaussian field.
@@ -151,36 +131,32 @@ void print_summary(const mc::DrawnFields& drawn, const mc::FieldSummary& summary
 }  // namespace
 
 int field(const Arguments& arguments) {
-  const std::string started = utc_now();
-  FieldKeys keys;
+  FieldKeys values;
   Subcommand command("field", "Speckle fields of a scene, drawn with its covariance");
-  add_options(command.options(), keys);
+  Keys& keys = command.keys();
+  add_keys(keys, values);
   if (!command.parse(arguments)) return ExitStatus::done;
 
-  settle_request(command, keys.spec);
-  const Scene scene = field_scene(keys.spec);
-  const auto demand = demand_of(keys);
+  const Session session(command.text(), keys, values.run, command.only_prints());
+  const auto demand = demand_of(keys, values);
+  const mc::DrawingSettings settings{reversed_paths(keys, values.estimation), session.seed(),
+                                     session.threads()};
+  const Scene scene = field_scene(keys, values.spec);
   check_memory(scene, demand);
-  const mc::DrawingSettings settings{reversed_paths(keys.estimation), seed_of(keys.run),
-                                     threads_of(keys.run)};
-  const std::string plan = mc::make_plan(scene, settings.reversed).describe();
-  const std::string& out = keys.run.out;
-  if (out.empty()) throw InputError("out is not given: name the result file (--out FILE.h5)");
-  check_result_path(out);
+  if (!command.settle()) return ExitStatus::done;
   catch_interrupts();
-  const auto drawn = mc::draw_fields(scene, demand, settings, [](const mc::FieldPlan& chosen) {
-    std::printf("%s\n", chosen.describe().c_str());
-    std::fflush(stdout);
+  return session.once(ResultFile::Storage::disk, [&](ResultFile& file) -> std::optional<Made> {
+    const auto drawn = mc::draw_fields(scene, demand, settings, [](const mc::FieldPlan& chosen) {
+      std::printf("%s\n", chosen.describe().c_str());
+      std::fflush(stdout);
+    });
+    if (!drawn) return std::nullopt;
+    write_medium(file, scene);
+    print_summary(*drawn, mc::write_fields(file, scene, values.spec.tilts, *drawn));
+    return Made{
+        "mc: " + mc::make_plan(scene, settings.reversed).describe() + "; " + drawn->plan.describe(),
+        static_cast<double>(demand.fields)};
   });
-  if (!drawn) return ExitStatus::interrupted_for_good;
-
-  ResultFile file(out, ResultFile::Storage::disk);
-  write_field_provenance(file, command, keys, started, plan, *drawn);
-  write_medium(file, scene);
-  print_summary(*drawn, mc::write_fields(file, scene, keys.spec.tilts, *drawn));
-  file.commit();
-  std::printf("wrote %s\n", out.c_str());
-  return ExitStatus::done;
 }
 
 }  // namespace flatspeckle::apps

@@ -2,23 +2,13 @@
 
 #include <cstdio>
 
-#include "apps/scene_options.h"
-#include "apps/session.h"
 #include "apps/subcommands.h"
-#include "core/error.h"
+#include "core/session/session.h"
 #include "flatland/scene/scene_datasets.h"
 
 namespace flatspeckle::apps {
 
 namespace {
-
-constexpr std::int64_t most_bins = 100000;
-
-std::size_t checked_bins(std::int64_t bins) {
-  if (bins < 1 || bins > most_bins)
-    throw InputError("angle_bins", bins, "must be from 1 to " + std::to_string(most_bins));
-  return static_cast<std::size_t>(bins);
-}
 
 void print_table(const Scene& scene, const mc::FluxEstimates& flux) {
   const bool box = scene.domain.kind == Domain::Kind::box;
@@ -43,31 +33,33 @@ void print_table(const Scene& scene, const mc::FluxEstimates& flux) {
 
 int flux(const Arguments& arguments) {
   SceneSpec spec;
-  RunSettings settings;
+  RunSettings run;
   std::int64_t angle_bins = 90;
   Subcommand command("flux",
                      "Reflected, transmitted and absorbed power of a scene: intensity only");
-  add_scatterer_options(command.options(), spec);
-  add_bulk_options(command.options(), spec);
-  add_medium_options(command.options(), spec);
-  command.options().add("--light_angles", spec.light_angles,
-                        "Directions of the plane waves, radians from +z (default 0)");
-  command.options().add_with_default("--angle_bins", angle_bins,
-                                     "Equal bins of the exit angle over (-pi, pi]");
-  add_run_options(command.options(), settings);
+  Keys& keys = command.keys();
+  add_scatterer_keys(keys, spec);
+  add_bulk_keys(keys, spec);
+  add_medium_keys(keys, spec);
+  keys.group("Lights and views");
+  keys.add("light_angles", spec.light_angles, "Directions of the plane waves, from +z").unit("rad");
+  keys.add("angle_bins", angle_bins, "Equal bins of the exit angle over (-pi, pi]").from(1, 100000);
+  add_run_keys(keys, run);
   if (!command.parse(arguments)) return ExitStatus::done;
 
-  const std::size_t bins = checked_bins(angle_bins);
-  const Scene scene = make_scene(spec);
-  const mc::FluxJob job = mc::flux_job(scene, bins, seed_of(settings));
-  Session session(command.command_line(), settings, "mc: " + job.plan,
-                  {{"", "flux", job.batches, stop_rule(settings)}});
-  return session.run([&](ResultFile& file) {
-    const auto estimates = mc::flux_estimates(job, session.state("").sums);
-    print_table(scene, estimates);
-    write_medium(file, scene);
-    mc::write_flux(file, scene, estimates);
-  });
+  Session session(command.text(), keys, run, command.only_prints());
+  const StopRule stop = stop_rule(keys, run);
+  const auto bins = static_cast<std::size_t>(keys.read(angle_bins));
+  const Scene scene = make_scene(keys, spec);
+  const mc::FluxJob job = mc::flux_job(scene, bins, session.seed());
+  if (!command.settle()) return ExitStatus::done;
+  return session.run("mc: " + job.plan, {{"", "flux", job.batches, stop}}, "",
+                     [&](ResultFile& file) {
+                       const auto estimates = mc::flux_estimates(job, session.sums(""));
+                       print_table(scene, estimates);
+                       write_medium(file, scene);
+                       mc::write_flux(file, scene, estimates);
+                     });
 }
 
 }  // namespace flatspeckle::apps

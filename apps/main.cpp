@@ -1,10 +1,10 @@
 #include <algorithm>
 #include <cctype>
 #include <chrono>
+#include <cstdio>
 #include <exception>
 #include <filesystem>
 #include <iostream>
-#include <map>
 #include <new>
 #include <thread>
 
@@ -18,53 +18,41 @@ namespace {
 using namespace flatspeckle;
 using namespace flatspeckle::apps;
 
-const char* const usage =
-    R"(flatspeckle - speckle statistics: path-space Monte Carlo checked by an exact wave solver
+void print_usage() {
+  std::puts(
+      "flatspeckle - speckle statistics: path-space Monte Carlo checked by an exact wave solver\n\n"
+      "  flatspeckle SUBCOMMAND [--config SCENE.toml] [--key value ...] --out FILE.h5\n");
+  for (const SubcommandEntry& entry : subcommands())
+    std::printf("  %-12s %s\n", entry.name, entry.purpose);
+  std::puts(
+      "\n  flatspeckle SUBCOMMAND --help lists the keys; flatspeckle --version tells the version.\n"
+      "  Exit status: 0 done, 2 bad input, 3 stopped before the target error was reached,\n"
+      "  4 input or output failed, 5 a row of a benchmark failed, 75 interrupted and resumable.");
+}
 
-  flatspeckle SUBCOMMAND [--config SCENE.toml] [--key value ...] --out FILE.h5
-
-  place        a placement of scatterers, drawn and written as CSV
-  solve        exact fields of one placement of scatterers
-  covariance   covariance and intensity of the speckle of a scene, by Monte Carlo or exactly
-  validate     both methods on one scene, compared entry by entry
-  flux         reflected, transmitted and absorbed power, intensity only
-  sweep        memory-effect curves over grids or lists of g, albedo, optical depth, radius, index
-  merge        the points of a sweep that ran in shares, as one result
-  field        speckle fields drawn with the covariance of a scene, also over tilts of the light
-  trace        rays and the curves between two points in a gradient-index field
-  render       pictures of scattering media with a gradient index: 3D refractive path tracing
-  datasets     what result files hold, as in docs/format.md
-  bench        what accuracy costs, where it breaks, what plans leave out: error, stability, plan
-
-  flatspeckle SUBCOMMAND --help lists the keys; flatspeckle --version tells the version.
-  Exit status: 0 done, 2 bad input, 3 stopped before the target error was reached,
-  4 input or output failed, 5 a row of a benchmark failed, 75 interrupted and resumable.
-)";
+const SubcommandEntry& subcommand_named(const std::string& word) {
+  std::string words;
+  for (const SubcommandEntry& entry : subcommands()) {
+    if (word == entry.name) return entry;
+    words += std::string(" ") + entry.name;
+  }
+  throw InputError("subcommand", word, "must be one of" + words);
+}
 
 int run(const Arguments& arguments) {
-  static const std::map<std::string, int (*)(const Arguments&)> subcommands = {
-      {"place", place},   {"solve", solve},       {"covariance", covariance},
-      {"flux", flux},     {"validate", validate}, {"sweep", sweep},
-      {"field", field},   {"merge", merge},       {"trace", trace},
-      {"render", render}, {"bench", bench},       {"datasets", datasets}};
   const std::string word = arguments.size() > 1 ? arguments[1] : "--help";
   if (word == "--help" || word == "-h" || word == "help") {
-    std::cout << usage;
+    print_usage();
     return ExitStatus::done;
   }
   if (word == "--version") {
     std::cout << "flatspeckle " << version() << " (" << git_commit() << ")\n";
     return ExitStatus::done;
   }
-  const auto subcommand = subcommands.find(word);
-  if (subcommand == subcommands.end())
-    throw InputError(
-        "subcommand", word,
-        "must be one of bench covariance datasets field flux merge place render solve sweep trace "
-        "validate");
+  const SubcommandEntry& subcommand = subcommand_named(word);
   if (word != "sweep" && launched_ranks().size > 1)
     throw InputError("subcommand", word, "runs as one process; of these, sweep alone takes many");
-  return subcommand->second(arguments);
+  return subcommand.run(arguments);
 }
 
 /// One line, whatever a file or flag that the message quotes may hold. Of processes that all find

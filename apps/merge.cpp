@@ -7,7 +7,6 @@
 #include "apps/subcommands.h"
 #include "apps/sweep_end.h"
 #include "core/error.h"
-#include "core/result/result_file.h"
 #include "core/result/sealed_file.h"
 #include "core/run/stopwatch.h"
 
@@ -21,6 +20,15 @@ bool is_shard(const fs::path& path) {
   return path.extension() == ".h5" && path.stem().extension() != ".part" && is_sealed(path);
 }
 
+/// The lines of a configuration less those of some keys.
+std::string without_keys(const std::string& config, const std::set<std::string>& keys) {
+  std::istringstream lines(config);
+  std::string kept, line;
+  while (std::getline(lines, line))
+    if (!keys.contains(line.substr(0, line.find(" = ")))) kept += line + '\n';
+  return kept;
+}
+
 /// The configurations of the sweeps that the folders hold points of, each once.
 std::set<std::string> configs_of(const std::vector<std::string>& folders) {
   std::set<std::string> configs;
@@ -28,8 +36,8 @@ std::set<std::string> configs_of(const std::vector<std::string>& folders) {
     if (!fs::is_directory(folder)) throw InputError("shards", folder, "is not a folder");
     for (const auto& entry : fs::directory_iterator(folder))
       if (is_shard(entry.path()))
-        configs.insert(without_keys_of_the_work(
-            ResultReader(entry.path()).attribute<std::string>("/", "config")));
+        configs.insert(without_keys(
+            ResultReader(entry.path()).attribute<std::string>("/", "config"), keys_of_the_work));
   }
   if (configs.empty())
     throw InputError("shards", folders.front(), "holds no finished points of a sweep");
@@ -38,7 +46,7 @@ std::set<std::string> configs_of(const std::vector<std::string>& folders) {
 
 /// A sweep and what the folders hold of it.
 struct Found {
-  SweepPlan plan;
+  std::unique_ptr<SweepPlan> plan;
   SweepResults results;
   std::string warnings;
 
@@ -52,9 +60,10 @@ struct Found {
 Found most_of(const std::vector<std::string>& folders) {
   std::optional<Found> most;
   for (const std::string& config : configs_of(folders)) {
-    Found found{sweep_plan_of(config), {}, {}};
+    Found found{std::make_unique<SweepPlan>(), {}, {}};
+    found.plan->parse_config(config);
     std::ostringstream warnings;
-    found.results = gather(found.plan, folders, warnings);
+    found.results = gather(*found.plan, folders, warnings);
     found.warnings = warnings.str();
     if (!most || found.points() > most->points()) most = std::move(found);
   }
@@ -98,25 +107,28 @@ void require_all(const SweepPlan& plan, const SweepResults& results) {
 
 int merge(const Arguments& arguments) {
   const Stopwatch clock;
-  RunSettings settings;
+  RunSettings run;
   std::vector<std::string> folders;
   bool partial = false;
   Subcommand command("merge", "The points of a sweep, from one or several folders, as one result");
-  command.options().add("--shards", folders, "Folders of points (default OUT.shards)");
-  command.options().add_flag("--partial", partial, "Take the points that are there, as a list");
-  add_output_option(command.options(), settings);
+  Keys& keys = command.keys();
+  keys.group("Points");
+  keys.add("shards", folders, "Folders of points (default OUT.shards)");
+  keys.add("partial", partial, "Take the points that are there, as a list");
+  add_output_key(keys, run);
   if (!command.parse(arguments)) return ExitStatus::done;
-  if (settings.out.empty())
-    throw InputError("out is not given: name the result file (--out FILE.h5)");
-  check_result_path(settings.out);
-  if (partial) refuse_to_shrink(settings.out);
-  if (folders.empty()) folders = {shards_of(settings.out)};
+  const Session session(command.text(), keys, run, command.only_prints());
+  if (keys.read(partial)) refuse_to_shrink(run.out);
+  keys.read(folders);
+  if (!command.settle()) return ExitStatus::done;
+  if (folders.empty()) folders = {shards_of(run.out)};
 
-  auto [plan, results, warnings] = most_of(folders);
+  auto [owned, results, warnings] = most_of(folders);
+  SweepPlan& plan = *owned;
   std::cerr << warnings;
   tell_of_strangers(plan, folders);
-  plan.command.text = command.command_line().text;
-  plan.settings.out = settings.out;
+  plan.text = command.text();
+  plan.settings.out = run.out;
   if (!partial) require_all(plan, results);
   if (finished_points(plan, results).empty())
     throw InputError("shards", folders.front(), "no point is finished by every method");

@@ -1,21 +1,19 @@
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <numbers>
 #include <numeric>
 #include <sstream>
 
 #include "apps/datasets.h"
-#include "apps/key_values.h"
-#include "apps/run_options.h"
 #include "apps/subcommands.h"
 #include "core/error.h"
+#include "core/keys/number_text.h"
 #include "core/result/atomic_file.h"
-#include "core/result/provenance.h"
 #include "core/result/result_group.h"
 #include "core/result/version.h"
-#include "core/run/stopwatch.h"
+#include "core/session/session.h"
 #include "flatland/media/structure_factor.h"
 #include "flatland/placement/placement.h"
 #include "flatland/scene/scene_datasets.h"
@@ -39,9 +37,46 @@ struct PlaceKeys {
   std::optional<std::int64_t> count;
   std::optional<std::string> placement;
   std::string structure;
-  std::optional<std::int64_t> realizations;
+  std::int64_t realizations = 100;
   RunSettings run;  ///< out and seed
 };
+
+void add_keys(Keys& keys, PlaceKeys& values) {
+  keys.group("Placement");
+  keys.add("width", values.width, "|x| <= width/2").positive().unit("length");
+  keys.add("depth", values.depth, "0 <= z <= depth").positive().unit("length");
+  keys.add("radii", values.radii, "Radius of each species of disks; none: points")
+      .positive()
+      .unit("length");
+  keys.add("fractions", values.fractions,
+           "Share of each species in the number of disks (default equal)")
+      .positive()
+      .only_of("disks (radii)");
+  keys.add("count", values.count, "Number of scatterers").from(1, most_scatterers);
+  keys.add("packing_fraction", values.packing_fraction,
+           "Share of the box's area that the disks cover, instead of count")
+      .positive()
+      .only_of("disks");
+  keys.add("placement", values.placement,
+           "Of points poisson; of disks hard_disk (one after the other) or equilibrium (the fluid "
+           "of "
+           "hard disks)")
+      .one_of(placement_words());
+  keys.add("min_gap", values.min_gap,
+           "Least distance between the rims of disks (default 1e-3 of the smallest radius)")
+      .not_negative()
+      .unit("length")
+      .only_of("disks");
+  add_seed_key(keys, values.run, "Seed");
+  keys.group("Structure factor");
+  keys.add("structure", values.structure,
+           "Result file (HDF5) for the structure factor S(q) over realizations")
+      .no_file();
+  keys.add("realizations", values.realizations, "Placements that S(q) is averaged over")
+      .from(2, std::numeric_limits<double>::infinity())
+      .only_of("--structure");
+  add_output_key(keys, values.run, "Placement file (CSV)");
+}
 
 /// What is drawn: disks of these radii, one each, or points (radii empty).
 struct Drawing {
@@ -62,103 +97,64 @@ struct Drawing {
   }
 };
 
-void add_options(Options& options, PlaceKeys& keys) {
-  options.add("--width", keys.width, "Width of the box, |x| <= width/2");
-  options.add("--depth", keys.depth, "Depth of the box, 0 <= z <= depth");
-  options.add("--radii", keys.radii, "Radius of each species of disks; none: points");
-  options.add("--fractions", keys.fractions,
-              "Share of each species in the number of disks (default equal)");
-  options.add("--count", keys.count, "Number of scatterers");
-  options.add("--packing_fraction", keys.packing_fraction,
-              "Share of the box's area that the disks cover, instead of count");
-  options.add("--placement", keys.placement,
-              "poisson (points), hard_disk (one disk after the other) or equilibrium (the fluid "
-              "of hard disks)");
-  options.add("--min_gap", keys.min_gap,
-              "Least distance between the rims of disks (default 1e-3 of the smallest radius)");
-  options.add_with_default("--seed", keys.run.seed, "Seed");
-  options.add("--structure", keys.structure,
-              "Result file (HDF5) for the structure factor S(q) over realizations");
-  options.keep_out_of_scene_file("--structure");
-  options.add("--realizations", keys.realizations,
-              "Placements that S(q) is averaged over (default 100)");
-  options.add("--out", keys.run.out, "Placement file (CSV)");
-  options.keep_out_of_scene_file("--out");
-}
-
-double given_positive(const std::string& key, const std::optional<double>& value) {
-  if (!value) throw InputError(key + " is not given: must be positive");
-  return positive(key, *value);
-}
-
-Kind chosen_kind(const PlaceKeys& keys) {
-  const bool disks = !keys.radii.empty();
-  if (!keys.placement) return disks ? Kind::hard_disk : Kind::poisson;
-  for (const Kind kind : {Kind::poisson, Kind::hard_disk, Kind::equilibrium}) {
-    if (placement_word(kind) != *keys.placement) continue;
-    if (disks == (kind == Kind::poisson))
-      throw InputError("placement", *keys.placement,
-                       disks ? "disks must not overlap: hard_disk or equilibrium"
-                             : "disks need radii; without them: poisson");
-    return kind;
-  }
-  throw InputError("placement", *keys.placement, "must be one of poisson hard_disk equilibrium");
+Kind chosen_kind(const std::optional<std::string>& word, bool disks) {
+  if (!word) return disks ? Kind::hard_disk : Kind::poisson;
+  for (const Kind kind : {Kind::poisson, Kind::hard_disk, Kind::equilibrium})
+    if (placement_word(kind) == *word && disks != (kind == Kind::poisson)) return kind;
+  throw InputError("placement", *word,
+                   disks ? "disks must not overlap: hard_disk or equilibrium"
+                         : "disks need radii; without them: poisson");
 }
 
 /// Summing to 1.
-std::vector<double> shares(const PlaceKeys& keys) {
-  std::vector<double> shares = keys.fractions;
-  if (shares.empty()) shares.assign(keys.radii.size(), 1);
-  if (shares.size() != keys.radii.size())
+std::vector<double> shares(const Keys& keys, const PlaceKeys& values) {
+  std::vector<double> shares = keys.read(values.fractions);
+  if (shares.empty()) shares.assign(values.radii.size(), 1);
+  if (shares.size() != values.radii.size())
     throw InputError("fractions", shares.size(), "numbers; must be one for each of the radii");
-  for (double& share : shares) positive("fractions", share);
   const double sum = std::accumulate(shares.begin(), shares.end(), 0.0);
   for (double& share : shares) share /= sum;
   return shares;
 }
 
 /// From count, or from packing_fraction and the mean area of a disk.
-std::size_t number_of(const PlaceKeys& keys, const Domain& box, double mean_area) {
-  if (keys.count.has_value() == keys.packing_fraction.has_value())
-    throw InputError(keys.count ? "count, packing_fraction: give one of them"
-                                : "no number is given: give count or (for disks) packing_fraction");
-  if (keys.packing_fraction && mean_area == 0)
-    throw InputError("packing_fraction", *keys.packing_fraction,
+std::size_t number_of(const PlaceKeys& values, const Domain& box, double mean_area) {
+  if (values.packing_fraction && mean_area == 0)
+    throw InputError("packing_fraction", *values.packing_fraction,
                      "points cover nothing; give count");
-  const double number = keys.count ? static_cast<double>(*keys.count)
-                                   : given_positive("packing_fraction", keys.packing_fraction) *
-                                         box.area() / mean_area;
+  if (values.count.has_value() == values.packing_fraction.has_value())
+    throw InputError(values.count
+                         ? "count, packing_fraction: give one of them"
+                         : "no number is given: give count or (for disks) packing_fraction");
+  if (values.count) return static_cast<std::size_t>(*values.count);
+  const double number = *values.packing_fraction * box.area() / mean_area;
   if (!(std::llround(number) >= 1 && number <= most_scatterers))
-    throw InputError(keys.count ? "count" : "packing_fraction",
-                     keys.count ? number : *keys.packing_fraction,
+    throw InputError("packing_fraction", *values.packing_fraction,
                      "must give 1 to 10000000 scatterers");
   return static_cast<std::size_t>(std::llround(number));
 }
 
-Drawing make_drawing(const PlaceKeys& keys) {
+Drawing make_drawing(const Keys& keys, const PlaceKeys& values) {
   Drawing drawing;
-  drawing.box = {Domain::Kind::box, given_positive("width", keys.width),
-                 given_positive("depth", keys.depth)};
-  drawing.kind = chosen_kind(keys);
-  for (double radius : keys.radii) positive("radii", radius);
-  const auto share = shares(keys);
-  double mean_area = 0;
+  drawing.box = {Domain::Kind::box, keys.required(values.width), keys.required(values.depth)};
+  const auto& radii = keys.read(values.radii);
+  const bool disks = !radii.empty();
+  drawing.kind = chosen_kind(keys.read(values.placement), disks);
+  keys.read(values.count);
+  double mean_area = 0, total = 0;
+  const auto share = disks ? shares(keys, values) : std::vector<double>{};
   for (std::size_t i = 0; i < share.size(); ++i)
-    mean_area += share[i] * std::numbers::pi * keys.radii[i] * keys.radii[i];
-  drawing.count = number_of(keys, drawing.box, mean_area);
+    mean_area += share[i] * std::numbers::pi * radii[i] * radii[i];
+  drawing.count = number_of(values, drawing.box, mean_area);
+  if (!disks) return drawing;
+  keys.read(values.packing_fraction);
   // Rounded running totals, so that the numbers of the species add up.
-  double total = 0;
   for (std::size_t i = 0; i < share.size(); ++i) {
     total += share[i] * static_cast<double>(drawing.count);
-    drawing.radii.resize(static_cast<std::size_t>(std::llround(total)), keys.radii[i]);
+    drawing.radii.resize(static_cast<std::size_t>(std::llround(total)), radii[i]);
   }
-  if (keys.min_gap && !(std::isfinite(*keys.min_gap) && *keys.min_gap >= 0))
-    throw InputError("min_gap", *keys.min_gap, "must not be negative");
-  if (keys.min_gap && keys.radii.empty())
-    throw InputError("min_gap", *keys.min_gap, "is a key of disks only");
-  if (!keys.radii.empty())
-    drawing.min_gap = keys.min_gap.value_or(
-        default_gap * *std::min_element(keys.radii.begin(), keys.radii.end()));
+  drawing.min_gap = keys.read(values.min_gap)
+                        .value_or(default_gap * *std::min_element(radii.begin(), radii.end()));
   return drawing;
 }
 
@@ -176,26 +172,21 @@ Placement draw(const Drawing& drawing, std::uint64_t seed, std::uint64_t realiza
   return placement;
 }
 
-/// Digits that read back as the same number.
-std::string exact(double value) {
-  char digits[32];
-  return {digits, std::to_chars(digits, digits + sizeof digits, value).ptr};
-}
-
 std::string csv_text(const Drawing& drawing, const Placement& placement,
                      const std::string& command_line) {
   const bool disks = !drawing.radii.empty();
   std::ostringstream text;
   text << "# flatspeckle " << version() << " (" << git_commit() << "): " << command_line << "\n# "
        << placement_word(drawing.kind) << ": " << drawing.count << (disks ? " disks" : " points")
-       << " in a box of width " << exact(drawing.box.width) << ", depth "
-       << exact(drawing.box.depth);
+       << " in a box of width " << number_text(drawing.box.width) << ", depth "
+       << number_text(drawing.box.depth);
   if (disks)
-    text << "; packing fraction " << drawing.packing(0) << ", min_gap " << exact(drawing.min_gap);
+    text << "; packing fraction " << drawing.packing(0) << ", min_gap "
+         << number_text(drawing.min_gap);
   text << (disks ? "\nx,z,radius\n" : "\nx,z\n");
   for (const auto& [position, scatterer] : placement)
-    text << exact(position.x) << ',' << exact(position.z)
-         << (disks ? ',' + exact(scatterer.radius) : "") << '\n';
+    text << number_text(position.x) << ',' << number_text(position.z)
+         << (disks ? ',' + number_text(scatterer.radius) : "") << '\n';
   return text.str();
 }
 
@@ -223,58 +214,45 @@ void write_drawing(ResultFile& file, const Drawing& drawing) {
   scene.attribute("depth", drawing.box.depth);
 }
 
-std::uint64_t checked_realizations(const PlaceKeys& keys) {
-  if (keys.structure.empty() && keys.realizations)
-    throw InputError("realizations", *keys.realizations, "is a key of --structure only");
-  const std::int64_t number = keys.realizations.value_or(100);
-  if (number < 2) throw InputError("realizations", number, "must be at least 2");
-  return static_cast<std::uint64_t>(number);
-}
-
-void save_structure(const PlaceKeys& keys, const Drawing& drawing, const CommandLine& command_line,
-                    std::uint64_t realizations) {
+void save_structure(const PlaceKeys& values, const Drawing& drawing, Provenance provenance) {
   const Stopwatch clock;
-  ResultFile file(keys.structure);
-  Provenance provenance{command_line.text,
-                        command_line.config,
-                        seed_of(keys.run),
-                        "structure factor of drawn placements",
-                        1,
-                        utc_now()};
+  const auto realizations = static_cast<std::uint64_t>(values.realizations);
+  ResultFile file(values.structure);
   std::optional<HardDiskFluid> fluid;
   if (drawing.kind == Kind::equilibrium && drawing.equal_disks())
     fluid.emplace(drawing.packing(drawing.min_gap), 2 * drawing.radii.front() + drawing.min_gap);
-  write_structure(file, measure(drawing, seed_of(keys.run), realizations),
-                  fluid ? &*fluid : nullptr);
+  write_structure(file, measure(drawing, provenance.seed, realizations), fluid ? &*fluid : nullptr);
   write_drawing(file, drawing);
+  provenance.plan = "structure factor of drawn placements";
   provenance.wall_s = clock.seconds();
   provenance.cpu_s = thread_cpu_seconds();
   provenance.samples = static_cast<double>(realizations);
   provenance.converged = true;
   write_provenance(file, provenance);
   file.commit();
-  std::printf("wrote %s\n", keys.structure.c_str());
+  std::printf("wrote %s\n", values.structure.c_str());
 }
 
 }  // namespace
 
 int place(const Arguments& arguments) {
-  PlaceKeys keys;
+  PlaceKeys values;
   Subcommand command("place", "Draws one placement of scatterers, which solve --placement reads");
-  add_options(command.options(), keys);
+  Keys& keys = command.keys();
+  add_keys(keys, values);
   if (!command.parse(arguments)) return ExitStatus::done;
 
-  const Drawing drawing = make_drawing(keys);
-  const std::uint64_t seed = seed_of(keys.run), realizations = checked_realizations(keys);
-  if (keys.run.out.empty())
-    throw InputError("out is not given: name the placement file (--out FILE.csv)");
-  check_writable(keys.run.out);
-  if (!keys.structure.empty()) check_result_path(keys.structure);
-  const std::string text = csv_text(drawing, draw(drawing, seed, 0), command.command_line().text);
-  replace_file(keys.run.out, std::as_bytes(std::span(text)));
+  const Session session(command.text(), keys, values.run, command.only_prints(),
+                        Session::Out::other);
+  const Drawing drawing = make_drawing(keys, values);
+  if (!keys.read(values.structure).empty()) keys.read(values.realizations);
+  if (!command.settle()) return ExitStatus::done;
+  if (!values.structure.empty()) check_result_path(values.structure);
+  const std::string text = csv_text(drawing, draw(drawing, session.seed(), 0), command.text());
+  replace_file(session.out(), std::as_bytes(std::span(text)));
   std::printf("%zu scatterers, packing fraction %.3g\nwrote %s\n", drawing.count,
-              drawing.packing(0), keys.run.out.c_str());
-  if (!keys.structure.empty()) save_structure(keys, drawing, command.command_line(), realizations);
+              drawing.packing(0), session.out().c_str());
+  if (!values.structure.empty()) save_structure(values, drawing, session.provenance());
   return ExitStatus::done;
 }
 

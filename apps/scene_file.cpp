@@ -85,15 +85,4 @@ std::vector<CLI::ConfigItem> SceneFile::from_config(std::istream& input) const {
   return read;
 }
 
-std::string SceneFile::to_config(const CLI::App* app, bool, bool, std::string) const {
-  std::istringstream lines(CLI::ConfigTOML::to_config(app, true, false, ""));
-  std::string config, key, value;
-  while (std::getline(lines, key, '=') && std::getline(lines, value)) {
-    if (value == R"("")") continue;
-    const bool list = app->get_option("--" + key)->get_expected_max() > 1;
-    config += key + " = " + (list && value.front() != '[' ? '[' + value + ']' : value) + '\n';
-  }
-  return config;
-}
-
 }  // namespace flatspeckle::apps

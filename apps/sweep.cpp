@@ -3,7 +3,6 @@
 #include <iostream>
 #include <numeric>
 
-#include "apps/shard_folder.h"
 #include "apps/subcommands.h"
 #include "apps/sweep_end.h"
 #include "apps/sweep_plan.h"
@@ -13,6 +12,7 @@
 #include "core/run/interrupt.h"
 #include "core/run/ranks.h"
 #include "core/run/remote_batches.h"
+#include "core/session/shard_folder.h"
 
 namespace flatspeckle::apps {
 
@@ -103,8 +103,8 @@ int lead(const SweepPlan& plan, RankServer* server) {
   refuse_foreign_folder(plan, folder, runs);
   folder.make();
   SweepWork work(plan, folder, runs);
-  const PoolEnd end = run_pool(
-      work.list(), {plan.settings.seconds, threads_of(plan.settings), "sweep", "points", server});
+  const PoolEnd end =
+      run_pool(work.list(), {plan.settings.seconds, plan.threads, "sweep", "points", server});
   work.save_unfinished();
   return end_sweep(plan, folder, end);
 }
@@ -113,7 +113,7 @@ int lead(const SweepPlan& plan, RankServer* server) {
 void follow(const SweepPlan& plan) {
   ShardFolder none("");
   SweepWork work(plan, none, share_of_runs(plan));
-  work_for_rank_0(work.list(), threads_of(plan.settings));
+  work_for_rank_0(work.list(), plan.threads);
 }
 
 int with_ranks(const SweepPlan& plan) {
@@ -132,18 +132,16 @@ int with_ranks(const SweepPlan& plan) {
 }  // namespace
 
 int sweep(const Arguments& arguments) {
-  const auto plan = sweep_plan(arguments);
-  if (!plan) return ExitStatus::done;
-  if (plan->settings.out.empty())
-    throw InputError("out is not given: name the result file (--out FILE.h5)");
-  if (!plan->share) join_ranks();
+  SweepPlan plan;
+  if (!plan.parse(arguments)) return ExitStatus::done;
+  if (!plan.share) join_ranks();
   catch_interrupts();
-  if (ranks().size == 1) return lead(*plan, nullptr);
+  if (ranks().size == 1) return lead(plan, nullptr);
   int status = ExitStatus::done;
   if (ranks().rank == 0)
-    status = with_ranks(*plan);
+    status = with_ranks(plan);
   else
-    follow(*plan);
+    follow(plan);
   leave_ranks();
   return status;
 }

@@ -5,10 +5,8 @@
 #include <set>
 
 #include "apps/datasets.h"
-#include "apps/subcommands.h"
 #include "apps/sweep_table.h"
 #include "core/error.h"
-#include "core/result/provenance.h"
 #include "core/result/result_group.h"
 #include "core/run/ranks.h"
 
@@ -20,14 +18,10 @@ using Part = ShardFolder::Part;
 
 /// How the whole was made: the costs of all points, and each plan once.
 Provenance made_of(const SweepPlan& plan, const SweepResults& results, double wall_s) {
-  Provenance made{.command_line = plan.command.text,
-                  .config = plan.command.config,
-                  .seed = seed_of(plan.settings),
-                  .plan = {},
-                  .threads = threads_of(plan.settings),
-                  .started = utc_now(),
-                  .wall_s = wall_s,
-                  .converged = true};
+  Provenance made = plan.provenance();
+  made.identity = plan.identity();
+  made.wall_s = wall_s;
+  made.converged = true;
   std::set<std::string> plans;
   for (const auto& result : results) {
     made.converged = made.converged && result && result->reached;
@@ -82,7 +76,6 @@ int write_result(const SweepPlan& plan, const SweepResults& results, double wall
   print_ranges(plan, results);
   ResultFile file(plan.settings.out);
   write_provenance(file, made);
-  file.attribute("/", "identity", plan.identity());
   const ResultGroup root(file, sweep_table);
   root.attribute("format", std::uint64_t{2});
   root.attribute("complete", is_whole(results));

@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "apps/shard_folder.h"
 #include "apps/sweep_output.h"
 #include "apps/sweep_plan.h"
 #include "core/run/runner.h"
+#include "core/session/shard_folder.h"
 
 namespace flatspeckle::apps {
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "apps/datasets.h"
+#include "core/keys/number_text.h"
 #include "core/result/result_group.h"
 
 namespace flatspeckle::apps {

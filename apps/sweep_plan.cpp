@@ -4,7 +4,6 @@
 #include <charconv>
 #include <cmath>
 
-#include "apps/scene_options.h"
 #include "core/error.h"
 #include "core/result/version.h"
 
@@ -12,51 +11,9 @@ namespace flatspeckle::apps {
 
 namespace {
 
-/// Keys that change no number of any run.
-const std::vector<std::string> keys_of_the_work{"threads", "resume", "seconds"};
-
 std::string header() {
   return "flatspeckle " + version() + ", sweep, format 2\n";
 }
-
-/// The parser of `sweep` and where it puts what it reads.
-class SweepParser {
- public:
-  SweepParser()
-      : subcommand_("sweep",
-                    "Memory-effect curves over any of g, albedo, optical depth, radius, "
-                    "index and density, by Monte Carlo, exactly, or both") {
-    plan_.base.scatterer = "hg";
-    plan_.base.domain = "slab";
-    plan_.base.covariance = "memory_effect";
-    auto& options = subcommand_.options();
-    add_scatterer_options(options, plan_.base);
-    add_medium_options(options, plan_.base);
-    for (const char* key : {"--radius", "--index", "--density"}) options.remove(key);  // lists here
-    add_sweep_options(options, lists_);
-    add_structure_option(options, plan_.base);
-    add_view_options(options, plan_.base);
-    options.add("--tilts", plan_.base.tilts, "Rotations of the light, radians");
-    options.add_with_default("--method", method_, "mc, wave or both");
-    options.add("--shard", share_,
-                "i/n: work on every nth point only, from number i = 0 .. n - 1 on; then merge");
-    options.keep_out_of_scene_file("--shard");
-    add_mc_options(options, plan_.methods);
-    add_wave_options(options, plan_.methods);
-    add_run_options(options, plan_.settings);
-  }
-
-  Subcommand& subcommand() { return subcommand_; }
-
-  /// What was parsed, checked.
-  SweepPlan plan();
-
- private:
-  Subcommand subcommand_;
-  SweepPlan plan_;
-  SweepLists lists_;
-  std::string method_ = "mc", share_;
-};
 
 SweepShare share_of(const std::string& text) {
   SweepShare share;
@@ -69,13 +26,6 @@ SweepShare share_of(const std::string& text) {
   return share;
 }
 
-std::vector<std::string> methods_of(const std::string& word) {
-  if (word == "both") return {"mc", "wave"};
-  if (word != "mc" && word != "wave")
-    throw InputError("method", word, "must be one of mc wave both");
-  return {word};
-}
-
 /// Both transmission and reflection: their sum says nothing.
 bool mixes_sides(const CovarianceRequest& request) {
   return std::any_of(request.views.begin(), request.views.end(), [&](const View& view) {
@@ -83,8 +33,7 @@ bool mixes_sides(const CovarianceRequest& request) {
   });
 }
 
-void check_scene(const SweepPlan& plan, std::size_t run, const Scene& scene) {
-  plan.stop(run);  // checks
+void check_scene(const Scene& scene) {
   if (scene.medium.mu_s == 0)
     throw InputError("albedo", scene.medium.albedo,
                      "what does not scatter has no correlation; must be in (0, 1]");
@@ -92,92 +41,145 @@ void check_scene(const SweepPlan& plan, std::size_t run, const Scene& scene) {
     throw InputError(
         "view_angles: C_E is of all views together: give those in transmission or those in "
         "reflection");
-  if (plan.method(run) == "wave") note_rounding(scene);
-  if (plan.method(run) == "wave" || run == 0) plan.estimation(run, scene);
 }
 
-/// Every point must make a scene that the method can take. Where they come from a table, says which
-/// row does not.
-void check_points(const SweepPlan& plan, const std::string& table) {
+}  // namespace
+
+SweepPlan::SweepPlan()
+    : command_("sweep",
+               "Memory-effect curves over any of g, albedo, optical depth, radius, index and "
+               "density, by Monte Carlo, exactly, or both") {
+  base.scatterer = "hg";
+  base.domain = "slab";
+  base.covariance = "memory_effect";
+  Keys& keys = command_.keys();
+  add_medium_keys(keys, base);
+  add_scatterer_keys(keys, base);
+  add_bulk_keys(keys, base);
+  add_sweep_keys(keys, lists_);
+  add_structure_key(keys, base);
+  add_view_keys(keys, base);
+  keys.add("tilts", base.tilts, "Rotations of the light").unit("rad");
+  keys.group("Methods");
+  keys.add("method", method_, "Monte Carlo, exactly, or both").one_of({"mc", "wave", "both"});
+  add_mc_keys(keys, methods);
+  add_wave_keys(keys, methods);
+  add_run_keys(keys, settings);
+  keys.add("shard", share_,
+           "i/n: work on every nth point only, from number i = 0 .. n - 1 on; then merge")
+      .no_file();
+}
+
+bool SweepPlan::parse(const Arguments& arguments) {
+  if (!command_.parse(arguments)) return false;
+  const Session session(command_.text(), command_.keys(), settings, command_.only_prints());
+  text = command_.text();
+  check();
+  return command_.settle();
+}
+
+void SweepPlan::parse_config(const std::string& config) {
+  command_.parse_config(config);
+  check();
+}
+
+/// All that can be refused: every point must make a scene that the method can take.
+void SweepPlan::check() {
+  const Keys& keys = command_.keys();
+  seed = seed_of(keys, settings);
+  threads = threads_of(keys, settings);
+  mc_stop_ = wave_stop_ = stop_rule(keys, settings);
+  if (keys.read(methods.wave_samples)) wave_stop_ = stop_rule(keys, settings, methods.wave_samples);
+  for (StopRule* stop : {&mc_stop_, &wave_stop_})
+    if (!stop->samples && !stop->target_error) stop->target_error = default_target_error;
+  keys.read(settings.resume);
+  const std::string& word = keys.read(method_);
+  method_words = word == "both" ? std::vector<std::string>{"mc", "wave"} : std::vector{word};
+  if (!keys.read(share_).empty()) share = share_of(share_);
+  reversed_ = reversed_paths(keys, methods);
+  keys.read(methods.wave_tolerance);
+  points = sweep_points(keys, lists_);
+  check_points();
+}
+
+/// Where points come from a table, says which row cannot be used.
+void SweepPlan::check_points() {
   Neglected neglected;
-  for (std::size_t run = 0; run < plan.runs(); ++run) {
+  for (std::size_t run = 0; run < runs(); ++run) {
     try {
-      const Scene scene = plan.scene(run);
-      check_scene(plan, run, scene);
-      if (plan.method(run) == "mc") neglected.add(scene);
+      with_point(run, [&](const Keyed<SceneSpec>& point) {
+        const Scene scene = scene_of(point);
+        command_.keys().join_reads(point.keys);
+        check_scene(scene);
+        if (method(run) == "wave") note_rounding(scene);
+        if (method(run) == "wave" || run == 0) estimation(run, scene);
+        if (method(run) == "mc") neglected.add(scene);
+      });
     } catch (const InputError& error) {
-      if (table.empty()) throw;
-      const std::size_t row = run % plan.points.points.size() + 1;
-      throw InputError(table + ", row " + std::to_string(row) + ": " + error.what());
+      if (lists_.points.empty()) throw;
+      const std::size_t row = run % points.points.size() + 1;
+      throw InputError(lists_.points + ", row " + std::to_string(row) + ": " + error.what());
     }
   }
   note(neglected);
 }
 
-SweepPlan SweepParser::plan() {
-  plan_.command = subcommand_.command_line();
-  plan_.points = sweep_points(lists_);
-  plan_.method_words = methods_of(method_);
-  if (!share_.empty()) plan_.share = share_of(share_);
-  seed_of(plan_.settings);
-  stop_rule(plan_.settings);
-  check_points(plan_, lists_.points);
-  return plan_;
+void SweepPlan::with_point(std::size_t run,
+                           const std::function<void(const Keyed<SceneSpec>&)>& use) const {
+  const Keyed<SceneSpec> point(base);
+  points.set(points.points[run % points.points.size()], point.keys);
+  point.keys.check();
+  use(point);
 }
 
-}  // namespace
+Scene SweepPlan::scene_of(const Keyed<SceneSpec>& point) const {
+  return (method_words.size() > 1 ? rounded_scene
+                                  : static_cast<Scene (*)(const Keys&, const SceneSpec&)>(
+                                        make_scene))(point.keys, point.values);
+}
 
 Scene SweepPlan::scene(std::size_t run) const {
-  SceneSpec spec = points.scene(base, points.points[run % points.points.size()]);
-  if (method_words.size() > 1) round_density(spec);
-  return make_scene(spec);
+  Scene scene;
+  with_point(run, [&](const Keyed<SceneSpec>& point) { scene = scene_of(point); });
+  return scene;
 }
 
 Estimation SweepPlan::estimation(std::size_t run, const Scene& scene) const {
-  return (method(run) == "mc" ? mc_estimation : wave_estimation)(scene, methods, seed_of(settings));
+  return method(run) == "mc" ? mc_estimation(scene, reversed_, seed)
+                             : wave_estimation(scene, methods.wave_tolerance, seed);
 }
 
 StopRule SweepPlan::stop(std::size_t run) const {
-  const bool wave = method(run) == "wave" && methods.wave_samples;
-  StopRule stop =
-      wave ? stop_rule(settings, "wave_samples", methods.wave_samples) : stop_rule(settings);
-  if (!stop.samples && !stop.target_error) stop.target_error = default_target_error;
-  return stop;
+  return method(run) == "wave" ? wave_stop_ : mc_stop_;
+}
+
+Provenance SweepPlan::provenance() const {
+  Provenance made;
+  made.command_line = text;
+  made.config = command_.keys().config();
+  made.seed = seed;
+  made.threads = threads;
+  made.started = utc_now();
+  return made;
 }
 
 std::string SweepPlan::name(std::size_t run) const {
   return method(run) + '_' + points.name(points.points[run % points.points.size()]);
 }
 
+/// Of the sweep's keys all but those that say which points and methods there are.
 std::string SweepPlan::identity(std::size_t run) const {
   auto left_out = keys_of_the_work;
-  left_out.insert(left_out.end(), {"points", "method"});
-  left_out.insert(left_out.end(), sweep_keys().begin(), sweep_keys().end());
-  return header() + without_keys(command.config, left_out) + name(run) + '\n' +
-         inputs_text(scene(run));
+  left_out.insert(lists_.keys.begin(), lists_.keys.end());
+  left_out.insert({"points", "method"});
+  return header() + command_.keys().config(left_out) + name(run) + '\n' + inputs_text(scene(run));
 }
 
 std::string SweepPlan::identity() const {
-  std::string text = header() + without_keys_of_the_work(command.config);
+  std::string all = header() + command_.keys().config(keys_of_the_work);
   if (points.is_list)
-    for (const SweepPoint& point : points.points) text += points.name(point) + '\n';
-  return text;
-}
-
-std::string without_keys_of_the_work(const std::string& config) {
-  return without_keys(config, keys_of_the_work);
-}
-
-std::optional<SweepPlan> sweep_plan(const Arguments& arguments) {
-  SweepParser parser;
-  if (!parser.subcommand().parse(arguments)) return std::nullopt;
-  return parser.plan();
-}
-
-SweepPlan sweep_plan_of(const std::string& config) {
-  SweepParser parser;
-  parser.subcommand().parse_config(config);
-  return parser.plan();
+    for (const SweepPoint& point : points.points) all += points.name(point) + '\n';
+  return all;
 }
 
 }  // namespace flatspeckle::apps

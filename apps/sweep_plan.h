@@ -1,12 +1,16 @@
 #pragma once
 
+#include <functional>
+#include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
+#include "apps/command_line.h"
 #include "apps/estimation.h"
-#include "apps/run_options.h"
 #include "apps/sweep_points.h"
+#include "core/session/session.h"
 
 namespace flatspeckle::apps {
 
@@ -15,12 +19,26 @@ struct SweepShare {
   std::size_t number = 0, count = 1;
 };
 
+/// Keys that change no number of any run of a sweep.
+inline const std::set<std::string> keys_of_the_work{"threads", "resume", "seconds"};
+
 /// A sweep as it was asked for. Its runs are its points by each of its methods.
-struct SweepPlan {
-  CommandLine command;
+class SweepPlan {
+ public:
+  SweepPlan();
+
+  /// From the command line. False if there is nothing to run (--help). Throws InputError for
+  /// whatever is wrong, with any of the points too.
+  bool parse(const Arguments& arguments);
+  /// From a resolved configuration.
+  void parse_config(const std::string& config);
+
   SceneSpec base;
   RunSettings settings;
   MethodSettings methods;
+  std::string text;  ///< the command line as typed
+  std::uint64_t seed = 0;
+  int threads = 1;
   SweepPoints points;
   std::vector<std::string> method_words;  ///< mc, wave or both
   std::optional<SweepShare> share;
@@ -40,14 +58,20 @@ struct SweepPlan {
   std::string identity(std::size_t run) const;
   /// Of the sweep as a whole.
   std::string identity() const;
-};
+  /// How results of it came about, but for plan and costs.
+  Provenance provenance() const;
 
-/// From the command line. Nothing if there is nothing to run (--help). Throws InputError for
-/// whatever is wrong, with any of the points too.
-std::optional<SweepPlan> sweep_plan(const Arguments& arguments);
-/// A configuration without the keys that change no number of any run.
-std::string without_keys_of_the_work(const std::string& config);
-/// From a resolved configuration.
-SweepPlan sweep_plan_of(const std::string& config);
+ private:
+  void check();
+  void check_points();
+  void with_point(std::size_t run, const std::function<void(const Keyed<SceneSpec>&)>& use) const;
+  Scene scene_of(const Keyed<SceneSpec>& point) const;
+
+  SweepLists lists_;
+  std::string method_ = "mc", share_;
+  mc::ReversedPaths reversed_ = mc::ReversedPaths::automatic;
+  StopRule mc_stop_, wave_stop_;
+  Subcommand command_;
+};
 
 }  // namespace flatspeckle::apps

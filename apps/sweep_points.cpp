@@ -1,64 +1,35 @@
 #include "apps/sweep_points.h"
 
 #include <algorithm>
-#include <charconv>
 #include <set>
+#include <span>
 
 #include "core/error.h"
 #include "core/keys/csv.h"
+#include "core/keys/number_text.h"
 
 namespace flatspeckle::apps {
 
 namespace {
 
-/// One text for one number: the points of a sweep are known by their texts.
-std::string text_of(double value) {
-  char digits[32];
-  value += 0.0;  // -0 is 0
-  return {digits, std::to_chars(digits, digits + sizeof digits, value).ptr};
-}
-
-std::string text_of(Complex value) {
-  if (value.imag() == 0) return text_of(value.real());
-  return text_of(value.real()) + (value.imag() > 0 ? "+" : "") + text_of(value.imag()) + 'i';
-}
-
 std::vector<std::string> texts_of(std::span<const double> values) {
   std::vector<std::string> texts;
-  for (double value : values) texts.push_back(text_of(value));
+  for (double value : values) texts.push_back(number_text(value));
   return texts;
 }
 
-std::vector<std::string> texts_of_indices(const std::vector<std::string>& values) {
-  std::vector<std::string> texts;
-  for (const std::string& value : values) texts.push_back(text_of(parse_complex("index", value)));
-  return texts;
-}
-
-double number_of(const std::string& text) {
-  double value = 0;
-  std::from_chars(text.data(), text.data() + text.size(), value);
-  return value;
-}
-
-void set(SceneSpec& spec, const std::string& key, const std::string& value) {
-  if (key == "index") spec.index = value;
-  if (key == "density") spec.density = number_of(value);
-  if (key == "radius") spec.radius = number_of(value);
-  if (key == "optical_depth") spec.optical_depth = number_of(value);
-  if (key == "g") spec.g = number_of(value);
-  if (key == "albedo") spec.albedo = number_of(value);
-}
-
-/// Axes that were given, in the order of sweep_keys().
-std::vector<SweepAxis> given_axes(const SweepLists& lists) {
-  std::vector<SweepAxis> axes{{"density", texts_of(lists.density)},
-                              {"radius", texts_of(lists.radius)},
-                              {"index", texts_of_indices(lists.index)},
-                              {"optical_depth", texts_of(lists.optical_depth)},
-                              {"g", texts_of(lists.g)},
-                              {"albedo", texts_of(lists.albedo)}};
-  std::erase_if(axes, [](const SweepAxis& axis) { return axis.values.empty(); });
+/// Axes that were given. One text for one number: points are known by their texts.
+std::vector<SweepAxis> given_axes(const Keys& keys, const SweepLists& lists) {
+  std::vector<SweepAxis> axes;
+  for (const std::string& key : lists.keys) {
+    SweepAxis axis{key, {}};
+    if (const auto numbers = lists.numbers.find(key); numbers != lists.numbers.end())
+      axis.values = texts_of(keys.read(numbers->second));
+    else
+      for (const std::string& text : keys.read(lists.texts.at(key)))
+        axis.values.push_back(number_text(parse_complex(key, text)));
+    if (!axis.values.empty()) axes.push_back(std::move(axis));
+  }
   return axes;
 }
 
@@ -87,32 +58,31 @@ void add_column(const Table& table, const std::string& key, std::vector<SweepAxi
   if (key == "index" && table.has("index_imaginary")) {
     const auto real = table.column("index"), imaginary = table.column("index_imaginary");
     for (std::size_t row = 0; row < real.size(); ++row)
-      axis.values[row] = text_of(Complex(real[row], imaginary[row]));
+      axis.values[row] = number_text(Complex(real[row], imaginary[row]));
   }
   axes.push_back(std::move(axis));
 }
 
-void check_columns(const Table& table, const std::string& path) {
-  const auto& keys = sweep_keys();
+void check_columns(const Table& table, const SweepLists& lists) {
+  std::string words;
+  for (const std::string& key : lists.keys) words += ' ' + key;
   for (const std::string& name : table.names()) {
     if (name == "index_imaginary" && table.has("index")) continue;
-    if (std::find(keys.begin(), keys.end(), name) == keys.end())
-      throw InputError("points", path,
-                       "column " + name +
-                           ": must be one of density radius index index_imaginary optical_depth g "
-                           "albedo");
+    if (std::find(lists.keys.begin(), lists.keys.end(), name) == lists.keys.end())
+      throw InputError("points", lists.points,
+                       "column " + name + ": must be one of index_imaginary" + words);
   }
 }
 
-SweepPoints listed(const SweepLists& lists) {
+SweepPoints listed(const Keys& keys, const SweepLists& lists) {
   const Table table = read_csv(lists.points);
-  check_columns(table, lists.points);
+  check_columns(table, lists);
   if (table.rows() == 0) throw InputError("points", lists.points, "must have at least one row");
   SweepPoints list;
   list.is_list = true;
   list.points.resize(table.rows());
-  const auto given = given_axes(lists);
-  for (const std::string& key : sweep_keys()) {
+  const auto given = given_axes(keys, lists);
+  for (const std::string& key : lists.keys) {
     const auto beside = std::find_if(given.begin(), given.end(),
                                      [&](const SweepAxis& axis) { return axis.key == key; });
     if (beside == given.end() && !table.has(key)) continue;
@@ -138,12 +108,6 @@ void refuse_twins(const SweepPoints& points) {
 
 }  // namespace
 
-const std::vector<std::string>& sweep_keys() {
-  static const std::vector<std::string> keys{"density",       "radius", "index",
-                                             "optical_depth", "g",      "albedo"};
-  return keys;
-}
-
 std::string SweepPoints::name(const SweepPoint& point) const {
   std::string name;
   for (std::size_t i = 0; i < axes.size(); ++i)
@@ -151,31 +115,34 @@ std::string SweepPoints::name(const SweepPoint& point) const {
   return name;
 }
 
-SceneSpec SweepPoints::scene(SceneSpec base, const SweepPoint& point) const {
-  for (std::size_t i = 0; i < axes.size(); ++i) set(base, axes[i].key, point.values[i]);
-  return base;
+void SweepPoints::set(const SweepPoint& point, const Keys& keys) const {
+  for (std::size_t i = 0; i < axes.size(); ++i) keys.set(axes[i].key, {point.values[i]});
 }
 
-void add_sweep_options(Options& options, SweepLists& lists) {
-  options.add("--radius", lists.radius, "Radii of soft, hard, tm and te");
-  options.add("--index", lists.index,
-              "Relative indices of tm and te, as \"1.5+0.1i\" (default 1.5)");
-  options.add("--density", lists.density, "Densities as number per area");
-  options.add("--g", lists.g, "Mean cosines of hg");
-  options.add("--albedo", lists.albedo, "Albedos of hg and of resonant points");
-  options.add("--optical_depth", lists.optical_depth, "Densities from mu_t x depth");
-  options.add("--points", lists.points,
-              "CSV with columns among these keys (and index_imaginary): a list of points in "
-              "place of all combinations");
+void add_sweep_keys(Keys& keys, SweepLists& lists) {
+  keys.group("Swept: lists of values");
+  const auto rows = keys.rows();
+  for (const Key& row : rows) {
+    if (!row.is_swept() || keys.find(row.name()) == nullptr) continue;
+    lists.keys.push_back(row.name());
+    keys.remove(row.name());
+    if (row.is_number())
+      keys.add(row.name(), lists.numbers[row.name()], row.help());
+    else
+      keys.add(row.name(), lists.texts[row.name()], row.help());
+  }
+  keys.add("points", lists.points,
+           "CSV with columns among these keys (and index_imaginary): a list of points in place of "
+           "all combinations");
 }
 
-SweepPoints sweep_points(const SweepLists& lists) {
+SweepPoints sweep_points(const Keys& keys, const SweepLists& lists) {
   SweepPoints points;
-  if (lists.points.empty()) {
-    points.axes = given_axes(lists);
+  if (keys.read(lists.points).empty()) {
+    points.axes = given_axes(keys, lists);
     points.points = product(points.axes);
   } else {
-    points = listed(lists);
+    points = listed(keys, lists);
   }
   refuse_twins(points);
   return points;

@@ -1,14 +1,14 @@
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
-#include "apps/command_line.h"
-#include "flatland/scene/scene.h"
+#include "core/keys/keys.h"
 
 namespace flatspeckle::apps {
 
-/// A key that a sweep may vary, and its values, as text that reads back as the same numbers.
+/// A key that a sweep varies, and its values, as text that reads back as the same numbers.
 struct SweepAxis {
   std::string key;
   std::vector<std::string> values;
@@ -27,23 +27,22 @@ struct SweepPoints {
 
   /// "g=0.5_albedo=1": a name for files.
   std::string name(const SweepPoint& point) const;
-  SceneSpec scene(SceneSpec base, const SweepPoint& point) const;
+  /// Sets the keys of a point.
+  void set(const SweepPoint& point, const Keys& keys) const;
 };
 
-/// The keys that a sweep may vary, in the order of the result's axes.
-const std::vector<std::string>& sweep_keys();
-
-/// Lists of values as given on the command line, and a table of points.
+/// Lists of values as given on the command line, by key, and a table of points.
 struct SweepLists {
-  std::vector<double> density, radius, optical_depth, g, albedo;
-  std::vector<std::string> index;
+  std::vector<std::string> keys;  ///< that may be swept, in the order of the result's axes
+  std::map<std::string, std::vector<double>> numbers;
+  std::map<std::string, std::vector<std::string>> texts;  ///< complex numbers
   std::string points;
 };
-/// Adds those keys; there must be none of them yet.
-void add_sweep_options(Options& options, SweepLists& lists);
+/// Puts lists in the place of the keys that may be swept.
+void add_sweep_keys(Keys& keys, SweepLists& lists);
 
 /// Throws InputError for a table without rows, with columns that are no keys of a sweep or lists
 /// beside it, and for a point that comes twice.
-SweepPoints sweep_points(const SweepLists& lists);
+SweepPoints sweep_points(const Keys& keys, const SweepLists& lists);
 
 }  // namespace flatspeckle::apps

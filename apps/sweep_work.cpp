@@ -9,7 +9,7 @@
 namespace flatspeckle::apps {
 
 SweepWork::SweepWork(const SweepPlan& plan, ShardFolder& folder, std::vector<std::size_t> runs)
-    : plan_(plan), folder_(folder), runs_(std::move(runs)), started_(utc_now()) {}
+    : plan_(plan), folder_(folder), runs_(std::move(runs)), made_(plan.provenance()) {}
 
 RunList SweepWork::list() {
   return {.count = runs_.size(),
@@ -54,16 +54,13 @@ SweepWork::Open& SweepWork::find(std::size_t number) {
 
 /// How it was made.
 void SweepWork::write_made(ResultFile& file, const Open& open, bool converged) const {
-  write_provenance(file, {.command_line = plan_.command.text,
-                          .config = plan_.command.config,
-                          .seed = seed_of(plan_.settings),
-                          .plan = open.estimation.plan,
-                          .threads = threads_of(plan_.settings),
-                          .started = started_,
-                          .wall_s = open.state.wall_s,
-                          .cpu_s = open.state.cpu_s,
-                          .samples = open.state.sums.total_samples(),
-                          .converged = converged});
+  Provenance made = made_;
+  made.plan = open.estimation.plan;
+  made.wall_s = open.state.wall_s;
+  made.cpu_s = open.state.cpu_s;
+  made.samples = open.state.sums.total_samples();
+  made.converged = converged;
+  write_provenance(file, made);
 }
 
 void SweepWork::ended(std::size_t number) {

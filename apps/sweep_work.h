@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "apps/shard_folder.h"
 #include "apps/sweep_plan.h"
 #include "core/run/runner.h"
+#include "core/session/shard_folder.h"
 
 namespace flatspeckle::apps {
 
@@ -43,7 +43,7 @@ class SweepWork {
   const SweepPlan& plan_;
   ShardFolder& folder_;
   std::vector<std::size_t> runs_;
-  std::string started_;
+  Provenance made_;
   std::mutex mutex_;
   std::map<std::size_t, std::unique_ptr<Open>> open_;
 };

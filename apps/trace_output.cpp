@@ -2,72 +2,11 @@
 
 #include <algorithm>
 
-#include "apps/datasets.h"
 #include "core/result/result_group.h"
 #include "grin/rays/light_speed.h"
+#include "grin/rays/ray_datasets.h"
 
 namespace flatspeckle::apps {
-
-const DatasetTable rays_table{
-    .name = "rays",
-    .rows = {{"ray", Data::numbers, "", "1", "number of the ray"},
-             {"curve", Data::numbers, "", "1", "number of the curve, by optical path"},
-             {"start/x", Data::real, "ray", "length", "x of the start"},
-             {"start/y", Data::real, "ray", "length", "y of the start"},
-             {"start/z", Data::real, "ray", "length", "z of the start"},
-             {"start/dx", Data::real, "THING", "1", "x of the unit tangent at the start"},
-             {"start/dy", Data::real, "THING", "1", "y of the unit tangent at the start"},
-             {"start/dz", Data::real, "THING", "1", "z of the unit tangent at the start"},
-             {"exit/x", Data::real, "ray", "length", "x of the end"},
-             {"exit/y", Data::real, "ray", "length", "y of the end"},
-             {"exit/z", Data::real, "ray", "length", "z of the end"},
-             {"exit/dx", Data::real, "THING", "1", "x of the unit tangent at the end"},
-             {"exit/dy", Data::real, "THING", "1", "y of the unit tangent at the end"},
-             {"exit/dz", Data::real, "THING", "1", "z of the unit tangent at the end"},
-             {"arc_length", Data::real, "THING", "length", "length of the curve"},
-             {"optical_path", Data::real, "THING", "length",
-              "integral of the index along the curve"},
-             {"time", Data::real, "THING", "s", "optical path over the speed of light"},
-             {"status", Data::count, "ray", "1",
-              "0: ended on a stop surface, 1: at max_length, 2: at the edge of the grid"},
-             {"surface", Data::count, "ray", "1",
-              "number of the surface: planes, spheres, boxes; of status 1 and 2, how many there "
-              "are"},
-             {"steps", Data::count, "ray", "1", "steps of the integrator"},
-             {"invariants/index_mismatch", Data::real, "ray", "1",
-              "largest difference of |v| and the index at a step's end"},
-             {"invariants/angular_momentum", Data::real, "ray", "length",
-              "length of (x - centre) cross v, at the start"},
-             {"invariants/angular_momentum_change", Data::real, "ray", "length",
-              "how far it is off at the end"},
-             {"invariants/axial_momentum", Data::real, "ray", "1",
-              "size of v along the axis, at the start"},
-             {"invariants/axial_momentum_change", Data::real, "ray", "1",
-              "how far it is off at the end"},
-             {"invariants/axial_rotation", Data::real, "ray", "length",
-              "size of the angular momentum along the axis, at the start"},
-             {"invariants/axial_rotation_change", Data::real, "ray", "length",
-              "how far it is off at the end"},
-             {"invariants/transverse_momentum", Data::real, "ray", "1",
-              "length of v across the gradient, n sin(angle), at the start"},
-             {"invariants/transverse_momentum_change", Data::real, "ray", "1",
-              "how far it is off at the end"},
-             {"spreading", Data::real, "curve", "length^2",
-              "|J|: area across the curve at its end per solid angle at its start"},
-             {"caustics", Data::count, "curve", "1", "caustics on the way"},
-             {"found", Data::count, "curve", "1", "trials that ended on it"},
-             {"path_point", Data::numbers, "", "1", "number of a point, evenly in arc length"},
-             {"path/x", Data::real, "THING path_point", "length", "x of the points"},
-             {"path/y", Data::real, "THING path_point", "length", "y of the points"},
-             {"path/z", Data::real, "THING path_point", "length", "z of the points"},
-             {"map_z", Data::scale, "", "length", "depth of the index map's points"},
-             {"map_x", Data::scale, "", "length", "x of the index map's points"},
-             {"map_y", Data::scale, "", "length", "y of the index map's points"},
-             {"index_map", Data::real, "ACROSS map_z", "1",
-              "index in a plane, 0 where there is no field"}},
-    .attributes = {{"index_map", "x", "float64", "where its plane lies, if across x"},
-                   {"index_map", "y", "float64", "where its plane lies, if across y"}},
-    .roles = {{"THING", {"ray", "curve"}}, {"ACROSS", {"map_x", "map_y"}}}};
 
 namespace {
 
@@ -174,7 +113,7 @@ void write_index_map(ResultFile& file, const SceneField& scene,
       x[plane.out] = plane.at;
       map.push_back(index_at(scene, x));
     }
-  const ResultGroup root(file, rays_table);
+  const ResultGroup root(file, grin::rays_table);
   root.put("map_z", z);
   root.put("map_" + up, across);
   file.bind("ACROSS", {"map_" + up});
@@ -186,7 +125,7 @@ void write_index_map(ResultFile& file, const SceneField& scene,
 
 void write_rays(ResultFile& file, const SceneField& scene, const std::vector<RayStart>& starts,
                 const std::vector<TracedRay>& rays, double length_unit) {
-  const ResultGroup root(file, rays_table);
+  const ResultGroup root(file, grin::rays_table);
   root.number("ray", rays.size());
   file.bind("THING", {"ray"});
   put_vectors(root, "start/", starts, [](const RayStart& s) { return s.x; });
@@ -205,7 +144,7 @@ void write_connections(ResultFile& file, const FoundConnections& found, double l
   if (found.curves.empty()) return;
   std::vector<grin::Connection> curves;
   for (const auto& [curve, times] : found.curves) curves.push_back(curve);
-  const ResultGroup root(file, rays_table);
+  const ResultGroup root(file, grin::rays_table);
   root.number("curve", curves.size());
   file.bind("THING", {"curve"});
   put_vectors(root, "start/d", curves, std::mem_fn(&grin::Connection::start_direction));
@@ -217,7 +156,7 @@ void write_connections(ResultFile& file, const FoundConnections& found, double l
 }
 
 void write_paths(ResultFile& file, const SceneField& scene, const std::vector<TracedRay>& rays) {
-  const ResultGroup root(file, rays_table);
+  const ResultGroup root(file, grin::rays_table);
   root.number("path_point", rays.front().path.size());
   for (int i = 0; i < 3; ++i) {
     std::vector<double> values;

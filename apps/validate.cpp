@@ -6,11 +6,10 @@
 #include "apps/datasets.h"
 #include "apps/estimation.h"
 #include "apps/moments_table.h"
-#include "apps/scene_options.h"
-#include "apps/session.h"
 #include "apps/subcommands.h"
 #include "core/error.h"
 #include "core/result/result_group.h"
+#include "core/session/session.h"
 #include "flatland/scene/scene_datasets.h"
 
 namespace flatspeckle::apps {
@@ -116,48 +115,45 @@ void write_comparison(ResultFile& file, const Comparison& comparison) {
 
 int validate(const Arguments& arguments) {
   SceneSpec spec;
-  RunSettings settings;
+  RunSettings run;
   MethodSettings methods;
   Subcommand command("validate", "Both methods on one scene, compared entry by entry");
-  add_scatterer_options(command.options(), spec);
-  add_bulk_options(command.options(), spec);
-  add_medium_options(command.options(), spec);
-  add_structure_option(command.options(), spec);
-  add_view_options(command.options(), spec);
-  add_light_options(command.options(), spec);
-  add_request_options(command.options(), spec);
-  add_mc_options(command.options(), methods);
-  add_wave_options(command.options(), methods);
-  add_run_options(command.options(), settings);
+  Keys& keys = command.keys();
+  add_keys(keys, spec);
+  add_mc_keys(keys, methods);
+  add_wave_keys(keys, methods);
+  add_run_keys(keys, run);
   if (!command.parse(arguments)) return ExitStatus::done;
 
-  settle_request(command, spec);
-  round_density(spec);
-  const Scene scene = make_scene(spec);
+  Session session(command.text(), keys, run, command.only_prints());
+  const StopRule mc_stop = stop_rule(keys, run),
+                 wave_stop = stop_rule(keys, run, methods.wave_samples);
+  const auto reversed = reversed_paths(keys, methods);
+  const double tolerance = keys.read(methods.wave_tolerance);
+  const Scene scene = rounded_scene(keys, spec);
   if (scene.medium.mu_s == 0)
     throw InputError("scatterer", spec.scatterer,
                      "this scene does not scatter, there is nothing to compare");
-  const Estimation mc = mc_estimation(scene, methods, seed_of(settings));
-  const Estimation wave = wave_estimation(scene, methods, seed_of(settings));
-  const StopRule mc_stop = stop_rule(settings);
-  const StopRule wave_stop = stop_rule(settings, "wave_samples", methods.wave_samples);
-  Session session(
-      command.command_line(), settings, mc.plan + "\n" + wave.plan,
+  const Estimation mc = mc_estimation(scene, reversed, session.seed());
+  const Estimation wave = wave_estimation(scene, tolerance, session.seed());
+  if (!command.settle()) return ExitStatus::done;
+  return session.run(
+      mc.plan + "\n" + wave.plan,
       {{"mc", "mc", mc.job.batches, mc_stop}, {"wave", "wave", wave.job.batches, wave_stop}},
-      inputs_text(scene));
-  return session.run([&](ResultFile& file) {
-    const GroupedSums &mc_sums = session.state("mc").sums, &wave_sums = session.state("wave").sums;
-    const FieldMoments mc_moments = field_moments(mc.job, mc_sums),
-                       wave_moments = field_moments(wave.job, wave_sums);
-    const Comparison comparison{wave_moments.covariance, mc_moments.covariance,
-                                bias_allowance(scene)};
-    print_comparison(scene, comparison);
-    write_medium(file, scene);
-    write_axes(file, scene);
-    print_ranges("mc", mc::write_moments(file, "mc", mc.job, scene, mc_sums, mc_moments));
-    print_ranges("wave", mc::write_moments(file, "wave", wave.job, scene, wave_sums, wave_moments));
-    write_comparison(file, comparison);
-  });
+      inputs_text(scene), [&](ResultFile& file) {
+        const GroupedSums &mc_sums = session.sums("mc"), &wave_sums = session.sums("wave");
+        const FieldMoments mc_moments = field_moments(mc.job, mc_sums),
+                           wave_moments = field_moments(wave.job, wave_sums);
+        const Comparison comparison{wave_moments.covariance, mc_moments.covariance,
+                                    bias_allowance(scene)};
+        print_comparison(scene, comparison);
+        write_medium(file, scene);
+        write_axes(file, scene);
+        print_ranges("mc", mc::write_moments(file, "mc", mc.job, scene, mc_sums, mc_moments));
+        print_ranges("wave",
+                     mc::write_moments(file, "wave", wave.job, scene, wave_sums, wave_moments));
+        write_comparison(file, comparison);
+      });
 }
 
 }  // namespace flatspeckle::apps

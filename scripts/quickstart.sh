@@ -10,7 +10,7 @@ results=${results:-results}
 
 install_build_packages
 install_plot_packages
-build_release flatspeckle
+build_release flatspeckle -DFLATSPECKLE_TESTS=OFF -DFLATSPECKLE_BENCH=OFF
 flatspeckle=build/release/bin/flatspeckle
 mkdir -p "$results/ten_disks"
 

@@ -10,8 +10,9 @@ source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
 report=${report:-results/report}
 
 install_build_packages
+install_bench_packages
 install_plot_packages
-build_release flatspeckle
+build_release flatspeckle -DFLATSPECKLE_TESTS=OFF -DFLATSPECKLE_BENCH=ON
 mkdir -p "$report"
 
 failed=0

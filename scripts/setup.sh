@@ -31,15 +31,22 @@ install_missing() {
     install "${missing[@]}"
 }
 
-# For the program and its tests.
+# For the program alone.
 install_build_packages() {
   install_missing g++ cmake ninja-build pkg-config libhdf5-dev liblapacke-dev libopenblas-dev \
-    libfftw3-dev libeigen3-dev libcli11-dev librandom123-dev doctest-dev libboost-dev python3-h5py
+    libfftw3-dev libeigen3-dev libcli11-dev librandom123-dev
 }
 
-# What is tested where it is there.
+# For the subcommand bench.
+install_bench_packages() {
+  install_missing libboost-dev
+}
+
+# For the tests; MPI and xarray are tested where they are there.
 install_test_packages() {
-  install_missing libopenmpi-dev openmpi-bin python3-xarray python3-h5netcdf
+  install_bench_packages
+  install_missing doctest-dev python3-h5py libopenmpi-dev openmpi-bin python3-xarray \
+    python3-h5netcdf
 }
 
 has_mpi() {

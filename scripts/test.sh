@@ -6,6 +6,6 @@ source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
 
 install_build_packages
 install_test_packages
-build_release all "-DFLATSPECKLE_MPI=$(has_mpi && echo ON || echo OFF)"
+build_release all -DFLATSPECKLE_TESTS=ON "-DFLATSPECKLE_MPI=$(has_mpi && echo ON || echo OFF)"
 ctest --preset release --parallel "$jobs"
 echo "All tests passed in $SECONDS s."

@@ -19,15 +19,20 @@ BulkMedium bulk_medium(const Scatterer& scatterer, double k, double density) {
   constexpr double tolerance = 1e-13;
   BulkMedium medium;
   medium.has_scatterers = true;
-  medium.density = density;
   medium.t_matrix = t_matrix(scatterer, k, isolated_order(scatterer, k, tolerance));
   medium.cross_sections = cross_sections(medium.t_matrix, k);
-  medium.mu_s = density * medium.cross_sections.scattering;
-  medium.mu_t = density * medium.cross_sections.extinction;
   medium.g = medium.cross_sections.g;
   medium.albedo = medium.cross_sections.extinction == 0
                       ? 0
                       : medium.cross_sections.scattering / medium.cross_sections.extinction;
+  set_density(medium, scatterer, k, density);
+  return medium;
+}
+
+void set_density(BulkMedium& medium, const Scatterer& scatterer, double k, double density) {
+  medium.density = density;
+  medium.mu_s = density * medium.cross_sections.scattering;
+  medium.mu_t = density * medium.cross_sections.extinction;
   if (scatterer.is_disk())
     medium.packing_fraction = density * std::numbers::pi * scatterer.radius * scatterer.radius;
   // k_eff - k = (2 rho / (i k)) sum_n T_n (C15)
@@ -35,15 +40,15 @@ BulkMedium bulk_medium(const Scatterer& scatterer, double k, double density) {
   for (std::size_t n = 1; n < medium.t_matrix.size(); ++n)
     sum_imag += 2 * medium.t_matrix[n].imag();
   medium.k_shift = 2 * density / k * static_cast<double>(sum_imag);
-  return medium;
 }
 
-BulkMedium bulk_medium(const Scatterer& henyey_greenstein, double mu_t) {
+BulkMedium bulk_medium(const Scatterer& bulk, const BulkPhase& phase, double mu_t) {
   BulkMedium medium;
   medium.mu_t = mu_t;
-  medium.albedo = henyey_greenstein.albedo;
+  medium.albedo = bulk.albedo;
   medium.mu_s = medium.albedo * mu_t;
-  medium.g = henyey_greenstein.g;
+  medium.g = phase.density ? phase.g : bulk.g;
+  medium.phase = phase;
   return medium;
 }
 
@@ -76,9 +81,15 @@ Complex scattering_amplitude(const BulkMedium& medium, double k, double theta) {
 
 std::vector<Complex> normalised_amplitudes(const BulkMedium& medium, double k,
                                            std::size_t intervals) {
+  const double step = std::numbers::pi / static_cast<double>(intervals);
+  if (medium.phase.density) {
+    std::vector<Complex> roots;
+    for (std::size_t i = 0; i <= intervals; ++i)
+      roots.emplace_back(std::sqrt(medium.phase.density(static_cast<double>(i) * step)));
+    return roots;
+  }
   auto values = amplitudes(medium.t_matrix, k, intervals);
   const double scale = std::sqrt(medium.density / medium.mu_s);
-  const double step = std::numbers::pi / static_cast<double>(intervals);
   for (std::size_t i = 0; i <= intervals; ++i)
     values[i] *= scale * structure_amplitude(medium.structure, k, static_cast<double>(i) * step);
   return values;

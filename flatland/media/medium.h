@@ -4,6 +4,7 @@
 
 #include "core/numbers/complex.h"
 #include "flatland/media/structure_table.h"
+#include "flatland/scatterers/bulk_phase.h"
 #include "flatland/scatterers/scatterer.h"
 
 namespace flatspeckle {
@@ -13,13 +14,14 @@ namespace flatspeckle {
 struct BulkMedium {
   double mu_s = 0, mu_t = 0;
   double g = 0, albedo = 1;
-  double k_shift = 0;           ///< Re k_eff - k (C15); not defined (0) for hg
-  bool has_scatterers = false;  ///< what follows exists: false for hg
+  double k_shift = 0;           ///< Re k_eff - k (C15); not defined (0) for the bulk
+  bool has_scatterers = false;  ///< what follows exists: false for the bulk
   double density = 0;           ///< scatterers per area
   double packing_fraction = 0;
   CrossSections cross_sections;  ///< of one scatterer alone, like its T-matrix
   std::vector<ExtendedComplex> t_matrix;
   StructureTable structure;
+  BulkPhase phase;  ///< empty but for Scatterer::Kind::other_bulk
 
   double mean_free_path() const { return 1 / mu_t; }
   double transport_mean_free_path() const { return 1 / (mu_t - mu_s * g); }
@@ -27,8 +29,10 @@ struct BulkMedium {
 
 /// A medium of scatterers with a T-matrix, at a number per area.
 BulkMedium bulk_medium(const Scatterer& scatterer, double k, double density);
-/// A Henyey-Greenstein medium of given extinction.
-BulkMedium bulk_medium(const Scatterer& henyey_greenstein, double mu_t);
+/// Gives a medium of scatterers another number per area.
+void set_density(BulkMedium& medium, const Scatterer& scatterer, double k, double density);
+/// A medium of given extinction that has a phase function.
+BulkMedium bulk_medium(const Scatterer& bulk, const BulkPhase& phase, double mu_t);
 
 /// The same scatterers at positions with a structure factor (C16): mu_s = rho int |A|^2 S, g and
 /// albedo are those of |A|^2 S, absorption stays rho (sigma_e - sigma_s).
@@ -39,7 +43,7 @@ BulkMedium correlated_medium(BulkMedium independent, double k, StructureTable st
 Complex scattering_amplitude(const BulkMedium& medium, double k, double theta);
 
 /// The same at theta = 0 .. pi in equal intervals, over the square root of mu_s / rho: the absolute
-/// square is the phase function. Throughout, the medium has scatterers, and they scatter.
+/// square is the phase function, up to a factor of order 1. The medium scatters.
 std::vector<Complex> normalised_amplitudes(const BulkMedium& medium, double k,
                                            std::size_t intervals);
 

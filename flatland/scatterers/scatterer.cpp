@@ -111,7 +111,7 @@ std::string index_fault(Complex index) {
 }
 
 std::vector<ScaledComplex> scaled_t_matrix(const Scatterer& scatterer, double k, int order) {
-  assert(scatterer.kind != Kind::hg);
+  assert(!scatterer.is_bulk());
   std::vector<ScaledComplex> t(order + 1);
   const double x = k * scatterer.radius;
   switch (scatterer.kind) {

@@ -9,19 +9,20 @@
 
 namespace flatspeckle {
 
-/// One scatterer. hg is a bulk phase function only: it has no T-matrix, and the wave solver refuses
-/// it.
+/// One scatterer. hg and the other phase functions of the bulk (bulk_phases.h) have no T-matrix,
+/// and the wave solver refuses them.
 struct Scatterer {
-  enum class Kind { point, soft, hard, tm, te, hg };
+  enum class Kind { point, soft, hard, tm, te, hg, other_bulk };
   Kind kind = Kind::point;
   double radius = 0;                          ///< of soft, hard, tm, te
   Complex index = 1.5;                        ///< of tm, te, relative to the surroundings
   double g = 0;                               ///< of hg
-  double albedo = 1;                          ///< of hg and of resonant points (C8)
+  double albedo = 1;                          ///< of the bulk and of resonant points (C8)
   double phase_shift = std::numbers::pi / 2;  ///< of lossless points; pi/2 is resonance
 
   /// A disk of nonzero radius, which others must not overlap.
-  bool is_disk() const { return kind != Kind::point && kind != Kind::hg; }
+  bool is_disk() const { return kind != Kind::point && !is_bulk(); }
+  bool is_bulk() const { return kind == Kind::hg || kind == Kind::other_bulk; }
 
   double disk_radius() const { return is_disk() ? radius : 0; }
 
@@ -32,7 +33,7 @@ struct Scatterer {
 std::string index_fault(Complex index);
 
 /// T_n for n = 0 .. order; T_{-n} = T_n. (conventions, C7 and C8)
-/// k: wavenumber outside. hg is a precondition violation.
+/// k: wavenumber outside. A bulk phase function is a precondition violation.
 std::vector<ScaledComplex> scaled_t_matrix(const Scatterer& scatterer, double k, int order);
 /// The same; 0 where T_n is below the range of long double.
 std::vector<ExtendedComplex> t_matrix(const Scatterer& scatterer, double k, int order);

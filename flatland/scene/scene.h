@@ -5,10 +5,12 @@
 #include <string>
 #include <vector>
 
+#include "core/keys/keys.h"
 #include "flatland/media/domain.h"
 #include "flatland/media/medium.h"
 #include "flatland/placement/placement.h"
 #include "flatland/request/request.h"
+#include "flatland/scatterers/bulk_phases.h"
 #include "flatland/scatterers/scatterer.h"
 
 namespace flatspeckle {
@@ -36,6 +38,7 @@ struct SceneSpec {
   std::vector<double> tilts{}, shifts{};
   std::string covariance = "intensity";
   std::vector<double> pairs{};
+  BulkPhases bulk{};
 };
 
 /// All that a solver is told: one scene, two eyes.
@@ -48,17 +51,46 @@ struct Scene {
   CovarianceRequest request;
 };
 
-/// The scatterer alone, with k = 2 pi / wavelength; what `solve` needs beside a placement file.
-Scatterer make_scatterer(const SceneSpec& spec);
-/// Lights, views and entries alone.
-CovarianceRequest make_request(const SceneSpec& spec);
-/// The infinite slab has far fields only, lights from below the horizon, and (C18) only entries
-/// whose transverse momenta match.
-void check_slab_request(const CovarianceRequest& request);
-/// Checks every key and derives the bulk. Throws InputError naming key, value and what is accepted.
-Scene make_scene(const SceneSpec& spec);
+// Rows of the keys, by what they are of; add_keys adds all.
+void add_scatterer_keys(Keys& keys, SceneSpec& spec);
+/// g, albedo and optical_depth.
+void add_bulk_keys(Keys& keys, SceneSpec& spec);
+void add_medium_keys(Keys& keys, SceneSpec& spec);
+/// The structure factor that Monte Carlo takes positions to have.
+void add_structure_key(Keys& keys, SceneSpec& spec);
+void add_view_keys(Keys& keys, SceneSpec& spec);
+/// Near sources and beams.
+void add_light_keys(Keys& keys, SceneSpec& spec);
+/// Which entries of the covariance.
+void add_request_keys(Keys& keys, SceneSpec& spec);
+void add_keys(Keys& keys, SceneSpec& spec);
 
-/// "1.5", "1.5+0.1i", "0.1 + 5i". Throws InputError.
-Complex parse_complex(const std::string& key, const std::string& text);
+// What follows reads a spec by its keys and throws InputError naming key, value and what is
+// accepted.
+
+/// The scatterer alone; what `solve` needs beside a placement file.
+Scatterer make_scatterer(const Keys& keys, const SceneSpec& spec);
+/// Lights, views and entries alone.
+CovarianceRequest make_request(const Keys& keys, const SceneSpec& spec);
+/// Far views, or the near sensors that take their place.
+std::vector<View> requested_views(const Keys& keys, const SceneSpec& spec);
+/// Everything; the last to read the keys: it refuses what is given and was not read, before the
+/// work of deriving the bulk.
+Scene make_scene(const Keys& keys, const SceneSpec& spec);
+/// The same of values alone, all of which must be of use.
+Scene make_scene(const SceneSpec& spec);
+CovarianceRequest make_request(const SceneSpec& spec);
+
+/// The infinite slab has far fields only, lights from below the horizon, and (C18) only entries
+/// whose transverse momenta match. Throws InputError.
+void check_slab_request(const CovarianceRequest& request);
+
+/// What a scene took from other files, exactly: near sensors and sources, and the structure factor.
+std::string inputs_text(const Scene& scene);
+
+/// What `scatterer`, `placement` and `covariance` may be.
+std::vector<std::string> scatterer_words();
+std::vector<std::string> placement_words();
+std::vector<std::string> request_words();
 
 }  // namespace flatspeckle

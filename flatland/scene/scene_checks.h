@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <optional>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -13,18 +13,6 @@
 namespace flatspeckle {
 
 // What the keys of a scene are held to. All throw InputError naming key and value.
-
-inline double positive(const std::string& key, double value) {
-  if (!(std::isfinite(value) && value > 0)) throw InputError(key, value, "must be positive");
-  constexpr double most = 1e50;  // products of a few of them stay numbers
-  if (value > most || value < 1 / most) throw InputError(key, value, "must be from 1e-50 to 1e50");
-  return value;
-}
-
-inline double positive(const std::string& key, const std::optional<double>& value) {
-  if (!value) throw InputError(key + " is not given: must be positive");
-  return positive(key, *value);
-}
 
 inline void all_finite(const std::string& key, const std::vector<double>& values) {
   for (double value : values)
@@ -49,21 +37,23 @@ inline void no_repeats(const std::string& key, std::vector<double> values) {
   if (twice != values.end()) throw InputError(key, *twice, "is given twice");
 }
 
-template <typename Value>
-inline void only_for(const std::string& key, const std::optional<Value>& value, bool applies,
-                     const std::string& what) {
-  if (value && !applies) throw InputError(key, *value, "is a key of " + what + " only");
-}
+/// The words of a key and what they choose.
+template <typename Choice>
+using Choices = std::vector<std::pair<std::string, Choice>>;
 
 template <typename Choice>
-Choice choose(const std::string& key, const std::string& word,
-              const std::vector<std::pair<std::string, Choice>>& choices) {
-  std::string accepted = "must be one of";
-  for (const auto& [name, choice] : choices) {
+std::vector<std::string> words_of(const Choices<Choice>& choices) {
+  std::vector<std::string> words;
+  for (const auto& [word, choice] : choices) words.push_back(word);
+  return words;
+}
+
+/// Of a word that is one of them.
+template <typename Choice>
+Choice chosen(const Choices<Choice>& choices, const std::string& word) {
+  for (const auto& [name, choice] : choices)
     if (name == word) return choice;
-    accepted += ' ' + name;
-  }
-  throw InputError(key, word, accepted);
+  throw std::logic_error(word + " is no choice");
 }
 
 }  // namespace flatspeckle

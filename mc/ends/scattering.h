@@ -83,12 +83,13 @@ struct HenyeyGreensteinScattering {
   }
 };
 
-/// The complex amplitude of a circular scatterer, with the structure factor of its medium (C16),
-/// tabulated and linear between the nodes.
+/// The complex amplitude of a circular scatterer, with the structure factor of its medium (C16), or
+/// the root of a phase function of the bulk, tabulated and linear between the nodes.
 class TabulatedScattering {
  public:
   TabulatedScattering(const BulkMedium& medium, double k)
-      : intervals_(4096 * std::max<std::size_t>(medium.t_matrix.size(), 2)),
+      : intervals_(4096 *
+                   (medium.phase.density ? 16 : std::max<std::size_t>(medium.t_matrix.size(), 2))),
         amplitude_(normalised_amplitudes(medium, k, intervals_)),
         phase_([this](double angle) { return std::norm(at(angle)); }, intervals_) {}
 

@@ -23,6 +23,7 @@ std::vector<BulkParameter> sampled_parameters(const Scene& scene) {
   switch (scene.scatterer.kind) {
     case Scatterer::Kind::hg:
       return {BulkParameter::mu_t, BulkParameter::g, BulkParameter::albedo};
+    case Scatterer::Kind::other_bulk:
     case Scatterer::Kind::point:
       return {BulkParameter::mu_t, BulkParameter::albedo};
     default:

@@ -36,9 +36,9 @@ BOX_CASES = [
     ("covariance", BOX, {"index": "1.5"}, ["index = 1.5", "tm and te"]),
     ("covariance", BOX, {"g": 0.5}, ["g = 0.5", "hg"]),
     ("covariance", BOX, {"albedo": 0}, ["albedo = 0", "(0, 1]"]),
-    ("covariance", BOX, {"albedo": 1.5}, ["albedo = 1.5", "(0, 1]"]),
-    ("covariance", BOX, {"albedo": -0.1}, ["albedo = -0.1", "(0, 1]"]),
-    ("covariance", BOX, {"albedo": "nan"}, ["albedo = nan", "(0, 1]"]),
+    ("covariance", BOX, {"albedo": 1.5}, ["albedo = 1.5", "from 0 to 1"]),
+    ("covariance", BOX, {"albedo": -0.1}, ["albedo = -0.1", "from 0 to 1"]),
+    ("covariance", BOX, {"albedo": "nan"}, ["albedo = nan", "from 0 to 1"]),
     ("covariance", BOX, {"albedo": 0.9, "phase_shift": 1}, ["phase_shift = 1", "absorbing"]),
     ("covariance", BOX, {"phase_shift": "inf"}, ["phase_shift = inf", "must be finite"]),
     ("covariance", BOX, {"count": None, "optical_depth": 1, "phase_shift": 0},
@@ -53,9 +53,9 @@ BOX_CASES = [
     ("covariance", BOX, {"samples": 0}, ["samples = 0", POSITIVE]),
     ("covariance", BOX, {"samples": -5}, ["samples = -5", POSITIVE]),
     ("covariance", BOX, {"samples": 2.5}, ["samples = 2.5", "whole number"]),
-    ("covariance", BOX, {"threads": -1}, ["threads = -1", "must not be negative"]),
+    ("covariance", BOX, {"threads": -1}, ["threads = -1", "from 0 to 1024"]),
     ("covariance", BOX, {"threads": "four"}, ["threads = four", "whole number"]),
-    ("covariance", BOX, {"threads": 1000000}, ["threads = 1000000", "at most"]),
+    ("covariance", BOX, {"threads": 1000000}, ["threads = 1000000", "from 0 to 1024"]),
     ("covariance", BOX, {"tilts": [0.1]}, ["tilts = 0.1", "memory_effect"]),
     ("covariance", BOX, {"pairs": [0, 0, 0, 0]}, ["pairs = 0", "covariance = pairs"]),
     ("covariance", BOX, {"method": "wave", "wave_tolerance": 0}, ["wave_tolerance = 0", "(0, 1)"]),
@@ -101,8 +101,8 @@ BULK_CASES = [
     ("covariance", SLAB, {"g": 1}, ["g = 1", "(-1, 1)"]),
     ("covariance", SLAB, {"g": -1}, ["g = -1", "(-1, 1)"]),
     ("covariance", SLAB, {"g": "nan"}, ["g = nan", "(-1, 1)"]),
-    ("covariance", SLAB, {"albedo": 1.5}, ["albedo = 1.5", "[0, 1]"]),
-    ("covariance", SLAB, {"albedo": -0.1}, ["albedo = -0.1", "[0, 1]"]),
+    ("covariance", SLAB, {"albedo": 1.5}, ["albedo = 1.5", "from 0 to 1"]),
+    ("covariance", SLAB, {"albedo": -0.1}, ["albedo = -0.1", "from 0 to 1"]),
     ("covariance", SLAB, {"width": 20}, ["width = 20", "a box"]),
     ("covariance", SLAB, {"optical_depth": None, "count": 10},
      ["hg", "mean_free_path or optical_depth"]),
@@ -136,8 +136,8 @@ REQUEST_CASES = [
     ("covariance", {**BOX, **TILTS}, {"view_angles": [0.1, 0.1]}, ["view_angles = 0.1", "twice"]),
     ("covariance", {**BOX, **TILTS}, {"covariance": None}, ["tilts = 0", "memory_effect"]),
     ("covariance", {**BOX, **TILTS}, {"near_sensors": "out.csv"}, ["near_sensors", "far views"]),
-    ("covariance", {**BOX, **PAIRS}, {"pairs": [0, 1, 2]}, ["pairs", "3", "light 1, view 1"]),
-    ("covariance", {**BOX, **PAIRS}, {"pairs": [0, 1, 2, 3, 4]}, ["pairs", "5", "light 1"]),
+    ("covariance", {**BOX, **PAIRS}, {"pairs": [0, 1, 2]}, ["pairs = 0 1 2", "4 numbers", "light 1, view 1"]),
+    ("covariance", {**BOX, **PAIRS}, {"pairs": [0, 1, 2, 3, 4]}, ["pairs = 0 1 2 3 4", "4 numbers", "light 1"]),
     ("covariance", {**BOX, **PAIRS}, {"pairs": [0, 1, 2, "nan"]}, ["pairs = nan", "finite"]),
     ("covariance", {**BOX, **PAIRS}, {"pairs": None}, ["pairs", "at least one"]),
     ("covariance", {**BOX, **PAIRS}, {"near_sensors": "out.csv"}, ["near_sensors", "pairs"]),
@@ -155,7 +155,7 @@ MAP = {"covariance": "tilt_shift", "tilts": [0, 0.01], "shifts": [0, 0.1]}
 MOVE = {"covariance": "translation", "shifts": [0, 0.5]}
 LIGHT_CASES = [
     ("covariance", BOX, {"near_sources": "out.csv", "light_angles": [0.1]},
-     ["near_sources", "either near_sources or light_angles"]),
+     ["light_angles = 0.1", "near_sources"]),
     ("covariance", BOX, {"near_sources": "out.csv", "beam_waist": 2}, ["beam_waist = 2", "either"]),
     ("covariance", BOX, {"near_sources": "no.csv"}, ["no.csv"]),
     ("covariance", BOX, {"near_sources": "header.csv"}, ["header.csv", "at least one"]),
@@ -183,17 +183,18 @@ LIGHT_CASES = [
     ("covariance", BOX, {"gradient": True, "beam_waist": 2}, ["gradient", "plane waves"]),
     ("covariance", BOX, {"delays": [0], "near_sources": "out.csv"}, ["delays", "plane waves"]),
     ("covariance", {**BOX, **MOVE}, {"wavelength": 1}, ["translation", "use tilt_shift"]),
-    ("covariance", {**BOX, **MOVE}, {"tilts": [0]}, ["tilts = 0", "memory_effect and tilt_shift"]),
+    ("covariance", {**BOX, **MOVE}, {"near_sources": "one.csv", "tilts": [0]},
+     ["tilts = 0", "memory_effect and tilt_shift"]),
 ]
 SENSORS = {"out.csv": "x,z\n0,15\n1,15\n", "header.csv": "x,z\n", "one.csv": "x,z\n0,-3\n",
            "empty.csv": ""}
 REAL_KEYS = [
-    ("covariance", BOX, ["width", "depth", "wavelength", "seconds", "target_error"]),
+    ("covariance", BOX, ["width", "depth", "wavelength", "seconds"]),
     ("covariance", {**BOX, "count": None}, ["density", "mean_free_path", "optical_depth"]),
     ("covariance", {**SLAB, "optical_depth": None}, ["optical_depth", "mean_free_path"]),
     ("covariance", CYLINDERS, ["radius"]),
     ("solve", CYLINDERS, ["radius", "wavelength", "width"]),
-    ("sweep", SWEEP, ["depth", "wavelength", "target_error"]),
+    ("sweep", SWEEP, ["depth", "wavelength"]),
 ]
 
 
@@ -224,14 +225,15 @@ class Keys(RefusingTest):
                     self.assert_refused_both_ways(subcommand, scene, {key: value},
                                                   [f"{key} = {value}", POSITIVE])
         for value in ("0", "inf", "-inf", "1e999"):
-            for key in ("width", "seconds", "target_error"):
+            for key, accepted in (("width", POSITIVE), ("seconds", POSITIVE),
+                                  ("target_error", "in (0, 1)")):
                 with self.subTest(key=key, value=value):
                     shown = value.replace("1e999", "inf")
-                    self.assert_refused([f"{key} = {shown}", POSITIVE], "covariance",
+                    self.assert_refused([f"{key} = {shown}", accepted], "covariance",
                                         *flags({**BOX, key: value}))
         for value in ("x", "1x", "1,5", "0.5.5", "--", "1 2"):
             with self.subTest(value=value):
-                self.assert_refused(["width", value, "must be"], "covariance",
+                self.assert_refused(["width", value, "must"], "covariance",
                                     *flags({**BOX, "width": value}))
 
     def test_empty_values(self):
@@ -341,6 +343,7 @@ class AcceptedScenes(ProgramTest):
 
     def test_a_hash_in_a_text(self):
         for name in ("a#b.csv", "a #b, [c] = 'd'.csv"):
+            self.write(name, SENSORS["out.csv"])
             text = self.resolved(toml({**BOX, "near_sensors": name}) + "# it's \"open\n")
             self.assertIn(f'near_sensors = "{name}"\n', text)
 
@@ -358,7 +361,7 @@ class AcceptedScenes(ProgramTest):
                                ("field",) if "\nfields = " in text else
                                ("render",) if "\nsensor = " in text else
                                ("trace",) if "\nmax_length = " in text else
-                               ("validate", "covariance")):
+                               ("covariance",) if '"hg"' in text else ("validate", "covariance")):
                 with self.subTest(scene=scene.name, subcommand=subcommand):
                     text = self.call(subcommand, "--config", scene, "--print-config").stdout
                     if tilts:

@@ -166,7 +166,7 @@ class BadInput(FieldTest):
             ({"tilts": [0, 0.1], "light_angles": [0, 1]}, ["tilts", "light_angles"]),
             ({"tilts": ["nan"]}, ["tilts"]),
             ({"reversed_paths": "perhaps"}, ["reversed_paths = perhaps"]),
-            ({"near_sensors": "sensors.csv", "view_angles": 0}, ["near_sensors"]),
+            ({"near_sensors": "sensors.csv", "view_angles": 0.1}, ["near_sensors"]),
             ({"covariance": "full"}, ["covariance", "unknown"]),
             ({"out": None}, ["out is not given"]),
         ]

@@ -111,11 +111,11 @@ class BadInput(ProgramTest):
             ({"map": [0, "inf", 2, 3]}, ["map = 0 inf 2 3"]),
             ({"map": [0, "x", 2, 3]}, ["map", "x", "number"]),
             ({"map": [0, 1, 0, 1], "map_pixels": [0, 5]}, ["map_pixels = 0", "1 to 100000"]),
-            ({"map": [0, 1, 0, 1], "map_pixels": [5, -5]}, ["map_pixels = -5", "1 to 100000"]),
+            ({"map": [0, 1, 0, 1], "map_pixels": [5, -5]}, ["map_pixels = 5 -5", "1 to 100000"]),
             ({"map": [0, 1, 0, 1], "map_pixels": [5]}, ["map_pixels = 5", "nx nz"]),
             ({"map": [0, 1, 0, 1], "map_pixels": [5, 1.5]}, ["map_pixels", "1.5", "whole"]),
-            ({"map": [0, 1, 0, 1], "map_pixels": [10 ** 9, 1]}, ["map_pixels = 1e+09"]),
-            ({"map": [0, 1e9, 0, 1]}, ["map_pixels = 1e+10", "ten per wavelength"]),
+            ({"map": [0, 1, 0, 1], "map_pixels": [10 ** 9, 1]}, ["map_pixels = 1000000000"]),
+            ({"map": [0, 1e9, 0, 1]}, ["map = 1e+09", "ten pixels per wavelength"]),
             ({"map_pixels": [5, 5]}, ["map_pixels = 5 5", "map"]),
         ]
         for keys, words in cases:

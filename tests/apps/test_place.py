@@ -190,7 +190,7 @@ class Refused(PlaceTest):
         ({"count": 5}, ["count, packing_fraction", "one of them"]),
         ({"packing_fraction": None}, ["no number", "count", "packing_fraction"]),
         ({"packing_fraction": None, "count": 0}, ["count = 0", "1 to"]),
-        ({"packing_fraction": None, "count": 10**15}, ["count = 1e+15", "1 to"]),
+        ({"packing_fraction": None, "count": 10**15}, ["count = 1000000000000000", "1 to"]),
         ({"packing_fraction": -0.1}, ["packing_fraction = -0.1", "must be positive"]),
         ({"packing_fraction": 0.6}, ["packing fraction", "0.5", "equilibrium"]),
         ({"packing_fraction": 0.72, "placement": "equilibrium"}, ["packing fraction", "0.69"]),

@@ -62,6 +62,13 @@ class Seed(ProgramTest):
 
 
 class PrintedConfiguration(ProgramTest):
+    FILES = {"a 'b' = [1, 2] #c.csv": "x,z\n0,15\n", "it's.csv": "x,z,radius\n0,0,0.1\n"}
+
+    def setUp(self):
+        super().setUp()
+        for name, text in self.FILES.items():
+            self.write(name, text)
+
     SCENES = [
         ("covariance", {**BOX, **TILTS, "samples": 5, "resume": True}),
         ("covariance", {**CYLINDERS, "index": "1.5+0.1i", "light_angles": [-0.1],
@@ -82,7 +89,7 @@ class PrintedConfiguration(ProgramTest):
                 self.assertEqual(printed, again)
                 for key in keys:
                     self.assertIn(f"{key} = ", printed)
-        self.assertEqual(set(self.listing()), {"scene.toml"})
+        self.assertEqual(set(self.listing()), {"scene.toml", *self.FILES})
 
     def test_is_toml(self):
         try:
@@ -95,10 +102,10 @@ class PrintedConfiguration(ProgramTest):
                 self.assertEqual(read[key], 10 if value == "1e1" else value)
 
     def test_the_same_number_in_other_words(self):
-        plain = self.call("covariance", "--print-config", **BOX, min_gap=0.001).stdout
+        plain = self.call("covariance", "--print-config", **CYLINDERS, min_gap=0.001).stdout
         for width, gap in (("20.0", "1e-3"), ("2e1", "0.0010"), ("2.0E+1", "1.e-03")):
             with self.subTest(width=width):
-                keys = {**BOX, "width": width, "min_gap": gap}
+                keys = {**CYLINDERS, "width": width, "min_gap": gap}
                 self.assertEqual(self.call("covariance", "--print-config", **keys).stdout, plain)
 
 

@@ -77,7 +77,7 @@ class BadInput(SweepTest):
         self.call("sweep", **SWEEP, view_angles=[2.9, 3], out="one_side.h5")
 
     def test_a_target_in_percent(self):
-        self.check("target_error = 2", "0.02", target_error=2)
+        self.check("target_error = 2", "(0, 1)", target_error=2)
 
     def test_merge(self):
         (self.folder / "empty").mkdir()

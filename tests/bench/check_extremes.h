@@ -2,7 +2,7 @@
 
 #include <doctest/doctest.h>
 
-#include "bench/extreme_case.h"
+#include "bench/stability/extreme_case.h"
 
 namespace flatspeckle::bench::tests {
 

@@ -6,7 +6,8 @@
 
 #include <doctest/doctest.h>
 
-#include "bench/error_curve.h"
+#include "bench/cost/cost_curve.h"
+#include "bench/error/error_curve.h"
 #include "core/run/parallel.h"
 
 using namespace flatspeckle::bench;

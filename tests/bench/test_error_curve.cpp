@@ -5,10 +5,10 @@
 
 #include <doctest/doctest.h>
 
-#include "bench/cost_measure.h"
-#include "bench/error_curve.h"
-#include "bench/error_fit.h"
-#include "bench/error_measure.h"
+#include "bench/cost/cost_measure.h"
+#include "bench/error/error_curve.h"
+#include "bench/error/error_measure.h"
+#include "bench/measure/power_fit.h"
 #include "core/numbers/random.h"
 
 using namespace flatspeckle;

@@ -5,13 +5,15 @@
 #include <boost/multiprecision/cpp_complex.hpp>
 #include <doctest/doctest.h>
 
+#include "bench/oracles/bessel_oracle.h"
 #include "core/keys/csv.h"
 #include "core/numbers/bessel.h"
-#include "tests/core/bessel_oracle.h"
 
 namespace flatspeckle {
 
 namespace {
+
+using namespace oracles;
 
 using WideComplex = boost::multiprecision::cpp_complex_100;
 

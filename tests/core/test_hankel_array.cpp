@@ -5,15 +5,17 @@
 
 #include <doctest/doctest.h>
 
+#include "bench/oracles/bessel_oracle.h"
 #include "core/keys/csv.h"
 #include "core/numbers/bessel.h"
 #include "core/numbers/hankel_array.h"
 #include "core/numbers/hankel_fit.h"
-#include "tests/core/bessel_oracle.h"
 
 namespace flatspeckle {
 
 namespace {
+
+using namespace oracles;
 
 // Both sides of the border between the pieces and of the end of the short reduction of the phase,
 // and doubles next to zeros of J_0 and Y_0.

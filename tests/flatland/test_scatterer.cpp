@@ -3,12 +3,14 @@
 #include <boost/multiprecision/cpp_complex.hpp>
 #include <doctest/doctest.h>
 
+#include "bench/oracles/bessel_oracle.h"
 #include "flatland/scatterers/scatterer.h"
-#include "tests/core/bessel_oracle.h"
 
 namespace flatspeckle {
 
 namespace {
+
+using namespace oracles;
 
 using WideComplex = boost::multiprecision::cpp_complex_50;
 using Kind = Scatterer::Kind;

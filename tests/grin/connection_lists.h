@@ -5,10 +5,12 @@
 
 #include <doctest/doctest.h>
 
+#include "bench/oracles/harmonic_ball.h"
 #include "grin/connections/connection_solver.h"
-#include "tests/grin/harmonic_curves.h"
 
 namespace flatspeckle::grin::tests {
+
+using oracles::HarmonicCurve;
 
 inline constexpr WholeSpace everywhere;
 

@@ -6,14 +6,15 @@
 
 #include <doctest/doctest.h>
 
+#include "bench/oracles/harmonic_ball.h"
 #include "core/run/parallel.h"
 #include "grin/connections/connection_solver.h"
-#include "tests/grin/closed_fields.h"
-#include "tests/grin/harmonic_curves.h"
 
 // Sums over the curves between two points of a harmonic ball: the exact ones against K-weighted
 // estimates (conventions, C26).
 namespace flatspeckle::grin::tests {
+
+using namespace oracles;
 
 constexpr int functions = 3;
 constexpr double wavenumber = 2;

@@ -1,9 +1,11 @@
 #pragma once
 
-#include "tests/grin/render_scenes.h"
+#include "bench/scenes/furnaces.h"
 #include "tests/grin/render_tests.h"
 
 namespace flatspeckle::grin::tests {
+
+using namespace bench;
 
 inline constexpr RenderMethod unbiased_methods[] = {RenderMethod::path, RenderMethod::light,
                                                     RenderMethod::bidirectional};

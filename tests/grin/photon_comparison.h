@@ -5,10 +5,12 @@
 #include <string>
 #include <vector>
 
+#include "bench/oracles/photon_walk.h"
 #include "grin/estimators/render_job.h"
-#include "tests/grin/photon_walk.h"
 
 namespace flatspeckle::grin::tests {
+
+using namespace oracles;
 
 struct PhotonWorth {
   int pixel;

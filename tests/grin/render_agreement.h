@@ -19,7 +19,7 @@ inline Stage ball_in_fog(const ScatteringMedium& around, const ScatteringMedium&
   return stage;
 }
 
-inline std::vector<NamedScene> beam_scenes() {
+inline std::vector<NamedRender> beam_scenes() {
   const Stage luneburg = ball_in_fog(fog(0.3, 0, 0), fog(3, 0.05, 0.5));
   const Light beam = BeamLight{Vec3(0, 0, -0.99), Vec3::UnitZ(), 0.4};
   const Luneburg ball(LuneburgProfile{.radius = 0.7});

@@ -3,9 +3,9 @@
 #include <memory>
 #include <vector>
 
+#include "core/numbers/random.h"
 #include "grin/space/curved_space.h"
 #include "grin/space/straight_space.h"
-#include "tests/grin/closed_fields.h"
 
 namespace flatspeckle::grin::tests {
 

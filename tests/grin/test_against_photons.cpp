@@ -11,6 +11,7 @@
 using namespace flatspeckle;
 using namespace flatspeckle::grin;
 using namespace flatspeckle::grin::tests;
+using namespace flatspeckle::oracles;
 
 namespace {
 

@@ -5,35 +5,35 @@
 #include <Eigen/Geometry>
 #include <doctest/doctest.h>
 
+#include "bench/scenes/random_fields.h"
 #include "core/error.h"
 #include "grin/connections/connection_solver.h"
 #include "grin/fields/gaussian_blobs.h"
 #include "grin/fields/guides.h"
 #include "grin/fields/lenses.h"
-#include "tests/grin/closed_fields.h"
 #include "tests/grin/connection_lists.h"
 
 namespace flatspeckle::grin {
 
+using bench::random_direction;
+using bench::random_point;
+using oracles::HarmonicBall;
+using oracles::HarmonicCurve;
 using std::numbers::pi;
 using tests::check_all_found;
 using tests::everywhere;
-using tests::HarmonicBall;
-using tests::HarmonicCurve;
 using tests::Listed;
 using tests::listed;
-using tests::random_direction;
-using tests::random_point;
 
 TEST_CASE("in Luneburg's ball one curve joins any two points, and it is found") {
   // Of the two ellipses and two ways round, that with cos sigma > 0 stays inside (the others leave
   // the ball: within it a ray takes a quarter of its period).
   const HarmonicBall field{{}};
-  const Inside<tests::Ball> ball{{1}};
+  const Inside<bench::Ball> ball{{1}};
   RandomStream random(71, 0, 0);
   for (int i = 0; i < 100; ++i) {
     const Vec3 p = random_point(random, 1), q = random_point(random, 1);
-    std::vector<HarmonicCurve> exact = tests::harmonic_curves(p, q, 2 * pi);
+    std::vector<HarmonicCurve> exact = oracles::harmonic_curves(p, q, 2 * pi);
     CHECK(exact.size() == 4);
     std::erase_if(exact, [](const HarmonicCurve& curve) { return curve.largest_radius() > 1; });
     CHECK(exact.size() == 1);
@@ -44,7 +44,7 @@ TEST_CASE("in Luneburg's ball one curve joins any two points, and it is found") 
 TEST_CASE("a pair that no curve joins gives none, and 0") {
   const HarmonicBall field{{}};
   const Vec3 p(1.2, 0, 0), q(0, 1.2, 0);
-  CHECK(tests::harmonic_curves(p, q, 100).empty());
+  CHECK(oracles::harmonic_curves(p, q, 100).empty());
   const ConnectionTrial trial(field, everywhere, p, q, {.step = 0.05, .max_length = 8});
   ConnectionStatistics statistics;
   for (int i = 0; i < 200; ++i) {
@@ -158,9 +158,9 @@ TEST_CASE("in a homogeneous field the straight line is the curve, and no trial r
 
 TEST_CASE("an almost invisible field bends by as much as it should") {
   RandomStream random(77, 0, 0);
-  const GaussianBlobs strong = tests::random_blobs(random, 1e-3);
+  const GaussianBlobs strong = bench::random_blobs(random, 1e-3);
   RandomStream again(77, 0, 0);
-  const GaussianBlobs weak = tests::random_blobs(again, 1e-6);
+  const GaussianBlobs weak = bench::random_blobs(again, 1e-6);
   const Vec3 p(-1, 0.1, 0), q(1, 0.2, 0.1), chord = (q - p).normalized();
   const auto bend = [&](const GaussianBlobs& field) {
     const Listed list = listed(field, everywhere, p, q, {.step = 0.1, .max_length = 3}, 20, 1);

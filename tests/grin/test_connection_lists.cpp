@@ -5,20 +5,20 @@
 #include <Eigen/Geometry>
 #include <doctest/doctest.h>
 
-#include "tests/grin/closed_fields.h"
+#include "bench/scenes/random_fields.h"
 #include "tests/grin/connection_lists.h"
 
 namespace flatspeckle::grin {
 
+using bench::random_direction;
+using bench::random_point;
+using oracles::HarmonicBall;
+using oracles::HarmonicCurve;
 using std::numbers::pi;
 using tests::check_all_found;
 using tests::everywhere;
-using tests::HarmonicBall;
-using tests::HarmonicCurve;
 using tests::Listed;
 using tests::listed;
-using tests::random_direction;
-using tests::random_point;
 
 TEST_CASE("without the rim two ellipses join two points, each both ways round, again and again") {
   const HarmonicBall field{{}};
@@ -26,7 +26,7 @@ TEST_CASE("without the rim two ellipses join two points, each both ways round, a
   int pairs = 0;
   for (int i = 0; pairs < 20 && i < 1000; ++i) {
     const Vec3 p = random_point(random, 1), q = random_point(random, 1);
-    std::vector<HarmonicCurve> exact = tests::harmonic_curves(p, q, 6 * pi);
+    std::vector<HarmonicCurve> exact = oracles::harmonic_curves(p, q, 6 * pi);
     const double longest = 8;
     // the index is 0 at r = sqrt 2, where steps of this length end; and curves as long as the
     // longest may count or not
@@ -48,8 +48,8 @@ TEST_CASE("curves there are the curves back: same length and path, n_P^2/|J_PQ| 
   int curves = 0;
   for (int i = 0; i < 12; ++i) {
     RandomStream random(74, 0, i);
-    const SplineField field = tests::random_spline(random, 0.15);
-    const Inside<tests::Ball> ball{{1.2}};
+    const SplineField field = bench::random_spline(random, 0.15);
+    const Inside<bench::Ball> ball{{1.2}};
     const Vec3 p = random_point(random, 0.9), q = random_point(random, 0.9);
     const ConnectionOptions options{.step = 2e-3, .max_length = 4};
     const Listed there = listed<Yoshida4>(field, ball, p, q, options, 60, 2 * i);

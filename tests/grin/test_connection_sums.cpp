@@ -1,9 +1,10 @@
+#include "bench/scenes/random_fields.h"
 #include "tests/grin/curve_sums.h"
 
 namespace flatspeckle::grin::tests {
 
 TEST_CASE("in Luneburg's ball f K has the mean f of the one curve") {
-  const Inside<Ball> ball{{1}};
+  const Inside<bench::Ball> ball{{1}};
   std::vector<HarmonicCurve> exact = harmonic_curves(from, to, 2 * std::numbers::pi);
   std::erase_if(exact, [](const HarmonicCurve& curve) { return curve.largest_radius() > 1; });
   REQUIRE(exact.size() == 1);

@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <doctest/doctest.h>
 
+#include "bench/scenes/random_fields.h"
 #include "core/error.h"
 #include "grin/rays/trace.h"
 #include "tests/grin/meshes.h"
@@ -16,9 +17,9 @@ namespace flatspeckle::grin {
 
 namespace {
 
+using bench::random_direction;
+using bench::random_point;
 using tests::cube_mesh;
-using tests::random_direction;
-using tests::random_point;
 using tests::straight_plan;
 using StraightAll = StraightSpace<straight_plan>;
 
@@ -239,7 +240,7 @@ TEST_CASE("curved flights in a fisheye: |J| by the optical path, and the angular
 
 TEST_CASE("a flight walked back spreads as n_P^2 / |J_PQ| = n_Q^2 / |J_QP|") {
   RandomStream fields(5, 91, 0);
-  const auto blobs = tests::random_blobs(fields, 0.2);
+  const auto blobs = bench::random_blobs(fields, 0.2);
   const auto space = make_curved_space(blobs, stage_of(ball), {0.01, 8});
   RandomStream random(6, 91, 0);
   for (int i = 0; i < 200; ++i) {

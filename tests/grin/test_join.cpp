@@ -3,16 +3,17 @@
 
 #include <doctest/doctest.h>
 
+#include "bench/oracles/harmonic_ball.h"
+#include "bench/scenes/random_fields.h"
 #include "grin/connections/connection_solver.h"
-#include "tests/grin/harmonic_curves.h"
 #include "tests/grin/space_stages.h"
 
 namespace flatspeckle::grin {
 
 namespace {
 
-using tests::random_direction;
-using tests::random_point;
+using bench::random_direction;
+using bench::random_point;
 using StraightAll = StraightSpace<tests::straight_plan>;
 
 const Sphere ball;
@@ -135,7 +136,7 @@ TEST_CASE("straight joins: closed form, none through a body or to another part")
 TEST_CASE("a curved flight and the join of its ends are one curve") {
   RandomStream fields(2, 96, 0);
   const Stage stage{.boundary = ball, .medium = {.mu_s = 2, .mu_a = 0.5}};
-  const AnyIndexField all[] = {tests::random_blobs(fields, 0.03), Luneburg({}),
+  const AnyIndexField all[] = {bench::random_blobs(fields, 0.03), Luneburg({}),
                                StandingWave(0.33, 1e-3, 0, 20, 40),
                                ParabolicGuide({.axis_excess = 0.5, .alpha = 0.6})};
   for (const AnyIndexField& field : all) {
@@ -231,15 +232,15 @@ TEST_CASE("a homogeneous field runs no solver") {
 
 TEST_CASE("the share of curves that start along the chord does not change their sum") {
   // two curves and more, as they wind about the centre
-  const tests::HarmonicBall field{tests::HarmonicProfile{}};
+  const oracles::HarmonicBall field{oracles::HarmonicProfile{}};
   const ConnectionOptions options{.step = 0.02, .max_length = 6, .count_caustics = false};
   const Vec3 from(0.5, 0.1, -0.2), to(-0.3, 0.6, 0.4);
-  const ConnectionTrial trial(field, Inside<tests::Ball>{{1.41}}, from, to, options);
+  const ConnectionTrial trial(field, Inside<bench::Ball>{{1.41}}, from, to, options);
   RandomStream random(7, 96, 0);
   ConnectionStatistics statistics;
   double exact = 0;
   int curves = 0;
-  for (const tests::HarmonicCurve& curve : tests::harmonic_curves(from, to, 20)) {
+  for (const oracles::HarmonicCurve& curve : oracles::harmonic_curves(from, to, 20)) {
     if (curve.arc_length() > options.max_length) continue;
     exact += 1 / curve.spreading();
     ++curves;

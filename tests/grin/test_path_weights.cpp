@@ -3,10 +3,10 @@
 
 #include <doctest/doctest.h>
 
+#include "bench/scenes/random_fields.h"
 #include "core/numbers/random.h"
 #include "grin/estimators/path_join.h"
 #include "grin/space/curved_space.h"
-#include "tests/grin/closed_fields.h"
 
 namespace flatspeckle::grin::tests {
 
@@ -173,7 +173,7 @@ std::optional<WholePath> random_path(const Transport& transport, const CurvedSpa
   path.light = transport.lights.sample_position(space, random);
   path.sensor = transport.sensor.sample_position(space, random);
   path.points.push_back(path.light.point);
-  for (int i = 0; i < scatterings; ++i) path.points.push_back({random_point(random, 1.0)});
+  for (int i = 0; i < scatterings; ++i) path.points.push_back({bench::random_point(random, 1.0)});
   path.points.push_back(path.sensor.point);
   for (const PathPoint& p : path.points) path.index.push_back(space.index(p));
   ConnectionStatistics statistics;

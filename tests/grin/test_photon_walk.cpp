@@ -4,13 +4,13 @@
 
 #include <doctest/doctest.h>
 
-#include "tests/grin/photon_walk.h"
-#include "tests/grin/slab_transport.h"
+#include "bench/oracles/peierls_slab.h"
+#include "bench/oracles/photon_walk.h"
 
 // The oracle itself, and its references, against what is known for certain.
 
 using namespace flatspeckle::grin;
-using namespace flatspeckle::grin::tests;
+using namespace flatspeckle::oracles;
 
 namespace {
 

@@ -4,14 +4,15 @@
 
 #include <doctest/doctest.h>
 
+#include "bench/oracles/peierls_slab.h"
 #include "tests/grin/render_tests.h"
-#include "tests/grin/slab_transport.h"
 
 // Light by optical path.
 
 using namespace flatspeckle;
 using namespace flatspeckle::grin;
 using namespace flatspeckle::grin::tests;
+using namespace flatspeckle::oracles;
 
 namespace {
 

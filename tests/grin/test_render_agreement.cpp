@@ -10,7 +10,7 @@ const Light point = PointLight{Vec3(0.3, -0.2, 0.5)};
 const Camera camera{Vec3(0, 0.2, -0.7), Vec3::UnitZ(), Vec3::UnitY(), 1.0, {2, 2}};
 
 /// Scenes that no single one of the estimators finds easy.
-std::vector<NamedScene> scenes() {
+std::vector<NamedRender> scenes() {
   const Stage foggy{unit_box(), fog(1.5, 0.1, 0.6)};
   return {
       {"point, camera, straight", scene_in(Homogeneous{0.2}, foggy, point, camera)},

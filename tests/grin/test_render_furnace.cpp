@@ -10,14 +10,14 @@ namespace flatspeckle::grin::tests {
 namespace {
 
 /// Rays through many blobs and a spline cost ten times as much.
-double affordable(const NamedScene& named, double samples) {
+double affordable(const NamedRender& named, double samples) {
   return named.name == "blobs and spline" ? samples / 4 : samples;
 }
 
 }  // namespace
 
 TEST_CASE("light stays uniform without scattering, in every field and by every estimator") {
-  for (const NamedScene& named : furnaces({})) {
+  for (const NamedRender& named : furnaces({})) {
     CAPTURE(named.name);
     for (const RenderMethod method : unbiased_methods) {
       CHECK(check_furnace_face(named.scene, method, affordable(named, 10000)) < 0.08);
@@ -30,7 +30,7 @@ TEST_CASE("light stays uniform without scattering, in every field and by every e
 }
 
 TEST_CASE("light stays uniform where it scatters, in every field and by every estimator") {
-  for (const NamedScene& named : furnaces(fog(1, 0, 0.85))) {
+  for (const NamedRender& named : furnaces(fog(1, 0, 0.85))) {
     CAPTURE(named.name);
     for (const RenderMethod method : unbiased_methods) {
       CHECK(check_furnace_face(named.scene, method, affordable(named, 10000)) < 0.1);

@@ -6,6 +6,7 @@
 
 #include <doctest/doctest.h>
 
+#include "bench/scenes/random_fields.h"
 #include "core/error.h"
 #include "core/result/result_file.h"
 #include "grin/connections/geometric_spreading.h"

@@ -1,11 +1,13 @@
 #include <doctest/doctest.h>
 
-#include "tests/grin/fisheye_curves.h"
+#include "bench/oracles/fisheye_curves.h"
 #include "tests/grin/furnace.h"
 
 namespace flatspeckle::grin::tests {
 
 namespace {
+
+using oracles::FisheyeCurves;
 
 constexpr double n0 = 1.7;
 const Vec3 light_at(0.5, 0.3, 0.2), camera_at(-0.2, 0.1, -0.9);

@@ -1,13 +1,14 @@
 #include <doctest/doctest.h>
 
+#include "bench/oracles/peierls_slab.h"
 #include "tests/grin/slab_renders.h"
-#include "tests/grin/slab_transport.h"
 
 // Reflected and transmitted light of slabs against exact transport.
 
 using namespace flatspeckle;
 using namespace flatspeckle::grin;
 using namespace flatspeckle::grin::tests;
+using namespace flatspeckle::oracles;
 
 TEST_CASE("van de Hulst's slab by light and bidirectional tracing") {
   for (const RenderMethod method : {RenderMethod::light, RenderMethod::bidirectional}) {

@@ -3,20 +3,21 @@
 #include <Eigen/Geometry>
 #include <doctest/doctest.h>
 
+#include "bench/oracles/harmonic_ball.h"
+#include "bench/scenes/random_fields.h"
 #include "core/numbers/random.h"
 #include "grin/connections/geometric_spreading.h"
 #include "grin/fields/guides.h"
 #include "grin/fields/lenses.h"
 #include "grin/media/start_directions.h"
 #include "grin/rays/ray_step.h"
-#include "tests/grin/closed_fields.h"
 
 namespace flatspeckle::grin {
 
+using bench::random_direction;
+using bench::random_point;
+using oracles::HarmonicBall;
 using std::numbers::pi;
-using tests::HarmonicBall;
-using tests::random_direction;
-using tests::random_point;
 
 namespace {
 
@@ -133,8 +134,8 @@ TEST_CASE("caustics in Luneburg's ball: line foci once, point foci twice") {
 TEST_CASE("spreading there and back is one: n_P^2 / |J_PQ| = n_Q^2 / |J_QP|") {
   for (int i = 0; i < 50; ++i) {
     RandomStream random(64, 0, i);
-    check_reciprocal(tests::random_blobs(random, 0.3), random, 400);
-    check_reciprocal(tests::random_spline(random, 0.1), random, 1600);
+    check_reciprocal(bench::random_blobs(random, 0.3), random, 400);
+    check_reciprocal(bench::random_spline(random, 0.1), random, 1600);
   }
 }
 

@@ -52,10 +52,4 @@ Run run(const Scene& scene, ReversedPaths reversed, std::uint64_t paths, std::ui
 
 std::string text(Complex value);
 
-/// Nodes and weights of Gauss-Legendre quadrature over [from, to], `panels` x 10 nodes.
-struct Quadrature {
-  std::vector<double> node, weight;
-  void add(double from, double to, int panels = 1);
-};
-
 }  // namespace flatspeckle::mc::tests

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "bench/oracles/discrete_ordinates.h"
 #include "mc/estimators/flux.h"
-#include "tests/mc/discrete_ordinates.h"
 #include "tests/mc/estimates.h"
 
 namespace flatspeckle::mc::tests {
@@ -54,8 +54,8 @@ inline void check_slab(double optical_depth, double albedo, double g, double pre
   StopRule stop;
   stop.target_error = precision;
   const FluxEstimates flux = run_flux(scene, stop, seed).flux;
-  const SlabTransport theory({optical_depth, albedo, henyey_greenstein(g)}, lights,
-                             g == 0.9 ? 80 : 30);
+  const oracles::SlabTransport theory({optical_depth, albedo, oracles::henyey_greenstein(g)},
+                                      lights, g == 0.9 ? 80 : 30);
   for (std::size_t light = 0; light < lights.size(); ++light) {
     CAPTURE(lights[light]);
     const double back = theory.reflectance(lights[light]);

@@ -2,7 +2,7 @@
 
 #include <doctest/doctest.h>
 
-#include "tests/mc/discrete_ordinates.h"
+#include "bench/oracles/discrete_ordinates.h"
 #include "tests/mc/estimates.h"
 
 namespace flatspeckle::mc {
@@ -23,8 +23,8 @@ void check_slab(double optical_depth, double g, double albedo, int nodes, std::u
                          .entries();
   std::vector<double> angles = lights;
   angles.insert(angles.end(), views.begin(), views.end());
-  const tests::SlabTransport theory({optical_depth, albedo, tests::henyey_greenstein(g)}, angles,
-                                    nodes);
+  const oracles::SlabTransport theory({optical_depth, albedo, oracles::henyey_greenstein(g)},
+                                      angles, nodes);
   for (std::size_t c = 0; c < request.channels.size(); ++c) {
     const double light = lights[request.channels[c].light], view = views[request.channels[c].view];
     const double expected = theory.covariance_without_reversed(light, view);

@@ -2,17 +2,17 @@
 
 #include <doctest/doctest.h>
 
-#include "tests/mc/discrete_ordinates.h"
+#include "bench/oracles/discrete_ordinates.h"
+#include "bench/oracles/slab_theory.h"
 #include "tests/mc/estimates.h"
-#include "tests/mc/slab_theory.h"
 
 namespace flatspeckle::mc {
 
 namespace {
 
-using tests::henyey_greenstein;
+using oracles::henyey_greenstein;
+using oracles::SlabTransport;
 using tests::pi;
-using tests::SlabTransport;
 
 constexpr double oblique = pi / 3;
 
@@ -73,7 +73,7 @@ TEST_CASE("discrete ordinates agree with the integral equation of isotropic scat
       for (const double light : {0.0, 0.9}) {
         std::vector<double> angles = views;
         angles.push_back(light);
-        const tests::IsotropicSlab integral(2 * pi, 10, optical_depth / 10, albedo);
+        const oracles::IsotropicSlab integral(2 * pi, 10, optical_depth / 10, albedo);
         const SlabTransport slab({optical_depth, albedo, henyey_greenstein(0)}, angles, 40);
         for (const double view : views)
           CHECK(slab.covariance_without_reversed(light, view) ==

@@ -2,8 +2,9 @@
 
 #include <doctest/doctest.h>
 
+#include "bench/oracles/quadrature.h"
+#include "bench/oracles/slab_theory.h"
 #include "tests/mc/estimates.h"
-#include "tests/mc/slab_theory.h"
 
 namespace flatspeckle::mc {
 
@@ -11,8 +12,8 @@ namespace {
 
 using tests::pi;
 
-tests::Quadrature all_views() {
-  tests::Quadrature views;
+oracles::Quadrature all_views() {
+  oracles::Quadrature views;
   for (const double start : {-pi, -pi / 2, 0.0, pi / 2}) views.add(start, start + pi / 2, 2);
   return views;
 }
@@ -150,7 +151,7 @@ TEST_CASE("an absorbing slab keeps the share that the integral equation says") {
   std::uint64_t seed = 40;
   for (const double light : {0.0, 0.9}) {
     for (const double albedo : {0.99, 0.5}) {
-      const tests::IsotropicSlab theory(2 * pi, 10, 0.5, albedo);
+      const oracles::IsotropicSlab theory(2 * pi, 10, 0.5, albedo);
       const auto power = scattered_power(
           [&](const CovarianceRequest& request) {
             return tests::hg_slab(10, {2, 0, albedo}, request);

@@ -3,8 +3,8 @@
 
 #include <doctest/doctest.h>
 
+#include "bench/oracles/discrete_ordinates.h"
 #include "mc/theory/memory_effect.h"
-#include "tests/mc/discrete_ordinates.h"
 #include "tests/mc/estimates.h"
 
 namespace flatspeckle::mc {
@@ -63,7 +63,8 @@ TEST_CASE("error bars are honest behind deep slabs that absorb strongly") {
   const double optical_depth = 30, albedo = 0.6;
   const Scene scene =
       tests::hg_slab(10, {10 / optical_depth, 0, albedo}, intensity_request({0}, {far_view(0)}));
-  const tests::SlabTransport theory({optical_depth, albedo, tests::henyey_greenstein(0)}, {0}, 60);
+  const oracles::SlabTransport theory({optical_depth, albedo, oracles::henyey_greenstein(0)}, {0},
+                                      60);
   const double expected = theory.covariance_without_reversed(0, 0);
   constexpr int runs = 200;
   int within = 0;

@@ -2,10 +2,11 @@
 
 #include <doctest/doctest.h>
 
+#include "bench/oracles/quadrature.h"
+#include "bench/oracles/slab_theory.h"
 #include "mc/ends/coherent_field.h"
 #include "mc/theory/memory_effect.h"
 #include "tests/mc/estimates.h"
-#include "tests/mc/slab_theory.h"
 
 namespace flatspeckle::mc {
 
@@ -32,10 +33,10 @@ void check_slab(double optical_depth, double albedo, const std::vector<double>& 
   const auto found = tests::run(tests::hg_slab(depth, {depth / optical_depth, 0, albedo}, request),
                                 reversed, paths, seed)
                          .entries();
-  const tests::IsotropicSlab theory(k, depth, optical_depth / depth, albedo);
+  const oracles::IsotropicSlab theory(k, depth, optical_depth / depth, albedo);
   for (std::size_t c = 0; c < request.channels.size(); ++c) {
-    const tests::IsotropicSlab::Channel channel{lights[request.channels[c].light],
-                                                views[request.channels[c].view]};
+    const oracles::IsotropicSlab::Channel channel{lights[request.channels[c].light],
+                                                  views[request.channels[c].view]};
     const Complex expected = reversed == ReversedPaths::yes
                                  ? theory.with_reversed(channel, channel)
                                  : theory.without_reversed(channel, channel);
@@ -96,7 +97,7 @@ TEST_CASE("without scattering there is no covariance, and no NaN") {
 TEST_CASE("extreme asymmetry: finite, and the power adds up") {
   for (const double g : {-0.999, 0.999}) {
     // around the lobe at 0 or pi finely, elsewhere coarsely
-    tests::Quadrature views;
+    oracles::Quadrature views;
     for (const double lobe : {0.0, pi}) {
       double inner = 0;
       for (const double outer : {0.002, 0.01, 0.05, 0.3, pi / 2}) {

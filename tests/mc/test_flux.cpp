@@ -2,6 +2,7 @@
 
 #include <boost/math/distributions/chi_squared.hpp>
 
+#include "bench/oracles/quadrature.h"
 #include "core/numbers/random.h"
 #include "grin/media/phase_function.h"
 #include "mc/estimators/flux.h"
@@ -11,10 +12,10 @@ namespace flatspeckle::mc {
 
 namespace {
 
-using tests::henyey_greenstein;
+using oracles::henyey_greenstein;
+using oracles::SlabTransport;
 using tests::paths;
 using tests::pi;
-using tests::SlabTransport;
 
 /// Reflectance, transmittance, side loss and absorptance together, per light.
 Estimate total(const tests::FluxRun& run) {
@@ -101,7 +102,7 @@ TEST_CASE("exit angles follow the distribution of discrete ordinates") {
   constexpr std::uint64_t photons = 400000;
   const Scene scene = tests::lit_slab(optical_depth, 1, g, {light});
   const auto flux = tests::run_flux(scene, paths(photons), 3, bins).flux;
-  tests::Quadrature views;
+  oracles::Quadrature views;
   for (std::size_t bin = 0; bin < bins; ++bin) {
     const double from = 2 * pi * static_cast<double>(bin) / bins - pi;
     views.add(from, from + 2 * pi / bins);

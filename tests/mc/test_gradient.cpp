@@ -3,12 +3,13 @@
 
 #include <doctest/doctest.h>
 
+#include "bench/oracles/quadrature.h"
+#include "bench/oracles/slab_theory.h"
 #include "core/error.h"
 #include "mc/ends/end_factors.h"
 #include "mc/estimators/gradient.h"
 #include "mc/theory/memory_effect.h"
 #include "tests/mc/estimates.h"
-#include "tests/mc/slab_theory.h"
 
 namespace flatspeckle::mc {
 
@@ -16,7 +17,7 @@ namespace {
 
 using tests::HgBulk;
 using tests::pi;
-using Channel = tests::IsotropicSlab::Channel;
+using Channel = oracles::IsotropicSlab::Channel;
 
 constexpr double k = 2 * pi;
 
@@ -79,7 +80,7 @@ void check_against_slab_theory(const HgBulk& bulk, double depth, const Covarianc
                                ReversedPaths reversed, std::uint64_t paths, std::uint64_t seed) {
   const Scene scene = tests::hg_slab(depth, bulk, request);
   const auto theory = [&](std::size_t e, double mu_t, double albedo) {
-    const tests::IsotropicSlab slab(k, depth, mu_t, albedo, 200);
+    const oracles::IsotropicSlab slab(k, depth, mu_t, albedo, 200);
     const Channel a = angles(scene, request.entries[e].a), b = angles(scene, request.entries[e].b);
     return reversed == ReversedPaths::yes ? slab.with_reversed(a, b) : slab.without_reversed(a, b);
   };
@@ -127,7 +128,7 @@ TEST_CASE("isotropic slab: derivatives of the backscattering cone") {
 }
 
 TEST_CASE("a lossless slab scatters what it takes out of the beam, whatever its g") {
-  tests::Quadrature views;
+  oracles::Quadrature views;
   for (const double start : {-pi, -pi / 2, 0.0, pi / 2}) views.add(start, start + pi / 2, 2);
   const auto request = intensity_request({0.6}, tests::far_views(views.node));
   for (const double g : {0.0, 0.7}) {
@@ -159,7 +160,7 @@ TEST_CASE("single scattering: derivatives of the closed form") {
   const std::vector<double> views = {0.1, 1.0, -2.5};
   for (const double g : {0.0, 0.6, -0.3}) {
     const auto closed_form = [&](double view, double mu_t, double its_albedo, double its_g) {
-      const tests::IsotropicSlab slab(k, depth, mu_t, its_albedo, 2);
+      const oracles::IsotropicSlab slab(k, depth, mu_t, its_albedo, 2);
       const double shape =
           (1 - its_g * its_g) / (1 + its_g * its_g - 2 * its_g * std::cos(view - light));  // C22
       return shape * slab.single({light, view}, {light, view});
@@ -288,7 +289,7 @@ TEST_CASE("derivatives of the memory effect are those of the integral equation's
   const auto request = memory_effect_request(k, 0.1, {0.1}, tilts);
   const Scene scene = tests::hg_slab(depth, {1 / mu_t, 0, albedo}, request);
   const auto curve = [&](double its_mu_t, double its_albedo) {
-    const tests::IsotropicSlab slab(k, depth, its_mu_t, its_albedo, 200);
+    const oracles::IsotropicSlab slab(k, depth, its_mu_t, its_albedo, 200);
     std::vector<Complex> entries;
     for (const Entry entry : request.entries)
       entries.push_back(slab.without_reversed(angles(scene, entry.a), angles(scene, entry.b)));

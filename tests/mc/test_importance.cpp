@@ -2,10 +2,10 @@
 
 #include <doctest/doctest.h>
 
+#include "bench/oracles/slab_theory.h"
+#include "bench/oracles/textbook.h"
 #include "mc/walk/importance.h"
 #include "tests/mc/estimates.h"
-#include "tests/mc/slab_theory.h"
-#include "tests/mc/textbook.h"
 
 namespace flatspeckle::mc {
 
@@ -26,10 +26,10 @@ void check_slab(double optical_depth, double albedo, const std::vector<double>& 
   plan.weighted = changed.weighted;
   plan.score_level = changed.score_level;
   const auto found = tests::run(scene, plan, paths, 3).entries();
-  const tests::IsotropicSlab theory(k, depth, optical_depth / depth, albedo);
+  const oracles::IsotropicSlab theory(k, depth, optical_depth / depth, albedo);
   const auto channel = [&](std::uint32_t c) {
-    return tests::IsotropicSlab::Channel{request.lights[request.channels[c].light].angle,
-                                         request.views[request.channels[c].view].angle};
+    return oracles::IsotropicSlab::Channel{request.lights[request.channels[c].light].angle,
+                                           request.views[request.channels[c].view].angle};
   };
   for (std::size_t e = 0; e < request.entries.size(); ++e) {
     const auto [a, b] = request.entries[e];
@@ -83,7 +83,7 @@ TEST_CASE("boxes that absorb, with reversed paths, agree with the textbook") {
   const auto request = intensity_request({0, 0.4}, tests::far_views({0.2, 1.5, pi, pi - 0.4}));
   const Scene scene = tests::hg_box(12, 8, {2, 0.5, 0.7}, request);
   const auto found = tests::run(scene, ReversedPaths::yes, 200000, 5).entries();
-  const FieldJob textbook = tests::textbook_job(scene, true, 200, 6);
+  const FieldJob textbook = oracles::textbook_job(scene, true, 200, 6);
   RunState state;
   RunOptions options;
   options.stop.samples = 400000;

@@ -2,18 +2,18 @@
 
 #include <doctest/doctest.h>
 
+#include "bench/oracles/discrete_ordinates.h"
+#include "bench/oracles/pair_transport.h"
+#include "bench/oracles/slab_theory.h"
 #include "mc/theory/memory_effect.h"
-#include "tests/mc/discrete_ordinates.h"
 #include "tests/mc/estimates.h"
-#include "tests/mc/pair_transport.h"
-#include "tests/mc/slab_theory.h"
 
 namespace flatspeckle::mc {
 
 namespace {
 
-using tests::henyey_greenstein;
-using tests::PairTransport;
+using oracles::henyey_greenstein;
+using oracles::PairTransport;
 
 constexpr double k = 2 * tests::pi, depth = 1000;
 
@@ -74,7 +74,7 @@ TEST_CASE("pair transport: isotropic slabs, oblique and tilted, as by the integr
       const double q = tilt / depth, optical_depth = 3, view = -0.2;
       const PairTransport transport({k, depth, optical_depth / depth, 0.9, henyey_greenstein(0)},
                                     {{light, tilted(light, q)}}, {{view, tilted(view, q)}}, 4);
-      const tests::IsotropicSlab theory(k, depth, optical_depth / depth, 0.9);
+      const oracles::IsotropicSlab theory(k, depth, optical_depth / depth, 0.9);
       const Complex expected =
           theory.without_reversed({light, view}, {tilted(light, q), tilted(view, q)});
       CAPTURE(light);
@@ -89,8 +89,8 @@ TEST_CASE("pair transport without a tilt is transport of intensity") {
     for (const double optical_depth : {0.5, 20.0}) {
       const PairTransport transport({k, depth, optical_depth / depth, 0.97, henyey_greenstein(g)},
                                     {{0, 0}, {0.5, 0.5}}, {{0.3, 0.3}, {-0.7, -0.7}}, 4);
-      const tests::SlabTransport intensity({optical_depth, 0.97, henyey_greenstein(g)},
-                                           {0, 0.5, 0.3, -0.7}, 60);
+      const oracles::SlabTransport intensity({optical_depth, 0.97, henyey_greenstein(g)},
+                                             {0, 0.5, 0.3, -0.7}, 60);
       const double lights[] = {0, 0.5}, views[] = {0.3, -0.7};
       for (std::size_t i = 0; i < 2; ++i)
         for (std::size_t v = 0; v < 2; ++v)

@@ -2,15 +2,16 @@
 
 #include <doctest/doctest.h>
 
+#include "bench/oracles/quadrature.h"
+#include "bench/oracles/slab_theory.h"
 #include "tests/mc/estimates.h"
-#include "tests/mc/slab_theory.h"
 
 namespace flatspeckle::mc {
 
 namespace {
 
 using tests::pi;
-using Channel = tests::IsotropicSlab::Channel;
+using Channel = oracles::IsotropicSlab::Channel;
 
 constexpr double k = 2 * pi;
 
@@ -18,7 +19,7 @@ constexpr double k = 2 * pi;
 struct Comparison {
   double depth, optical_depth, albedo;
 
-  tests::IsotropicSlab theory() const { return {k, depth, optical_depth / depth, albedo}; }
+  oracles::IsotropicSlab theory() const { return {k, depth, optical_depth / depth, albedo}; }
   Estimate estimate(const CovarianceRequest& request, ReversedPaths reversed, std::uint64_t paths,
                     std::uint64_t seed) const {
     const Scene scene = tests::hg_slab(depth, {depth / optical_depth, 0, albedo}, request);
@@ -53,8 +54,8 @@ void check_entries(const Comparison& slab, const CovarianceRequest& request, Rev
 TEST_CASE("slab theory conserves energy and its kernel is normalised") {
   for (const double optical_depth : {0.1, 1.0, 10.0}) {
     for (const double light : {0.0, 1.1}) {
-      const tests::IsotropicSlab slab(k, 10, optical_depth / 10, 1);
-      tests::Quadrature views;
+      const oracles::IsotropicSlab slab(k, 10, optical_depth / 10, 1);
+      oracles::Quadrature views;
       for (const double side : {0.0, pi}) {
         views.add(side - pi / 2, side, 8);
         views.add(side, side + pi / 2, 8);
@@ -125,7 +126,7 @@ TEST_CASE("at exact backscattering reversed paths double it with peaked scatteri
   const auto with = tests::run(scene, ReversedPaths::yes, 200000, 33).entries();
   const auto without = tests::run(scene, ReversedPaths::no, 200000, 34).entries();
   // p(pi) in place of 1/(2 pi)
-  const tests::IsotropicSlab isotropic(k, depth, 8 / depth, 0.95);
+  const oracles::IsotropicSlab isotropic(k, depth, 8 / depth, 0.95);
   const Channel back{light, light + pi};
   const Complex single = (1 - g) / (1 + g) * isotropic.single(back, back);
   CHECK_WITHIN_4_SIGMA(with.value[0] - single, std::hypot(with.error[0], 2 * without.error[0]),

@@ -2,9 +2,9 @@
 
 #include <doctest/doctest.h>
 
+#include "bench/oracles/slab_theory.h"
 #include "mc/theory/memory_effect.h"
 #include "tests/mc/estimates.h"
-#include "tests/mc/slab_theory.h"
 
 namespace flatspeckle::mc {
 
@@ -30,13 +30,13 @@ CovarianceRequest tilted(double range) {
 
 double theoretical_range(const KnownRange& known) {
   const auto request = tilted(known.range);
-  const tests::IsotropicSlab slab(k, depth, known.optical_depth / depth, known.albedo, 800);
+  const oracles::IsotropicSlab slab(k, depth, known.optical_depth / depth, known.albedo, 800);
   std::vector<Complex> entries;
   for (const auto& entry : request.entries) {
     const auto channel = [&](std::uint32_t number) {
       const auto c = request.channels[number];
-      return tests::IsotropicSlab::Channel{request.lights[c.light].angle,
-                                           request.views[c.view].angle};
+      return oracles::IsotropicSlab::Channel{request.lights[c.light].angle,
+                                             request.views[c.view].angle};
     };
     entries.push_back(slab.without_reversed(channel(entry.a), channel(entry.b)));
   }

@@ -3,9 +3,9 @@
 
 #include <doctest/doctest.h>
 
+#include "bench/oracles/slab_theory.h"
+#include "bench/oracles/textbook.h"
 #include "tests/mc/estimates.h"
-#include "tests/mc/slab_theory.h"
-#include "tests/mc/textbook.h"
 
 namespace flatspeckle::mc {
 
@@ -16,7 +16,7 @@ using tests::pi;
 constexpr double k = 2 * pi;
 
 Estimate textbook(const Scene& scene, bool reversed, std::uint64_t paths, std::uint64_t seed) {
-  const FieldJob job = tests::textbook_job(scene, reversed, 200, seed);
+  const FieldJob job = oracles::textbook_job(scene, reversed, 200, seed);
   RunOptions options;
   options.stop.samples = paths;
   options.threads = 2;
@@ -57,13 +57,13 @@ SceneSpec cylinders() {
   return spec;
 }
 
-using Channel = tests::IsotropicSlab::Channel;
+using Channel = oracles::IsotropicSlab::Channel;
 
 void check_theory(double albedo, bool reversed, std::uint64_t seed) {
   const double depth = 20, optical_depth = 5, light = 0.2;
   const auto request = memory_effect_request(
       k, light, {0.1, light + pi, light + pi + 0.01, light + pi - 0.6}, {0.004, -0.02});
-  const tests::IsotropicSlab theory(k, depth, optical_depth / depth, albedo);
+  const oracles::IsotropicSlab theory(k, depth, optical_depth / depth, albedo);
   const Scene scene = tests::hg_slab(depth, {depth / optical_depth, 0, albedo}, request);
   const Estimate found = textbook(scene, reversed, 60000, seed);
   const auto channel = [&](std::size_t number) {

@@ -1,7 +1,7 @@
 #include <doctest/doctest.h>
 
+#include "bench/oracles/textbook.h"
 #include "tests/mc/estimates.h"
-#include "tests/mc/textbook.h"
 
 // Against the textbook at 0.1 %: minutes.
 
@@ -24,7 +24,7 @@ Estimate run_to_target(const FieldJob& job) {
 void check_unbiased(const Scene& scene, ReversedPaths reversed) {
   const Plan plan = make_plan(scene, reversed);
   const auto found = run_to_target(covariance_job(scene, plan, 21));
-  const auto expected = run_to_target(tests::textbook_job(scene, plan.reversed, 400, 22));
+  const auto expected = run_to_target(oracles::textbook_job(scene, plan.reversed, 400, 22));
   for (std::size_t e = 0; e < found.value.size(); ++e) {
     CAPTURE(e);
     CHECK_WITHIN_4_SIGMA(found.value[e], std::hypot(found.error[e], expected.error[e]),

@@ -112,7 +112,7 @@ class BasisOrders {
 
  private:
   std::size_t species_of(const Scatterer& scatterer) {
-    if (scatterer.kind == Scatterer::Kind::hg)
+    if (scatterer.is_bulk())
       throw InputError("scatterer", "hg", "the wave solver needs point, soft, hard, tm or te");
     const auto known = std::find_if(species_.begin(), species_.end(), [&](const Species& species) {
       return species.scatterer == scatterer;

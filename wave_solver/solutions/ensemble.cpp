@@ -58,7 +58,7 @@ std::vector<Complex> sample_covariance(const CovarianceRequest& request, double 
 void require_solvable(const Scene& scene) {
   if (scene.domain.kind == Domain::Kind::slab)
     throw InputError("domain", "slab", "the wave solver needs a box");
-  if (scene.scatterer.kind == Scatterer::Kind::hg)
+  if (scene.scatterer.is_bulk())
     throw InputError("scatterer", "hg", "the wave solver needs point, soft, hard, tm or te");
 }
 

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/keys/keys.h"
+
+namespace flatspeckle::apps {
+
+// Keys as texts for people and programs, all by their rows.
+
+/// The lines of --help, by groups.
+void print_help_lines(const Keys& keys);
+
+/// Prints the keys of a subcommand where its only argument asks for that: --keys=json, =markdown,
+/// =completion or =dictionary (of fuzzers). False where it does not.
+bool print_keys(const Keys& keys, const std::string& subcommand,
+                const std::vector<std::string>& arguments);
+
+}  // namespace flatspeckle::apps

@@ -1,0 +1,54 @@
+#include <algorithm>
+#include <cstring>
+#include <iostream>
+
+#include "apps/subcommands.h"
+#include "core/error.h"
+
+namespace flatspeckle::apps {
+
+namespace {
+
+/// What stands before, between and after the keys of the subcommands.
+struct Frame {
+  const char *form, *before, *between, *after;
+};
+
+constexpr Frame frames[] = {
+    {"json", "{\n", ",\n", "}\n"},
+    {"markdown", "", "", ""},
+    {"dictionary", "", "", ""},
+    {"completion",
+     "# Completion for bash: source <(flatspeckle keys completion)\n"
+     "_flatspeckle() {\n  local words\n  case \"${COMP_WORDS[1]}\" in\n",
+     "",
+     "  esac\n"
+     "  COMPREPLY=($(compgen -f -W \"$words\" -- \"${COMP_WORDS[COMP_CWORD]}\"))\n"
+     "}\n"
+     "complete -F _flatspeckle flatspeckle\n"}};
+
+const Frame& frame_named(const std::string& form) {
+  for (const Frame& frame : frames)
+    if (form == frame.form) return frame;
+  throw InputError("keys", form, "must be one of json markdown dictionary completion");
+}
+
+}  // namespace
+
+/// Each subcommand prints its own.
+int list_keys(const Arguments& arguments) {
+  const std::string form = arguments.size() > 2 ? arguments[2] : "json";
+  const Frame& frame = frame_named(form);
+  std::cout << frame.before;
+  const char* between = "";
+  for (const SubcommandEntry& entry : subcommands()) {
+    if (entry.run == list_keys) continue;
+    std::cout << between;
+    entry.run({"flatspeckle", entry.name, "--keys=" + form});
+    between = frame.between;
+  }
+  std::cout << frame.after;
+  return ExitStatus::done;
+}
+
+}  // namespace flatspeckle::apps

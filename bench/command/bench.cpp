@@ -1,0 +1,200 @@
+#include <algorithm>
+#include <cstdio>
+#include <numeric>
+
+#include <omp.h>
+
+#include "apps/subcommands.h"
+#include "bench/command/bench_log.h"
+#include "bench/command/bench_output.h"
+#include "core/error.h"
+#include "core/run/parallel.h"
+#include "core/session/session.h"
+
+namespace flatspeckle::apps {
+
+namespace {
+
+struct BenchKeys {
+  bool quick = false;
+  RunSettings run;
+};
+
+/// What a kind of benchmark came to.
+struct Outcome {
+  std::string plan, parts;
+  std::size_t count, failed;
+};
+
+template <typename... Values>
+std::string text(const char* format, Values... values) {
+  char line[400];
+  std::snprintf(line, sizeof line, format, values...);
+  return line;
+}
+
+/// run(i) for all i in this order, side by side.
+template <typename Run>
+void run_all(const std::vector<std::size_t>& order, const Run& run) {
+  parallel_for(order.size(), [&](std::size_t i) { run(order[i]); });
+}
+
+std::vector<std::size_t> in_order(std::size_t count) {
+  std::vector<std::size_t> order(count);
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  return order;
+}
+
+std::string line_of(const bench::ErrorCurve& curve, bool good) {
+  return text("%-24s %-22s slope %6.3f +- %5.3f, efficiency %9.3g /s%s", curve.scene.c_str(),
+              curve.method.c_str(), curve.slope, curve.slope_error, curve.efficiency,
+              good ? "" : "  FAILED");
+}
+
+std::string line_of(const bench::CostCurve& cost) {
+  return text("%-47s cost grows as %s^(%.2f +- %.2f), expected %.2f", cost.what.c_str(),
+              cost.size_name.c_str(), cost.exponent, cost.exponent_error, cost.expected);
+}
+
+std::string line_of(const ExaminedCase& row, bool good) {
+  const auto& [extreme, finding, cpu_s] = row;
+  const std::string head = text("%-12s %-52s %-44s ", extreme.room.c_str(), extreme.name.c_str(),
+                                extreme.invariant.c_str());
+  if (finding.refusal.empty())
+    return head +
+           text("%10.1e %10.1e %s", finding.figure, finding.limit, good ? "passed" : "FAILED");
+  return head + (good ? "refused: " : "FAILED, refused: ") + finding.refusal;
+}
+
+std::string line_of(const bench::PlanRow& row) {
+  return text(
+      "%-12s %-30s %-34s %10.3g %10.3g s per %-10s ratio %6.2f +- %4.2f, difference %.1e %s%s",
+      row.room.c_str(), row.left_out.c_str(), row.scene.c_str(), row.general_s, row.special_s,
+      row.per.c_str(), row.ratio, row.ratio_spread, row.difference, row.difference_in.c_str(),
+      passes(row) ? "" : "  FAILED");
+}
+
+/// Of a Monte Carlo curve; from times too short for that, none is judged.
+bool has_slope_of_sampling(const bench::ErrorCurve& curve) {
+  constexpr double tolerance = 0.05;
+  return !curve.is_monte_carlo || std::abs(curve.slope + 0.5) <= tolerance;
+}
+
+Outcome error_against_time(ResultFile& file, bool quick) {
+  const double cpu_seconds = quick ? 0.05 : 30;
+  auto runs = bench::error_runs();
+  if (quick) std::erase_if(runs, [](const auto& run) { return run.slow; });
+  const auto costs = bench::cost_runs();
+  std::vector<bench::ErrorCurve> curves(runs.size());
+  std::vector<bench::CostCurve> growth(costs.size());
+  BenchLog log(runs.size() + costs.size(), "curves");
+  run_all(in_order(runs.size() + costs.size()), [&](std::size_t i) {
+    if (i < runs.size()) {
+      curves[i] = runs[i].run(cpu_seconds);
+      log.finished(line_of(curves[i], quick || has_slope_of_sampling(curves[i])));
+    } else {
+      auto& cost = growth[i - runs.size()];
+      cost = costs[i - runs.size()].run(cpu_seconds);
+      log.finished(line_of(cost));
+    }
+  });
+  write_error_curves(file, curves);
+  write_cost_curves(file, growth);
+  const auto failed = std::count_if(curves.begin(), curves.end(), [&](const auto& curve) {
+    return !quick && !has_slope_of_sampling(curve);
+  });
+  return {
+      text("%g CPU seconds for each curve%s", cpu_seconds, quick ? ", none of the slow ones" : ""),
+      "curves", runs.size() + costs.size(), static_cast<std::size_t>(failed)};
+}
+
+Outcome stability(ResultFile& file, bool quick) {
+  std::vector<ExaminedCase> cases;
+  for (auto& extreme : bench::extreme_cases())
+    if (!quick || !extreme.slow) cases.push_back({std::move(extreme), {}});
+  auto order = in_order(cases.size());
+  std::stable_partition(order.begin(), order.end(),
+                        [&](std::size_t i) { return cases[i].extreme.slow; });
+  BenchLog log(cases.size(), "cases");
+  run_all(order, [&](std::size_t i) {
+    const double start = thread_cpu_seconds();
+    cases[i].finding = examine(cases[i].extreme);
+    cases[i].cpu_s = thread_cpu_seconds() - start;
+    log.finished(line_of(cases[i], passes(cases[i].extreme, cases[i].finding)));
+  });
+  write_cases(file, cases);
+  const auto failed = std::count_if(cases.begin(), cases.end(), [](const auto& row) {
+    return !passes(row.extreme, row.finding);
+  });
+  return {quick ? "without the slow cases" : "all cases", "cases", cases.size(),
+          static_cast<std::size_t>(failed)};
+}
+
+/// One at a time, for kernels that compete for the memory would wait for each other.
+Outcome what_plans_leave_out(ResultFile& file, bool quick) {
+  const double cpu_seconds = quick ? 0.02 : 4;
+  omp_set_num_threads(1);
+  std::vector<bench::PlanRow> rows;
+  const auto cases = bench::plan_cases();
+  BenchLog log(cases.size(), "comparisons");
+  for (const auto& comparison : cases) {
+    rows.push_back(comparison.run(cpu_seconds));
+    log.finished(line_of(rows.back()));
+  }
+  write_plan_rows(file, rows);
+  const auto failed =
+      std::count_if(rows.begin(), rows.end(), [](const auto& row) { return !passes(row); });
+  return {text("%g CPU seconds for each comparison, one at a time", cpu_seconds), "comparisons",
+          rows.size(), static_cast<std::size_t>(failed)};
+}
+
+using Kind = Outcome (*)(ResultFile&, bool quick);
+
+Kind kind_named(const std::string& word) {
+  if (word == "error") return error_against_time;
+  if (word == "stability") return stability;
+  if (word == "plan") return what_plans_leave_out;
+  throw InputError("bench", word, "must be one of error stability plan");
+}
+
+void add_keys(Keys& keys, BenchKeys& values) {
+  keys.group("Benchmark");
+  keys.add("quick", values.quick, "Only a look: seconds in place of minutes");
+  add_thread_key(keys, values.run);
+  add_output_key(keys, values.run);
+}
+
+}  // namespace
+
+int bench(const Arguments& arguments) {
+  BenchKeys values;
+  Subcommand command(
+      "bench",
+      "What accuracy costs (bench error), where it breaks (bench stability), and what "
+      "leaving things out saves (bench plan)");
+  Keys& keys = command.keys();
+  add_keys(keys, values);
+  Arguments flags = arguments;
+  std::string word;
+  if (flags.size() > 2 && !flags[2].starts_with('-')) {
+    word = flags[2];
+    flags.erase(flags.begin() + 2);
+  }
+  if (!command.parse(flags)) return ExitStatus::done;
+  if (word.empty()) throw InputError("bench: must be followed by error, stability or plan");
+  const Kind kind = kind_named(word);
+  const Session session(command.text(), keys, values.run, command.only_prints());
+  keys.read(values.quick);
+  if (!command.settle()) return ExitStatus::done;
+  omp_set_num_threads(session.threads());
+  return session.once(ResultFile::Storage::memory, [&](ResultFile& file) -> std::optional<Made> {
+    const Stopwatch clock;
+    const Outcome outcome = kind(file, values.quick);
+    std::printf("%zu %s, %zu failed, %.0f s\n", outcome.count, outcome.parts.c_str(),
+                outcome.failed, clock.seconds());
+    return Made{outcome.plan, static_cast<double>(outcome.count),
+                outcome.failed == 0 ? ExitStatus::done : ExitStatus::row_failed};
+  });
+}
+
+}  // namespace flatspeckle::apps

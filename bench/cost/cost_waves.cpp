@@ -1,0 +1,49 @@
+#include <cmath>
+#include <memory>
+#include <numbers>
+
+#include "bench/cost/cost_measure.h"
+#include "bench/cost/cost_rooms.h"
+#include "core/numbers/random.h"
+#include "wave_solver/solutions/wave_solution.h"
+
+namespace flatspeckle::bench {
+
+namespace {
+
+constexpr double k = 2 * std::numbers::pi;
+
+/// Resonant points, ten per square wavelength.
+Placement points(std::size_t count) {
+  RandomStream random(1, static_cast<std::uint64_t>(Stream::placement), count);
+  const double side = std::sqrt(static_cast<double>(count) / 10);
+  Placement placement(count);
+  for (auto& placed : placement)
+    placed.position = {side * random.uniform(), side * random.uniform()};
+  return placement;
+}
+
+CostRun solver(const std::string& what, wave::Method method, double smallest, double largest,
+               double expected) {
+  const Scaling scaling{
+      what, "scatterers", smallest, largest, expected, [method](double size) {
+        const auto placement =
+            std::make_shared<const Placement>(points(static_cast<std::size_t>(size)));
+        return [placement, method] {
+          const wave::SolveOptions options{
+              .tolerance = 1e-6, .sensors = {}, .diagnose = false, .method = method};
+          wave::solve(*placement, k, {0}, options);
+        };
+      }};
+  return {what, [scaling](double cpu_seconds) { return measure_cost(scaling, cpu_seconds); }};
+}
+
+}  // namespace
+
+std::vector<CostRun> wave_cost_runs() {
+  return {solver("exact, dense", wave::Method::dense, 250, 8000, 3),
+          // at fixed density the last boxes have as many unknowns as their perimeter: its cube
+          solver("exact, fast", wave::Method::fast, 1024, 131072, 1.5)};
+}
+
+}  // namespace flatspeckle::bench

@@ -1,0 +1,187 @@
+#include "bench/error/error_flatland.h"
+
+#include <cmath>
+#include <memory>
+#include <numbers>
+
+#include "bench/error/error_exact.h"
+#include "bench/oracles/textbook.h"
+#include "flatland/scene/scene.h"
+#include "mc/estimators/covariance_estimator.h"
+#include "mc/speckle/speckle_field.h"
+
+namespace flatspeckle::bench {
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+std::vector<double> tilts(double largest_sine) {
+  constexpr int count = 7;
+  std::vector<double> angles;
+  for (int t = 0; t < count; ++t) angles.push_back(std::asin(largest_sine * t / (count - 1)));
+  return angles;
+}
+
+SceneSpec box(std::int64_t count) {
+  SceneSpec spec;
+  spec.width = 20;
+  spec.depth = 10;
+  spec.count = count;
+  spec.view_angles = {-0.7, -0.4, 0.1, 0.5, 0.8, pi - 0.6, pi - 0.3, pi};
+  spec.covariance = "memory_effect";
+  spec.tilts = tilts(0.18);  // C_I = 1/2 near 0.12
+  return spec;
+}
+
+SceneSpec absorbing_box() {
+  SceneSpec spec = box(39);
+  spec.albedo = 0.8;
+  return spec;
+}
+
+SceneSpec cylinders() {
+  SceneSpec spec = box(67);
+  // many speckles, for exact realizations are dear
+  spec.view_angles = {-1.2, -1,  -0.8, -0.6,     -0.4,      -0.2,     0.1,      0.3,
+                      0.5,  0.7, 0.9,  pi - 0.9, pi - 0.65, pi - 0.4, pi - 0.2, pi};
+  spec.scatterer = "tm";
+  spec.radius = 1 / (2 * pi);
+  spec.index = "1.5";
+  return spec;
+}
+
+SceneSpec slab() {
+  SceneSpec spec;
+  spec.domain = "slab";
+  spec.depth = 1000;
+  spec.scatterer = "hg";
+  spec.g = 0.8;
+  spec.optical_depth = 5;
+  spec.view_angles = {-0.9, -0.7, -0.4, 0, 0.2, 0.5, 0.8, 1.1};
+  spec.covariance = "memory_effect";
+  spec.tilts = tilts(3 / (2 * pi * 1000));  // q depth = 3
+  return spec;
+}
+
+struct FlatScene {
+  std::string name;
+  std::shared_ptr<const Scene> scene;
+};
+
+std::vector<FlatScene> scenes() {
+  const auto shared = [](const SceneSpec& spec) {
+    return std::make_shared<const Scene>(make_scene(spec));
+  };
+  return {{"box_points", shared(box(31))},
+          {"box_points_absorbing", shared(absorbing_box())},
+          {"box_cylinders", shared(cylinders())},
+          {"slab_hg", shared(slab())}};
+}
+
+bool is_box(const FlatScene& flat) {
+  return flat.scene->domain.kind == Domain::Kind::box;
+}
+
+mc::Plan plan_of(const Scene& scene) {
+  return mc::make_plan(scene, mc::ReversedPaths::automatic);
+}
+
+Trial trial_of(const FieldJob& job) {
+  return {job.batches, job.covariance};
+}
+
+Trial exact(const Scene& scene, wave::Method solver, std::uint64_t seed) {
+  return trial_of(exact_job(scene, solver, seed));
+}
+
+Trial textbook(const Scene& scene, std::uint64_t seed) {
+  constexpr std::uint64_t paths = 50;
+  return trial_of(oracles::textbook_job(scene, plan_of(scene).reversed, paths, seed));
+}
+
+Trial ours(const Scene& scene, std::uint64_t seed) {
+  mc::Plan plan = plan_of(scene);
+  plan.paths_per_batch = 50;
+  return trial_of(mc::covariance_job(scene, plan, seed));
+}
+
+/// Products of drawn fields: E[u_a u_b*] = C_ab for any number of paths in a field.
+Trial fields(const Scene& scene, std::uint64_t seed) {
+  constexpr std::uint64_t paths = 100;
+  Trial trial{{}, sample_mean};
+  trial.batches.size = scene.request.entries.size();
+  trial.batches.run = [draw = mc::fields_by_paths(scene, plan_of(scene), seed, paths),
+                       request = scene.request](std::uint64_t number, std::span<Complex> sums) {
+    std::vector<Complex> field(request.channels.size());
+    std::vector<double> intensity(field.size());
+    draw(number, field, intensity);
+    for (std::size_t i = 0; i < sums.size(); ++i)
+      sums[i] += product_with_conjugate(field[request.entries[i].a], field[request.entries[i].b]);
+  };
+  return trial;
+}
+
+std::string exact_reference(const FlatScene& flat) {
+  return flat.name + ", exact";
+}
+
+/// Their first point has enough placements that 1/(n - 1) is nearly 1/n.
+std::vector<Method> exact_methods(const FlatScene& flat) {
+  const bool is_dear = flat.scene->scatterer.is_disk();
+  const auto by = [&](const std::string& name, wave::Method solver) {
+    return Method{.scene = flat.name,
+                  .name = name,
+                  .trial = [scene = flat.scene,
+                            solver](std::uint64_t seed) { return exact(*scene, solver, seed); },
+                  .first_point = is_dear ? 16U : 64U,
+                  .share = is_dear ? 3.0 : 1.0,
+                  .slow = is_dear};
+  };
+  return {by("exact dense", wave::Method::dense), by("exact fast", wave::Method::fast)};
+}
+
+std::vector<Method> random_path_methods(const FlatScene& flat) {
+  const auto by = [scene = flat.scene](Trial (*trial)(const Scene&, std::uint64_t)) {
+    return [scene, trial](std::uint64_t seed) { return trial(*scene, seed); };
+  };
+  return {{flat.name, "textbook Monte Carlo", by(textbook)},
+          {flat.name, "ours", by(ours)},
+          {flat.name, "fields", by(fields)}};
+}
+
+ErrorRun run_of(const Method& method, const std::string& reference) {
+  return {method.scene, method.name,
+          [method, reference](double cpu_seconds) {
+            return measure_error(method, stored_reference(reference), cpu_seconds);
+          },
+          method.slow};
+}
+
+}  // namespace
+
+std::vector<ErrorRun> flatland_error_runs() {
+  std::vector<ErrorRun> runs;
+  for (const FlatScene& flat : scenes()) {
+    if (is_box(flat))
+      for (const Method& method : exact_methods(flat))
+        runs.push_back(run_of(method, exact_reference(flat)));
+    for (const Method& method : random_path_methods(flat))
+      runs.push_back(run_of(method, flat.name));
+  }
+  return runs;
+}
+
+std::vector<LongRun> flatland_long_runs() {
+  std::vector<LongRun> runs;
+  for (const FlatScene& flat : scenes()) {
+    if (is_box(flat))
+      runs.push_back({exact_reference(flat), "long run of the exact ensemble by the dense solver",
+                      exact_methods(flat).front().trial});
+    runs.push_back({flat.name, "long run of our Monte Carlo estimator",
+                    [scene = flat.scene](std::uint64_t seed) { return ours(*scene, seed); }});
+  }
+  return runs;
+}
+
+}  // namespace flatspeckle::bench

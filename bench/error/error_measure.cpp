@@ -1,0 +1,186 @@
+#include "bench/error/error_measure.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <omp.h>
+
+#include "bench/measure/power_fit.h"
+#include "core/run/stopwatch.h"
+
+namespace flatspeckle::bench {
+
+namespace {
+
+struct Schedule {
+  std::size_t runs;
+  std::uint64_t first;  ///< batches of the first point
+  std::size_t points;
+};
+
+/// One run: at each point the mean square of what it is off by, relative to the reference's.
+struct RunErrors {
+  std::vector<double> square;
+  double seconds = 0;
+};
+
+double mean_square(const std::vector<Complex>& values) {
+  double sum = 0;
+  for (const Complex& value : values) sum += std::norm(value);
+  return sum / static_cast<double>(values.size());
+}
+
+double relative_square(const std::vector<Complex>& values, const ErrorReference& reference) {
+  double sum = 0;
+  for (std::size_t i = 0; i < values.size(); ++i) sum += std::norm(values[i] - reference.value[i]);
+  return sum / static_cast<double>(values.size()) / mean_square(reference.value);
+}
+
+RunErrors run_once(const Method& method, const ErrorReference& reference, std::uint64_t seed,
+                   std::uint64_t first, std::size_t points) {
+  const Trial trial = method.trial(seed);
+  std::vector<Complex> sums(trial.batches.size), batch(trial.batches.size);
+  RunErrors errors;
+  std::uint64_t next = first;
+  for (std::uint64_t number = 0; errors.square.size() < points; ++number) {
+    const double start = thread_cpu_seconds();
+    std::fill(batch.begin(), batch.end(), 0);
+    trial.batches.run(number, batch);
+    for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += batch[i];
+    errors.seconds += thread_cpu_seconds() - start;
+    if (number + 1 < next) continue;
+    next *= 2;
+    const double samples = static_cast<double>(number + 1) * trial.batches.samples_per_batch;
+    errors.square.push_back(relative_square(trial.values(samples, sums), reference));
+  }
+  return errors;
+}
+
+/// Doublings of the first point's batches, and runs, that the time is enough for: many of both, or
+/// fewer runs where a slope could not be told else. Of many doublings the first are left out.
+Schedule schedule(const Method& method, const ErrorReference& reference, double cpu_seconds) {
+  constexpr double many_runs = 64, few_runs = 16, fewest_runs = 4;
+  constexpr double enough = 5, few = 3, fewest = 2, most = 9;  // doublings
+  const double start = thread_cpu_seconds();
+  const RunErrors pilot = run_once(method, reference, 0, method.first_point, 2);
+  const double setup = std::max(0.0, thread_cpu_seconds() - start - pilot.seconds);
+  const double to_first = pilot.seconds / 2;
+  const auto doublings = [&](double runs) {
+    return std::floor(std::log2(std::max((cpu_seconds / runs - setup) / to_first, 1.0)));
+  };
+  double doubled = doublings(many_runs), least_runs = few_runs;
+  if (doubled < enough) doubled = std::min(enough, doublings(few_runs));
+  if (doubled < few) {
+    doubled = fewest;
+    least_runs = fewest_runs;
+  }
+  const double affordable = cpu_seconds / (setup + to_first * std::exp2(doubled));
+  const double runs = std::clamp(std::floor(affordable), least_runs, 4 * many_runs);
+  const double points = std::min(doubled, most) + 1;
+  const auto left_out = static_cast<std::uint64_t>(std::exp2(doubled + 1 - points));
+  return {static_cast<std::size_t>(runs), left_out * method.first_point,
+          static_cast<std::size_t>(points)};
+}
+
+/// Sums over the runs, from which those without one of them follow.
+class Spread {
+ public:
+  Spread(std::vector<RunErrors> runs, double reference_square)
+      : runs_(std::move(runs)),
+        reference_square_(reference_square),
+        total_(runs_.front().square.size()) {
+    for (const RunErrors& run : runs_)
+      for (std::size_t p = 0; p < total_.size(); ++p) total_[p] += run.square[p];
+  }
+
+  /// With all runs, or without one of them.
+  double error(std::size_t point, const RunErrors* without = nullptr) const {
+    return std::sqrt(std::max(0.0, square(point, without) - reference_square_));
+  }
+  double unsubtracted(std::size_t point) const { return std::sqrt(square(point, nullptr)); }
+
+  /// Jackknife variance of what f gives without each of the runs.
+  template <class F>
+  double variance(const F& f) const {
+    const auto n = static_cast<double>(runs_.size());
+    double sum = 0, squares = 0;
+    for (const RunErrors& run : runs_) {
+      const double value = f(run);
+      sum += value;
+      squares += value * value;
+    }
+    return std::max(0.0, (squares - sum * sum / n) * (n - 1) / n);
+  }
+
+ private:
+  double square(std::size_t point, const RunErrors* without) const {
+    const auto n = static_cast<double>(runs_.size());
+    return without ? (total_[point] - without->square[point]) / (n - 1) : total_[point] / n;
+  }
+
+  std::vector<RunErrors> runs_;
+  double reference_square_;
+  std::vector<double> total_;
+};
+
+/// Slope, its error and the efficiency of the points that are above what the reference is off by.
+void fit(const Spread& spread, ErrorCurve& curve) {
+  std::vector<std::size_t> used;
+  std::vector<double> time, error, whole, weight;
+  for (std::size_t p = 0; p < curve.points.size(); ++p) {
+    const double variance =
+        spread.variance([&](const RunErrors& run) { return std::log(spread.error(p, &run)); });
+    if (!(variance > 0) || !std::isfinite(variance)) continue;
+    used.push_back(p);
+    time.push_back(curve.points[p].cpu_s);
+    error.push_back(curve.points[p].error);
+    whole.push_back(spread.unsubtracted(p));
+    weight.push_back(1 / variance);
+  }
+  if (used.size() < 2) return;
+  curve.slope = fit_power(time, error, weight).exponent;
+  const double variance = spread.variance([&](const RunErrors& run) {
+    std::vector<double> without;
+    for (const std::size_t p : used) without.push_back(spread.error(p, &run));
+    return fit_power(time, without, weight).exponent;
+  });
+  const double of_reference = curve.slope - fit_power(time, whole, weight).exponent;
+  curve.slope_error = std::hypot(std::sqrt(variance), of_reference);
+  double sum = 0, weights = 0;
+  for (std::size_t i = 0; i < used.size(); ++i) {
+    sum -= weight[i] * std::log(error[i] * error[i] * time[i]);
+    weights += weight[i];
+  }
+  curve.efficiency = std::exp(sum / weights);
+}
+
+}  // namespace
+
+ErrorCurve measure_error(const Method& method, const ErrorReference& reference,
+                         double cpu_seconds) {
+  omp_set_num_threads(1);
+  const auto [runs, first, points] = schedule(method, reference, method.share * cpu_seconds);
+  std::vector<RunErrors> errors;
+  double seconds = 0;
+  for (std::uint64_t seed = 1; seed <= runs; ++seed) {
+    errors.push_back(run_once(method, reference, seed, first, points));
+    seconds += errors.back().seconds;
+  }
+  const double to_last = seconds / static_cast<double>(runs);
+  const double per_batch = method.trial(0).batches.samples_per_batch;
+  const Spread spread(std::move(errors), std::pow(reference.relative_error, 2));
+  ErrorCurve curve{method.scene, method.name, reference.how, reference.relative_error, {}};
+  curve.is_monte_carlo = method.is_monte_carlo;
+  for (std::size_t p = 0; p < points; ++p) {
+    const double batches = static_cast<double>(first) * std::exp2(p);
+    const double share = std::exp2(static_cast<double>(p) - static_cast<double>(points - 1));
+    const double variance =
+        spread.variance([&](const RunErrors& run) { return spread.error(p, &run); });
+    curve.points.push_back(
+        {share * to_last, batches * per_batch, spread.error(p), std::sqrt(variance)});
+  }
+  fit(spread, curve);
+  return curve;
+}
+
+}  // namespace flatspeckle::bench

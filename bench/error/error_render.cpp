@@ -1,0 +1,119 @@
+#include "bench/error/error_render.h"
+
+#include <memory>
+#include <numbers>
+
+#include "bench/scenes/render_scenes.h"
+
+namespace flatspeckle::bench {
+
+using grin::RenderMethod;
+using grin::RenderScene;
+
+namespace {
+
+struct RenderScenePointer {
+  std::string name;
+  std::shared_ptr<const RenderScene> scene;
+};
+
+std::vector<RenderScenePointer> shared(const std::vector<NamedRender>& all) {
+  std::vector<RenderScenePointer> scenes;
+  for (const auto& [name, scene] : all)
+    scenes.push_back({name, std::make_shared<const RenderScene>(scene)});
+  return scenes;
+}
+
+Method method_of(const RenderScenePointer& named, const std::string& name, RenderMethod method) {
+  return {.scene = named.name, .name = name, .trial = [scene = named.scene, method](auto seed) {
+            const grin::RenderJob job = render_job(*scene, {method}, seed);
+            return Trial{job.batches, sample_mean};
+          }};
+}
+
+ErrorRun run_of(const Method& method, const std::function<ErrorReference()>& reference) {
+  return {method.scene, method.name,
+          [=](double cpu_seconds) { return measure_error(method, reference(), cpu_seconds); },
+          method.slow};
+}
+
+Method photon_map(const RenderScenePointer& named) {
+  Method method = method_of(named, "photon map, biased by its radius", RenderMethod::photon_map);
+  method.is_monte_carlo = false;
+  method.slow = named.name != "glass_ball";  // many photons, of many flights elsewhere
+  return method;
+}
+
+/// Lambertian light of L/n^2 = 1 from all sides, no absorption: L/n^2 = 1 along every ray, so that
+/// the irradiance is pi n^2, and n = 1 on the rim.
+ErrorReference even_light(std::size_t pixels) {
+  return {std::vector<Complex>(pixels, std::numbers::pi), 0, "closed form: irradiance pi"};
+}
+
+std::vector<ErrorRun> all_methods(const RenderScenePointer& named) {
+  std::vector<ErrorRun> runs;
+  const auto reference = [name = named.name] { return stored_reference(name); };
+  for (Method method :
+       {method_of(named, "path tracing", RenderMethod::path),
+        method_of(named, "light tracing", RenderMethod::light),
+        method_of(named, "bidirectional", RenderMethod::bidirectional), photon_map(named)}) {
+    if (named.name == "waveguide") method.share = 2;  // long curved flights
+    runs.push_back(run_of(method, reference));
+  }
+  return runs;
+}
+
+/// Path tracing finds the lamp wherever it goes: no variance, no curve.
+std::vector<ErrorRun> closed_form(const RenderScenePointer& named) {
+  std::vector<ErrorRun> runs;
+  const auto reference = [scene = named.scene] {
+    return even_light(
+        static_cast<std::size_t>(render_job(*scene, {RenderMethod::light}, 0).pixels.count()));
+  };
+  for (const Method& method :
+       {method_of(named, "light tracing", RenderMethod::light),
+        method_of(named, "bidirectional", RenderMethod::bidirectional), photon_map(named)})
+    runs.push_back(run_of(method, reference));
+  return runs;
+}
+
+/// Joins by 1/r^2 without another strategy beside.
+std::vector<ErrorRun> without_variance(const RenderScenePointer& named) {
+  Method method = method_of(named, "path tracing, no finite variance", RenderMethod::path);
+  method.is_monte_carlo = false;
+  const auto reference = [name = named.name] { return stored_reference(name); };
+  return {run_of(method, reference),
+          run_of(method_of(named, "bidirectional", RenderMethod::bidirectional), reference)};
+}
+
+void append(std::vector<ErrorRun>& all, std::vector<ErrorRun> more) {
+  for (ErrorRun& run : more) all.push_back(std::move(run));
+}
+
+}  // namespace
+
+std::vector<ErrorRun> render_error_runs() {
+  std::vector<ErrorRun> runs;
+  for (const RenderScenePointer& named : shared(lamp_scenes())) append(runs, all_methods(named));
+  append(runs,
+         closed_form({"luneburg_even", std::make_shared<const RenderScene>(even_luneburg())}));
+  append(runs, without_variance(
+                   {"glass_ball_beam", std::make_shared<const RenderScene>(beam_on_glass_ball())}));
+  return runs;
+}
+
+std::vector<LongRun> render_long_runs() {
+  std::vector<NamedRender> scenes = lamp_scenes();
+  scenes.push_back({"glass_ball_beam", beam_on_glass_ball()});
+  std::vector<LongRun> runs;
+  for (const RenderScenePointer& named : shared(scenes)) {
+    const bool by_light = named.name == "slab";  // five times as efficient there
+    runs.push_back(
+        {named.name,
+         std::string("long run of ") + (by_light ? "light" : "bidirectional") + " tracing",
+         method_of(named, "", by_light ? RenderMethod::light : RenderMethod::bidirectional).trial});
+  }
+  return runs;
+}
+
+}  // namespace flatspeckle::bench

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <vector>
+
+namespace flatspeckle::oracles {
+
+/// Transport of intensity through an infinite slab without random numbers, for any phase function:
+///   cos(theta) dI/dtau = -I + albedo int p(theta - theta') I(theta') dtheta'
+/// on discrete ordinates over the circle, by adding and doubling from a layer so thin that it
+/// scatters once (van de Hulst 1980, ch. 4). Light and views are ordinates of weight 0, so that
+/// nothing is interpolated. The nodes are Gauss-Legendre in sqrt(pi/2 - theta): radiance has a
+/// logarithm at grazing angles, near the faces. The matrix of the phase function is scaled to
+/// conserve power.
+class SlabTransport {
+ public:
+  struct Medium {
+    double optical_depth, albedo;
+    std::function<double(double)> phase;  ///< p(angle), even, integral 1 over 2 pi (C5)
+  };
+  /// angles: every light and view that will be asked for (C2), none along the slab. `nodes` per
+  /// quadrant: 50 give 1e-5 up to g = 0.8, forward peaks of width 1 - g want 6 / (1 - g) of them.
+  SlabTransport(const Medium& medium, const std::vector<double>& angles, int nodes);
+
+  /// Shares of the light that enters from an angle, |light| < pi/2; transmittance without what was
+  /// never scattered.
+  double reflectance(double light) const;
+  double transmittance(double light) const;
+  double direct_transmittance(double light) const;
+
+  /// C_vv of C14 and C18 without reversed paths, per unit illuminated length: the power that leaves
+  /// along `view`, per radian, for a plane wave of unit intensity.
+  double covariance_without_reversed(double light, double view) const;
+
+ private:
+  /// Diffuse radiance at [out][in] per unit radiance in; angles from the z axis in the first
+  /// quadrant, those of reflected light from -z.
+  struct Layer {
+    std::vector<double> reflected, transmitted;
+  };
+  void add_node(double angle, double complement, double weight);
+  void scale_phase();
+  double phase_element(std::size_t i, std::size_t j, bool backward, int parity) const;
+  Layer thin_layer(double optical_depth, int parity) const;
+  Layer doubled(const Layer& half, double optical_depth) const;
+  Layer slab(int parity) const;
+  std::optional<std::size_t> find(double angle) const;
+  double flux(const std::vector<double>& radiance, double light) const;
+  double radiance(double light, double view) const;
+
+  Medium medium_;
+  std::vector<double> angle_, cosine_, weight_, scale_;
+  Layer even_, odd_;  ///< for radiance even and odd in theta; both on 0 < theta < pi/2
+};
+
+/// 2D Henyey-Greenstein (C22).
+std::function<double(double)> henyey_greenstein(double g);
+
+}  // namespace flatspeckle::oracles

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <vector>
+
+namespace flatspeckle::oracles {
+
+/// Nodes and weights of Gauss-Legendre quadrature over [from, to], `panels` x 10 nodes.
+struct Quadrature {
+  std::vector<double> node, weight;
+  void add(double from, double to, int panels = 1);
+};
+
+}  // namespace flatspeckle::oracles

@@ -1,0 +1,271 @@
+#include "bench/oracles/textbook.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <vector>
+
+#include "core/numbers/random.h"
+#include "grin/media/phase_function.h"
+
+namespace flatspeckle::oracles {
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+constexpr std::uint64_t stream = 1001;  // none that the estimator under test draws from
+
+struct Ray {
+  double angle;
+  Vec2 w;
+};
+
+Ray ray(double angle) {
+  return {angle, direction(angle)};
+}
+Ray turned_round(const Ray& r) {
+  return {r.angle + pi, -r.w};
+}
+
+/// Amplitude per sqrt(sigma_s), so that |amplitude|^2 is the phase function (C5, C22).
+class Scattering {
+ public:
+  explicit Scattering(const Scene& scene) : hg_{scene.scatterer.g} {
+    if (scene.scatterer.kind == Scatterer::Kind::point) kind_ = Kind::isotropic;
+    if (scene.scatterer.is_disk()) tabulate(scene.medium, scene.k);
+  }
+
+  Complex amplitude(const Ray& from, const Ray& to) const {
+    if (kind_ == Kind::table) return interpolate(to.angle - from.angle);
+    return std::sqrt(density(from, to));
+  }
+  double density(const Ray& from, const Ray& to) const {
+    if (kind_ == Kind::table) return std::norm(interpolate(to.angle - from.angle));
+    return kind_ == Kind::isotropic ? 1 / (2 * pi) : hg_.density_at(dot(from.w, to.w));
+  }
+  Ray sample(const Ray& from, double u) const {
+    if (kind_ == Kind::table) return ray(from.angle + sample_table(u));
+    if (kind_ == Kind::isotropic) return ray(2 * pi * u);
+    return ray(from.angle + hg_.sample(u));
+  }
+
+ private:
+  enum class Kind { isotropic, henyey_greenstein, table };
+
+  void tabulate(const BulkMedium& medium, double k) {
+    kind_ = Kind::table;
+    for (int i = 0; i <= intervals; ++i)
+      table_.push_back(flatspeckle::amplitude(medium.t_matrix, k, i * step) /
+                       std::sqrt(medium.cross_sections.scattering));
+    cumulative_.push_back(0);
+    for (int i = 0; i < intervals; ++i)
+      cumulative_.push_back(cumulative_[i] + std::norm(table_[i]) + std::norm(table_[i + 1]));
+    for (double& c : cumulative_) c /= cumulative_.back();
+  }
+
+  /// Even in the angle.
+  Complex interpolate(double angle) const {
+    const double position = std::abs(std::remainder(angle, 2 * pi)) / step;
+    const int i = std::min(static_cast<int>(position), intervals - 1);
+    const double t = position - i;
+    return (1 - t) * table_[i] + t * table_[i + 1];
+  }
+
+  double sample_table(double u) const {
+    const double target = std::abs(2 * u - 1);
+    const auto above = std::upper_bound(cumulative_.begin() + 1, cumulative_.end() - 1, target);
+    const auto i = above - cumulative_.begin() - 1;
+    const double t = (target - cumulative_[i]) / (cumulative_[i + 1] - cumulative_[i]);
+    return (u < 0.5 ? -step : step) * (static_cast<double>(i) + t);
+  }
+
+  static constexpr int intervals = 1 << 15;
+  static constexpr double step = pi / intervals;
+  Kind kind_ = Kind::henyey_greenstein;
+  grin::HenyeyGreenstein<2> hg_;
+  std::vector<Complex> table_;      ///< at the angles i step
+  std::vector<double> cumulative_;  ///< of |table|^2, constant in each interval
+};
+
+/// One walker per batch.
+class Walker {
+ public:
+  Walker(const Scene& scene, const Scattering& scattering, bool reversed, RandomStream random,
+         std::span<Complex> sums)
+      : scene_(scene),
+        request_(scene.request),
+        scattering_(scattering),
+        reversed_(reversed),
+        random_(random),
+        sums_(sums),
+        density_(request_.lights.size()),
+        light_first_(request_.lights.size()),
+        light_last_(request_.lights.size()),
+        view_first_(request_.views.size()),
+        view_last_(request_.views.size()),
+        field_(request_.channels.size()) {
+    for (const Light& light : request_.lights) lights_.push_back(ray(light.angle));
+    for (const View& view : request_.views) views_.push_back(ray(view.angle));
+  }
+
+  void walk() {
+    const auto chosen = static_cast<std::size_t>(random_.uniform() * light_count());
+    const Vec2 first = sample_first(lights_[chosen]);
+    for (std::size_t i = 0; i < lights_.size(); ++i) {
+      density_[i] = first_density(first, lights_[i]) / light_count();
+      light_first_[i] = light_factor(first, lights_[i]);
+    }
+    single_scattering(first);
+
+    const Ray start = scattering_.sample(lights_[chosen], random_.uniform());
+    double density = 0;  // of the mixture of all lights
+    for (std::size_t i = 0; i < lights_.size(); ++i) {
+      density += density_[i] * scattering_.density(lights_[i], start);
+      light_first_[i] = product(light_first_[i], scattering_.amplitude(lights_[i], start));
+    }
+    if (reversed_) see_views(first, turned_round(start), view_first_);
+
+    double weight = 1;
+    Vec2 x = first;
+    Ray w = start;
+    while (true) {
+      const double flight = -std::log(random_.uniform()) / scene_.medium.mu_t;
+      if (flight >= scene_.domain.distance_to_edge(x, w.w)) return;
+      x = x + flight * w.w;
+      weight *= scene_.medium.albedo;
+      if (weight < 0.2) {  // roulette
+        if (random_.uniform() >= scene_.medium.albedo) return;
+        weight /= scene_.medium.albedo;
+      }
+      multiple_scattering(x, w, scene_.medium.mu_s * weight / density);
+      w = scattering_.sample(w, random_.uniform());
+    }
+  }
+
+ private:
+  double light_count() const { return static_cast<double>(lights_.size()); }
+
+  /// B = 1 of C14.
+  void single_scattering(Vec2 x) {
+    double density = 0;
+    for (double p : density_) density += p;
+    for (std::size_t v = 0; v < views_.size(); ++v) view_last_[v] = view_factor(x, views_[v]);
+    for (std::size_t c = 0; c < field_.size(); ++c) {
+      const auto [i, v] = request_.channels[c];
+      field_[c] = product(product(light_first_[i], view_last_[v]),
+                          scattering_.amplitude(lights_[i], views_[v]));
+    }
+    add(scene_.medium.mu_s / density);
+  }
+
+  /// B >= 2 of C14, the last scatterer at x, reached along w.
+  void multiple_scattering(Vec2 x, const Ray& w, double weight) {
+    see_views(x, w, view_last_);
+    if (reversed_) see_lights(x, turned_round(w), light_last_);
+    for (std::size_t c = 0; c < field_.size(); ++c) {
+      const auto [i, v] = request_.channels[c];
+      field_[c] = product(light_first_[i], view_last_[v]);
+      if (reversed_) field_[c] += product(light_last_[i], view_first_[v]);
+    }
+    add(reversed_ ? weight / 2 : weight);
+  }
+
+  void add(double weight) {
+    for (std::size_t e = 0; e < sums_.size(); ++e) {
+      const auto [a, b] = request_.entries[e];
+      sums_[e] += weight * product_with_conjugate(field_[a], field_[b]);
+    }
+  }
+
+  /// e_i(x) and e_v(x) of C13.
+  Complex light_factor(Vec2 x, const Ray& light) const {
+    const double inside = scene_.domain.distance_to_edge(x, -light.w);
+    return std::polar(std::exp(-scene_.medium.mu_t * inside / 2), scene_.k * dot(light.w, x));
+  }
+  Complex view_factor(Vec2 x, const Ray& view) const {
+    const double inside = scene_.domain.distance_to_edge(x, view.w);
+    return std::polar(std::exp(-scene_.medium.mu_t * inside / 2), -scene_.k * dot(view.w, x));
+  }
+
+  /// e_i(x) A(i -> w) of every light.
+  void see_lights(Vec2 x, const Ray& w, std::vector<Complex>& out) const {
+    for (std::size_t i = 0; i < lights_.size(); ++i)
+      out[i] = product(light_factor(x, lights_[i]), scattering_.amplitude(lights_[i], w));
+  }
+  /// A(w -> v) e_v(x) of every view.
+  void see_views(Vec2 x, const Ray& w, std::vector<Complex>& out) const {
+    for (std::size_t v = 0; v < views_.size(); ++v)
+      out[v] = product(view_factor(x, views_[v]), scattering_.amplitude(w, views_[v]));
+  }
+
+  /// Length across which a light meets the medium; per unit length of a slab.
+  double aperture(const Ray& light) const {
+    const Domain& domain = scene_.domain;
+    if (domain.kind == Domain::Kind::slab) return std::abs(light.w.z);
+    return domain.width * std::abs(light.w.z) + domain.depth * std::abs(light.w.x);
+  }
+
+  /// Uniform over the faces that the light meets, seen along the light.
+  Vec2 sample_entry(const Ray& light) {
+    const Domain& domain = scene_.domain;
+    const double z = light.w.z > 0 ? 0 : domain.depth;
+    if (domain.kind == Domain::Kind::slab) return {0, z};
+    const double across = random_.uniform() * aperture(light);
+    const double face = domain.width * std::abs(light.w.z);
+    if (across < face) return {across / std::abs(light.w.z) - domain.width / 2, z};
+    return {light.w.x > 0 ? -domain.width / 2 : domain.width / 2,
+            (across - face) / std::abs(light.w.x)};
+  }
+
+  Vec2 sample_first(const Ray& light) {
+    const Vec2 entry = sample_entry(light);
+    const double mu_t = scene_.medium.mu_t;
+    const double absorbed = std::expm1(-mu_t * scene_.domain.distance_to_edge(entry, light.w));
+    return entry + -std::log1p(random_.uniform() * absorbed) / mu_t * light.w;
+  }
+
+  /// Density with which sample_first of a light comes to x.
+  double first_density(Vec2 x, const Ray& light) const {
+    const double mu_t = scene_.medium.mu_t;
+    const double behind = scene_.domain.distance_to_edge(x, -light.w);
+    const double chord = behind + scene_.domain.distance_to_edge(x, light.w);
+    return mu_t * std::exp(-mu_t * behind) / -std::expm1(-mu_t * chord) / aperture(light);
+  }
+
+  const Scene& scene_;
+  const CovarianceRequest& request_;
+  const Scattering& scattering_;
+  bool reversed_;
+  RandomStream random_;
+  std::span<Complex> sums_;
+  std::vector<Ray> lights_, views_;
+  std::vector<double> density_;  ///< of each light's share of first scatterers where this one is
+  std::vector<Complex> light_first_, light_last_, view_first_, view_last_;
+  std::vector<Complex> field_;  ///< per channel
+};
+
+}  // namespace
+
+FieldJob textbook_job(const Scene& original, bool reversed, std::uint64_t paths_per_batch,
+                      std::uint64_t seed) {
+  const auto scene = std::make_shared<const Scene>(original);
+  assert(std::none_of(scene->request.views.begin(), scene->request.views.end(),
+                      [](const View& view) { return view.near; }));
+  const auto scattering = std::make_shared<const Scattering>(*scene);
+  FieldJob job;
+  job.covariance = sample_mean;
+  job.batches.size = scene->request.entries.size();
+  job.batches.samples_per_batch = static_cast<double>(paths_per_batch);
+  job.batches.run = [=](std::uint64_t number, std::span<Complex> sums) {
+    Walker walker(*scene, *scattering, reversed, RandomStream(seed, stream, number), sums);
+    for (std::uint64_t path = 0; path < paths_per_batch; ++path) walker.walk();
+  };
+  job.batches.relative_error = [](const GroupedSums& sums) {
+    return relative_error(jackknife(sums, sample_mean));
+  };
+  return job;
+}
+
+}  // namespace flatspeckle::oracles

@@ -1,0 +1,129 @@
+#include <algorithm>
+#include <complex>
+#include <span>
+
+#include "bench/plan/plan_rooms.h"
+#include "bench/plan/plan_timing.h"
+#include "bench/scenes/standard_scenes.h"
+#include "mc/estimators/covariance_estimator.h"
+#include "mc/speckle/speckle_field.h"
+
+namespace flatspeckle::bench {
+
+namespace {
+
+constexpr std::uint64_t seed = 1, paths_per_field = 500;
+constexpr int views = 256;
+
+/// box_points with all pairs of its views.
+Scene viewed_scene() {
+  std::vector<View> fan;
+  for (int v = 0; v < views; ++v) fan.push_back(far_view(0.2 + 0.8 * v / views));
+  Scene scene = standard_scenes()[0].scene;
+  scene.request = full_request({0}, fan);
+  return scene;
+}
+
+mc::Plan plan_of(const Scene& scene) {
+  return mc::make_plan(scene, mc::ReversedPaths::no);
+}
+
+/// Sums of the covariance from some batches of paths.
+GroupedSums covariance_sums(const FieldJob& job, int batches) {
+  GroupedSums sums(job.batches.size);
+  std::vector<Complex> batch(job.batches.size);
+  for (int b = 0; b < batches; ++b) {
+    std::fill(batch.begin(), batch.end(), 0);
+    job.batches.run(sums.batches(), batch);
+    sums.add(job.batches.samples_per_batch, batch);
+  }
+  return sums;
+}
+
+FieldJob job_of(const Scene& scene) {
+  return mc::covariance_job(scene, plan_of(scene), seed);
+}
+
+mc::FieldDraw drawn_from(const FieldJob& job, const GroupedSums& sums) {
+  const auto lower = job.covariance(sums.total_samples(), sums.total());
+  return mc::fields_from_covariance(mc::CovarianceFactor(views, lower), seed);
+}
+
+mc::FieldDraw drawn_by_paths(Scene scene) {
+  scene.request = mc::field_request(scene.request.lights, scene.request.views);
+  return mc::fields_by_paths(scene, plan_of(scene), seed + 1, paths_per_field);
+}
+
+/// Fields one by one; their batches estimate the intensity of every view.
+SampledKernel kernel_of(const mc::FieldDraw& draw) {
+  return {views, 1,
+          [draw](std::uint64_t number, std::span<Complex> sums) {
+            std::vector<Complex> field(views);
+            std::vector<double> intensity(views);
+            draw(number, field, intensity);
+            for (int v = 0; v < views; ++v) sums[v] += std::norm(field[v]);
+          },
+          [](double samples, std::span<const Complex> sums) {
+            Complex mean = 0;
+            for (const Complex& sum : sums) mean += sum / (samples * views);
+            return std::vector<Complex>{mean};
+          }};
+}
+
+/// Of many fields, whose covariance is found once and not counted here.
+PlanRow light_paths_of_each_field(double cpu_seconds) {
+  PlanRow row{.per = "field"};
+  const Scene scene = viewed_scene();
+  const FieldJob job = job_of(scene);
+  compare_sampled(row, kernel_of(drawn_by_paths(scene)),
+                  kernel_of(drawn_from(job, covariance_sums(job, 32))), Numbers::other,
+                  Measure::sample, cpu_seconds);
+  return row;
+}
+
+/// Of two fields: their covariance would have to be found first, here to about 2 %.
+PlanRow covariance_of_few_fields(double cpu_seconds) {
+  constexpr int fields = 2, batches = 8;
+  PlanRow row{.per = "field"};
+  const Scene scene = viewed_scene();
+  const FieldJob job = job_of(scene);
+  const auto by_paths = drawn_by_paths(scene);
+  std::vector<Complex> field(views);
+  std::vector<double> intensity(views);
+  const auto draw = [&](const mc::FieldDraw& from) {
+    for (std::uint64_t number = 0; number < fields; ++number) from(number, field, intensity);
+  };
+  compare_times(row, timed([&] { draw(drawn_from(job, covariance_sums(job, batches))); }),
+                timed([&] { draw(by_paths); }), cpu_seconds);
+  row.general_s /= fields;
+  row.special_s /= fields;
+  const auto mean_intensity = [&](double samples, std::span<const Complex> sums) {
+    const auto lower = job.covariance(samples, sums);
+    Complex mean = 0;
+    for (std::size_t v = 0; v < views; ++v) mean += lower[v * (v + 1) / 2 + v] / double{views};
+    return std::vector<Complex>{mean};
+  };
+  GroupedSums sums(views);
+  const SampledKernel kernel = kernel_of(by_paths);
+  for (std::uint64_t number = 0; number < 64; ++number) {
+    std::vector<Complex> batch(views);
+    kernel.run(number, batch);
+    sums.add(1, batch);
+  }
+  row.difference = most_standard_errors(jackknife(covariance_sums(job, 32), mean_intensity),
+                                        jackknife(sums, kernel.estimator));
+  row.limit = 4;
+  row.difference_in = "standard errors";
+  return row;
+}
+
+}  // namespace
+
+std::vector<PlanCase> field_plan_cases() {
+  const std::string room = "fields", scene = "box_points, 256 views";
+  return {
+      named(room, "light paths of each field", scene + ", many fields", light_paths_of_each_field),
+      named(room, "the covariance", scene + ", 2 fields", covariance_of_few_fields)};
+}
+
+}  // namespace flatspeckle::bench

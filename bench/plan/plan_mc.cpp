@@ -1,0 +1,156 @@
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "bench/plan/plan_rooms.h"
+#include "bench/plan/plan_timing.h"
+#include "bench/scenes/standard_scenes.h"
+#include "mc/estimators/brownian.h"
+#include "mc/estimators/covariance_estimator.h"
+#include "mc/estimators/gradient.h"
+
+namespace flatspeckle::bench {
+
+namespace {
+
+using mc::Plan;
+constexpr double pi = std::numbers::pi;
+constexpr std::uint64_t seed = 1;
+
+SampledKernel kernel_of(const FieldJob& job) {
+  return {job.batches.size, job.batches.samples_per_batch, job.batches.run, job.covariance};
+}
+
+Plan plan_of(const Scene& scene) {
+  return mc::make_plan(scene, mc::ReversedPaths::no);
+}
+
+/// A scene as rows are about it.
+struct NamedScene {
+  std::string name;
+  Scene scene;
+};
+
+/// General and special kernel of a row.
+using Kernels = std::function<std::pair<SampledKernel, SampledKernel>()>;
+
+PlanCase case_of(const std::string& left_out, const std::string& scene, Numbers numbers,
+                 Measure measure, Kernels kernels) {
+  return named("mc", left_out, scene, [=](double cpu_seconds) {
+    PlanRow row{.per = measure == Measure::sample ? "path" : "1 % error"};
+    const auto [general, special] = kernels();
+    compare_sampled(row, general, special, numbers, measure, cpu_seconds);
+    return row;
+  });
+}
+
+/// The kernel that a scene would have against the one that `generalise` makes of its plan.
+PlanCase flag(const std::string& left_out, const NamedScene& on, Numbers numbers, Measure measure,
+              void (*generalise)(Plan&)) {
+  return case_of(left_out, on.name, numbers, measure, [=, scene = on.scene] {
+    const Plan special = plan_of(scene);
+    Plan general = special;
+    generalise(general);
+    const std::uint64_t other = numbers == Numbers::same ? seed : seed + 1;
+    return std::pair{kernel_of(mc::covariance_job(scene, general, seed)),
+                     kernel_of(mc::covariance_job(scene, special, other))};
+  });
+}
+
+/// All entries of a scene's channels.
+Scene with_whole_matrix(Scene scene) {
+  scene.request.kind = CovarianceRequest::Kind::full;
+  scene.request.entries.clear();
+  const auto channels = static_cast<std::uint32_t>(scene.request.channels.size());
+  for (std::uint32_t a = 0; a < channels; ++a)
+    for (std::uint32_t b = 0; b <= a; ++b) scene.request.entries.push_back({a, b});
+  return scene;
+}
+
+/// Entries picked from a lower triangle.
+Estimator picked(const Estimator& triangle, const std::vector<Entry>& entries) {
+  return [=](double samples, std::span<const Complex> sums) {
+    const auto matrix = triangle(samples, sums);
+    std::vector<Complex> values;
+    for (const auto [a, b] : entries)
+      values.push_back(a >= b ? matrix[a * (a + 1) / 2 + b]
+                              : std::conj(matrix[b * (b + 1) / 2 + a]));
+    return values;
+  };
+}
+
+PlanCase few_entries(const NamedScene& on) {
+  return case_of("the rest of the matrix", on.name, Numbers::same, Measure::sample,
+                 [scene = on.scene] {
+                   const Scene whole = with_whole_matrix(scene);
+                   Plan special = plan_of(scene), general = plan_of(whole);
+                   special.sampled_single = general.sampled_single = true;
+                   special.paths_per_batch = general.paths_per_batch;
+                   SampledKernel all = kernel_of(mc::covariance_job(whole, general, seed));
+                   all.estimator = picked(all.estimator, scene.request.entries);
+                   return std::pair{all, kernel_of(mc::covariance_job(scene, special, seed))};
+                 });
+}
+
+PlanCase derivatives(const NamedScene& on) {
+  return case_of("derivatives", on.name, Numbers::same, Measure::sample, [scene = on.scene] {
+    const Plan plan = mc::gradient_plan(scene, mc::ReversedPaths::no);
+    return std::pair{kernel_of(mc::gradient_job(scene, plan, seed).field),
+                     kernel_of(mc::covariance_job(scene, plan, seed))};
+  });
+}
+
+PlanCase delays(const NamedScene& on) {
+  return case_of("8 delays", on.name, Numbers::same, Measure::sample, [scene = on.scene] {
+    const Plan plan = plan_of(scene);
+    const std::vector<double> times = {0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2};
+    return std::pair{kernel_of(mc::delay_job(scene, plan, times, seed).field),
+                     kernel_of(mc::covariance_job(scene, plan, seed))};
+  });
+}
+
+Scene with_request(Scene scene, CovarianceRequest request) {
+  scene.request = std::move(request);
+  return scene;
+}
+
+std::vector<View> views_around(int count) {
+  std::vector<View> views;
+  for (int v = 0; v < count; ++v) views.push_back(far_view(2 * pi * (v + 0.5) / count));
+  return views;
+}
+
+}  // namespace
+
+std::vector<PlanCase> mc_plan_cases() {
+  const auto standard = standard_scenes();
+  const NamedScene points{"box_points, 64 tilts", standard[0].scene};
+  const NamedScene slab{"slab_hg g 0, 64 tilts", standard[4].scene};
+  const NamedScene forward{"slab_hg g 0.9, 64 tilts", standard[5].scene};
+  const NamedScene around{"box_points, 64 intensities",
+                          with_request(points.scene, intensity_request({0}, views_around(64)))};
+  const NamedScene full{"box_points, full, 128 channels",
+                        with_request(points.scene, full_request({0, 0.1}, views_around(64)))};
+  constexpr auto same = Numbers::same, other = Numbers::other;
+  constexpr auto sample = Measure::sample, error = Measure::error;
+  return {
+      flag("anisotropy", points, other, sample,
+           [](Plan& plan) { plan.phase = Plan::Phase::henyey_greenstein; }),
+      flag("a tabulated amplitude", points, other, sample,
+           [](Plan& plan) { plan.phase = Plan::Phase::tabulated; }),
+      flag("near ends", points, same, sample, [](Plan& plan) { plan.near = true; }),
+      flag("absorption", points, other, sample, [](Plan& plan) { plan.weighted = true; }),
+      flag("reversed paths", slab, other, sample, [](Plan& plan) { plan.reversed = true; }),
+      flag("phases", around, same, sample, [](Plan& plan) { plan.phases = true; }),
+      few_entries(points),
+      flag("updates entry by entry", full, same, sample, [](Plan& plan) { plan.rank_k = false; }),
+      flag("paths of one scatterer", points, other, error,
+           [](Plan& plan) { plan.sampled_single = true; }),
+      flag("scores that promise little", forward, other, error,
+           [](Plan& plan) { plan.score_level = 0; }),
+      derivatives(forward),
+      delays(around),
+  };
+}
+
+}  // namespace flatspeckle::bench

@@ -1,0 +1,162 @@
+#include <cmath>
+#include <variant>
+
+#include "bench/plan/plan_rooms.h"
+#include "bench/plan/plan_timing.h"
+#include "grin/rays/trace.h"
+#include "grin/space/curved_space.h"
+#include "grin/space/straight_space.h"
+
+namespace flatspeckle::bench {
+
+namespace {
+
+using namespace grin;
+
+constexpr int rays = 200;
+constexpr double step = 0.05, max_length = 8;
+
+Vec3 random_direction(RandomStream& random) {
+  return random_turn(Vec3::UnitX(), 2 * random.uniform(), random);
+}
+/// In the ball of radius 0.95.
+PathPoint random_point(RandomStream& random) {
+  return {0.95 * std::cbrt(random.uniform()) * random_direction(random)};
+}
+
+/// Appends what is known of a point on a way.
+void note(std::vector<Complex>& values, const Vec3& x, double optical_path) {
+  values.insert(values.end(), {{x[0], x[1]}, {x[2], optical_path}});
+}
+
+/// Rays from anywhere in the unit ball to its surface.
+template <IndexField F>
+std::vector<Complex> traced(const F& field) {
+  const Surface ball = Sphere{};
+  std::vector<Complex> values;
+  RandomStream random(1, 0, 0);
+  for (int i = 0; i < rays; ++i) {
+    const Vec3 from = random_point(random).x;
+    RayState ray = start_ray(field, from, random_direction(random));
+    FixedSteps<Sharma> steps{step};
+    trace(field, {&ball, 1}, {max_length, 1e-13}, steps, ray);
+    note(values, ray.x, ray.optical_path);
+  }
+  return values;
+}
+
+/// Flights from anywhere in the unit ball, with the same random numbers in every call.
+template <Space S>
+std::vector<Complex> flown(const S& space) {
+  std::vector<Complex> values;
+  RandomStream random(1, 0, 0);
+  for (int i = 0; i < rays; ++i) {
+    const PathPoint from = random_point(random);
+    const Flight flight = space.fly(from, random_direction(random), random);
+    note(values, flight.point.x, flight.optical_path);
+  }
+  return values;
+}
+
+/// Joins of pairs of points, the same in every space: per batch, sums of what the curves have, each
+/// weighted so that those not found count (C26).
+template <Space S>
+SampledKernel joins(const S& space) {
+  constexpr int pairs = 50;
+  return {2, pairs,
+          [&space](std::uint64_t number, std::span<Complex> sums) {
+            ConnectionStatistics statistics;
+            RandomStream points(1, 0, number), random(1, 1, number);
+            for (int i = 0; i < pairs; ++i) {
+              const PathPoint from = random_point(points), to = random_point(points);
+              const auto join = space.join(from, to, random, statistics);
+              if (!join) continue;
+              sums[0] += join->multiplicity;
+              sums[1] += join->multiplicity * Complex(join->spreading, join->optical_path);
+            }
+          },
+          sample_mean};
+}
+
+/// A field whose kind is looked up at every step.
+struct LookedUpField {
+  AnyIndexField field;
+
+  double excess(const Vec3& x) const {
+    return std::visit([&](const auto& f) { return f.excess(x); }, field);
+  }
+  IndexGradient gradient(const Vec3& x) const {
+    return std::visit([&](const auto& f) { return f.gradient(x); }, field);
+  }
+  IndexHessian hessian(const Vec3& x) const {
+    return std::visit([&](const auto& f) { return f.hessian(x); }, field);
+  }
+};
+
+constexpr RenderPlan fog_plan{.curved = false,
+                              .scatters = true,
+                              .absorbs = false,
+                              .gridded = false,
+                              .body = false,
+                              .timed = false};
+Stage foggy_ball_stage() {
+  return {.boundary = Sphere{}, .medium = {.mu_s = 2}};
+}
+
+/// An index that is the same everywhere, which the compiler does not know.
+ParabolicGuide constant_guide() {
+  return ParabolicGuide({0.5, 0});
+}
+
+template <class General, class Special>
+PlanRow same_values(const General& general, const Special& special, const char* per, double limit,
+                    double cpu_seconds) {
+  PlanRow row{.per = per};
+  compare_values(row, general, special, limit, cpu_seconds);
+  row.general_s /= rays;
+  row.special_s /= rays;
+  return row;
+}
+
+PlanRow curved_rays(double cpu_seconds) {
+  return same_values([] { return traced(constant_guide()); },
+                     [] { return traced(Homogeneous{0.5}); }, "ray", 1e-11, cpu_seconds);
+}
+
+PlanRow kind_of_field(double cpu_seconds) {
+  const Luneburg field({});
+  const LookedUpField looked_up{field};
+  return same_values([&] { return traced(looked_up); }, [&] { return traced(field); }, "ray", 1e-14,
+                     cpu_seconds);
+}
+
+PlanRow spreading(double cpu_seconds) {
+  const auto full = make_curved_space(Luneburg({}), foggy_ball_stage(), {step, max_length, true});
+  const auto quick = make_curved_space(Luneburg({}), foggy_ball_stage(), {step, max_length, false});
+  return same_values([&] { return flown(*full); }, [&] { return flown(*quick); }, "flight", 1e-11,
+                     cpu_seconds);
+}
+
+PlanRow search_for_curves(double cpu_seconds) {
+  PlanRow row{.per = "join"};
+  const auto general =
+      make_curved_space(constant_guide(), foggy_ball_stage(), {step, max_length, true});
+  const StraightSpace<fog_plan> special(foggy_ball_stage(), 0.5);
+  compare_sampled(row, joins(*general), joins(special), Numbers::other, Measure::sample,
+                  cpu_seconds);
+  return row;
+}
+
+}  // namespace
+
+std::vector<PlanCase> ray_plan_cases() {
+  const auto row = [](const std::string& left_out, const std::string& scene, const auto& run) {
+    return named("grin rays", left_out, scene, run);
+  };
+  return {row("curvature", "constant index, rays out of a ball", curved_rays),
+          row("search for curves", "constant index, joins in a ball", search_for_curves),
+          row("|J| of flights", "Luneburg ball", spreading),
+          row("kind of field at every step", "Luneburg ball", kind_of_field)};
+}
+
+}  // namespace flatspeckle::bench

@@ -1,0 +1,107 @@
+#include <cmath>
+#include <memory>
+#include <utility>
+
+#include "bench/plan/plan_rooms.h"
+#include "bench/plan/plan_timing.h"
+#include "bench/scenes/render_scenes.h"
+#include "grin/estimators/path_kernels.h"
+
+namespace flatspeckle::bench {
+
+namespace {
+
+using namespace grin;
+
+constexpr int paths_per_batch = 512;
+
+std::shared_ptr<Transport> transport_in(const RenderScene& scene) {
+  const double excess = std::get<Homogeneous>(scene.field).n_excess;
+  const double around = scene.stage.body ? scene.stage.excess_around : excess;
+  const auto index = [=](const PathPoint& p) {
+    return 1 + (p.part == Part::body ? excess : around);
+  };
+  auto transport =
+      std::make_shared<Transport>(Transport{.stage = scene.stage,
+                                            .lights = Lights(scene.lights, scene.stage, index),
+                                            .sensor = SensorEnd(scene.sensor, scene.stage)});
+  transport->join_level = 1e-3;
+  return transport;
+}
+
+/// A kernel for straight rays, or one that solves for rays in a field that happens to be constant.
+PathKernel path_kernel(const RenderPlan& plan, const std::shared_ptr<Transport>& transport,
+                       const RenderScene& scene) {
+  const double excess = std::get<Homogeneous>(scene.field).n_excess;
+  if (!plan.curved) return straight_kernel(plan, transport, excess);
+  std::shared_ptr<const CurvedSpace> space =
+      make_curved_space(ParabolicGuide({excess, 0}), scene.stage, {scene.step, scene.max_length});
+  return curved_kernel(plan, transport, space, false);
+}
+
+/// The steady picture, whatever its bins.
+Estimator steady(std::size_t pixels) {
+  return [pixels](double samples, std::span<const Complex> sums) {
+    const std::size_t bins = sums.size() / pixels;
+    std::vector<Complex> picture(pixels);
+    for (std::size_t i = 0; i < sums.size(); ++i) picture[i / bins] += sums[i] / samples;
+    return picture;
+  };
+}
+
+SampledKernel kernel_of(const RenderPlan& plan, const RenderScene& scene) {
+  const auto transport = transport_in(scene);
+  const int pixels = transport->sensor.pixels().count();
+  const TimeBins bins = plan.timed ? TimeBins{0, 20, 50} : TimeBins{};
+  const auto run = [=, paths = path_kernel(plan, transport, scene)](std::uint64_t number,
+                                                                    std::span<Complex> sums) {
+    Film film(pixels, bins, sums);
+    RandomStream random(1, static_cast<std::uint64_t>(Stream::render), number);
+    TransportCounts counts;
+    paths(paths_per_batch, random, film, counts, nullptr);
+  };
+  const auto count = static_cast<std::size_t>(pixels);
+  return {count * static_cast<std::size_t>(bins.count), paths_per_batch, run, steady(count)};
+}
+
+/// The kernel that a scene would have against the one that `generalise` makes of its plan.
+PlanCase flag(const std::string& left_out, const std::string& name, const RenderScene& scene,
+              Numbers numbers, void (*generalise)(RenderPlan&)) {
+  return named("render", left_out, name, [=](double cpu_seconds) {
+    PlanRow row{.per = "path"};
+    const RenderPlan special = render_plan(scene);
+    RenderPlan general = special;
+    generalise(general);
+    compare_sampled(row, kernel_of(general, scene), kernel_of(special, scene), numbers,
+                    Measure::sample, cpu_seconds);
+    return row;
+  });
+}
+
+}  // namespace
+
+std::vector<PlanCase> render_plan_cases() {
+  RenderScene fog = foggy_ball();
+  fog.sensor = AreaDetector{{0, 0, 3}, {0, 1, 0}, 6, 6, {4, 4}, 1.5};
+  RenderScene clear = fog, alone = fog;
+  clear.stage.medium = clear.stage.body->medium = {};
+  clear.lights = {FaceLight{.radius = INFINITY}};  // what a beam sheds unscattered is summed apart
+  alone.stage.body = {};
+  alone.stage.medium.mu_s = 1;
+  constexpr auto same = Numbers::same, other = Numbers::other;
+  const std::string box = "box of fog";
+  return {
+      flag("curved rays", box, alone, other, [](RenderPlan& p) { p.curved = true; }),
+      flag("scattering", "clear ball in a box", clear, same,
+           [](RenderPlan& p) { p.scatters = p.absorbs = true; }),
+      flag("absorption", box, alone, same, [](RenderPlan& p) { p.absorbs = true; }),
+      flag("density grid", box, alone, same, [](RenderPlan& p) { p.gridded = p.absorbs = true; }),
+      flag("body", box, alone, same, [](RenderPlan& p) { p.body = true; }),
+      flag("time bins", box, alone, same, [](RenderPlan& p) { p.timed = true; }),
+      flag("all but curves", box, alone, same, [](RenderPlan& p) {
+        p = RenderPlan{};
+        p.curved = false;
+      })};
+}
+
+}  // namespace flatspeckle::bench

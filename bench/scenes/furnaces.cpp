@@ -1,0 +1,95 @@
+#include "bench/scenes/furnaces.h"
+
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <numbers>
+#include <utility>
+
+#include "bench/scenes/random_fields.h"
+
+namespace flatspeckle::bench {
+
+using namespace grin;
+
+Surface unit_box() {
+  return Box{Vec3::Constant(-1), Vec3::Constant(1)};
+}
+Surface ball_stage() {
+  return Sphere{Vec3::Zero(), 1.5};
+}
+
+ScatteringMedium fog(double mu_s, double mu_a, double g) {
+  return {mu_s, mu_a, {SpacePhaseFunction::Kind::henyey_greenstein, g}};
+}
+
+ScatteringMedium grid_medium() {
+  const FieldGrid grid{Vec3::Constant(-0.8), Vec3::Constant(0.4), {5, 5, 5}};
+  std::vector<double> density(grid.size());
+  for (std::size_t i = 0; i < density.size(); ++i) density[i] = static_cast<double>(i * 7 % 11) / 5;
+  return {
+      2, 0.2, {SpacePhaseFunction::Kind::rayleigh}, std::make_shared<DensityGrid>(grid, density)};
+}
+
+Light environment() {
+  return FaceLight{Vec3::Zero(), std::numeric_limits<double>::infinity()};
+}
+
+AreaDetector whole_face() {
+  return {Vec3::UnitZ(), Vec3::UnitY(), 2, 2, {1, 1}, right_angle};
+}
+
+RenderScene scene_in(AnyIndexField field, Stage stage, Light light, Sensor sensor) {
+  return {std::move(field), 0.05, 60, false, std::move(stage), {std::move(light)},
+          std::move(sensor)};
+}
+
+std::vector<NamedRender> furnaces(const ScatteringMedium& medium) {
+  const Stage stage{unit_box(), medium};
+  Stage with_ball = stage;
+  with_ball.body = Body{Sphere{Vec3(0.1, 0, 0.1), 0.6}, medium};
+  RandomStream random(5, 93, 0);
+  AnySum sum;
+  sum.add(random_blobs(random, 0.1)).add(random_spline(random, 0.03)).add(Homogeneous{0.2});
+  const auto in = [](AnyIndexField field, const Stage& where) {
+    return scene_in(std::move(field), where, environment(), whole_face());
+  };
+  std::vector<NamedRender> all{
+      {"homogeneous", in(Homogeneous{0.3}, stage)},
+      {"Luneburg", in(Luneburg(LuneburgProfile{.radius = 0.6}, Vec3(0.1, 0, 0.1)), with_ball)},
+      {"fisheye", in(Fisheye({.centre_excess = 1, .radius = 1.5}), stage)},
+      {"guide", in(ParabolicGuide({.axis_excess = 0.5, .alpha = 0.6}), stage)},
+      {"sound", in(StandingWave(0.3, 0.1, 0, 4.0, 3.0), stage)},
+      {"blobs and spline", in(sum, stage)},
+      {"glass ball", in(Homogeneous{0.5}, with_ball)}};
+  all[4].scene.random_phase = true;
+  return all;
+}
+
+double mean_square_index(const RenderScene& scene) {
+  const int nodes = 100, phases = 32;
+  if (scene.stage.body) return std::pow(1 + scene.stage.excess_around, 2);
+  const auto mean_of = [&](const auto& field) {
+    double sum = 0;
+    for (int i = 0; i < nodes; ++i)
+      for (int j = 0; j < nodes; ++j) {
+        const auto at = [&](int k) { return (2 * k + 1.0) / nodes - 1; };
+        sum += std::pow(index(field, Vec3(at(i), at(j), 1)), 2);
+      }
+    return sum / (nodes * nodes);
+  };
+  return std::visit(
+      [&]<class F>(const F& field) {
+        if constexpr (std::same_as<F, StandingWave>) {
+          double sum = 0;
+          for (int k = 0; k < phases; ++k)
+            sum += mean_of(field.frozen(std::cos((k + 0.5) * std::numbers::pi / phases)));
+          return sum / phases;
+        } else {
+          return mean_of(field);
+        }
+      },
+      scene.field);
+}
+
+}  // namespace flatspeckle::bench

@@ -1,0 +1,183 @@
+#include "bench/scenes/render_scenes.h"
+
+#include <limits>
+#include <numbers>
+
+namespace flatspeckle::bench {
+
+using namespace grin;
+
+namespace {
+
+ScatteringMedium fog(double mu_s, double mu_a, double g) {
+  ScatteringMedium medium;
+  medium.mu_s = mu_s;
+  medium.mu_a = mu_a;
+  medium.phase = {SpacePhaseFunction::Kind::henyey_greenstein, g};
+  return medium;
+}
+
+Camera side_camera() {
+  Camera camera{};
+  camera.x = {-3, 0, 0};
+  camera.forward = {1, 0, 0};
+  camera.up = {0, 1, 0};
+  camera.field_of_view = 0.8;
+  camera.pixels = {24, 24};
+  camera.lens_radius = 0.1;
+  camera.focus_distance = 3;
+  return camera;
+}
+
+RenderScene ball_under_beam() {
+  RenderScene scene{};
+  scene.step = 0.1;
+  scene.max_length = 100;
+  scene.stage.boundary = Box{{-3, -3, -3}, {3, 3, 3}};
+  scene.stage.body = Body{Sphere{}, fog(0.5, 0, 0.5)};
+  scene.lights = {BeamLight{{0, 0, -3}, {0, 0, 1}, 0.8}};
+  scene.sensor = side_camera();
+  return scene;
+}
+
+RenderScene waveguide() {
+  constexpr double wave_number = 3.40548;  // 813 kHz at 1500 m/s, per mm
+  RenderScene scene{};
+  scene.field = StandingWave(0.33, 0.001, 0, wave_number, 15);
+  scene.step = 0.2;
+  scene.max_length = 1000;
+  scene.stage.boundary = Box{{-15, -15, 0}, {15, 15, 30}};
+  scene.stage.medium = fog(0.1, 0, 0.85);
+  scene.lights = {BeamLight{{0, 0, 0}, {0, 0, 1}, 0.5}};
+  scene.sensor = AreaDetector{{0, 0, 30}, {0, 1, 0}, 6, 6, {24, 24}, 0.1};
+  return scene;
+}
+
+RenderScene luneburg_from_outside() {
+  RenderScene scene = ball_under_beam();
+  scene.field = Luneburg({});
+  return scene;
+}
+
+RenderScene filled_ball() {
+  RenderScene scene{};
+  scene.field = Luneburg({});
+  scene.step = 0.1;
+  scene.max_length = 100;
+  scene.stage.boundary = Sphere{};
+  scene.stage.medium = fog(0.5, 0, 0.5);
+  return scene;
+}
+
+RenderScene luneburg() {
+  RenderScene scene = filled_ball();
+  struct Pencil {
+    double x, z, dx, dz;
+  };
+  for (const Pencil& p : {Pencil{0.746253, -0.5583, -0.0703927, 0.997519},
+                          {0.497502, -0.761865, -0.0461076, 0.998936},
+                          {0.248751, -0.863575, -0.0228566, 0.999739}})
+    for (const double side : {-1, 1})
+      scene.lights.push_back(BeamLight{{side * p.x, 0, p.z}, {side * p.dx, 0, p.dz}, 0.03});
+  scene.lights.push_back(BeamLight{{0, 0, -0.895171}, {0, 0, 1}, 0.03});
+  Camera camera{};
+  camera.x = {0, 0.6, 0};
+  camera.forward = {0, -1, 0};
+  camera.up = {1, 0, 0};
+  camera.field_of_view = 2.52;
+  camera.pixels = {48, 36};
+  scene.sensor = camera;
+  return scene;
+}
+
+AreaDetector detector(const Vec3& centre, double size) {
+  return {centre, {0, 1, 0}, size, size, {8, 8}, std::numbers::pi / 2};
+}
+
+RenderScene luneburg_lamp() {
+  RenderScene scene = filled_ball();
+  scene.lights = {FaceLight{{0, 0, -1}, 0.6}};
+  scene.sensor = detector({0, 0, 1}, 1);
+  return scene;
+}
+
+RenderScene waveguide_lamp() {
+  RenderScene scene = waveguide();
+  scene.lights = {FaceLight{{0, 0, 0}, 10}};
+  scene.sensor = detector({0, 0, 30}, 16);
+  return scene;
+}
+
+RenderScene slab_lamp() {
+  RenderScene scene{};
+  scene.field = Homogeneous{};
+  scene.step = 0.1;
+  scene.max_length = 1000;
+  scene.stage.boundary = Box{{-20, -20, 0}, {20, 20, 10}};
+  scene.stage.medium = fog(0.5, 0.01, 0.8);
+  scene.lights = {FaceLight{{0, 0, 0}, 5}};
+  scene.sensor = detector({0, 0, 10}, 20);
+  return scene;
+}
+
+RenderScene glass_ball_lamp() {
+  RenderScene scene{};
+  scene.field = Homogeneous{0.5};
+  scene.step = 0.1;
+  scene.max_length = 1000;
+  scene.stage.boundary = Box{{-10, -10, -10}, {10, 10, 10}};
+  scene.stage.medium = fog(0.05, 0, 0.5);
+  scene.stage.body = Body{Sphere{{0, 0, -2}, 4}};
+  scene.lights = {FaceLight{{0, 0, -10}, 6}};
+  scene.sensor = detector({0, 0, 10}, 10);
+  return scene;
+}
+
+RenderScene luneburg_wide_beam() {
+  RenderScene scene = filled_ball();
+  scene.lights = {BeamLight{{0, 0, -0.55}, {0, 0, 1}, 0.8}};
+  Camera camera = side_camera();
+  camera.x = {-0.95, 0, 0};
+  camera.field_of_view = 1.2;
+  camera.lens_radius = 0;
+  scene.sensor = camera;
+  return scene;
+}
+
+}  // namespace
+
+std::vector<NamedRender> render_scenes() {
+  return {{"luneburg", luneburg()},
+          {"waveguide", waveguide()},
+          {"luneburg_wide_beam", luneburg_wide_beam()},
+          {"luneburg_from_outside", luneburg_from_outside()}};
+}
+
+std::vector<NamedRender> lamp_scenes() {
+  return {{"luneburg", luneburg_lamp()},
+          {"waveguide", waveguide_lamp()},
+          {"slab", slab_lamp()},
+          {"glass_ball", glass_ball_lamp()}};
+}
+
+RenderScene even_luneburg() {
+  RenderScene scene = luneburg_lamp();
+  scene.lights = {FaceLight{{0, 0, 0}, std::numeric_limits<double>::infinity()}};
+  return scene;
+}
+
+RenderScene beam_on_glass_ball() {
+  RenderScene scene = glass_ball_lamp();
+  scene.lights = {BeamLight{{0, 0, -10}, {0, 0, 1}, 2}};
+  scene.sensor = detector({10, 0, 0}, 10);
+  return scene;
+}
+
+RenderScene foggy_ball() {
+  RenderScene scene = ball_under_beam();
+  scene.field = Homogeneous{0.5};
+  scene.stage.medium = fog(0.2, 0, 0.5);
+  return scene;
+}
+
+}  // namespace flatspeckle::bench

@@ -1,0 +1,213 @@
+// Free flights and phase functions at the ends of their ranges; densities of high contrast.
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numbers>
+
+#include <boost/math/quadrature/gauss.hpp>
+
+#include "bench/oracles/multiprecision.h"
+#include "bench/stability/extreme_rows.h"
+#include "grin/media/free_flight.h"
+#include "grin/media/phase_function.h"
+#include "grin/space/curved_space.h"
+#include "grin/space/straight_space.h"
+#include "mc/walk/stretched_flight.h"
+
+namespace flatspeckle::bench {
+
+namespace {
+
+using namespace grin;
+using namespace oracles;
+constexpr double pi = std::numbers::pi;
+/// With the least and largest of RandomStream.
+constexpr double uniforms[] = {0x1p-54, 1e-9, 0.25,     0.5 - 0x1p-53,
+                               0.5,     0.75, 1 - 1e-9, 1 - 0x1p-53};
+
+/// The distribution of what is sampled is u, relative to u; and the density in 50 digits.
+Finding bounded_flight(double optical_depth) {
+  using boost::multiprecision::expm1;
+  const double longest = 3;
+  const BoundedFlight flight{optical_depth / longest, longest};
+  const Wide mu_t(flight.mu_t), all = -expm1(-mu_t * longest);
+  double worst = 0;
+  for (const double u : uniforms) {
+    const double s = flight.sample(u);
+    if (!(s >= 0 && s <= longest * (1 + 1e-15))) return {1, 1e-15};
+    const Wide share = optical_depth == 0 ? Wide(s) / longest : Wide(-expm1(-mu_t * s) / all);
+    worst = larger(worst, static_cast<double>(abs(share / u - 1)));
+    const Wide density = optical_depth == 0 ? Wide(1) / longest : Wide(mu_t * exp(-mu_t * s) / all);
+    if (density > 1e-280)  // exponents of 1e4 keep their 1e-16, and so 1e-12 of their power
+      worst = larger(worst, 1e-3 * static_cast<double>(abs(flight.density(s) / density - 1)));
+  }
+  return {worst, 1e-15};
+}
+
+/// The mean weight of stretched flights is the chance of a collision, over 1e5 strata.
+Finding stretched_flight(double optical_depth) {
+  const mc::StretchedFlight flight(optical_depth, 1, 0.9);
+  constexpr int count = 100'000;
+  double sum = 0;
+  for (int i = 0; i < count; ++i) sum += flight.weight(flight.sample((i + 0.5) / count)) / count;
+  return {std::abs(sum / -std::expm1(-optical_depth) - 1), 1e-4};
+}
+
+/// The distribution of the sampled angle is u. Next to pi an angle is rounded by 4e-16, where a
+/// density of 318 (g = -0.999) makes 1.4e-13 of it.
+Finding flat_inverse(double g) {
+  double worst = 0;
+  for (const double u : uniforms) {
+    const Wide half = Wide(HenyeyGreenstein<2>{g}.sample(u)) / 2;
+    const Wide share = Wide(0.5) + atan2((1 + Wide(g)) * sin(half), (1 - Wide(g)) * cos(half)) /
+                                       boost::math::constants::pi<Wide>();
+    worst = larger(worst, static_cast<double>(abs(share - u)));
+  }
+  return {worst, g < 0 ? 2e-13 : 1e-15};
+}
+
+/// In space, by 1 - cos, which next to 2 is rounded by 4e-16 where its density is 1e6 (g = -0.999).
+Finding space_inverse(double g) {
+  double worst = 0;
+  for (const double u : uniforms) {
+    const Wide gap(HenyeyGreenstein<3>{g}.sample_one_minus_cosine(u)), wide_g(g);
+    const Wide rest = 1 - wide_g, root = sqrt(rest * rest + 2 * wide_g * gap);
+    // (1 - g^2) / (2 g) [1/root - 1/(1 + g)], without dividing by g
+    const Wide share =
+        g == 0 ? Wide(1 - gap / 2) : Wide(rest * (2 - gap) / (root * (1 + wide_g + root)));
+    worst = larger(worst, static_cast<double>(abs(share - u)));
+  }
+  return {worst, g < 0 ? 5e-10 : 1e-15};
+}
+
+/// Over all directions 1, the mean cosine g. Backwards 1 - cos, about 2, is rounded by 4e-16 beside
+/// (1 + g)^2 = 1e-6.
+template <int dimension>
+Finding normalisation(double g) {
+  const HenyeyGreenstein<dimension> phase{g};
+  double sum = 0, cosine = 0;
+  for (double low = 0, high = 1e-6; low < pi; low = high, high = std::min(2 * high, pi)) {
+    const auto moment = [&](auto weight) {
+      const auto both = [&](double t) {
+        const auto at = [&](double angle) {
+          const double ring = dimension == 2 ? 2 : 2 * pi * std::sin(angle);
+          return ring * phase.density(angle) * weight(angle);
+        };
+        return at(t) + at(pi - t);
+      };
+      // from both ends to the middle, as the lobe may be at either
+      const double a = std::min(low, pi / 2), b = std::min(high, pi / 2);
+      return boost::math::quadrature::gauss<double, 30>::integrate(both, a, b);
+    };
+    sum += moment([](double) { return 1.0; });
+    cosine += moment([](double angle) { return std::cos(angle); });
+  }
+  return {larger(std::abs(sum - 1), std::abs(cosine - g)), g < 0 ? 1e-9 : 1e-12};
+}
+
+/// Directions turned a million times stay unit vectors.
+Finding long_walk() {
+  const SpacePhaseFunction phase{SpacePhaseFunction::Kind::henyey_greenstein, 0.999};
+  double worst = 0;
+  for (Vec3 d : {Vec3(0, 0, 1), Vec3(0, 0, -1), Vec3(0.6, 0, -0.8)}) {
+    RandomStream random(1, 82, 0);
+    for (int i = 0; i < 300'000; ++i) d = phase.sample(d, random);
+    worst = larger(worst, std::abs(d.norm() - 1));
+  }
+  return {worst, 1e-14};
+}
+
+constexpr RenderPlan straight{.curved = false};
+
+/// [0, 4] x [0, 1]^2, density 1 at x = 0 and 1, 1e6 at 2, 1 at 3 and 4, linear between them: in all
+/// 1e6 + 2 along x.
+Stage spike(double mu_s) {
+  const FieldGrid grid{Vec3::Zero(), Vec3::Ones(), {5, 2, 2}};
+  std::vector<double> density(grid.size(), 1);
+  for (int i = 8; i < 12; ++i) density[i] = 1e6;
+  return {Box{Vec3::Zero(), Vec3(4, 1, 1)},
+          {.mu_s = mu_s, .density = std::make_shared<const DensityGrid>(grid, density)}};
+}
+
+/// Flights through the spike, an optical depth of 1: how many leave.
+template <Space S>
+Finding through_spike(const S& space) {
+  RandomStream random(4, 90, 0);
+  constexpr int count = 20'000;
+  double left = 0;
+  for (int i = 0; i < count; ++i)
+    left += space.fly({Vec3(0, 0.4, 0.6)}, Vec3::UnitX(), random).end == Flight::End::boundary;
+  const double share = left / count, expected = std::exp(-(1e6 + 2) * 1e-6);
+  return in_errors(share, std::sqrt(expected * (1 - expected) / count), expected, 0.02);
+}
+
+/// Beside it tentative collisions are 1e6 for each true one; transmittance by ratio tracking along
+/// x = 0.5, where the density is 1.
+Finding beside_spike() {
+  const StraightSpace<straight> space(spike(0.3), 0);
+  RandomStream random(5, 90, 0);
+  ConnectionStatistics statistics;
+  constexpr int count = 25;
+  double sum = 0, squares = 0;
+  for (int i = 0; i < count; ++i) {
+    const auto join =
+        space.join({Vec3(0.5, 0.01, 0.5)}, {Vec3(0.5, 0.99, 0.5)}, random, statistics);
+    sum += join->transmittance / count;
+    squares += join->transmittance * join->transmittance / count;
+  }
+  return in_errors(sum, std::sqrt((squares - sum * sum) / count), std::exp(-0.3 * 0.98), 0.01);
+}
+
+Finding through_vacuum() {
+  const FieldGrid grid{Vec3::Zero(), Vec3::Ones(), {5, 2, 2}};
+  const auto empty = std::make_shared<const DensityGrid>(grid, std::vector<double>(grid.size()));
+  const StraightSpace<straight> space(
+      {Box{Vec3::Zero(), Vec3(4, 1, 1)}, {.mu_s = 1e6, .density = empty}}, 0);
+  RandomStream random(6, 90, 0);
+  const Flight flight = space.fly({Vec3(0, 0.4, 0.6)}, Vec3::UnitX(), random);
+  return {flight.end == Flight::End::boundary ? std::abs(flight.arc_length - 4) : 1, 1e-14};
+}
+
+void add_flights(ExtremeRows& rows) {
+  for (const double depth : {0.0, 1e-280, 1e-12, 1.0, 40.0, 1e4})
+    rows.add("free flight within OD " + short_number(depth), "distribution, density in 50 digits",
+             [=] { return bounded_flight(depth); });
+  for (const double depth : {1e-12, 1e4})
+    rows.add("stretched flight within OD " + short_number(depth), "mean weight",
+             [=] { return stretched_flight(depth); });
+}
+
+void add_phases(ExtremeRows& rows) {
+  for (const double g : {-0.999, 0.0, 1e-300, 0.999}) {
+    const std::string name = "Henyey-Greenstein, g " + short_number(g);
+    rows.add(name + ", flatland, u to 2^-54", "inverse of its distribution, 50 digits",
+             [=] { return flat_inverse(g); });
+    rows.add(name + ", space, u to 2^-54", "inverse of its distribution, 50 digits",
+             [=] { return space_inverse(g); });
+    rows.add(name + ", both", "integral 1, mean cosine g",
+             [=] { return worse(normalisation<2>(g), normalisation<3>(g)); });
+  }
+  rows.add("Henyey-Greenstein, g 0.999, 3e5 turns in space", "length 1", long_walk);
+}
+
+}  // namespace
+
+std::vector<ExtremeCase> flight_extremes() {
+  ExtremeRows rows("grin");
+  add_flights(rows);
+  add_phases(rows);
+  rows.add("density of contrast 1e6, through its spike", "exp(-OD), in errors",
+           [] { return through_spike(StraightSpace<straight>(spike(1e-6), 0)); });
+  rows.add("density of contrast 1e6, curved, n - 1 = 1e-6", "exp(-OD), in errors", [] {
+    // the bend, 4e-6, changes the depth by as much
+    const auto space =
+        make_curved_space(LinearRamp{0, 1e-6 * Vec3::UnitY()}, spike(1e-6), {0.5, 8});
+    return through_spike(*space);
+  });
+  rows.add("density of contrast 1e6, beside its spike", "exp(-OD), in errors", beside_spike);
+  rows.add("density 0 everywhere, mu_s 1e6", "flies through", through_vacuum);
+  return std::move(rows).rows();
+}
+
+}  // namespace flatspeckle::bench

@@ -1,0 +1,348 @@
+// Rays that turn, graze, focus and go on for ever.
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <Eigen/Geometry>
+
+#include "bench/oracles/harmonic_ball.h"
+#include "bench/scenes/random_fields.h"
+#include "bench/stability/extreme_rows.h"
+#include "grin/connections/geometric_spreading.h"
+#include "grin/fields/guides.h"
+#include "grin/fields/lenses.h"
+#include "grin/fields/ramps.h"
+#include "grin/fields/ultrasound.h"
+#include "grin/rays/ray_invariants.h"
+#include "grin/rays/trace.h"
+
+namespace flatspeckle::bench {
+
+namespace {
+
+using namespace grin;
+using oracles::HarmonicBall;
+using oracles::HarmonicCurve;
+constexpr double pi = std::numbers::pi;
+const std::vector<Surface> nothing;
+
+ControlledSteps<Sharma> controlled(double tolerance, double longest) {
+  return {tolerance, 0.01, longest};
+}
+
+/// 1: what should have happened did not.
+Finding yes(bool happened) {
+  return {happened ? 0.0 : 1.0, 0};
+}
+
+/// From the plane of a beam to the focus on the far rim: place, and optical path pi/2 + 1.
+Finding luneburg(double height, double limit) {
+  const Luneburg lens{LuneburgProfile{1, 0.3}};
+  const std::vector<Surface> rim{Sphere{}};
+  const TraceLimits limits{1e3, 1e-12};
+  FixedSteps<Leapfrog> straight{1};
+  auto steps = controlled(1e-12, 1);
+  RayState ray = start_ray(Homogeneous{}, {-1, height, 0}, Vec3::UnitX());
+  if (height > 0) trace(Homogeneous{}, rim, limits, straight, ray);
+  const TraceEnd end = trace(lens, rim, limits, steps, ray);
+  if (end.stop != Stop::surface) return yes(false);
+  return {larger((ray.x - Vec3::UnitX()).norm(), std::abs(ray.optical_path - (pi / 2 + 1))), limit};
+}
+
+Finding beside_the_rim() {
+  const std::vector<Surface> rim{Sphere{}};
+  FixedSteps<Leapfrog> straight{1};
+  RayState ray = start_ray(Homogeneous{}, {-1, 1 + 1e-9, 0}, Vec3::UnitX());
+  const TraceEnd end = trace(Homogeneous{}, rim, {2, 1e-12}, straight, ray);
+  return {end.stop == Stop::length ? (ray.x - Vec3(1, 1 + 1e-9, 0)).norm() : 1, 1e-15};
+}
+
+/// On a circle of radius 1/sin(angle) through a point of the unit sphere and its image: far out the
+/// index is angle^2/4. Place, and optical path pi n0 a / 2; what v^2 - n^2 loses far out, where n
+/// is small, weighs the more further in, and n = 1 + excess is rounded to 2^-53 there in each of
+/// some hundred steps of nine looks at it.
+Finding fisheye_far_out(double angle) {
+  const Fisheye eye(FisheyeProfile{0.5, 1});
+  auto steps = controlled(1e-12, 1e9);
+  const Vec3 start = Vec3(1, 2, 2) / 3, across = Vec3(2, 1, -2) / 3;
+  RayState ray = start_ray(eye, start, std::cos(angle) * start + std::sin(angle) * across);
+  const double arc = 2 * (pi - angle) / std::sin(angle);
+  const TraceEnd end = trace(eye, nothing, {arc, 1e-11 * arc}, steps, ray);
+  if (end.stop != Stop::length) return yes(false);
+  const double rounded = 1000 * std::ldexp(4 / (angle * angle), -53);
+  return {larger((ray.x + start).norm(), std::abs(ray.optical_path - pi * 0.75)),
+          1e-9 / angle + rounded};
+}
+
+/// n = 1.5 + slope z: n = n0 cosh(slope sigma) + v_z sinh(slope sigma), x = v_x sigma, up to the
+/// turning point and down to the start again.
+Finding turning_point(double slope, double cosine) {
+  const LinearRamp ramp{0.5, Vec3(0, 0, slope)};
+  const RayState start = start_ray(ramp, Vec3::Zero(), {std::sqrt(1 - cosine * cosine), 0, cosine});
+  const double sigma = cosine > 0 ? -2 * std::atanh(start.v[2] / 1.5) / slope : -1 / slope;
+  RayState ray = start;
+  constexpr int count = 2000;
+  for (int i = 0; i < count; ++i) Sharma::step(ramp, ray, sigma / count);
+  const double along = slope * sigma;
+  const double n = 1.5 * std::cosh(along) + start.v[2] * std::sinh(along);
+  const double size = std::abs(1 / slope);
+  return {larger({std::abs(ray.x[0] - start.v[0] * sigma) / size,
+                  std::abs(ray.x[2] - (n - 1.5) / slope) / size,
+                  std::abs(index(ramp, ray.x) - ray.v.norm())}),
+          1e-11};
+}
+
+/// Rays 1e-8 to either side of Snell's critical angle, and the angle of one that passes.
+Finding critical_angle(double width) {
+  const double n1 = 1.5, n2 = 1.2;
+  const TanhRamp ramp{n1 - 1, n2 - 1, width};
+  const std::vector<Surface> ends{Plane{{0, 0, -20 * width}, -Vec3::UnitZ()},
+                                  Plane{{0, 0, 20 * width}, Vec3::UnitZ()}};
+  auto steps = controlled(1e-11, width);
+  const auto passes = [&](double sine, RayState& ray) {
+    ray = start_ray(ramp, {0, 0, -19 * width}, {sine, 0, std::sqrt(1 - sine * sine)});
+    const TraceEnd end = trace(ramp, ends, {1e6 * width, 1e-9 * width, 500'000}, steps, ray);
+    return end.stop == Stop::surface && end.surface == 1;
+  };
+  RayState ray;
+  const bool right = passes(n2 / n1 * (1 - 1e-8), ray) && !passes(n2 / n1 * (1 + 1e-8), ray);
+  if (!right || !passes(0.5, ray)) return yes(false);
+  return {std::abs(ray.v[0] / ray.v.norm() - 0.5 * n1 / n2), 1e-8};
+}
+
+/// |v| - n over 1e4 oscillations at 40 steps each: bounded, as steps are symplectic; what is along
+/// the guide is kept to the last bit.
+Finding guide_index() {
+  const ParabolicGuide guide({0.5, 1});
+  RayState ray = start_ray(guide, {0.5, 0, 0}, {0.1, 0.3, 1});
+  const double along = ray.v[2];
+  double worst = 0;
+  for (int i = 0; i < 400'000; ++i) {
+    Yoshida4::step(guide, ray, 2 * pi / 40);
+    worst = larger(worst, std::abs(ray_invariants(guide, ray).index_mismatch));
+  }
+  return ray.v[2] == along ? Finding{worst, 2e-5} : yes(false);
+}
+
+/// Place after 1e4 oscillations at 400 steps each: a phase error of 0.1 h^4 a radian.
+Finding guide_phase() {
+  const ParabolicGuide guide({0.5, 1});
+  RayState ray = start_ray(guide, {0.5, 0, 0}, {0.1, 0.3, 1});
+  const RayState start = ray;
+  const double h = 2 * pi / 400;
+  constexpr int count = 4'000'000;
+  for (int i = 0; i < count; ++i) Yoshida4::step(guide, ray, h);
+  const double off = (ray.x - start.x - Vec3(0, 0, start.v[2] * h * count)).norm();
+  return {off, 0.1 * std::pow(h, 4) * h * count};
+}
+
+/// 1e4 oscillations and as many back.
+Finding guide_and_back() {
+  const ParabolicGuide guide({0.5, 1});
+  RayState ray = start_ray(guide, {0.5, 0, 0}, {0.1, 0.3, 1});
+  const RayState start = ray;
+  for (const double h : {2 * pi / 40, -2 * pi / 40})
+    for (int i = 0; i < 400'000; ++i) Yoshida4::step(guide, ray, h);
+  // in z coordinates of 6e4 are rounded 8e5 times
+  return {larger((ray.x - start.x).norm(), (ray.v - start.v).norm()), 1e-8};
+}
+
+/// dx/dv0 across the guide is sin(sigma) after 100 oscillations and a quarter.
+Finding guide_tangent() {
+  const ParabolicGuide guide({0.5, 1});
+  RayState ray = start_ray(guide, {0.3, 0, 0}, {0.1, 0.2, 1});
+  RayTangent tangent;
+  const double h = 2 * pi / 400;
+  constexpr int count = 40'100;
+  for (int i = 0; i < count; ++i) Yoshida4::step(guide, ray, tangent, h);
+  Mat3 exact = Mat3::Identity();
+  exact(2, 2) = h * count;
+  return {(tangent.dx - exact).norm(), 0.1 * std::pow(h, 4) * h * count};
+}
+
+/// Period 2 pi 1e4; the optical path beyond the length is 1e-7 of it.
+Finding faint_guide() {
+  const ParabolicGuide guide({1e-6, 1e-4});
+  RayState ray = start_ray(guide, {0.3, 0, 0}, Vec3::UnitZ());
+  const double beta = ray.v[2], sigma = 1.25 * 2 * pi / 1e-4, n0 = 1 + 1e-6;
+  for (int i = 0; i < 1000; ++i) Yoshida4::step(guide, ray, sigma / 1000);
+  const double path = beta * sigma * (n0 * n0 + beta * beta) / (2 * beta);
+  return {larger({std::abs(ray.x[0]) / 0.3, std::abs(ray.v[0] / -0.3e-4 - 1),
+                  std::abs(ray.optical_path / path - 1) * 1e7}),
+          1e-7};
+}
+
+/// No dispersion: optical path n0 times the length for every slope, over 1000 half periods.
+Finding sech_dispersion() {
+  const double n0 = 1.5, alpha = 0.6, length = 1000 * pi / alpha;
+  const SechGuide guide({n0 - 1, alpha});
+  const std::vector<Surface> end{Plane{{0, 0, length}, Vec3::UnitZ()}};
+  double worst = 0;
+  for (const double slope : {0.0, 0.3, 0.8}) {
+    ControlledSteps<Yoshida4> steps{1e-12, 0.01, 1};
+    RayState ray = start_ray(guide, Vec3::Zero(), {slope * 0.6, slope * 0.8, 1});
+    if (trace(guide, end, {1e5, 1e-9}, steps, ray).stop != Stop::surface) return yes(false);
+    worst = larger(worst, std::abs(ray.optical_path / (n0 * length) - 1));
+  }
+  return {worst, 1e-9};
+}
+
+/// At 1e8 coordinates are rounded to 1e-8 and steps must not shrink for it.
+Finding far_from_origin() {
+  const double start = 1e8;
+  const ParabolicGuide guide({0.5, 1});
+  const std::vector<Surface> end{Plane{{0, 0, start + 10}, Vec3::UnitZ()}};
+  auto steps = controlled(1e-11, 1);
+  RayState ray = start_ray(guide, {0, 0, start}, {0.2, 0, 1});
+  const Vec3 v = ray.v;
+  if (trace(guide, end, {20, 1e-14 * start}, steps, ray).stop != Stop::surface) return yes(false);
+  return {std::abs(ray.x[0] - v[0] * std::sin(10 / v[2])), 1e-6};
+}
+
+struct Beam {
+  RayState end;
+  double spreading;
+  int caustics;
+};
+template <IndexField F>
+Beam beam(const F& field, RayState ray, double sigma, int steps) {
+  const RayState start = ray;
+  RayTangent tangent;
+  CausticCount caustics(start.v.norm(), start.v);
+  for (int i = 0; i < steps; ++i) {
+    Sharma::step(field, ray, tangent, sigma / steps);
+    caustics.pass(ray, tangent);
+  }
+  return {ray, signed_spreading(tangent, start.v.norm(), start.v, ray.v), caustics.count()};
+}
+
+/// Luneburg's ball: |J| = n0^2 sin^2 sigma (v0.v) about its foci, where it is 0 to second order:
+/// 1e-6 beyond, places that are right to 1e-13 make 1e-7 of it.
+Finding ball_focus(double beyond) {
+  const HarmonicBall field{{}};
+  const RayState start = start_ray(field, {0.3, 0.2, -0.4}, {0.5, -0.3, 0.6});
+  const HarmonicCurve exact{start.x, start.v, pi + beyond};
+  const Beam found = beam(field, start, exact.sigma, 3000);
+  if (beyond == 0) return {std::abs(found.spreading), 1e-20};
+  if (found.caustics != exact.caustics()) return yes(false);
+  return {std::abs(std::abs(found.spreading) / exact.spreading() - 1), 1e-6};
+}
+
+/// The image of a fisheye: both widths vanish at once.
+Finding fisheye_focus() {
+  const double n0 = 1.7, a = 0.8;
+  const Fisheye field({n0 - 1, a});
+  const Vec3 from(0.3, 0.2, -0.4);
+  auto steps = controlled(1e-12, 0.01);
+  RayState ray = start_ray(field, from, {0.1, 0.9, 0.3});
+  const RayState start = ray;
+  RayTangent tangent;
+  const auto left = [&] { return pi * n0 * a / 2 - ray.optical_path; };
+  while (left() > 0.02) steps.advance(field, ray, tangent);
+  for (int newton = 0; newton < 10; ++newton)
+    for (int part = 0, parts = 10; part < parts; ++part)
+      Sharma::step(field, ray, tangent, left() / (parts - part) / ray.v.squaredNorm());
+  const Vec3 image = -a * a / from.squaredNorm() * from;
+  return {larger((ray.x - image).norm(),
+                 std::abs(signed_spreading(tangent, start.v.norm(), start.v, ray.v))),
+          1e-8};
+}
+
+/// A quarter period from 1e-6 off the axis of sound: C28's guide; beside it (kr rho)^2 / 16.
+Finding sound_axis() {
+  const double n0 = 1.33, sound = 1e-3, kr = 7, off = 1e-6;
+  const StandingWave wave(n0 - 1, sound, 0, kr, 2);
+  const double alpha = std::sqrt((n0 + sound) * sound * kr * kr / 2), sigma = pi / (2 * alpha);
+  RayState ray = start_ray(wave, {off, 0, 0}, Vec3::UnitZ());
+  RayState axis = start_ray(wave, Vec3::Zero(), Vec3::UnitZ());
+  for (int i = 0; i < 1000; ++i) {
+    Yoshida4::step(wave, ray, sigma / 1000);
+    Yoshida4::step(wave, axis, sigma / 1000);
+  }
+  return {larger({std::abs(ray.x[0]) / off, std::abs(ray.v[0] / (off * alpha) + 1),
+                  std::hypot(axis.x[0], axis.x[1])}),
+          1e-9};
+}
+
+/// n = 1 - z: straight up a ray creeps towards z = 1; aside it is turned back in time.
+Finding no_index() {
+  const LinearRamp ramp{0, {0, 0, -1}};
+  auto careful = controlled(1e-10, 1);
+  RayState up = start_ray(ramp, Vec3::Zero(), Vec3::UnitZ());
+  const bool lost = trace(ramp, nothing, {1e3, 1e-11}, careful, up).stop == Stop::lost;
+  auto again = controlled(1e-10, 1);
+  RayState aside = start_ray(ramp, Vec3::Zero(), {1e-3, 0, 1});
+  const TraceEnd back = trace(ramp, nothing, {1.5, 1e-11}, again, aside);
+  return yes(lost && back.stop == Stop::length && aside.v[2] < 0);
+}
+
+Finding beyond_the_guide() {
+  const ParabolicGuide guide({0.5, 1});  // no index beyond rho = 1.5
+  FixedSteps<Sharma> wide{2};
+  RayState out{{1, 0, 0}, {3, 0, 1}};
+  return yes(trace(guide, nothing, {1e3, 1e-11}, wide, out).stop == Stop::lost);
+}
+
+/// Of order 64 the wave is a product of (kr rho)^64 and a profile; a table reaches to 1e4.
+Finding sound_too_far() {
+  const StandingWave wave(0.3, 0.01, 64, 7, 70);
+  auto steps = controlled(1e-10, 1);
+  RayState ray = start_ray(wave, {1e5 / 7, 0, 0}, Vec3::UnitZ());
+  return yes(trace(wave, nothing, {10, 1e-9}, steps, ray).stop == Stop::lost);
+}
+
+void add_lenses(ExtremeRows& rows) {
+  for (const double height : {0.0, 0.7, 0.999})
+    rows.add("Luneburg lens, beam at height " + short_number(height), "focus, optical path",
+             [=] { return luneburg(height, 1e-10); });
+  // the rim, met at 4e-5 rad, is found to 1e-12 across and so to 2e-8 along
+  rows.add("Luneburg lens, beam at height 1 - 1e-9, rim grazed", "focus, optical path",
+           [] { return luneburg(1 - 1e-9, 1e-7); });
+  rows.add("Luneburg lens, beam at height 1 + 1e-9", "passes straight", beside_the_rim);
+  for (const double angle : {0.02, 0.002, 0.0002})
+    rows.add("fisheye, circle of " + short_number(1 / angle) + " radii", "image, optical path",
+             [=] { return fisheye_far_out(angle); });
+  rows.add("fisheye, beam from a point to its image", "image, |J| = 0", fisheye_focus);
+  for (const double beyond : {0.0, -1e-6, 1e-6, 1e-3})
+    rows.add("caustic of Luneburg's ball, " + short_number(beyond) + " beyond sigma = pi",
+             "|J|, caustics passed", [=] { return ball_focus(beyond); });
+}
+
+void add_ramps(ExtremeRows& rows) {
+  for (const double slope : {-1e-6, -1.0, -1e6})
+    rows.add("turning point, slope " + short_number(slope), "catenary",
+             [=] { return turning_point(slope, 0.6); });
+  rows.add("turning point, at exactly pi/2", "catenary", [] { return turning_point(-1, 0); });
+  for (const double width : {1e-3, 1e-6})
+    rows.add("ramp of width " + short_number(width) + ", 1e-8 about the critical angle",
+             "passes or turns, Snell", [=] { return critical_angle(width); });
+  rows.add("ramp where n falls to 0", "lost, or turned back", no_index);
+  rows.add("ultrasound of order 64 at kr rho = 1e5: (kr rho)^64 is no number", "lost",
+           sound_too_far);
+  rows.add("step beyond the index of a guide", "lost", beyond_the_guide);
+}
+
+void add_guides(ExtremeRows& rows) {
+  rows.add("guide, 1e4 oscillations, 40 steps each", "|v| - n, v along", guide_index);
+  rows.add_slow("guide, 1e4 oscillations, 400 steps each", "place in closed form", guide_phase);
+  rows.add("guide, 1e4 oscillations and back", "place, direction", guide_and_back);
+  rows.add("guide, tangent of 100 oscillations", "dx/dv0 in closed form", guide_tangent);
+  rows.add("guide of n - 1 = 1e-6, period 6e4", "place, slope, path beyond length", faint_guide);
+  rows.add_slow("sech guide, 1000 half periods, slopes to 0.8", "optical path n0 L",
+                sech_dispersion);
+  rows.add("guide at coordinates of 1e8", "place in closed form", far_from_origin);
+  rows.add("axis of ultrasound, and 1e-6 beside it", "guide of C28", sound_axis);
+}
+
+}  // namespace
+
+std::vector<ExtremeCase> ray_extremes() {
+  ExtremeRows rows("grin");
+  add_lenses(rows);
+  add_ramps(rows);
+  add_guides(rows);
+  return std::move(rows).rows();
+}
+
+}  // namespace flatspeckle::bench

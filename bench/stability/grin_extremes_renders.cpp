@@ -1,0 +1,181 @@
+// Pictures of stiff scenes: the white furnace, and slabs as thin, deep and peaked as they come.
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "bench/oracles/peierls_slab.h"
+#include "bench/scenes/furnaces.h"
+#include "bench/stability/extreme_rows.h"
+
+namespace flatspeckle::bench {
+
+namespace {
+
+using namespace grin;
+using namespace oracles;
+constexpr double pi = std::numbers::pi;
+
+struct Picture {
+  Estimate pixels;
+  TransportCounts counts;
+};
+Picture rendered(const RenderScene& scene, RenderMethod method, std::uint64_t samples) {
+  const RenderJob job = render_job(scene, {method}, 1);
+  RunOptions options;
+  options.stop.samples = samples;
+  options.threads = 1;
+  RunState state;
+  run_batches(job.batches, options, state);
+  return {rendered_picture(job, state.sums).steady, *job.counts};
+}
+
+/// The mean of n^2 over the face at z = 1, and a camera that reads 1 (C24).
+Finding furnace(RenderScene scene, std::uint64_t samples) {
+  const double expected = pi * mean_square_index(scene);
+  const Picture face = rendered(scene, RenderMethod::bidirectional, samples);
+  Finding worst = in_errors(face.pixels.value[0], face.pixels.error[0], expected, 0.1);
+  scene.sensor = Camera{Vec3(0.2, -0.1, -0.8), Vec3::UnitZ(), Vec3::UnitY(), 1.2, {1, 1}};
+  const Picture inside = rendered(scene, RenderMethod::path, samples);
+  // paths that absorb nothing bring back exactly what they find: the error may be 0
+  const double error = std::max(inside.pixels.error[0], 1e-12);
+  worst = worse(worst, in_errors(inside.pixels.value[0], error, 1, 0.1));
+  if (face.counts.lost_values + inside.counts.lost_values > 0) return {1, 0};
+  return worst;
+}
+
+RenderScene in_box(AnyIndexField field, const ScatteringMedium& medium) {
+  return scene_in(std::move(field), {unit_box(), medium}, environment(), whole_face());
+}
+
+/// Matched index under a thin beam; a detector on all of a face.
+RenderScene slab(const ScatteringMedium& medium, double thickness, bool reflected) {
+  const double half = 100 * thickness;
+  RenderScene scene{};
+  scene.step = 1;
+  scene.max_length = 1e9 * thickness;
+  scene.stage.boundary = Box{Vec3(-half, -half, 0), Vec3(half, half, thickness)};
+  scene.stage.medium = medium;
+  scene.lights = {BeamLight{{0, 0, 0}, {0, 0, 1}, thickness / 100}};
+  scene.sensor =
+      AreaDetector{{0, 0, reflected ? 0 : thickness}, {0, 1, 0}, 2 * half, 2 * half, {}, pi / 2};
+  return scene;
+}
+
+/// The beam's power of 1 that reaches a face.
+Estimate share(const ScatteringMedium& medium, double thickness, bool reflected,
+               RenderMethod method, std::uint64_t samples) {
+  const RenderScene scene = slab(medium, thickness, reflected);
+  Estimate found = rendered(scene, method, samples).pixels;
+  const auto& detector = std::get<AreaDetector>(scene.sensor);
+  const double area = detector.width * detector.height;
+  found.value[0] *= area;
+  found.error[0] *= area;
+  return found;
+}
+
+Finding share_row(const ScatteringMedium& medium, double thickness, bool reflected,
+                  RenderMethod method, std::uint64_t samples, double expected, double largest_error,
+                  double accuracy = 0) {
+  const Estimate found = share(medium, thickness, reflected, method, samples);
+  return in_errors(found.value[0], found.error[0], expected, largest_error, accuracy);
+}
+
+/// Both faces together: all of it.
+Finding slab_energy(const ScatteringMedium& medium, std::uint64_t samples) {
+  const Estimate back = share(medium, 1, true, RenderMethod::light, samples),
+                 through = share(medium, 1, false, RenderMethod::light, samples);
+  return in_errors(back.value[0] + through.value[0], std::hypot(back.error[0], through.error[0]), 1,
+                   0.05);
+}
+
+void add_furnaces(ExtremeRows& rows) {
+  const std::string white = "L / n^2 = 1 at a face and within, in errors";
+  const ScatteringMedium peaked = fog(5, 0, 0.999);
+  rows.add("white furnace, g 0.999", white,
+           [=] { return furnace(in_box(Homogeneous{0.3}, peaked), 4000); });
+  rows.add_slow("white furnace, OD 200", white,
+                [] { return furnace(in_box(Homogeneous{0.3}, fog(100, 0, 0)), 2000); });
+  rows.add_slow("white furnace, fisheye, n from 4 to 0.12", white, [=] {
+    RenderScene scene = in_box(Fisheye({.centre_excess = 3, .radius = 0.3}), peaked);
+    scene.step = 0.02;
+    return furnace(scene, 1000);
+  });
+  rows.add_slow("white furnace, ramp of width 0.02, critical angle", white, [=] {
+    RenderScene scene = in_box(TanhRamp{0.5, 0.1, 0.02}, peaked);
+    scene.step = 0.005;
+    return furnace(scene, 1000);
+  });
+  rows.add("white furnace, guide of n - 1 = 1e-6", white, [=] {
+    return furnace(in_box(ParabolicGuide({1e-6, 1e-3}), peaked), 2000);
+  });
+  rows.add_slow("white furnace, sound of kr 40, all phases", white, [=] {
+    RenderScene scene = in_box(StandingWave(0.3, 0.05, 0, 40, 80), peaked);
+    scene.step = 0.01;
+    scene.random_phase = true;
+    return furnace(scene, 2000);
+  });
+  rows.add("white furnace, Luneburg lens and its rim", white, [=] {
+    RenderScene scene = in_box(Luneburg(LuneburgProfile{.radius = 0.6}, Vec3(0.1, 0, 0.1)), peaked);
+    scene.stage.body = Body{Sphere{Vec3(0.1, 0, 0.1), 0.6}, peaked};
+    return furnace(scene, 2000);
+  });
+  rows.add("white furnace, ball of index 3, light trapped", white, [=] {
+    RenderScene scene = in_box(Homogeneous{2}, fog(1, 0, 0));
+    scene.stage.body = Body{Sphere{Vec3(0.1, 0, 0.1), 0.6}, fog(1, 0, 0)};
+    return furnace(scene, 4000);
+  });
+  rows.add("white furnace, density of contrast 1e6", white, [] {
+    const FieldGrid grid{Vec3::Constant(-0.8), Vec3::Constant(0.4), {5, 5, 5}};
+    std::vector<double> density(grid.size(), 1e-3);
+    density[62] = 1e3;
+    return furnace(in_box(Homogeneous{0.3}, {0.1,
+                                             0,
+                                             {SpacePhaseFunction::Kind::rayleigh},
+                                             std::make_shared<DensityGrid>(grid, density)}),
+                   2000);
+  });
+}
+
+void add_slabs(ExtremeRows& rows) {
+  // flights are not forced to collide, so that thinner slabs take ever more of them
+  rows.add("slab of OD 0.01, reflected", "Peierls' equation, in errors", [] {
+    return share_row({0.01, 0}, 1, true, RenderMethod::light, 100'000,
+                     isotropic_slab(0.01, 1).reflected, 0.05);
+  });
+  rows.add("slab of OD 2, g 0.999", "reflected + transmitted = 1, in errors",
+           [] { return slab_energy(fog(2, 0, 0.999), 20'000); });
+  rows.add("slab of OD 100", "reflected + transmitted = 1, in errors", [] {
+    return slab_energy({100, 0}, 2000);
+  });
+  rows.add_slow("slab of OD 1000, reflected", "Milne, in errors", [] {
+    const double through = 2.9078 / std::numbers::sqrt3 / (1000 + 2 * 0.7104);  // H(1) / sqrt 3
+    return share_row({1000, 0}, 1, true, RenderMethod::light, 10'000, 1 - through, 0.01);
+  });
+  rows.add_slow("half-space of albedo 1 - 1e-4, reflected", "Chandrasekhar's H, in errors", [] {
+    const double albedo = 0.9999;
+    return share_row({1000 * albedo, 1000 * (1 - albedo)}, 1, true, RenderMethod::light, 10'000,
+                     isotropic_half_space(albedo), 0.01);
+  });
+  rows.add("slab of OD 2, albedo 0.5", "Peierls' equation, in errors", [] {
+    const auto exact = isotropic_slab(2, 0.5);
+    const auto row = [](bool reflected, double expected) {
+      return share_row({1, 1}, 1, reflected, RenderMethod::bidirectional, 20'000, expected, 0.05);
+    };
+    return worse(row(true, exact.reflected), row(false, exact.transmitted));
+  });
+  rows.add("slab of OD 30 that absorbs all: 1e-13 comes through", "exp(-30), in errors", [] {
+    return share_row({0, 30}, 1, false, RenderMethod::light, 1000, std::exp(-30.0), 1e-9, 1e-12);
+  });
+}
+
+}  // namespace
+
+std::vector<ExtremeCase> render_extremes() {
+  ExtremeRows rows("grin");
+  add_furnaces(rows);
+  add_slabs(rows);
+  return std::move(rows).rows();
+}
+
+}  // namespace flatspeckle::bench

@@ -1,0 +1,182 @@
+// Paths in boxes: needles, sheets and specks; ends on the edge of the medium and in it.
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "bench/stability/extreme_rows.h"
+#include "bench/stability/mc_extremes.h"
+#include "mc/ends/coherent_field.h"
+#include "mc/ends/scattering.h"
+
+namespace flatspeckle::bench {
+
+namespace {
+
+using mc::ReversedPaths;
+constexpr double pi = std::numbers::pi, k = 2 * pi;
+
+/// Single scattering alone: mu_s p area.
+Finding speck() {
+  const double size = 1e-6, g = 0.5;
+  const auto request = intensity_request({0, 1.0, pi / 2}, far_views({0.3, pi / 2, -2.0}));
+  const Scene scene = hg_box(size, {size, g, 1, size}, request);
+  const Estimate found = covariance(scene, ReversedPaths::no, 4000);
+  double worst = 0;
+  for (std::size_t c = 0; c < request.channels.size(); ++c) {
+    const Channel channel = request.channels[c];
+    const double angle = request.views[channel.view].angle - request.lights[channel.light].angle;
+    const double p = (1 - g * g) / (2 * pi * (1 + g * g - 2 * g * std::cos(angle)));
+    worst = larger(worst, std::abs(found.value[c] / (p * size * size) - 1.0));
+  }
+  return {worst, 1e-5};  // the optical depth, and what is scattered twice
+}
+
+/// A needle lit and seen across is a sheet lit and seen through.
+Finding quarter_turn() {
+  const auto across = intensity_request({pi / 2}, far_views({pi / 2 + 0.4, -pi / 2, pi / 2 + 1.5}));
+  const auto through = intensity_request({0}, far_views({0.4, pi, 1.5}));
+  const Bulk needle{1e3, 0.5, 0.9, 1e3}, sheet{1e-3, 0.5, 0.9, 1e-3};
+  const Estimate a = covariance(hg_box(1e-3, needle, across), ReversedPaths::no, 16000, 1);
+  const Estimate b = covariance(hg_box(1e3, sheet, through), ReversedPaths::no, 16000, 2);
+  Finding worst{0, 4};
+  for (std::size_t c = 0; c < a.value.size(); ++c)
+    worst =
+        worse(worst, in_errors(a.value[c], std::hypot(a.error[c], b.error[c]), b.value[c], 0.1));
+  return worst;
+}
+
+/// The needle lit and seen along itself, 1000 mean free paths: |C_ab|^2 <= C_aa C_bb, but for
+/// variances below 1e-308, which are 0.
+Finding along_needle() {
+  const auto request = full_request({0, 1e-3, pi / 2}, far_views({0, pi, pi / 2}));
+  const Estimate found =
+      covariance(hg_box(1e-3, {1e3, 0.5, 0.9, 1e3}, request), ReversedPaths::yes, 4000);
+  const auto entry = [&](std::size_t a, std::size_t b) { return found.value[a * (a + 1) / 2 + b]; };
+  double worst = entry(1, 1).real() > 0 ? 0 : 2;
+  for (std::size_t a = 0; a < request.channels.size(); ++a)
+    for (std::size_t b = 0; b <= a; ++b) {
+      const double bound = std::sqrt(entry(a, a).real()) * std::sqrt(entry(b, b).real());
+      worst = larger(worst, std::abs(entry(a, b)) / (bound + 1e-150));
+    }
+  return {worst, 1 + 1e-12};
+}
+
+/// A near source in far views is a far light at near sensors (C13): on faces, corners and inside.
+Finding near_reciprocity(Vec2 point) {
+  const std::vector<double> views{0.3, pi - 0.4};
+  const Bulk bulk{2.5, 0.5};
+  Lights back;
+  for (const double view : views) back.push_back(plane_wave(view + pi));
+  const Estimate from =
+      covariance(hg_box(20, bulk, intensity_request(Lights{point_source(point)}, far_views(views))),
+                 ReversedPaths::automatic, 40000, 1);
+  const Estimate to = covariance(hg_box(20, bulk, intensity_request(back, {near_sensor(point)})),
+                                 ReversedPaths::automatic, 40000, 2);
+  Finding worst{0, 4};
+  for (std::size_t c = 0; c < views.size(); ++c)
+    worst = worse(
+        worst, in_errors(8 * pi * k * from.value[c],
+                         std::hypot(8 * pi * k * from.error[c], to.error[c]), to.value[c], 0.15));
+  return worst;
+}
+
+/// Intensity at a sensor where it passes through a face or a corner.
+Finding across_edge(Vec2 point, Vec2 outwards) {
+  const auto at = [&](double off) {
+    const auto request = intensity_request({0.2}, {near_sensor(point + off * outwards)});
+    return covariance(hg_box(20, {2.5, 0.5}, request), ReversedPaths::automatic, 4000).value[0];
+  };
+  const Complex on = at(0);
+  return {larger(std::abs(at(1e-9) / on - 1.0), std::abs(at(-1e-9) / on - 1.0)), 1e-6};
+}
+
+/// A point source very far away is a plane wave: k r = 6e9 in all phases.
+Finding far_source() {
+  const double r = 1e9;
+  const auto views = far_views({0.2, 1.3, pi - 0.2});
+  const Bulk bulk{2.5, 0.5};
+  const Estimate source = covariance(
+      hg_box(20, bulk, intensity_request(Lights{point_source(-r * direction(0.6))}, views)),
+      ReversedPaths::automatic, 20000, 3);
+  const Estimate wave = covariance(hg_box(20, bulk, intensity_request({0.6}, views)),
+                                   ReversedPaths::automatic, 20000, 4);
+  const double scale = 8 * pi * k * r;
+  Finding worst{0, 4};
+  for (std::size_t c = 0; c < views.size(); ++c)
+    worst = worse(
+        worst, in_errors(scale * source.value[c],
+                         std::hypot(scale * source.error[c], wave.error[c]), wave.value[c], 0.1));
+  return worst;
+}
+
+Finding empty_box() {
+  SceneSpec spec;
+  spec.width = 20;
+  spec.depth = 10;
+  spec.count = 0;
+  Scene scene = make_scene(spec);
+  scene.request = full_request({0, pi / 2}, far_views({0, pi}));
+  const Estimate found = covariance(scene, ReversedPaths::yes, 4000);
+  double sum = 0;
+  for (std::size_t e = 0; e < found.value.size(); ++e)
+    sum += std::abs(found.value[e]) + found.error[e];
+  for (const Complex mean : mc::coherent_field(scene)) sum += std::abs(mean);
+  return {sum, 0};
+}
+
+/// 1 - cos of turns, whose mean is 1 - g.
+Finding turns(double g) {
+  const mc::HenyeyGreensteinScattering scattering{{g}};
+  RandomStream random(3, 1, 0);
+  constexpr int count = 400000;
+  double sum = 0, squares = 0;
+  for (int i = 0; i < count; ++i) {
+    const Vec2 from = direction(0.3 * i), step = scattering.sample(from, random) - from;
+    const double turn = dot(step, step) / 2;
+    sum += turn / count;
+    squares += turn * turn / count;
+  }
+  return in_errors(sum, std::sqrt((squares - sum * sum) / count), 1 - g, 0.1);
+}
+
+/// The density between directions a hair apart, which 1 - cos would lose.
+Finding forward_density() {
+  const double g = 0.999;
+  const mc::HenyeyGreensteinScattering scattering{{g}};
+  double worst = 0;
+  for (const double turn : {0.0, 1e-12, 1e-8, 1e-4, 1e-3}) {
+    const long double h = std::sin(static_cast<long double>(turn) / 2),
+                      rest = 1 - static_cast<long double>(g);
+    const long double exact =
+        rest * (1 + g) / (2 * std::numbers::pi_v<long double> * (rest * rest + 4 * g * h * h));
+    const double found = scattering.density(direction(1), direction(1 + turn));
+    worst = larger(worst, static_cast<double>(std::abs(found / exact - 1)));
+  }
+  return {worst, 1e-12};
+}
+
+}  // namespace
+
+std::vector<ExtremeCase> mc_box_extremes() {
+  ExtremeRows rows("mc");
+  rows.add("box of 1e-6 mean free paths", "mu_s p area", speck);
+  rows.add("needle of 1e-3 x 1e3 mean free paths", "the sheet turned, in errors", quarter_turn);
+  rows.add("needle along itself, OD 1000, grazing", "Cauchy-Schwarz, entry by entry", along_needle);
+  rows.add("empty box", "no field, no covariance", empty_box);
+  const std::string reciprocity = "near source and sensor exchanged, in errors";
+  rows.add("sensor on the back face", reciprocity, [] { return near_reciprocity({1, 10}); });
+  rows.add("sensor on a corner", reciprocity, [] { return near_reciprocity({10, 0}); });
+  rows.add("sensor inside", reciprocity, [] { return near_reciprocity({0.3, 4}); });
+  const std::string steady = "no step over 1e-9";
+  rows.add("sensor through the front face", steady, [] { return across_edge({0.5, 0}, {0, -1}); });
+  rows.add("sensor through a corner", steady, [] { return across_edge({10, 10}, {1, 1}); });
+  rows.add("source 1e9 wavelengths away", "plane wave, in errors", far_source);
+  for (const double g : {-0.999, 0.0, 0.999})
+    rows.add("turns of g " + short_number(g), "mean of 1 - cos, in errors",
+             [=] { return turns(g); });
+  rows.add("g 0.999, turns of 0 to 1e-3", "phase function in long double", forward_density);
+  return std::move(rows).rows();
+}
+
+}  // namespace flatspeckle::bench

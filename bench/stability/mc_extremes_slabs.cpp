@@ -1,0 +1,234 @@
+// Paths in slabs as thin, deep, absorbing, peaked and grazed as they come.
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <boost/math/quadrature/gauss.hpp>
+
+#include "bench/oracles/discrete_ordinates.h"
+#include "bench/oracles/slab_theory.h"
+#include "bench/stability/extreme_rows.h"
+#include "bench/stability/mc_extremes.h"
+#include "mc/estimators/flux.h"
+#include "mc/theory/memory_effect.h"
+
+namespace flatspeckle::bench {
+
+namespace {
+
+using mc::ReversedPaths;
+constexpr double pi = std::numbers::pi, k = 2 * pi;
+
+/// Every intensity against the integral equation of isotropic slabs, which is good to 1e-3.
+Finding isotropic_slab(const Bulk& bulk, const std::vector<double>& lights,
+                       const std::vector<double>& views, ReversedPaths reversed,
+                       std::uint64_t paths) {
+  const auto request = intensity_request(lights, far_views(views));
+  const Estimate found = covariance(hg_slab(bulk, request), reversed, paths);
+  const oracles::IsotropicSlab theory(k, bulk.depth, bulk.optical_depth / bulk.depth, bulk.albedo);
+  Finding worst{0, 4};
+  for (std::size_t c = 0; c < request.channels.size(); ++c) {
+    const oracles::IsotropicSlab::Channel channel{lights[request.channels[c].light],
+                                                  views[request.channels[c].view]};
+    const Complex expected = reversed == ReversedPaths::yes
+                                 ? theory.with_reversed(channel, channel)
+                                 : theory.without_reversed(channel, channel);
+    worst = worse(worst, in_errors(found.value[c], found.error[c], expected, 0.1, 1e-3));
+  }
+  return worst;
+}
+
+/// The power over all views is what the beam lost. Views are dense about the lobes at 0 and pi.
+Finding scattered_power(double g, double optical_depth) {
+  using Rule = boost::math::quadrature::gauss<double, 10>;
+  std::vector<double> views, weights;
+  const double edges[] = {0, 0.001, 0.002, 0.006, 0.01, 0.05, 0.3, pi / 2};
+  for (const double lobe : {0.0, pi})
+    for (int e = 0; e < 7; ++e)
+      for (const double side : {-1.0, 1.0})
+        for (std::size_t i = 0; i < Rule::abscissa().size(); ++i)
+          for (const double node : {-Rule::abscissa()[i], Rule::abscissa()[i]}) {
+            const double half = (edges[e + 1] - edges[e]) / 2;
+            views.push_back(lobe + side * (edges[e] + half * (1 + node)));
+            weights.push_back(half * Rule::weights()[i]);
+          }
+  const Scene scene = hg_slab({optical_depth, g}, intensity_request({0}, far_views(views)));
+  const FieldJob job = mc::covariance_job(scene, mc::make_plan(scene, ReversedPaths::no), 7);
+  const Estimate power =
+      jackknife(summed(job.batches, 16000), [&](double samples, std::span<const Complex> sums) {
+        const auto values = job.covariance(samples, sums);
+        Complex total = 0;
+        for (std::size_t v = 0; v < values.size(); ++v) total += weights[v] * values[v];
+        return std::vector<Complex>{total};
+      });
+  const double expected = -std::expm1(-optical_depth);
+  // 2e-3: the quadrature over the lobe
+  return in_errors(power.value[0], power.error[0], expected, 0.02, 2e-3);
+}
+
+/// Covariance of tilted fields at k L = 1e6, q L = 0 .. 2, against the integral equation.
+Finding tilted_fields() {
+  const Bulk bulk{5, 0, 1, 1e6 / k};
+  std::vector<double> tilts;
+  for (const double ql : {0.0, 0.5, 2.0}) tilts.push_back(std::asin(ql / 1e6));
+  const auto request = memory_effect_request(k, 0, {0.1}, tilts);
+  const Estimate found = covariance(hg_slab(bulk, request), ReversedPaths::no, 40000);
+  const oracles::IsotropicSlab theory(k, bulk.depth, bulk.optical_depth / bulk.depth, 1);
+  Finding worst{0, 4};
+  for (std::size_t e = 0; e < request.entries.size(); ++e) {
+    const auto channel = [&](std::size_t number) -> oracles::IsotropicSlab::Channel {
+      const Channel c = request.channels[number];
+      return {request.lights[c.light].angle, request.views[c.view].angle};
+    };
+    const auto [a, b] = request.entries[e];
+    worst = worse(worst, in_errors(found.value[e], found.error[e],
+                                   theory.without_reversed(channel(a), channel(b)), 0.1, 1e-3));
+  }
+  return worst;
+}
+
+/// Correlation 1 at tilt 0, with no error.
+Finding untilted() {
+  const auto request = memory_effect_request(k, 1.5, {0.1, 1.55}, {0.0, 1e-7});
+  const Scene scene = hg_slab({3, 0.9, 0.99, 1e6 / k}, request);
+  const FieldJob job = mc::covariance_job(scene, mc::make_plan(scene, ReversedPaths::automatic), 1);
+  const auto effect = mc::memory_effect(request, summed(job.batches, 4000), job.covariance);
+  return {larger(std::abs(effect.correlation[0] - 1), effect.correlation_error[0]), 1e-12};
+}
+
+double total_magnitude(const Estimate& found) {
+  double sum = 0;
+  for (std::size_t e = 0; e < found.value.size(); ++e)
+    sum += std::abs(found.value[e]) + found.error[e];
+  return sum;
+}
+
+/// Lights and views at exactly pi/2 of an infinite slab: cos(pi/2) is 6e-17 in numbers, and so is
+/// the power that such light brings.
+Finding along() {
+  const auto request = intensity_request({0, 1.5}, far_views({pi / 2, -pi / 2}));
+  double sum = 0;
+  for (const auto reversed : {ReversedPaths::yes, ReversedPaths::no})
+    sum += total_magnitude(covariance(hg_slab({2}, request), reversed, 4000));
+  const auto grazing = intensity_request({pi / 2}, far_views({0.1, pi}));
+  return {sum + total_magnitude(covariance(hg_slab({2}, grazing), ReversedPaths::no, 4000)), 1e-16};
+}
+
+Finding black() {
+  const auto request = memory_effect_request(k, 0, {0.1, pi}, {0.0, 0.01});
+  return {total_magnitude(covariance(hg_slab({2, 0, 0}, request), ReversedPaths::yes, 4000)), 0};
+}
+
+/// Without reversed paths an intensity does not know the wavelength: k L 63 against 6e6.
+Finding wavelength() {
+  const auto request = intensity_request({0, -0.7}, far_views({0.1, 1.5, pi}));
+  Scene scene = hg_slab({2.5, 0.5}, request);
+  const Estimate long_waves = covariance(scene, ReversedPaths::no, 4000);
+  scene.wavelength *= 1e-5;
+  scene.k *= 1e5;
+  const Estimate short_waves = covariance(scene, ReversedPaths::no, 4000);
+  double worst = 0;
+  for (std::size_t e = 0; e < request.entries.size(); ++e)
+    worst = larger(worst, std::abs(short_waves.value[e] / long_waves.value[e] - 1.0));
+  return {worst, 1e-12};
+}
+
+struct Flux {
+  mc::FluxEstimates shares;
+  Estimate total;  ///< of all shares together, per light
+};
+Flux flux(const Bulk& bulk, std::uint64_t paths, double light = 0) {
+  const Scene scene = hg_slab(bulk, intensity_request({light}, far_views({0})));
+  const mc::FluxJob job = mc::flux_job(scene, 1, 1);
+  const GroupedSums sums = summed(job.batches, paths);
+  return {mc::flux_estimates(job, sums),
+          jackknife(sums, [](double samples, std::span<const Complex> all) {
+            return std::vector<Complex>{(all[0] + all[1] + all[2] + all[3]) / samples};
+          })};
+}
+
+/// Walk by walk: without absorption none is lost.
+Finding lossless(const Bulk& bulk, std::uint64_t paths) {
+  const double scattered = -std::expm1(-bulk.optical_depth);
+  return {std::abs(flux(bulk, paths).total.value[0] / scattered - 1.0), 1e-10};
+}
+
+/// All orders of scattering in discrete ordinates.
+Finding crossing(const Bulk& bulk, std::uint64_t paths) {
+  const oracles::SlabTransport theory(
+      {bulk.optical_depth, bulk.albedo, oracles::henyey_greenstein(bulk.g)}, {0}, 50);
+  const auto shares = flux(bulk, paths).shares;
+  return worse(in_errors(shares.transmittance.value[0], shares.transmittance.error[0],
+                         theory.transmittance(0), 0.05, 1e-4),
+               in_errors(shares.reflectance.value[0], shares.reflectance.error[0],
+                         theory.reflectance(0), 0.05, 1e-4));
+}
+
+/// Of what is hardly absorbed: (1 - albedo) times the collisions.
+Finding absorbed(double albedo) {
+  const auto shares = flux({20, 0, albedo}, 8000).shares;
+  const oracles::IsotropicSlab theory(k, mc_depth, 20 / mc_depth, albedo);
+  return in_errors(shares.absorptance.value[0], shares.absorptance.error[0], theory.absorbed(0),
+                   0.05, 1e-3);
+}
+
+void add_intensities(ExtremeRows& rows) {
+  const std::string theory = "integral equation, in errors";
+  rows.add("slab of OD 1e-3, with reversed paths", theory, [] {
+    return isotropic_slab({1e-3}, {0, 0.8}, {0.1, -1, pi, 2.2}, ReversedPaths::yes, 8000);
+  });
+  rows.add_slow("slab of OD 100", theory, [] {
+    return isotropic_slab({100}, {0}, {0.1, -1, 2.2}, ReversedPaths::no, 32000);
+  });
+  rows.add("slab of OD 5, albedo 1 - 1e-9", theory, [] {
+    return isotropic_slab({5, 0, 1 - 1e-9}, {0}, {0.1, pi}, ReversedPaths::no, 16000);
+  });
+  rows.add("slab of OD 1, light at 1.5, views at 1.54 and 1.61", theory, [] {
+    return isotropic_slab({1}, {1.5}, {0.1, 1.54, -1.54, 1.61, pi + 1.5}, ReversedPaths::no,
+                          640000);
+  });
+  rows.add("slab, lights and views at exactly pi/2", "nothing is seen", along);
+  rows.add("slab of albedo 0", "no covariance", black);
+  for (const double g : {-0.999, 0.999})
+    for (const double depth : {0.01, 2.0})
+      rows.add("slab of OD " + short_number(depth) + ", g " + short_number(g),
+               "scattered power, in errors", [=] { return scattered_power(g, depth); });
+  rows.add("slab of OD 2.5, k L from 63 to 6e6", "the same intensities", wavelength);
+  rows.add("slab of OD 5, k L 1e6, tilts q L to 2", theory, tilted_fields);
+  rows.add("slab of OD 3, k L 1e6, tilt 0 of grazing light", "correlation 1, no error", untilted);
+}
+
+void add_flux(ExtremeRows& rows) {
+  const std::string energy = "reflected + transmitted = scattered";
+  rows.add("flux, OD 1e-12", energy, [] { return lossless({1e-12}, 4000); });
+  rows.add("flux, OD 100, g 0.999", energy, [] { return lossless({100, 0.999}, 1000); });
+  rows.add_slow("flux, OD 1e4", energy, [] { return lossless({1e4}, 400); });
+  rows.add("flux, OD 30, albedo 0.7: 1e-9 comes through", "discrete ordinates, in errors", [] {
+    return crossing({30, 0, 0.7}, 100000);
+  });
+  rows.add("flux, OD 1e-3, g 0.5, albedo 0.7", "discrete ordinates, in errors", [] {
+    return crossing({1e-3, 0.5, 0.7}, 50000);
+  });
+  rows.add("flux, OD 20, albedo 1 - 1e-9: absorbed", "integral equation, in errors",
+           [] { return absorbed(1 - 1e-9); });
+  rows.add("flux, OD 2, albedo 0: absorbed", "1 - exp(-2)", [] {
+    const auto shares = flux({2, 0, 0}, 1000).shares;
+    return Finding{std::abs(shares.absorptance.value[0] / -std::expm1(-2.0) - 1.0), 1e-12};
+  });
+  rows.add_slow("flux, OD 100, g 0.99: reflected", "800 ordinates a quadrant, in errors", [] {
+    const auto shares = flux({100, 0.99}, 40000).shares;
+    return in_errors(shares.reflectance.value[0], shares.reflectance.error[0], 0.31914, 0.01, 3e-5);
+  });
+}
+
+}  // namespace
+
+std::vector<ExtremeCase> mc_slab_extremes() {
+  ExtremeRows rows("mc");
+  add_intensities(rows);
+  add_flux(rows);
+  return std::move(rows).rows();
+}
+
+}  // namespace flatspeckle::bench

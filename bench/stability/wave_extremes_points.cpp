@@ -1,0 +1,204 @@
+// Points as near, as far and as many as they come; fields next to rims; units; what is refused.
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "bench/stability/extreme_rows.h"
+#include "core/numbers/bessel.h"
+#include "core/numbers/random.h"
+#include "wave_solver/solutions/ensemble.h"
+#include "wave_solver/solutions/wave_solution.h"
+#include "wave_solver/sums/helmholtz_sum.h"
+
+namespace flatspeckle::bench {
+
+namespace {
+
+using namespace wave;
+using Kind = Scatterer::Kind;
+constexpr double pi = std::numbers::pi, k = 2 * pi;
+const std::vector<double> lights{0.3, 1.4 + pi};
+
+SolveOptions to(double tolerance, Method method = Method::automatic) {
+  return {.tolerance = tolerance, .sensors = {}, .diagnose = false, .method = method};
+}
+
+Placement many_points(std::size_t count, double width, double phase_shift) {
+  Scatterer point;
+  point.phase_shift = phase_shift;
+  RandomStream random(1, 0, 0);
+  Placement points;
+  while (points.size() < count) {
+    const double x = random.uniform(), z = random.uniform();
+    points.push_back({{width * x, width * z}, point});
+  }
+  return points;
+}
+
+Finding reciprocity(const Placement& placement, const SolveOptions& options, double limit) {
+  const auto solution = solve(placement, k, lights, options);
+  const Complex there = solution.far_field(lights[1] - pi, 0),
+                back = solution.far_field(lights[0] + pi, 1);
+  return {std::abs(there - back) / std::abs(there), limit};
+}
+
+/// Two resonant points at kd, light and view at pi/2 and along the axis, by hand in extended
+/// precision: b = T (a + H b) for the sum and the difference of both.
+Finding two_points(double kd, double light, double view, double limit) {
+  const double half = kd / (2 * k);
+  const auto solution =
+      solve({{{0, -half}, Scatterer{}}, {{0, half}, Scatterer{}}}, k, {light}, to(1e-12));
+  using Real = long double;
+  const ExtendedComplex h = hankel(0, k * (2 * half))[0], t = -1;
+  const auto phase = [&](double angle) { return static_cast<Real>(k) * half * std::cos(angle); };
+  const Real in = phase(light), out = phase(view);
+  const ExtendedComplex even = t * std::cos(in) / (Real{1} - t * h),
+                        odd = t * ExtendedComplex(0, std::sin(in)) / (Real{1} + t * h);
+  const ExtendedComplex sum =
+      Real{2} * (even * std::cos(out) - odd * ExtendedComplex(0, std::sin(out)));
+  const Complex expected = std::polar(std::sqrt(2 / (pi * k)), -pi / 4) * Complex(sum);
+  return {std::abs(solution.far_field(view) - expected) / std::abs(expected), limit};
+}
+
+Placement three_disks(double unit) {
+  Scatterer one;
+  one.kind = Kind::tm;
+  one.radius = 0.2 * unit;
+  return {{{0, 0}, one}, {{0.1 * unit, 0.45 * unit}, one}, {{-0.5 * unit, 0.1 * unit}, one}};
+}
+
+/// |A|^2 is a length.
+Finding unit_of_length(double unit) {
+  const auto here = solve(three_disks(1), k, lights, to(1e-12));
+  const auto there = solve(three_disks(unit), k / unit, lights, to(1e-12));
+  double worst = 0;
+  for (const double view : {0.0, 1.1, 2.9})
+    worst = larger(
+        worst, std::abs(there.far_field(view) / (std::sqrt(unit) * here.far_field(view)) - 1.0));
+  return {worst, 1e-11};
+}
+
+/// u = 0 on the rim: what is left at 1e-9 radii from it is that far times the slope, about 2 k.
+Finding soft_rim() {
+  Scatterer one;
+  one.kind = Kind::soft;
+  one.radius = 5 / k;
+  const Placement placement{{{0, 0}, one}, {{2 * one.radius, 2 * one.radius}, one}};
+  double worst = 0;
+  std::vector<Vec2> sensors;
+  for (const double angle : {0.0, 1.3, 3.0})
+    sensors.push_back((1 + 1e-9) * one.radius * direction(angle));
+  auto options = to(1e-10);
+  options.sensors = sensors;
+  const auto solution = solve(placement, k, {0.3}, options);
+  for (const Vec2 sensor : sensors) {
+    const Complex incident = std::polar(1.0, k * dot(direction(0.3), sensor));
+    worst = larger(worst, std::abs(solution.near_field(sensor) + incident));
+  }
+  return {worst, 1e-7};
+}
+
+/// Charges in clusters of 1e-7 wavelengths, 300 apart.
+Finding clustered_sum() {
+  RandomStream random(2, 0, 0);
+  std::vector<Vec2> points;
+  std::vector<Complex> charges;
+  for (int cluster = 0; cluster < 40; ++cluster) {
+    const Vec2 centre{300 * random.uniform(), 300 * random.uniform()};
+    for (int i = 0; i < 50; ++i) {
+      points.push_back(centre + 1e-7 * Vec2{random.uniform(), random.uniform()});
+      charges.push_back({random.uniform() - 0.5, random.uniform() - 0.5});
+    }
+  }
+  const auto found = HelmholtzSum(k, points, 1e-10)(charges);
+  double difference = 0, size = 0;
+  for (std::size_t i = 0; i < points.size(); i += 37) {
+    ExtendedComplex sum = 0;
+    for (std::size_t j = 0; j < points.size(); ++j)
+      if (j != i)
+        sum += hankel(0, k * length(points[i] - points[j]))[0] * ExtendedComplex(charges[j]);
+    difference += std::norm(found[i] - Complex(sum));
+    size += std::norm(Complex(sum));
+  }
+  return {std::sqrt(difference / size), 1e-10};
+}
+
+void add_points(ExtremeRows& rows) {
+  for (const double kd : {1e-12, 1e-6, 1.0, 1e6})
+    for (const auto& [where, light] : {std::pair("along", 0.0), {"across", pi / 2}})
+      // of coordinates of 1e6 in the phase, rounding leaves 1e-10
+      rows.add("two resonant points, k d " + short_number(kd) + ", light " + where + " the axis",
+               "closed form in extended precision",
+               [=, light = light] { return two_points(kd, light, 2.0, kd > 1e3 ? 1e-9 : 1e-12); });
+  rows.add("no scatterer", "no field", [] {
+    const auto solution = solve({}, k, lights, {});
+    return Finding{std::abs(solution.far_field(1)) + solution.diagnosis().residual, 0};
+  });
+  rows.add("one resonant point", "cross-section 4/k", [] {
+    const double amplitude = std::abs(solve({{{1, 2}, Scatterer{}}}, k, lights).far_field(1));
+    return Finding{std::abs(2 * pi * amplitude * amplitude * k / 4 - 1), 1e-14};
+  });
+  rows.add("500 resonant points in a box of 3 wavelengths", "light and view exchanged",
+           [] { return reciprocity(many_points(500, 3, pi / 2), to(1e-12), 1e-9); });
+  rows.add(
+      "500 resonant points in a box of 3 wavelengths, by GMRES alone", "light and view exchanged",
+      [] { return reciprocity(many_points(500, 3, pi / 2), to(1e-10, Method::krylov), 1e-7); });
+  rows.add_slow("1e5 points, phase shift 0.05, GMRES to 1e-6", "light and view exchanged", [] {
+    return reciprocity(many_points(100'000, 330, 0.05), to(1e-6, Method::krylov), 1e-5);
+  });
+}
+
+void add_fields(ExtremeRows& rows) {
+  for (const double unit : {1e-9, 1e9})
+    rows.add("three TM disks in a unit of length of " + short_number(unit), "far field scales",
+             [=] { return unit_of_length(unit); });
+  rows.add("two soft disks, 1e-9 radii from a rim", "the field there, of 1", soft_rim);
+  rows.add("H_0 sum over clusters of 1e-7 wavelengths, 300 apart", "pair by pair, long double",
+           clustered_sum);
+}
+
+void add_refusals(ExtremeRows& rows) {
+  Scatterer one;
+  one.kind = Kind::tm;
+  one.radius = 0.2;
+  rows.add_refused("sensor within a disk", "outside every scatterer", [=] {
+    auto options = to(1e-6);
+    options.sensors = {{0.1, 0}};
+    solve({{{0, 0}, one}}, k, {0}, options).near_field({0.1, 0});
+  });
+  rows.add_refused("disk of k a 1e5", "at most 10000", [one] {
+    Scatterer large = one;
+    large.radius = 1e5 / k;
+    solve({{{0, 0}, large}}, k, {0}, to(1e-6));
+  });
+  rows.add_refused("3e5 points by a dense matrix", "1440000000000 bytes",
+                   [] { solve(many_points(300'000, 1000, 1), k, {0}, to(1e-6, Method::dense)); });
+  SceneSpec bulk;
+  bulk.scatterer = "hg";
+  bulk.depth = 10;
+  bulk.optical_depth = 1;
+  rows.add_refused("a bulk phase function for the exact solver", "hg", [=] {
+    SceneSpec box = bulk;
+    box.width = 10;
+    wave_job(make_scene(box), 1, 1e-6);
+  });
+  rows.add_refused("an infinite slab for the exact solver", "slab", [=] {
+    SceneSpec slab = bulk;
+    slab.domain = "slab";
+    slab.scatterer = "point";
+    wave_job(make_scene(slab), 1, 1e-6);
+  });
+}
+
+}  // namespace
+
+std::vector<ExtremeCase> wave_point_extremes() {
+  ExtremeRows rows("wave_solver");
+  add_points(rows);
+  add_fields(rows);
+  add_refusals(rows);
+  return std::move(rows).rows();
+}
+
+}  // namespace flatspeckle::bench

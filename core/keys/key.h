@@ -1,0 +1,89 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace flatspeckle {
+
+/// What a key fills: a number, a text, a list of either, or a switch. What is optional and has no
+/// value, an empty text and an empty list are not set.
+using KeyMember =
+    std::variant<bool*, std::int64_t*, double*, std::string*, std::optional<std::int64_t>*,
+                 std::optional<double>*, std::optional<std::string>*, std::vector<double>*,
+                 std::vector<std::int64_t>*, std::vector<std::string>*>;
+
+/// The one row of a key: name, the member that it fills, what it accepts, and in words what it is.
+/// The member's value when the row is made is the default. Ranges hold for each number of a list.
+class Key {
+ public:
+  Key(std::string name, KeyMember member, std::string group, std::string help);
+
+  // What is accepted; without any of these a number must be finite, and a text is free.
+  Key& positive();
+  Key& not_negative() { return from(0, std::numeric_limits<double>::infinity()); }
+  Key& from(double low, double high);     ///< both included
+  Key& between(double low, double high);  ///< neither included
+  Key& one_of(std::vector<std::string> words);
+  /// So many numbers for each thing, in words.
+  Key& each_of(std::size_t numbers, std::string what);
+  /// Exactly so many, in words.
+  Key& exactly(std::size_t numbers, std::string what);
+  // What else is known of it.
+  Key& unit(std::string text);
+  /// What it is a key of, where not everything reads it: "soft, hard, tm and te".
+  Key& only_of(std::string what);
+  Key& effort();   ///< how long or on what to run, not what: no part of a result's identity
+  Key& no_file();  ///< on the command line alone
+  Key& swept();    ///< a sweep may take many values
+
+  const std::string& name() const { return name_; }
+  const std::string& group() const { return group_; }
+  const std::string& unit() const { return unit_; }
+  const std::string& only_of() const { return only_of_; }
+  const std::vector<std::string>& words() const { return words_; }
+  bool is_effort() const { return effort_; }
+  bool is_in_files() const { return in_files_; }
+  bool is_swept() const { return swept_; }
+  bool is_list() const;
+  bool is_switch() const { return std::holds_alternative<bool*>(member_); }
+  bool is_whole() const;  ///< whole numbers
+  bool is_number() const;
+  const void* address() const;
+
+  /// The line of --help: with unit, words and what it is a key of.
+  std::string help() const;
+  /// "must be positive".
+  std::string accepted() const;
+
+  /// Numbers in the shortest form that reads back as the same one; nothing where it is not set.
+  std::vector<std::string> value() const;
+  const std::vector<std::string>& default_value() const { return default_; }
+  /// What is given is other than the default: a resolved scene, which names all, gives no more than
+  /// the one that it came from.
+  bool given() const { return value() != default_; }
+  /// "1 2 3", for messages.
+  std::string shown() const;
+  /// "key = value" of a scene file.
+  std::string line() const;
+
+  /// Both throw InputError naming key, value and what is accepted.
+  void set(const std::vector<std::string>& texts) const;
+  void check() const;
+
+ private:
+  bool allows(double value) const;
+
+  std::string name_, group_, help_, unit_, only_of_, shape_;
+  KeyMember member_;
+  std::vector<std::string> default_, words_;
+  double low_ = -std::numeric_limits<double>::infinity(),
+         high_ = std::numeric_limits<double>::infinity();
+  bool open_ = true, effort_ = false, in_files_ = true, swept_ = false;
+  std::size_t each_ = 0, exactly_ = 0;
+};
+
+}  // namespace flatspeckle

@@ -1,0 +1,185 @@
+#include "core/session/session.h"
+
+#include <filesystem>
+#include <iostream>
+
+#include "core/error.h"
+#include "core/result/result_reader.h"
+#include "core/result/run_state_file.h"
+#include "core/result/sealed_file.h"
+#include "core/result/version.h"
+#include "core/run/interrupt.h"
+#include "core/session/aside.h"
+#include "core/session/identity.h"
+
+namespace flatspeckle {
+
+namespace {
+
+std::string trace_group(const std::string& run) {
+  return run.empty() ? "trace" : run + "/trace";
+}
+std::string state_group(const std::string& run) {
+  return "state/" + (run.empty() ? "run" : run);
+}
+
+}  // namespace
+
+Session::Session(std::string command_line, const Keys& keys, const RunSettings& settings,
+                 bool only_prints, Out kind)
+    : command_line_(std::move(command_line)),
+      keys_(keys),
+      settings_(settings),
+      seed_(keys.find("seed") ? seed_of(keys, settings) : 0),
+      threads_(keys.find("threads") ? threads_of(keys, settings) : 1),
+      started_(utc_now()) {
+  keys.read(settings.out);
+  if (keys.find("resume")) keys.read(settings.resume);
+  if (only_prints) return;
+  if (settings.out.empty())
+    throw InputError("out is not given: name the " +
+                     std::string(kind == Out::result ? "result file (--out FILE.h5)"
+                                                     : "placement file (--out FILE.csv)"));
+  settings.resume || kind == Out::other ? check_writable(settings.out)
+                                        : check_result_path(settings.out);
+}
+
+Provenance Session::provenance() const {
+  Provenance provenance;
+  provenance.command_line = command_line_;
+  provenance.config = keys_.config();
+  provenance.seed = seed_;
+  provenance.threads = threads_;
+  provenance.started = started_;
+  return provenance;
+}
+
+int Session::once(ResultFile::Storage storage,
+                  const std::function<std::optional<Made>(ResultFile&)>& make) const {
+  ResultFile file(settings_.out, storage);
+  const auto made = make(file);
+  if (!made) return ExitStatus::interrupted_for_good;
+  Provenance provenance = this->provenance();
+  provenance.plan = made->plan;
+  provenance.samples = made->samples;
+  provenance.wall_s = clock_.seconds();
+  provenance.cpu_s = process_cpu_seconds();
+  provenance.converged = made->status == ExitStatus::done;
+  write_provenance(file, provenance);
+  file.commit();
+  std::cout << "wrote " << settings_.out << '\n';
+  return made->status;
+}
+
+/// All states at once: what is saved while one run goes on must hold those of the others. HDF5,
+/// which may crash on a damaged file, sees none.
+void Session::resume() {
+  const std::string& path = settings_.out;
+  if (!is_sealed(path))
+    throw InputError("resume: " + path + " is damaged, or never held a run of this program");
+  const ResultReader file(path);
+  const auto found = file.has_attribute("/", "identity")
+                         ? file.attribute<std::string>("/", "identity")
+                         : std::string();
+  if (found != identity_)
+    throw InputError("resume: " + path + " holds another run (" +
+                     first_difference(found, identity_) +
+                     "); scene, sensors, seed and program version must be the same");
+  already_complete_ = file.attribute<bool>("/", "converged");
+  for (const auto& [name, label, job, stop] : runs_)
+    if (const std::string group = state_group(name); file.has(group))
+      states_[name] = read_state(file, group, job.size);
+}
+
+int Session::run(std::string plan, std::vector<PlannedRun> runs, const std::string& inputs,
+                 const std::function<void(ResultFile&)>& contents) {
+  catch_interrupts();
+  plan_ = std::move(plan);
+  runs_ = std::move(runs);
+  identity_ = "flatspeckle " + version() + '\n' + keys_.identity() + inputs;
+  for (const auto& run : runs_) states_[run.name];
+  const bool exists = std::filesystem::exists(settings_.out);
+  has_older_ = exists && !settings_.resume;
+  if (exists && settings_.resume) resume();
+  if (already_complete_) {
+    std::cout << settings_.out << " is complete; nothing to resume (for more samples run it "
+              << "afresh, without --resume)\n";
+    return ExitStatus::done;
+  }
+  std::cout << plan_ << '\n' << std::flush;
+  for (const auto& run : runs_)
+    if (!interrupted_) run_one(run);
+  return finish(contents);
+}
+
+void Session::run_one(const PlannedRun& run) {
+  RunState& state = states_[run.name];
+  const RunOptions options{run.stop, threads_, run.label,
+                           [this](const RunState&) { save_resumable(); }};
+  const StopReason reason = run_batches(run.job, options, state);
+  interrupted_ = reason == StopReason::interrupted;
+  const bool reached = !run.stop.target_error || reason == StopReason::target_error ||
+                       state.trace.relative_error.back() <= *run.stop.target_error;
+  converged_ = converged_ && reached && !interrupted_;
+}
+
+int Session::finish(const std::function<void(ResultFile&)>& contents) {
+  if (interrupted_) {
+    save_resumable();
+    std::cout << "interrupted; " << settings_.out << " holds what is done, --resume goes on";
+    if (!older_aside_.empty()) std::cout << "; what it held before is in " << older_aside_;
+    std::cout << '\n';
+    return ExitStatus::interrupted_resumable;
+  }
+  ResultFile file(settings_.out);
+  write_common(file, converged_);
+  for (const auto& [name, state] : states_) write_trace(file, trace_group(name), state.trace);
+  contents(file);
+  if (!converged_) write_states(file);
+  file.commit_sealed(Durable::yes);
+  std::error_code none;
+  if (!older_aside_.empty()) std::filesystem::remove(older_aside_, none);
+  std::cout << "wrote " << settings_.out << '\n';
+  if (converged_) return ExitStatus::done;
+  std::cout << "stopped before the target error was reached; --resume goes on\n";
+  return ExitStatus::error_not_reached;
+}
+
+void Session::write_common(ResultFile& file, bool converged) const {
+  Provenance provenance = this->provenance();
+  provenance.plan = plan_;
+  for (const auto& [name, state] : states_) {
+    provenance.wall_s += state.wall_s;
+    provenance.cpu_s += state.cpu_s;
+    provenance.samples += state.sums.total_samples();
+  }
+  provenance.converged = converged;
+  provenance.identity = identity_;
+  write_provenance(file, provenance);
+}
+
+/// By a second name for it: the first is its own until the new file takes it.
+void Session::set_older_aside() {
+  namespace fs = std::filesystem;
+  older_aside_ = free_aside(settings_.out).string();
+  std::error_code failed;
+  fs::create_hard_link(settings_.out, older_aside_, failed);
+  if (failed) fs::rename(settings_.out, older_aside_, failed);  // of file systems without
+  if (failed) throw IoError("renaming " + settings_.out + " failed: " + failed.message());
+  has_older_ = false;
+}
+
+void Session::save_resumable() {
+  ResultFile file(settings_.out);
+  write_common(file, false);
+  write_states(file);
+  if (has_older_) set_older_aside();
+  file.commit_sealed(Durable::yes);
+}
+
+void Session::write_states(ResultFile& file) const {
+  for (const auto& [name, state] : states_)
+    if (state.sums.batches() > 0) write_state(file, state_group(name), state);
+}
+
+}  // namespace flatspeckle

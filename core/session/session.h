@@ -1,0 +1,92 @@
+#pragma once
+
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/keys/keys.h"
+#include "core/result/provenance.h"
+#include "core/result/result_file.h"
+#include "core/run/runner.h"
+#include "core/run/stopwatch.h"
+#include "core/session/exit_status.h"
+#include "core/session/run_settings.h"
+
+namespace flatspeckle {
+
+/// One of the runs of a session. A run without a name has its trace in the root of the result.
+struct PlannedRun {
+  std::string name, label;
+  BatchJob job;
+  StopRule stop;
+};
+
+/// What was made at once: in words how, and of how many samples.
+struct Made {
+  std::string plan;
+  double samples = 1;
+  int status = ExitStatus::done;
+};
+
+/// One call of the program and the result file it ends in. Made before any work, it refuses what
+/// can be refused by then; at the end it writes how the result came about, and says where it is.
+class Session {
+ public:
+  /// command_line: as typed. Reads seed and threads. only_prints: no result is wanted.
+  /// Throws InputError where `out` is missing or not writable.
+  enum class Out { result, other };  ///< kinds of files; one that is no result may be replaced
+  Session(std::string command_line, const Keys& keys, const RunSettings& settings,
+          bool only_prints = false, Out kind = Out::result);
+
+  std::uint64_t seed() const { return seed_; }
+  int threads() const { return threads_; }
+  const std::string& out() const { return settings_.out; }
+
+  /// What `make` fills in one go; nothing is written where it returns nothing, for a signal came
+  /// that it caught.
+  int once(ResultFile::Storage storage,
+           const std::function<std::optional<Made>(ResultFile&)>& make) const;
+
+  /// Runs all to their end, or until an interruption, or goes on with those that the file there
+  /// holds. While they run, the file holds what could be resumed; at the end, the result. Each
+  /// state of it replaces the one before as a whole; what was there before the runs stays beside it
+  /// (NAME.aside-1) until the result is there. inputs: what the scene takes from other files, as
+  /// text; a resumed run must have the same. contents: everything but provenance, traces and
+  /// states. Returns the exit status.
+  int run(std::string plan, std::vector<PlannedRun> runs, const std::string& inputs,
+          const std::function<void(ResultFile&)>& contents);
+
+  /// Of a run, once it has ended.
+  const GroupedSums& sums(const std::string& run) const { return states_.at(run).sums; }
+
+  /// How results of this call came about, but for plan and costs.
+  Provenance provenance() const;
+
+ private:
+  void resume();
+  void run_one(const PlannedRun& run);
+  int finish(const std::function<void(ResultFile&)>& contents);
+  void write_common(ResultFile& file, bool converged) const;
+  void save_resumable();
+  void set_older_aside();
+  void write_states(ResultFile& file) const;
+
+  std::string command_line_;
+  const Keys& keys_;
+  const RunSettings& settings_;
+  std::uint64_t seed_;
+  int threads_;
+  std::string started_;
+  Stopwatch clock_;
+
+  std::string plan_, identity_;
+  std::vector<PlannedRun> runs_;
+  std::map<std::string, RunState> states_;
+  bool has_older_ = false;   ///< the file there is none of these runs
+  std::string older_aside_;  ///< where it is now
+  bool already_complete_ = false, interrupted_ = false, converged_ = true;
+};
+
+}  // namespace flatspeckle

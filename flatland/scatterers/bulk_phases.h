@@ -1,0 +1,36 @@
+#pragma once
+
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "flatland/scatterers/phase_table.h"
+#include "flatland/scatterers/two_term_hg.h"
+
+namespace flatspeckle {
+
+/// The phase functions that a scene may have in place of scatterers, beside hg: each a type with a
+/// word, keys and make_phase, in a file of its own. This is their list.
+using BulkPhases = std::tuple<TwoTermHg, PhaseTable>;
+
+inline void add_keys(Keys& keys, BulkPhases& all) {
+  std::apply([&](auto&... one) { (add_keys(keys, one), ...); }, all);
+}
+
+inline std::vector<std::string> bulk_phase_words() {
+  return std::apply([](const auto&... one) { return std::vector<std::string>{one.word...}; },
+                    BulkPhases{});
+}
+
+/// That of this word. Throws InputError.
+inline BulkPhase make_phase(const Keys& keys, const BulkPhases& all, const std::string& word) {
+  BulkPhase phase;
+  std::apply(
+      [&](const auto&... one) {
+        ((one.word == word ? void(phase = make_phase(keys, one)) : void()), ...);
+      },
+      all);
+  return phase;
+}
+
+}  // namespace flatspeckle

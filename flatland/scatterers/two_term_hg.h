@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include "core/keys/keys.h"
+#include "flatland/scatterers/bulk_phase.h"
+
+namespace flatspeckle {
+
+/// Two Henyey-Greenstein functions of the plane (C22) mixed, as tissue and ice are described: a
+/// forward peak and what goes backwards.
+struct TwoTermHg {
+  static constexpr const char* word = "two_term_hg";
+  std::optional<double> g, g_back, forward_share;
+};
+
+inline void add_keys(Keys& keys, TwoTermHg& values) {
+  keys.add("g", values.g, "Mean cosine of the first term")
+      .between(-1, 1)
+      .only_of(values.word)
+      .swept();
+  keys.add("g_back", values.g_back, "Mean cosine of the second term")
+      .between(-1, 1)
+      .only_of(values.word);
+  keys.add("forward_share", values.forward_share, "Share of the first term")
+      .from(0, 1)
+      .only_of(values.word);
+}
+
+inline BulkPhase make_phase(const Keys& keys, const TwoTermHg& values) {
+  const double g1 = keys.required(values.g), g2 = keys.required(values.g_back),
+               share = keys.required(values.forward_share);
+  const auto term = [](double g, double theta) {
+    const double half_sine = std::sin(theta / 2);
+    return (1 - g) * (1 + g) /
+           (2 * std::numbers::pi * ((1 - g) * (1 - g) + 4 * g * half_sine * half_sine));
+  };
+  return {[=](double theta) { return share * term(g1, theta) + (1 - share) * term(g2, theta); },
+          share * g1 + (1 - share) * g2, ""};
+}
+
+}  // namespace flatspeckle

@@ -1,0 +1,133 @@
+#include "flatland/scene/scene.h"
+
+namespace flatspeckle {
+
+void add_scatterer_keys(Keys& keys, SceneSpec& spec) {
+  keys.group("Scatterers");
+  keys.add("wavelength", spec.wavelength,
+           "Wavelength around the scatterers; k = 2 pi / wavelength; sets the unit of length")
+      .positive();
+  keys.add("scatterer", spec.scatterer,
+           "Points; soft (field 0 at the rim), hard (normal derivative 0), tm and te cylinders (E "
+           "or "
+           "H along the axis); or a phase function of the bulk")
+      .one_of(scatterer_words());
+  keys.add("radius", spec.radius, "Radius of the cylinders")
+      .positive()
+      .unit("length")
+      .only_of("soft, hard, tm and te")
+      .swept();
+  keys.add("index", spec.index,
+           "Relative index, as \"1.5+0.1i\" (which absorbs); neither part negative (default 1.5)")
+      .only_of("tm and te")
+      .swept();
+  keys.add("phase_shift", spec.phase_shift,
+           "Scattering phase shift of a lossless point (default pi/2, resonance)")
+      .unit("rad")
+      .only_of("point");
+}
+
+void add_bulk_keys(Keys& keys, SceneSpec& spec) {
+  keys.group("Bulk");
+  keys.add("optical_depth", spec.optical_depth, "Density from mu_t x depth").positive().swept();
+  keys.add("g", spec.g, "Mean cosine (default 0)").between(-1, 1).only_of("hg").swept();
+  add_keys(keys, spec.bulk);
+  keys.add("albedo", spec.albedo, "Albedo; of points, which are resonant, above 0 (default 1)")
+      .from(0, 1)
+      .only_of("points and phase functions of the bulk")
+      .swept();
+}
+
+void add_medium_keys(Keys& keys, SceneSpec& spec) {
+  keys.group("Medium");
+  keys.add("domain", spec.domain, "Where scatterers are; a slab is infinite in x")
+      .one_of({"box", "slab"});
+  keys.add("width", spec.width, "|x| <= width/2").positive().unit("length").only_of("a box");
+  keys.add("depth", spec.depth, "0 <= z <= depth").positive().unit("length");
+  keys.add("count", spec.count, "Density from a fixed number of scatterers in the box")
+      .not_negative();
+  keys.add("density", spec.density, "Density as number per area")
+      .positive()
+      .unit("1/length^2")
+      .swept();
+  keys.add("mean_free_path", spec.mean_free_path, "Density from the mean free path 1/mu_t")
+      .positive()
+      .unit("length");
+  keys.add("placement", spec.placement,
+           "Of points poisson; of disks hard_disk (default, one after the other) or equilibrium "
+           "(the "
+           "fluid of hard disks)")
+      .one_of(placement_words());
+  keys.add("min_gap", spec.min_gap, "Least distance between rims (default 1e-3 radius)")
+      .not_negative()
+      .unit("length")
+      .only_of("disks");
+}
+
+void add_structure_key(Keys& keys, SceneSpec& spec) {
+  keys.group("Medium");
+  keys.add("structure", spec.structure,
+           "Structure factor of disks in Monte Carlo: none, hard_disks, or a file that "
+           "place --structure wrote");
+}
+
+void add_view_keys(Keys& keys, SceneSpec& spec) {
+  keys.group("Lights and views");
+  keys.add("light_angles", spec.light_angles, "Directions of plane waves and beams, from +z")
+      .unit("rad")
+      .only_of("plane waves and beams (near_sources, pairs: none)");
+  keys.add("view_angles", spec.view_angles, "Directions of far views, from +z")
+      .unit("rad")
+      .only_of("far views (either near_sensors or view_angles; pairs name their own)");
+  keys.add("near_sensors", spec.near_sensors, "CSV with columns x, z: near-field sensors")
+      .only_of("near fields (pairs and memory_effect have far views only)");
+}
+
+void add_light_keys(Keys& keys, SceneSpec& spec) {
+  keys.group("Lights and views");
+  keys.add("near_sources", spec.near_sources,
+           "CSV with columns x, z: point sources in place of plane waves")
+      .only_of("near fields (pairs have plane waves)");
+  keys.add("beam_waist", spec.beam_waist,
+           "Gaussian beams in place of plane waves: 1/e radius of the field at the focus")
+      .positive()
+      .unit("length")
+      .only_of("beams (either near_sources or beams; pairs have neither)");
+  keys.add("beam_positions", spec.beam_positions,
+           "x of the beams' focus, each with every light angle (default 0)")
+      .unit("length")
+      .only_of("beams (beam_waist)");
+  keys.add("beam_depth", spec.beam_depth, "z of the beams' focus (default 0)")
+      .unit("length")
+      .only_of("beams (beam_waist)");
+}
+
+void add_request_keys(Keys& keys, SceneSpec& spec) {
+  keys.group("What is asked for");
+  keys.add("covariance", spec.covariance, "Which entries of the covariance")
+      .one_of(request_words());
+  keys.add("tilts", spec.tilts, "Rotations of the light")
+      .unit("rad")
+      .only_of("covariance = memory_effect and tilt_shift");
+  keys.add("shifts", spec.shifts,
+           "tilt_shift: of the views, in k sin(view) or of near sensors along x; translation: of "
+           "light and near sensors along x")
+      .unit("1/length or length")
+      .only_of("covariance = tilt_shift and translation");
+  keys.add("pairs", spec.pairs, "light 1, view 1, light 2, view 2 of each pair in turn")
+      .each_of(4, "light 1, view 1, light 2, view 2")
+      .unit("rad")
+      .only_of("covariance = pairs");
+}
+
+void add_keys(Keys& keys, SceneSpec& spec) {
+  add_medium_keys(keys, spec);
+  add_scatterer_keys(keys, spec);
+  add_bulk_keys(keys, spec);
+  add_structure_key(keys, spec);
+  add_view_keys(keys, spec);
+  add_light_keys(keys, spec);
+  add_request_keys(keys, spec);
+}
+
+}  // namespace flatspeckle
