@@ -49,7 +49,7 @@ std::vector<const DatasetTable*> all_tables() {
                                              &grin::area_table,
                                              &grin::directional_table,
                                              &grin::render_table};
-  tables.insert(tables.end(), bench_tables().begin(), bench_tables().end());
+  for (const DatasetTable* table : bench_tables()) tables.push_back(table);
   tables.push_back(&state_table);
   return tables;
 }
