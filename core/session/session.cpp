@@ -167,8 +167,8 @@ void Session::write_common(ResultFile& file, bool converged) const {
     provenance.samples += state.sums.total_samples();
   }
   provenance.converged = converged;
+  provenance.identity = identity_;
   write_provenance(file, provenance);
-  file.attribute("/", "identity", identity_);
 }
 
 /// By a second name for it: the first is its own until the new file takes it.
