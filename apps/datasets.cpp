@@ -8,7 +8,7 @@
 #include "flatland/media/structure_factor.h"
 #include "flatland/scene/scene_datasets.h"
 #include "grin/estimators/render_datasets.h"
-#include "grin/rays/ray_datasets.h"
+#include "grin/scene/trace_datasets.h"
 #include "mc/estimators/brownian.h"
 #include "mc/estimators/flux.h"
 #include "mc/estimators/gradient.h"

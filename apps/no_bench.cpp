@@ -12,7 +12,7 @@ int bench(const Arguments& arguments) {
   if (arguments.size() > 2 && arguments[2].starts_with("--") && !command.parse(arguments))
     return ExitStatus::done;
   throw InputError(
-      "bench is not in this program: configure with -DFLATSPECKLE_BENCH=ON and build it");
+      "bench is not in this program: configure with -DFLATSPECKLE_BENCH=ON and build again");
 }
 
 std::span<const DatasetTable* const> bench_tables() {

@@ -1,10 +1,11 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "apps/render_scene.h"
-#include "apps/session.h"
 #include "apps/subcommands.h"
+#include "core/session/identity.h"
+#include "core/session/session.h"
 #include "grin/estimators/render_datasets.h"
+#include "grin/scene/render_values.h"
 
 namespace flatspeckle::apps {
 
@@ -67,25 +68,32 @@ void print_render(const grin::RenderScene& scene, const grin::RenderJob& job,
 }  // namespace
 
 int render(const Arguments& arguments) {
-  RenderSpec spec;
-  RunSettings settings;
+  grin::RenderValues values;
+  grin::RenderRequestValues request_values;
+  RunSettings run;
   Subcommand command("render",
                      "Pictures of scattering media with a gradient index, in space: radiance that "
                      "curves and scatters");
-  add_render_options(command.options(), spec);
-  add_run_options(command.options(), settings);
+  Keys& keys = command.keys();
+  add_keys(keys, values);
+  add_keys(keys, request_values);
+  add_run_keys(keys, run);
   if (!command.parse(arguments)) return ExitStatus::done;
 
-  const grin::RenderScene scene = make_render_scene(command, spec);
-  const auto length_unit = length_unit_of(spec);
-  const grin::RenderJob job = render_job(scene, make_render_request(spec), seed_of(settings));
-  Session session(command.command_line(), settings, "render: " + spec.method + ": " + job.plan,
-                  {{"", "render", job.batches, stop_rule(settings)}}, inputs_text(spec));
-  return session.run([&](ResultFile& file) {
-    const grin::RenderResult result = grin::render_result(scene, job, session.state("").sums);
-    print_render(scene, job, result);
-    grin::write_render(file, scene, job, result, length_unit);
-  });
+  Session session(command.text(), keys, run, command.only_prints());
+  const StopRule stop = stop_rule(keys, run);
+  const grin::RenderRequest request = make_render_request(keys, request_values);
+  const grin::RenderScene scene = make_render_scene(keys, values);
+  check(scene, request);
+  if (!command.settle()) return ExitStatus::done;
+  const grin::RenderJob job = render_job(scene, request, session.seed());
+  return session.run("render: " + request_values.method + ": " + job.plan,
+                     {{"", "render", job.batches, stop}}, inputs_text(keys), [&](ResultFile& file) {
+                       const grin::RenderResult result =
+                           render_result(scene, job, session.sums(""));
+                       print_render(scene, job, result);
+                       write_render(file, scene, job, result, scene.length_unit);
+                     });
 }
 
 }  // namespace flatspeckle::apps

@@ -4,7 +4,7 @@
 
 #include "bench/cost/cost_measure.h"
 #include "bench/cost/cost_rooms.h"
-#include "grin/fields/lenses.h"
+#include "grin/fields/luneburg.h"
 #include "grin/rays/ray_step.h"
 
 namespace flatspeckle::bench {

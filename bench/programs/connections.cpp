@@ -13,9 +13,10 @@
 
 #include "core/run/stopwatch.h"
 #include "grin/connections/connection_solver.h"
+#include "grin/fields/fisheye.h"
 #include "grin/fields/gaussian_blobs.h"
-#include "grin/fields/guides.h"
-#include "grin/fields/lenses.h"
+#include "grin/fields/luneburg.h"
+#include "grin/fields/parabolic.h"
 #include "grin/fields/spline_field.h"
 #include "grin/fields/ultrasound.h"
 

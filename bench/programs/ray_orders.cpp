@@ -8,9 +8,11 @@
 #include <numbers>
 #include <vector>
 
-#include "grin/fields/guides.h"
-#include "grin/fields/lenses.h"
-#include "grin/fields/ramps.h"
+#include "grin/fields/fisheye.h"
+#include "grin/fields/luneburg.h"
+#include "grin/fields/parabolic.h"
+#include "grin/fields/sech.h"
+#include "grin/fields/tanh_ramp.h"
 #include "grin/rays/ray_invariants.h"
 #include "grin/rays/trace.h"
 

@@ -11,10 +11,11 @@
 #include "bench/scenes/random_fields.h"
 #include "bench/stability/extreme_rows.h"
 #include "grin/connections/connection_solver.h"
+#include "grin/fields/fisheye.h"
 #include "grin/fields/gaussian_blobs.h"
-#include "grin/fields/guides.h"
-#include "grin/fields/lenses.h"
-#include "grin/fields/ramps.h"
+#include "grin/fields/luneburg.h"
+#include "grin/fields/parabolic.h"
+#include "grin/fields/tanh_ramp.h"
 #include "grin/rays/ray_step.h"
 
 namespace flatspeckle::bench {

@@ -6,9 +6,11 @@
 
 #include "bench/oracles/multiprecision.h"
 #include "bench/stability/extreme_rows.h"
-#include "grin/fields/guides.h"
-#include "grin/fields/lenses.h"
-#include "grin/fields/ramps.h"
+#include "grin/fields/fisheye.h"
+#include "grin/fields/luneburg.h"
+#include "grin/fields/parabolic.h"
+#include "grin/fields/sech.h"
+#include "grin/fields/tanh_ramp.h"
 #include "grin/fields/ultrasound.h"
 #include "grin/surfaces/interface.h"
 

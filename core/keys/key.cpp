@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <sstream>
 
 #include "core/error.h"
@@ -134,7 +135,13 @@ Key& Key::positive() {
 Key& Key::from(double low, double high) {
   low_ = low;
   high_ = high;
-  open_ = false;
+  low_open_ = high_open_ = false;
+  return *this;
+}
+Key& Key::positive_to(double high) {
+  low_ = 0;
+  high_ = high;
+  high_open_ = false;
   return *this;
 }
 Key& Key::between(double low, double high) {
@@ -176,6 +183,10 @@ Key& Key::swept() {
   swept_ = true;
   return *this;
 }
+Key& Key::file() {
+  file_ = true;
+  return *this;
+}
 
 bool Key::is_list() const {
   return std::holds_alternative<std::vector<double>*>(member_) ||
@@ -210,14 +221,19 @@ std::string Key::help() const {
 std::string Key::accepted() const {
   if (!words_.empty()) return "must be one of " + joined(words_, " ");
   if (exactly_ > 0) return "must be " + shape_;
-  if (!is_number()) return "must be a text";
+  return is_number() ? range() : "must be a text";
+}
+
+std::string Key::range() const {
   if (low_ == -infinity && high_ == infinity)
     return is_whole() ? "must be whole" : "must be finite";
-  if (low_ == 0 && high_ == infinity) return open_ ? "must be positive" : "must not be negative";
+  if (low_ == 0 && high_ == infinity)
+    return low_open_ ? "must be positive" : "must not be negative";
   if (high_ == infinity)
-    return (open_ ? "must be above " : "must be at least ") + number_text(low_);
+    return (low_open_ ? "must be above " : "must be at least ") + number_text(low_);
   const std::string low = number_text(low_), high = number_text(high_);
-  return open_ ? "must be in (" + low + ", " + high + ')' : "must be from " + low + " to " + high;
+  return low_open_ ? "must be in (" + low + ", " + high + (high_open_ ? ')' : ']')
+                   : "must be from " + low + " to " + high;
 }
 
 std::vector<std::string> Key::value() const {
@@ -243,7 +259,8 @@ void Key::set(const std::vector<std::string>& texts) const {
 
 bool Key::allows(double value) const {
   if (!std::isfinite(value)) return false;
-  return open_ ? value > low_ && value < high_ : value >= low_ && value <= high_;
+  return (low_open_ ? value > low_ : value >= low_) &&
+         (high_open_ ? value < high_ : value <= high_);
 }
 
 void Key::check() const {
@@ -252,6 +269,7 @@ void Key::check() const {
     for (const std::string& word : value())
       if (std::find(words_.begin(), words_.end(), word) == words_.end())
         throw InputError(name_, word, accepted());
+  if (file_ && !std::filesystem::exists(shown())) throw InputError(name_, shown(), "no such file");
   const auto numbers = std::visit(Numbers{}, member_);
   if (exactly_ > 0 && numbers.size() != exactly_) throw InputError(name_, shown(), accepted());
   if (each_ > 0 && numbers.size() % each_ != 0)
@@ -260,8 +278,8 @@ void Key::check() const {
   const auto texts = value();
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     const double number = numbers[i];
-    if (!allows(number)) throw InputError(name_, exactly_ > 0 ? shown() : texts[i], accepted());
-    if (open_ && low_ == 0 && high_ == infinity && (number > most || number < 1 / most))
+    if (!allows(number)) throw InputError(name_, exactly_ > 0 ? shown() : texts[i], range());
+    if (low_open_ && low_ == 0 && high_ == infinity && (number > most || number < 1 / most))
       throw InputError(name_, texts[i], "must be from 1e-50 to 1e50");
   }
 }

@@ -27,6 +27,7 @@ class Key {
   Key& not_negative() { return from(0, std::numeric_limits<double>::infinity()); }
   Key& from(double low, double high);     ///< both included
   Key& between(double low, double high);  ///< neither included
+  Key& positive_to(double high);          ///< high included
   Key& one_of(std::vector<std::string> words);
   /// So many numbers for each thing, in words.
   Key& each_of(std::size_t numbers, std::string what);
@@ -39,6 +40,7 @@ class Key {
   Key& effort();   ///< how long or on what to run, not what: no part of a result's identity
   Key& no_file();  ///< on the command line alone
   Key& swept();    ///< a sweep may take many values
+  Key& file();     ///< names one, which must be there: its content is asked for as well
 
   const std::string& name() const { return name_; }
   const std::string& group() const { return group_; }
@@ -48,6 +50,7 @@ class Key {
   bool is_effort() const { return effort_; }
   bool is_in_files() const { return in_files_; }
   bool is_swept() const { return swept_; }
+  bool is_file() const { return file_; }
   bool is_list() const;
   bool is_switch() const { return std::holds_alternative<bool*>(member_); }
   bool is_whole() const;  ///< whole numbers
@@ -76,13 +79,15 @@ class Key {
 
  private:
   bool allows(double value) const;
+  std::string range() const;
 
   std::string name_, group_, help_, unit_, only_of_, shape_;
   KeyMember member_;
   std::vector<std::string> default_, words_;
   double low_ = -std::numeric_limits<double>::infinity(),
          high_ = std::numeric_limits<double>::infinity();
-  bool open_ = true, effort_ = false, in_files_ = true, swept_ = false;
+  bool low_open_ = true, high_open_ = true;
+  bool effort_ = false, in_files_ = true, swept_ = false, file_ = false;
   std::size_t each_ = 0, exactly_ = 0;
 };
 

@@ -31,7 +31,8 @@ void Keys::check() const {
 
 void Keys::require_set(const Key* key) {
   if (key != nullptr && key->value().empty())
-    throw InputError(key->name() + " is not given: " + key->accepted());
+    throw InputError(key->name() +
+                     " is not given: " + (key->is_file() ? key->help() : key->accepted()));
 }
 
 /// "luneburg, fisheye", of all rows of a name; empty where one of them is for all.
@@ -56,17 +57,28 @@ void Keys::refuse_unread() const {
 }
 
 void Keys::join_reads(const Keys& others) const {
-  read_.insert(others.read_.begin(), others.read_.end());
+  for (const auto& [name, row] : others.read_) read_.try_emplace(name, find(name));
 }
 
 std::string Keys::config(const std::set<std::string>& without) const {
-  std::set<std::string> left_out = without;
   std::string text;
   for (const Key& key : rows_)
-    if (key.is_in_files() && read_.contains(key.name()) && !key.value().empty() &&
-        left_out.insert(key.name()).second)
+    if (key.is_in_files() && was_read(key) && !key.value().empty() && !without.contains(key.name()))
       text += key.line() + '\n';
   return text;
+}
+
+std::vector<std::string> Keys::files() const {
+  std::vector<std::string> files;
+  for (const Key& key : rows_)
+    if (key.is_file() && was_read(key) && !key.value().empty()) files.push_back(key.shown());
+  return files;
+}
+
+/// Of the rows of a name, the first that was.
+bool Keys::was_read(const Key& key) const {
+  const auto row = read_.find(key.name());
+  return row != read_.end() && row->second == &key;
 }
 
 std::string Keys::identity() const {

@@ -2,6 +2,7 @@
 
 #include <concepts>
 #include <deque>
+#include <map>
 #include <set>
 #include <string>
 #include <vector>
@@ -21,12 +22,15 @@ class Keys {
   Keys(const Keys&) = delete;  // rows are bound to members
   Keys& operator=(const Keys&) = delete;
 
-  /// Of the rows that follow, for --help.
-  void group(std::string title) { group_ = std::move(title); }
+  /// Of the rows that follow: their title in --help, and what they are keys of if not of all.
+  void group(std::string title, std::string only_of = "") {
+    group_ = std::move(title);
+    only_of_ = std::move(only_of);
+  }
 
   template <typename Member>
   Key& add(const std::string& name, Member& member, const std::string& help) {
-    return rows_.emplace_back(name, &member, group_, help);
+    return rows_.emplace_back(name, &member, group_, help).only_of(only_of_);
   }
   void remove(const std::string& name);
   /// Fills every member of this name. Throws InputError.
@@ -41,7 +45,7 @@ class Keys {
   /// Value of a bound member, whose key then is read.
   template <typename Member>
   const Member& read(const Member& member) const {
-    if (const Key* const key = row_of(&member)) read_.insert(key->name());
+    if (const Key* const key = row_of(&member)) read_.try_emplace(key->name(), key);
     return member;
   }
   /// The same, where there must be one. Throws InputError.
@@ -74,14 +78,17 @@ class Keys {
   std::string config(const std::set<std::string>& without = {}) const;
   /// Those of them that change the result.
   std::string identity() const;
+  /// Those that were read, by their names there.
+  std::vector<std::string> files() const;
 
  private:
   std::string only_of(const std::string& name) const;
+  bool was_read(const Key& key) const;
   static void require_set(const Key* key);
 
-  std::string group_;
+  std::string group_, only_of_;
   std::deque<Key> rows_;
-  mutable std::set<std::string> read_;
+  mutable std::map<std::string, const Key*> read_;  ///< the row of each name that was
 };
 
 /// A struct of values with keys of its own, given what differs from its defaults: how libraries

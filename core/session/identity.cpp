@@ -3,6 +3,8 @@
 #include <set>
 #include <sstream>
 
+#include "core/result/file_checksum.h"
+
 namespace flatspeckle {
 
 std::string first_difference(const std::string& there, const std::string& here) {
@@ -12,6 +14,13 @@ std::string first_difference(const std::string& there, const std::string& here) 
   for (std::string line; std::getline(lines, line);)
     if (!known.contains(line)) return line;
   return "fewer keys";
+}
+
+std::string inputs_text(const Keys& keys) {
+  std::string text;
+  for (const std::string& path : keys.files())
+    text += path + ' ' + std::to_string(file_checksum(path)) + '\n';
+  return text;
 }
 
 }  // namespace flatspeckle

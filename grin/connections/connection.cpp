@@ -5,9 +5,8 @@
 #include <cmath>
 #include <numeric>
 
-#include "core/error.h"
-#include "core/result/result_group.h"
 
+#include "core/result/result_group.h"
 namespace flatspeckle::grin {
 
 namespace {
@@ -62,25 +61,6 @@ bool same_curve(const Connection& a, const Connection& b, double tolerance) {
   return a.orientation == b.orientation &&
          (a.start_direction - b.start_direction).norm() <= tolerance &&
          std::abs(a.arc_length - b.arc_length) <= tolerance * length;
-}
-
-void check(const ConnectionOptions& options) {
-  const auto positive = [](const char* key, double value) {
-    if (!(value > 0) || !std::isfinite(value))
-      throw InputError(key, value, "must be positive and finite");
-  };
-  positive("connection step", options.step);
-  positive("connection max_length", options.max_length);
-  positive("connection tolerance", options.tolerance);
-  positive("connection same", options.same);
-  positive("connection caustic", options.caustic);
-  positive("connection max_iterations", options.max_iterations);
-  if (!(options.roulette_after >= 1))
-    throw InputError("connection roulette_after", options.roulette_after, "must be at least 1");
-  if (!(options.start.chord_share >= 0 && options.start.chord_share < 1))
-    throw InputError("connection chord_share", options.start.chord_share, "must be in [0, 1)");
-  if (!(options.start.cosine > -1 && options.start.cosine < 1))
-    throw InputError("connection cosine", options.start.cosine, "must be between -1 and 1");
 }
 
 const DatasetTable trials_table{

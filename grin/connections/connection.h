@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/result/dataset_row.h"
-#include "grin/fields/vec3.h"
+#include "grin/geometry/vec3.h"
 #include "grin/media/start_directions.h"
 
 namespace flatspeckle::grin {
@@ -107,8 +107,5 @@ struct FoundConnection {
 };
 
 bool same_curve(const Connection& a, const Connection& b, double tolerance);
-
-/// Throws InputError unless steps and lengths are positive and the shares are shares.
-void check(const ConnectionOptions& options);
 
 }  // namespace flatspeckle::grin

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "grin/fields/vec3.h"
+#include "grin/geometry/vec3.h"
 
 namespace flatspeckle::grin {
 

@@ -2,7 +2,7 @@
 
 #include <Eigen/LU>
 
-#include "grin/media/frame.h"
+#include "grin/geometry/frame.h"
 #include "grin/rays/ray.h"
 
 namespace flatspeckle::grin {

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/keys/number_text.h"
 #include "grin/media/start_directions.h"
 
 namespace flatspeckle::grin {
@@ -15,7 +16,6 @@ using std::numbers::pi;
 constexpr double anywhere = 0.1;
 
 BoundaryPoint centre_on(const Surface& boundary, const Vec3& centre) {
-  require_finite("sensor_at", centre);
   const auto at = boundary_point(boundary, centre);
   if (!at)
     throw InputError("sensor_at", listed(centre),
@@ -23,10 +23,8 @@ BoundaryPoint centre_on(const Surface& boundary, const Vec3& centre) {
   return *at;
 }
 
-double sine_squared_of_acceptance(double acceptance) {
-  if (!(acceptance > 0 && acceptance <= pi / 2 * (1 + 1e-12)))
-    throw InputError("acceptance", acceptance, "must be in (0, pi/2]");
-  const double sine = std::sin(std::min(acceptance, pi / 2));
+double sine_squared(double angle) {
+  const double sine = std::sin(angle);
   return sine * sine;
 }
 
@@ -44,8 +42,6 @@ const DatasetTable area_table{
      {"pulse", Data::estimate, "optical_path", "1", "power on the detector, in the bin"}}};
 
 PixelRectangle picture_of(const AreaDetector& detector) {
-  require_positive("sensor_size", detector.width);
-  require_positive("sensor_size", detector.height);
   return {detector.pixels, detector.width / 2, detector.height / 2};
 }
 
@@ -54,7 +50,7 @@ AreaDetectorEnd::AreaDetectorEnd(const AreaDetector& detector, const Stage& stag
       boundary_(stage.boundary),
       centre_(centre_on(stage.boundary, detector.centre).x),
       view_("sensor_at", -centre_on(stage.boundary, detector.centre).inward, detector.up),
-      sine_squared_(sine_squared_of_acceptance(detector.acceptance)),
+      sine_squared_(sine_squared(detector.acceptance)),
       tangent_(std::sqrt(sine_squared_ / (1 - sine_squared_))),
       body_(body_surface(stage)) {
   require_in_stage(stage, centre_);
@@ -66,7 +62,7 @@ AreaDetectorEnd::AreaDetectorEnd(const AreaDetector& detector, const Stage& stag
       const bool fits = sphere ? corner.norm() < sphere->radius
                                : boundary_point(boundary_, centre_ + corner).has_value();
       if (!fits)
-        throw InputError("sensor_size", listed(detector.width, detector.height),
+        throw InputError("sensor_size", number_text(std::vector{detector.width, detector.height}),
                          "must be within one face of the boundary");
     }
 }
@@ -150,6 +146,28 @@ EndDirection AreaDetectorEnd::towards(const EndPosition& at, const Vec3& directi
   to.pixel = at.pixel;
   to.strength = at.index * at.index * cosine * at.position_density * pixels().count();
   return to;
+}
+
+void add_keys(Keys& keys, AreaValues& values) {
+  add_vector(keys, "sensor_at", values.sensor_at, "The middle of the area, on the boundary")
+      .unit("length");
+  keys.add("sensor_size", values.sensor_size, "Width and height")
+      .exactly(2, "two numbers: width height")
+      .positive()
+      .unit("length");
+  keys.add("acceptance", values.acceptance, "Half angle about the normal")
+      .positive_to(pi / 2)
+      .unit("rad");
+}
+
+AreaDetector make_sensor(const Keys& keys, const AreaValues& values, const Picture& picture) {
+  const auto& size = keys.required(values.sensor_size);
+  return {vector_of(keys.required(values.sensor_at)),
+          picture.up,
+          size[0],
+          size[1],
+          picture.pixels,
+          keys.read(values.acceptance)};
 }
 
 }  // namespace flatspeckle::grin

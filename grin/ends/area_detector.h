@@ -1,19 +1,21 @@
 #pragma once
 
+#include <numbers>
 #include <optional>
 
-#include "core/result/dataset_row.h"
 #include "grin/ends/boundary_patch.h"
-#include "grin/ends/path_end.h"
-#include "grin/ends/pixel_grid.h"
+#include "grin/ends/sensor_kind.h"
 
 namespace flatspeckle::grin {
+
+class AreaDetectorEnd;
 
 /// A rectangle on a face of a box boundary, or the part of a sphere's boundary in front of a
 /// rectangle in the tangent plane: irradiance averaged over each pixel of the rectangle, of light
 /// that arrives within `acceptance` of the outward normal. Columns along outward normal x up: as
 /// light sees it that arrives.
 struct AreaDetector {
+  using End = AreaDetectorEnd;
   Vec3 centre, up;
   double width, height;
   PixelGrid pixels;
@@ -21,8 +23,9 @@ struct AreaDetector {
 };
 
 extern const DatasetTable area_table;
-
-/// Throws InputError for sizes that are not positive.
+inline const DatasetTable& table_of(const AreaDetector&) {
+  return area_table;
+}
 PixelRectangle picture_of(const AreaDetector& detector);
 
 /// With u, v on the rectangle, W = (du dv / dA) / pixel area; du dv / dA is the cosine between the
@@ -56,5 +59,15 @@ class AreaDetectorEnd {
   double tangent_;       ///< the same; infinite for all directions
   std::optional<Surface> body_;
 };
+
+struct AreaValues {
+  using Sensor = AreaDetector;
+  static constexpr const char* word = "area";
+  std::vector<double> sensor_at{}, sensor_size{};
+  double acceptance = std::numbers::pi / 2;
+};
+
+void add_keys(Keys& keys, AreaValues& values);
+AreaDetector make_sensor(const Keys& keys, const AreaValues& values, const Picture& picture);
 
 }  // namespace flatspeckle::grin

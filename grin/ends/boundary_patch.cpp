@@ -3,7 +3,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "grin/fields/input_checks.h"
+#include "core/error.h"
+#include "grin/geometry/vector_values.h"
 #include "grin/media/start_directions.h"
 
 namespace flatspeckle::grin {

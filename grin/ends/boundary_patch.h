@@ -7,7 +7,7 @@
 #include <variant>
 
 #include "core/numbers/random.h"
-#include "grin/connections/geometric_spreading.h"
+#include "grin/geometry/frame.h"
 #include "grin/surfaces/signed_distance.h"
 
 namespace flatspeckle::grin {

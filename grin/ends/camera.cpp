@@ -17,8 +17,6 @@ const DatasetTable camera_table{
       "mean over the pixels, in the bin"}}};
 
 PixelRectangle picture_of(const Camera& camera) {
-  if (!(camera.field_of_view > 0 && camera.field_of_view < std::numbers::pi))
-    throw InputError("field_of_view", camera.field_of_view, "must be in (0, pi)");
   const double half_width = std::tan(camera.field_of_view / 2);
   return {camera.pixels, half_width, half_width * camera.pixels.rows / camera.pixels.columns};
 }
@@ -34,7 +32,6 @@ CameraEnd::CameraEnd(const Camera& camera, const Stage& stage)
 }
 
 void CameraEnd::place_lens(const Camera& camera, const Stage& stage) {
-  require_finite("sensor_at", centre_);
   lens_.emplace(stage.boundary, centre_, camera.lens_radius, "sensor_at", "lens_radius");
   centre_ = boundary_point(stage.boundary, centre_)->x;
   if (!(camera.focus_distance > camera.lens_radius && std::isfinite(camera.focus_distance)))
@@ -91,6 +88,34 @@ EndDirection CameraEnd::towards(const EndPosition& at, const Vec3& direction) co
   const int pixel = film_.pixel_at(focus.dot(view_.right), focus.dot(view_.up));
   if (pixel < 0) return {.direction = direction};
   return along(at, direction, pixel);
+}
+
+void add_keys(Keys& keys, CameraValues& values) {
+  add_vector(keys, "sensor_at", values.sensor_at, "The camera's eye, or the middle of its lens")
+      .unit("length");
+  add_vector(keys, "sensor_direction", values.sensor_direction, "Where the camera looks");
+  keys.add("field_of_view", values.field_of_view, "Full angle of a row")
+      .between(0, std::numbers::pi)
+      .unit("rad");
+  keys.add("lens_radius", values.lens_radius,
+           "Of a thin lens on the stage's boundary (default: pinhole)")
+      .positive()
+      .unit("length");
+  keys.add("focus_distance", values.focus_distance, "Of the lens")
+      .positive()
+      .unit("length")
+      .only_of("a camera with lens_radius");
+}
+
+Camera make_sensor(const Keys& keys, const CameraValues& values, const Picture& picture) {
+  Camera camera{vector_of(keys.required(values.sensor_at)),
+                vector_of(keys.read(values.sensor_direction)), picture.up,
+                keys.required(values.field_of_view), picture.pixels};
+  if (const auto& radius = keys.read(values.lens_radius)) {
+    camera.lens_radius = *radius;
+    camera.focus_distance = keys.required(values.focus_distance);
+  }
+  return camera;
 }
 
 }  // namespace flatspeckle::grin

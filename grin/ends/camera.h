@@ -2,15 +2,16 @@
 
 #include <optional>
 
-#include "core/result/dataset_row.h"
 #include "grin/ends/boundary_patch.h"
-#include "grin/ends/path_end.h"
-#include "grin/ends/pixel_grid.h"
+#include "grin/ends/sensor_kind.h"
 
 namespace flatspeckle::grin {
 
+class CameraEnd;
+
 /// A camera that looks along `forward`: L/n^2 averaged over each pixel of its film.
 struct Camera {
+  using End = CameraEnd;
   Vec3 x, forward, up;
   double field_of_view;  ///< across the columns, full angle, rad, < pi
   PixelGrid pixels;
@@ -20,8 +21,9 @@ struct Camera {
 };
 
 extern const DatasetTable camera_table;
-
-/// Throws InputError for sizes that are not positive.
+inline const DatasetTable& table_of(const Camera&) {
+  return camera_table;
+}
 PixelRectangle picture_of(const Camera& camera);
 
 /// The film is the plane of focus, seen from the camera's centre: u and v are tangents. A ray from
@@ -39,7 +41,8 @@ class CameraEnd {
   EndDirection sample_direction(const EndPosition& at, double stratum, RandomStream& random) const;
   EndDirection towards(const EndPosition& at, const Vec3& direction) const;
   std::optional<EndPosition> position_at(const Vec3& x) const;
-  bool is_pinhole() const { return !lens_; }
+  /// A pinhole cannot.
+  bool can_be_hit() const { return lens_.has_value(); }
 
  private:
   void place_lens(const Camera& camera, const Stage& stage);
@@ -53,5 +56,15 @@ class CameraEnd {
   std::optional<BoundaryPatch> lens_;
   std::optional<Surface> body_;
 };
+
+struct CameraValues {
+  using Sensor = Camera;
+  static constexpr const char* word = "camera";
+  std::vector<double> sensor_at{}, sensor_direction{0, 0, 1};
+  std::optional<double> field_of_view = {}, lens_radius = {}, focus_distance = {};
+};
+
+void add_keys(Keys& keys, CameraValues& values);
+Camera make_sensor(const Keys& keys, const CameraValues& values, const Picture& picture);
 
 }  // namespace flatspeckle::grin

@@ -18,10 +18,7 @@ const DatasetTable directional_table{
      {"pulse", Data::estimate, "optical_path", "1/sr", "mean over the pixels, in the bin"}}};
 
 PixelRectangle picture_of(const DirectionalDetector& detector) {
-  constexpr double right_angle = std::numbers::pi / 2;
-  if (!(detector.half_angle > 0 && detector.half_angle <= right_angle * (1 + 1e-12)))
-    throw InputError("half_angle", detector.half_angle, "must be in (0, pi/2]");
-  const double sine = std::sin(std::min(detector.half_angle, right_angle));
+  const double sine = std::sin(detector.half_angle);
   return {detector.pixels, sine, sine};
 }
 
@@ -72,6 +69,19 @@ EndDirection DirectionalEnd::towards(const EndPosition& at, const Vec3& directio
                         : -1;
   if (pixel < 0) return {.direction = direction};
   return along(at, direction, pixel);
+}
+
+void add_keys(Keys& keys, DirectionalValues& values) {
+  add_vector(keys, "sensor_direction", values.sensor_direction, "Middle of the directions");
+  keys.add("half_angle", values.half_angle, "Angle of the middle of a side")
+      .positive_to(std::numbers::pi / 2)
+      .unit("rad");
+}
+
+DirectionalDetector make_sensor(const Keys& keys, const DirectionalValues& values,
+                                const Picture& picture) {
+  return {vector_of(keys.read(values.sensor_direction)), picture.up, keys.read(values.half_angle),
+          picture.pixels};
 }
 
 }  // namespace flatspeckle::grin

@@ -1,26 +1,29 @@
 #pragma once
 
+#include <numbers>
 #include <optional>
 
-#include "core/result/dataset_row.h"
 #include "grin/ends/boundary_patch.h"
-#include "grin/ends/path_end.h"
-#include "grin/ends/pixel_grid.h"
+#include "grin/ends/sensor_kind.h"
 
 namespace flatspeckle::grin {
+
+class DirectionalEnd;
 
 /// All light that leaves the stage through its boundary, by direction: power per solid angle in
 /// pixels of the sines of the angles from `forward` (orthographic), averaged over each pixel:
 /// column along forward x up.
 struct DirectionalDetector {
+  using End = DirectionalEnd;
   Vec3 forward, up;
   double half_angle;  ///< of the square's half side, its sine; up to pi/2
   PixelGrid pixels;
 };
 
 extern const DatasetTable directional_table;
-
-/// Throws InputError for sizes that are not positive.
+inline const DatasetTable& table_of(const DirectionalDetector&) {
+  return directional_table;
+}
 PixelRectangle picture_of(const DirectionalDetector& detector);
 
 /// With u, v the components of the outward direction, du dv = cos(theta) dw, theta from forward:
@@ -45,5 +48,16 @@ class DirectionalEnd {
   BoundaryPatch boundary_;
   std::optional<Surface> body_;
 };
+
+struct DirectionalValues {
+  using Sensor = DirectionalDetector;
+  static constexpr const char* word = "directional";
+  std::vector<double> sensor_direction{0, 0, 1};
+  double half_angle = std::numbers::pi / 2;
+};
+
+void add_keys(Keys& keys, DirectionalValues& values);
+DirectionalDetector make_sensor(const Keys& keys, const DirectionalValues& values,
+                                const Picture& picture);
 
 }  // namespace flatspeckle::grin

@@ -1,49 +1,37 @@
 #pragma once
 
-#include <functional>
 #include <variant>
 #include <vector>
 
 #include "core/numbers/random.h"
-#include "grin/ends/boundary_patch.h"
-#include "grin/ends/path_end.h"
+#include "grin/ends/beam_light.h"
+#include "grin/ends/face_light.h"
+#include "grin/ends/point_light.h"
 
 namespace flatspeckle::grin {
 
-/// Isotropic, at x inside the stage.
-struct PointLight {
-  Vec3 x;
-  double power = 1;
+template <class... Kind>
+struct LightKinds : Kind... {
+  using Light = std::variant<typename Kind::Light...>;
+  using End = std::variant<typename Kind::Light::End...>;
 };
 
-/// Parallel rays, uniform over a disk inside the stage or on its boundary.
-struct BeamLight {
-  Vec3 centre, direction;
-  double radius;
-  double power = 1;
-};
+/// The lights of a stage as keys have them, of all kinds (light_kind.h); the one list of them.
+using LightValues = LightKinds<PointLightValues, BeamLightValues, FaceLightValues>;
+using Light = LightValues::Light;
 
-/// The part of the boundary within `radius` of `centre`, Lambertian inwards: L/n^2 = radiance. An
-/// infinite radius is the environment. Sphere and box boundaries only, see BoundaryPatch. Its power
-/// is radiance pi times the integral of n^2 over the part.
-struct FaceLight {
-  Vec3 centre = Vec3::Zero();
-  double radius;
-  double radiance = 1;
-};
-
-using Light = std::variant<PointLight, BeamLight, FaceLight>;
+void add_keys(Keys& keys, LightValues& values);
+/// Kind after kind. Throws InputError.
+std::vector<Light> make_lights(const Keys& keys, const LightValues& values);
 
 /// All lights of a scene; one of them is drawn for each path, by its power. `space` in the calls is
 /// asked for space.index(PathPoint) alone.
 class Lights {
  public:
-  using Index = std::function<double(const PathPoint&)>;
-
   /// The index is that of the powers. Throws InputError naming the light for no lights, a light
-  /// that is not inside the stage, a beam that leaves it at once, and sizes or powers that are not
-  /// positive and finite.
-  Lights(std::vector<Light> lights, const Stage& stage, const Index& index);
+  /// that is not inside the stage, a beam that leaves it at once, and sizes or powers of which
+  /// nothing can be drawn.
+  Lights(const std::vector<Light>& lights, const Stage& stage, const IndexAt& index);
 
   template <class S>
   EndPosition sample_position(const S& space, RandomStream& random) const {
@@ -67,10 +55,11 @@ class Lights {
   template <class S, class Use>
   void hit(const S& space, const Vec3& x, const Vec3& direction, const Use& use) const {
     for (const int light : faces_) {
-      if (!source_[light].patch->contains(x)) continue;
-      EndPosition at = position(light, {x, source_[light].patch->inward(x)});
+      const auto& face = std::get<FaceLightEnd>(source_[light].end);
+      if (!face.contains(x)) continue;
+      EndPosition at = position(light, {x, face.inward(x)});
       at.index = space.index(at.point);
-      use_hit(at, towards(at, -direction), use);
+      use_hit(at, face.towards(at, -direction), use);
     }
   }
 
@@ -78,20 +67,15 @@ class Lights {
 
  private:
   struct Source {
-    Light light;  ///< directions of beams are unit vectors
-    double power = 0;
+    LightValues::End end;
+    double power;
     double chance = 0;         ///< to be drawn
     double chance_so_far = 0;  ///< this and all before
     double position_density = 1;
-    std::optional<BoundaryPatch> patch = {};  ///< of a face
-    std::optional<FlatDisk> disk = {};        ///< of a beam
   };
+  void settle_chances();
   EndPosition draw_position(RandomStream& random) const;
   EndPosition position(int light, const BoundaryPoint& at) const;
-  EndPosition on_beam(int beam, const Vec3& x) const;
-  static Source source(const PointLight& light, const Stage& stage, const Index& index);
-  static Source source(const BeamLight& light, const Stage& stage, const Index& index);
-  static Source source(const FaceLight& light, const Stage& stage, const Index& index);
 
   std::vector<Source> source_;
   std::vector<int> faces_, beams_;

@@ -7,8 +7,7 @@
 #include <Eigen/Geometry>
 
 #include "core/numbers/random.h"
-#include "grin/fields/input_checks.h"
-#include "grin/fields/vec3.h"
+#include "grin/geometry/vector_values.h"
 
 namespace flatspeckle::grin {
 
@@ -37,12 +36,7 @@ struct Window {
 class PixelRectangle {
  public:
   PixelRectangle(const PixelGrid& grid, double half_width, double half_height)
-      : grid_(grid), half_width_(half_width), half_height_(half_height) {
-    if (grid.columns < 1 || grid.rows < 1 || grid.columns > largest_side ||
-        grid.rows > largest_side)
-      throw InputError("pixels", std::to_string(grid.columns) + " " + std::to_string(grid.rows),
-                       "must be from 1 to 16384 along each side");
-  }
+      : grid_(grid), half_width_(half_width), half_height_(half_height) {}
 
   const PixelGrid& grid() const { return grid_; }
   double half_width() const { return half_width_; }
@@ -92,8 +86,6 @@ class PixelRectangle {
     for (int i = 0; i < count; ++i) values.push_back(half * ((2 * i + 1.0) / count - 1));
     return values;
   }
-
-  static constexpr int largest_side = 16384;
 
   PixelGrid grid_;
   double half_width_, half_height_;

@@ -1,6 +1,10 @@
 #pragma once
 
+#include <cstdint>
+#include <string>
+#include <tuple>
 #include <variant>
+#include <vector>
 
 #include "grin/ends/area_detector.h"
 #include "grin/ends/camera.h"
@@ -8,11 +12,38 @@
 
 namespace flatspeckle::grin {
 
-using Sensor = std::variant<Camera, AreaDetector, DirectionalDetector>;
+/// All kinds of sensors (sensor_kind.h); the one list of them.
+using SensorKinds = std::tuple<CameraValues, AreaValues, DirectionalValues>;
+
+template <class Kinds>
+struct SensorsOf;
+template <class... Kind>
+struct SensorsOf<std::tuple<Kind...>> {
+  using Sensor = std::variant<typename Kind::Sensor...>;
+  using End = std::variant<typename Kind::Sensor::End...>;
+};
+using Sensor = SensorsOf<SensorKinds>::Sensor;
+
+/// A sensor as keys have it: the word of its kind, and what each kind needs.
+struct SensorValues {
+  std::string sensor = CameraValues::word;
+  std::vector<double> sensor_up{0, 1, 0};
+  std::vector<std::int64_t> pixels{64, 64};
+  SensorKinds kinds;
+
+  template <class Kind>
+  Kind& of() {
+    return std::get<Kind>(kinds);
+  }
+};
+
+void add_keys(Keys& keys, SensorValues& values);
+/// Throws InputError.
+Sensor make_sensor(const Keys& keys, const SensorValues& values);
 
 /// What the file of a sensor has.
 const DatasetTable& table_of(const Sensor& sensor);
-/// Its pixels. Throws InputError for sizes that are not positive.
+/// Its pixels.
 PixelRectangle picture_of(const Sensor& sensor);
 
 /// The sensor of a scene as an end of paths; same interface as Lights.
@@ -22,9 +53,8 @@ PixelRectangle picture_of(const Sensor& sensor);
 /// uniform stratum.
 class SensorEnd {
  public:
-  /// Throws InputError naming the key (sensor_at, sensor_direction, sensor_up, field_of_view,
-  /// pixels, lens_radius, focus_distance, sensor_size, acceptance, half_angle) for a sensor outside
-  /// the stage or inside the body, and for sizes that are not positive.
+  /// Throws InputError naming the key for a sensor outside the stage or inside the body, or one
+  /// that does not fit on the boundary.
   SensorEnd(const Sensor& sensor, const Stage& stage);
 
   PixelGrid pixels() const {
@@ -46,24 +76,25 @@ class SensorEnd {
   /// For a join from x: where the sensor may see light from there.
   template <class S>
   EndPosition choose_position(const S& space, const Vec3& x, RandomStream& random) const {
-    const auto* area = std::get_if<AreaDetectorEnd>(&end_);
-    if (!area) return sample_position(space, random);
-    EndPosition at = area->choose_position(x, random);
+    EndPosition at = std::visit(
+        [&](const auto& end) {
+          if constexpr (requires { end.choose_position(x, random); })
+            return end.choose_position(x, random);
+          else
+            return end.sample_position(random.uniform(), random);
+        },
+        end_);
     at.index = space.index(at.point);
     return at;
   }
   /// Density of choosing this place from x over at.position_density.
-  double choice(const EndPosition& at, const Vec3& x) const {
-    const auto* area = std::get_if<AreaDetectorEnd>(&end_);
-    return area ? area->choice(at.point.x, x) : 1;
-  }
+  double choice(const EndPosition& at, const Vec3& x) const;
   EndDirection sample_direction(const EndPosition& at, RandomStream& random) const {
     return sample_direction(at, random, random.uniform());
   }
   /// pixel -1 and strength 0 where the sensor does not look.
   EndDirection towards(const EndPosition& at, const Vec3& direction) const;
 
-  /// A pinhole cannot.
   bool can_be_hit() const;
   /// A path arrives on the boundary at x along `direction`: calls use(EndHit) if the sensor sees
   /// it.
@@ -76,8 +107,7 @@ class SensorEnd {
   }
 
  private:
-  using End = std::variant<CameraEnd, AreaDetectorEnd, DirectionalEnd>;
-  End end_;
+  SensorsOf<SensorKinds>::End end_;
 };
 
 }  // namespace flatspeckle::grin

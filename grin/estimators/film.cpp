@@ -1,18 +1,8 @@
 #include "grin/estimators/film.h"
 
 #include <cassert>
-#include <cmath>
-
-#include "core/error.h"
 
 namespace flatspeckle::grin {
-
-void require_usable(const TimeBins& bins) {
-  if (bins.count < 1) throw InputError("path_bins", bins.count, "must be at least 1");
-  if (bins.count == 1) return;
-  if (!(std::isfinite(bins.first) && std::isfinite(bins.last) && bins.first < bins.last))
-    throw InputError("start of path_bins", bins.first, "must be finite and before their end");
-}
 
 Film::Film(int pixels, const TimeBins& bins, std::span<Complex> sums)
     : sums_(sums),

@@ -13,9 +13,6 @@ struct TimeBins {
   int count = 1;               ///< 1: steady state
 };
 
-/// Throws InputError for no bins, or several whose edges are not finite and rising.
-void require_usable(const TimeBins& bins);
-
 /// Sums of a batch: [pixel][bin].
 class Film {
  public:

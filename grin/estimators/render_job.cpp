@@ -7,7 +7,6 @@
 #include <mutex>
 #include <string>
 
-#include "core/error.h"
 #include "core/numbers/random.h"
 #include "grin/estimators/path_kernels.h"
 #include "grin/estimators/photon_map.h"
@@ -34,7 +33,8 @@ bool is_photon_map(const RenderRequest& request) {
 constexpr int most_scatterings = std::numeric_limits<int>::max();
 
 int path_limit(const RenderRequest& request) {
-  return request.max_scatterings > 0 ? static_cast<int>(request.max_scatterings) : most_scatterings;
+  if (request.max_scatterings <= 0) return most_scatterings;
+  return static_cast<int>(std::min<std::int64_t>(request.max_scatterings, most_scatterings));
 }
 
 double photon_radius(const RenderScene& scene, const RenderRequest& request) {
@@ -53,8 +53,13 @@ bool sums_beams_apart(const Transport& transport, const RenderRequest& request) 
          transport.sensor.can_be_hit();
 }
 
-std::shared_ptr<Transport> transport_in(const RenderScene& scene, const RenderRequest& request,
-                                        const Lights::Index& index) {
+double index_at(const RenderScene& scene, const PathPoint& p) {
+  if (scene.stage.body && p.part == Part::stage) return 1 + scene.stage.excess_around;
+  return std::visit([&](const auto& field) { return index(field, p.x); }, scene.field);
+}
+
+std::shared_ptr<Transport> transport_in(const RenderScene& scene, const RenderRequest& request) {
+  const auto index = [&](const PathPoint& p) { return index_at(scene, p); };
   return std::make_shared<Transport>(Transport{
       .stage = scene.stage,
       .lights = Lights(scene.lights, scene.stage, index),
@@ -67,10 +72,7 @@ std::shared_ptr<Transport> transport_in(const RenderScene& scene, const RenderRe
 Tracer straight_tracer(const RenderScene& scene, const RenderRequest& request,
                        const RenderPlan& plan) {
   const double excess = std::get<Homogeneous>(scene.field).n_excess;
-  const double around = scene.stage.body ? scene.stage.excess_around : excess;
-  const auto transport = transport_in(scene, request, [&](const PathPoint& p) {
-    return 1 + (p.part == Part::body ? excess : around);
-  });
+  const auto transport = transport_in(scene, request);
   Tracer tracer{transport, is_photon_map(request) ? photon_kernel(plan.timed, transport, excess,
                                                                   photon_radius(scene, request))
                                                   : straight_kernel(plan, transport, excess)};
@@ -83,8 +85,7 @@ Tracer curved_tracer(const RenderScene& scene, const RenderRequest& request,
                      const RenderPlan& plan) {
   const std::shared_ptr<const CurvedSpace> space = make_curved_space(
       scene.field, scene.stage, {scene.step, scene.max_length, !is_photon_map(request)});
-  const auto transport =
-      transport_in(scene, request, [&](const PathPoint& p) { return space->index(p); });
+  const auto transport = transport_in(scene, request);
   if (is_photon_map(request))
     return {transport, photon_kernel(plan.timed, transport, space, scene.random_phase,
                                      photon_radius(scene, request))};
@@ -120,18 +121,6 @@ Estimate steady_picture(const GroupedSums& sums, int bins) {
   });
 }
 
-void require_usable(const RenderScene& scene, const RenderRequest& request) {
-  require_usable(scene.bins);
-  if (request.max_scatterings < 0 || request.max_scatterings > most_scatterings)
-    throw InputError("max_scatterings", request.max_scatterings,
-                     "must not be negative, and at most " + std::to_string(most_scatterings));
-  if (!(request.photon_radius >= 0) || !std::isfinite(request.photon_radius))
-    throw InputError("photon_radius", request.photon_radius, "must be 0 (automatic) or positive");
-  if (scene.random_phase && !std::holds_alternative<StandingWave>(scene.field) &&
-      !std::holds_alternative<FocusedSound>(scene.field))
-    throw InputError("random_phase: needs the field ultrasound or focused_sound, and it alone");
-}
-
 }  // namespace
 
 RenderPlan render_plan(const RenderScene& scene) {
@@ -150,10 +139,15 @@ RenderPlan render_plan(const RenderScene& scene) {
   return plan;
 }
 
-RenderJob render_job(const RenderScene& scene, const RenderRequest& request, std::uint64_t seed) {
-  require_usable(scene, request);
+void check(const RenderScene& scene, const RenderRequest& request) {
   check(scene.stage);
   check_path_lengths(scene.stage, path_limit(request));
+  if (scene.random_phase) make_ray_field(scene.field)->frozen(0);
+  transport_in(scene, request);
+}
+
+RenderJob render_job(const RenderScene& scene, const RenderRequest& request, std::uint64_t seed) {
+  check(scene, request);
   const RenderPlan plan = render_plan(scene);
   const Tracer tracer =
       plan.curved ? curved_tracer(scene, request, plan) : straight_tracer(scene, request, plan);

@@ -27,6 +27,7 @@ struct RenderScene {
   std::vector<Light> lights;
   Sensor sensor;
   TimeBins bins = {};
+  std::optional<double> length_unit = {};  ///< metres in a unit of length, for times
 };
 
 enum class RenderMethod { path, light, bidirectional, photon_map };
@@ -50,7 +51,11 @@ struct RenderJob {
   std::shared_ptr<const TransportCounts> counts;
 };
 
-/// Throws InputError.
+/// Throws InputError for lights and sensors that do not fit the stage, for media in which paths do
+/// not end in time, and for a random phase of a field without sound.
+void check(const RenderScene& scene, const RenderRequest& request);
+
+/// Checks the same, then walks a few paths to plan. Throws InputError.
 RenderJob render_job(const RenderScene& scene, const RenderRequest& request, std::uint64_t seed);
 
 /// Value and standard error of [pixel][bin], and of the sum over the bins.

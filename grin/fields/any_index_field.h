@@ -1,24 +1,55 @@
 #pragma once
 
+#include <tuple>
 #include <variant>
 
 #include "grin/fields/field_sum.h"
+#include "grin/fields/fisheye.h"
 #include "grin/fields/focused_sound.h"
 #include "grin/fields/gaussian_blobs.h"
-#include "grin/fields/guides.h"
-#include "grin/fields/lenses.h"
-#include "grin/fields/ramps.h"
+#include "grin/fields/homogeneous.h"
+#include "grin/fields/linear_ramp.h"
+#include "grin/fields/luneburg.h"
+#include "grin/fields/parabolic.h"
+#include "grin/fields/sech.h"
 #include "grin/fields/spline_field.h"
+#include "grin/fields/tanh_ramp.h"
 #include "grin/fields/ultrasound.h"
 
 namespace flatspeckle::grin {
 
-using AnySum = FieldSum<Homogeneous, Luneburg, Fisheye, ParabolicGuide, SechGuide, LinearRamp,
-                        TanhRamp, GaussianBlobs, StandingWave, FocusedSound, SplineField>;
+/// All kinds of index fields (field_kind.h); the one list of them.
+using IndexFieldKinds = std::tuple<HomogeneousValues, LuneburgValues, FisheyeValues,
+                                   ParabolicValues, SechValues, LinearValues, TanhValues,
+                                   BlobsValues, UltrasoundValues, FocusedSoundValues, GridValues>;
+
+template <class Kinds>
+struct FieldsOf;
+template <class... Kind>
+struct FieldsOf<std::tuple<Kind...>> {
+  using Sum = FieldSum<typename Kind::Field...>;
+  template <class Other>
+  using VariantWith = std::variant<typename Kind::Field..., Other>;
+};
+
+/// Any of them added up, compiled once: a sum is long enough for a call.
+class AnySum {
+ public:
+  template <IndexField F>
+  AnySum& add(F field) {
+    sum_.add(std::move(field));
+    return *this;
+  }
+
+  double excess(const Vec3& x) const;
+  IndexGradient gradient(const Vec3& x) const;
+  IndexHessian hessian(const Vec3& x) const;
+
+ private:
+  FieldsOf<IndexFieldKinds>::Sum sum_;
+};
 
 /// A field chosen at run time: std::visit it once for a bundle of rays, never for a step.
-using AnyIndexField =
-    std::variant<Homogeneous, Luneburg, Fisheye, ParabolicGuide, SechGuide, LinearRamp, TanhRamp,
-                 GaussianBlobs, StandingWave, FocusedSound, SplineField, AnySum>;
+using AnyIndexField = FieldsOf<IndexFieldKinds>::VariantWith<AnySum>;
 
 }  // namespace flatspeckle::grin

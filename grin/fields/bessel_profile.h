@@ -14,7 +14,7 @@ class BesselProfile {
  public:
   static constexpr int max_order = 64;
 
-  /// Throws InputError for an order outside 0 .. max_order or a reach that is not in (0, 1e4].
+  /// Order 0 to max_order. Throws InputError for a reach that is not in (0, 1e4].
   BesselProfile(int order, double reach);
 
   int order() const { return order_; }

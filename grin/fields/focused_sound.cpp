@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <numbers>
 
-#include "grin/fields/input_checks.h"
-
 namespace flatspeckle::grin {
 
 namespace {
@@ -15,16 +13,10 @@ FocusedSound::FocusedSound(double background, double amplitude, double k,
                            const std::vector<Vec3>& directions, const Vec3& focus, double psi)
     : background_(background),
       amplitude_(amplitude / static_cast<double>(std::max<std::size_t>(directions.size(), 1))),
+      k_(k),
       focus_(focus),
       psi_(psi) {
-  if (directions.empty()) throw InputError("emitters", 0, "at least one");
-  if (!(k > 0 && std::isfinite(k)))
-    throw InputError("wavenumber of the sound", k, "must be positive");
-  for (const Vec3& direction : directions) {
-    if (!(direction.norm() > 0))
-      throw InputError("direction of an emitter", listed(direction), "must not be 0");
-    waves_.push_back(k * direction.normalized());
-  }
+  for (const Vec3& direction : directions) waves_.push_back(k * direction.normalized());
 }
 
 std::vector<Vec3> arc_directions(int count, double aperture) {
@@ -47,6 +39,27 @@ std::vector<Vec3> cap_directions(int count, double aperture) {
     directions.emplace_back(radius * std::cos(azimuth), radius * std::sin(azimuth), 1 - drop);
   }
   return directions;
+}
+
+void add_keys(Keys& keys, FocusedSoundValues& values) {
+  add_keys(keys, static_cast<SoundValues&>(values));
+  keys.add("emitters", values.emitters, "Plane waves").from(1, 100'000);
+  keys.add("aperture", values.aperture, "Half angle of their directions about z")
+      .positive_to(pi)
+      .unit("rad");
+  keys.add("focusing", values.focusing, "On a point or, all directions in x-z, on a line")
+      .one_of({"cone", "arc"});
+  add_vector(keys, "centre", values.centre, "The focus").unit("length");
+}
+
+FocusedSound make_field(const Keys& keys, const FocusedSoundValues& values, const FieldUse& use) {
+  const auto spread = keys.read(values.focusing) == "arc" ? arc_directions : cap_directions;
+  return {background(keys, values.index, use),
+          keys.required(values.amplitude),
+          keys.required(values.sound_wavenumber),
+          spread(static_cast<int>(keys.read(values.emitters)), keys.read(values.aperture)),
+          vector_of(keys.read(values.centre)),
+          phase_of(keys, values, use)};
 }
 
 }  // namespace flatspeckle::grin

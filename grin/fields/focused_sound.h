@@ -1,9 +1,11 @@
 #pragma once
 
 #include <cmath>
+#include <cstdint>
+#include <string>
 #include <vector>
 
-#include "grin/fields/index_field.h"
+#include "grin/fields/sound.h"
 
 namespace flatspeckle::grin {
 
@@ -14,7 +16,7 @@ namespace flatspeckle::grin {
 /// the line through the focus across that plane, a cone of them on a point.
 class FocusedSound {
  public:
-  /// Throws InputError without directions (any lengths but 0), or for k <= 0.
+  /// One direction at least, of any lengths but 0; k > 0. Throws InputError.
   FocusedSound(double background, double amplitude, double k, const std::vector<Vec3>& directions,
                const Vec3& focus, double psi = 0);
 
@@ -24,6 +26,10 @@ class FocusedSound {
     sound.psi_ = psi;
     return sound;
   }
+
+  double background() const { return background_; }
+  double amplitude() const { return amplitude_; }
+  double wavenumber() const { return k_; }
 
   double excess(const Vec3& x) const {
     double sum = 0;
@@ -57,7 +63,8 @@ class FocusedSound {
   double phase(const Vec3& wave, const Vec3& x) const { return wave.dot(x - focus_) - psi_; }
 
   double background_, amplitude_;  ///< of one wave
-  std::vector<Vec3> waves_;        ///< k d_j
+  double k_;
+  std::vector<Vec3> waves_;  ///< k d_j
   Vec3 focus_;
   double psi_;
 };
@@ -69,5 +76,26 @@ std::vector<Vec3> arc_directions(int count, double aperture);
 /// `count` directions spread evenly over the cap of that half-angle about the z axis: a point
 /// focus.
 std::vector<Vec3> cap_directions(int count, double aperture);
+
+/// As light meets it at this phase of the sound.
+inline FocusedSound at_phase(const FocusedSound& field, double phase) {
+  return field.frozen(phase);
+}
+
+inline FieldFacts facts(const FocusedSound& field) {
+  return {.scale = 1 / field.wavenumber()};
+}
+
+struct FocusedSoundValues : SoundValues {
+  using Field = FocusedSound;
+  static constexpr const char* word = "focused_sound";
+  std::int64_t emitters = 16;
+  double aperture = 0.5;
+  std::string focusing = "cone";
+  std::vector<double> centre{0, 0, 0};
+};
+
+void add_keys(Keys& keys, FocusedSoundValues& values);
+FocusedSound make_field(const Keys& keys, const FocusedSoundValues& values, const FieldUse& use);
 
 }  // namespace flatspeckle::grin

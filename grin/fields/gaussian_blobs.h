@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "grin/fields/index_field.h"
+#include "grin/fields/field_kind.h"
 
 namespace flatspeckle::grin {
 
@@ -19,6 +19,8 @@ class GaussianBlobs {
  public:
   explicit GaussianBlobs(std::vector<GaussianBlob> blobs, double background = 0)
       : blobs_(std::move(blobs)), background_(background) {}
+
+  const std::vector<GaussianBlob>& blobs() const { return blobs_; }
 
   double excess(const Vec3& x) const {
     double sum = background_;
@@ -55,5 +57,20 @@ class GaussianBlobs {
   std::vector<GaussianBlob> blobs_;
   double background_;
 };
+
+/// The narrowest blob sets the scale.
+FieldFacts facts(const GaussianBlobs& field);
+
+struct BlobsValues {
+  using Field = GaussianBlobs;
+  static constexpr const char* word = "blobs";
+  static constexpr bool is_medium = false;
+  double index = 1;
+  std::string blobs;
+};
+
+void add_keys(Keys& keys, BlobsValues& values);
+/// Throws InputError.
+GaussianBlobs make_field(const Keys& keys, const BlobsValues& values, const FieldUse& use);
 
 }  // namespace flatspeckle::grin

@@ -2,7 +2,7 @@
 
 #include <concepts>
 
-#include "grin/fields/vec3.h"
+#include "grin/geometry/vec3.h"
 
 namespace flatspeckle::grin {
 

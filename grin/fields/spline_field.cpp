@@ -4,24 +4,13 @@
 #include <cmath>
 #include <numeric>
 
-#include "core/error.h"
-
 namespace flatspeckle::grin {
 
 namespace {
 
 constexpr double margin = 1;  // in cells
 
-void check(const FieldGrid& grid, std::span<const double> excess) {
-  for (int a = 0; a < 3; ++a) {
-    if (grid.nodes[a] < 4) throw InputError("nodes of a field grid", grid.nodes[a], "at least 4");
-    if (!(grid.spacing[a] > 0 && std::isfinite(grid.spacing[a])))
-      throw InputError("spacing of a field grid", grid.spacing[a], "must be positive");
-    if (!std::isfinite(grid.origin[a]))
-      throw InputError("origin of a field grid", grid.origin[a], "must be finite");
-  }
-  if (excess.size() != grid.size())
-    throw InputError("samples of a field grid", excess.size(), "must be one for each node");
+void check_samples(std::span<const double> excess) {
   for (const double e : excess)
     if (!(e > -1 && std::isfinite(e)))
       throw InputError("sample of n - 1", e, "must be finite and above -1");
@@ -54,7 +43,8 @@ void interpolate(std::vector<double>& c, std::vector<double>& pivot) {
 }  // namespace
 
 SplineField::SplineField(const FieldGrid& grid, std::span<const double> excess) : grid_(grid) {
-  check(grid, excess);
+  check(grid, excess.size(), 4);
+  check_samples(excess);
   for (int a = 0; a < 3; ++a) extent_[a] = grid.nodes[a] + 2;
   coefficients_.resize(static_cast<std::size_t>(extent_[0]) * extent_[1] * extent_[2]);
   const auto [nx, ny, nz] = grid.nodes;
@@ -143,6 +133,25 @@ IndexHessian SplineField::hessian(const Vec3& x) const {
     }
   }
   return sum;
+}
+
+SplineField read_spline_field(const std::filesystem::path& path) {
+  return read_grid<SplineField>(path, "excess");
+}
+
+FieldFacts facts(const SplineField& field) {
+  const FieldGrid& grid = field.grid();
+  return {.scale = 2 * grid.spacing.minCoeff(), .grid = Box{grid.origin, grid.end()}};
+}
+
+void add_keys(Keys& keys, GridValues& values) {
+  keys.add("grid", values.grid,
+           "HDF5 with excess[x, y, z] = n - 1 and its attributes origin, spacing")
+      .file();
+}
+
+SplineField make_field(const Keys& keys, const GridValues& values, const FieldUse&) {
+  return read_grid_of<SplineField>(keys.name(values.grid), keys.required(values.grid), "excess");
 }
 
 }  // namespace flatspeckle::grin

@@ -4,20 +4,10 @@
 #include <span>
 #include <vector>
 
-#include "grin/fields/index_field.h"
+#include "grin/fields/field_kind.h"
+#include "grin/fields/sample_grid.h"
 
 namespace flatspeckle::grin {
-
-/// Where the samples of a field lie: node (i, j, k) at origin + (i, j, k) * spacing, k fastest.
-struct FieldGrid {
-  Vec3 origin, spacing;
-  std::array<int, 3> nodes;
-
-  std::size_t size() const { return static_cast<std::size_t>(nodes[0]) * nodes[1] * nodes[2]; }
-  Vec3 end() const {
-    return origin + spacing.cwiseProduct(Vec3(nodes[0] - 1, nodes[1] - 1, nodes[2] - 1));
-  }
-};
 
 /// The tensor-product cubic spline through samples of n - 1, not-a-knot at the ends: it reproduces
 /// cubics, and has two continuous derivatives. It goes on as it is for one cell beyond the grid, so
@@ -51,5 +41,22 @@ class SplineField {
   std::array<int, 3> extent_;  ///< nodes + 2
   std::vector<double> coefficients_;
 };
+
+/// Dataset "excess" (read_samples).
+SplineField read_spline_field(const std::filesystem::path& path);
+
+/// Two spacings are the scale, and the samples' box the end.
+FieldFacts facts(const SplineField& field);
+
+struct GridValues {
+  using Field = SplineField;
+  static constexpr const char* word = "grid";
+  static constexpr bool is_medium = false;
+  std::string grid;
+};
+
+void add_keys(Keys& keys, GridValues& values);
+/// Throws InputError naming the file.
+SplineField make_field(const Keys& keys, const GridValues& values, const FieldUse& use);
 
 }  // namespace flatspeckle::grin

@@ -1,23 +1,13 @@
 #include "grin/fields/ultrasound.h"
 
-#include "core/error.h"
+#include <algorithm>
 
 namespace flatspeckle::grin {
-
-namespace {
-
-double positive_wavenumber(double kr) {
-  if (!(kr > 0 && std::isfinite(kr)))
-    throw InputError("wavenumber of the sound", kr, "must be positive");
-  return kr;
-}
-
-}  // namespace
 
 StandingWave::StandingWave(double background, double amplitude, int m, double kr, double reach)
     : background_(background),
       amplitude_(amplitude),
-      kr_(positive_wavenumber(kr)),
+      kr_(kr),
       m_(m),
       profile_(std::make_shared<const BesselProfile>(m, kr * reach)) {}
 
@@ -42,6 +32,21 @@ IndexHessian StandingWave::hessian(const Vec3& x) const {
                       0);
   return {background_ + amplitude_ * value * h.real(), amplitude_ * kr_ * gradient,
           scale * hessian};
+}
+
+void add_keys(Keys& keys, UltrasoundValues& values) {
+  add_keys(keys, static_cast<SoundValues&>(values));
+  keys.add("sound_order", values.sound_order, "m of J_m(k rho) cos(m phi)")
+      .from(0, BesselProfile::max_order);
+}
+
+StandingWave make_field(const Keys& keys, const UltrasoundValues& values, const FieldUse& use) {
+  constexpr double longest_table = 1e3;  // in k rho; beyond it the wave is slow, not wrong
+  const double k = keys.required(values.sound_wavenumber);
+  return at_phase(StandingWave(background(keys, values.index, use), keys.required(values.amplitude),
+                               static_cast<int>(keys.read(values.sound_order)), k,
+                               std::min(use.reach, longest_table / k)),
+                  phase_of(keys, values, use));
 }
 
 }  // namespace flatspeckle::grin

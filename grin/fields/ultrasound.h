@@ -1,10 +1,11 @@
 #pragma once
 
+#include <cmath>
 #include <complex>
 #include <memory>
 
 #include "grin/fields/bessel_profile.h"
-#include "grin/fields/index_field.h"
+#include "grin/fields/sound.h"
 
 namespace flatspeckle::grin {
 
@@ -12,8 +13,7 @@ namespace flatspeckle::grin {
 /// n = 1 + background + amplitude S J_m(kr rho) cos(m phi).
 class StandingWave {
  public:
-  /// Fast up to rho = reach, correct beyond. Throws InputError as BesselProfile does, and for
-  /// kr <= 0.
+  /// kr > 0. Fast up to rho = reach, correct beyond. Throws InputError where BesselProfile does.
   StandingWave(double background, double amplitude, int m, double kr, double reach);
 
   /// The wave that a ray meets at the sound's phase S, from -1 to 1. The table is shared.
@@ -22,6 +22,11 @@ class StandingWave {
     wave.amplitude_ *= s;
     return wave;
   }
+
+  double background() const { return background_; }
+  double amplitude() const { return amplitude_; }
+  double wavenumber() const { return kr_; }
+  int order() const { return m_; }
 
   double excess(const Vec3& x) const {
     const double u = kr_ * kr_ * (x[0] * x[0] + x[1] * x[1]);
@@ -66,5 +71,24 @@ class StandingWave {
   int m_;
   std::shared_ptr<const BesselProfile> profile_;
 };
+
+/// As light meets it at this phase of the sound, from 0 to 2 pi: S = cos(phase).
+inline StandingWave at_phase(const StandingWave& field, double phase) {
+  return field.frozen(std::cos(phase));
+}
+
+inline FieldFacts facts(const StandingWave& field) {
+  return {.scale = 1 / field.wavenumber(),
+          .symmetry = field.order() == 0 ? Symmetry::round_guide : Symmetry::guide};
+}
+
+struct UltrasoundValues : SoundValues {
+  using Field = StandingWave;
+  static constexpr const char* word = "ultrasound";
+  std::int64_t sound_order = 0;
+};
+
+void add_keys(Keys& keys, UltrasoundValues& values);
+StandingWave make_field(const Keys& keys, const UltrasoundValues& values, const FieldUse& use);
 
 }  // namespace flatspeckle::grin

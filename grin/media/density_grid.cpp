@@ -3,23 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "grin/fields/input_checks.h"
-
 namespace flatspeckle::grin {
 
 DensityGrid::DensityGrid(const FieldGrid& grid, std::span<const double> density)
     : grid_(grid),
       per_spacing_(grid.spacing.cwiseInverse()),
       density_(density.begin(), density.end()) {
-  for (int a = 0; a < 3; ++a) {
-    if (grid.nodes[a] < 2) throw InputError("nodes of a density grid", grid.nodes[a], "at least 2");
-    if (!(grid.spacing[a] > 0) || !std::isfinite(grid.spacing[a]))
-      throw InputError("spacing of a density grid", grid.spacing[a], "must be positive");
-  }
-  if (!grid.origin.allFinite())
-    throw InputError("origin of a density grid", listed(grid.origin), "must be finite");
-  if (density.size() != grid.size())
-    throw InputError("values of a density grid", density.size(), "must be as many as nodes");
+  check(grid, density.size(), 2);
   for (const double value : density)
     if (!(value >= 0) || !std::isfinite(value))
       throw InputError("density", value, "must be finite and not negative");
@@ -41,6 +31,10 @@ double DensityGrid::operator()(const Vec3& x) const {
   const auto edge = [&](const double* at) { return mix(at[0], at[1], t[2]); };
   const auto face = [&](const double* at) { return mix(edge(at), edge(at + y), t[1]); };
   return mix(face(corner), face(corner + x_stride), t[0]);
+}
+
+DensityGrid read_density_grid(const std::filesystem::path& path) {
+  return read_grid<DensityGrid>(path, "density");
 }
 
 }  // namespace flatspeckle::grin

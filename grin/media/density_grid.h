@@ -1,10 +1,9 @@
 #pragma once
 
-#include <array>
 #include <span>
 #include <vector>
 
-#include "grin/fields/spline_field.h"
+#include "grin/fields/sample_grid.h"
 
 namespace flatspeckle::grin {
 
@@ -25,5 +24,8 @@ class DensityGrid {
   std::vector<double> density_;
   double largest_ = 0;
 };
+
+/// Dataset "density" (read_samples).
+DensityGrid read_density_grid(const std::filesystem::path& path);
 
 }  // namespace flatspeckle::grin

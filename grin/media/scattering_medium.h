@@ -1,10 +1,12 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 
+#include "core/keys/keys.h"
 #include "core/numbers/random.h"
-#include "grin/fields/vec3.h"
+#include "grin/geometry/vec3.h"
 #include "grin/media/density_grid.h"
 #include "grin/media/phase_function.h"
 
@@ -31,8 +33,17 @@ struct ScatteringMedium {
   double albedo() const { return mu_s > 0 ? mu_s / mu_t() : 0; }
 };
 
-/// Throws InputError for coefficients that are negative or not finite, or |g| >= 1; the keys named
-/// begin with `prefix`.
-void check(const ScatteringMedium& medium, const std::string& prefix);
+/// A medium as keys have it; without mu_s and mu_a there is none.
+struct MediumValues {
+  std::optional<double> mu_s = {}, mu_a = {};
+  std::string phase = "isotropic", density = {};
+  double g = 0;
+};
+
+/// prefix: of the keys, "" or "body_".
+void add_keys(Keys& keys, MediumValues& values, const std::string& prefix);
+
+/// Throws InputError.
+ScatteringMedium make_medium(const Keys& keys, const MediumValues& values);
 
 }  // namespace flatspeckle::grin

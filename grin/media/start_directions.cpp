@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "grin/media/frame.h"
+#include "grin/geometry/frame.h"
 
 namespace flatspeckle::grin {
 

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "core/numbers/random.h"
-#include "grin/fields/vec3.h"
+#include "grin/geometry/vec3.h"
 
 namespace flatspeckle::grin {
 

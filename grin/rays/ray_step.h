@@ -45,6 +45,7 @@ inline Mat3 ray_force_derivative(const IndexHessian& at) {
 }
 
 struct Leapfrog {
+  static constexpr const char* word = "leapfrog";
   static constexpr int order = 2;
 
   template <IndexField F, class Ray>
@@ -72,6 +73,7 @@ struct Leapfrog {
 };
 
 struct Yoshida4 {
+  static constexpr const char* word = "yoshida4";
   static constexpr int order = 4;
   static constexpr double outer = 1.3512071919596576340476878089715;  ///< 1 / (2 - 2^(1/3))
   static constexpr double inner = 1 - 2 * outer;
@@ -90,6 +92,7 @@ struct Yoshida4 {
 };
 
 struct Sharma {
+  static constexpr const char* word = "sharma";
   static constexpr int order = 4;
 
   template <IndexField F, class Ray>

@@ -11,19 +11,6 @@
 
 namespace flatspeckle::grin {
 
-enum class Stop {
-  surface,  ///< on a surface, within the tolerance
-  length,   ///< at the full arc length, within the tolerance
-  lost      ///< an index that is not positive, no step short enough, or too many of them
-};
-
-struct TraceEnd {
-  Stop stop;
-  int surface = -1;  ///< number of the surface, where it stopped on one
-  long steps = 0;
-  long looks = 0;  ///< times that surfaces were asked for their distance
-};
-
 /// What trace() does in a homogeneous medium: no steps, but the way to each surface.
 template <class... Tangent>
 TraceEnd trace_straight(const Homogeneous& field, std::span<const Surface> surfaces,
@@ -87,7 +74,7 @@ TraceEnd trace(const F& field, std::span<const Surface> surfaces, const TraceLim
     if (!is_lost && clearance > 0) continue;
     const auto at = [&](double theta) {
       Ray part = start;
-      Steps::step(field, theta * h, part);
+      steps.step(field, theta * h, part);
       ++end.looks;
       return watch.clearance(part);
     };
@@ -96,7 +83,7 @@ TraceEnd trace(const F& field, std::span<const Surface> surfaces, const TraceLim
     if (bracket) {
       const double theta = zero(at, *bracket, limits.tolerance / 4);
       std::tie(ray, tangent...) = before;
-      Steps::step(field, theta * h, ray, tangent...);
+      steps.step(field, theta * h, ray, tangent...);
       const TraceEnd found = trace_parts::end_at(watch, ray, limits);
       return {found.stop, found.surface, end.steps, end.looks};
     }

@@ -15,6 +15,19 @@ struct TraceLimits {
   long max_steps = 10'000'000;
 };
 
+enum class Stop {
+  surface,  ///< on a surface, within the tolerance
+  length,   ///< at the full arc length, within the tolerance
+  lost      ///< an index that is not positive, no step short enough, or too many of them
+};
+
+struct TraceEnd {
+  Stop stop;
+  int surface = -1;  ///< number of the surface, where it stopped on one
+  long steps = 0;
+  long looks = 0;  ///< times that surfaces were asked for their distance
+};
+
 /// Tells how far a ray may go before it meets one of the surfaces, or its full length.
 class Watch {
  public:

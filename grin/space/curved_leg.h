@@ -5,9 +5,8 @@
 
 #include "grin/rays/ray_step.h"
 #include "grin/rays/step_curve.h"
-#include "grin/space/part_medium.h"
+#include "grin/space/leg_room.h"
 #include "grin/surfaces/first_crossing.h"
-#include "grin/surfaces/signed_distance.h"
 
 namespace flatspeckle::grin {
 
@@ -17,22 +16,20 @@ namespace flatspeckle::grin {
 template <IndexField F>
 class CurvedLeg {
  public:
-  enum class Stop { collision, surface, lost };
-
-  CurvedLeg(const F& field, const Surface& surface, const PartMedium& medium, double step)
+  CurvedLeg(const F& field, const LegRoom& room)
       : field_(field),
-        surface_(surface),
-        medium_(medium),
-        step_(step),
-        tolerance_(1e-9 * step),
-        has_collisions_(medium.scatters() || medium.grid()) {}
+        surface_(room.surface),
+        medium_(room.medium),
+        step_(room.step),
+        tolerance_(1e-9 * step_),
+        has_collisions_(medium_.scatters() || medium_.grid()) {}
 
   /// Goes on from a state inside the surface, or on it and on the way in, at arc length 0. weight:
   /// of light that is absorbed and not scattered, is multiplied by an estimate of what is left.
   /// Tangent: nothing or a RayTangent, which becomes that of a fixed last step.
   template <class... Tangent>
-  Stop go(double longest, double& weight, RandomStream& random, RayState& ray,
-          Tangent&... tangent) const {
+  LegStop go(double longest, double& weight, RandomStream& random, RayState& ray,
+             Tangent&... tangent) const {
     const double outside = distance(surface_, ray.x);
     const double put_back = outside >= -tolerance_ ? std::max(0.0, outside) + 0.75 * tolerance_ : 0;
     double clearance = put_back - outside, collision = next_collision(0, random);
@@ -47,7 +44,7 @@ class CurvedLeg {
       std::optional<double> exit;
       if (is_lost || !(clearance > 0)) {
         exit = way_out(start, ray, put_back, arc, is_lost);
-        if (!exit && is_lost) return Stop::lost;
+        if (!exit && is_lost) return LegStop::lost;
         clearance = put_back - distance(surface_, ray.x);
       }
       const auto go_only = [&](double part) {
@@ -59,13 +56,14 @@ class CurvedLeg {
       if (collision <= ray.arc_length) {
         if (const auto at = collide({start, ray, part * step_}, collision, weight, random)) {
           go_only(*at * part);
-          return Stop::collision;
+          return LegStop::collision;
         }
       }
       if (exit)
-        return put_back - distance(surface_, ray.x) <= tolerance_ ? Stop::surface : Stop::lost;
+        return put_back - distance(surface_, ray.x) <= tolerance_ ? LegStop::surface
+                                                                  : LegStop::lost;
     }
-    return Stop::lost;
+    return LegStop::lost;
   }
 
   /// Estimates the transmittance of a curve of so many equal steps by ratio tracking.

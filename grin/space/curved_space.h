@@ -2,9 +2,10 @@
 
 #include <memory>
 
-#include "grin/fields/any_index_field.h"
+#include "grin/space/ray_field.h"
 #include "grin/space/space.h"
 #include "grin/space/stage.h"
+#include "grin/space/straight_stage.h"
 
 namespace flatspeckle::grin {
 
@@ -14,25 +15,54 @@ struct CurvedSpaceOptions {
   bool spreading = true;  ///< flights tell |J|, about half of their cost; joins always do
 };
 
-/// Space where the index varies. One virtual call for each flight or join; behind it every step
-/// knows the type of the field.
+/// Space where the index varies: straight ways around the body, or where the field is homogeneous,
+/// and those of a RayField in the rest.
 class CurvedSpace {
  public:
-  virtual ~CurvedSpace() = default;
+  /// Use make_curved_space.
+  CurvedSpace(const AnyIndexField& field, const Stage& stage, const CurvedSpaceOptions& options);
 
-  virtual double index(const PathPoint& p) const = 0;
-  virtual Flight fly(const PathPoint& from, const Vec3& direction, RandomStream& random) const = 0;
-  virtual std::optional<Join> join(const PathPoint& p, const PathPoint& q, RandomStream& random,
-                                   ConnectionStatistics& statistics) const = 0;
+  double index(const PathPoint& p) const { return 1 + excess(p); }
+  Flight fly(const PathPoint& from, const Vec3& direction, RandomStream& random) const;
+  std::optional<Join> join(const PathPoint& p, const PathPoint& q, RandomStream& random,
+                           ConnectionStatistics& statistics) const;
 
   /// The same space as light meets it at this phase of the sound, from 0 to 2 pi: S = cos(phase)
   /// of a standing wave (conventions, C28). Throws InputError for a field without sound.
-  virtual std::unique_ptr<const CurvedSpace> frozen(double phase) const = 0;
+  std::unique_ptr<const CurvedSpace> frozen(double phase) const;
+
+ private:
+  /// What is the same at all phases.
+  struct Setup {
+    StraightStage<RenderPlan{}> stage;
+    double excess_around;
+    Part field_part;
+    bool is_straight;
+    CurvedSpaceOptions options;
+    ConnectionOptions connection;
+  };
+  CurvedSpace(std::shared_ptr<const Setup> setup, std::shared_ptr<const RayField> field)
+      : setup_(std::move(setup)), field_(std::move(field)) {}
+
+  bool in_field(const PathPoint& p) const { return p.part == setup_->field_part; }
+  bool is_curved(const PathPoint& p) const { return in_field(p) && !setup_->is_straight; }
+  double excess(const PathPoint& p) const {
+    return in_field(p) ? field_->excess(p.x) : setup_->excess_around;
+  }
+  const Surface& container() const { return setup_->stage.container(setup_->field_part); }
+  const PartMedium& medium() const { return setup_->stage.medium(setup_->field_part); }
+  LegRoom room() const { return {container(), medium(), setup_->options.step}; }
+
+  bool goes_outside(const Vec3& x, const Vec3& direction) const;
+  std::optional<LegEnd> curved_leg(Flight& flight, RandomStream& random) const;
+  double transmitted(const PathPoint& p, const Connection& curve, RandomStream& random) const;
+
+  std::shared_ptr<const Setup> setup_;
+  std::shared_ptr<const RayField> field_;
 };
 static_assert(Space<CurvedSpace>);
 
-/// The field fills the body if there is one, else the stage. Throws InputError for a bad stage, and
-/// unless step and max_length are positive.
+/// The field fills the body if there is one, else the stage. Throws InputError for a bad stage.
 std::unique_ptr<const CurvedSpace> make_curved_space(const AnyIndexField& field, const Stage& stage,
                                                      const CurvedSpaceOptions& options);
 

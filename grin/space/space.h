@@ -4,7 +4,7 @@
 
 #include "core/numbers/random.h"
 #include "grin/connections/connection.h"
-#include "grin/fields/vec3.h"
+#include "grin/geometry/vec3.h"
 
 namespace flatspeckle::grin {
 

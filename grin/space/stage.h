@@ -27,8 +27,14 @@ struct Stage {
 /// The same stage where light that collides is lost.
 Stage without_scattering(const Stage& stage);
 
-/// Throws InputError for bad media, an index around that is not positive, a boundary or a body that
-/// is not closed or has no size, and a body that is not within the boundary.
+/// The box around a closed surface. Throws InputError for a plane.
+Box bounds(const Surface& surface);
+
+/// To rounding: touching is allowed. Of a distance grid, its box.
+bool lies_in(const Surface& inner, const Surface& outer);
+
+/// Throws InputError for a boundary or a body that is not closed, a body that is not within the
+/// boundary, and a density grid that flights take too long through.
 void check(const Stage& stage);
 
 /// Throws InputError for a medium so dense that a path of at most so many scatterings may not end

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "grin/fields/input_checks.h"
+#include "core/error.h"
+#include "grin/geometry/vector_values.h"
 #include "grin/surfaces/mesh_distance.h"
 
 namespace flatspeckle::grin {

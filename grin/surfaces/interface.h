@@ -4,7 +4,7 @@
 #include <cmath>
 #include <optional>
 
-#include "grin/fields/vec3.h"
+#include "grin/geometry/vec3.h"
 
 namespace flatspeckle::grin {
 

@@ -1,11 +1,8 @@
 #pragma once
 
-#include <algorithm>
-#include <cmath>
 #include <variant>
-#include <vector>
 
-#include "grin/fields/vec3.h"
+#include "grin/geometry/shapes.h"
 #include "grin/surfaces/distance_grid.h"
 
 namespace flatspeckle::grin {
@@ -13,38 +10,6 @@ namespace flatspeckle::grin {
 /// A surface is where distance(x) is 0; it is negative inside. |distance| is nowhere more than the
 /// true distance, so that a ray may go that far without looking. normal(x) is a unit vector
 /// outwards, meant for points on the surface.
-
-struct Sphere {
-  Vec3 centre = Vec3::Zero();
-  double radius = 1;
-
-  double distance(const Vec3& x) const { return (x - centre).norm() - radius; }
-  Vec3 normal(const Vec3& x) const { return (x - centre).normalized(); }
-};
-
-/// Outside is the side that `outwards`, a unit vector, points to.
-struct Plane {
-  Vec3 point, outwards;
-
-  double distance(const Vec3& x) const { return outwards.dot(x - point); }
-  Vec3 normal(const Vec3&) const { return outwards; }
-};
-
-struct Box {
-  Vec3 low, high;
-
-  double distance(const Vec3& x) const {
-    const Vec3 beyond = (low - x).cwiseMax(x - high);
-    return beyond.cwiseMax(0).norm() + std::min(beyond.maxCoeff(), 0.0);
-  }
-  Vec3 normal(const Vec3& x) const {
-    int axis;
-    const Vec3 beyond = (low - x).cwiseMax(x - high);
-    beyond.maxCoeff(&axis);
-    return Vec3::Unit(axis) * (2 * x[axis] > low[axis] + high[axis] ? 1 : -1);
-  }
-};
-
 using Surface = std::variant<Sphere, Plane, Box, DistanceGrid>;
 
 inline double distance(const Surface& surface, const Vec3& x) {

@@ -7,7 +7,7 @@
 #include "apps/ray_tracing.h"
 #include "core/result/hdf5_handle.h"
 #include "grin/estimators/render_job.h"
-#include "grin/media/field_file.h"
+#include "grin/media/density_grid.h"
 #include "grin/space/curved_space.h"
 #include "tests/fuzz/input.h"
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/numbers/random.h"
-#include "grin/fields/lenses.h"
+#include "grin/fields/luneburg.h"
 #include "grin/fields/spline_field.h"
 #include "grin/rays/ray_step.h"
 

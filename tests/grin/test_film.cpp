@@ -36,15 +36,6 @@ Pictures one(const TimeBins& bins, double optical_path) {
   return pictures;
 }
 
-std::string complaint(const TimeBins& bins) {
-  try {
-    require_usable(bins);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
-}
-
 }  // namespace
 
 TEST_CASE("film: the sum over the bins is the steady picture, wherever the light arrives") {
@@ -85,15 +76,6 @@ TEST_CASE("film: what comes before or after stays in the first or last bin") {
     CHECK(one(bins, path).of_bin(0, 0) == 1);
   for (const double path : {2.8, 3.0, 40.0, 1e300, double{INFINITY}})
     CHECK(one(bins, path).of_bin(0, 7) == 1);
-}
-
-TEST_CASE("film: bins that cannot be are refused") {
-  CHECK(complaint({}).empty());
-  CHECK(complaint({0, 1, 5}).empty());
-  CHECK(complaint({0, 1, 0}).find("path_bins = 0") != std::string::npos);
-  CHECK(complaint({1, 1, 2}).find("path_bins") != std::string::npos);
-  CHECK(complaint({0, std::nan(""), 2}).find("path_bins") != std::string::npos);
-  CHECK(complaint({-double{INFINITY}, 1, 2}).find("path_bins") != std::string::npos);
 }
 
 }  // namespace flatspeckle::grin

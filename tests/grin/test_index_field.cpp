@@ -103,8 +103,6 @@ TEST_CASE("Table of Bessel profiles against the series of core/bessel") {
   }
   CHECK(BesselProfile(0, 1).jet(0).value == doctest::Approx(1).epsilon(1e-15));
   CHECK(BesselProfile(0, 1).jet(0).slope == doctest::Approx(-0.25).epsilon(1e-14));
-  CHECK_THROWS_AS(BesselProfile(-1, 1), InputError);
-  CHECK_THROWS_AS(BesselProfile(65, 1), InputError);
   CHECK_THROWS_AS(BesselProfile(0, 0), InputError);
   CHECK_THROWS_AS(BesselProfile(0, std::nan("")), InputError);
 }

@@ -2,8 +2,9 @@
 
 #include <doctest/doctest.h>
 
-#include "grin/fields/guides.h"
-#include "grin/fields/ramps.h"
+#include "grin/fields/parabolic.h"
+#include "grin/fields/sech.h"
+#include "grin/fields/tanh_ramp.h"
 #include "grin/fields/ultrasound.h"
 #include "grin/rays/ray_invariants.h"
 #include "tests/grin/derivatives.h"

@@ -9,7 +9,6 @@
 #include "core/error.h"
 #include "core/result/result_file.h"
 #include "grin/fields/spline_field.h"
-#include "grin/media/field_file.h"
 #include "tests/grin/derivatives.h"
 
 namespace flatspeckle::grin {

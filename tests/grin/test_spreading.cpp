@@ -7,8 +7,9 @@
 #include "bench/scenes/random_fields.h"
 #include "core/numbers/random.h"
 #include "grin/connections/geometric_spreading.h"
-#include "grin/fields/guides.h"
-#include "grin/fields/lenses.h"
+#include "grin/fields/fisheye.h"
+#include "grin/fields/luneburg.h"
+#include "grin/fields/parabolic.h"
 #include "grin/media/start_directions.h"
 #include "grin/rays/ray_step.h"
 

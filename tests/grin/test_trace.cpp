@@ -4,8 +4,10 @@
 
 #include "core/error.h"
 #include "grin/fields/gaussian_blobs.h"
-#include "grin/fields/guides.h"
-#include "grin/fields/ramps.h"
+#include "grin/fields/linear_ramp.h"
+#include "grin/fields/parabolic.h"
+#include "grin/fields/sech.h"
+#include "grin/fields/tanh_ramp.h"
 #include "grin/rays/ray_invariants.h"
 #include "grin/rays/trace.h"
 #include "grin/surfaces/interface.h"

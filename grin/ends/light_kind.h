@@ -1,0 +1,23 @@
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "grin/ends/boundary_patch.h"
+#include "grin/ends/path_end.h"
+#include "grin/geometry/vector_values.h"
+
+namespace flatspeckle::grin {
+
+// A kind of light is a file with: the light; an end of paths made of (light, stage, index), which
+// throws InputError where it does not fit the stage; its values, add_keys(keys, values) and
+// make_lights(keys, values). It is listed in light.h.
+//
+// The end tells power() and area() (1 of a point), draws sample(random) uniformly over its area,
+// and has sample_direction(at, random) and towards(at, direction) as EndDirections; what can be
+// hit has contains(x) and inward(x) of points on the boundary.
+
+/// Of refraction, for the power of what shines with a given L/n^2.
+using IndexAt = std::function<double(const PathPoint&)>;
+
+}  // namespace flatspeckle::grin

@@ -1,0 +1,34 @@
+#include "grin/fields/gaussian_blobs.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "core/keys/csv.h"
+
+namespace flatspeckle::grin {
+
+FieldFacts facts(const GaussianBlobs& field) {
+  double scale = std::numeric_limits<double>::infinity();
+  for (const GaussianBlob& blob : field.blobs()) scale = std::min(scale, blob.width);
+  return {.scale = scale};
+}
+
+void add_keys(Keys& keys, BlobsValues& values) {
+  add_index_key(keys, values.index, "around the blobs");
+  keys.add("blobs", values.blobs,
+           "CSV with columns x, y, z, height, width: height exp(-r^2/(2 width^2))")
+      .file();
+}
+
+GaussianBlobs make_field(const Keys& keys, const BlobsValues& values, const FieldUse& use) {
+  const Table table = read_csv(keys.required(values.blobs));
+  if (table.rows() == 0) throw InputError("blobs", values.blobs, "holds no blobs");
+  const auto x = table.column("x"), y = table.column("y"), z = table.column("z");
+  const auto height = table.column("height"), width = table.column("width");
+  std::vector<GaussianBlob> blobs;
+  for (std::size_t i = 0; i < table.rows(); ++i)
+    blobs.push_back({{x[i], y[i], z[i]}, height[i], positive(values.blobs + ", width", width[i])});
+  return GaussianBlobs(std::move(blobs), background(keys, values.index, use));
+}
+
+}  // namespace flatspeckle::grin

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <cmath>
+
+#include "grin/fields/field_kind.h"
+
+namespace flatspeckle::grin {
+
+/// From excess `low` to excess `high` along the unit vector `axis`, as tanh of the distance from
+/// the plane through `centre`, over about `width` to each side.
+struct TanhRamp {
+  double low, high, width;
+  Vec3 axis = Vec3::UnitZ(), centre = Vec3::Zero();
+
+  double excess(const Vec3& x) const { return low + (high - low) * fractions(x).above; }
+  IndexGradient gradient(const Vec3& x) const {
+    const auto [below, above] = fractions(x);
+    return {low + (high - low) * above, first(below, above) * axis};
+  }
+  IndexHessian hessian(const Vec3& x) const {
+    const auto [below, above] = fractions(x);
+    const double slope = first(below, above);
+    const Mat3 hessian = 2 / width * (below - above) * slope * axis * axis.transpose();
+    return {low + (high - low) * above, slope * axis, hessian};
+  }
+
+ private:
+  struct Fractions {
+    double below, above;  ///< (1 -+ tanh)/2, each without cancellation
+  };
+  Fractions fractions(const Vec3& x) const {
+    const double t = 2 * axis.dot(x - centre) / width;
+    return {1 / (1 + std::exp(t)), 1 / (1 + std::exp(-t))};
+  }
+  double first(double below, double above) const {
+    return 2 / width * (high - low) * below * above;
+  }
+};
+
+inline FieldFacts facts(const TanhRamp& field) {
+  return {.scale = field.width / 2, .symmetry = Symmetry::stratified, .axis = field.axis};
+}
+
+struct TanhValues {
+  using Field = TanhRamp;
+  static constexpr const char* word = "tanh";
+  static constexpr bool is_medium = false;
+  std::optional<double> index_low = {}, index_high = {};
+  double ramp_width = 1;
+  std::vector<double> ramp_axis{0, 0, 1}, centre{0, 0, 0};
+};
+
+inline void add_keys(Keys& keys, TanhValues& values) {
+  keys.add("index_low", values.index_low,
+           "Index far behind; in a sum the ramp adds what index_high is above it")
+      .positive();
+  keys.add("index_high", values.index_high, "Index far along the axis").positive();
+  keys.add("ramp_width", values.ramp_width, "Of tanh(distance/width)").positive().unit("length");
+  add_vector(keys, "ramp_axis", values.ramp_axis, "Direction of the ramp, of any length");
+  add_vector(keys, "centre", values.centre, "A point of the ramp's middle").unit("length");
+}
+
+inline TanhRamp make_field(const Keys& keys, const TanhValues& values, const FieldUse& use) {
+  const double low = keys.required(values.index_low) - 1;
+  const double high = keys.required(values.index_high) - 1;
+  const double below = use.is_added ? low : 0;
+  return {low - below, high - below, keys.read(values.ramp_width),
+          direction_of(keys, values.ramp_axis), vector_of(keys.read(values.centre))};
+}
+
+}  // namespace flatspeckle::grin

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <algorithm>
+
+#include "grin/geometry/vec3.h"
+
+namespace flatspeckle::grin {
+
+// Surfaces in closed form: 0 is distance(x) on the surface, negative inside. |distance| is nowhere
+// more than the true distance. normal(x) is a unit vector outwards, meant for points on the
+// surface.
+
+struct Sphere {
+  Vec3 centre = Vec3::Zero();
+  double radius = 1;
+
+  double distance(const Vec3& x) const { return (x - centre).norm() - radius; }
+  Vec3 normal(const Vec3& x) const { return (x - centre).normalized(); }
+};
+
+/// Outside is the side that `outwards`, a unit vector, points to.
+struct Plane {
+  Vec3 point, outwards;
+
+  double distance(const Vec3& x) const { return outwards.dot(x - point); }
+  Vec3 normal(const Vec3&) const { return outwards; }
+};
+
+struct Box {
+  Vec3 low, high;
+
+  double distance(const Vec3& x) const {
+    const Vec3 beyond = (low - x).cwiseMax(x - high);
+    return beyond.cwiseMax(0).norm() + std::min(beyond.maxCoeff(), 0.0);
+  }
+  Vec3 normal(const Vec3& x) const {
+    int axis;
+    const Vec3 beyond = (low - x).cwiseMax(x - high);
+    beyond.maxCoeff(&axis);
+    return Vec3::Unit(axis) * (2 * x[axis] > low[axis] + high[axis] ? 1 : -1);
+  }
+};
+
+}  // namespace flatspeckle::grin

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "grin/fields/scene_field.h"
+#include "grin/space/stage.h"
+
+namespace flatspeckle::grin {
+
+/// The stage of light and the body in it as keys have them.
+struct StageValues {
+  std::vector<double> stage_box{}, stage_sphere{}, body_box{}, body_sphere{};
+  double index_around = 1;
+  MediumValues medium{}, body_medium{};
+};
+
+void add_keys(Keys& keys, StageValues& values);
+
+/// A stage and the index field that light meets in it.
+struct FilledStage {
+  Stage stage;
+  SceneField field;
+};
+
+/// A Luneburg ball in a larger stage is a body by itself. Throws InputError, also for a field that
+/// has no index above 0 somewhere in its part of the stage.
+FilledStage make_stage(const Keys& keys, const StageValues& values, const IndexFieldValues& field,
+                       bool any_phase);
+
+}  // namespace flatspeckle::grin

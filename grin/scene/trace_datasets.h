@@ -1,0 +1,22 @@
+#pragma once
+
+#include <vector>
+
+#include "core/result/result_file.h"
+#include "grin/scene/trace_scene.h"
+
+namespace flatspeckle::grin {
+
+extern const DatasetTable rays_table;
+
+/// Of any rays: optical paths, ends, invariants.
+void write_rays(ResultFile& file, const TraceScene& scene, const std::vector<TracedRay>& rays);
+
+/// Curves between two points, in the order of their optical paths, and how the trials went.
+void write_connections(ResultFile& file, const TraceScene& scene, const FoundConnections& found);
+
+/// Stored points of rays or curves, and the index over the rectangle in z and the transverse axis
+/// that they span most, so that they can be drawn. The rays or curves must have been written.
+void write_paths(ResultFile& file, const SceneField& field, const std::vector<TracedRay>& rays);
+
+}  // namespace flatspeckle::grin

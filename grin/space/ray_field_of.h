@@ -1,0 +1,79 @@
+#pragma once
+
+#include "core/error.h"
+#include "grin/connections/connection_solver.h"
+#include "grin/rays/trace.h"
+#include "grin/space/curved_leg.h"
+#include "grin/space/ray_field.h"
+
+namespace flatspeckle::grin {
+
+template <IndexField F>
+class RayFieldOf final : public RayField {
+ public:
+  explicit RayFieldOf(F field) : field_(std::move(field)) {}
+
+  double excess(const Vec3& x) const override { return field_.excess(x); }
+  IndexGradient gradient(const Vec3& x) const override { return field_.gradient(x); }
+  IndexHessian hessian(const Vec3& x) const override { return field_.hessian(x); }
+
+  TraceEnd follow(std::span<const Surface> surfaces, const TraceLimits& limits, LoggedSteps& steps,
+                  RayState& ray) const override {
+    const TraceEnd end = trace(field_, surfaces, limits, steps, ray);
+    steps.end(field_, ray);
+    return end;
+  }
+
+  LegStop fly(const LegRoom& room, double longest, double& weight, RandomStream& random,
+              RayState& ray, RayTangent* tangent) const override {
+    const CurvedLeg<F> leg(field_, room);
+    return tangent ? leg.go(longest, weight, random, ray, *tangent)
+                   : leg.go(longest, weight, random, ray);
+  }
+  double ratio_tracked(const LegRoom& room, const RayState& ray, double sigma, int steps,
+                       RandomStream& random) const override {
+    return CurvedLeg<F>(field_, room).ratio_tracked(ray, sigma, steps, random);
+  }
+
+  ConnectionEstimate connect(const CurveEnds& ends, const ConnectionOptions& options,
+                             RandomStream& random,
+                             ConnectionStatistics& statistics) const override {
+    const ConnectionTrial trial(field_, ends.region, ends.from, ends.to, options);
+    if constexpr (HomogeneousField<F>)
+      return grin::connect(trial, random, statistics);
+    else
+      return connect_chord_first(trial, random, statistics);
+  }
+  std::vector<FoundConnection> connections(const CurveEnds& ends, const ConnectionOptions& options,
+                                           std::uint64_t trials, RandomStream& random,
+                                           ConnectionStatistics& statistics) const override {
+    const ConnectionTrial trial(field_, ends.region, ends.from, ends.to, options);
+    return all_connections(trial, trials, random, statistics);
+  }
+
+  std::unique_ptr<const RayField> frozen(double phase) const override {
+    if constexpr (requires { at_phase(field_, phase); })
+      return std::make_unique<RayFieldOf>(at_phase(field_, phase));
+    else
+      throw InputError("random_phase: needs the field ultrasound or focused_sound, and it alone");
+  }
+
+ private:
+  F field_;
+};
+
+/// Fields are compiled in so many files: each those of a remainder of their number in the list.
+inline constexpr std::size_t ray_field_files = 4;
+
+/// Nothing for a field of another file.
+template <std::size_t remainder, std::size_t number = remainder>
+std::unique_ptr<const RayField> ray_field_in_file(const AnyIndexField& field) {
+  if constexpr (number < std::variant_size_v<AnyIndexField>) {
+    using F = std::variant_alternative_t<number, AnyIndexField>;
+    if (const F* of = std::get_if<F>(&field)) return std::make_unique<RayFieldOf<F>>(*of);
+    return ray_field_in_file<remainder, number + ray_field_files>(field);
+  }
+  return nullptr;
+}
+
+}  // namespace flatspeckle::grin
