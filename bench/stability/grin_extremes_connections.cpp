@@ -17,6 +17,7 @@
 #include "grin/fields/parabolic.h"
 #include "grin/fields/tanh_ramp.h"
 #include "grin/rays/ray_step.h"
+#include "grin/scene/trace_scene.h"
 
 namespace flatspeckle::bench {
 
@@ -232,7 +233,13 @@ std::vector<ExtremeCase> connection_extremes() {
            total_reflection);
   rows.add("rough spline of 0.15", "n_P^2 / |J_PQ| = n_Q^2 / |J_QP|", there_and_back);
   rows.add("ends beyond the index of a guide", "nothing found", no_index);
-  rows.add_refused("steps of length 0", "step", [] { check({.step = 0, .max_length = 1}); });
+  rows.add_refused("steps of length 0", "step", [] {
+    TraceValues values;
+    values.curves.connect = {0, 0, 0, 0, 0, 1};
+    values.stops.max_length = 1;
+    values.stops.step = 0;
+    make_trace_scene(values);
+  });
   return std::move(rows).rows();
 }
 
