@@ -20,35 +20,39 @@ namespace flatspeckle::apps {
 
 namespace {
 
-/// All of them, in the order of docs/format.md.
-const DatasetTable* const tables[] = {&provenance_table,
-                                      &scene_table,
-                                      &axes_table,
-                                      &beams_table,
-                                      &trace_table,
-                                      &mc::mean_table,
-                                      &mc::intensity_table,
-                                      &mc::full_table,
-                                      &mc::pairs_table,
-                                      &mc::moves_table,
-                                      &mc::gradient_table,
-                                      &mc::delays_table,
-                                      &validate_table,
-                                      &wave::solution_table,
-                                      &wave::map_table,
-                                      &mc::flux_table,
-                                      &mc::field_table,
-                                      &sweep_axes_table,
-                                      &sweep_table,
-                                      &placement_table,
-                                      &structure_factor_table,
-                                      &grin::rays_table,
-                                      &grin::trials_table,
-                                      &grin::camera_table,
-                                      &grin::area_table,
-                                      &grin::directional_table,
-                                      &grin::render_table,
-                                      &state_table};
+/// In the order of docs/format.md.
+std::vector<const DatasetTable*> all_tables() {
+  std::vector<const DatasetTable*> tables = {&provenance_table,
+                                             &scene_table,
+                                             &axes_table,
+                                             &beams_table,
+                                             &trace_table,
+                                             &mc::mean_table,
+                                             &mc::intensity_table,
+                                             &mc::full_table,
+                                             &mc::pairs_table,
+                                             &mc::moves_table,
+                                             &mc::gradient_table,
+                                             &mc::delays_table,
+                                             &validate_table,
+                                             &wave::solution_table,
+                                             &wave::map_table,
+                                             &mc::flux_table,
+                                             &mc::field_table,
+                                             &sweep_axes_table,
+                                             &sweep_table,
+                                             &placement_table,
+                                             &structure_factor_table,
+                                             &grin::rays_table,
+                                             &grin::trials_table,
+                                             &grin::camera_table,
+                                             &grin::area_table,
+                                             &grin::directional_table,
+                                             &grin::render_table};
+  for (const DatasetTable* table : bench_tables()) tables.push_back(table);
+  tables.push_back(&state_table);
+  return tables;
+}
 
 /// A cell of a table; upright lines would end it.
 std::string cell(const std::string& text) {
@@ -85,7 +89,7 @@ void print(const DatasetTable& table) {
   std::cout << "<!-- end -->\n";
 }
 
-void print_roles() {
+void print_roles(const std::vector<const DatasetTable*>& tables) {
   std::cout << "<!-- datasets: roles -->\n| word | stands for |\n|---|---|\n";
   for (const DatasetTable* table : tables)
     for (const Role& role : table->roles) {
@@ -102,7 +106,8 @@ void print_roles() {
 int datasets(const Arguments& arguments) {
   Subcommand command("datasets", "Tables of what result files hold, for docs/format.md");
   if (!command.parse(arguments)) return ExitStatus::done;
-  print_roles();
+  const auto tables = all_tables();
+  print_roles(tables);
   for (const DatasetTable* table : tables) print(*table);
   return ExitStatus::done;
 }

@@ -1,4 +1,5 @@
 #include "apps/command_line.h"
+#include "apps/datasets.h"
 #include "core/error.h"
 #include "core/session/exit_status.h"
 
@@ -11,7 +12,11 @@ int bench(const Arguments& arguments) {
   if (arguments.size() > 2 && arguments[2].starts_with("--") && !command.parse(arguments))
     return ExitStatus::done;
   throw InputError(
-      "bench is not in this program: configure with -DFLATSPECKLE_BENCH=ON and build it");
+      "bench is not in this program: configure with -DFLATSPECKLE_BENCH=ON and build again");
+}
+
+std::span<const DatasetTable* const> bench_tables() {
+  return {};
 }
 
 }  // namespace flatspeckle::apps

@@ -104,7 +104,7 @@ int lead(const SweepPlan& plan, RankServer* server) {
   folder.make();
   SweepWork work(plan, folder, runs);
   const PoolEnd end =
-      run_pool(work.list(), {plan.settings.seconds, plan.threads, "sweep", "points", server});
+      run_pool(work.list(), {plan.settings.seconds, plan.threads(), "sweep", "points", server});
   work.save_unfinished();
   return end_sweep(plan, folder, end);
 }
@@ -113,7 +113,7 @@ int lead(const SweepPlan& plan, RankServer* server) {
 void follow(const SweepPlan& plan) {
   ShardFolder none("");
   SweepWork work(plan, none, share_of_runs(plan));
-  work_for_rank_0(work.list(), plan.threads);
+  work_for_rank_0(work.list(), plan.threads());
 }
 
 int with_ranks(const SweepPlan& plan) {

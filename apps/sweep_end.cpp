@@ -19,6 +19,7 @@ using Part = ShardFolder::Part;
 /// How the whole was made: the costs of all points, and each plan once.
 Provenance made_of(const SweepPlan& plan, const SweepResults& results, double wall_s) {
   Provenance made = plan.provenance();
+  made.identity = plan.identity();
   made.wall_s = wall_s;
   made.converged = true;
   std::set<std::string> plans;
@@ -75,7 +76,6 @@ int write_result(const SweepPlan& plan, const SweepResults& results, double wall
   print_ranges(plan, results);
   ResultFile file(plan.settings.out);
   write_provenance(file, made);
-  file.attribute("/", "identity", plan.identity());
   const ResultGroup root(file, sweep_table);
   root.attribute("format", std::uint64_t{2});
   root.attribute("complete", is_whole(results));

@@ -87,7 +87,7 @@ void SweepPlan::parse_config(const std::string& config) {
 void SweepPlan::check() {
   const Keys& keys = command_.keys();
   seed = seed_of(keys, settings);
-  threads = threads_of(keys, settings);
+  threads();
   mc_stop_ = wave_stop_ = stop_rule(keys, settings);
   if (keys.read(methods.wave_samples)) wave_stop_ = stop_rule(keys, settings, methods.wave_samples);
   for (StopRule* stop : {&mc_stop_, &wave_stop_})
@@ -158,7 +158,7 @@ Provenance SweepPlan::provenance() const {
   made.command_line = text;
   made.config = command_.keys().config();
   made.seed = seed;
-  made.threads = threads;
+  made.threads = threads();
   made.started = utc_now();
   return made;
 }

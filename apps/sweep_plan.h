@@ -38,11 +38,12 @@ class SweepPlan {
   MethodSettings methods;
   std::string text;  ///< the command line as typed
   std::uint64_t seed = 0;
-  int threads = 1;
   SweepPoints points;
   std::vector<std::string> method_words;  ///< mc, wave or both
   std::optional<SweepShare> share;
 
+  /// Of this process: fewer where it shares its machine with other ranks, once it has joined them.
+  int threads() const { return threads_of(command_.keys(), settings); }
   std::size_t runs() const { return method_words.size() * points.points.size(); }
   std::size_t run(std::size_t method, std::size_t point) const {
     return method * points.points.size() + point;

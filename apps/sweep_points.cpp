@@ -123,7 +123,8 @@ void add_sweep_keys(Keys& keys, SweepLists& lists) {
   keys.group("Swept: lists of values");
   const auto rows = keys.rows();
   for (const Key& row : rows) {
-    if (!row.is_swept() || keys.find(row.name()) == nullptr) continue;
+    const bool is_there = std::count(lists.keys.begin(), lists.keys.end(), row.name()) > 0;
+    if (!row.is_swept() || is_there) continue;
     lists.keys.push_back(row.name());
     keys.remove(row.name());
     if (row.is_number())

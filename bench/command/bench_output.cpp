@@ -1,154 +1,178 @@
 #include "bench/command/bench_output.h"
 
 #include <cmath>
-#include <cstdint>
 #include <limits>
-#include <string>
+
+#include "apps/datasets.h"
+#include "core/result/result_group.h"
 
 namespace flatspeckle::apps {
 
 namespace {
 
-/// A table of things that are numbered, column by column.
-template <typename Row>
-class Table {
- public:
-  Table(ResultFile& file, std::string axis, const std::vector<Row>& rows,
-        const std::string& long_name)
-      : file_(file), axis_(std::move(axis)), rows_(rows) {
-    file_.numbered_scale(axis_, rows_.size(), long_name);
-  }
+const DatasetTable error_table{
+    "error",
+    {{"curve", Data::numbers, "", "1", "number of the curve"},
+     {"scene", Data::text, "curve", "", "standard scene"},
+     {"method", Data::text, "curve", "", "what estimates"},
+     {"reference", Data::text, "curve", "", "how the true value is known"},
+     {"reference_uncertainty", Data::real, "curve", "1", "relative error of the reference"},
+     {"slope", Data::estimate, "curve", "1", "exponent of the error over processor time"},
+     {"efficiency", Data::real, "curve", "1/s", "1/(error^2 processor time)"},
+     {"is_monte_carlo", Data::count, "curve", "1",
+      "whether the error falls with the square root of the samples"},
+     {"curve_point", Data::numbers, "", "1", "points of all curves, one curve after the other"},
+     {"of_curve", Data::count, "curve_point", "1", "number of the point's curve"},
+     {"cpu_s", Data::real, "curve_point", "s", "processor time"},
+     {"samples", Data::real, "curve_point", "1", "samples by then"},
+     {"relative_error", Data::estimate, "curve_point", "1",
+      "RMS deviation from the reference over the RMS of its values"}}};
 
-  template <typename Get>
-  void texts(const std::string& name, const std::string& long_name, Get get) {
-    std::vector<std::string> column;
-    for (const Row& row : rows_) column.push_back(std::invoke(get, row));
-    file_.dataset(name, column, {axis_}, long_name);
-  }
+const DatasetTable cost_table{
+    "cost",
+    {{"cost", Data::numbers, "", "1", "number of the cost curve"},
+     {"task", Data::text, "cost", "", "whose cost it is"},
+     {"cost_name", Data::text, "cost", "", "what its cost is"},
+     {"size_name", Data::text, "cost", "", "what its size is"},
+     {"exponent", Data::estimate, "cost", "1", "fitted exponent of cost over size"},
+     {"expected_exponent", Data::real, "cost", "1", "exponent by theory"},
+     {"cost_point", Data::numbers, "", "1", "points of all cost curves, one curve after the other"},
+     {"of_cost", Data::count, "cost_point", "1", "number of the point's cost curve"},
+     {"size", Data::real, "cost_point", "1", "size of the problem"},
+     {"cost_value", Data::real, "cost_point", "1", "cost, in what cost_name says"}}};
 
-  /// What is not finite becomes the largest number that is.
-  template <typename Get>
-  void numbers(const std::string& name, const std::string& units, const std::string& long_name,
-               Get get) {
-    std::vector<double> column;
-    for (const Row& row : rows_) {
-      const double value = std::invoke(get, row);
-      column.push_back(std::isfinite(value) ? value : std::numeric_limits<double>::max());
-    }
-    file_.dataset(name, column, {axis_}, units, long_name);
-  }
+const DatasetTable stability_table{
+    "stability",
+    {{"case", Data::numbers, "", "1", "number of the case"},
+     {"room", Data::text, "case", "", "part of the program"},
+     {"name", Data::text, "case", "", "what is extreme"},
+     {"invariant", Data::text, "case", "", "what was checked"},
+     {"must_say", Data::text, "case", "",
+      "what a refusal has to say; empty where the case must be solved"},
+     {"refusal", Data::text, "case", "",
+      "the message of a refusal; empty where the case was solved"},
+     {"figure", Data::real, "case", "1", "how far the invariant was off"},
+     {"limit", Data::real, "case", "1", "what it was held to"},
+     {"passed", Data::count, "case", "1", "1: right within the limit, or refused as it must"},
+     {"cpu_s", Data::real, "case", "s", "processor time"}}};
 
-  template <typename Get>
-  void counts(const std::string& name, const std::string& long_name, Get get) {
-    std::vector<std::uint64_t> column;
-    for (const Row& row : rows_)
-      column.push_back(static_cast<std::uint64_t>(std::invoke(get, row)));
-    file_.dataset(name, column, {axis_}, "1", long_name);
-  }
+const DatasetTable plan_table{
+    "plan",
+    {{"comparison", Data::numbers, "", "1", "number of the comparison"},
+     {"room", Data::text, "comparison", "", "part of the program"},
+     {"left_out", Data::text, "comparison", "", "what the specialised kernel leaves out"},
+     {"scene", Data::text, "comparison", "", "that has no need of it"},
+     {"per", Data::text, "comparison", "", "what the times are for"},
+     {"general_s", Data::real, "comparison", "s", "processor time of the general kernel, median"},
+     {"special_s", Data::real, "comparison", "s",
+      "processor time of the specialised kernel, median"},
+     {"ratio", Data::real, "comparison", "1",
+      "general over specialised, median over slices taken in turn"},
+     {"ratio_spread", Data::real, "comparison", "1", "half the distance of its quartiles"},
+     {"difference", Data::real, "comparison", "1", "largest difference of the results"},
+     {"difference_in", Data::text, "comparison", "",
+      "relative, or in standard errors where random numbers differ"},
+     {"limit", Data::real, "comparison", "1", "what the difference was held to"},
+     {"passed", Data::count, "comparison", "1", "whether the difference is within the limit"}}};
 
- private:
-  ResultFile& file_;
-  std::string axis_;
-  const std::vector<Row>& rows_;
-};
-
-struct CurvePoint {
-  std::size_t curve;
-  bench::ErrorPoint point;
-};
-struct CostPoint {
-  std::size_t cost;
-  double size, value;
-};
+/// What is not finite becomes the largest number that is.
+template <class Things, class Value>
+std::vector<double> finite(const Things& things, const Value& value) {
+  auto values = column(things, value);
+  for (double& each : values)
+    if (!std::isfinite(each)) each = std::numeric_limits<double>::max();
+  return values;
+}
 
 }  // namespace
 
+std::span<const DatasetTable* const> bench_tables() {
+  static constexpr const DatasetTable* tables[] = {&error_table, &cost_table, &stability_table,
+                                                   &plan_table};
+  return tables;
+}
+
 void write_error_curves(ResultFile& file, const std::vector<bench::ErrorCurve>& curves) {
-  using bench::ErrorCurve;
-  Table table(file, "curve", curves, "number of the curve");
-  table.texts("scene", "standard scene", &ErrorCurve::scene);
-  table.texts("method", "what estimates", &ErrorCurve::method);
-  table.texts("reference", "how the true value is known", &ErrorCurve::reference);
-  table.numbers("reference_uncertainty", "1", "relative error of the reference",
-                &ErrorCurve::reference_error);
-  table.numbers("slope", "1", "exponent of the error over processor time", &ErrorCurve::slope);
-  table.numbers("slope_error", "1", "standard error of slope", &ErrorCurve::slope_error);
-  table.numbers("efficiency", "1/s", "1/(error^2 processor time)", &ErrorCurve::efficiency);
-  table.counts("is_monte_carlo", "whether the error falls with the square root of the samples",
-               &ErrorCurve::is_monte_carlo);
-  std::vector<CurvePoint> points;
-  for (std::size_t c = 0; c < curves.size(); ++c)
-    for (const auto& point : curves[c].points) points.push_back({c, point});
-  Table all(file, "curve_point", points, "points of all curves, one curve after the other");
-  all.counts("of_curve", "number of the point's curve", &CurvePoint::curve);
-  all.numbers("cpu_s", "s", "processor time", [](const auto& p) { return p.point.cpu_s; });
-  all.numbers("samples", "1", "samples by then", [](const auto& p) { return p.point.samples; });
-  all.numbers("relative_error", "1", "RMS deviation from the reference over the RMS of its values",
-              [](const auto& p) { return p.point.error; });
-  all.numbers("relative_error_error", "1", "standard error of relative_error",
-              [](const auto& p) { return p.point.error_error; });
+  using bench::ErrorCurve, bench::ErrorPoint;
+  std::vector<std::size_t> of_curve;
+  std::vector<ErrorPoint> points;
+  for (std::size_t c = 0; c < curves.size(); ++c) {
+    of_curve.resize(of_curve.size() + curves[c].points.size(), c);
+    points.insert(points.end(), curves[c].points.begin(), curves[c].points.end());
+  }
+  const ResultGroup root(file, error_table);
+  root.number("curve", curves.size());
+  root.put("scene", column(curves, &ErrorCurve::scene));
+  root.put("method", column(curves, &ErrorCurve::method));
+  root.put("reference", column(curves, &ErrorCurve::reference));
+  root.put("reference_uncertainty", finite(curves, &ErrorCurve::reference_error));
+  root.put("slope", finite(curves, &ErrorCurve::slope), finite(curves, &ErrorCurve::slope_error));
+  root.put("efficiency", finite(curves, &ErrorCurve::efficiency));
+  root.put("is_monte_carlo", column(curves, &ErrorCurve::is_monte_carlo));
+  root.number("curve_point", points.size());
+  root.put("of_curve", column(of_curve, std::identity()));
+  root.put("cpu_s", finite(points, &ErrorPoint::cpu_s));
+  root.put("samples", finite(points, &ErrorPoint::samples));
+  root.put("relative_error", finite(points, &ErrorPoint::error),
+           finite(points, &ErrorPoint::error_error));
 }
 
 void write_cost_curves(ResultFile& file, const std::vector<bench::CostCurve>& costs) {
   using bench::CostCurve;
-  Table table(file, "cost", costs, "number of the cost curve");
-  table.texts("task", "whose cost it is", &CostCurve::what);
-  table.texts("cost_name", "what its cost is", &CostCurve::cost_name);
-  table.texts("size_name", "what its size is", &CostCurve::size_name);
-  table.numbers("exponent", "1", "fitted exponent of cost over size", &CostCurve::exponent);
-  table.numbers("exponent_error", "1", "standard error of exponent", &CostCurve::exponent_error);
-  table.numbers("expected_exponent", "1", "exponent by theory", &CostCurve::expected);
-  std::vector<CostPoint> points;
-  for (std::size_t c = 0; c < costs.size(); ++c)
-    for (std::size_t i = 0; i < costs[c].size.size(); ++i)
-      points.push_back({c, costs[c].size[i], costs[c].cpu_s[i]});
-  Table all(file, "cost_point", points, "points of all cost curves, one curve after the other");
-  all.counts("of_cost", "number of the point's cost curve", &CostPoint::cost);
-  all.numbers("size", "1", "size of the problem", &CostPoint::size);
-  all.numbers("cost_value", "1", "cost, in what cost_name says", &CostPoint::value);
+  std::vector<std::size_t> of_cost;
+  std::vector<double> size, value;
+  for (std::size_t c = 0; c < costs.size(); ++c) {
+    of_cost.resize(of_cost.size() + costs[c].size.size(), c);
+    size.insert(size.end(), costs[c].size.begin(), costs[c].size.end());
+    value.insert(value.end(), costs[c].cpu_s.begin(), costs[c].cpu_s.end());
+  }
+  const ResultGroup root(file, cost_table);
+  root.number("cost", costs.size());
+  root.put("task", column(costs, &CostCurve::what));
+  root.put("cost_name", column(costs, &CostCurve::cost_name));
+  root.put("size_name", column(costs, &CostCurve::size_name));
+  root.put("exponent", finite(costs, &CostCurve::exponent),
+           finite(costs, &CostCurve::exponent_error));
+  root.put("expected_exponent", finite(costs, &CostCurve::expected));
+  root.number("cost_point", size.size());
+  root.put("of_cost", column(of_cost, std::identity()));
+  root.put("size", finite(size, std::identity()));
+  root.put("cost_value", finite(value, std::identity()));
 }
 
 void write_cases(ResultFile& file, const std::vector<ExaminedCase>& cases) {
-  Table table(file, "case", cases, "number of the case");
-  const auto of_case = [](auto member) {
-    return [=](const ExaminedCase& row) { return row.extreme.*member; };
-  };
-  table.texts("room", "part of the program", of_case(&bench::ExtremeCase::room));
-  table.texts("name", "what is extreme", of_case(&bench::ExtremeCase::name));
-  table.texts("invariant", "what was checked", of_case(&bench::ExtremeCase::invariant));
-  table.texts("must_say", "what a refusal has to say; empty where the case must be solved",
-              of_case(&bench::ExtremeCase::must_say));
-  table.texts("refusal", "the message of a refusal; empty where the case was solved",
-              [](const ExaminedCase& row) { return row.finding.refusal; });
-  table.numbers("figure", "1", "how far the invariant was off",
-                [](const ExaminedCase& row) { return row.finding.figure; });
-  table.numbers("limit", "1", "what it was held to",
-                [](const ExaminedCase& row) { return row.finding.limit; });
-  table.counts("passed", "1: right within the limit, or refused as it must",
-               [](const ExaminedCase& row) { return passes(row.extreme, row.finding); });
-  table.numbers("cpu_s", "s", "processor time", &ExaminedCase::cpu_s);
+  const ResultGroup root(file, stability_table);
+  const auto extremes = column(cases, &ExaminedCase::extreme);
+  const auto findings = column(cases, &ExaminedCase::finding);
+  root.number("case", cases.size());
+  root.put("room", column(extremes, &bench::ExtremeCase::room));
+  root.put("name", column(extremes, &bench::ExtremeCase::name));
+  root.put("invariant", column(extremes, &bench::ExtremeCase::invariant));
+  root.put("must_say", column(extremes, &bench::ExtremeCase::must_say));
+  root.put("refusal", column(findings, &bench::Finding::refusal));
+  root.put("figure", finite(findings, &bench::Finding::figure));
+  root.put("limit", finite(findings, &bench::Finding::limit));
+  root.put("passed",
+           column(cases, [](const ExaminedCase& row) { return passes(row.extreme, row.finding); }));
+  root.put("cpu_s", finite(cases, &ExaminedCase::cpu_s));
 }
 
 void write_plan_rows(ResultFile& file, const std::vector<bench::PlanRow>& rows) {
   using bench::PlanRow;
-  Table table(file, "comparison", rows, "number of the comparison");
-  table.texts("room", "part of the program", &PlanRow::room);
-  table.texts("left_out", "what the specialised kernel leaves out", &PlanRow::left_out);
-  table.texts("scene", "that has no need of it", &PlanRow::scene);
-  table.texts("per", "what the times are for", &PlanRow::per);
-  table.numbers("general_s", "s", "processor time of the general kernel, median",
-                &PlanRow::general_s);
-  table.numbers("special_s", "s", "processor time of the specialised kernel, median",
-                &PlanRow::special_s);
-  table.numbers("ratio", "1", "general over specialised, median over slices taken in turn",
-                &PlanRow::ratio);
-  table.numbers("ratio_spread", "1", "half the distance of its quartiles", &PlanRow::ratio_spread);
-  table.numbers("difference", "1", "largest difference of the results", &PlanRow::difference);
-  table.texts("difference_in", "relative, or in standard errors where random numbers differ",
-              &PlanRow::difference_in);
-  table.numbers("limit", "1", "what the difference was held to", &PlanRow::limit);
-  table.counts("passed", "whether the difference is within the limit",
-               [](const PlanRow& row) { return bench::passes(row); });
+  const ResultGroup root(file, plan_table);
+  root.number("comparison", rows.size());
+  root.put("room", column(rows, &PlanRow::room));
+  root.put("left_out", column(rows, &PlanRow::left_out));
+  root.put("scene", column(rows, &PlanRow::scene));
+  root.put("per", column(rows, &PlanRow::per));
+  root.put("general_s", finite(rows, &PlanRow::general_s));
+  root.put("special_s", finite(rows, &PlanRow::special_s));
+  root.put("ratio", finite(rows, &PlanRow::ratio));
+  root.put("ratio_spread", finite(rows, &PlanRow::ratio_spread));
+  root.put("difference", finite(rows, &PlanRow::difference));
+  root.put("difference_in", column(rows, &PlanRow::difference_in));
+  root.put("limit", finite(rows, &PlanRow::limit));
+  root.put("passed", column(rows, [](const PlanRow& row) { return bench::passes(row); }));
 }
 
 }  // namespace flatspeckle::apps

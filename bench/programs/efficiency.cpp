@@ -1,8 +1,8 @@
 // Efficiency 1 / (relative error^2 x CPU seconds) of our Monte Carlo estimator against the
-// published one (bench/oracles/textbook.h), on the standard scenes with 64 tilts, taken in turn on one
-// thread. The relative error is RMS over the entries, relative to their RMS magnitude. Both must
-// agree within 4 standard errors, or the exit status is 1. With `choices`: what each choice of ours
-// is worth, as the ratio of the planned estimator's efficiency to that without it.
+// published one (bench/oracles/textbook.h), on the standard scenes with 64 tilts, taken in turn on
+// one thread. The relative error is RMS over the entries, relative to their RMS magnitude. Both
+// must agree within 4 standard errors, or the exit status is 1. With `choices`: what each choice of
+// ours is worth, as the ratio of the planned estimator's efficiency to that without it.
 //
 //   bench_efficiency [choices] [rounds [seconds per estimator and round]]
 #include <cmath>

@@ -274,7 +274,7 @@ void add_refusals(ExtremeRows& rows) {
                      memory_effect_request(k, 0, {0.1, 1.5}, {0.2});
                    });
   refuse(rows, "g = 1", "g = 1: must be in (-1, 1)", hg(0, 1), [](auto& s) { s.g = 1; });
-  refuse(rows, "albedo 1 + 2e-16", "albedo = 1: must be in [0, 1]", hg(0, 1),
+  refuse(rows, "albedo 1 + 2e-16", "must be from 0 to 1", hg(0, 1),
          [](auto& s) { s.albedo = 1 + 0x1p-52; });
   refuse(rows, "optical depth 0", "optical_depth = 0: must be positive", hg(0, 1),
          [](auto& s) { s.optical_depth = 0; });

@@ -233,8 +233,13 @@ std::vector<ExtremeCase> connection_extremes() {
            total_reflection);
   rows.add("rough spline of 0.15", "n_P^2 / |J_PQ| = n_Q^2 / |J_QP|", there_and_back);
   rows.add("ends beyond the index of a guide", "nothing found", no_index);
-  rows.add_refused("steps of length 0", "step",
-                   [] { grin::make_trace_scene({.stops = {.max_length = 1, .step = 0}}); });
+  rows.add_refused("steps of length 0", "step", [] {
+    TraceValues values;
+    values.curves.connect = {0, 0, 0, 0, 0, 1};
+    values.stops.max_length = 1;
+    values.stops.step = 0;
+    make_trace_scene(values);
+  });
   return std::move(rows).rows();
 }
 

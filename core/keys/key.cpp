@@ -224,14 +224,21 @@ std::string Key::accepted() const {
   return is_number() ? range() : "must be a text";
 }
 
+/// 100000, not 1e+05.
+static std::string limit_text(double limit) {
+  constexpr double most = 1e9;
+  const bool whole = limit == std::floor(limit) && std::abs(limit) < most;
+  return whole ? std::to_string(static_cast<std::int64_t>(limit)) : number_text(limit);
+}
+
 std::string Key::range() const {
   if (low_ == -infinity && high_ == infinity)
     return is_whole() ? "must be whole" : "must be finite";
   if (low_ == 0 && high_ == infinity)
     return low_open_ ? "must be positive" : "must not be negative";
   if (high_ == infinity)
-    return (low_open_ ? "must be above " : "must be at least ") + number_text(low_);
-  const std::string low = number_text(low_), high = number_text(high_);
+    return (low_open_ ? "must be above " : "must be at least ") + limit_text(low_);
+  const std::string low = limit_text(low_), high = limit_text(high_);
   return low_open_ ? "must be in (" + low + ", " + high + (high_open_ ? ')' : ']')
                    : "must be from " + low + " to " + high;
 }

@@ -83,7 +83,10 @@ std::string number_text(Complex value) {
 
 std::string number_text(const std::vector<double>& values) {
   std::string text;
-  for (const double value : values) text += (text.empty() ? "" : " ") + number_text(value);
+  for (const double value : values) {
+    if (!text.empty()) text += ' ';
+    text += number_text(value);
+  }
   return text;
 }
 

@@ -46,6 +46,7 @@ void write_provenance(ResultFile& file, const Provenance& provenance) {
   root.attribute("cpu_s", provenance.cpu_s);
   root.attribute("samples", provenance.samples);
   root.attribute("converged", provenance.converged);
+  if (!provenance.identity.empty()) root.attribute("identity", provenance.identity);
 }
 
 std::string utc_now() {

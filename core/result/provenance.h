@@ -17,7 +17,8 @@ struct Provenance {
   std::string started;  ///< utc_now() at the start
   double wall_s = 0, cpu_s = 0;
   double samples = 0;
-  bool converged = false;  ///< reached what was asked for
+  bool converged = false;     ///< reached what was asked for
+  std::string identity = {};  ///< what a run that goes on must have in common; empty: cannot
 };
 
 extern const DatasetTable provenance_table;

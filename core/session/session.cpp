@@ -1,5 +1,7 @@
 #include "core/session/session.h"
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <iostream>
 
@@ -112,7 +114,18 @@ int Session::run(std::string plan, std::vector<PlannedRun> runs, const std::stri
   return finish(contents);
 }
 
+/// Samples come in whole batches, two at the least: what is far more than was asked for is said.
+void Session::note_rounding(const PlannedRun& run) {
+  if (!run.stop.samples) return;
+  const double asked = static_cast<double>(*run.stop.samples), batch = run.job.samples_per_batch;
+  const double done = batch * std::max(2.0, std::ceil(asked / batch));
+  if (done > 1.5 * asked)
+    std::cerr << "note: " << run.label << " takes " << done << " samples for the " << asked
+              << " asked for: they come in batches of " << batch << ", two at the least\n";
+}
+
 void Session::run_one(const PlannedRun& run) {
+  note_rounding(run);
   RunState& state = states_[run.name];
   const RunOptions options{run.stop, threads_, run.label,
                            [this](const RunState&) { save_resumable(); }};
@@ -154,8 +167,8 @@ void Session::write_common(ResultFile& file, bool converged) const {
     provenance.samples += state.sums.total_samples();
   }
   provenance.converged = converged;
+  provenance.identity = identity_;
   write_provenance(file, provenance);
-  file.attribute("/", "identity", identity_);
 }
 
 /// By a second name for it: the first is its own until the new file takes it.

@@ -66,6 +66,7 @@ class Session {
 
  private:
   void resume();
+  static void note_rounding(const PlannedRun& run);
   void run_one(const PlannedRun& run);
   int finish(const std::function<void(ResultFile&)>& contents);
   void write_common(ResultFile& file, bool converged) const;

@@ -75,7 +75,7 @@ class LoggedSteps {
   ~LoggedSteps() { log_.next_step() = controlled_.h; }
 
   template <IndexField F>
-  [[gnu::flatten]] void step(const F& field, double h, RayState& ray) const {
+  [[gnu::noinline]] void step(const F& field, double h, RayState& ray) const {
     is_controlled_ ? controlled_.step(field, h, ray) : fixed_.step(field, h, ray);
   }
   template <IndexField F>

@@ -124,8 +124,8 @@ FieldSummary write_fields(ResultFile& file, const Scene& scene, const std::vecto
   write_field(file, scene, drawn);
   const ResultGroup root(file, field_table);
   write_plan(root, drawn.plan);
-  const FieldSummary summary{statistics.mean_contrast(), statistics.circularity(),
-                             step ? statistics.autocorrelation() : Estimate{}};
+  FieldSummary summary{statistics.mean_contrast(), statistics.circularity(),
+                       step ? statistics.autocorrelation() : Estimate{}};
   root.put("intensity", drawn.intensity);
   root.put("contrast", statistics.contrast());
   root.put("mean_contrast", summary.mean_contrast);

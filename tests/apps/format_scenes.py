@@ -79,12 +79,14 @@ RUNS = {
     "area": ("render", {**STAGE, "sensor": "area", "sensor_at": [0, 0, 4], "sensor_size": [1, 1],
                         "length_unit": 0.001}),
     "directional": ("render", {**STAGE, "sensor": "directional"}),
+    **{f"bench_{kind}": (f"bench {kind}", {"quick": True})
+       for kind in ("error", "stability", "plan")},
 }
 
 
 def cost(subcommand, keys):
     """Light paths by the thousand, placements by the dozen."""
-    if subcommand in ("solve", "place", "trace"):
+    if subcommand.split()[0] in ("solve", "place", "trace", "bench"):
         return {"threads": None if subcommand == "place" else 2}
     if subcommand == "field":
         return {"fields": 4, "threads": 2}
@@ -101,7 +103,7 @@ def make_file(test, name, subcommand, keys, status=0):
         test.call("sweep", **keys, shard="1/2")
         test.call("merge", "--partial", out=keys["out"], status=status)
     else:
-        test.call(subcommand, **keys, status=status)
+        test.call(*subcommand.split(), **keys, status=status)
 
 
 class ResultsTest(ProgramTest):

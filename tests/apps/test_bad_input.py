@@ -78,7 +78,7 @@ DISK_CASES = [
     ("covariance", CYLINDERS, {"index": "nan"}, ["index", "nan", "1.5+0.1i"]),
     ("covariance", CYLINDERS, {"index": "1e999"}, ["index = 1e999", "must be finite"]),
     ("covariance", CYLINDERS, {"g": 0.3}, ["g = 0.3", "hg"]),
-    ("covariance", CYLINDERS, {"albedo": 0.3}, ["albedo = 0.3", "hg and point"]),
+    ("covariance", CYLINDERS, {"albedo": 0.3}, ["albedo = 0.3", "points and phase functions"]),
     ("covariance", CYLINDERS, {"phase_shift": 0.3}, ["phase_shift = 0.3", "point"]),
     ("covariance", CYLINDERS, {"placement": "poisson"}, ["placement = poisson", "hard_disk"]),
     ("covariance", CYLINDERS, {"min_gap": -0.1}, ["min_gap = -0.1", "must not be negative"]),

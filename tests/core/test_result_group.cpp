@@ -110,6 +110,7 @@ TEST_CASE("a role must be bound") {
   Written out;
   ResultFile other(out.folder / "b.h5");
   const ResultGroup root(other, table);
+  other.bind("COVARIANCE", {"length"});
   root.put("tilt", tilts);
   CHECK_THROWS_WITH_AS(root.put("intensity", estimate), "VIEW: stands for nothing here",
                        std::logic_error);

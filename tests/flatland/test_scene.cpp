@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include "core/error.h"
+#include "core/keys/number_text.h"
 #include "flatland/scene/scene.h"
 
 using namespace flatspeckle;

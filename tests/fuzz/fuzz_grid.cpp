@@ -3,11 +3,10 @@
 #include <memory>
 #include <vector>
 
-#include "apps/index_field_options.h"
-#include "apps/ray_tracing.h"
 #include "core/result/hdf5_handle.h"
 #include "grin/estimators/render_job.h"
 #include "grin/media/density_grid.h"
+#include "grin/scene/ray_tracing.h"
 #include "grin/space/curved_space.h"
 #include "tests/fuzz/input.h"
 
@@ -17,7 +16,7 @@
 namespace {
 
 using namespace flatspeckle;
-using namespace flatspeckle::apps;
+using namespace flatspeckle::grin;
 using fuzz::Bytes;
 using grin::Vec3;
 
@@ -58,32 +57,33 @@ std::vector<RayStart> starts_in(const grin::Box& box) {
 }
 
 SceneField scene_of_grid() {
-  Subcommand command("trace", "");
-  IndexFieldSpec spec;
-  add_index_field_options(command.options(), spec);
-  command.parse_config("field = [\"grid\"]\ngrid = \"grid.h5\"\n");
-  return make_index_field(command, spec, 1);
+  IndexFieldValues values;
+  values.field = {"grid"};
+  values.of<GridValues>().grid = path;
+  const Keyed<IndexFieldValues> keyed(values);
+  return make_scene_field(keyed.keys, keyed.values, {1});
 }
 
 void trace_grid(const std::string& integrator) {
   const SceneField scene = scene_of_grid();
   const double length = 2 * scene.scale;  // some cells: how many steps a ray takes has a limit
-  RayStopSpec stop_spec;
+  RayStopValues stop_spec;
   stop_spec.max_length = length;
   stop_spec.integrator = integrator;
   if (integrator == "leapfrog")
     stop_spec.step = length / 16;
   else
     stop_spec.tolerance = 1e-4;
+  const Keyed<RayStopValues> keyed(stop_spec);
   const auto starts = starts_in(*scene.grid);
-  const RayStops stops = make_ray_stops(stop_spec, scene.scale, 0);
+  const RayStops stops = make_ray_stops(keyed.keys, keyed.values, scene.scale, 0);
   for (const RayStart& start : starts) {
     const double n = index_at(scene, start.x);
     fuzz::require_finite(n);
     if (stop_spec.step && n < 1e-3) return;  // thousands of short steps
   }
   for (const TracedRay& ray :
-       trace_rays(scene, stops, make_ray_steps(stop_spec, scene.scale), starts, 2)) {
+       trace_rays(scene, stops, make_ray_steps(keyed.keys, keyed.values, scene.scale), starts, 2)) {
     fuzz::require_finite(ray.end.x.sum() + ray.end.v.sum());
     fuzz::require_finite(ray.end.arc_length + ray.end.optical_path);
     for (const Vec3& x : ray.path) fuzz::require_finite(x.sum());

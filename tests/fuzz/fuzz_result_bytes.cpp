@@ -1,5 +1,5 @@
-#include "apps/shard_folder.h"
 #include "core/result/sealed_file.h"
+#include "core/session/shard_folder.h"
 #include "tests/fuzz/input.h"
 #include "tests/fuzz/result_kinds.h"
 
@@ -13,8 +13,8 @@ using namespace flatspeckle;
 const char* const path = "input.h5";
 
 void read_shard(const std::string&) {
-  apps::ShardFolder folder(".");
-  folder.read("input", apps::ShardFolder::Part::finished, "identity", [](const ResultReader&) {});
+  ShardFolder folder(".");
+  folder.read("input", ShardFolder::Part::finished, "identity", [](const ResultReader&) {});
 }
 
 }  // namespace

@@ -8,21 +8,18 @@
 #include <string_view>
 #include <vector>
 
-#include "apps/index_field_options.h"
-#include "apps/ray_starts.h"
-#include "apps/ray_stops.h"
-#include "apps/render_output.h"
-#include "apps/render_scene.h"
-#include "apps/run_options.h"
-#include "apps/scene_field.h"
-#include "apps/scene_options.h"
 #include "apps/subcommands.h"
 #include "core/result/result_file.h"
+#include "core/session/run_settings.h"
+#include "flatland/scene/scene.h"
+#include "grin/estimators/render_datasets.h"
+#include "grin/scene/render_values.h"
+#include "grin/scene/trace_scene.h"
 #include "tests/fuzz/input.h"
 
 // Scene files. The first line says whose, and may go on with flags of the command line:
-// "# covariance --seed 2". Without --out each subcommand checks all that it can and stops before
-// the work.
+// "# covariance --seed 2". With --print-config each subcommand checks all that it can and stops
+// before the work.
 
 namespace {
 
@@ -33,16 +30,9 @@ using namespace flatspeckle::apps;
 int make_medium(const Arguments& arguments) {
   SceneSpec spec;
   Subcommand command("covariance", "");
-  add_scatterer_options(command.options(), spec);
-  add_bulk_options(command.options(), spec);
-  add_medium_options(command.options(), spec);
-  add_structure_option(command.options(), spec);
-  add_view_options(command.options(), spec);
-  add_light_options(command.options(), spec);
-  add_request_options(command.options(), spec);
+  add_keys(command.keys(), spec);
   if (!command.parse(arguments)) return ExitStatus::done;
-  settle_request(command, spec);
-  const Scene scene = make_scene(spec);
+  const Scene scene = make_scene(command.keys(), spec);
   for (double number : {scene.medium.mu_s, scene.medium.mu_t, scene.medium.g, scene.medium.albedo,
                         scene.medium.k_shift, scene.placement.mean_count})
     fuzz::require_finite(number);
@@ -52,25 +42,19 @@ int make_medium(const Arguments& arguments) {
   return ExitStatus::done;
 }
 
-/// What `trace` makes of a scene; it asks for --out first.
+/// What `trace` makes of a scene.
 int trace_scene(const Arguments& arguments) {
-  IndexFieldSpec field;
-  RayStartSpec starts;
-  RayStopSpec stops;
+  grin::TraceValues values;
   Subcommand command("trace", "");
-  add_index_field_options(command.options(), field);
-  add_ray_start_options(command.options(), starts);
-  add_ray_stop_options(command.options(), stops);
+  add_keys(command.keys(), values);
   constexpr std::int64_t most_rays = 1000;  // the program asks how much memory there is
-  if (!command.parse(arguments) || starts.ray_count > most_rays) return ExitStatus::done;
-  const auto rays = make_ray_starts(command, starts);
-  const SceneField scene = make_index_field(command, field, 10);
-  const RayStops made = make_ray_stops(stops, scene.scale, 10);
-  fuzz::require_finite(made.location);
-  fuzz::require_finite(make_ray_steps(stops, scene.scale).longest);
-  for (const RayStart& ray : rays) {
+  if (!command.parse(arguments) || values.starts.ray_count > most_rays) return ExitStatus::done;
+  const grin::TraceScene scene = make_trace_scene(command.keys(), values);
+  fuzz::require_finite(scene.stops.location);
+  fuzz::require_finite(scene.steps.longest);
+  for (const grin::RayStart& ray : scene.starts) {
     fuzz::require_finite(ray.direction.norm());
-    fuzz::require_finite(index_at(scene, ray.x));
+    fuzz::require_finite(index_at(scene.field, ray.x));
   }
   return ExitStatus::done;
 }
@@ -98,24 +82,25 @@ void make_small_picture(const grin::RenderScene& scene, const grin::RenderReques
     sums.add(job.batches.samples_per_batch, added);
   }
   ResultFile file("picture.h5");
-  write_render(file, scene, job, render_result(scene, job, sums), length_unit);
+  grin::write_render(file, scene, job, grin::render_result(scene, job, sums), length_unit);
   file.commit();
 }
 
 /// What `render` makes of a scene, before its pilot of a second.
 int render_scene(const Arguments& arguments) {
-  RenderSpec spec;
-  RunSettings settings;
+  grin::RenderValues values;
+  grin::RenderRequestValues how;
+  RunSettings run;
   Subcommand command("render", "");
-  add_render_options(command.options(), spec);
-  add_run_options(command.options(), settings);
+  Keys& keys = command.keys();
+  add_keys(keys, values);
+  add_keys(keys, how);
+  add_run_keys(keys, run);
   if (!command.parse(arguments)) return ExitStatus::done;
-  const grin::RenderScene scene = make_render_scene(command, spec);
-  const grin::RenderRequest request = make_render_request(spec);
-  const std::optional<double> length_unit = length_unit_of(spec);
-  seed_of(settings);
-  stop_rule(settings);
-  inputs_text(spec);
+  const grin::RenderScene scene = make_render_scene(keys, values);
+  const grin::RenderRequest request = make_render_request(keys, how);
+  const std::optional<double> length_unit = keys.read(values.length_unit);
+  stop_rule(keys, run);
   fuzz::require_finite(scene.step + scene.max_length + scene.stage.medium.mu_t());
   check(scene.stage);
   const grin::SensorEnd sensor(scene.sensor, scene.stage);
@@ -205,23 +190,29 @@ bool is_flat(const std::string& subcommand) {
   return !in_space.contains(subcommand);
 }
 
+/// Reads all that it can, and stops before the work.
+int only_check(Arguments arguments) {
+  arguments.emplace_back("--print-config");
+  for (const SubcommandEntry& entry : subcommands())
+    if (arguments[1] == entry.name) return entry.run(arguments);
+  return ExitStatus::done;
+}
+
 void read_scene(const std::string& text) {
-  static const std::map<std::string, int (*)(const Arguments&)> subcommands = {
-      {"place", place},        {"solve", solve},         {"covariance", covariance},
-      {"flux", flux},          {"validate", validate},   {"sweep", sweep},
-      {"field", field},        {"trace", trace},         {"rays", trace_scene},
-      {"medium", make_medium}, {"render", render_scene}, {"picture", render_scene},
-      {"bench", bench}};
+  static const std::map<std::string, int (*)(const Arguments&)> parts = {{"rays", trace_scene},
+                                                                         {"medium", make_medium},
+                                                                         {"picture", render_scene},
+                                                                         {"render", render_scene}};
   std::istringstream words(fuzz::first_line(text));
   std::string word;
   words >> word;
-  const auto subcommand = subcommands.find(word);
-  if (subcommand == subcommands.end() || (is_flat(word) && has_slow_disks(text))) return;
+  if (is_flat(word) && has_slow_disks(text)) return;
   Arguments arguments{"flatspeckle", word};
   while (words >> word)
     if (!is_left_out(word)) arguments.push_back(word);
   arguments.insert(arguments.end(), {"--config", "scene.toml"});
-  subcommand->second(arguments);
+  const auto part = parts.find(arguments[1]);
+  part == parts.end() ? only_check(arguments) : part->second(arguments);
 }
 
 }  // namespace

@@ -1,12 +1,11 @@
 #include <map>
 
-#include "apps/index_field_options.h"
-#include "apps/ray_starts.h"
-#include "apps/scene_field.h"
 #include "apps/sweep_plan.h"
 #include "core/keys/csv.h"
 #include "flatland/placement/placement.h"
 #include "flatland/request/sensor.h"
+#include "grin/fields/scene_field.h"
+#include "grin/rays/ray_starts.h"
 #include "tests/fuzz/input.h"
 
 // Tables. The first line, a comment, says what they hold: "# disks".
@@ -26,7 +25,8 @@ void check_placement(const Scatterer& scatterer) {
 }
 
 void check_sweep(const std::string& config) {
-  const SweepPlan plan = sweep_plan_of(config + "points = \"table.csv\"\ntilts = [0, 0.01]\n");
+  SweepPlan plan;
+  plan.parse_config(config + "points = \"table.csv\"\ntilts = [0, 0.01]\n");
   for (std::size_t run = 0; run < plan.runs(); ++run) {
     const BulkMedium medium = plan.scene(run).medium;
     for (double number : {medium.mu_s, medium.mu_t, medium.g, medium.albedo})
@@ -35,20 +35,19 @@ void check_sweep(const std::string& config) {
 }
 
 void check_rays() {
-  Subcommand command("trace", "");
-  RayStartSpec spec;
-  add_ray_start_options(command.options(), spec);
-  command.parse_config("rays = \"table.csv\"\n");
-  for (const RayStart& ray : make_ray_starts(command, spec))
+  grin::RayStartValues values;
+  values.rays = path;
+  const Keyed<grin::RayStartValues> keyed(values);
+  for (const grin::RayStart& ray : make_ray_starts(keyed.keys, keyed.values))
     fuzz::require_finite(ray.direction.norm());
 }
 
 void check_blobs() {
-  Subcommand command("trace", "");
-  IndexFieldSpec spec;
-  add_index_field_options(command.options(), spec);
-  command.parse_config("field = [\"blobs\"]\nblobs = \"table.csv\"\n");
-  const SceneField scene = make_index_field(command, spec, 10);
+  grin::IndexFieldValues values;
+  values.field = {"blobs"};
+  values.of<grin::BlobsValues>().blobs = path;
+  const Keyed<grin::IndexFieldValues> keyed(values);
+  const grin::SceneField scene = make_scene_field(keyed.keys, keyed.values, {10});
   fuzz::require_finite(scene.scale);
   fuzz::require_finite(index_at(scene, {0.1, 0.2, 0.3}));
 }

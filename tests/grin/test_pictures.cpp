@@ -15,9 +15,9 @@ namespace {
 using std::numbers::pi;
 
 /// Sums over paths that each fall into one pixel or none.
-class Picture {
+class PixelMeans {
  public:
-  explicit Picture(const SensorEnd& sensor)
+  explicit PixelMeans(const SensorEnd& sensor)
       : sum_(sensor.pixels().count()), squares_(sensor.pixels().count()) {}
 
   void begin_path() { ++paths_; }
@@ -40,7 +40,7 @@ class Picture {
     }
   }
   /// Pixel by pixel, and not dark.
-  void check_like(const Picture& other) const {
+  void check_like(const PixelMeans& other) const {
     CHECK(std::accumulate(sum_.begin(), sum_.end(), 0.0) > 0);
     for (int pixel = 0; pixel < pixels(); ++pixel) {
       CAPTURE(pixel);
@@ -81,10 +81,10 @@ struct Pair {
 };
 
 /// From the sensor to where the light is hit.
-Picture seen_from_sensor(const Pair& pair, std::uint64_t seed) {
+PixelMeans seen_from_sensor(const Pair& pair, std::uint64_t seed) {
   const Lights lights = pair.lights();
   const SensorEnd sensor = pair.end();
-  Picture picture(sensor);
+  PixelMeans picture(sensor);
   RandomStream random(seed, 91, 0);
   for (int i = 0; i < paths; ++i) {
     picture.begin_path();
@@ -99,10 +99,10 @@ Picture seen_from_sensor(const Pair& pair, std::uint64_t seed) {
 }
 
 /// From the light to where the sensor is hit.
-Picture thrown_by_light(const Pair& pair, std::uint64_t seed) {
+PixelMeans thrown_by_light(const Pair& pair, std::uint64_t seed) {
   const Lights lights = pair.lights();
   const SensorEnd sensor = pair.end();
-  Picture picture(sensor);
+  PixelMeans picture(sensor);
   RandomStream random(seed, 92, 0);
   for (int i = 0; i < paths; ++i) {
     picture.begin_path();
@@ -117,10 +117,10 @@ Picture thrown_by_light(const Pair& pair, std::uint64_t seed) {
 }
 
 /// A place on each, joined by a straight line: |J| = r^2.
-Picture joined(const Pair& pair, std::uint64_t seed) {
+PixelMeans joined(const Pair& pair, std::uint64_t seed) {
   const Lights lights = pair.lights();
   const SensorEnd sensor = pair.end();
-  Picture picture(sensor);
+  PixelMeans picture(sensor);
   RandomStream random(seed, 93, 0);
   for (int i = 0; i < paths; ++i) {
     picture.begin_path();
@@ -251,7 +251,7 @@ TEST_CASE("a beam falls on the pixels in front of it with its power over its are
 TEST_CASE("lenses: by sensor, by light and by joins the same picture") {
   const auto check = [](const Pair& pair, std::uint64_t seed) {
     CAPTURE(seed);
-    const Picture reference = joined(pair, seed);
+    const PixelMeans reference = joined(pair, seed);
     reference.check_like(thrown_by_light(pair, seed));
     if (!std::holds_alternative<PointLight>(pair.light))
       reference.check_like(seen_from_sensor(pair, seed));

@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include "grin/fields/fisheye.h"
 #include "grin/fields/parabolic.h"
 #include "grin/fields/sech.h"
 #include "grin/fields/tanh_ramp.h"

@@ -34,18 +34,19 @@ std::vector<NamedRender> scenes() {
 }  // namespace
 
 TEST_CASE("path tracing, light tracing and bidirectional agree") {
-  for (const auto& [name, scene] : scenes()) {
-    CAPTURE(name);
-    const Mean both = bidirectional_mean(scene);
+  for (const NamedRender& named : scenes()) {
+    CAPTURE(named.name);
+    const Mean both = bidirectional_mean(named.scene);
     for (const RenderMethod method : {RenderMethod::path, RenderMethod::light})
-      check_agreement(scene, both, method, 2 * agreement_samples);
+      check_agreement(named.scene, both, method, 2 * agreement_samples);
   }
 }
 
 TEST_CASE("light tracing and bidirectional agree under a beam") {
-  for (const auto& [name, scene] : beam_scenes()) {
-    CAPTURE(name);
-    check_agreement(scene, bidirectional_mean(scene), RenderMethod::light, 2 * agreement_samples);
+  for (const NamedRender& named : beam_scenes()) {
+    CAPTURE(named.name);
+    check_agreement(named.scene, bidirectional_mean(named.scene), RenderMethod::light,
+                    2 * agreement_samples);
   }
 }
 

@@ -7,9 +7,10 @@ namespace flatspeckle::grin::tests {
 // Path tracing joins to where a beam scatters by 1/r^2 alone: rare paths carry much, so that it
 // needs many.
 TEST_CASE("path tracing and bidirectional agree under a beam") {
-  for (const auto& [name, scene] : beam_scenes()) {
-    CAPTURE(name);
-    check_agreement(scene, bidirectional_mean(scene), RenderMethod::path, 20 * agreement_samples);
+  for (const NamedRender& named : beam_scenes()) {
+    CAPTURE(named.name);
+    check_agreement(named.scene, bidirectional_mean(named.scene), RenderMethod::path,
+                    20 * agreement_samples);
   }
 }
 

@@ -5,6 +5,7 @@
 #include "core/error.h"
 #include "grin/fields/gaussian_blobs.h"
 #include "grin/fields/linear_ramp.h"
+#include "grin/fields/fisheye.h"
 #include "grin/fields/parabolic.h"
 #include "grin/fields/sech.h"
 #include "grin/fields/tanh_ramp.h"

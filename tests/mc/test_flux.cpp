@@ -1,10 +1,14 @@
 #include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iomanip>
 
 #include <boost/math/distributions/chi_squared.hpp>
 
 #include "bench/oracles/quadrature.h"
 #include "core/numbers/random.h"
 #include "grin/media/phase_function.h"
+#include "mc/estimators/covariance_estimator.h"
 #include "mc/estimators/flux.h"
 #include "tests/mc/flux_runs.h"
 
@@ -94,6 +98,67 @@ TEST_CASE("flux of a slab of cylinders agrees with discrete ordinates") {
   CHECK_WITHIN_4_SIGMA(flux.transmittance.value[0], flux.transmittance.error[0],
                        theory.transmittance(0), 0);
   CHECK(flux.reflectance.error[0] < 0.02 * flux.reflectance.value[0].real());
+}
+
+namespace {
+
+SceneSpec bulk_slab(const std::string& phase) {
+  SceneSpec spec;
+  spec.domain = "slab";
+  spec.depth = 200;
+  spec.scatterer = phase;
+  spec.albedo = 0.95;
+  spec.optical_depth = 2;
+  return spec;
+}
+
+/// Flux, and the covariance of the same slab, against theory with the same phase function.
+void check_bulk(const SceneSpec& spec, const std::function<double(double)>& phase) {
+  const Scene scene = make_scene(spec);
+  const auto flux = tests::run_flux(scene, paths(200000), 1).flux;
+  const SlabTransport theory({2, 0.95, phase}, {0, 0.3, 2.5}, 60);
+  CHECK_WITHIN_4_SIGMA(flux.reflectance.value[0], flux.reflectance.error[0], theory.reflectance(0),
+                       0);
+  CHECK_WITHIN_4_SIGMA(flux.transmittance.value[0], flux.transmittance.error[0],
+                       theory.transmittance(0), 0);
+  CHECK(flux.reflectance.error[0] < 0.01 * flux.reflectance.value[0].real());
+  SceneSpec seen = spec;
+  seen.view_angles = {0.3, 2.5};
+  const Scene views = make_scene(seen);
+  const auto job = covariance_job(views, make_plan(views, ReversedPaths::no), 2);
+  RunState state;
+  run_batches(job.batches, {paths(40000), 2, "", {}}, state);
+  const Estimate found = field_moments(job, state.sums).covariance;
+  for (std::size_t v = 0; v < 2; ++v)
+    CHECK_WITHIN_4_SIGMA(found.value[v], found.error[v],
+                         theory.covariance_without_reversed(0, seen.view_angles[v]), 0);
+}
+
+}  // namespace
+
+TEST_CASE("two-term Henyey-Greenstein slabs agree with discrete ordinates") {
+  SceneSpec spec = bulk_slab("two_term_hg");
+  std::get<TwoTermHg>(spec.bulk) = {0.8, -0.3, 0.7};
+  CHECK(make_scene(spec).medium.g == doctest::Approx(0.7 * 0.8 - 0.3 * 0.3));
+  check_bulk(spec, [](double angle) {
+    return 0.7 * henyey_greenstein(0.8)(angle) + 0.3 * henyey_greenstein(-0.3)(angle);
+  });
+}
+
+TEST_CASE("slabs with a tabulated phase function agree with discrete ordinates") {
+  const auto shape = [](double angle) {
+    return 1 + std::cos(angle) / 2 + std::cos(angle) * std::cos(angle);
+  };
+  const std::string path = std::filesystem::temp_directory_path() / "flatspeckle_phase.csv";
+  std::ofstream table(path);
+  table << "angle,value\n" << std::setprecision(17);
+  for (int i = 0; i <= 720; ++i) table << i * pi / 720 << ',' << 5 * shape(i * pi / 720) << '\n';
+  table.close();
+  SceneSpec spec = bulk_slab("phase_table");
+  std::get<PhaseTable>(spec.bulk).phase_table = path;
+  CHECK(make_scene(spec).medium.g == doctest::Approx(1.0 / 6).epsilon(1e-5));
+  check_bulk(spec, [&](double angle) { return shape(angle) / (3 * pi); });
+  std::filesystem::remove(path);
 }
 
 TEST_CASE("exit angles follow the distribution of discrete ordinates") {

@@ -39,7 +39,7 @@ BulkMedium bulk(double mu_t, double g, double albedo) {
   scatterer.kind = Scatterer::Kind::hg;
   scatterer.g = g;
   scatterer.albedo = albedo;
-  return bulk_medium(scatterer, mu_t);
+  return bulk_medium(scatterer, {.density = {}, .g = g, .text = {}}, mu_t);
 }
 
 }  // namespace
