@@ -11,10 +11,14 @@
 namespace flatspeckle {
 
 AngleTable::AngleTable(const std::string& key, const std::string& path) {
-  const Table table = read_csv(path);
-  const auto angles = table.column("angle"), values = table.column("value");
-  angles_.assign(angles.begin(), angles.end());
-  values_.assign(values.begin(), values.end());
+  try {
+    const Table table = read_csv(path);
+    const auto angles = table.column("angle"), values = table.column("value");
+    angles_.assign(angles.begin(), angles.end());
+    values_.assign(values.begin(), values.end());
+  } catch (const InputError& error) {
+    throw InputError(key + ": " + error.what());
+  }
   const auto refuse = [&](const char* accepted) { throw InputError(key, path, accepted); };
   constexpr double rounding = 1e-4;  // pi as somebody wrote it
   if (angles_.size() < 2 || std::abs(angles_.front()) > rounding ||

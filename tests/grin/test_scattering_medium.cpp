@@ -22,15 +22,15 @@ namespace flatspeckle::grin {
 namespace {
 
 using std::numbers::pi;
-using Kind = SpacePhaseFunction::Kind;
-
 const SpacePhaseFunction phases[] = {
     {},
-    {Kind::rayleigh},
-    {Kind::henyey_greenstein, 0},
-    {Kind::henyey_greenstein, 0.85},
-    {Kind::henyey_greenstein, -0.6},
-    {Kind::henyey_greenstein, 0.99},
+    {RayleighPhase{}},
+    {HgPhase{0}},
+    {HgPhase{0.85}},
+    {HgPhase{-0.6}},
+    {HgPhase{0.99}},
+    {TwoTermPhase{{0.9}, {-0.4}, 0.8}},
+    {TwoTermPhase{{0.7}, {0.1}, 0}},
 };
 const Vec3 axes[] = {Vec3::UnitZ(), -Vec3::UnitZ(), Vec3(0.6, 0, -0.8), Vec3(-2, 3, 1).normalized(),
                      Vec3(0.8, -0.6, 0)};
@@ -53,7 +53,7 @@ TEST_CASE("phase functions integrate to 1, and their mean cosine is g") {
           0, pi);
     };
     CHECK(moment(0) == doctest::Approx(1).epsilon(1e-9));
-    CHECK(moment(1) == doctest::Approx(phase.g).epsilon(1e-8));
+    CHECK(moment(1) == doctest::Approx(phase.mean_cosine()).epsilon(1e-8));
   }
 }
 
@@ -64,7 +64,8 @@ TEST_CASE("scattered directions follow the phase function in angle and azimuth")
     const Vec3 axis = axes[seed % std::size(axes)];
     const Frame across = frame_across(axis);
     std::vector<double> edges, counts(polar * around), probabilities;
-    for (int i = 0; i <= polar; ++i) edges.push_back(angle_at(1.0 * i / polar, phase.g));
+    for (int i = 0; i <= polar; ++i)
+      edges.push_back(angle_at(1.0 * i / polar, phase.mean_cosine()));
     RandomStream random(++seed, 81, 0);
     for (int i = 0; i < samples; ++i) {
       const Vec3 d = phase.sample(axis, random);
@@ -85,8 +86,16 @@ TEST_CASE("scattered directions follow the phase function in angle and azimuth")
   }
 }
 
+TEST_CASE("two terms of which one has no share, or that are equal, are henyey_greenstein") {
+  const HgPhase hg{0.6};
+  for (const TwoTermPhase& phase : {TwoTermPhase{{0.6}, {-0.3}, 1}, TwoTermPhase{{0.2}, {0.6}, 0},
+                                    TwoTermPhase{{0.6}, {0.6}, 0.4}})
+    for (const double cosine : {-1.0, -0.3, 0.2, 0.95, 1.0})
+      CHECK(phase.density(cosine) == doctest::Approx(hg.density(cosine)).epsilon(1e-14));
+}
+
 TEST_CASE("directions stay of length 1 over long walks, also about the poles of the frame") {
-  const SpacePhaseFunction phase{Kind::henyey_greenstein, 0.999};
+  const SpacePhaseFunction phase{HgPhase{0.999}};
   for (Vec3 d : axes) {
     RandomStream random(1, 82, 0);
     for (int i = 0; i < 20000; ++i) d = phase.sample(d, random);

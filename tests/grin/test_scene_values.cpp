@@ -309,8 +309,9 @@ TEST_CASE("pictures that cannot be are refused by their keys") {
   refused([](auto& v) { v.stage.index_around = 1.3; }, "index_around = 1.3: is a key of a body");
   refused([](auto& v) { v.stage.body_medium.mu_s = 1; }, "body_mu_s = 1: is a key of a body");
   refused([](auto& v) { v.stage.medium.mu_s = -1; }, "mu_s = -1: must not be negative");
-  refused([](auto& v) { v.stage.medium.g = 0.5; }, "g = 0.5: is a key of henyey_greenstein only");
-  refused([](auto& v) { v.stage.medium = {.phase = "rayleigh"}; }, "phase = rayleigh: is a key of");
+  refused([](RenderValues& v) { v.stage.medium.of<HgPhase>().g = 0.5; },
+          "g = 0.5: is a key of henyey_greenstein");
+  refused([](auto& v) { v.stage.medium.phase = "rayleigh"; }, "phase = rayleigh: is a key of");
   refused(
       [](auto& v) {
         v.stage.medium.mu_s = 1e7;
