@@ -28,8 +28,10 @@ AngleTable::AngleTable(const std::string& key, const std::string& path) {
     refuse("column angle must rise");
   if (*std::min_element(values_.begin(), values_.end()) < 0)
     refuse("column value must not be negative");
-  if (*std::max_element(values_.begin(), values_.end()) == 0)
-    refuse("column value must not be 0 everywhere");
+  const double largest = *std::max_element(values_.begin(), values_.end());
+  if (largest == 0) refuse("column value must not be 0 everywhere");
+  if (!(largest > 1e-100 && largest < 1e100))
+    refuse("the largest of column value must be from 1e-100 to 1e100");
   angles_.front() = 0;
   angles_.back() = std::numbers::pi;
 }

@@ -7,12 +7,14 @@
 #include "grin/media/hg_phase.h"
 #include "grin/media/isotropic_phase.h"
 #include "grin/media/rayleigh_phase.h"
+#include "grin/media/table_phase.h"
 #include "grin/media/two_term_phase.h"
 
 namespace flatspeckle::grin {
 
 /// All phase functions in space (space_phase.h); the one list of them.
-using SpacePhaseKinds = std::tuple<IsotropicPhase, HgPhase, RayleighPhase, TwoTermPhaseValues>;
+using SpacePhaseKinds =
+    std::tuple<IsotropicPhase, HgPhase, RayleighPhase, TwoTermPhaseValues, TablePhaseValues>;
 
 template <class Kinds>
 struct PhasesOf;
