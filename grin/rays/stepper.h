@@ -101,6 +101,8 @@ struct ControlledSteps {
     Integrator::step(field, whole, h);
     restore_index(field, whole);
     step(field, h, halves);
+    // restored to an index below 0 a ray would turn round
+    if (!(halves.v.dot(ray.v) > 0)) return std::numeric_limits<double>::quiet_NaN();
     const double rounding = 4 * std::numeric_limits<double>::epsilon() * halves.x.norm();
     const double length = ray.v.norm() * h;
     if (!(length > rounding)) return std::numeric_limits<double>::quiet_NaN();

@@ -180,7 +180,7 @@ TEST_CASE("rays of values: the focus of a Luneburg ball") {
     CHECK(ray.status == RayStatus::surface);
     CHECK(ray.path.size() == 7);
   }
-  CHECK(describe(scene.steps) == "sharma, tolerance 1e-10, steps up to 1");
+  CHECK(describe(scene.steps) == "sharma, tolerance 1e-10, steps up to 0.3125");
 }
 
 TEST_CASE("every light of rays, and every integrator") {
