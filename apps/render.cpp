@@ -25,8 +25,10 @@ void note_losses(const grin::TransportCounts& counts) {
 }
 
 /// A dark picture is more often a mistake than a result.
-void note_darkness(const grin::Stage& stage) {
-  std::fputs("note: no light came to the sensor\n", stderr);
+void note_darkness(const grin::Stage& stage, std::size_t sensors) {
+  std::fputs(
+      sensors > 1 ? "note: no light came to a sensor\n" : "note: no light came to the sensor\n",
+      stderr);
   if (stage.body)
     std::fputs(
         "note: points are not joined across the surface of a body: a pinhole does not see a point "
@@ -40,23 +42,32 @@ void print_row(const char* name, const Estimate& estimate, std::size_t entry,
               estimate.error[entry], units.c_str());
 }
 
-/// Total, mean, brightest pixel, and what the search for curves cost.
-void print_render(const grin::RenderScene& scene, const grin::RenderJob& job,
-                  const grin::RenderResult& result) {
-  const std::string& units = row_of(grin::table_of(scene.sensor), "image").unit;
+/// Total, mean and brightest pixel. Returns whether there is light.
+bool print_sensor(const grin::Sensor& sensor, const grin::SensorResult& result) {
+  const std::string& units = row_of(grin::table_of(sensor), "image").unit;
   const auto& image = result.picture.steady;
   const auto brightest =
       std::max_element(image.value.begin(), image.value.end(),
                        [](const Complex& a, const Complex& b) { return a.real() < b.real(); });
-  std::printf("%-16s %-13s %-10s\n", "", "value", "error");
   if (result.total) print_row("total power", *result.total, 0, "");
   print_row("mean of pixels", result.mean, 0, units);
   print_row("brightest pixel", image, static_cast<std::size_t>(brightest - image.value.begin()),
             units);
-  if (brightest->real() > 0)
-    std::printf("pixels: relative error %.2g %%\n", 100 * relative_error(image));
-  else
-    note_darkness(scene.stage);
+  const bool is_lit = brightest->real() > 0;
+  if (is_lit) std::printf("pixels: relative error %.2g %%\n", 100 * relative_error(image));
+  return is_lit;
+}
+
+/// What each sensor has found, and what the search for curves cost.
+void print_render(const grin::RenderScene& scene, const grin::RenderJob& job,
+                  const grin::RenderResult& result) {
+  bool is_lit = true;
+  for (std::size_t i = 0; i < result.size(); ++i) {
+    const std::string name = result.size() > 1 ? sensor_name(scene, i) : "";
+    std::printf("%-16s %-13s %-10s\n", name.c_str(), "value", "error");
+    is_lit &= print_sensor(scene.sensors[i], result[i]);
+  }
+  if (!is_lit) note_darkness(scene.stage, result.size());
   if (job.counts) note_losses(*job.counts);
   if (!grin::has_trials(job)) return;
   const auto& curves = job.counts->connections;

@@ -24,8 +24,8 @@ std::shared_ptr<Transport> transport_in(const RenderScene& scene) {
   auto transport =
       std::make_shared<Transport>(Transport{.stage = scene.stage,
                                             .lights = Lights(scene.lights, scene.stage, index),
-                                            .sensor = SensorEnd(scene.sensor, scene.stage)});
-  transport->join_level = 1e-3;
+                                            .sensors = sensor_ends(scene.sensors, scene.stage)});
+  transport->join_levels = {1e-3};
   return transport;
 }
 
@@ -51,7 +51,7 @@ Estimator steady(std::size_t pixels) {
 
 SampledKernel kernel_of(const RenderPlan& plan, const RenderScene& scene) {
   const auto transport = transport_in(scene);
-  const int pixels = transport->sensor.pixels().count();
+  const int pixels = transport->pixels();
   const TimeBins bins = plan.timed ? TimeBins{0, 20, 50} : TimeBins{};
   const auto run = [=, paths = path_kernel(plan, transport, scene)](std::uint64_t number,
                                                                     std::span<Complex> sums) {
@@ -82,7 +82,7 @@ PlanCase flag(const std::string& left_out, const std::string& name, const Render
 
 std::vector<PlanCase> render_plan_cases() {
   RenderScene fog = foggy_ball();
-  fog.sensor = AreaDetector{{0, 0, 3}, {0, 1, 0}, 6, 6, {4, 4}, 1.5};
+  fog.sensors = {AreaDetector{{0, 0, 3}, {0, 1, 0}, 6, 6, {4, 4}, 1.5}};
   RenderScene clear = fog, alone = fog;
   clear.stage.medium = clear.stage.body->medium = {};
   clear.lights = {FaceLight{.radius = INFINITY}};  // what a beam sheds unscattered is summed apart

@@ -36,7 +36,7 @@ RenderScene ball_under_beam() {
   scene.stage.boundary = Box{{-3, -3, -3}, {3, 3, 3}};
   scene.stage.body = Body{Sphere{}, fog(0.5, 0, 0.5)};
   scene.lights = {BeamLight{{0, 0, -3}, {0, 0, 1}, 0.8}};
-  scene.sensor = side_camera();
+  scene.sensors = {side_camera()};
   return scene;
 }
 
@@ -49,7 +49,7 @@ RenderScene waveguide() {
   scene.stage.boundary = Box{{-15, -15, 0}, {15, 15, 30}};
   scene.stage.medium = fog(0.1, 0, 0.85);
   scene.lights = {BeamLight{{0, 0, 0}, {0, 0, 1}, 0.5}};
-  scene.sensor = AreaDetector{{0, 0, 30}, {0, 1, 0}, 6, 6, {24, 24}, 0.1};
+  scene.sensors = {AreaDetector{{0, 0, 30}, {0, 1, 0}, 6, 6, {24, 24}, 0.1}};
   return scene;
 }
 
@@ -86,7 +86,7 @@ RenderScene luneburg() {
   camera.up = {1, 0, 0};
   camera.field_of_view = 2.52;
   camera.pixels = {48, 36};
-  scene.sensor = camera;
+  scene.sensors = {camera};
   return scene;
 }
 
@@ -97,14 +97,14 @@ AreaDetector detector(const Vec3& centre, double size) {
 RenderScene luneburg_lamp() {
   RenderScene scene = filled_ball();
   scene.lights = {FaceLight{{0, 0, -1}, 0.6}};
-  scene.sensor = detector({0, 0, 1}, 1);
+  scene.sensors = {detector({0, 0, 1}, 1)};
   return scene;
 }
 
 RenderScene waveguide_lamp() {
   RenderScene scene = waveguide();
   scene.lights = {FaceLight{{0, 0, 0}, 10}};
-  scene.sensor = detector({0, 0, 30}, 16);
+  scene.sensors = {detector({0, 0, 30}, 16)};
   return scene;
 }
 
@@ -116,7 +116,7 @@ RenderScene slab_lamp() {
   scene.stage.boundary = Box{{-20, -20, 0}, {20, 20, 10}};
   scene.stage.medium = fog(0.5, 0.01, 0.8);
   scene.lights = {FaceLight{{0, 0, 0}, 5}};
-  scene.sensor = detector({0, 0, 10}, 20);
+  scene.sensors = {detector({0, 0, 10}, 20)};
   return scene;
 }
 
@@ -129,7 +129,7 @@ RenderScene glass_ball_lamp() {
   scene.stage.medium = fog(0.05, 0, 0.5);
   scene.stage.body = Body{Sphere{{0, 0, -2}, 4}};
   scene.lights = {FaceLight{{0, 0, -10}, 6}};
-  scene.sensor = detector({0, 0, 10}, 10);
+  scene.sensors = {detector({0, 0, 10}, 10)};
   return scene;
 }
 
@@ -140,7 +140,7 @@ RenderScene luneburg_wide_beam() {
   camera.x = {-0.95, 0, 0};
   camera.field_of_view = 1.2;
   camera.lens_radius = 0;
-  scene.sensor = camera;
+  scene.sensors = {camera};
   return scene;
 }
 
@@ -169,7 +169,7 @@ RenderScene even_luneburg() {
 RenderScene beam_on_glass_ball() {
   RenderScene scene = glass_ball_lamp();
   scene.lights = {BeamLight{{0, 0, -10}, {0, 0, 1}, 2}};
-  scene.sensor = detector({10, 0, 0}, 10);
+  scene.sensors = {detector({10, 0, 0}, 10)};
   return scene;
 }
 

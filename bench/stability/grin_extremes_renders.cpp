@@ -35,7 +35,7 @@ Finding furnace(RenderScene scene, std::uint64_t samples) {
   const double expected = pi * mean_square_index(scene);
   const Picture face = rendered(scene, RenderMethod::bidirectional, samples);
   Finding worst = in_errors(face.pixels.value[0], face.pixels.error[0], expected, 0.1);
-  scene.sensor = Camera{Vec3(0.2, -0.1, -0.8), Vec3::UnitZ(), Vec3::UnitY(), 1.2, {1, 1}};
+  scene.sensors = {Camera{Vec3(0.2, -0.1, -0.8), Vec3::UnitZ(), Vec3::UnitY(), 1.2, {1, 1}}};
   const Picture inside = rendered(scene, RenderMethod::path, samples);
   // paths that absorb nothing bring back exactly what they find: the error may be 0
   const double error = std::max(inside.pixels.error[0], 1e-12);
@@ -57,8 +57,8 @@ RenderScene slab(const ScatteringMedium& medium, double thickness, bool reflecte
   scene.stage.boundary = Box{Vec3(-half, -half, 0), Vec3(half, half, thickness)};
   scene.stage.medium = medium;
   scene.lights = {BeamLight{{0, 0, 0}, {0, 0, 1}, thickness / 100}};
-  scene.sensor =
-      AreaDetector{{0, 0, reflected ? 0 : thickness}, {0, 1, 0}, 2 * half, 2 * half, {}, pi / 2};
+  scene.sensors = {
+      AreaDetector{{0, 0, reflected ? 0 : thickness}, {0, 1, 0}, 2 * half, 2 * half, {}, pi / 2}};
   return scene;
 }
 
@@ -67,7 +67,7 @@ Estimate share(const ScatteringMedium& medium, double thickness, bool reflected,
                RenderMethod method, std::uint64_t samples) {
   const RenderScene scene = slab(medium, thickness, reflected);
   Estimate found = rendered(scene, method, samples).pixels;
-  const auto& detector = std::get<AreaDetector>(scene.sensor);
+  const auto& detector = std::get<AreaDetector>(scene.sensors[0]);
   const double area = detector.width * detector.height;
   found.value[0] *= area;
   found.error[0] *= area;

@@ -221,6 +221,7 @@ std::string Key::help() const {
 std::string Key::accepted() const {
   if (!words_.empty()) return "must be one of " + joined(words_, " ");
   if (exactly_ > 0) return "must be " + shape_;
+  if (each_ > 0) return "must be " + std::to_string(each_) + " numbers for each: " + shape_;
   return is_number() ? range() : "must be a text";
 }
 
@@ -279,9 +280,7 @@ void Key::check() const {
   if (file_ && !std::filesystem::exists(shown())) throw InputError(name_, shown(), "no such file");
   const auto numbers = std::visit(Numbers{}, member_);
   if (exactly_ > 0 && numbers.size() != exactly_) throw InputError(name_, shown(), accepted());
-  if (each_ > 0 && numbers.size() % each_ != 0)
-    throw InputError(name_, shown(),
-                     "must be " + std::to_string(each_) + " numbers for each: " + shape_);
+  if (each_ > 0 && numbers.size() % each_ != 0) throw InputError(name_, shown(), accepted());
   const auto texts = value();
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     const double number = numbers[i];

@@ -16,8 +16,8 @@ std::string type_name(Data data);
 bool has_error(Data data);
 
 /// All there is to say of a dataset but its values. Axes are the names of scales, with a space
-/// between two; a name with a slash is that of a scale in the dataset's own group, others lie in
-/// the root. Unit "1" says that the values are numbers; none, that they have several units.
+/// between two: of those in the dataset's own group, where the file has them there, or the root.
+/// Unit "1" says that the values are numbers; none, that they have several units.
 ///
 /// A word in capitals, as an axis or a unit, is a role: what it stands for depends on the scene and
 /// is said by ResultFile::bind.

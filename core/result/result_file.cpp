@@ -328,6 +328,10 @@ void ResultFile::group(const std::string& name) {
   Writer(file_.get(), path_.string(), name).group();
 }
 
+bool ResultFile::has(const std::string& name) const {
+  return exists(file_->get(), name);
+}
+
 const std::vector<Axis>& ResultFile::bound(const std::string& role) const {
   const auto found = roles_.find(role);
   if (found == roles_.end()) throw std::logic_error(role + ": stands for nothing here");

@@ -48,6 +48,8 @@ class ResultFile {
   ~ResultFile();
 
   void group(const std::string& name);
+  /// Whether there is such a group or dataset.
+  bool has(const std::string& name) const;
 
   /// What a role (core/result/dataset_row.h) stands for from here on: axes, or one unit.
   void bind(const std::string& role, const std::vector<Axis>& names) { roles_[role] = names; }

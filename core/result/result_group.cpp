@@ -105,7 +105,7 @@ std::vector<Axis> ResultGroup::axes(const DatasetRow& row) const {
       const auto& bound = file_.bound(word);
       axes.insert(axes.end(), bound.begin(), bound.end());
     } else {
-      axes.emplace_back(word.find('/') == word.npos ? word : prefix_ + word);
+      axes.emplace_back(file_.has(prefix_ + word) ? prefix_ + word : word);
     }
   }
   return axes;

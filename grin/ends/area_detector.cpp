@@ -149,10 +149,10 @@ EndDirection AreaDetectorEnd::towards(const EndPosition& at, const Vec3& directi
 }
 
 void add_keys(Keys& keys, AreaValues& values) {
-  add_vector(keys, "sensor_at", values.sensor_at, "The middle of the area, on the boundary")
+  add_vectors(keys, "sensor_at", values.sensor_at, "The middle of the area, on the boundary")
       .unit("length");
   keys.add("sensor_size", values.sensor_size, "Width and height")
-      .exactly(2, "two numbers: width height")
+      .each_of(2, "width height")
       .positive()
       .unit("length");
   keys.add("acceptance", values.acceptance, "Half angle about the normal")
@@ -160,14 +160,10 @@ void add_keys(Keys& keys, AreaValues& values) {
       .unit("rad");
 }
 
-AreaDetector make_sensor(const Keys& keys, const AreaValues& values, const Picture& picture) {
-  const auto& size = keys.required(values.sensor_size);
-  return {vector_of(keys.required(values.sensor_at)),
-          picture.up,
-          size[0],
-          size[1],
-          picture.pixels,
-          keys.read(values.acceptance)};
+AreaDetector make_sensor(const OneSensor& of, const AreaValues& values, const Picture& picture) {
+  const auto size = of.part(values.sensor_size, 2);
+  return {of.vector(values.sensor_at), picture.up, size[0], size[1], picture.pixels,
+          of.number(values.acceptance)};
 }
 
 }  // namespace flatspeckle::grin

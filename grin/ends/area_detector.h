@@ -64,10 +64,10 @@ struct AreaValues {
   using Sensor = AreaDetector;
   static constexpr const char* word = "area";
   std::vector<double> sensor_at{}, sensor_size{};
-  double acceptance = std::numbers::pi / 2;
+  std::vector<double> acceptance{std::numbers::pi / 2};
 };
 
 void add_keys(Keys& keys, AreaValues& values);
-AreaDetector make_sensor(const Keys& keys, const AreaValues& values, const Picture& picture);
+AreaDetector make_sensor(const OneSensor& of, const AreaValues& values, const Picture& picture);
 
 }  // namespace flatspeckle::grin

@@ -91,15 +91,15 @@ EndDirection CameraEnd::towards(const EndPosition& at, const Vec3& direction) co
 }
 
 void add_keys(Keys& keys, CameraValues& values) {
-  add_vector(keys, "sensor_at", values.sensor_at, "The camera's eye, or the middle of its lens")
+  add_vectors(keys, "sensor_at", values.sensor_at, "The camera's eye, or the middle of its lens")
       .unit("length");
-  add_vector(keys, "sensor_direction", values.sensor_direction, "Where the camera looks");
+  add_vectors(keys, "sensor_direction", values.sensor_direction, "Where the camera looks");
   keys.add("field_of_view", values.field_of_view, "Full angle of a row")
       .between(0, std::numbers::pi)
       .unit("rad");
   keys.add("lens_radius", values.lens_radius,
-           "Of a thin lens on the stage's boundary (default: pinhole)")
-      .positive()
+           "Of a thin lens on the stage's boundary (default 0: pinhole)")
+      .not_negative()
       .unit("length");
   keys.add("focus_distance", values.focus_distance, "Of the lens")
       .positive()
@@ -107,14 +107,12 @@ void add_keys(Keys& keys, CameraValues& values) {
       .only_of("a camera with lens_radius");
 }
 
-Camera make_sensor(const Keys& keys, const CameraValues& values, const Picture& picture) {
-  Camera camera{vector_of(keys.required(values.sensor_at)),
-                vector_of(keys.read(values.sensor_direction)), picture.up,
-                keys.required(values.field_of_view), picture.pixels};
-  if (const auto& radius = keys.read(values.lens_radius)) {
-    camera.lens_radius = *radius;
-    camera.focus_distance = keys.required(values.focus_distance);
-  }
+Camera make_sensor(const OneSensor& of, const CameraValues& values, const Picture& picture) {
+  Camera camera{of.vector(values.sensor_at), of.vector(values.sensor_direction), picture.up,
+                of.number(values.field_of_view), picture.pixels};
+  if (values.lens_radius.empty() || of.number(values.lens_radius) == 0) return camera;
+  camera.lens_radius = positive("lens_radius", of.number(values.lens_radius));
+  camera.focus_distance = of.number(values.focus_distance);
   return camera;
 }
 

@@ -61,10 +61,10 @@ struct CameraValues {
   using Sensor = Camera;
   static constexpr const char* word = "camera";
   std::vector<double> sensor_at{}, sensor_direction{0, 0, 1};
-  std::optional<double> field_of_view = {}, lens_radius = {}, focus_distance = {};
+  std::vector<double> field_of_view{}, lens_radius{}, focus_distance{};
 };
 
 void add_keys(Keys& keys, CameraValues& values);
-Camera make_sensor(const Keys& keys, const CameraValues& values, const Picture& picture);
+Camera make_sensor(const OneSensor& of, const CameraValues& values, const Picture& picture);
 
 }  // namespace flatspeckle::grin

@@ -72,15 +72,15 @@ EndDirection DirectionalEnd::towards(const EndPosition& at, const Vec3& directio
 }
 
 void add_keys(Keys& keys, DirectionalValues& values) {
-  add_vector(keys, "sensor_direction", values.sensor_direction, "Middle of the directions");
+  add_vectors(keys, "sensor_direction", values.sensor_direction, "Middle of the directions");
   keys.add("half_angle", values.half_angle, "Angle of the middle of a side")
       .positive_to(std::numbers::pi / 2)
       .unit("rad");
 }
 
-DirectionalDetector make_sensor(const Keys& keys, const DirectionalValues& values,
+DirectionalDetector make_sensor(const OneSensor& of, const DirectionalValues& values,
                                 const Picture& picture) {
-  return {vector_of(keys.read(values.sensor_direction)), picture.up, keys.read(values.half_angle),
+  return {of.vector(values.sensor_direction), picture.up, of.number(values.half_angle),
           picture.pixels};
 }
 

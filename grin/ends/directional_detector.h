@@ -53,11 +53,11 @@ struct DirectionalValues {
   using Sensor = DirectionalDetector;
   static constexpr const char* word = "directional";
   std::vector<double> sensor_direction{0, 0, 1};
-  double half_angle = std::numbers::pi / 2;
+  std::vector<double> half_angle{std::numbers::pi / 2};
 };
 
 void add_keys(Keys& keys, DirectionalValues& values);
-DirectionalDetector make_sensor(const Keys& keys, const DirectionalValues& values,
+DirectionalDetector make_sensor(const OneSensor& of, const DirectionalValues& values,
                                 const Picture& picture);
 
 }  // namespace flatspeckle::grin

@@ -1,5 +1,7 @@
 #include "grin/ends/sensor.h"
 
+#include <algorithm>
+
 #include "core/keys/kinds.h"
 
 namespace flatspeckle::grin {
@@ -12,15 +14,26 @@ PixelRectangle picture_of(const Sensor& sensor) {
   return std::visit([](const auto& kind) { return picture_of(kind); }, sensor);
 }
 
-SensorEnd::SensorEnd(const Sensor& sensor, const Stage& stage)
+SensorEnd::SensorEnd(const Sensor& sensor, const Stage& stage, int first_pixel)
     : end_(std::visit([&]<class S>(const S& of)
                           -> SensorsOf<SensorKinds>::End { return typename S::End(of, stage); },
-                      sensor)) {}
+                      sensor)),
+      first_pixel_(first_pixel) {}
+
+std::vector<SensorEnd> sensor_ends(const std::vector<Sensor>& sensors, const Stage& stage) {
+  std::vector<SensorEnd> ends;
+  int pixels = 0;
+  for (const Sensor& sensor : sensors) {
+    ends.emplace_back(sensor, stage, pixels);
+    pixels += ends.back().pixels().count();
+  }
+  return ends;
+}
 
 EndDirection SensorEnd::sample_direction(const EndPosition& at, RandomStream& random,
                                          double stratum) const {
-  return std::visit([&](const auto& end) { return end.sample_direction(at, stratum, random); },
-                    end_);
+  return numbered(
+      std::visit([&](const auto& end) { return end.sample_direction(at, stratum, random); }, end_));
 }
 
 double SensorEnd::choice(const EndPosition& at, const Vec3& x) const {
@@ -46,35 +59,59 @@ bool SensorEnd::can_be_hit() const {
 }
 
 EndDirection SensorEnd::towards(const EndPosition& at, const Vec3& direction) const {
-  return std::visit([&](const auto& end) { return end.towards(at, direction); }, end_);
+  return numbered(std::visit([&](const auto& end) { return end.towards(at, direction); }, end_));
 }
 
 void add_keys(Keys& keys, SensorValues& values) {
   keys.group("Sensor");
   keys.add("sensor", values.sensor,
            "Reads L/n^2 (camera), irradiance on the boundary (area), or power per solid angle that "
-           "leaves the stage (directional)")
+           "leaves the stage (directional); or several, and the keys of sensors have one value for "
+           "all or one for each")
       .one_of(kind_words(values.kinds));
-  add_vector(keys, "sensor_up", values.sensor_up, "Upwards in the picture");
-  keys.add("pixels", values.pixels, "Columns and rows")
-      .exactly(2, "two numbers: columns rows")
-      .from(1, 16384);
+  keys.add("sensor_name", values.sensor_name, "Of each: its results are in the group sensors/NAME")
+      .only_of("several sensors");
+  add_vectors(keys, "sensor_up", values.sensor_up, "Upwards in the picture");
+  keys.add("pixels", values.pixels, "Columns and rows").each_of(2, "columns rows").from(1, 16384);
   each_kind(values.kinds, [&](auto& kind) {
     keys.group(std::string("Sensor: ") + kind.word, kind.word);
     add_keys(keys, kind);
   });
 }
 
-Sensor make_sensor(const Keys& keys, const SensorValues& values) {
-  const auto& pixels = keys.read(values.pixels);
-  const Picture picture{vector_of(keys.read(values.sensor_up)),
-                        {static_cast<int>(pixels[0]), static_cast<int>(pixels[1])}};
-  Sensor sensor;
-  const auto make = [&](const auto& kind) {
-    if (keys.read(values.sensor) == kind.word) sensor = make_sensor(keys, kind, picture);
+std::vector<Sensor> make_sensors(const Keys& keys, const SensorValues& values) {
+  const auto& words = keys.required(values.sensor);
+  std::vector<Sensor> sensors;
+  for (const std::string& word : words) {
+    const OneSensor of(keys, sensors.size(), words.size());
+    const auto pixels = of.part(values.pixels, 2);
+    const Picture picture{of.vector(values.sensor_up),
+                          {static_cast<int>(pixels[0]), static_cast<int>(pixels[1])}};
+    with_kind(values.kinds, word,
+              [&](const auto& kind) { sensors.emplace_back(make_sensor(of, kind, picture)); });
+  }
+  return sensors;
+}
+
+std::vector<std::string> make_sensor_names(const Keys& keys, const SensorValues& values) {
+  std::vector<std::string> names;
+  if (values.sensor.size() == 1) return names;
+  const auto refuse = [](const std::string& name, const char* accepted) {
+    throw InputError("sensor_name", name, accepted);
   };
-  std::apply([&](const auto&... kind) { (make(kind), ...); }, values.kinds);
-  return sensor;
+  for (const std::string& name : keys.read(values.sensor_name)) {
+    if (name.find_first_not_of(
+            "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-") != name.npos ||
+        name.empty())
+      refuse(name, "must be of letters, figures, _ and -");
+    if (std::find(names.begin(), names.end(), name) != names.end())
+      refuse(name, "must not be there twice");
+    names.push_back(name);
+  }
+  if (names.empty())
+    for (std::size_t i = 1; i <= values.sensor.size(); ++i) names.push_back(std::to_string(i));
+  if (names.size() != values.sensor.size()) refuse(names.back(), "must be one for each sensor");
+  return names;
 }
 
 }  // namespace flatspeckle::grin

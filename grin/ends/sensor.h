@@ -24,9 +24,10 @@ struct SensorsOf<std::tuple<Kind...>> {
 };
 using Sensor = SensorsOf<SensorKinds>::Sensor;
 
-/// A sensor as keys have it: the word of its kind, and what each kind needs.
+/// The sensors of a scene as keys have them: the words of their kinds, and what each kind needs.
 struct SensorValues {
-  std::string sensor = CameraValues::word;
+  std::vector<std::string> sensor{CameraValues::word};
+  std::vector<std::string> sensor_name{};  ///< none: "1", "2", ...
   std::vector<double> sensor_up{0, 1, 0};
   std::vector<std::int64_t> pixels{64, 64};
   SensorKinds kinds{};
@@ -38,15 +39,17 @@ struct SensorValues {
 };
 
 void add_keys(Keys& keys, SensorValues& values);
-/// Throws InputError.
-Sensor make_sensor(const Keys& keys, const SensorValues& values);
+/// Both throw InputError.
+std::vector<Sensor> make_sensors(const Keys& keys, const SensorValues& values);
+std::vector<std::string> make_sensor_names(const Keys& keys, const SensorValues& values);
 
 /// What the file of a sensor has.
 const DatasetTable& table_of(const Sensor& sensor);
 /// Its pixels.
 PixelRectangle picture_of(const Sensor& sensor);
 
-/// The sensor of a scene as an end of paths; same interface as Lights.
+/// A sensor of a scene as an end of paths; same interface as Lights. Its pixels are numbered from
+/// first_pixel on.
 ///
 /// `stratum`, the same number in (0, 1) for the position and the direction, picks the pixel: evenly
 /// spread numbers share the paths of a batch evenly among the pixels. Densities are those of a
@@ -55,7 +58,7 @@ class SensorEnd {
  public:
   /// Throws InputError naming the key for a sensor outside the stage or inside the body, or one
   /// that does not fit on the boundary.
-  SensorEnd(const Sensor& sensor, const Stage& stage);
+  SensorEnd(const Sensor& sensor, const Stage& stage, int first_pixel = 0);
 
   PixelGrid pixels() const {
     return std::visit([](const auto& end) { return end.pixels(); }, end_);
@@ -107,7 +110,16 @@ class SensorEnd {
   }
 
  private:
+  EndDirection numbered(EndDirection to) const {
+    if (to.pixel >= 0) to.pixel += first_pixel_;
+    return to;
+  }
+
   SensorsOf<SensorKinds>::End end_;
+  int first_pixel_;
 };
+
+/// All sensors of a scene, their pixels numbered through. Throws as SensorEnd does.
+std::vector<SensorEnd> sensor_ends(const std::vector<Sensor>& sensors, const Stage& stage);
 
 }  // namespace flatspeckle::grin

@@ -11,40 +11,56 @@ namespace flatspeckle::grin {
 /// weighs the strategies that it is allowed. A light path is walked and joined to the sensor from
 /// each of its vertices; a sensor's path is walked and joined, from each vertex, to the lights and
 /// to one of the vertices of the light path, drawn by what it promises. What a join promises is
-/// what the straight line would give; joins that promise little are left to chance.
+/// what the straight line would give; joins that promise little are left to chance. One light path
+/// serves all sensors, each of which has a path of its own.
 template <RenderPlan plan, Space S>
 class Bidirectional {
  public:
   Bidirectional(const Transport& transport, const S& space, RandomStream& random, Film& film,
                 TransportCounts& counts)
-      : transport_(transport), space_(space), random_(random), film_(film), counts_(counts) {}
+      : transport_(transport),
+        space_(space),
+        random_(random),
+        film_(film),
+        counts_(counts),
+        promised_(transport.sensors.size()) {}
 
-  /// What the last pair of paths promised: its joins, made or not, and what it hit.
-  double promised() const { return promised_; }
-
-  /// One light path and one path from the sensor; `stratum` in (0, 1) says through which pixel.
+  /// One light path and one path from each sensor; `stratum` in (0, 1) says through which pixel.
   void add(double stratum) {
-    promised_ = 0;
+    std::fill(promised_.begin(), promised_.end(), 0);
     walk_from_light();
-    walk_from_sensor(stratum);
+    for_each_sensor([&] { walk_from_sensor(stratum); });
+  }
+
+  /// Appends what the last paths promised to each sensor: joins, made or not, and what was hit.
+  void append_promises(std::vector<double>& promises) const {
+    promises.insert(promises.end(), promised_.begin(), promised_.end());
   }
 
  private:
+  template <class Use>
+  void for_each_sensor(const Use& use) {
+    for (at_ = 0; at_ < promised_.size(); ++at_) use();
+  }
+  const SensorEnd& sensor() const { return transport_.sensors[at_]; }
+
   void walk_from_light() {
     vertices_.clear();
     const EndPosition end = transport_.lights.sample_position(space_, random_);
     const PathVertex start = end_vertex(transport_.strategies, end);
-    join_to_sensor(start);
+    for_each_sensor([&] { join_to_sensor(start); });
     const EndDirection first = transport_.lights.sample_direction(end, random_);
     const auto left = [&](const PathVertex& last, const PathVertex& before) {
       if (end.is_beam && last.vertices == 2) return;  // summed apart (unscattered_beams.h)
-      arrive(transport_.sensor, last, before, transport_.strategies.most_sensor(),
-             [&](const EndHit& hit) { return hit.direction.pixel; });
+      for_each_sensor([&] {
+        arrive(sensor(), last, before, transport_.strategies.most_sensor(),
+               [&](const EndHit& hit) { return hit.direction.pixel; });
+      });
     };
     const double last_kept = sample_last_kept();
     const auto collided = [&](const PathVertex& vertex) {
       ++counts_.light_collisions;
-      join_to_sensor(vertex);
+      for_each_sensor([&] { join_to_sensor(vertex); });
       if (vertex.vertices < last_kept) vertices_.offer(vertex, random_);
     };
     walk<plan>(transport_, space_, transport_.lights, start, first,
@@ -52,9 +68,9 @@ class Bidirectional {
   }
 
   void walk_from_sensor(double stratum) {
-    const EndPosition end = transport_.sensor.sample_position(space_, random_, stratum);
+    const EndPosition end = sensor().sample_position(space_, random_, stratum);
     const PathVertex start = end_vertex(transport_.strategies, end);
-    const EndDirection first = transport_.sensor.sample_direction(end, random_, stratum);
+    const EndDirection first = sensor().sample_direction(end, random_, stratum);
     pixel_ = first.pixel;
     const auto left = [&](const PathVertex& last, const PathVertex& before) {
       arrive(transport_.lights, last, before, transport_.strategies.most_light(),
@@ -65,8 +81,8 @@ class Bidirectional {
       join_to_light(vertex);
       if (vertex.vertices < last_kept) join_to_light_path(vertex);
     };
-    walk<plan>(transport_, space_, transport_.sensor, start, first,
-               transport_.strategies.short_sensor, random_, counts_, collided, left);
+    walk<plan>(transport_, space_, sensor(), start, first, transport_.strategies.short_sensor,
+               random_, counts_, collided, left);
   }
 
   /// A number of vertices; those that have fewer are kept for joins to the other path.
@@ -86,13 +102,13 @@ class Bidirectional {
       const double others = rivals_of_hit(
           transport_.strategies, here, hit.position.position_density, hit.direction.density, more);
       const double value = here.weight * hit.value / (1 + others);
-      promised_ += value;
+      promised_[at_] += value;
       add(pixel(hit), value, here.optical_path);
     });
   }
 
   void join_to_sensor(const PathVertex& y) {
-    const EndPosition end = transport_.sensor.choose_position(space_, y.point.x, random_);
+    const EndPosition end = sensor().choose_position(space_, y.point.x, random_);
     const PathVertex z = end_vertex(transport_.strategies, end);
     join_to_end(y, z);
   }
@@ -141,7 +157,7 @@ class Bidirectional {
     const JoiningCurve line{direction, direction, length * length, depth};
     const JoinedPath path =
         joined_path(transport_.strategies, y, facing(transport_.lights, y, direction), z,
-                    facing(transport_.sensor, z, -direction), line);
+                    facing(sensor(), z, -direction), line);
     return path.value * path.weight * std::exp(-depth);
   }
 
@@ -159,14 +175,14 @@ class Bidirectional {
   }
 
   void join(const PathVertex& y, const PathVertex& z, double promised) {
-    promised_ += promised;
-    const double chance = std::min(1.0, promised / transport_.join_level);
+    promised_[at_] += promised;
+    const double chance = std::min(1.0, promised / transport_.join_levels[at_]);
     if (!(chance > 0) || random_.uniform() >= chance) return;
     ++counts_.joins;
     const auto curve = space_.join(y.point, z.point, random_, counts_.connections);
     if (!curve) return;
     const EndDirection from_y = leaving(transport_, transport_.lights, y, curve->start_direction);
-    const EndDirection from_z = leaving(transport_, transport_.sensor, z, -curve->end_direction);
+    const EndDirection from_z = leaving(transport_, sensor(), z, -curve->end_direction);
     const JoiningCurve as_weighed{curve->start_direction, curve->end_direction, curve->spreading,
                                   curve->optical_depth};
     const JoinedPath path = joined_path(transport_.strategies, y, from_y, z, from_z, as_weighed);
@@ -186,8 +202,9 @@ class Bidirectional {
   TransportCounts& counts_;
   LightVertices vertices_;  ///< that are kept for joins
   std::array<double, LightVertices::capacity> of_each_{};
-  int pixel_ = -1;  ///< of the sensor's path
-  double promised_ = 0;
+  std::vector<double> promised_;  ///< to each sensor
+  std::size_t at_ = 0;            ///< the sensor at hand
+  int pixel_ = -1;                ///< of its path
 };
 
 }  // namespace flatspeckle::grin

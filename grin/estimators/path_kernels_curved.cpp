@@ -16,7 +16,7 @@ PathKernel kernel_of(std::shared_ptr<const Transport> transport,
       Bidirectional<plan, CurvedSpace> estimator(*transport, met, random, film, counts);
       for (int path = first; path < last; ++path) {
         estimator.add(stratum(path, paths, random));
-        if (promises) promises->push_back(estimator.promised());
+        if (promises) estimator.append_promises(*promises);
       }
     };
     if (!random_phase) return add(*space, 0, paths);

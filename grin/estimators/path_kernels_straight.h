@@ -25,7 +25,7 @@ PathKernel straight_kernel_of(std::shared_ptr<const Transport> transport, double
     Bidirectional<plan, StraightSpace<plan>> estimator(*transport, *space, random, film, counts);
     for (int path = 0; path < paths; ++path) {
       estimator.add(stratum(path, paths, random));
-      if (promises) promises->push_back(estimator.promised());
+      if (promises) estimator.append_promises(*promises);
     }
   };
 }

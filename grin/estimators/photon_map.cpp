@@ -62,8 +62,9 @@ class PhotonMap {
   void add(int paths) {
     std::vector<GatherPoint> points;
     const double per_pair = 1 / (paths * 4.0 / 3.0 * std::numbers::pi * std::pow(radius_, 3));
-    for (int path = 0; path < paths; ++path)
-      look((path + random_.uniform()) / paths, per_pair, points);
+    for (const SensorEnd& sensor : transport_.sensors)
+      for (int path = 0; path < paths; ++path)
+        look(sensor, (path + random_.uniform()) / paths, per_pair, points);
     const GatherGrid grid(std::move(points), radius_);
     for (int path = 0; path < paths; ++path) light(grid);
   }
@@ -81,9 +82,10 @@ class PhotonMap {
     return medium.mu_t() * (medium.density ? (*medium.density)(p.x) : 1);
   }
 
-  void look(double stratum, double per_pair, std::vector<GatherPoint>& points) {
-    const EndPosition end = transport_.sensor.sample_position(space_, random_, stratum);
-    const EndDirection first = transport_.sensor.sample_direction(end, random_, stratum);
+  void look(const SensorEnd& sensor, double stratum, double per_pair,
+            std::vector<GatherPoint>& points) {
+    const EndPosition end = sensor.sample_position(space_, random_, stratum);
+    const EndDirection first = sensor.sample_direction(end, random_, stratum);
     if (!(first.strength > 0)) return;
     const Flight flight = fly(end.point, first.direction);
     const double weight = first.strength / (end.position_density * first.density) * flight.weight;
@@ -101,7 +103,8 @@ class PhotonMap {
 
   void light(const GatherGrid& grid) {
     const EndPosition end = transport_.lights.sample_position(space_, random_);
-    if (end.is_point) join_to_pinhole(end);
+    if (end.is_point)
+      for (const SensorEnd& sensor : transport_.sensors) join_to_pinhole(end, sensor);
     const EndDirection first = transport_.lights.sample_direction(end, random_);
     if (!(first.strength > 0)) return;
     double power = first.strength / (end.position_density * first.density), optical_path = 0;
@@ -136,19 +139,20 @@ class PhotonMap {
   }
 
   void arrive(const Flight& flight, double power) {
-    transport_.sensor.hit(space_, flight.point.x, flight.direction, [&](const EndHit& hit) {
-      add(hit.direction.pixel, power * hit.value, flight.optical_path);
-    });
+    for (const SensorEnd& sensor : transport_.sensors)
+      sensor.hit(space_, flight.point.x, flight.direction, [&](const EndHit& hit) {
+        add(hit.direction.pixel, power * hit.value, flight.optical_path);
+      });
   }
 
-  void join_to_pinhole(const EndPosition& y) {
-    const EndPosition z = transport_.sensor.sample_position(space_, random_);
+  void join_to_pinhole(const EndPosition& y, const SensorEnd& sensor) {
+    const EndPosition z = sensor.sample_position(space_, random_);
     if (!z.is_point || y.point.part != z.point.part) return;
     ++counts_.joins;
     const auto curve = space_.join(y.point, z.point, random_, counts_.connections);
     if (!curve) return;
     const EndDirection from_y = transport_.lights.towards(y, curve->start_direction);
-    const EndDirection from_z = transport_.sensor.towards(z, -curve->end_direction);
+    const EndDirection from_z = sensor.towards(z, -curve->end_direction);
     const double n = z.index;
     add(from_z.pixel,
         from_y.strength / y.position_density * from_z.strength / z.position_density *

@@ -21,14 +21,35 @@ const DatasetTable render_table{
 
 namespace {
 
+/// The pixels of one sensor among all.
+struct Pixels {
+  std::size_t first, count;
+};
+
 /// Mean over the pixels of each bin, times `factor`; one bin is all.
-Estimate pixel_mean(const GroupedSums& sums, int pixels, int bins, double factor) {
+Estimate pixel_mean(const GroupedSums& sums, const Pixels& pixels, std::size_t per_pixel,
+                    std::size_t bins, double factor) {
   return jackknife(sums, [=](double samples, std::span<const Complex> all) {
     std::vector<Complex> means(bins);
-    for (std::size_t i = 0; i < all.size(); ++i) means[i % bins] += all[i];
-    for (Complex& mean : means) mean *= factor / (samples * pixels);
+    const auto own = all.subspan(pixels.first * per_pixel, pixels.count * per_pixel);
+    for (std::size_t i = 0; i < own.size(); ++i) means[i % bins] += own[i];
+    for (Complex& mean : means) mean *= factor / (samples * static_cast<double>(pixels.count));
     return means;
   });
+}
+
+SensorResult sensor_result(const Sensor& sensor, const Pixels& pixels, std::size_t bins,
+                           const RenderedPicture& all, const GroupedSums& sums) {
+  const double area = picture_of(sensor).area();
+  const bool is_area = std::holds_alternative<AreaDetector>(sensor);
+  SensorResult result{{part(all.bins, pixels.first * bins, pixels.count * bins),
+                       part(all.steady, pixels.first, pixels.count)},
+                      pixel_mean(sums, pixels, bins, 1, 1),
+                      {},
+                      {}};
+  if (is_area) result.total = pixel_mean(sums, pixels, bins, 1, area);
+  if (bins > 1) result.pulse = pixel_mean(sums, pixels, bins, bins, is_area ? area : 1);
+  return result;
 }
 
 void write_bins(const ResultGroup& root, const TimeBins& bins,
@@ -39,6 +60,18 @@ void write_bins(const ResultGroup& root, const TimeBins& bins,
   root.put("optical_path", paths);
   if (length_unit)
     root.put("time", column(paths, [&](double path) { return path * *length_unit / light_speed; }));
+}
+
+void write_sensor(const ResultGroup& group, const PixelRectangle& pixels,
+                  const SensorResult& result) {
+  group.put("row", pixels.row_centres());
+  group.put("column", pixels.column_centres());
+  group.put("image", result.picture.steady);
+  group.put("mean", result.mean);
+  if (result.total) group.put("total", *result.total);
+  if (result.pulse.value.empty()) return;
+  group.put("transient", result.picture.bins);
+  group.put("pulse", result.pulse);
 }
 
 void write_counts(ResultFile& file, const RenderJob& job) {
@@ -57,30 +90,27 @@ void write_counts(ResultFile& file, const RenderJob& job) {
 
 RenderResult render_result(const RenderScene& scene, const RenderJob& job,
                            const GroupedSums& sums) {
-  const double area = picture_of(scene.sensor).area();
-  const bool is_area = std::holds_alternative<AreaDetector>(scene.sensor);
-  const int pixels = job.pixels.count(), bins = job.bins.count;
-  RenderResult result{rendered_picture(job, sums), pixel_mean(sums, pixels, 1, 1), {}, {}};
-  if (is_area) result.total = pixel_mean(sums, pixels, 1, area);
-  if (bins > 1) result.pulse = pixel_mean(sums, pixels, bins, is_area ? area : 1);
+  const RenderedPicture all = rendered_picture(job, sums);
+  RenderResult result;
+  std::size_t first = 0;
+  for (const Sensor& sensor : scene.sensors) {
+    const auto count = static_cast<std::size_t>(picture_of(sensor).grid().count());
+    result.push_back(
+        sensor_result(sensor, {first, count}, static_cast<std::size_t>(job.bins.count), all, sums));
+    first += count;
+  }
   return result;
 }
 
 void write_render(ResultFile& file, const RenderScene& scene, const RenderJob& job,
                   const RenderResult& result, const std::optional<double>& length_unit) {
-  const ResultGroup root(file, render_table), sensor(file, table_of(scene.sensor));
-  const PixelRectangle pixels = picture_of(scene.sensor);
+  const ResultGroup root(file, render_table);
   if (length_unit) root.attribute("length_unit", *length_unit);
-  sensor.put("row", pixels.row_centres());
-  sensor.put("column", pixels.column_centres());
-  sensor.put("image", result.picture.steady);
-  sensor.put("mean", result.mean);
-  if (result.total) sensor.put("total", *result.total);
-  if (job.bins.count > 1) {
-    write_bins(root, job.bins, length_unit);
-    sensor.put("transient", result.picture.bins);
-    sensor.put("pulse", result.pulse);
-  }
+  if (job.bins.count > 1) write_bins(root, job.bins, length_unit);
+  for (std::size_t i = 0; i < result.size(); ++i)
+    write_sensor({file, table_of(scene.sensors[i]),
+                  result.size() > 1 ? "sensors/" + sensor_name(scene, i) : ""},
+                 picture_of(scene.sensors[i]), result[i]);
   write_counts(file, job);
 }
 

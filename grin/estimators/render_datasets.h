@@ -9,16 +9,19 @@ namespace flatspeckle::grin {
 
 extern const DatasetTable render_table;
 
-/// What a run has found.
-struct RenderResult {
+/// What a sensor has found.
+struct SensorResult {
   RenderedPicture picture;
   Estimate mean;                  ///< over the pixels
   std::optional<Estimate> total;  ///< power on an area detector
   Estimate pulse;                 ///< mean or total by bin; empty in a steady state
 };
+/// Of all sensors.
+using RenderResult = std::vector<SensorResult>;
 RenderResult render_result(const RenderScene& scene, const RenderJob& job, const GroupedSums& sums);
 
-/// Pictures, what they add up to, and what the paths cost. length_unit: metres.
+/// Pictures, what they add up to, and what the paths cost. Of several sensors each has a group,
+/// sensors/NAME. length_unit: metres.
 void write_render(ResultFile& file, const RenderScene& scene, const RenderJob& job,
                   const RenderResult& result, const std::optional<double>& length_unit);
 

@@ -50,7 +50,8 @@ struct Tracer {
 
 bool sums_beams_apart(const Transport& transport, const RenderRequest& request) {
   return !is_photon_map(request) && transport.lights.beam_power() > 0 &&
-         transport.sensor.can_be_hit();
+         std::any_of(transport.sensors.begin(), transport.sensors.end(),
+                     [](const SensorEnd& sensor) { return sensor.can_be_hit(); });
 }
 
 double index_at(const RenderScene& scene, const PathPoint& p) {
@@ -63,7 +64,7 @@ std::shared_ptr<Transport> transport_in(const RenderScene& scene, const RenderRe
   return std::make_shared<Transport>(Transport{
       .stage = scene.stage,
       .lights = Lights(scene.lights, scene.stage, index),
-      .sensor = SensorEnd(scene.sensor, scene.stage),
+      .sensors = sensor_ends(scene.sensors, scene.stage),
       .strategies = strategies(request.method),
       .max_scatterings = path_limit(request),
   });
@@ -121,7 +122,33 @@ Estimate steady_picture(const GroupedSums& sums, int bins) {
   });
 }
 
+/// Nothing of a single one.
+std::string described_sensors(const RenderScene& scene) {
+  std::string text;
+  if (scene.sensors.size() > 1)
+    for (std::size_t i = 0; i < scene.sensors.size(); ++i)
+      text += (i == 0 ? "; sensors " : ", ") + sensor_name(scene, i) + " (" +
+              table_of(scene.sensors[i]).name + ')';
+  return text;
+}
+
+/// That of the sensor where it is largest: units of sensors differ.
+double largest_error(const std::vector<SensorEnd>& sensors, const Estimate& picture) {
+  double largest = 0;
+  std::size_t first = 0;
+  for (const SensorEnd& sensor : sensors) {
+    const auto count = static_cast<std::size_t>(sensor.pixels().count());
+    largest = std::max(largest, relative_error(part(picture, first, count)));
+    first += count;
+  }
+  return largest;
+}
+
 }  // namespace
+
+std::string sensor_name(const RenderScene& scene, std::size_t sensor) {
+  return scene.sensor_names.empty() ? std::to_string(sensor + 1) : scene.sensor_names[sensor];
+}
 
 RenderPlan render_plan(const RenderScene& scene) {
   RenderPlan plan;
@@ -157,17 +184,16 @@ RenderJob render_job(const RenderScene& scene, const RenderRequest& request, std
                                           plan.curved ? flights_per_curve : flights_per_line);
 
   RenderJob job;
-  job.pixels = tracer.transport->sensor.pixels();
+  const int pixels = tracer.transport->pixels();
   job.bins = scene.bins;
-  job.plan = plan.describe();
-  job.batches.size = static_cast<std::size_t>(job.pixels.count()) * scene.bins.count;
+  job.plan = plan.describe() + described_sensors(scene);
+  job.batches.size = static_cast<std::size_t>(pixels) * scene.bins.count;
   const int paths = paths_per_batch(request, job.batches.size, flights);
   job.batches.samples_per_batch = paths;
   const auto counts = std::make_shared<TransportCounts>();
   job.counts = counts;
   const auto counting = std::make_shared<std::mutex>();
-  job.batches.run = [=, pixels = job.pixels.count(), bins = scene.bins](std::uint64_t number,
-                                                                        std::span<Complex> sums) {
+  job.batches.run = [=, bins = scene.bins](std::uint64_t number, std::span<Complex> sums) {
     Film film(pixels, bins, sums);
     RandomStream random(seed, static_cast<std::uint64_t>(Stream::render), number);
     TransportCounts of_batch;
@@ -176,8 +202,8 @@ RenderJob render_job(const RenderScene& scene, const RenderRequest& request, std
     const std::lock_guard lock(*counting);
     *counts += of_batch;
   };
-  job.batches.relative_error = [bins = scene.bins.count](const GroupedSums& sums) {
-    return relative_error(steady_picture(sums, bins));
+  job.batches.relative_error = [=, bins = scene.bins.count](const GroupedSums& sums) {
+    return largest_error(tracer.transport->sensors, steady_picture(sums, bins));
   };
   return job;
 }

@@ -25,10 +25,14 @@ struct RenderScene {
   bool random_phase = false;  ///< of a StandingWave: each path meets its own (C28)
   Stage stage;
   std::vector<Light> lights;
-  Sensor sensor;
+  std::vector<Sensor> sensors;
+  std::vector<std::string> sensor_names = {};  ///< of several
   TimeBins bins = {};
   std::optional<double> length_unit = {};  ///< metres in a unit of length, for times
 };
+
+/// Of a scene with several sensors; a number where it has no names.
+std::string sensor_name(const RenderScene& scene, std::size_t sensor);
 
 enum class RenderMethod { path, light, bidirectional, photon_map };
 
@@ -41,10 +45,10 @@ struct RenderRequest {
 /// The least plan that a scene allows.
 RenderPlan render_plan(const RenderScene& scene);
 
-/// samples: camera paths and as many light paths. Sums of a batch: [pixel][bin], imaginary part 0.
+/// samples: light paths and as many paths of each sensor. Sums of a batch: [pixel][bin] with the
+/// pixels of one sensor after the other, imaginary part 0.
 struct RenderJob {
   BatchJob batches;
-  PixelGrid pixels;
   TimeBins bins;
   std::string plan;  ///< what is left out and what is not
   /// Of all batches that have run here.
@@ -58,7 +62,7 @@ void check(const RenderScene& scene, const RenderRequest& request);
 /// Checks the same, then walks a few paths to plan. Throws InputError.
 RenderJob render_job(const RenderScene& scene, const RenderRequest& request, std::uint64_t seed);
 
-/// Value and standard error of [pixel][bin], and of the sum over the bins.
+/// Value and standard error of [pixel][bin], and of the sum over the bins; of all sensors.
 struct RenderedPicture {
   Estimate bins, steady;
 };

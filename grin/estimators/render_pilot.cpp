@@ -17,7 +17,7 @@ struct Pilot {
   int pairs = 0;
   bool is_cut = false;  // some path may have been longer
   TransportCounts counts;
-  std::vector<double> promises;
+  std::vector<double> promises;  ///< [pair][sensor]
 
   double flights_per_pair() const {
     return std::max(static_cast<double>(counts.flights) / pairs, 1.0);
@@ -27,13 +27,13 @@ struct Pilot {
 /// Pairs that join nothing; the same pairs each time.
 Pilot pilot(Transport& transport, const PathKernel& kernel, const TimeBins& bins) {
   constexpr auto no_batch = std::numeric_limits<std::uint64_t>::max();
-  const int pixels = transport.sensor.pixels().count();
+  const int pixels = transport.pixels();
   std::vector<Complex> sums(static_cast<std::size_t>(pixels) * bins.count);
   Film film(pixels, bins, sums);
   RandomStream random(0, static_cast<std::uint64_t>(Stream::render), no_batch);
   const int limit = transport.max_scatterings;
   transport.max_scatterings = std::min(limit, most_scatterings);
-  transport.join_level = std::numeric_limits<double>::infinity();
+  for (double& level : transport.join_levels) level = std::numeric_limits<double>::infinity();
   Pilot found;
   for (; found.pairs < most_pairs; ++found.pairs) {
     if (found.pairs >= fewest_pairs && found.counts.flights >= enough_flights) break;
@@ -79,8 +79,14 @@ double tune_joins(Transport& transport, const PathKernel& kernel, const TimeBins
   transport.strategies.joined_share = std::min(1.0, 1 / collisions);
   transport.strategies.kept = 1 - 1 / (2 + 2 * collisions);
   const Pilot second = pilot(transport, kernel, bins);
-  transport.join_level =
-      std::sqrt(flights_per_join * trimmed_variance(second.promises) / second.flights_per_pair());
+  const std::size_t sensors = transport.sensors.size();
+  for (std::size_t at = 0; at < sensors; ++at) {
+    std::vector<double> promises;
+    for (std::size_t i = at; i < second.promises.size(); i += sensors)
+      promises.push_back(second.promises[i]);
+    transport.join_levels[at] =
+        std::sqrt(flights_per_join * trimmed_variance(promises) / second.flights_per_pair());
+  }
   return known_flights(second);
 }
 

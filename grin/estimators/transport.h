@@ -12,11 +12,19 @@ namespace flatspeckle::grin {
 struct Transport {
   Stage stage;
   Lights lights;
-  SensorEnd sensor;
+  std::vector<SensorEnd> sensors;
   Strategies strategies = {};
   int max_scatterings = std::numeric_limits<int>::max();
-  /// Joins that promise less than this are left to chance, in proportion to what they promise.
-  double join_level = 0;
+  /// Of each sensor: joins that promise less than this are left to chance, in proportion to what
+  /// they promise.
+  std::vector<double> join_levels = std::vector<double>(sensors.size());
+
+  /// Of all sensors.
+  int pixels() const {
+    int count = 0;
+    for (const SensorEnd& sensor : sensors) count += sensor.pixels().count();
+    return count;
+  }
 
   const ScatteringMedium& medium(Part part) const {
     return part == Part::body ? stage.body->medium : stage.medium;

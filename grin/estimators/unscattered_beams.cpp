@@ -31,10 +31,12 @@ void add_ray(const Transport& transport, const S& space, const EndPosition& star
     ++counts.lost_flights;
     return;
   }
-  transport.sensor.hit(space, flight.point.x, flight.direction, [&](const EndHit& hit) {
-    deposit<timed>(film, counts, hit.direction.pixel,
-                   transport.lights.beam_power() * flight.weight * hit.value, flight.optical_path);
-  });
+  for (const SensorEnd& sensor : transport.sensors)
+    sensor.hit(space, flight.point.x, flight.direction, [&](const EndHit& hit) {
+      deposit<timed>(film, counts, hit.direction.pixel,
+                     transport.lights.beam_power() * flight.weight * hit.value,
+                     flight.optical_path);
+    });
 }
 
 /// with_space(use): calls use(space), the same or another for each ray.

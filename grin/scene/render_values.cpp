@@ -28,10 +28,11 @@ TimeBins time_bins(const Keys& keys, const RenderValues& values) {
   return {bins[0], bins[1], static_cast<int>(bins[2])};
 }
 
-void check_size(const Sensor& sensor, const TimeBins& bins) {
+void check_size(const std::vector<Sensor>& sensors, const TimeBins& bins) {
   constexpr double most = 1 << 23;  // of which 16 groups of sums are 2 GiB
-  const int pixels = std::visit([](const auto& kind) { return kind.pixels.count(); }, sensor);
-  const double size = static_cast<double>(pixels) * bins.count;
+  double size = 0;
+  for (const Sensor& sensor : sensors)
+    size += static_cast<double>(picture_of(sensor).grid().count()) * bins.count;
   if (size > most) throw InputError("pixels x path_bins", size, "must be at most 8388608");
 }
 
@@ -82,7 +83,7 @@ void add_keys(Keys& keys, RenderValues& values) {
       .unit("length");
   add_keys(keys, values.stage);
   add_keys(keys, values.lights);
-  add_keys(keys, values.sensor);
+  add_keys(keys, values.sensors);
   keys.group("Picture");
   keys.add("path_bins", values.path_bins,
            "first last count: also pictures by optical path, in equal bins of it, shared between "
@@ -120,10 +121,11 @@ RenderScene make_render_scene(const Keys& keys, const RenderValues& values) {
                     .random_phase = any_phase && heard.index() == field.field.index(),
                     .stage = stage,
                     .lights = make_lights(keys, values.lights),
-                    .sensor = make_sensor(keys, values.sensor),
+                    .sensors = make_sensors(keys, values.sensors),
+                    .sensor_names = make_sensor_names(keys, values.sensors),
                     .bins = time_bins(keys, values),
                     .length_unit = keys.read(values.length_unit)};
-  check_size(scene.sensor, scene.bins);
+  check_size(scene.sensors, scene.bins);
   return scene;
 }
 

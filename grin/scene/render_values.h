@@ -15,7 +15,7 @@ struct RenderValues {
   IndexFieldValues field{};
   StageValues stage{};
   LightValues lights{};
-  SensorValues sensor{};
+  SensorValues sensors{};
   std::vector<double> path_bins{};
   std::optional<double> length_unit = {}, step = {}, max_length = {};
   bool random_phase = false;

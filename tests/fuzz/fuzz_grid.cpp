@@ -126,7 +126,7 @@ void fly_through_density(const std::string&) {
                                 .max_length = 10 * size,
                                 .stage = stage,
                                 .lights = {grin::PointLight{(box.low + box.high) / 2}},
-                                .sensor = sensor};
+                                .sensors = {sensor}};
   const grin::RenderJob job = grin::render_job(scene, {.max_scatterings = 3}, 1);
   std::vector<Complex> sums(job.batches.size);
   job.batches.run(0, sums);

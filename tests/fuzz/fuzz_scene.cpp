@@ -62,7 +62,8 @@ int trace_scene(const Arguments& arguments) {
 /// Pictures that are begun as well: of a few pixels and short paths of few steps.
 bool is_small(const grin::RenderScene& scene, const grin::RenderRequest& request) {
   constexpr double most_values = 64, most_steps = 40;
-  const auto count = std::visit([](const auto& kind) { return kind.pixels.count(); }, scene.sensor);
+  int count = 0;
+  for (const grin::Sensor& sensor : scene.sensors) count += grin::picture_of(sensor).grid().count();
   const grin::Box box = bounds(scene.stage.boundary);
   const double size = (box.high - box.low).norm();
   return request.max_scatterings >= 1 && request.max_scatterings <= 3 &&
@@ -103,12 +104,14 @@ int render_scene(const Arguments& arguments) {
   stop_rule(keys, run);
   fuzz::require_finite(scene.step + scene.max_length + scene.stage.medium.mu_t());
   check(scene.stage);
-  const grin::SensorEnd sensor(scene.sensor, scene.stage);
+  grin::sensor_ends(scene.sensors, scene.stage);
   const grin::Lights lights(scene.lights, scene.stage, [](const auto&) { return 1.0; });
   fuzz::require_finite(lights.power());
-  const grin::PixelRectangle picture = grin::picture_of(scene.sensor);
-  for (const auto& centres : {picture.row_centres(), picture.column_centres()})
-    for (double centre : centres) fuzz::require_finite(centre);
+  for (const grin::Sensor& sensor : scene.sensors) {
+    const grin::PixelRectangle picture = grin::picture_of(sensor);
+    for (const auto& centres : {picture.row_centres(), picture.column_centres()})
+      for (double centre : centres) fuzz::require_finite(centre);
+  }
   if (arguments[1] == "picture" && is_small(scene, request))
     make_small_picture(scene, request, length_unit);
   return ExitStatus::done;

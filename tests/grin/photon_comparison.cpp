@@ -87,7 +87,8 @@ PhotonSensor directional_sensor(const DirectionalDetector& detector) {
 }
 
 PhotonPicture photon_picture(const TwoScenes& scenes, std::uint64_t photons, std::uint64_t seed) {
-  const PixelGrid grid = std::visit([](const auto& s) { return s.pixels; }, scenes.scene.sensor);
+  const PixelGrid grid =
+      std::visit([](const auto& s) { return s.pixels; }, scenes.scene.sensors[0]);
   const TimeBins& bins = scenes.scene.bins;
   const std::size_t pixels = static_cast<std::size_t>(grid.columns) * grid.rows;
   PhotonTally tally(pixels * bins.count, photons), steady(pixels, photons);

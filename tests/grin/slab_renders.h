@@ -26,8 +26,8 @@ inline RenderScene slab(const ScatteringMedium& medium, double thickness, double
   scene.stage.boundary = Box{low, high};
   scene.stage.medium = medium;
   scene.lights = {BeamLight{{0, 0, 0}, {0, 0, 1}, thickness / 100}};
-  scene.sensor =
-      AreaDetector{{0, 0, z}, {0, 1, 0}, 2 * half_width, 2 * half_width, {}, std::numbers::pi / 2};
+  scene.sensors = {
+      AreaDetector{{0, 0, z}, {0, 1, 0}, 2 * half_width, 2 * half_width, {}, std::numbers::pi / 2}};
   return scene;
 }
 
@@ -50,7 +50,7 @@ inline RenderScene van_de_hulst(Face face) {
 inline void check_share(const RenderScene& scene, RenderMethod method, double samples,
                         double expected, double largest_error) {
   const Rendered picture = rendered(scene, method, samples);
-  const AreaDetector& detector = std::get<AreaDetector>(scene.sensor);
+  const AreaDetector& detector = std::get<AreaDetector>(scene.sensors[0]);
   const double area = detector.width * detector.height;
   const double value = area * picture.value(), error = area * picture.error();
   const std::string how = name(method);

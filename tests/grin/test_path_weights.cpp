@@ -27,7 +27,7 @@ struct WholePath {
   /// The sensor as it would be chosen from the vertex before it.
   EndPosition chosen_sensor(const Transport& transport) const {
     EndPosition chosen = sensor;
-    chosen.choice = transport.sensor.choice(sensor, points[points.size() - 2].x);
+    chosen.choice = transport.sensors[0].choice(sensor, points[points.size() - 2].x);
     return chosen;
   }
 };
@@ -81,7 +81,7 @@ PathVertex sensor_subpath(const Transport& transport, const WholePath& path, int
   for (int i = last; i > last + 1 - count; --i) {
     const Edge& edge = path.edges[i - 1];
     const double density =
-        i == last ? transport.sensor.towards(path.sensor, edge.back.start_direction).density
+        i == last ? transport.sensors[0].towards(path.sensor, edge.back.start_direction).density
                   : scattering_density(transport, path, i, false);
     const double choice = i == last ? path.chosen_sensor(transport).choice : 1;
     vertex = arrived(transport.strategies, vertex, edge.back, density, choice, path.index[i - 1]);
@@ -112,7 +112,8 @@ std::optional<double> weight_of(const Transport& transport, const WholePath& pat
     PathVertex last = light_subpath(transport, path, all);
     last.first_of_other *= heuristic(path.chosen_sensor(transport).choice);
     return weight_of_hit(allowed, last, path.sensor,
-                         transport.sensor.towards(path.sensor, out).density, allowed.most_sensor());
+                         transport.sensors[0].towards(path.sensor, out).density,
+                         allowed.most_sensor());
   }
   const Flight& edge = path.edges[s - 1].forth;
   if (edge.crosses_body || (s == 1 && path.light.is_beam)) return {};
@@ -123,7 +124,7 @@ std::optional<double> weight_of(const Transport& transport, const WholePath& pat
   const JoiningCurve curve{edge.start_direction, edge.direction, edge.spreading,
                            edge.optical_depth};
   return joined_path(allowed, y, leaving(transport, transport.lights, y, curve.start_direction), z,
-                     leaving(transport, transport.sensor, z, -curve.end_direction), curve)
+                     leaving(transport, transport.sensors[0], z, -curve.end_direction), curve)
       .weight;
 }
 
@@ -157,7 +158,7 @@ Stage foggy_ball() {
 Transport transport_of(const CurvedSpace& space, const Stage& stage, const Light& light,
                        const Sensor& sensor, const Strategies& strategies = {}) {
   return {stage, Lights({light}, stage, [&](const PathPoint& p) { return space.index(p); }),
-          SensorEnd(sensor, stage), strategies};
+          sensor_ends({sensor}, stage), strategies};
 }
 
 const Strategies path_tracing{.short_light = true};
@@ -170,7 +171,7 @@ std::optional<WholePath> random_path(const Transport& transport, const CurvedSpa
                                      int scatterings, RandomStream& random) {
   WholePath path;
   path.light = transport.lights.sample_position(space, random);
-  path.sensor = transport.sensor.sample_position(space, random);
+  path.sensor = transport.sensors[0].sample_position(space, random);
   path.points.push_back(path.light.point);
   for (int i = 0; i < scatterings; ++i) path.points.push_back({bench::random_point(random, 1.0)});
   path.points.push_back(path.sensor.point);
@@ -210,7 +211,8 @@ TEST_CASE("the weights of all strategies that make a path sum to 1 where rays ar
             const auto path = random_path(transport, *space, scatterings, random);
             if (!path) continue;
             // a path that the sensor does not see has no weights
-            if (!(transport.sensor.towards(path->sensor, path->edges.back().back.start_direction)
+            if (!(transport.sensors[0]
+                      .towards(path->sensor, path->edges.back().back.start_direction)
                       .strength > 0))
               continue;
             CAPTURE(scatterings);
@@ -232,7 +234,7 @@ std::optional<WholePath> walked_path(const Transport& transport, const CurvedSpa
                                      int scatterings, RandomStream& random) {
   WholePath path;
   path.light = transport.lights.sample_position(space, random);
-  path.sensor = transport.sensor.sample_position(space, random);
+  path.sensor = transport.sensors[0].sample_position(space, random);
   path.points.push_back(path.light.point);
   path.index.push_back(path.light.index);
   Vec3 direction = transport.lights.sample_direction(path.light, random).direction;
@@ -273,7 +275,8 @@ TEST_CASE("weights sum to 1 on paths that cross a body, and of beams") {
         for (int trial = 0; trial < 1000; ++trial) {
           const auto path = walked_path(transport, *space, 1 + trial % 7, random);
           if (!path) continue;
-          if (!(transport.sensor.towards(path->sensor, path->edges.back().back.start_direction)
+          if (!(transport.sensors[0]
+                    .towards(path->sensor, path->edges.back().back.start_direction)
                     .strength > 0))
             continue;
           int strategies = 0;

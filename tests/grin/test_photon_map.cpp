@@ -34,7 +34,7 @@ RenderScene furnace(const AnyIndexField& field, const ScatteringMedium& medium) 
           .max_length = 100,
           .stage = {.boundary = Sphere{}, .medium = medium},
           .lights = {FaceLight{.radius = everywhere}},
-          .sensor = pinhole(Vec3::Zero())};
+          .sensors = {pinhole(Vec3::Zero())}};
 }
 
 /// In a furnace L/n^2 = 1, so all that the blur does is to lose photons beyond the wall and to
@@ -68,7 +68,7 @@ void check_furnace(const RenderScene& scene, double radius, double expected) {
   const auto transport =
       std::make_shared<Transport>(Transport{.stage = scene.stage,
                                             .lights = Lights(scene.lights, scene.stage, index),
-                                            .sensor = SensorEnd(scene.sensor, scene.stage)});
+                                            .sensors = sensor_ends(scene.sensors, scene.stage)});
   const Homogeneous* constant = std::get_if<Homogeneous>(&scene.field);
   const PathKernel kernel = constant ? photon_kernel(false, transport, constant->n_excess, radius)
                                      : photon_kernel(false, transport, space, false, radius);
@@ -178,8 +178,8 @@ RenderScene beam_in_fog(bool ball) {
   scene.lights = {BeamLight{{0, 0, -2}, {0, 0, 1}, 0.3}};
   // a patch of the side wall, for light that is nearly normal to it, sees the beam; what leaves the
   // ball can only hit sensors, so there it is all that leaves to the side
-  scene.sensor = AreaDetector{{2, 0, 0.3}, {0, 1, 0}, 0.5, 0.3, {}, 0.3};
-  if (ball) scene.sensor = DirectionalDetector{{1, 0, 0}, {0, 1, 0}, 0.8, {}};
+  scene.sensors = {AreaDetector{{2, 0, 0.3}, {0, 1, 0}, 0.5, 0.3, {}, 0.3}};
+  if (ball) scene.sensors = {DirectionalDetector{{1, 0, 0}, {0, 1, 0}, 0.8, {}}};
   return scene;
 }
 
@@ -189,7 +189,7 @@ RenderScene beam_in_sound() {
   scene.field = FocusedSound(0.3, 0.15, 4, cap_directions(4, 0.9), Vec3(0, 0, 0.3));
   scene.random_phase = true;
   scene.step = 0.2;
-  scene.sensor = AreaDetector{{2, 0, 0.3}, {0, 1, 0}, 1, 1, {}, 0.6};
+  scene.sensors = {AreaDetector{{2, 0, 0.3}, {0, 1, 0}, 1, 1, {}, 0.6}};
   return scene;
 }
 
@@ -198,11 +198,11 @@ RenderScene beam_in_mesh() {
   RenderScene scene = beam_in_fog(false);
   scene.stage.boundary = DistanceGrid(cube_mesh(2), 20);
   scene.lights = {BeamLight{{0, 0, -1.9}, {0, 0, 1}, 0.3}};
-  scene.sensor = Camera{.x = {1.5, 0, 0.3},
-                        .forward = {-1, 0, 0},
-                        .up = {0, 1, 0},
-                        .field_of_view = 0.3,
-                        .pixels = {}};
+  scene.sensors = {Camera{.x = {1.5, 0, 0.3},
+                          .forward = {-1, 0, 0},
+                          .up = {0, 1, 0},
+                          .field_of_view = 0.3,
+                          .pixels = {}}};
   return scene;
 }
 

@@ -80,7 +80,7 @@ TEST_CASE("a pulse through a Luneburg ball arrives at its focus after pi/2 + 1")
                    .max_length = 20,
                    .stage = stage(Box{{-2, -2, -1}, {2, 2, 1 + gap}}, scattering_ball(0)),
                    .lights = {BeamLight{{0, 0, -1}, {0, 0, 1}, 0.95}},
-                   .sensor = spot({0, 0, 1 + gap}, {0, 1, 0}, 0.01)},
+                   .sensors = {spot({0, 0, 1 + gap}, {0, 1, 0}, 0.01)}},
                   pi / 2 + 1, 2e-5,
                   {RenderMethod::light, RenderMethod::bidirectional, RenderMethod::photon_map});
 }
@@ -94,7 +94,7 @@ TEST_CASE("a pulse in a fisheye arrives at the image after pi n0 a / 2") {
                    .max_length = 50,
                    .stage = stage(Box{{-5, -5, -5}, {5, 5, image.z()}}),
                    .lights = {PointLight{light}},
-                   .sensor = spot(image, {0, 1, 0}, 0.01)},
+                   .sensors = {spot(image, {0, 1, 0}, 0.01)}},
                   pi * n0 * a / 2, 2e-5);
 }
 
@@ -106,7 +106,7 @@ TEST_CASE("a pulse in a parabolic guide needs (n0^2 + beta^2) / (2 beta) a lengt
                    .max_length = 100,
                    .stage = stage(Box{{-1, -1, 0}, {1, 1, length}}),
                    .lights = {BeamLight{{0, 0, 1e-6}, {std::sin(angle), 0, std::cos(angle)}, 1e-7}},
-                   .sensor = spot({0, 0, length}, {0, 1, 0}, 0.01)},
+                   .sensors = {spot({0, 0, length}, {0, 1, 0}, 0.01)}},
                   (n0 * n0 + beta * beta) / (2 * beta) * length, 2e-5);
 }
 
@@ -116,7 +116,7 @@ TEST_CASE("bins add up to the steady picture, path by path") {
                     .max_length = 100,
                     .stage = stage(Box{{-2, -2, -2}, {2, 2, 2}}, scattering_ball(0.7)),
                     .lights = {BeamLight{{0, 0, -2}, {0, 0, 1}, 0.7}},
-                    .sensor = DirectionalDetector{{0, 0, 1}, {0, 1, 0}, 1, {2, 2}}};
+                    .sensors = {DirectionalDetector{{0, 0, 1}, {0, 1, 0}, 1, {2, 2}}}};
   for (const RenderMethod method : {RenderMethod::path, RenderMethod::light,
                                     RenderMethod::bidirectional, RenderMethod::photon_map}) {
     scene.bins = {};
@@ -143,7 +143,7 @@ TEST_CASE("late light of a slab decays as transport and, nearly, as diffusion ha
                     .max_length = 1e9,
                     .stage = stage(Box{{-400, -400, 0}, {400, 400, length}}),
                     .lights = {BeamLight{{0, 0, 0}, {0, 0, 1}, 0.01}},
-                    .sensor = AreaDetector{{0, 0, length}, {0, 1, 0}, 800, 800, {}, pi / 2},
+                    .sensors = {AreaDetector{{0, 0, length}, {0, 1, 0}, 800, 800, {}, pi / 2}},
                     .bins = {0, 80, 40}};
   scene.stage.medium.mu_s = 1;
   scene.stage.medium.mu_a = mu_a;

@@ -81,9 +81,9 @@ RenderValues render_values() {
   values.stage.stage_box = {-1, -1, 0, 1, 1, 4};
   values.stage.medium = {.mu_s = 0.4, .mu_a = 0.1};
   values.lights.beam_light = {0, 0, 0, 0, 0, 1, 0.3, 2};
-  values.sensor.sensor = AreaValues::word;
-  values.sensor.pixels = {4, 3};
-  values.sensor.of<AreaValues>() = {.sensor_at = {0, 0, 4}, .sensor_size = {1, 0.8}};
+  values.sensors.sensor = {AreaValues::word};
+  values.sensors.pixels = {4, 3};
+  values.sensors.of<AreaValues>() = {.sensor_at = {0, 0, 4}, .sensor_size = {1, 0.8}};
   return values;
 }
 
@@ -266,7 +266,7 @@ TEST_CASE("a picture of values is the picture of the scene by hand") {
                             .max_length = made.max_length,
                             .stage = stage,
                             .lights = {BeamLight{Vec3::Zero(), Vec3::UnitZ(), 0.3, 2}},
-                            .sensor = area};
+                            .sensors = {area}};
   std::vector<Complex> sums[2];
   for (int i = 0; i < 2; ++i) {
     const RenderJob job = render_job(i == 0 ? made : by_hand, make_render_request({}), 1);
@@ -311,7 +311,8 @@ TEST_CASE("pictures that cannot be are refused by their keys") {
   refused([](auto& v) { v.stage.medium.mu_s = -1; }, "mu_s = -1: must not be negative");
   refused([](RenderValues& v) { v.stage.medium.of<HgPhase>().g = 0.5; },
           "g = 0.5: is a key of henyey_greenstein");
-  refused([](auto& v) { v.stage.medium.phase = "rayleigh"; }, "phase = rayleigh: is a key of");
+  refused([](auto& v) { v.stage.medium = {.mu_s = {}, .mu_a = {}, .phase = "rayleigh"}; },
+          "phase = rayleigh: is a key of");
   refused(
       [](auto& v) {
         v.stage.medium.mu_s = 1e7;
@@ -325,7 +326,7 @@ TEST_CASE("pictures that cannot be are refused by their keys") {
   refused(
       [](auto& v) {
         v.path_bins = {1, 2, 90'000};
-        v.sensor.pixels = {10, 10};
+        v.sensors.pixels = {10, 10};
       },
       "pixels x path_bins");
   refused([](auto& v) { v.lights = {}; }, "light is not given");
@@ -340,31 +341,66 @@ TEST_CASE("pictures that cannot be are refused by their keys") {
 TEST_CASE("sensors that cannot be are refused by their keys") {
   const auto refused = [](const auto& change, const std::string& words) {
     RenderValues values = render_values();
-    change(values.sensor);
+    change(values.sensors);
     refuse_render(values, words);
   };
   const auto camera = [](SensorValues& sensor) -> CameraValues& {
     sensor = {};
-    return sensor.of<CameraValues>() = {.sensor_at = {0, 0, 3.9}, .field_of_view = 1};
+    return sensor.of<CameraValues>() = {.sensor_at = {0, 0, 3.9}, .field_of_view = {1}};
   };
-  refused([](auto& s) { s.sensor = "eye"; }, "sensor = eye: must be one of camera area");
-  refused([](auto& s) { s.pixels = {4}; }, "pixels = 4: must be two numbers: columns rows");
-  refused([](auto& s) { s.pixels = {0, 3}; }, "pixels = 0 3: must be from 1 to 16384");
+  refused([](auto& s) { s.sensor = {"eye"}; }, "sensor = eye: must be one of camera area");
+  refused([](auto& s) { s.pixels = {4}; }, "pixels = 4: must be 2 numbers for each: columns rows");
+  refused([](auto& s) { s.pixels = {0, 3}; }, "pixels = 0: must be from 1 to 16384");
   refused([](auto& s) { s.template of<AreaValues>().sensor_at.clear(); }, "sensor_at is not given");
-  refused([](auto& s) { s.template of<AreaValues>().acceptance = 2; },
+  refused([](auto& s) { s.template of<AreaValues>().acceptance = {2}; },
           "acceptance = 2: must be in");
-  refused([](auto& s) { s.template of<CameraValues>().field_of_view = 1; },
+  refused([](auto& s) { s.template of<CameraValues>().field_of_view = {1}; },
           "field_of_view = 1: is a key of camera only");
-  refused([&](auto& s) { camera(s).field_of_view = 4; }, "field_of_view = 4: must be in");
-  refused([&](auto& s) { camera(s).focus_distance = 1; }, "focus_distance = 1: is a key of");
-  refused([&](auto& s) { camera(s).lens_radius = 0.1; }, "focus_distance is not given");
+  refused([&](auto& s) { camera(s).field_of_view = {4}; }, "field_of_view = 4: must be in");
+  refused([&](auto& s) { camera(s).focus_distance = {1}; }, "focus_distance = 1: is a key of");
+  refused([&](auto& s) { camera(s).lens_radius = {0.1}; }, "focus_distance is not given");
   refused(
       [](auto& s) {
         s = {};
-        s.sensor = DirectionalValues::word;
-        s.template of<DirectionalValues>().half_angle = 0;
+        s.sensor = {DirectionalValues::word};
+        s.template of<DirectionalValues>().half_angle = {0};
       },
       "half_angle = 0: must be in");
+  const auto faces = [](SensorValues& sensors) -> AreaValues& {
+    sensors = {.sensor = {AreaValues::word, AreaValues::word}};
+    return sensors.of<AreaValues>() = {.sensor_at = {0, 0, 0, 0, 0, 4}, .sensor_size = {1, 0.8}};
+  };
+  refused(
+      [&](auto& s) {
+        faces(s).acceptance = {1, 1, 1};
+      },
+      "acceptance: must have one value for all sensors, or one for each of the 2");
+  refused([&](auto& s) { faces(s), s.sensor_name = {"a"}; }, "must be one for each sensor");
+  refused([&](auto& s) { faces(s), s.sensor_name = {"a", "a"}; }, "must not be there twice");
+  refused([&](auto& s) { faces(s), s.sensor_name = {"a", "b/c"}; }, "sensor_name = b/c: must be");
+  refused([](auto& s) { s.sensor_name = {"a"}; }, "sensor_name = a: is a key of several sensors");
+}
+
+TEST_CASE("several sensors share values of keys, or have their own") {
+  RenderValues values = render_values();
+  values.sensors = {.sensor = {AreaValues::word, CameraValues::word, AreaValues::word},
+                    .sensor_name = {"back", "eye", "front"},
+                    .pixels = {4, 3}};
+  values.sensors.of<AreaValues>() = {
+      .sensor_at = {0, 0, 0, 0, 0, 2, 0, 0, 4}, .sensor_size = {1, 0.8}, .acceptance = {0.1, 1, 1}};
+  values.sensors.of<CameraValues>() = {.sensor_at = {0, 0, 0, 0, 0, 2, 0, 0, 4},
+                                       .field_of_view = {1.2}};
+  const RenderScene scene = make_render_scene(values);
+  REQUIRE(scene.sensors.size() == 3);
+  const auto& back = std::get<AreaDetector>(scene.sensors[0]);
+  const auto& front = std::get<AreaDetector>(scene.sensors[2]);
+  CHECK(back.centre == Vec3::Zero());
+  CHECK(front.centre == Vec3(0, 0, 4));
+  CHECK(back.acceptance == 0.1);
+  CHECK(front.acceptance == 1);
+  CHECK(front.pixels.count() == 12);
+  CHECK(std::get<Camera>(scene.sensors[1]).x == Vec3(0, 0, 2));
+  CHECK(sensor_name(scene, 1) == "eye");
 }
 
 TEST_CASE("methods of pictures") {
