@@ -39,8 +39,8 @@ AreaDetector whole_face() {
 }
 
 RenderScene scene_in(AnyIndexField field, Stage stage, Light light, Sensor sensor) {
-  return {std::move(field), 0.05, 60, false, std::move(stage), {std::move(light)},
-          std::move(sensor)};
+  return {std::move(field),   0.05, 60, false, std::move(stage), {std::move(light)},
+          {std::move(sensor)}};
 }
 
 std::vector<NamedRender> furnaces(const ScatteringMedium& medium) {

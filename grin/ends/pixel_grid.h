@@ -73,8 +73,9 @@ class PixelRectangle {
   /// Uniform where `stratum`, which picks the pixel, is uniform in (0, 1).
   PicturePoint sample(double stratum, RandomStream& random) const {
     const int pixel = std::min(static_cast<int>(stratum * grid_.count()), grid_.count() - 1);
+    const int rows_above = pixel / grid_.columns;
     const double column = pixel % grid_.columns + random.uniform();
-    const double row = pixel / grid_.columns + random.uniform();
+    const double row = rows_above + random.uniform();
     return {half_width_ * (2 * column / grid_.columns - 1),
             half_height_ * (1 - 2 * row / grid_.rows), pixel};
   }
