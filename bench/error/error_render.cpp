@@ -67,8 +67,7 @@ std::vector<ErrorRun> all_methods(const RenderScenePointer& named) {
 std::vector<ErrorRun> closed_form(const RenderScenePointer& named) {
   std::vector<ErrorRun> runs;
   const auto reference = [scene = named.scene] {
-    return even_light(
-        static_cast<std::size_t>(render_job(*scene, {RenderMethod::light}, 0).pixels.count()));
+    return even_light(render_job(*scene, {RenderMethod::light}, 0).batches.size);
   };
   for (const Method& method :
        {method_of(named, "light tracing", RenderMethod::light),

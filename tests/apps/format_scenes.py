@@ -79,6 +79,8 @@ RUNS = {
     "area": ("render", {**STAGE, "sensor": "area", "sensor_at": [0, 0, 4], "sensor_size": [1, 1],
                         "length_unit": 0.001}),
     "directional": ("render", {**STAGE, "sensor": "directional"}),
+    "sensors": ("render", {**STAGE, "sensor": ["area", "directional"], "sensor_at": [0, 0, 4],
+                           "sensor_size": [1, 1], "sensor_name": ["through", "far"]}),
     **{f"bench_{kind}": (f"bench {kind}", {"quick": True})
        for kind in ("error", "stability", "plan")},
 }

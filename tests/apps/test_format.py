@@ -32,8 +32,8 @@ def is_scale(dataset):
 
 
 def of_method(name):
-    """The name that a row has for it: tables do not tell groups of methods and states apart."""
-    return re.sub(r"^(mc|wave|state/\w+)(/|$)", "", name)
+    """The name that a row has for it: tables do not tell groups of methods, states and sensors apart."""
+    return re.sub(r"^(mc|wave|state/\w+|sensors/[\w-]+)(/|$)", "", name)
 
 
 def cells_of_tables():

@@ -368,7 +368,7 @@ class Refused(RenderTest):
         self.refuse("sensor_at is not given", sensor_at=None)
         self.refuse("sensor_at = 0 0 3", "boundary", sensor_at=[0, 0, 3])
         self.refuse("sensor_size = 3 1:", sensor_size=[3, 1])
-        self.refuse("sensor_size = 1", "two numbers", sensor_size=[1])
+        self.refuse("sensor_size = 1", "2 numbers for each: width height", sensor_size=[1])
         self.refuse("sensor_size is not given", sensor_size=None)
         self.refuse("sensor_up", sensor_up=[0, 0, 1])
         self.refuse("acceptance = 2", acceptance=2)
