@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Picture of `flatspeckle render` with tone mapping, and its relative standard error beside it; of
-several results a row each, with one scale where they measure the same. The brightest 0.1 % of the
-pixels share one colour."""
+several results or sensors a row each, with one scale where they measure the same. The brightest
+0.1 % of the pixels share one colour."""
 
 from lib import style
 from lib import pictures
@@ -83,6 +83,7 @@ def norms(results, arguments):
 
 
 def draw(results, arguments):
+    results = pictures.sensors(results)
     for result in results:
         if result.values("image").size == 1:
             raise Unusable(f"{result.path}: is a single pixel, not a picture")

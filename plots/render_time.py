@@ -63,7 +63,7 @@ def pulse_name(result):
 
 
 def draw(results, arguments):
-    result = results[0]
+    result = pictures.chosen(results[0], arguments.sensor)
     if not result.has("transient"):
         raise Unusable(f"{result.path}: is not timed; render with --path_bins")
     if arguments.frames < 1:
@@ -88,6 +88,7 @@ def draw(results, arguments):
 
 def add_options(parser):
     pictures.add_tone_options(parser, "log")
+    parser.add_argument("--sensor", metavar="NAME", help="of several")
     parser.add_argument("--frames", type=int, default=6, help="of the film (default: 6)")
 
 

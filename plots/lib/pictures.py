@@ -1,6 +1,6 @@
 """Pictures of `flatspeckle render`: their axes, units and tone mapping."""
 
-from lib.result_file import Unusable
+from lib.result_file import Result, Unusable
 
 import numpy as np
 from matplotlib.colors import LogNorm, Normalize, PowerNorm
@@ -10,6 +10,35 @@ BRIGHTEST = 0.999  # of the pixels; those above share one colour
 UNITS = {"1/(length^2 sr)": "{}$^{{-2}}$ sr$^{{-1}}$", "1/length^2": "{}$^{{-2}}$",
          "1/sr": "sr$^{{-1}}$", "1": ""}
 TONES = ("linear", "root", "log")
+
+
+class Sensor(Result):
+    """One of the several sensors of a result."""
+
+    def __init__(self, result, name):
+        self.path, self.file, self.group = f"{result.path}, {name}", result.file, f"sensors/{name}"
+
+    def has(self, name):
+        return f"{self.group}/{name}" in self.file or super().has(name)
+
+    def dataset(self, name):
+        own = f"{self.group}/{name}"
+        return super().dataset(own if own in self.file else name)
+
+
+def sensors(results):
+    """Each sensor of each result."""
+    return [each for result in results
+            for each in ([Sensor(result, name) for name in result.file["sensors"]]
+                         if result.has("sensors") else [result])]
+
+
+def chosen(result, name):
+    """One sensor of a result, which must be named where there are several."""
+    names = list(result.file["sensors"]) if result.has("sensors") else []
+    if (name or names) and name not in names:
+        raise Unusable(f"{result.path}: --sensor must be one of {' '.join(names) or 'none'}")
+    return Sensor(result, name) if name else result
 
 
 def edges(centres):
