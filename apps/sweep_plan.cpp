@@ -102,26 +102,32 @@ void SweepPlan::check() {
   check_points();
 }
 
-/// Where points come from a table, says which row cannot be used.
 void SweepPlan::check_points() {
+  each_run([](std::size_t, const Keyed<SceneSpec>&) {});  // the values of all, before any scene
   Neglected neglected;
+  each_run([&](std::size_t run, const Keyed<SceneSpec>& point) {
+    const Scene scene = scene_of(point);
+    command_.keys().join_reads(point.keys);
+    check_scene(scene);
+    if (method(run) == "wave") note_rounding(scene);
+    if (method(run) == "wave" || run == 0) estimation(run, scene);
+    if (method(run) == "mc") neglected.add(scene);
+  });
+  note(neglected);
+}
+
+/// Where points come from a table, says which row cannot be used.
+void SweepPlan::each_run(
+    const std::function<void(std::size_t run, const Keyed<SceneSpec>&)>& use) const {
   for (std::size_t run = 0; run < runs(); ++run) {
     try {
-      with_point(run, [&](const Keyed<SceneSpec>& point) {
-        const Scene scene = scene_of(point);
-        command_.keys().join_reads(point.keys);
-        check_scene(scene);
-        if (method(run) == "wave") note_rounding(scene);
-        if (method(run) == "wave" || run == 0) estimation(run, scene);
-        if (method(run) == "mc") neglected.add(scene);
-      });
+      with_point(run, [&](const Keyed<SceneSpec>& point) { use(run, point); });
     } catch (const InputError& error) {
       if (lists_.points.empty()) throw;
       const std::size_t row = run % points.points.size() + 1;
       throw InputError(lists_.points + ", row " + std::to_string(row) + ": " + error.what());
     }
   }
-  note(neglected);
 }
 
 void SweepPlan::with_point(std::size_t run,

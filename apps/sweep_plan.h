@@ -65,6 +65,7 @@ class SweepPlan {
  private:
   void check();
   void check_points();
+  void each_run(const std::function<void(std::size_t run, const Keyed<SceneSpec>&)>& use) const;
   void with_point(std::size_t run, const std::function<void(const Keyed<SceneSpec>&)>& use) const;
   Scene scene_of(const Keyed<SceneSpec>& point) const;
 
