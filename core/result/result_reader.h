@@ -28,8 +28,6 @@ class ResultReader {
 
   /// Extents of a dataset; empty for a scalar.
   std::vector<std::size_t> shape(const std::string& name) const;
-  /// Full names of the scales of its axes, "" where an axis has none.
-  std::vector<std::string> scales(const std::string& name) const;
 
   /// Number: double, Complex or std::uint64_t. Row-major order.
   template <typename Number>
