@@ -145,18 +145,21 @@ int field(const Arguments& arguments) {
   check_memory(scene, demand);
   if (!command.settle()) return ExitStatus::done;
   catch_interrupts();
-  return session.once(ResultFile::Storage::disk, [&](ResultFile& file) -> std::optional<Made> {
-    const auto drawn = mc::draw_fields(scene, demand, settings, [](const mc::FieldPlan& chosen) {
-      std::printf("%s\n", chosen.describe().c_str());
-      std::fflush(stdout);
-    });
-    if (!drawn) return std::nullopt;
-    write_medium(file, scene);
-    print_summary(*drawn, mc::write_fields(file, scene, values.spec.tilts, *drawn));
-    return Made{
-        "mc: " + mc::make_plan(scene, settings.reversed).describe() + "; " + drawn->plan.describe(),
-        static_cast<double>(demand.fields)};
-  });
+  return session.once(
+      ResultFile(session.out(), ResultFile::Storage::disk),
+      [&](ResultFile& file) -> std::optional<Made> {
+        const auto drawn =
+            mc::draw_fields(scene, demand, settings, [](const mc::FieldPlan& chosen) {
+              std::printf("%s\n", chosen.describe().c_str());
+              std::fflush(stdout);
+            });
+        if (!drawn) return std::nullopt;
+        write_medium(file, scene);
+        print_summary(*drawn, mc::write_fields(file, scene, values.spec.tilts, *drawn));
+        return Made{"mc: " + mc::make_plan(scene, settings.reversed).describe() + "; " +
+                        drawn->plan.describe(),
+                    static_cast<double>(demand.fields)};
+      });
 }
 
 }  // namespace flatspeckle::apps

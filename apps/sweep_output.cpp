@@ -176,10 +176,10 @@ class SweepWriter {
     for (std::size_t i = 0; i < points.size(); ++i) {
       const Trace& own = points[i].get().trace;
       of_point.insert(of_point.end(), own.samples.size(), i);
-      for (auto part : {&Trace::wall_s, &Trace::cpu_s, &Trace::samples, &Trace::relative_error})
+      for (const auto& [name, part] : trace_columns)
         (all.*part).insert((all.*part).end(), (own.*part).begin(), (own.*part).end());
     }
-    write_trace(file_, group.empty() ? "trace" : group + "/trace", all);
+    write_trace(file_, group, all);
     out.put("trace/of_point", of_point);
   }
 

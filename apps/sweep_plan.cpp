@@ -72,27 +72,24 @@ SweepPlan::SweepPlan()
 
 bool SweepPlan::parse(const Arguments& arguments) {
   if (!command_.parse(arguments)) return false;
-  const Session session(command_.text(), command_.keys(), settings, command_.only_prints());
-  text = command_.text();
+  session_.emplace(command_.text(), command_.keys(), settings, command_.only_prints());
   check();
   return command_.settle();
 }
 
-void SweepPlan::parse_config(const std::string& config) {
+void SweepPlan::parse_config(const std::string& config, const std::string& command_line) {
   command_.parse_config(config);
+  session_.emplace(command_line, command_.keys(), settings, true);
   check();
 }
 
 /// All that can be refused: every point must make a scene that the method can take.
 void SweepPlan::check() {
   const Keys& keys = command_.keys();
-  seed = seed_of(keys, settings);
-  threads();
   mc_stop_ = wave_stop_ = stop_rule(keys, settings);
   if (keys.read(methods.wave_samples)) wave_stop_ = stop_rule(keys, settings, methods.wave_samples);
   for (StopRule* stop : {&mc_stop_, &wave_stop_})
     if (!stop->samples && !stop->target_error) stop->target_error = default_target_error;
-  keys.read(settings.resume);
   const std::string& word = keys.read(method_);
   method_words = word == "both" ? std::vector<std::string>{"mc", "wave"} : std::vector{word};
   if (!keys.read(share_).empty()) share = share_of(share_);
@@ -151,22 +148,12 @@ Scene SweepPlan::scene(std::size_t run) const {
 }
 
 Estimation SweepPlan::estimation(std::size_t run, const Scene& scene) const {
-  return method(run) == "mc" ? mc_estimation(scene, reversed_, seed)
-                             : wave_estimation(scene, methods.wave_tolerance, seed);
+  return method(run) == "mc" ? mc_estimation(scene, reversed_, session().seed())
+                             : wave_estimation(scene, methods.wave_tolerance, session().seed());
 }
 
 StopRule SweepPlan::stop(std::size_t run) const {
   return method(run) == "wave" ? wave_stop_ : mc_stop_;
-}
-
-Provenance SweepPlan::provenance() const {
-  Provenance made;
-  made.command_line = text;
-  made.config = command_.keys().config();
-  made.seed = seed;
-  made.threads = threads();
-  made.started = utc_now();
-  return made;
 }
 
 std::string SweepPlan::name(std::size_t run) const {

@@ -14,7 +14,7 @@ namespace {
 template <typename Number>
 std::optional<Number> read_all(const char* from, const char* end) {
   Number value{};
-  if (from != end && *from == '+') ++from;
+  if (end - from > 1 && from[0] == '+' && from[1] != '-') ++from;  // from_chars knows no plus
   const auto read = std::from_chars(from, end, value);
   if (read.ec == std::errc::result_out_of_range && read.ptr == end)
     if constexpr (std::is_same_v<Number, double>) return std::strtod(from, nullptr);
@@ -82,12 +82,15 @@ std::string number_text(Complex value) {
 }
 
 std::string number_text(const std::vector<double>& values) {
-  std::string text;
-  for (const double value : values) {
-    if (!text.empty()) text += ' ';
-    text += number_text(value);
-  }
-  return text;
+  std::vector<std::string> texts;
+  for (const double value : values) texts.push_back(number_text(value));
+  return joined(texts, " ");
+}
+
+std::string joined(const std::vector<std::string>& texts, const std::string& between) {
+  std::string all;
+  for (const std::string& text : texts) all += (&text == &texts.front() ? "" : between) + text;
+  return all;
 }
 
 std::optional<double> read_number(const std::string& text) {

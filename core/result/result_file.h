@@ -46,6 +46,8 @@ class ResultFile {
   ResultFile& operator=(ResultFile&&) noexcept;
   ~ResultFile();
 
+  const std::filesystem::path& path() const { return path_; }
+
   /// What a role (core/result/dataset_row.h) stands for from here on: axes, or one unit.
   void bind(const std::string& role, const std::vector<Axis>& names) { roles_[role] = names; }
   /// Throws std::logic_error for a role that is not bound.
