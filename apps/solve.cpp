@@ -154,24 +154,23 @@ int solve(const Arguments& arguments) {
   omp_set_num_threads(session.threads());
   const auto solution = solved(values, placement, grid, sensors.points);
   if (grid) catch_interrupts();  // which must not leave the file that a map is written to
-  const auto storage = grid ? ResultFile::Storage::disk : ResultFile::Storage::memory;
-  return session.once(
-      ResultFile(session.out(), storage), [&](ResultFile& file) -> std::optional<Made> {
-        wave::write_solution(file, solution, sensors.angles, sensors.points);
-        std::string map_method;
-        if (grid) {
-          const auto method = wave::write_map(file, solution, *grid, values.tolerance);
-          if (!method) return std::nullopt;
-          map_method = *method;
-        }
-        if (scene)
-          write_medium(file, *scene);
-        else
-          ResultGroup(file, scene_table).attribute("wavelength", spec.wavelength);
-        print_summary(solution);
-        if (grid) std::printf("%s\n", map_method.c_str());
-        return Made{plan_of(solution, map_method), 1};
-      });
+  ResultFile result(session.out(), grid ? ResultFile::Storage::disk : ResultFile::Storage::memory);
+  return session.once(std::move(result), [&](ResultFile& file) -> std::optional<Made> {
+    wave::write_solution(file, solution, sensors.angles, sensors.points);
+    std::string map_method;
+    if (grid) {
+      const auto method = wave::write_map(file, solution, *grid, values.tolerance);
+      if (!method) return std::nullopt;
+      map_method = *method;
+    }
+    if (scene)
+      write_medium(file, *scene);
+    else
+      ResultGroup(file, scene_table).attribute("wavelength", spec.wavelength);
+    print_summary(solution);
+    if (grid) std::printf("%s\n", map_method.c_str());
+    return Made{plan_of(solution, map_method), 1};
+  });
 }
 
 }  // namespace flatspeckle::apps

@@ -41,7 +41,7 @@ bool is_whole(const SweepResults& results) {
 
 std::string count_text(const SweepPlan& plan, const SweepResults& results) {
   return std::to_string(finished_points(plan, results).size()) + " of " +
-         std::to_string(plan.points.points.size()) + " points";
+         std::to_string(plan.points.count()) + " points";
 }
 
 }  // namespace

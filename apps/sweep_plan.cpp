@@ -121,7 +121,7 @@ void SweepPlan::each_run(
       with_point(run, [&](const Keyed<SceneSpec>& point) { use(run, point); });
     } catch (const InputError& error) {
       if (lists_.points.empty()) throw;
-      const std::size_t row = run % points.points.size() + 1;
+      const std::size_t row = point_of(run) + 1;
       throw InputError(lists_.points + ", row " + std::to_string(row) + ": " + error.what());
     }
   }
@@ -130,7 +130,7 @@ void SweepPlan::each_run(
 void SweepPlan::with_point(std::size_t run,
                            const std::function<void(const Keyed<SceneSpec>&)>& use) const {
   const Keyed<SceneSpec> point(base);
-  points.set(points.points[run % points.points.size()], point.keys);
+  points.set(point_of(run), point.keys);
   point.keys.check();
   use(point);
 }
@@ -157,7 +157,7 @@ StopRule SweepPlan::stop(std::size_t run) const {
 }
 
 std::string SweepPlan::name(std::size_t run) const {
-  return method(run) + '_' + points.name(points.points[run % points.points.size()]);
+  return method(run) + '_' + points.name(point_of(run));
 }
 
 /// Of the sweep's keys all but those that say which points and methods there are.
@@ -171,7 +171,7 @@ std::string SweepPlan::identity(std::size_t run) const {
 std::string SweepPlan::identity() const {
   std::string all = header() + command_.keys().config(keys_of_the_work);
   if (points.is_list)
-    for (const SweepPoint& point : points.points) all += points.name(point) + '\n';
+    for (std::size_t point = 0; point < points.count(); ++point) all += points.name(point) + '\n';
   return all;
 }
 

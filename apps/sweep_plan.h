@@ -41,13 +41,12 @@ class SweepPlan {
   std::optional<SweepShare> share;
 
   const Session& session() const { return *session_; }
-  std::size_t runs() const { return method_words.size() * points.points.size(); }
+  std::size_t runs() const { return method_words.size() * points.count(); }
   std::size_t run(std::size_t method, std::size_t point) const {
-    return method * points.points.size() + point;
+    return method * points.count() + point;
   }
-  const std::string& method(std::size_t run) const {
-    return method_words[run / points.points.size()];
-  }
+  std::size_t point_of(std::size_t run) const { return run % points.count(); }
+  const std::string& method(std::size_t run) const { return method_words[run / points.count()]; }
   Scene scene(std::size_t run) const;
   Estimation estimation(std::size_t run, const Scene& scene) const;
   StopRule stop(std::size_t run) const;

@@ -169,7 +169,7 @@ std::string Key::line() const {
   const bool bare = is_number() || is_switch();
   std::vector<std::string> texts = value();
   if (!bare)
-    for (std::string& text : texts) text = '"' + text + '"';
+    for (std::string& text : texts) text.insert(0, 1, '"').push_back('"');
   const std::string all = joined(texts, ", ");
   return name_ + " = " + (is_list() ? '[' + all + ']' : all);
 }

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/numbers/complex.h"
@@ -17,6 +18,9 @@ std::string number_text(Complex value);
 /// "1 2 3", for messages.
 std::string number_text(const std::vector<double>& values);
 std::string joined(const std::vector<std::string>& texts, const std::string& between);
+
+/// Without the blanks around it.
+std::string_view trimmed(std::string_view text);
 
 /// The number that the whole text is, if it is one; inf and nan are.
 std::optional<double> read_number(const std::string& text);

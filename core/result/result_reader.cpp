@@ -70,19 +70,15 @@ class Reader {
     return values;
   }
 
-  std::vector<std::string> strings(hid_t attribute) const {
+  std::string text(hid_t attribute) const {
     const Hdf5Handle stored = call_.handle(H5Aget_type(attribute), H5Tclose);
-    if (H5Tis_variable_str(stored.get()) <= 0) call_.check(-1);
-    std::vector<char*> texts(attribute_size(attribute));
-    if (texts.empty()) return {};
-    const Hdf5Handle space = call_.handle(H5Aget_space(attribute), H5Sclose);
+    if (H5Tis_variable_str(stored.get()) <= 0 || attribute_size(attribute) != 1) call_.check(-1);
     const Hdf5Handle type = hdf5_type<std::string>();
-    call_.check(H5Aread(attribute, type.get(), texts.data()));
-    std::vector<std::string> values;
-    values.reserve(texts.size());
-    for (const char* text : texts) values.emplace_back(text == nullptr ? "" : text);
-    H5Dvlen_reclaim(type.get(), space.get(), H5P_DEFAULT, texts.data());
-    return values;
+    char* text = nullptr;
+    call_.check(H5Aread(attribute, type.get(), &text));
+    std::string value = text == nullptr ? "" : text;
+    H5free_memory(text);
+    return value;
   }
 
   template <typename Value>
@@ -172,16 +168,13 @@ std::vector<Number> ResultReader::dataset(const std::string& name) const {
 
 template std::vector<double> ResultReader::dataset(const std::string&) const;
 template std::vector<Complex> ResultReader::dataset(const std::string&) const;
-template std::vector<std::uint64_t> ResultReader::dataset(const std::string&) const;
 
 template <typename Value>
 Value ResultReader::attribute(const std::string& object, const std::string& name) const {
   const Reader reader(*file_, path_.string(), object);
   const Hdf5Handle attribute = reader.attribute(name);
   if constexpr (std::is_same_v<Value, std::string>)
-    return reader.only(reader.strings(attribute.get()));
-  else if constexpr (std::is_same_v<Value, std::vector<std::string>>)
-    return reader.strings(attribute.get());
+    return reader.text(attribute.get());
   else if constexpr (std::is_same_v<Value, bool>)
     return reader.only(reader.numbers<std::uint8_t>(attribute.get())) != 0;
   else if constexpr (std::is_arithmetic_v<Value>)
@@ -191,12 +184,9 @@ Value ResultReader::attribute(const std::string& object, const std::string& name
 }
 
 template bool ResultReader::attribute(const std::string&, const std::string&) const;
-template std::int64_t ResultReader::attribute(const std::string&, const std::string&) const;
 template std::uint64_t ResultReader::attribute(const std::string&, const std::string&) const;
 template double ResultReader::attribute(const std::string&, const std::string&) const;
 template std::string ResultReader::attribute(const std::string&, const std::string&) const;
 template std::vector<double> ResultReader::attribute(const std::string&, const std::string&) const;
-template std::vector<std::string> ResultReader::attribute(const std::string&,
-                                                          const std::string&) const;
 
 }  // namespace flatspeckle
