@@ -58,16 +58,16 @@ struct Found {
 /// The sweep that most points are of: strays may lie among them, and points of a smaller grid that
 /// has grown.
 Found most_of(const std::vector<std::string>& folders, const std::string& command_line) {
-  std::optional<Found> most;
+  Found most;
   for (const std::string& config : configs_of(folders)) {
     Found found{std::make_unique<SweepPlan>(), {}, {}};
     found.plan->parse_config(config, command_line);
     std::ostringstream warnings;
     found.results = gather(*found.plan, folders, warnings);
     found.warnings = warnings.str();
-    if (!most || found.points() > most->points()) most = std::move(found);
+    if (!most.plan || found.points() > most.points()) most = std::move(found);
   }
-  return *std::move(most);
+  return most;
 }
 
 /// Tells of points that are left out because this sweep has no such points.
