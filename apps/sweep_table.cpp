@@ -19,9 +19,8 @@ class SweepTable {
         scene_(plan.scene(points_.front())) {}
 
   void print() const {
-    constexpr std::size_t most = 60;
     note_few();
-    if (points_.size() > most) return;
+    if (points_.size() > most_rows) return;
     print_header();
     for (std::size_t point : points_) print_row(point);
   }

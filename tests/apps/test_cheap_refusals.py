@@ -6,7 +6,7 @@ import unittest
 import h5py
 import numpy as np
 
-from program import flags
+from program import CYLINDERS, flags
 from refusing import RefusingTest
 
 # Cylinders hundreds of wavelengths wide: their T-matrix takes seconds.
@@ -66,8 +66,8 @@ CASES = [
      ["near_sensors = (1.2", "outside"]),
     ("validate", DISKS, {"out": None}, ["out is not given"]),
     ("validate", DISKS, {"near_sensors": "points.csv"}, ["near_sensors", "view_angles"]),
-    ("validate", {**DISKS, "view_angles": None}, {"near_sensors": "covered.csv"},
-     ["near_sensors = (0, 200)", "a cylinder may cover it"]),
+    ("validate", {**CYLINDERS, "index": 1.5}, {"near_sensors": "covered.csv"},
+     ["near_sensors = (0, 5)", "a cylinder may cover it"]),
     ("validate", WIDE, {}, ["an infinite slab"]),
     ("validate", FLUID, {"wave_samples": 0}, ["wave_samples = 0"]),
     ("sweep", MANY, {"out": None}, ["out is not given"]),
@@ -100,8 +100,9 @@ CASES = [
     ("merge", {}, {"shards": "none"}, ["shards = none"]),
     ("merge", {}, {"out": None}, ["out is not given"]),
 ]
-FILES = {"points.csv": "x,z\n0,450\n", "covered.csv": "x,z\n0,200\n", "header.csv": "x,z\n", "inside.csv": "x,z\n1.2,2\n",
-         "disk.csv": "x,z,radius\n1,2,0.5\n", "overlap.csv": "x,z,radius\n1,2,0.5\n1.5,2,0.5\n"}
+FILES = {"points.csv": "x,z\n0,450\n", "covered.csv": "x,z\n0,5\n", "header.csv": "x,z\n",
+         "inside.csv": "x,z\n1.2,2\n", "disk.csv": "x,z,radius\n1,2,0.5\n",
+         "overlap.csv": "x,z,radius\n1,2,0.5\n1.5,2,0.5\n"}
 
 
 class Cheap(RefusingTest):
