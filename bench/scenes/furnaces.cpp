@@ -20,15 +20,14 @@ Surface ball_stage() {
 }
 
 ScatteringMedium fog(double mu_s, double mu_a, double g) {
-  return {mu_s, mu_a, {SpacePhaseFunction::Kind::henyey_greenstein, g}};
+  return {mu_s, mu_a, {HgPhase{g}}};
 }
 
 ScatteringMedium grid_medium() {
   const FieldGrid grid{Vec3::Constant(-0.8), Vec3::Constant(0.4), {5, 5, 5}};
   std::vector<double> density(grid.size());
   for (std::size_t i = 0; i < density.size(); ++i) density[i] = static_cast<double>(i * 7 % 11) / 5;
-  return {
-      2, 0.2, {SpacePhaseFunction::Kind::rayleigh}, std::make_shared<DensityGrid>(grid, density)};
+  return {2, 0.2, {RayleighPhase{}}, std::make_shared<DensityGrid>(grid, density)};
 }
 
 Light environment() {

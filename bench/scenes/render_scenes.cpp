@@ -13,7 +13,7 @@ ScatteringMedium fog(double mu_s, double mu_a, double g) {
   ScatteringMedium medium;
   medium.mu_s = mu_s;
   medium.mu_a = mu_a;
-  medium.phase = {SpacePhaseFunction::Kind::henyey_greenstein, g};
+  medium.phase = {HgPhase{g}};
   return medium;
 }
 

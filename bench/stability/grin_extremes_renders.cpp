@@ -129,11 +129,10 @@ void add_furnaces(ExtremeRows& rows) {
     const FieldGrid grid{Vec3::Constant(-0.8), Vec3::Constant(0.4), {5, 5, 5}};
     std::vector<double> density(grid.size(), 1e-3);
     density[62] = 1e3;
-    return furnace(in_box(Homogeneous{0.3}, {0.1,
-                                             0,
-                                             {SpacePhaseFunction::Kind::rayleigh},
-                                             std::make_shared<DensityGrid>(grid, density)}),
-                   2000);
+    return furnace(
+        in_box(Homogeneous{0.3},
+               {0.1, 0, {RayleighPhase{}}, std::make_shared<DensityGrid>(grid, density)}),
+        2000);
   });
 }
 

@@ -11,10 +11,14 @@
 namespace flatspeckle {
 
 AngleTable::AngleTable(const std::string& key, const std::string& path) {
-  const Table table = read_csv(path);
-  const auto angles = table.column("angle"), values = table.column("value");
-  angles_.assign(angles.begin(), angles.end());
-  values_.assign(values.begin(), values.end());
+  try {
+    const Table table = read_csv(path);
+    const auto angles = table.column("angle"), values = table.column("value");
+    angles_.assign(angles.begin(), angles.end());
+    values_.assign(values.begin(), values.end());
+  } catch (const InputError& error) {
+    throw InputError(key + ": " + error.what());
+  }
   const auto refuse = [&](const char* accepted) { throw InputError(key, path, accepted); };
   constexpr double rounding = 1e-4;  // pi as somebody wrote it
   if (angles_.size() < 2 || std::abs(angles_.front()) > rounding ||
@@ -24,8 +28,10 @@ AngleTable::AngleTable(const std::string& key, const std::string& path) {
     refuse("column angle must rise");
   if (*std::min_element(values_.begin(), values_.end()) < 0)
     refuse("column value must not be negative");
-  if (*std::max_element(values_.begin(), values_.end()) == 0)
-    refuse("column value must not be 0 everywhere");
+  const double largest = *std::max_element(values_.begin(), values_.end());
+  if (largest == 0) refuse("column value must not be 0 everywhere");
+  if (!(largest > 1e-100 && largest < 1e100))
+    refuse("the largest of column value must be from 1e-100 to 1e100");
   angles_.front() = 0;
   angles_.back() = std::numbers::pi;
 }

@@ -4,6 +4,7 @@
 #include <tuple>
 #include <vector>
 
+#include "core/keys/kinds.h"
 #include "flatland/scatterers/phase_table.h"
 #include "flatland/scatterers/two_term_hg.h"
 
@@ -14,22 +15,17 @@ namespace flatspeckle {
 using BulkPhases = std::tuple<TwoTermHg, PhaseTable>;
 
 inline void add_keys(Keys& keys, BulkPhases& all) {
-  std::apply([&](auto&... one) { (add_keys(keys, one), ...); }, all);
+  each_kind(all, [&](auto& one) { add_keys(keys, one); });
 }
 
 inline std::vector<std::string> bulk_phase_words() {
-  return std::apply([](const auto&... one) { return std::vector<std::string>{one.word...}; },
-                    BulkPhases{});
+  return kind_words(BulkPhases{});
 }
 
 /// That of this word. Throws InputError.
 inline BulkPhase make_phase(const Keys& keys, const BulkPhases& all, const std::string& word) {
   BulkPhase phase;
-  std::apply(
-      [&](const auto&... one) {
-        ((one.word == word ? void(phase = make_phase(keys, one)) : void()), ...);
-      },
-      all);
+  with_kind(all, word, [&](const auto& one) { phase = make_phase(keys, one); });
   return phase;
 }
 

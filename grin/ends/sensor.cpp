@@ -1,15 +1,8 @@
 #include "grin/ends/sensor.h"
 
+#include "core/keys/kinds.h"
+
 namespace flatspeckle::grin {
-
-namespace {
-
-std::vector<std::string> words() {
-  return std::apply([](const auto&... kind) { return std::vector<std::string>{kind.word...}; },
-                    SensorKinds());
-}
-
-}  // namespace
 
 const DatasetTable& table_of(const Sensor& sensor) {
   return std::visit([](const auto& kind) -> const DatasetTable& { return table_of(kind); }, sensor);
@@ -61,16 +54,15 @@ void add_keys(Keys& keys, SensorValues& values) {
   keys.add("sensor", values.sensor,
            "Reads L/n^2 (camera), irradiance on the boundary (area), or power per solid angle that "
            "leaves the stage (directional)")
-      .one_of(words());
+      .one_of(kind_words(values.kinds));
   add_vector(keys, "sensor_up", values.sensor_up, "Upwards in the picture");
   keys.add("pixels", values.pixels, "Columns and rows")
       .exactly(2, "two numbers: columns rows")
       .from(1, 16384);
-  const auto add = [&](auto& kind) {
+  each_kind(values.kinds, [&](auto& kind) {
     keys.group(std::string("Sensor: ") + kind.word, kind.word);
     add_keys(keys, kind);
-  };
-  std::apply([&](auto&... kind) { (add(kind), ...); }, values.kinds);
+  });
 }
 
 Sensor make_sensor(const Keys& keys, const SensorValues& values) {

@@ -29,7 +29,7 @@ struct SensorValues {
   std::string sensor = CameraValues::word;
   std::vector<double> sensor_up{0, 1, 0};
   std::vector<std::int64_t> pixels{64, 64};
-  SensorKinds kinds;
+  SensorKinds kinds{};
 
   template <class Kind>
   Kind& of() {

@@ -66,7 +66,7 @@ struct BlobsValues {
   static constexpr const char* word = "blobs";
   static constexpr bool is_medium = false;
   double index = 1;
-  std::string blobs;
+  std::string blobs{};
 };
 
 void add_keys(Keys& keys, BlobsValues& values);

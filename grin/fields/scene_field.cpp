@@ -3,23 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/keys/kinds.h"
+
 namespace flatspeckle::grin {
 
 namespace {
-
-std::vector<std::string> words() {
-  return std::apply([](const auto&... kind) { return std::vector<std::string>{kind.word...}; },
-                    IndexFieldKinds());
-}
-
-/// Calls use(values) for the kind of this word.
-template <class Use>
-void with_kind(const IndexFieldKinds& kinds, const std::string& word, const Use& use) {
-  const auto with = [&](const auto& kind) {
-    if (word == kind.word) use(kind);
-  };
-  std::apply([&](const auto&... kind) { (with(kind), ...); }, kinds);
-}
 
 bool is_medium(const IndexFieldKinds& kinds, const std::string& word) {
   bool is = false;
@@ -70,12 +58,12 @@ class Adder {
 
 void add_keys(Keys& keys, IndexFieldValues& values) {
   keys.group("Index field");
-  keys.add("field", values.field, "Index field, or several that add up").one_of(words());
-  const auto add = [&](auto& kind) {
+  keys.add("field", values.field, "Index field, or several that add up")
+      .one_of(kind_words(values.kinds));
+  each_kind(values.kinds, [&](auto& kind) {
     keys.group(std::string("Index field: ") + kind.word, kind.word);
     add_keys(keys, kind);
-  };
-  std::apply([&](auto&... kind) { (add(kind), ...); }, values.kinds);
+  });
 }
 
 SceneField make_scene_field(const Keys& keys, const IndexFieldValues& values, const FieldUse& use) {

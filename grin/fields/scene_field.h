@@ -12,7 +12,7 @@ namespace flatspeckle::grin {
 /// kind needs.
 struct IndexFieldValues {
   std::vector<std::string> field{"homogeneous"};
-  IndexFieldKinds kinds;
+  IndexFieldKinds kinds{};
 
   template <class Kind>
   Kind& of() {

@@ -52,7 +52,7 @@ struct GridValues {
   using Field = SplineField;
   static constexpr const char* word = "grid";
   static constexpr bool is_medium = false;
-  std::string grid;
+  std::string grid{};
 };
 
 void add_keys(Keys& keys, GridValues& values);

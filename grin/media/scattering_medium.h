@@ -4,24 +4,10 @@
 #include <optional>
 #include <string>
 
-#include "core/keys/keys.h"
-#include "core/numbers/random.h"
-#include "grin/geometry/vec3.h"
 #include "grin/media/density_grid.h"
-#include "grin/media/phase_function.h"
+#include "grin/media/space_phases.h"
 
 namespace flatspeckle::grin {
-
-/// The phase function of a medium in space, per steradian.
-struct SpacePhaseFunction {
-  enum class Kind { isotropic, henyey_greenstein, rayleigh };
-  Kind kind = Kind::isotropic;
-  double g = 0;  ///< of henyey_greenstein, |g| < 1
-
-  double density(double cosine) const;
-  /// Where light that goes along `direction`, a unit vector, goes next.
-  Vec3 sample(const Vec3& direction, RandomStream& random) const;
-};
 
 /// What scatters and absorbs, 1/length.
 struct ScatteringMedium {
@@ -36,8 +22,13 @@ struct ScatteringMedium {
 /// A medium as keys have it; without mu_s and mu_a there is none.
 struct MediumValues {
   std::optional<double> mu_s = {}, mu_a = {};
-  std::string phase = "isotropic", density = {};
-  double g = 0;
+  std::string phase = IsotropicPhase::word, density = {};
+  SpacePhaseKinds kinds{};
+
+  template <class Kind>
+  Kind& of() {
+    return std::get<Kind>(kinds);
+  }
 };
 
 /// prefix: of the keys, "" or "body_".

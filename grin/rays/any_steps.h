@@ -1,8 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
-#include <string>
 #include <variant>
 
 #include "grin/rays/ray_path.h"
@@ -13,17 +13,6 @@ namespace flatspeckle::grin {
 /// All integrators; the one list of them.
 using Integrators = std::variant<Sharma, Yoshida4, Leapfrog>;
 
-/// One of them, chosen at run time: a call for each step.
-struct AnyIntegrator {
-  Integrators which;
-  int order = std::visit([](const auto& integrator) { return integrator.order; }, which);
-
-  template <IndexField F>
-  void step(const F& field, RayState& ray, double h) const {
-    std::visit([&](const auto& integrator) { integrator.step(field, ray, h); }, which);
-  }
-};
-
 /// Steps of equal length, or controlled by a tolerance.
 struct RaySteps {
   Integrators integrator;
@@ -31,29 +20,19 @@ struct RaySteps {
   std::optional<double> tolerance = {};
 };
 
-/// Steps as trace() takes them, and what is to be known of a ray on its way.
-class LoggedSteps {
+/// How a ray is followed, and what is to be known of it on its way.
+class RayLog {
  public:
-  LoggedSteps(const RaySteps& steps, bool keeps_path)
-      : is_controlled_(steps.tolerance),
-        controlled_{steps.tolerance.value_or(0), steps.longest / 16, steps.longest,
-                    AnyIntegrator{steps.integrator}},
-        fixed_{steps.longest, controlled_.integrator},
-        keeps_path_(keeps_path) {}
-
-  template <IndexField F>
-  void step(const F& field, double h, RayState& ray) const {
-    is_controlled_ ? controlled_.step(field, h, ray) : fixed_.step(field, h, ray);
-  }
-  template <IndexField F>
-  double advance(const F& field, RayState& ray) {
-    const double h = is_controlled_ ? controlled_.advance(field, ray) : fixed_.advance(field, ray);
-    look(field, ray);
-    if (keeps_path_) path_.add(ray);
-    return h;
-  }
+  RayLog(const RaySteps& steps, bool keeps_path)
+      : steps_(steps), next_(steps.longest / 16), keeps_path_(keeps_path) {}
 
   void start(const RayState& ray) {
+    if (keeps_path_) path_.add(ray);
+  }
+  /// At a step's end.
+  template <IndexField F>
+  void pass(const F& field, const RayState& ray) {
+    look(field, ray);
     if (keeps_path_) path_.add(ray);
   }
   /// Here, whatever the steps went beyond.
@@ -67,6 +46,9 @@ class LoggedSteps {
   double index_mismatch() const { return index_mismatch_; }
   const RayPath& path() const { return path_; }
 
+  const RaySteps& steps() const { return steps_; }
+  double& next_step() { return next_; }
+
  private:
   template <IndexField F>
   void look(const F& field, const RayState& ray) {
@@ -74,12 +56,49 @@ class LoggedSteps {
     index_mismatch_ = std::max(index_mismatch_, std::abs(ray.v.norm() - index(field, ray.x)));
   }
 
-  bool is_controlled_;
-  ControlledSteps<AnyIntegrator> controlled_;
-  FixedSteps<AnyIntegrator> fixed_;
+  const RaySteps& steps_;
+  double next_;  ///< of controlled steps
   bool keeps_path_;
   double index_mismatch_ = 0;
   RayPath path_;
+};
+
+/// Steps that trace() takes, equal or controlled as the log says, and that the log is told of.
+template <class Integrator>
+class LoggedSteps {
+ public:
+  explicit LoggedSteps(RayLog& log)
+      : log_(log),
+        is_controlled_(log.steps().tolerance),
+        fixed_{log.steps().longest},
+        controlled_{log.steps().tolerance.value_or(0), log.next_step(), log.steps().longest} {}
+  ~LoggedSteps() { log_.next_step() = controlled_.h; }
+
+  template <IndexField F>
+  [[gnu::noinline]] void step(const F& field, double h, RayState& ray) const {
+    is_controlled_ ? controlled_.step(field, h, ray) : fixed_.step(field, h, ray);
+  }
+  template <IndexField F>
+  double advance(const F& field, RayState& ray) {
+    const double h = is_controlled_ ? controlled(field, ray) : equal(field, ray);
+    log_.pass(field, ray);
+    return h;
+  }
+
+ private:
+  template <IndexField F>
+  [[gnu::flatten]] double controlled(const F& field, RayState& ray) {
+    return controlled_.advance(field, ray);
+  }
+  template <IndexField F>
+  [[gnu::flatten]] double equal(const F& field, RayState& ray) {
+    return fixed_.advance(field, ray);
+  }
+
+  RayLog& log_;
+  bool is_controlled_;
+  FixedSteps<Integrator> fixed_;
+  ControlledSteps<Integrator> controlled_;
 };
 
 }  // namespace flatspeckle::grin

@@ -11,7 +11,7 @@ namespace flatspeckle::grin {
 
 /// Where rays start, as keys have it.
 struct RayStartValues {
-  std::string rays, light = "line";
+  std::string rays{}, light = "line";
   std::int64_t ray_count = 11;
   std::vector<double> origin{0, 0, 0}, direction{0, 0, 1}, across{1, 0, 0};
   double beam_radius = 1, half_angle = 0.1;

@@ -12,8 +12,8 @@ namespace flatspeckle::grin {
 
 /// Where rays end and how they are followed, as keys have it.
 struct RayStopValues {
-  std::vector<double> stop_plane, stop_sphere, stop_box;
-  std::optional<double> max_length, step, tolerance;
+  std::vector<double> stop_plane{}, stop_sphere{}, stop_box{};
+  std::optional<double> max_length = {}, step = {}, tolerance = {};
   std::string integrator = Sharma::word;
 };
 

@@ -14,11 +14,10 @@ namespace flatspeckle::grin {
 template <class Integrator>
 struct FixedSteps {
   double h;
-  [[no_unique_address]] Integrator integrator = {};
 
   template <IndexField F, class Ray, class... Tangent>
-  void step(const F& field, double length, Ray& ray, Tangent&... tangent) const {
-    integrator.step(field, ray, tangent..., length);
+  static void step(const F& field, double h, Ray& ray, Tangent&... tangent) {
+    Integrator::step(field, ray, tangent..., h);
   }
   template <IndexField F, class Ray, class... Tangent>
   double advance(const F& field, Ray& ray, Tangent&... tangent) const {
@@ -62,12 +61,11 @@ struct ControlledSteps {
   double tolerance;
   double h;        ///< of the next step; start anywhere
   double longest;  ///< arc: steps grow no longer, so that nothing is jumped over
-  [[no_unique_address]] Integrator integrator = {};
 
   template <IndexField F, class Ray, class... Tangent>
-  void step(const F& field, double length, Ray& ray, Tangent&... tangent) const {
-    integrator.step(field, ray, tangent..., length / 2);
-    integrator.step(field, ray, tangent..., length / 2);
+  static void step(const F& field, double h, Ray& ray, Tangent&... tangent) {
+    Integrator::step(field, ray, tangent..., h / 2);
+    Integrator::step(field, ray, tangent..., h / 2);
     restore_index(field, ray, tangent...);
   }
 
@@ -79,8 +77,9 @@ struct ControlledSteps {
       Ray halves = ray;
       const double tried = std::min(h, longest_h), error = tried_error(field, tried, ray, halves);
       // NaN shortens the step too.
-      const double factor =
-          error <= tolerance * 1e9 ? 0.9 * std::pow(error / tolerance, -1.0 / integrator.order) : 0;
+      const double factor = error <= tolerance * 1e9
+                                ? 0.9 * std::pow(error / tolerance, -1.0 / Integrator::order)
+                                : 0;
       h = tried * std::clamp(factor, 0.2, 4.0);
       if (!(error <= tolerance)) continue;
       if constexpr (sizeof...(tangent) == 0)
@@ -97,17 +96,19 @@ struct ControlledSteps {
  private:
   /// NaN for a step so short that coordinates cannot tell it.
   template <IndexField F, class Ray>
-  double tried_error(const F& field, double tried, const Ray& ray, Ray& halves) const {
+  static double tried_error(const F& field, double h, const Ray& ray, Ray& halves) {
     Ray whole = ray;
-    integrator.step(field, whole, tried);
+    Integrator::step(field, whole, h);
     restore_index(field, whole);
-    step(field, tried, halves);
+    step(field, h, halves);
+    // restored to an index below 0 a ray would turn round
+    if (!(halves.v.dot(ray.v) > 0)) return std::numeric_limits<double>::quiet_NaN();
     const double rounding = 4 * std::numeric_limits<double>::epsilon() * halves.x.norm();
-    const double length = ray.v.norm() * tried;
+    const double length = ray.v.norm() * h;
     if (!(length > rounding)) return std::numeric_limits<double>::quiet_NaN();
     const double apart = std::max((whole.x - halves.x).norm() - rounding, 0.0);  // NaN stays
     const double angle = (whole.v.normalized() - halves.v.normalized()).norm();
-    return (apart / length + angle) / ((1 << integrator.order) - 1);
+    return (apart / length + angle) / ((1 << Integrator::order) - 1);
   }
 };
 

@@ -24,9 +24,10 @@ class SameSides {
 
   /// Whether the curve meets no surface on its way, also between the steps that are asked about.
   bool holds(const RayField& field, const Vec3& from, const Connection& curve) const {
-    LoggedSteps steps({Sharma(), curve.sigma / curve.steps}, false);
+    const RaySteps steps{Sharma(), curve.sigma / curve.steps};
+    RayLog log(steps, false);
     RayState ray = start_ray(field, from, curve.start_direction);
-    field.follow(surfaces_, {curve.arc_length, location_}, steps, ray);
+    field.follow(surfaces_, {curve.arc_length, location_}, log, ray);
     return ray.arc_length > (1 - 1e-6) * curve.arc_length;  // its end may be on one
   }
 

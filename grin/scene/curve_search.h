@@ -12,7 +12,7 @@ namespace flatspeckle::grin {
 
 /// The curves between two points as keys have them.
 struct CurveValues {
-  std::vector<double> connect;
+  std::vector<double> connect{};
   std::int64_t trials = 1000;
 };
 

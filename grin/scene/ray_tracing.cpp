@@ -41,20 +41,20 @@ class Tracer {
   }
 
   TracedRay trace(std::size_t number, const RayStart& start) const {
-    LoggedSteps steps(steps_, path_points_ > 0);
+    RayLog log(steps_, path_points_ > 0);
     RayState ray{start.x, index_at(scene_, start.x) * start.direction};
-    steps.start(ray);
+    log.start(ray);
     TracedRay traced{.first = invariants(ray)};
-    const TraceEnd end = follow(number, steps, ray, traced.steps);
+    const TraceEnd end = follow(number, log, ray, traced.steps);
     traced.end = ray;
     traced.last = invariants(ray);
-    traced.index_mismatch = steps.index_mismatch();
+    traced.index_mismatch = log.index_mismatch();
     traced.status = end.stop == Stop::length          ? RayStatus::length
                     : end.surface < number_of_stops() ? RayStatus::surface
                                                       : RayStatus::edge_of_grid;
     const bool is_stop = traced.status == RayStatus::surface;
     traced.surface = static_cast<std::uint64_t>(is_stop ? end.surface : number_of_stops());
-    if (path_points_ > 0) traced.path = steps.path().points(path_points_);
+    if (path_points_ > 0) traced.path = log.path().points(path_points_);
     return traced;
   }
 
@@ -65,14 +65,13 @@ class Tracer {
   }
 
   /// From rim to rim, until the ray ends.
-  TraceEnd follow(std::size_t number, LoggedSteps& steps, RayState& ray,
-                  std::uint64_t& made) const {
+  TraceEnd follow(std::size_t number, RayLog& log, RayState& ray, std::uint64_t& made) const {
     constexpr int most_rims = 100'000;
     if (leaves_grid(ray)) return {.stop = Stop::surface, .surface = number_of_stops()};
     for (int i = 0; i < most_rims; ++i) {
       const RayField& field = is_outside(ray) ? *outside_ : *inside_;
       const TraceLimits limits{stops_.max_length - ray.arc_length, stops_.location};
-      const TraceEnd end = field.follow(surfaces_, limits, steps, ray);
+      const TraceEnd end = field.follow(surfaces_, limits, log, ray);
       made += static_cast<std::uint64_t>(end.steps);
       if (end.stop == Stop::lost) throw lost(number, end, ray);
       const bool at_rim = scene_.rim && end.surface + 1 == static_cast<int>(surfaces_.size());

@@ -12,18 +12,18 @@ namespace flatspeckle::grin {
 
 /// What a picture is of, as keys have it.
 struct RenderValues {
-  IndexFieldValues field;
-  StageValues stage;
-  LightValues lights;
-  SensorValues sensor;
-  std::vector<double> path_bins;
-  std::optional<double> length_unit, step, max_length;
+  IndexFieldValues field{};
+  StageValues stage{};
+  LightValues lights{};
+  SensorValues sensor{};
+  std::vector<double> path_bins{};
+  std::optional<double> length_unit = {}, step = {}, max_length = {};
   bool random_phase = false;
 };
 /// And how it is made.
 struct RenderRequestValues {
   std::string method = "bidirectional";
-  std::optional<double> photon_radius;
+  std::optional<double> photon_radius = {};
   std::int64_t max_scatterings = 0;
 };
 

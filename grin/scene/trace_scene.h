@@ -7,10 +7,10 @@ namespace flatspeckle::grin {
 
 /// Rays through an index field, or the curves between two points of it, as keys have them.
 struct TraceValues {
-  IndexFieldValues field;
-  RayStartValues starts;
-  RayStopValues stops;
-  CurveValues curves;
+  IndexFieldValues field{};
+  RayStartValues starts{};
+  RayStopValues stops{};
+  CurveValues curves{};
   std::int64_t path_points = 0;
   double length_unit = 1;
 };

@@ -6,24 +6,11 @@
 
 namespace flatspeckle::grin {
 
-namespace {
-
-/// Where rays end on a sphere, steps that reach past a field's rim there should stay smooth.
-std::unique_ptr<const RayField> ray_field_within(const AnyIndexField& field,
-                                                 const Surface& container) {
-  const Sphere* const end = std::get_if<Sphere>(&container);
-  if (!end) return make_ray_field(field);
-  return std::visit(
-      [&](const auto& of) {
-        if constexpr (requires { smooth_within(of, *end); })
-          return make_ray_field(smooth_within(of, *end));
-        else
-          return make_ray_field(of);
-      },
-      field);
+std::unique_ptr<const RayField> make_ray_field(const AnyIndexField& field, const Surface* end) {
+  constexpr decltype(&make_ray_field) in_file[ray_field_files] = {ray_field_in<0>, ray_field_in<1>,
+                                                                  ray_field_in<2>};
+  return in_file[field.index() % ray_field_files](field, end);
 }
-
-}  // namespace
 
 CurvedSpace::CurvedSpace(const AnyIndexField& field, const Stage& stage,
                          const CurvedSpaceOptions& options)
@@ -38,7 +25,7 @@ CurvedSpace::CurvedSpace(const AnyIndexField& field, const Stage& stage,
                                .start = {.chord_share = 0.2},
                                .tolerance = 1e-8,
                                .count_caustics = false}})),
-      field_(ray_field_within(field, container())) {}
+      field_(make_ray_field(field, &container())) {}
 
 std::unique_ptr<const CurvedSpace> CurvedSpace::frozen(double phase) const {
   return std::unique_ptr<const CurvedSpace>(new CurvedSpace(setup_, field_->frozen(phase)));

@@ -31,8 +31,8 @@ class RayField {
   virtual IndexHessian hessian(const Vec3& x) const = 0;
 
   /// trace().
-  virtual TraceEnd follow(std::span<const Surface> surfaces, const TraceLimits& limits,
-                          LoggedSteps& steps, RayState& ray) const = 0;
+  virtual TraceEnd follow(std::span<const Surface> surfaces, const TraceLimits& limits, RayLog& log,
+                          RayState& ray) const = 0;
 
   /// CurvedLeg::go(), with a tangent where there is one.
   virtual LegStop fly(const LegRoom& room, double longest, double& weight, RandomStream& random,
@@ -56,6 +56,14 @@ class RayField {
   virtual std::unique_ptr<const RayField> frozen(double phase) const = 0;
 };
 
-std::unique_ptr<const RayField> make_ray_field(const AnyIndexField& field);
+/// end: of the rays, where they end on one surface.
+std::unique_ptr<const RayField> make_ray_field(const AnyIndexField& field,
+                                               const Surface* end = nullptr);
+
+/// Fields are compiled in so many files: ray_field_N.cpp has those whose number in the list has the
+/// remainder N, and makes nothing of others.
+inline constexpr std::size_t ray_field_files = 3;
+template <std::size_t file>
+std::unique_ptr<const RayField> ray_field_in(const AnyIndexField& field, const Surface* end);
 
 }  // namespace flatspeckle::grin

@@ -2,6 +2,6 @@
 
 namespace flatspeckle::grin {
 
-template std::unique_ptr<const RayField> ray_field_in_file<0>(const AnyIndexField& field);
+template std::unique_ptr<const RayField> ray_field_in<0>(const AnyIndexField&, const Surface*);
 
 }  // namespace flatspeckle::grin

@@ -17,10 +17,14 @@ class RayFieldOf final : public RayField {
   IndexGradient gradient(const Vec3& x) const override { return field_.gradient(x); }
   IndexHessian hessian(const Vec3& x) const override { return field_.hessian(x); }
 
-  TraceEnd follow(std::span<const Surface> surfaces, const TraceLimits& limits, LoggedSteps& steps,
+  TraceEnd follow(std::span<const Surface> surfaces, const TraceLimits& limits, RayLog& log,
                   RayState& ray) const override {
-    const TraceEnd end = trace(field_, surfaces, limits, steps, ray);
-    steps.end(field_, ray);
+    const auto by = [&]<class Integrator>(const Integrator&) {
+      LoggedSteps<Integrator> steps(log);
+      return trace(field_, surfaces, limits, steps, ray);
+    };
+    const TraceEnd end = std::visit(by, log.steps().integrator);
+    log.end(field_, ray);
     return end;
   }
 
@@ -62,18 +66,26 @@ class RayFieldOf final : public RayField {
   F field_;
 };
 
-/// Fields are compiled in so many files: each those of a remainder of their number in the list.
-inline constexpr std::size_t ray_field_files = 4;
+/// A field as it is for rays that end on this surface: steps that reach past it stay smooth.
+template <IndexField F>
+std::unique_ptr<const RayField> ray_field_within(const F& field, const Surface* end) {
+  if constexpr (requires { smooth_within(field, Sphere()); })
+    if (const Sphere* sphere = end ? std::get_if<Sphere>(end) : nullptr)
+      return std::make_unique<RayFieldOf<F>>(smooth_within(field, *sphere));
+  return std::make_unique<RayFieldOf<F>>(field);
+}
 
-/// Nothing for a field of another file.
-template <std::size_t remainder, std::size_t number = remainder>
-std::unique_ptr<const RayField> ray_field_in_file(const AnyIndexField& field) {
+template <std::size_t file, std::size_t number>
+std::unique_ptr<const RayField> ray_field_from(const AnyIndexField& field, const Surface* end) {
   if constexpr (number < std::variant_size_v<AnyIndexField>) {
-    using F = std::variant_alternative_t<number, AnyIndexField>;
-    if (const F* of = std::get_if<F>(&field)) return std::make_unique<RayFieldOf<F>>(*of);
-    return ray_field_in_file<remainder, number + ray_field_files>(field);
+    if (const auto* of = std::get_if<number>(&field)) return ray_field_within(*of, end);
+    return ray_field_from<file, number + ray_field_files>(field, end);
   }
   return nullptr;
+}
+template <std::size_t file>
+std::unique_ptr<const RayField> ray_field_in(const AnyIndexField& field, const Surface* end) {
+  return ray_field_from<file, file>(field, end);
 }
 
 }  // namespace flatspeckle::grin

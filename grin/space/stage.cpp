@@ -29,9 +29,8 @@ Box bounds(const Plane&) {
 double most_scatterings(const ScatteringMedium& medium, const Surface& within, double density) {
   const auto [low, high] = bounds(within);
   const double depth = medium.mu_s * density * (high - low).minCoeff() / 2;
-  const double g =
-      medium.phase.kind == SpacePhaseFunction::Kind::henyey_greenstein ? medium.phase.g : 0;
-  return std::min(1.5 * depth * depth * (1 - g), 4 / (1 - medium.albedo()));
+  return std::min(1.5 * depth * depth * (1 - medium.phase.mean_cosine()),
+                  4 / (1 - medium.albedo()));
 }
 
 void check_path_lengths(const ScatteringMedium& medium, const Surface& within, double density,

@@ -43,7 +43,7 @@ inline RenderScene van_de_hulst(Face face) {
   ScatteringMedium medium;
   medium.mu_s = 90;
   medium.mu_a = 10;
-  medium.phase = {SpacePhaseFunction::Kind::henyey_greenstein, 0.75};
+  medium.phase = {HgPhase{0.75}};
   return slab(medium, 0.02, 0.5, face);
 }
 

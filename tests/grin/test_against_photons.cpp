@@ -27,24 +27,23 @@ TwoScenes foggy_sphere() {
                          .pixels = {3, 2},
                          .acceptance = pi / 2};
   const Vec3 light(0.2, -0.1, -0.4);
-  return {
-      .scene = {.field = Homogeneous{0.3},
-                .step = 0.1,
-                .max_length = 100,
-                .stage = {.boundary = Sphere{},
-                          .medium = {.mu_s = 2.5,
-                                     .mu_a = 0.3,
-                                     .phase = {SpacePhaseFunction::Kind::henyey_greenstein, 0.6}}},
-                .lights = {PointLight{.x = light, .power = 3}},
-                .sensor = cap,
-                .bins = {1.5, 4.5, 5}},
-      .walk = {.boundary = {Vec3::Zero(), Vec3::Zero(), 1},
-               .medium =
-                   {.mu_s = 2.5, .mu_a = 0.3, .law = WalkMedium::Law::henyey_greenstein, .g = 0.6},
-               .inside = 1.3},
-      .source = point_source(light),
-      .power = 3,
-      .sensor = area_sensor(cap, {0, 0, 1}, 1)};
+  return {.scene = {.field = Homogeneous{0.3},
+                    .step = 0.1,
+                    .max_length = 100,
+                    .stage = {.boundary = Sphere{},
+                              .medium = {.mu_s = 2.5, .mu_a = 0.3, .phase = {HgPhase{0.6}}}},
+                    .lights = {PointLight{.x = light, .power = 3}},
+                    .sensor = cap,
+                    .bins = {1.5, 4.5, 5}},
+          .walk = {.boundary = {Vec3::Zero(), Vec3::Zero(), 1},
+                   .medium = {.mu_s = 2.5,
+                              .mu_a = 0.3,
+                              .law = WalkMedium::Law::henyey_greenstein,
+                              .g = 0.6},
+                   .inside = 1.3},
+          .source = point_source(light),
+          .power = 3,
+          .sensor = area_sensor(cap, {0, 0, 1}, 1)};
 }
 
 /// A glass ball that scatters in thin fog, a beam past its centre, seen by direction.
@@ -57,9 +56,7 @@ TwoScenes glass_ball() {
                     .stage = {.boundary = Box{{-2, -2, -2}, {2, 2, 2}},
                               .medium = {.mu_s = 0.3},
                               .body = Body{Sphere{{0.1, 0, 0}, 1},
-                                           {.mu_s = 0.8,
-                                            .mu_a = 0.1,
-                                            .phase = {SpacePhaseFunction::Kind::rayleigh}}}},
+                                           {.mu_s = 0.8, .mu_a = 0.1, .phase = {RayleighPhase{}}}}},
                     .lights = {BeamLight{{0, 0, -2}, {0, 0, 1}, 0.7}},
                     .sensor = far},
           .walk = {.boundary = {{-2, -2, -2}, {2, 2, 2}},
@@ -87,10 +84,7 @@ TwoScenes luneburg_ball() {
                 .max_length = 100,
                 .stage = {.boundary = Box{{-1.5, -1.5, -1.5}, {1.5, 1.5, 1.5}},
                           .medium = {.mu_s = 0.1},
-                          .body =
-                              Body{Sphere{},
-                                   {.mu_s = 0.7,
-                                    .phase = {SpacePhaseFunction::Kind::henyey_greenstein, 0.5}}}},
+                          .body = Body{Sphere{}, {.mu_s = 0.7, .phase = {HgPhase{0.5}}}}},
                 .lights = {BeamLight{{0, 0, -1.5}, {0, 0, 1}, 0.8}},
                 .sensor = wall},
       .walk = {.boundary = {{-1.5, -1.5, -1.5}, {1.5, 1.5, 1.5}},

@@ -151,8 +151,7 @@ double sum_of_weights(const Transport& transport, const WholePath& path, int& st
 constexpr double radius = 1.5;
 
 Stage foggy_ball() {
-  return {Sphere{Vec3::Zero(), radius},
-          {1.2, 0.1, {SpacePhaseFunction::Kind::henyey_greenstein, 0.4}}};
+  return {Sphere{Vec3::Zero(), radius}, {1.2, 0.1, {HgPhase{0.4}}}};
 }
 
 Transport transport_of(const CurvedSpace& space, const Stage& stage, const Light& light,

@@ -122,9 +122,7 @@ TEST_CASE("the grid finds the points within the radius, each once") {
 
 TEST_CASE("the photon map of a furnace is 1, but for the photons missing beyond the wall") {
   const double mu = 1.5, n = 1.4;
-  const RenderScene scene =
-      furnace(Homogeneous{n - 1},
-              {.mu_s = mu, .phase = {SpacePhaseFunction::Kind::henyey_greenstein, 0.6}});
+  const RenderScene scene = furnace(Homogeneous{n - 1}, {.mu_s = mu, .phase = {HgPhase{0.6}}});
   for (const double radius : {0.35, 0.15}) {
     const double expected = blurred_furnace([&](double) { return n; }, mu, radius);
     CHECK(expected < 1 - 0.06 * radius);
@@ -135,7 +133,7 @@ TEST_CASE("the photon map of a furnace is 1, but for the photons missing beyond 
 TEST_CASE("the photon map in curved space counts L/n^2") {
   const double mu = 1.5, radius = 0.25;
   const RenderScene scene = furnace(Fisheye({.centre_excess = 1, .radius = 0.6}),
-                                    {.mu_s = mu, .phase = {SpacePhaseFunction::Kind::rayleigh}});
+                                    {.mu_s = mu, .phase = {RayleighPhase{}}});
   const double expected =
       blurred_furnace([](double r) { return 2 / (1 + r * r / 0.36); }, mu, radius);
   CHECK(std::abs(expected - blurred_furnace([](double) { return 1; }, mu, radius)) > 0.04);
@@ -169,7 +167,7 @@ RenderScene beam_in_fog(bool ball) {
   scene.stage.boundary = Box{{-2, -2, -2}, {2, 2, 2}};
   scene.stage.medium.mu_s = 0.3;
   scene.stage.medium.mu_a = 0.05;
-  scene.stage.medium.phase = {SpacePhaseFunction::Kind::henyey_greenstein, 0.5};
+  scene.stage.medium.phase = {HgPhase{0.5}};
   if (ball) {
     Body body;
     body.surface = Sphere{};

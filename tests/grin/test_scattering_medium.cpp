@@ -1,7 +1,9 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <numbers>
+#include <sstream>
 #include <unistd.h>
 
 #include <doctest/doctest.h>
@@ -22,15 +24,51 @@ namespace flatspeckle::grin {
 namespace {
 
 using std::numbers::pi;
-using Kind = SpacePhaseFunction::Kind;
+/// A file that is there as long as this is.
+class TableFile {
+ public:
+  explicit TableFile(const std::string& text)
+      : path_(std::filesystem::temp_directory_path() /
+              ("flatspeckle-phase-" + std::to_string(::getpid()) + ".csv")) {
+    std::ofstream(path_) << text;
+  }
+  ~TableFile() { std::filesystem::remove(path_); }
+  std::string path() const { return path_.string(); }
+
+ private:
+  std::filesystem::path path_;
+};
+
+TablePhase table_phase(const std::string& text) {
+  return TablePhase(AngleTable("phase_table", TableFile(text).path()));
+}
+
+/// Denser where that bends.
+std::string table_text(double g, int intervals) {
+  std::ostringstream text;
+  text.precision(17);
+  text << "angle,value\n";
+  for (int i = 0; i <= intervals; ++i) {
+    const double angle = pi * std::pow(1.0 * i / intervals, 2);
+    text << angle << ',' << 7 * HenyeyGreenstein<3>{g}.density(angle) << '\n';
+  }
+  return text.str();
+}
+
+const char* const coarse = "angle,value\n0,30\n0.4,10\n1,0\n1.3,0\n2.2,5\n3.14159,1\n";
 
 const SpacePhaseFunction phases[] = {
     {},
-    {Kind::rayleigh},
-    {Kind::henyey_greenstein, 0},
-    {Kind::henyey_greenstein, 0.85},
-    {Kind::henyey_greenstein, -0.6},
-    {Kind::henyey_greenstein, 0.99},
+    {RayleighPhase{}},
+    {HgPhase{0}},
+    {HgPhase{0.85}},
+    {HgPhase{-0.6}},
+    {HgPhase{0.99}},
+    {TwoTermPhase{{0.9}, {-0.4}, 0.8}},
+    {TwoTermPhase{{0.7}, {0.1}, 0}},
+    {table_phase("angle,value\n0,1\n3.14159,0\n")},
+    {table_phase(coarse)},
+    {table_phase(table_text(0.9, 300))},
 };
 const Vec3 axes[] = {Vec3::UnitZ(), -Vec3::UnitZ(), Vec3(0.6, 0, -0.8), Vec3(-2, 3, 1).normalized(),
                      Vec3(0.8, -0.6, 0)};
@@ -53,7 +91,7 @@ TEST_CASE("phase functions integrate to 1, and their mean cosine is g") {
           0, pi);
     };
     CHECK(moment(0) == doctest::Approx(1).epsilon(1e-9));
-    CHECK(moment(1) == doctest::Approx(phase.g).epsilon(1e-8));
+    CHECK(moment(1) == doctest::Approx(phase.mean_cosine()).epsilon(1e-8));
   }
 }
 
@@ -64,7 +102,8 @@ TEST_CASE("scattered directions follow the phase function in angle and azimuth")
     const Vec3 axis = axes[seed % std::size(axes)];
     const Frame across = frame_across(axis);
     std::vector<double> edges, counts(polar * around), probabilities;
-    for (int i = 0; i <= polar; ++i) edges.push_back(angle_at(1.0 * i / polar, phase.g));
+    for (int i = 0; i <= polar; ++i)
+      edges.push_back(angle_at(1.0 * i / polar, phase.mean_cosine()));
     RandomStream random(++seed, 81, 0);
     for (int i = 0; i < samples; ++i) {
       const Vec3 d = phase.sample(axis, random);
@@ -85,8 +124,48 @@ TEST_CASE("scattered directions follow the phase function in angle and azimuth")
   }
 }
 
+TEST_CASE("two terms of which one has no share, or that are equal, are henyey_greenstein") {
+  const HgPhase hg{0.6};
+  for (const TwoTermPhase& phase : {TwoTermPhase{{0.6}, {-0.3}, 1}, TwoTermPhase{{0.2}, {0.6}, 0},
+                                    TwoTermPhase{{0.6}, {0.6}, 0.4}})
+    for (const double cosine : {-1.0, -0.3, 0.2, 0.95, 1.0})
+      CHECK(phase.density(cosine) == doctest::Approx(hg.density(cosine)).epsilon(1e-14));
+}
+
+TEST_CASE("a table of henyey_greenstein is that, in any unit") {
+  const HgPhase hg{0.8};
+  const TablePhase table = table_phase(table_text(hg.g, 2000));
+  CHECK(table.mean_cosine() == doctest::Approx(hg.g).epsilon(1e-5));
+  for (const double cosine : {-1.0, -0.3, 0.2, 0.95, 0.999, 1.0})
+    CHECK(table.density(cosine) == doctest::Approx(hg.density(cosine)).epsilon(1e-5));
+}
+
+TEST_CASE("tables that are none are refused by their key") {
+  const auto refusal = [](const std::string& text) {
+    const TableFile file(text);
+    Keys keys;
+    MediumValues values{.mu_s = 1, .phase = TablePhaseValues::word};
+    add_keys(keys, values, "body_");
+    values.of<TablePhaseValues>().phase_table = file.path();
+    try {
+      make_medium(keys, values);
+      return std::string();
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+  };
+  CHECK(refusal(coarse).empty());
+  for (const char* text :
+       {"", "angle,size\n0,1\n3.1416,1\n", "angle,value\n0,1\nx,1\n", "angle,value\n0,1\n3,1\n",
+        "angle,value\n0,1\n2,1\n1,2\n3.1416,1\n", "angle,value\n0,1\n3.1416,-1\n",
+        "angle,value\n0,0\n3.1416,0\n", "angle,value\n0,1e200\n3.1416,1\n"}) {
+    CHECK(refusal(text).starts_with("body_phase_table"));
+    CHECK(refusal(text).find('\n') == std::string::npos);
+  }
+}
+
 TEST_CASE("directions stay of length 1 over long walks, also about the poles of the frame") {
-  const SpacePhaseFunction phase{Kind::henyey_greenstein, 0.999};
+  const SpacePhaseFunction phase{HgPhase{0.999}};
   for (Vec3 d : axes) {
     RandomStream random(1, 82, 0);
     for (int i = 0; i < 20000; ++i) d = phase.sample(d, random);

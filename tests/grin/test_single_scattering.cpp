@@ -46,7 +46,7 @@ double scattered_at(const FisheyeCurves& curves, const ScatteringMedium& medium,
     const Vec3 arriving = curves.direction(circle.at(angle), circle.along(angle));
     const double r = curves.radius() * std::sin(angle);
     // n_x^2 |J| = R^2 sin^2
-    sum += henyey_greenstein(medium.phase.g, arriving.dot(onwards)) *
+    sum += henyey_greenstein(medium.phase.mean_cosine(), arriving.dot(onwards)) *
            std::exp(-medium.mu_t() * length) / (4 * std::numbers::pi * r * r);
   }
   return sum;

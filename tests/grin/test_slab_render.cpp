@@ -39,7 +39,7 @@ TEST_CASE("the errors of short runs in a thick slab hold") {
   ScatteringMedium medium;
   medium.mu_s = 10;
   medium.mu_a = 0.01;
-  medium.phase = {SpacePhaseFunction::Kind::henyey_greenstein, 0.9};
+  medium.phase = {HgPhase{0.9}};
   const RenderScene scene = slab(medium, 10, 50, Face::reflected);
   const double area = 1e4;
   const Rendered exact = rendered(scene, RenderMethod::light, 20000);
