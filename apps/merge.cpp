@@ -46,7 +46,7 @@ std::set<std::string> configs_of(const std::vector<std::string>& folders) {
 
 /// A sweep and what the folders hold of it.
 struct Found {
-  std::unique_ptr<SweepPlan> plan;
+  std::shared_ptr<SweepPlan> plan;
   SweepResults results;
   std::string warnings;
 
@@ -60,7 +60,7 @@ struct Found {
 Found most_of(const std::vector<std::string>& folders, const std::string& command_line) {
   Found most;
   for (const std::string& config : configs_of(folders)) {
-    Found found{std::make_unique<SweepPlan>(), {}, {}};
+    Found found{std::make_shared<SweepPlan>(), {}, {}};
     found.plan->parse_config(config, command_line);
     std::ostringstream warnings;
     found.results = gather(*found.plan, folders, warnings);
