@@ -49,7 +49,9 @@ std::vector<const DatasetTable*> all_tables() {
                                              &grin::area_table,
                                              &grin::directional_table,
                                              &grin::render_table};
+#ifdef FLATSPECKLE_BENCH
   for (const DatasetTable* table : bench_tables()) tables.push_back(table);
+#endif
   tables.push_back(&state_table);
   return tables;
 }

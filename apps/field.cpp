@@ -70,25 +70,24 @@ mc::FieldDemand demand_of(const Keys& keys, const FieldKeys& values) {
   return demand;
 }
 
-/// Lights: the reference light, rotated by each tilt.
-void settle_tilts(SceneSpec& spec) {
-  if (spec.tilts.empty()) return;
-  if (spec.light_angles.size() != 1)
+/// The reference light, rotated by each tilt.
+std::vector<double> rotated(const std::vector<double>& lights, const std::vector<double>& tilts) {
+  if (tilts.empty()) return lights;
+  if (lights.size() != 1)
     throw InputError("tilts rotate one light: give one angle in light_angles");
-  const double reference = spec.light_angles.front();
-  spec.light_angles.clear();
-  for (double tilt : spec.tilts) spec.light_angles.push_back(reference + tilt);
+  std::vector<double> angles;
+  for (double tilt : tilts) angles.push_back(lights.front() + tilt);
+  return angles;
 }
 
 Scene field_scene(const Keys& keys, SceneSpec& spec) {
   if (spec.domain == "slab")
     throw InputError("domain", spec.domain,
                      "fields need a box: an infinite slab's speckles are infinitely fine");
-  const auto light = keys.read(spec.light_angles), tilts = keys.read(spec.tilts);
-  settle_tilts(spec);
+  auto lights = rotated(keys.read(spec.light_angles), keys.read(spec.tilts));
+  std::swap(spec.light_angles, lights);
   Scene scene = make_scene(keys, spec);
-  spec.light_angles = light;  // the keys stay as they were given
-  spec.tilts = tilts;
+  std::swap(spec.light_angles, lights);  // the keys stay as they were given
   scene.request = mc::field_request(scene.request.lights, scene.request.views);
   return scene;
 }
@@ -145,7 +144,8 @@ int field(const Arguments& arguments) {
   check_memory(scene, demand);
   if (!command.settle()) return ExitStatus::done;
   catch_interrupts();
-  return session.once(ResultFile::Storage::disk, [&](ResultFile& file) -> std::optional<Made> {
+  ResultFile result(session.out(), ResultFile::Storage::disk);
+  return session.once(std::move(result), [&](ResultFile& file) -> std::optional<Made> {
     const auto drawn = mc::draw_fields(scene, demand, settings, [](const mc::FieldPlan& chosen) {
       std::printf("%s\n", chosen.describe().c_str());
       std::fflush(stdout);

@@ -4,15 +4,11 @@
 #include <iostream>
 #include <set>
 
+#include "core/keys/number_text.h"
+
 namespace flatspeckle::apps {
 
 namespace {
-
-std::string joined(const std::vector<std::string>& texts, const char* between) {
-  std::string all;
-  for (const std::string& text : texts) all += (all.empty() ? "" : between) + text;
-  return all;
-}
 
 const char* type_of(const Key& key) {
   return key.is_switch()   ? "switch"
@@ -39,9 +35,9 @@ std::string quoted(const std::string& text) {
 }
 
 std::string quoted(const std::vector<std::string>& texts) {
-  std::string all;
-  for (const std::string& text : texts) all += (all.empty() ? "" : ", ") + quoted(text);
-  return '[' + all + ']';
+  std::vector<std::string> all;
+  for (const std::string& text : texts) all.push_back(quoted(text));
+  return '[' + joined(all, ", ") + ']';
 }
 
 /// One object for each row.

@@ -46,7 +46,7 @@ std::set<std::string> configs_of(const std::vector<std::string>& folders) {
 
 /// A sweep and what the folders hold of it.
 struct Found {
-  std::unique_ptr<SweepPlan> plan;
+  std::shared_ptr<SweepPlan> plan;
   SweepResults results;
   std::string warnings;
 
@@ -57,17 +57,17 @@ struct Found {
 
 /// The sweep that most points are of: strays may lie among them, and points of a smaller grid that
 /// has grown.
-Found most_of(const std::vector<std::string>& folders) {
-  std::optional<Found> most;
+Found most_of(const std::vector<std::string>& folders, const std::string& command_line) {
+  Found most;
   for (const std::string& config : configs_of(folders)) {
-    Found found{std::make_unique<SweepPlan>(), {}, {}};
-    found.plan->parse_config(config);
+    Found found{std::make_shared<SweepPlan>(), {}, {}};
+    found.plan->parse_config(config, command_line);
     std::ostringstream warnings;
     found.results = gather(*found.plan, folders, warnings);
     found.warnings = warnings.str();
-    if (!most || found.points() > most->points()) most = std::move(found);
+    if (!most.plan || found.points() > most.points()) most = std::move(found);
   }
-  return *std::move(most);
+  return most;
 }
 
 /// Tells of points that are left out because this sweep has no such points.
@@ -123,11 +123,10 @@ int merge(const Arguments& arguments) {
   if (!command.settle()) return ExitStatus::done;
   if (folders.empty()) folders = {shards_of(run.out)};
 
-  auto [owned, results, warnings] = most_of(folders);
+  auto [owned, results, warnings] = most_of(folders, command.text());
   SweepPlan& plan = *owned;
   std::cerr << warnings;
   tell_of_strangers(plan, folders);
-  plan.text = command.text();
   plan.settings.out = run.out;
   if (!partial) require_all(plan, results);
   if (finished_points(plan, results).empty())

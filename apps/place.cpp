@@ -214,23 +214,17 @@ void write_drawing(ResultFile& file, const Drawing& drawing) {
   scene.attribute("depth", drawing.box.depth);
 }
 
-void save_structure(const PlaceKeys& values, const Drawing& drawing, Provenance provenance) {
-  const Stopwatch clock;
-  const auto realizations = static_cast<std::uint64_t>(values.realizations);
-  ResultFile file(values.structure);
-  std::optional<HardDiskFluid> fluid;
-  if (drawing.kind == Kind::equilibrium && drawing.equal_disks())
-    fluid.emplace(drawing.packing(drawing.min_gap), 2 * drawing.radii.front() + drawing.min_gap);
-  write_structure(file, measure(drawing, provenance.seed, realizations), fluid ? &*fluid : nullptr);
-  write_drawing(file, drawing);
-  provenance.plan = "structure factor of drawn placements";
-  provenance.wall_s = clock.seconds();
-  provenance.cpu_s = thread_cpu_seconds();
-  provenance.samples = static_cast<double>(realizations);
-  provenance.converged = true;
-  write_provenance(file, provenance);
-  file.commit();
-  std::printf("wrote %s\n", values.structure.c_str());
+int save_structure(const PlaceKeys& values, const Drawing& drawing, const Session& session) {
+  return session.once(ResultFile(values.structure), [&](ResultFile& file) -> std::optional<Made> {
+    const auto realizations = static_cast<std::uint64_t>(values.realizations);
+    std::optional<HardDiskFluid> fluid;
+    if (drawing.kind == Kind::equilibrium && drawing.equal_disks())
+      fluid.emplace(drawing.packing(drawing.min_gap), 2 * drawing.radii.front() + drawing.min_gap);
+    write_structure(file, measure(drawing, session.seed(), realizations),
+                    fluid ? &*fluid : nullptr);
+    write_drawing(file, drawing);
+    return Made{"structure factor of drawn placements", static_cast<double>(realizations)};
+  });
 }
 
 }  // namespace
@@ -252,8 +246,7 @@ int place(const Arguments& arguments) {
   replace_file(session.out(), std::as_bytes(std::span(text)));
   std::printf("%zu scatterers, packing fraction %.3g\nwrote %s\n", drawing.count,
               drawing.packing(0), session.out().c_str());
-  if (!values.structure.empty()) save_structure(values, drawing, session.provenance());
-  return ExitStatus::done;
+  return values.structure.empty() ? ExitStatus::done : save_structure(values, drawing, session);
 }
 
 }  // namespace flatspeckle::apps

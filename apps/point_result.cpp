@@ -52,7 +52,7 @@ void write_point(ResultFile& file, const PointResult& point, const Scene& scene)
   file.attribute("/", "range_censored", point.range_censored);
   file.attribute("/", "relative_error", point.relative_error);
   file.attribute("/", "reached", point.reached);
-  write_trace(file, "trace", point.trace);
+  write_trace(file, "", point.trace);
 }
 
 PointResult read_point(const ResultReader& file) {
@@ -77,7 +77,7 @@ PointResult read_point(const ResultReader& file) {
           .reached = file.attribute<bool>("/", "reached"),
           .plan = file.attribute<std::string>("/", "plan"),
           .started = file.attribute<std::string>("/", "started"),
-          .trace = read_trace(file, "trace")};
+          .trace = read_trace(file, "")};
 }
 
 }  // namespace flatspeckle::apps

@@ -154,8 +154,8 @@ int solve(const Arguments& arguments) {
   omp_set_num_threads(session.threads());
   const auto solution = solved(values, placement, grid, sensors.points);
   if (grid) catch_interrupts();  // which must not leave the file that a map is written to
-  const auto storage = grid ? ResultFile::Storage::disk : ResultFile::Storage::memory;
-  return session.once(storage, [&](ResultFile& file) -> std::optional<Made> {
+  ResultFile result(session.out(), grid ? ResultFile::Storage::disk : ResultFile::Storage::memory);
+  return session.once(std::move(result), [&](ResultFile& file) -> std::optional<Made> {
     wave::write_solution(file, solution, sensors.angles, sensors.points);
     std::string map_method;
     if (grid) {

@@ -33,8 +33,10 @@ std::span<const SubcommandEntry> subcommands() {
       {"trace", "rays and the curves between two points in a gradient-index field", trace},
       {"render", "pictures of scattering media with a gradient index: 3D refractive path tracing",
        render},
+#ifdef FLATSPECKLE_BENCH
       {"bench",
        "what accuracy costs, where it breaks, what plans leave out: error, stability, plan", bench},
+#endif
       {"keys", "the keys of all subcommands, for programs: json, markdown, completion, dictionary",
        list_keys},
       {"datasets", "what result files hold, as in docs/format.md", datasets}};

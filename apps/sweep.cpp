@@ -8,7 +8,6 @@
 #include "apps/sweep_plan.h"
 #include "apps/sweep_work.h"
 #include "core/error.h"
-#include "core/result/result_file.h"
 #include "core/run/interrupt.h"
 #include "core/run/ranks.h"
 #include "core/run/remote_batches.h"
@@ -91,7 +90,6 @@ void refuse_leftovers(const SweepPlan& plan, const ShardFolder& folder,
 /// Of this process alone, or of rank 0.
 int lead(const SweepPlan& plan, RankServer* server) {
   const std::string& out = plan.settings.out;
-  check_result_path(out);
   ShardFolder folder(shards_of(out));
   if (is_complete(plan, folder)) {
     std::cout << out << " is complete; nothing to resume\n";
@@ -103,8 +101,8 @@ int lead(const SweepPlan& plan, RankServer* server) {
   refuse_foreign_folder(plan, folder, runs);
   folder.make();
   SweepWork work(plan, folder, runs);
-  const PoolEnd end =
-      run_pool(work.list(), {plan.settings.seconds, plan.threads(), "sweep", "points", server});
+  const PoolEnd end = run_pool(
+      work.list(), {plan.settings.seconds, plan.session().threads(), "sweep", "points", server});
   work.save_unfinished();
   return end_sweep(plan, folder, end);
 }
@@ -113,7 +111,7 @@ int lead(const SweepPlan& plan, RankServer* server) {
 void follow(const SweepPlan& plan) {
   ShardFolder none("");
   SweepWork work(plan, none, share_of_runs(plan));
-  work_for_rank_0(work.list(), plan.threads());
+  work_for_rank_0(work.list(), plan.session().threads());
 }
 
 int with_ranks(const SweepPlan& plan) {

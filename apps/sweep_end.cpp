@@ -18,7 +18,7 @@ using Part = ShardFolder::Part;
 
 /// How the whole was made: the costs of all points, and each plan once.
 Provenance made_of(const SweepPlan& plan, const SweepResults& results, double wall_s) {
-  Provenance made = plan.provenance();
+  Provenance made = plan.session().provenance();
   made.identity = plan.identity();
   made.wall_s = wall_s;
   made.converged = true;
@@ -41,7 +41,7 @@ bool is_whole(const SweepResults& results) {
 
 std::string count_text(const SweepPlan& plan, const SweepResults& results) {
   return std::to_string(finished_points(plan, results).size()) + " of " +
-         std::to_string(plan.points.points.size()) + " points";
+         std::to_string(plan.points.count()) + " points";
 }
 
 }  // namespace
@@ -75,14 +75,13 @@ int write_result(const SweepPlan& plan, const SweepResults& results, double wall
   const Provenance made = made_of(plan, results, wall_s);
   print_ranges(plan, results);
   ResultFile file(plan.settings.out);
-  write_provenance(file, made);
   const ResultGroup root(file, sweep_table);
   root.attribute("format", std::uint64_t{2});
   root.attribute("complete", is_whole(results));
   root.attribute("ranks", std::int64_t{ranks().size});
   write_sweep(file, plan, results);
-  file.commit();
-  std::cout << "wrote " << plan.settings.out << " (" << count_text(plan, results) << ")\n";
+  std::cout << count_text(plan, results) << '\n';
+  Session::commit(file, made);
   if (!made.converged) std::cout << "not every point has reached its target error\n";
   return made.converged ? ExitStatus::done : ExitStatus::error_not_reached;
 }

@@ -89,7 +89,7 @@ class SweepWriter {
 
   void write() {
     write_domain(file_, scenes_.front());
-    const bool whole = scenes_.size() == plan_.points.points.size();
+    const bool whole = scenes_.size() == plan_.points.count();
     write_sweep_grid(file_, plan_, scenes_, plan_.points.is_list || !whole);
     write_axes(file_, scenes_.front());
     write_theory();
@@ -176,10 +176,10 @@ class SweepWriter {
     for (std::size_t i = 0; i < points.size(); ++i) {
       const Trace& own = points[i].get().trace;
       of_point.insert(of_point.end(), own.samples.size(), i);
-      for (auto part : {&Trace::wall_s, &Trace::cpu_s, &Trace::samples, &Trace::relative_error})
+      for (const auto& [name, part] : trace_columns)
         (all.*part).insert((all.*part).end(), (own.*part).begin(), (own.*part).end());
     }
-    write_trace(file_, group.empty() ? "trace" : group + "/trace", all);
+    write_trace(file_, group, all);
     out.put("trace/of_point", of_point);
   }
 
@@ -202,7 +202,7 @@ class SweepWriter {
 
 std::vector<std::size_t> finished_points(const SweepPlan& plan, const SweepResults& results) {
   std::vector<std::size_t> points;
-  for (std::size_t point = 0; point < plan.points.points.size(); ++point) {
+  for (std::size_t point = 0; point < plan.points.count(); ++point) {
     bool all = true;
     for (std::size_t method = 0; method < plan.method_words.size(); ++method)
       all = all && results[plan.run(method, point)];

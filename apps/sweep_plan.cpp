@@ -72,27 +72,24 @@ SweepPlan::SweepPlan()
 
 bool SweepPlan::parse(const Arguments& arguments) {
   if (!command_.parse(arguments)) return false;
-  const Session session(command_.text(), command_.keys(), settings, command_.only_prints());
-  text = command_.text();
+  session_.emplace(command_.text(), command_.keys(), settings, command_.only_prints());
   check();
   return command_.settle();
 }
 
-void SweepPlan::parse_config(const std::string& config) {
+void SweepPlan::parse_config(const std::string& config, const std::string& command_line) {
   command_.parse_config(config);
+  session_.emplace(command_line, command_.keys(), settings, true);
   check();
 }
 
 /// All that can be refused: every point must make a scene that the method can take.
 void SweepPlan::check() {
   const Keys& keys = command_.keys();
-  seed = seed_of(keys, settings);
-  threads();
   mc_stop_ = wave_stop_ = stop_rule(keys, settings);
   if (keys.read(methods.wave_samples)) wave_stop_ = stop_rule(keys, settings, methods.wave_samples);
   for (StopRule* stop : {&mc_stop_, &wave_stop_})
     if (!stop->samples && !stop->target_error) stop->target_error = default_target_error;
-  keys.read(settings.resume);
   const std::string& word = keys.read(method_);
   method_words = word == "both" ? std::vector<std::string>{"mc", "wave"} : std::vector{word};
   if (!keys.read(share_).empty()) share = share_of(share_);
@@ -102,32 +99,38 @@ void SweepPlan::check() {
   check_points();
 }
 
-/// Where points come from a table, says which row cannot be used.
 void SweepPlan::check_points() {
+  each_run([](std::size_t, const Keyed<SceneSpec>&) {});  // the values of all, before any scene
   Neglected neglected;
+  each_run([&](std::size_t run, const Keyed<SceneSpec>& point) {
+    const Scene scene = scene_of(point);
+    command_.keys().join_reads(point.keys);
+    check_scene(scene);
+    if (method(run) == "wave") note_rounding(scene);
+    if (method(run) == "wave" || run == 0) estimation(run, scene);
+    if (method(run) == "mc") neglected.add(scene);
+  });
+  note(neglected);
+}
+
+/// Where points come from a table, says which row cannot be used.
+void SweepPlan::each_run(
+    const std::function<void(std::size_t run, const Keyed<SceneSpec>&)>& use) const {
   for (std::size_t run = 0; run < runs(); ++run) {
     try {
-      with_point(run, [&](const Keyed<SceneSpec>& point) {
-        const Scene scene = scene_of(point);
-        command_.keys().join_reads(point.keys);
-        check_scene(scene);
-        if (method(run) == "wave") note_rounding(scene);
-        if (method(run) == "wave" || run == 0) estimation(run, scene);
-        if (method(run) == "mc") neglected.add(scene);
-      });
+      with_point(run, [&](const Keyed<SceneSpec>& point) { use(run, point); });
     } catch (const InputError& error) {
       if (lists_.points.empty()) throw;
-      const std::size_t row = run % points.points.size() + 1;
+      const std::size_t row = point_of(run) + 1;
       throw InputError(lists_.points + ", row " + std::to_string(row) + ": " + error.what());
     }
   }
-  note(neglected);
 }
 
 void SweepPlan::with_point(std::size_t run,
                            const std::function<void(const Keyed<SceneSpec>&)>& use) const {
   const Keyed<SceneSpec> point(base);
-  points.set(points.points[run % points.points.size()], point.keys);
+  points.set(point_of(run), point.keys);
   point.keys.check();
   use(point);
 }
@@ -145,26 +148,16 @@ Scene SweepPlan::scene(std::size_t run) const {
 }
 
 Estimation SweepPlan::estimation(std::size_t run, const Scene& scene) const {
-  return method(run) == "mc" ? mc_estimation(scene, reversed_, seed)
-                             : wave_estimation(scene, methods.wave_tolerance, seed);
+  return method(run) == "mc" ? mc_estimation(scene, reversed_, session().seed())
+                             : wave_estimation(scene, methods.wave_tolerance, session().seed());
 }
 
 StopRule SweepPlan::stop(std::size_t run) const {
   return method(run) == "wave" ? wave_stop_ : mc_stop_;
 }
 
-Provenance SweepPlan::provenance() const {
-  Provenance made;
-  made.command_line = text;
-  made.config = command_.keys().config();
-  made.seed = seed;
-  made.threads = threads();
-  made.started = utc_now();
-  return made;
-}
-
 std::string SweepPlan::name(std::size_t run) const {
-  return method(run) + '_' + points.name(points.points[run % points.points.size()]);
+  return method(run) + '_' + points.name(point_of(run));
 }
 
 /// Of the sweep's keys all but those that say which points and methods there are.
@@ -178,7 +171,7 @@ std::string SweepPlan::identity(std::size_t run) const {
 std::string SweepPlan::identity() const {
   std::string all = header() + command_.keys().config(keys_of_the_work);
   if (points.is_list)
-    for (const SweepPoint& point : points.points) all += points.name(point) + '\n';
+    for (std::size_t point = 0; point < points.count(); ++point) all += points.name(point) + '\n';
   return all;
 }
 

@@ -30,27 +30,23 @@ class SweepPlan {
   /// From the command line. False if there is nothing to run (--help). Throws InputError for
   /// whatever is wrong, with any of the points too.
   bool parse(const Arguments& arguments);
-  /// From a resolved configuration.
-  void parse_config(const std::string& config);
+  /// From a resolved configuration, for a result that is made otherwise: by this command line.
+  void parse_config(const std::string& config, const std::string& command_line = "");
 
   SceneSpec base;
   RunSettings settings;
   MethodSettings methods;
-  std::string text;  ///< the command line as typed
-  std::uint64_t seed = 0;
   SweepPoints points;
   std::vector<std::string> method_words;  ///< mc, wave or both
   std::optional<SweepShare> share;
 
-  /// Of this process: fewer where it shares its machine with other ranks, once it has joined them.
-  int threads() const { return threads_of(command_.keys(), settings); }
-  std::size_t runs() const { return method_words.size() * points.points.size(); }
+  const Session& session() const { return *session_; }
+  std::size_t runs() const { return method_words.size() * points.count(); }
   std::size_t run(std::size_t method, std::size_t point) const {
-    return method * points.points.size() + point;
+    return method * points.count() + point;
   }
-  const std::string& method(std::size_t run) const {
-    return method_words[run / points.points.size()];
-  }
+  std::size_t point_of(std::size_t run) const { return run % points.count(); }
+  const std::string& method(std::size_t run) const { return method_words[run / points.count()]; }
   Scene scene(std::size_t run) const;
   Estimation estimation(std::size_t run, const Scene& scene) const;
   StopRule stop(std::size_t run) const;
@@ -59,12 +55,11 @@ class SweepPlan {
   std::string identity(std::size_t run) const;
   /// Of the sweep as a whole.
   std::string identity() const;
-  /// How results of it came about, but for plan and costs.
-  Provenance provenance() const;
 
  private:
   void check();
   void check_points();
+  void each_run(const std::function<void(std::size_t run, const Keyed<SceneSpec>&)>& use) const;
   void with_point(std::size_t run, const std::function<void(const Keyed<SceneSpec>&)>& use) const;
   Scene scene_of(const Keyed<SceneSpec>& point) const;
 
@@ -73,6 +68,7 @@ class SweepPlan {
   mc::ReversedPaths reversed_ = mc::ReversedPaths::automatic;
   StopRule mc_stop_, wave_stop_;
   Subcommand command_;
+  std::optional<Session> session_;
 };
 
 }  // namespace flatspeckle::apps

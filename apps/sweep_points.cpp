@@ -33,44 +33,24 @@ std::vector<SweepAxis> given_axes(const Keys& keys, const SweepLists& lists) {
   return axes;
 }
 
-std::vector<SweepPoint> product(const std::vector<SweepAxis>& axes) {
-  constexpr double most_points = 1e5;
-  double count = 1;
-  for (const SweepAxis& axis : axes) count *= static_cast<double>(axis.values.size());
-  if (count > most_points) throw InputError("points of the sweep", count, "must be at most 100000");
-  std::vector<SweepPoint> points(1);
-  for (const SweepAxis& axis : axes) {
-    std::vector<SweepPoint> longer;
-    for (const SweepPoint& point : points) {
-      for (const std::string& value : axis.values) {
-        longer.push_back(point);
-        longer.back().values.push_back(value);
-      }
-    }
-    points = std::move(longer);
-  }
-  return points;
-}
-
 /// A column of the table as an axis: one value for each point.
-void add_column(const Table& table, const std::string& key, std::vector<SweepAxis>& axes) {
+SweepAxis column_axis(const Table& table, const std::string& key) {
   SweepAxis axis{key, texts_of(table.column(key))};
   if (key == "index" && table.has("index_imaginary")) {
     const auto real = table.column("index"), imaginary = table.column("index_imaginary");
     for (std::size_t row = 0; row < real.size(); ++row)
       axis.values[row] = number_text(Complex(real[row], imaginary[row]));
   }
-  axes.push_back(std::move(axis));
+  return axis;
 }
 
 void check_columns(const Table& table, const SweepLists& lists) {
-  std::string words;
-  for (const std::string& key : lists.keys) words += ' ' + key;
   for (const std::string& name : table.names()) {
     if (name == "index_imaginary" && table.has("index")) continue;
     if (std::find(lists.keys.begin(), lists.keys.end(), name) == lists.keys.end())
-      throw InputError("points", lists.points,
-                       "column " + name + ": must be one of index_imaginary" + words);
+      throw InputError(
+          "points", lists.points,
+          "column " + name + ": must be one of index_imaginary " + joined(lists.keys, " "));
   }
 }
 
@@ -80,7 +60,6 @@ SweepPoints listed(const Keys& keys, const SweepLists& lists) {
   if (table.rows() == 0) throw InputError("points", lists.points, "must have at least one row");
   SweepPoints list;
   list.is_list = true;
-  list.points.resize(table.rows());
   const auto given = given_axes(keys, lists);
   for (const std::string& key : lists.keys) {
     const auto beside = std::find_if(given.begin(), given.end(),
@@ -89,34 +68,46 @@ SweepPoints listed(const Keys& keys, const SweepLists& lists) {
     if (beside != given.end() && (table.has(key) || beside->values.size() > 1))
       throw InputError(key, beside->values.back(),
                        "must be one value, or a column of the table of points, not both");
-    if (beside == given.end())
-      add_column(table, key, list.axes);
-    else
-      list.axes.push_back({key, std::vector(table.rows(), beside->values.front())});
-    for (std::size_t row = 0; row < table.rows(); ++row)
-      list.points[row].values.push_back(list.axes.back().values[row]);
+    list.axes.push_back(beside == given.end()
+                            ? column_axis(table, key)
+                            : SweepAxis{key, std::vector(table.rows(), beside->values.front())});
   }
   return list;
 }
 
 void refuse_twins(const SweepPoints& points) {
-  std::set<std::vector<std::string>> seen;
-  for (const SweepPoint& point : points.points)
-    if (!seen.insert(point.values).second)
+  std::set<std::string> seen;
+  for (std::size_t point = 0; point < points.count(); ++point)
+    if (!seen.insert(points.name(point)).second)
       throw InputError("the point " + points.name(point) + " is given twice");
 }
 
 }  // namespace
 
-std::string SweepPoints::name(const SweepPoint& point) const {
-  std::string name;
-  for (std::size_t i = 0; i < axes.size(); ++i)
-    name += (name.empty() ? "" : "_") + axes[i].key + '=' + point.values[i];
-  return name;
+std::size_t SweepPoints::count() const {
+  if (is_list) return axes.front().values.size();
+  std::size_t count = 1;
+  for (const SweepAxis& axis : axes) count *= axis.values.size();
+  return count;
 }
 
-void SweepPoints::set(const SweepPoint& point, const Keys& keys) const {
-  for (std::size_t i = 0; i < axes.size(); ++i) keys.set(axes[i].key, {point.values[i]});
+const std::string& SweepPoints::value(std::size_t axis, std::size_t point) const {
+  if (!is_list)
+    for (std::size_t faster = axes.size() - 1; faster > axis; --faster)
+      point /= axes[faster].values.size();
+  const auto& values = axes[axis].values;
+  return values[point % values.size()];
+}
+
+std::string SweepPoints::name(std::size_t point) const {
+  std::vector<std::string> parts;
+  for (std::size_t i = 0; i < axes.size(); ++i)
+    parts.push_back(axes[i].key + '=' + value(i, point));
+  return joined(parts, "_");
+}
+
+void SweepPoints::set(std::size_t point, const Keys& keys) const {
+  for (std::size_t i = 0; i < axes.size(); ++i) keys.set(axes[i].key, {value(i, point)});
 }
 
 void add_sweep_keys(Keys& keys, SweepLists& lists) {
@@ -138,13 +129,13 @@ void add_sweep_keys(Keys& keys, SweepLists& lists) {
 }
 
 SweepPoints sweep_points(const Keys& keys, const SweepLists& lists) {
-  SweepPoints points;
-  if (keys.read(lists.points).empty()) {
-    points.axes = given_axes(keys, lists);
-    points.points = product(points.axes);
-  } else {
-    points = listed(keys, lists);
-  }
+  const bool is_list = !keys.read(lists.points).empty();
+  SweepPoints points = is_list ? listed(keys, lists) : SweepPoints{given_axes(keys, lists)};
+  constexpr double most_points = 1e5;
+  double count = 1;
+  if (!is_list)
+    for (const SweepAxis& axis : points.axes) count *= static_cast<double>(axis.values.size());
+  if (count > most_points) throw InputError("points of the sweep", count, "must be at most 100000");
   refuse_twins(points);
   return points;
 }

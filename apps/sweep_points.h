@@ -14,21 +14,17 @@ struct SweepAxis {
   std::vector<std::string> values;
 };
 
-/// What one point sets, axis by axis.
-struct SweepPoint {
-  std::vector<std::string> values;
-};
-
 /// The points of a sweep: the product of its axes, last axis fastest, or the rows of a list.
 struct SweepPoints {
-  std::vector<SweepAxis> axes;  ///< with a value at least, in the order of the result
-  std::vector<SweepPoint> points;
+  std::vector<SweepAxis> axes;  ///< in the order of the result; of a list a value for each row
   bool is_list = false;
 
+  std::size_t count() const;
+  const std::string& value(std::size_t axis, std::size_t point) const;
   /// "g=0.5_albedo=1": a name for files.
-  std::string name(const SweepPoint& point) const;
+  std::string name(std::size_t point) const;
   /// Sets the keys of a point.
-  void set(const SweepPoint& point, const Keys& keys) const;
+  void set(std::size_t point, const Keys& keys) const;
 };
 
 /// Lists of values as given on the command line, by key, and a table of points.

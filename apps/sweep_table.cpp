@@ -19,9 +19,8 @@ class SweepTable {
         scene_(plan.scene(points_.front())) {}
 
   void print() const {
-    constexpr std::size_t most = 60;
     note_few();
-    if (points_.size() > most) return;
+    if (points_.size() > most_rows) return;
     print_header();
     for (std::size_t point : points_) print_row(point);
   }
@@ -50,19 +49,15 @@ class SweepTable {
   void print_header() const {
     for (const SweepAxis& axis : plan_.points.axes)
       if (axis.values.size() > 1) std::printf("%13s ", axis.key.c_str());
-    if (!both()) {
-      std::puts(" range q L at C_I = 1/2");
-      return;
-    }
     for (const std::string& method : plan_.method_words)
-      std::printf(" %-24s", ("range q L, " + method).c_str());
-    std::puts(" deviation of C_E, RMS in standard errors");
+      std::printf(" %-24s", both() ? ("range q L, " + method).c_str() : "range q L at C_I = 1/2");
+    std::puts(both() ? " deviation of C_E, RMS in standard errors" : "");
   }
 
   void print_row(std::size_t point) const {
     for (std::size_t i = 0; i < plan_.points.axes.size(); ++i)
       if (plan_.points.axes[i].values.size() > 1)
-        std::printf("%13s ", plan_.points.points[point].values[i].c_str());
+        std::printf("%13s ", plan_.points.value(i, point).c_str());
     for (std::size_t method = 0; method < plan_.method_words.size(); ++method) {
       const PointResult& own = result(method, point);
       const std::string text =
@@ -78,9 +73,8 @@ class SweepTable {
   double rms_deviation(std::size_t point) const {
     double sum = 0, count = 0;
     for (double each : deviation(result(0, point), result(1, point))) {
-      if (each == 0) continue;
       sum += each * each;
-      ++count;
+      count += each == 0 ? 0 : 1;
     }
     return count > 0 ? std::sqrt(sum / count) : 0;
   }

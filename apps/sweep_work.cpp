@@ -9,7 +9,7 @@
 namespace flatspeckle::apps {
 
 SweepWork::SweepWork(const SweepPlan& plan, ShardFolder& folder, std::vector<std::size_t> runs)
-    : plan_(plan), folder_(folder), runs_(std::move(runs)), made_(plan.provenance()) {}
+    : plan_(plan), folder_(folder), runs_(std::move(runs)) {}
 
 RunList SweepWork::list() {
   return {.count = runs_.size(),
@@ -54,7 +54,7 @@ SweepWork::Open& SweepWork::find(std::size_t number) {
 
 /// How it was made.
 void SweepWork::write_made(ResultFile& file, const Open& open, bool converged) const {
-  Provenance made = made_;
+  Provenance made = plan_.session().provenance();
   made.plan = open.estimation.plan;
   made.wall_s = open.state.wall_s;
   made.cpu_s = open.state.cpu_s;

@@ -43,7 +43,6 @@ class SweepWork {
   const SweepPlan& plan_;
   ShardFolder& folder_;
   std::vector<std::size_t> runs_;
-  Provenance made_;
   std::mutex mutex_;
   std::map<std::size_t, std::unique_ptr<Open>> open_;
 };

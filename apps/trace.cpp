@@ -111,7 +111,7 @@ int trace(const Arguments& arguments) {
   const TraceScene scene = make_trace_scene(keys, values);
   if (!command.settle()) return ExitStatus::done;
   omp_set_num_threads(session.threads());
-  return session.once(ResultFile::Storage::memory, [&](ResultFile& file) -> std::optional<Made> {
+  return session.once(ResultFile(session.out()), [&](ResultFile& file) -> std::optional<Made> {
     return scene.curves ? trace_curves(scene, file, session.seed()) : trace_light(scene, file);
   });
 }

@@ -134,8 +134,8 @@ int validate(const Arguments& arguments) {
   if (scene.medium.mu_s == 0)
     throw InputError("scatterer", spec.scatterer,
                      "this scene does not scatter, there is nothing to compare");
-  const Estimation mc = mc_estimation(scene, reversed, session.seed());
   const Estimation wave = wave_estimation(scene, tolerance, session.seed());
+  const Estimation mc = mc_estimation(scene, reversed, session.seed());
   if (!command.settle()) return ExitStatus::done;
   return session.run(
       mc.plan + "\n" + wave.plan,

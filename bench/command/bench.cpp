@@ -187,7 +187,7 @@ int bench(const Arguments& arguments) {
   keys.read(values.quick);
   if (!command.settle()) return ExitStatus::done;
   omp_set_num_threads(session.threads());
-  return session.once(ResultFile::Storage::memory, [&](ResultFile& file) -> std::optional<Made> {
+  return session.once(ResultFile(session.out()), [&](ResultFile& file) -> std::optional<Made> {
     const Stopwatch clock;
     const Outcome outcome = kind(file, values.quick);
     std::printf("%zu %s, %zu failed, %.0f s\n", outcome.count, outcome.parts.c_str(),

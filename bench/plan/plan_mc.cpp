@@ -138,7 +138,6 @@ std::vector<PlanCase> mc_plan_cases() {
            [](Plan& plan) { plan.phase = Plan::Phase::henyey_greenstein; }),
       flag("a tabulated amplitude", points, other, sample,
            [](Plan& plan) { plan.phase = Plan::Phase::tabulated; }),
-      flag("near ends", points, same, sample, [](Plan& plan) { plan.near = true; }),
       flag("absorption", points, other, sample, [](Plan& plan) { plan.weighted = true; }),
       flag("reversed paths", slab, other, sample, [](Plan& plan) { plan.reversed = true; }),
       flag("phases", around, same, sample, [](Plan& plan) { plan.phases = true; }),

@@ -1,26 +1,19 @@
 #include "core/keys/csv.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <fstream>
 #include <string_view>
 #include <utility>
 
 #include "core/error.h"
+#include "core/keys/number_text.h"
 
 namespace flatspeckle {
 
 namespace {
 
 constexpr const char* byte_order_mark = "\xEF\xBB\xBF";
-
-std::string_view trimmed(std::string_view text) {
-  constexpr std::string_view space = " \t\r";
-  const auto first = text.find_first_not_of(space);
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(space) - first + 1);
-}
 
 std::vector<std::string_view> fields_of(std::string_view line) {
   std::vector<std::string_view> fields;
@@ -83,14 +76,10 @@ class CsvReader {
   }
 
   double number(std::string_view field, const std::string& name) const {
-    // from_chars knows no plus sign.
-    const bool plus = field.starts_with('+') && !field.starts_with("+-");
-    const std::string_view digits = field.substr(plus ? 1 : 0);
-    double value = 0;
-    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-    if (error != std::errc{} || end != digits.data() + digits.size() || !std::isfinite(value))
+    const auto value = read_number(std::string(field));
+    if (!value || !std::isfinite(*value))
       fail(name + " = \"" + std::string(field) + "\": must be a finite number");
-    return value;
+    return *value;
   }
 
   std::string path_;
@@ -114,11 +103,8 @@ bool Table::has(const std::string& name) const {
 
 std::span<const double> Table::column(const std::string& name) const {
   const auto found = std::find(names_.begin(), names_.end(), name);
-  if (found == names_.end()) {
-    std::string known;
-    for (const std::string& each : names_) known += (known.empty() ? "" : ", ") + each;
-    throw InputError(source_ + ": no column \"" + name + "\" among " + known);
-  }
+  if (found == names_.end())
+    throw InputError(source_ + ": no column \"" + name + "\" among " + joined(names_, ", "));
   return columns_[static_cast<std::size_t>(found - names_.begin())];
 }
 

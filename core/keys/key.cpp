@@ -12,7 +12,6 @@ namespace flatspeckle {
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 /// Of what must be positive: products of a few of them stay numbers.
 constexpr double most = 1e50;
 
@@ -95,29 +94,16 @@ class Setter {
   const std::vector<std::string>& texts_;
 };
 
-/// The numbers that a member holds.
-struct Numbers {
-  std::vector<double> operator()(const auto*) const { return {}; }
-  std::vector<double> operator()(const double* value) const { return {*value}; }
-  std::vector<double> operator()(const std::int64_t* value) const {
-    return {static_cast<double>(*value)};
-  }
-  std::vector<double> operator()(const std::vector<double>* values) const { return *values; }
-  std::vector<double> operator()(const std::vector<std::int64_t>* values) const {
-    return {values->begin(), values->end()};
-  }
-  std::vector<double> operator()(const std::optional<double>* value) const {
-    return *value ? std::vector{**value} : std::vector<double>{};
-  }
-  std::vector<double> operator()(const std::optional<std::int64_t>* value) const {
-    return *value ? (*this)(&**value) : std::vector<double>{};
-  }
-};
+template <typename... Types>
+bool fills(const KeyMember& member) {
+  return (std::holds_alternative<Types*>(member) || ...);
+}
 
-std::string joined(const std::vector<std::string>& texts, const std::string& between) {
-  std::string all;
-  for (const std::string& text : texts) all += (all.empty() ? "" : between) + text;
-  return all;
+/// 100000, not 1e+05.
+std::string limit_text(double limit) {
+  constexpr double longest = 1e9;
+  const bool whole = limit == std::floor(limit) && std::abs(limit) < longest;
+  return whole ? std::to_string(static_cast<std::int64_t>(limit)) : number_text(limit);
 }
 
 }  // namespace
@@ -129,81 +115,14 @@ Key::Key(std::string name, KeyMember member, std::string group, std::string help
       member_(member),
       default_(value()) {}
 
-Key& Key::positive() {
-  return between(0, infinity);
-}
-Key& Key::from(double low, double high) {
-  low_ = low;
-  high_ = high;
-  low_open_ = high_open_ = false;
-  return *this;
-}
-Key& Key::positive_to(double high) {
-  low_ = 0;
-  high_ = high;
-  high_open_ = false;
-  return *this;
-}
-Key& Key::between(double low, double high) {
-  low_ = low;
-  high_ = high;
-  return *this;
-}
-Key& Key::one_of(std::vector<std::string> words) {
-  words_ = std::move(words);
-  return *this;
-}
-Key& Key::each_of(std::size_t numbers, std::string what) {
-  each_ = numbers;
-  shape_ = std::move(what);
-  return *this;
-}
-Key& Key::exactly(std::size_t numbers, std::string what) {
-  exactly_ = numbers;
-  shape_ = std::move(what);
-  return *this;
-}
-Key& Key::unit(std::string text) {
-  unit_ = std::move(text);
-  return *this;
-}
-Key& Key::only_of(std::string what) {
-  only_of_ = std::move(what);
-  return *this;
-}
-Key& Key::effort() {
-  effort_ = true;
-  return *this;
-}
-Key& Key::no_file() {
-  in_files_ = false;
-  return *this;
-}
-Key& Key::swept() {
-  swept_ = true;
-  return *this;
-}
-Key& Key::file() {
-  file_ = true;
-  return *this;
-}
-
 bool Key::is_list() const {
-  return std::holds_alternative<std::vector<double>*>(member_) ||
-         std::holds_alternative<std::vector<std::int64_t>*>(member_) ||
-         std::holds_alternative<std::vector<std::string>*>(member_);
+  return fills<std::vector<double>, std::vector<std::int64_t>, std::vector<std::string>>(member_);
 }
-
 bool Key::is_whole() const {
-  return std::holds_alternative<std::int64_t*>(member_) ||
-         std::holds_alternative<std::optional<std::int64_t>*>(member_) ||
-         std::holds_alternative<std::vector<std::int64_t>*>(member_);
+  return fills<std::int64_t, std::optional<std::int64_t>, std::vector<std::int64_t>>(member_);
 }
-
 bool Key::is_number() const {
-  return is_whole() || std::holds_alternative<double*>(member_) ||
-         std::holds_alternative<std::optional<double>*>(member_) ||
-         std::holds_alternative<std::vector<double>*>(member_);
+  return is_whole() || fills<double, std::optional<double>, std::vector<double>>(member_);
 }
 
 const void* Key::address() const {
@@ -222,26 +141,21 @@ std::string Key::accepted() const {
   if (!words_.empty()) return "must be one of " + joined(words_, " ");
   if (exactly_ > 0) return "must be " + shape_;
   if (each_ > 0) return "must be " + std::to_string(each_) + " numbers for each: " + shape_;
-  return is_number() ? range() : "must be a text";
+  return is_number() ? range_.text(is_whole()) : "must be a text";
 }
 
-/// 100000, not 1e+05.
-static std::string limit_text(double limit) {
-  constexpr double most = 1e9;
-  const bool whole = limit == std::floor(limit) && std::abs(limit) < most;
-  return whole ? std::to_string(static_cast<std::int64_t>(limit)) : number_text(limit);
+bool Key::Range::has(double value) const {
+  return std::isfinite(value) && (low_open ? value > low : value >= low) &&
+         (high_open ? value < high : value <= high);
 }
 
-std::string Key::range() const {
-  if (low_ == -infinity && high_ == infinity)
-    return is_whole() ? "must be whole" : "must be finite";
-  if (low_ == 0 && high_ == infinity)
-    return low_open_ ? "must be positive" : "must not be negative";
-  if (high_ == infinity)
-    return (low_open_ ? "must be above " : "must be at least ") + limit_text(low_);
-  const std::string low = limit_text(low_), high = limit_text(high_);
-  return low_open_ ? "must be in (" + low + ", " + high + (high_open_ ? ')' : ']')
-                   : "must be from " + low + " to " + high;
+std::string Key::Range::text(bool whole) const {
+  if (low == -infinity && high == infinity) return whole ? "must be whole" : "must be finite";
+  if (low == 0 && high == infinity) return low_open ? "must be positive" : "must not be negative";
+  const std::string least = limit_text(low), largest = limit_text(high);
+  if (high == infinity) return (low_open ? "must be above " : "must be at least ") + least;
+  return low_open ? "must be in (" + least + ", " + largest + (high_open ? ')' : ']')
+                  : "must be from " + least + " to " + largest;
 }
 
 std::vector<std::string> Key::value() const {
@@ -256,19 +170,13 @@ std::string Key::line() const {
   const bool bare = is_number() || is_switch();
   std::vector<std::string> texts = value();
   if (!bare)
-    for (std::string& text : texts) text = '"' + text + '"';
+    for (std::string& text : texts) text.insert(0, 1, '"').push_back('"');
   const std::string all = joined(texts, ", ");
   return name_ + " = " + (is_list() ? '[' + all + ']' : all);
 }
 
 void Key::set(const std::vector<std::string>& texts) const {
   std::visit(Setter(name_, texts), member_);
-}
-
-bool Key::allows(double value) const {
-  if (!std::isfinite(value)) return false;
-  return (low_open_ ? value > low_ : value >= low_) &&
-         (high_open_ ? value < high_ : value <= high_);
 }
 
 void Key::check() const {
@@ -278,16 +186,19 @@ void Key::check() const {
       if (std::find(words_.begin(), words_.end(), word) == words_.end())
         throw InputError(name_, word, accepted());
   if (file_ && !std::filesystem::exists(shown())) throw InputError(name_, shown(), "no such file");
-  const auto numbers = std::visit(Numbers{}, member_);
-  if (exactly_ > 0 && numbers.size() != exactly_) throw InputError(name_, shown(), accepted());
-  if (each_ > 0 && numbers.size() % each_ != 0) throw InputError(name_, shown(), accepted());
   const auto texts = value();
-  for (std::size_t i = 0; i < numbers.size(); ++i) {
-    const double number = numbers[i];
-    if (!allows(number)) throw InputError(name_, exactly_ > 0 ? shown() : texts[i], range());
-    if (low_open_ && low_ == 0 && high_ == infinity && (number > most || number < 1 / most))
-      throw InputError(name_, texts[i], "must be from 1e-50 to 1e50");
-  }
+  if (exactly_ > 0 && texts.size() != exactly_) throw InputError(name_, shown(), accepted());
+  if (each_ > 0 && texts.size() % each_ != 0) throw InputError(name_, shown(), accepted());
+  if (is_number())
+    for (const std::string& text : texts) check(*read_number(text), text);
+}
+
+void Key::check(double value, const std::string& text) const {
+  if (!range_.has(value))
+    throw InputError(name_, exactly_ > 0 ? shown() : text, range_.text(is_whole()));
+  const bool positive = range_.low_open && range_.low == 0 && range_.high == infinity;
+  if (positive && (value > most || value < 1 / most))
+    throw InputError(name_, text, "must be from 1e-50 to 1e50");
 }
 
 }  // namespace flatspeckle

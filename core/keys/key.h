@@ -4,6 +4,8 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <type_traits>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -23,24 +25,33 @@ class Key {
   Key(std::string name, KeyMember member, std::string group, std::string help);
 
   // What is accepted; without any of these a number must be finite, and a text is free.
-  Key& positive();
-  Key& not_negative() { return from(0, std::numeric_limits<double>::infinity()); }
-  Key& from(double low, double high);     ///< both included
-  Key& between(double low, double high);  ///< neither included
-  Key& positive_to(double high);          ///< high included
-  Key& one_of(std::vector<std::string> words);
+  Key& positive() { return between(0, infinity); }
+  Key& not_negative() { return from(0, infinity); }
+  /// Both included.
+  Key& from(double low, double high) { return with(range_, {low, high, false, false}); }
+  /// Neither included.
+  Key& between(double low, double high) { return with(range_, {low, high}); }
+  /// high included.
+  Key& positive_to(double high) { return with(range_, {0, high, true, false}); }
+  Key& one_of(std::vector<std::string> words) { return with(words_, std::move(words)); }
   /// So many numbers for each thing, in words.
-  Key& each_of(std::size_t numbers, std::string what);
+  Key& each_of(std::size_t numbers, std::string what) {
+    return with(each_, numbers).with(shape_, std::move(what));
+  }
   /// Exactly so many, in words.
-  Key& exactly(std::size_t numbers, std::string what);
+  Key& exactly(std::size_t numbers, std::string what) {
+    return with(exactly_, numbers).with(shape_, std::move(what));
+  }
   // What else is known of it.
-  Key& unit(std::string text);
+  Key& unit(std::string text) { return with(unit_, std::move(text)); }
   /// What it is a key of, where not everything reads it: "soft, hard, tm and te".
-  Key& only_of(std::string what);
-  Key& effort();   ///< how long or on what to run, not what: no part of a result's identity
-  Key& no_file();  ///< on the command line alone
-  Key& swept();    ///< a sweep may take many values
-  Key& file();     ///< names one, which must be there: its content is asked for as well
+  Key& only_of(std::string what) { return with(only_of_, std::move(what)); }
+  /// How long or on what to run, not what: no part of a result's identity.
+  Key& effort() { return with(effort_, true); }
+  Key& no_file() { return with(in_files_, false); }  ///< on the command line alone
+  Key& swept() { return with(swept_, true); }        ///< a sweep may take many values
+  /// Names a file, which must be there: its content is asked for as well.
+  Key& file() { return with(file_, true); }
 
   const std::string& name() const { return name_; }
   const std::string& group() const { return group_; }
@@ -78,15 +89,28 @@ class Key {
   void check() const;
 
  private:
-  bool allows(double value) const;
-  std::string range() const;
+  static constexpr double infinity = std::numeric_limits<double>::infinity();
+
+  struct Range {
+    double low = -infinity, high = infinity;
+    bool low_open = true, high_open = true;
+
+    bool has(double value) const;
+    /// "must be positive", of whole numbers or any.
+    std::string text(bool whole) const;
+  };
+
+  template <typename Value>
+  Key& with(Value& member, std::type_identity_t<Value> value) {
+    member = std::move(value);
+    return *this;
+  }
+  void check(double value, const std::string& shown) const;
 
   std::string name_, group_, help_, unit_, only_of_, shape_;
   KeyMember member_;
   std::vector<std::string> default_, words_;
-  double low_ = -std::numeric_limits<double>::infinity(),
-         high_ = std::numeric_limits<double>::infinity();
-  bool low_open_ = true, high_open_ = true;
+  Range range_;
   bool effort_ = false, in_files_ = true, swept_ = false, file_ = false;
   std::size_t each_ = 0, exactly_ = 0;
 };

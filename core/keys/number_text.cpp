@@ -1,5 +1,6 @@
 #include "core/keys/number_text.h"
 
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
@@ -14,7 +15,7 @@ namespace {
 template <typename Number>
 std::optional<Number> read_all(const char* from, const char* end) {
   Number value{};
-  if (from != end && *from == '+') ++from;
+  if (end - from > 1 && from[0] == '+' && from[1] != '-') ++from;  // from_chars knows no plus
   const auto read = std::from_chars(from, end, value);
   if (read.ec == std::errc::result_out_of_range && read.ptr == end)
     if constexpr (std::is_same_v<Number, double>) return std::strtod(from, nullptr);
@@ -22,51 +23,27 @@ std::optional<Number> read_all(const char* from, const char* end) {
   return value;
 }
 
-/// Reads "1.5 + 0.1i" from left to right.
-class ComplexText {
- public:
-  explicit ComplexText(const std::string& text)
-      : at_(text.data()), end_(text.data() + text.size()) {}
+/// Of digits: neither inf nor nan.
+std::optional<double> read_digits(std::string_view text) {
+  const std::string digits(trimmed(text));
+  if (digits.find_first_not_of("+-.eE0123456789") != digits.npos) return std::nullopt;
+  return read_number(digits);
+}
 
-  /// Nothing where the text is no such number.
-  std::optional<Complex> read() {
-    const double real = sign(true) * magnitude();
-    blanks();
-    if (at_ == end_) return ok_ ? std::optional<Complex>(real) : std::nullopt;
-    double imaginary = sign(false);
-    blanks();
-    if (at_ != end_ && *at_ != 'i' && *at_ != 'j') imaginary *= magnitude();
-    blanks();
-    ok_ = ok_ && at_ != end_ && (*at_ == 'i' || *at_ == 'j');
-    if (ok_) ++at_;
-    blanks();
-    return ok_ && at_ == end_ ? std::optional<Complex>({real, imaginary}) : std::nullopt;
-  }
-
- private:
-  void blanks() {
-    while (at_ != end_ && (*at_ == ' ' || *at_ == '\t')) ++at_;
-  }
-  double sign(bool may_lack) {
-    blanks();
-    const bool there = at_ != end_ && (*at_ == '+' || *at_ == '-');
-    ok_ = ok_ && (there || may_lack);
-    return there && *at_++ == '-' ? -1 : 1;
-  }
-  double magnitude() {
-    const char* const from = at_;
-    ok_ = ok_ && at_ != end_ && ((*at_ >= '0' && *at_ <= '9') || *at_ == '.');
-    double value = 0;
-    if (!ok_) return value;
-    const auto read = std::from_chars(at_, end_, value);
-    ok_ = read.ec != std::errc::invalid_argument;
-    at_ = read.ptr;
-    return read.ec == std::errc::result_out_of_range ? std::strtod(from, nullptr) : value;
-  }
-
-  const char *at_, *end_;
-  bool ok_ = true;
-};
+std::optional<Complex> read_complex(std::string_view text) {
+  text = trimmed(text);
+  if (!text.ends_with('i') && !text.ends_with('j')) return read_digits(text);
+  text.remove_suffix(1);
+  std::size_t sign = text.find_last_of("+-");
+  if (sign != 0 && sign != text.npos && std::tolower(text[sign - 1]) == 'e')  // of an exponent
+    sign = text.find_last_of("+-", sign - 1);
+  if (sign == text.npos) return std::nullopt;
+  const auto size = trimmed(text.substr(sign + 1));
+  const auto real = read_digits(text.substr(0, sign));
+  const auto imaginary = size.empty() ? 1 : read_digits(size);
+  if (!real || !imaginary) return std::nullopt;
+  return Complex(*real, text[sign] == '-' ? -*imaginary : *imaginary);
+}
 
 }  // namespace
 
@@ -82,12 +59,22 @@ std::string number_text(Complex value) {
 }
 
 std::string number_text(const std::vector<double>& values) {
-  std::string text;
-  for (const double value : values) {
-    if (!text.empty()) text += ' ';
-    text += number_text(value);
-  }
-  return text;
+  std::vector<std::string> texts;
+  for (const double value : values) texts.push_back(number_text(value));
+  return joined(texts, " ");
+}
+
+std::string joined(const std::vector<std::string>& texts, const std::string& between) {
+  std::string all;
+  for (const std::string& text : texts) all += (&text == &texts.front() ? "" : between) + text;
+  return all;
+}
+
+std::string_view trimmed(std::string_view text) {
+  constexpr std::string_view space = " \t\r";
+  const auto first = text.find_first_not_of(space);
+  if (first == text.npos) return {};
+  return text.substr(first, text.find_last_not_of(space) - first + 1);
 }
 
 std::optional<double> read_number(const std::string& text) {
@@ -104,7 +91,7 @@ std::optional<std::int64_t> read_whole_number(const std::string& text) {
 }
 
 Complex parse_complex(const std::string& key, const std::string& text) {
-  const auto value = ComplexText(text).read();
+  const auto value = read_complex(text);
   if (!value) throw InputError(key, '"' + text + '"', "must be a number such as 1.5 or 1.5+0.1i");
   if (!std::isfinite(std::abs(*value))) throw InputError(key, text, "must be finite");
   return *value;

@@ -3,19 +3,24 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/numbers/complex.h"
 
 namespace flatspeckle {
 
-// Numbers as texts, in any locale.
+// Numbers and lists as texts, in any locale.
 
 /// The shortest that reads back as the same number: 20.0 and 2e1 are "20".
 std::string number_text(double value);
 std::string number_text(Complex value);
 /// "1 2 3", for messages.
 std::string number_text(const std::vector<double>& values);
+std::string joined(const std::vector<std::string>& texts, const std::string& between);
+
+/// Without the blanks around it.
+std::string_view trimmed(std::string_view text);
 
 /// The number that the whole text is, if it is one; inf and nan are.
 std::optional<double> read_number(const std::string& text);

@@ -1,7 +1,10 @@
 #pragma once
 
 // Inside of the result files: the only place that knows HDF5's header.
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -57,35 +60,34 @@ inline void silence_hdf5() {
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
 }
 
-inline Hdf5Handle complex_type() {
-  const hid_t type = H5Tcreate(H5T_COMPOUND, sizeof(Complex));
-  H5Tinsert(type, "r", 0, H5T_NATIVE_DOUBLE);
-  H5Tinsert(type, "i", sizeof(double), H5T_NATIVE_DOUBLE);
-  return {type, H5Tclose};
-}
-
-inline Hdf5Handle string_type() {
-  const hid_t type = H5Tcopy(H5T_C_S1);
-  H5Tset_size(type, H5T_VARIABLE);
-  H5Tset_cset(type, H5T_CSET_UTF8);
-  return {type, H5Tclose};
-}
-
-/// The HDF5 type of Number, in memory and in files.
-template <typename Number>
-Hdf5Handle number_type() {
-  if constexpr (std::is_same_v<Number, Complex>) {
-    return complex_type();
-  } else if constexpr (std::is_same_v<Number, double>) {
-    return {H5Tcopy(H5T_NATIVE_DOUBLE), H5Tclose};
-  } else if constexpr (std::is_same_v<Number, std::uint64_t>) {
-    return {H5Tcopy(H5T_NATIVE_UINT64), H5Tclose};
-  } else if constexpr (std::is_same_v<Number, std::int64_t>) {
-    return {H5Tcopy(H5T_NATIVE_INT64), H5Tclose};
+/// The HDF5 type of a value, in memory and in files.
+template <typename Value>
+Hdf5Handle hdf5_type() {
+  hid_t type = -1;
+  if constexpr (std::is_same_v<Value, Complex>) {
+    type = H5Tcreate(H5T_COMPOUND, sizeof(Complex));
+    H5Tinsert(type, "r", 0, H5T_NATIVE_DOUBLE);
+    H5Tinsert(type, "i", sizeof(double), H5T_NATIVE_DOUBLE);
+  } else if constexpr (std::is_same_v<Value, std::string>) {
+    type = H5Tcopy(H5T_C_S1);
+    H5Tset_size(type, H5T_VARIABLE);
+    H5Tset_cset(type, H5T_CSET_UTF8);
   } else {
-    static_assert(std::is_same_v<Number, std::uint8_t>);
-    return {H5Tcopy(H5T_NATIVE_UINT8), H5Tclose};
+    static_assert(std::is_same_v<Value, double> || sizeof(Value) == 1 || sizeof(Value) == 8);
+    type = H5Tcopy(std::is_same_v<Value, double> ? H5T_NATIVE_DOUBLE
+                   : sizeof(Value) == 1          ? H5T_NATIVE_UINT8
+                   : std::is_signed_v<Value>     ? H5T_NATIVE_INT64
+                                                 : H5T_NATIVE_UINT64);
   }
+  return {type, H5Tclose};
+}
+
+template <typename Number>
+bool all_finite(std::span<const Number> values) {
+  return std::ranges::all_of(values, [](const Number& value) {
+    if constexpr (std::is_integral_v<Number>) return true;
+    return std::isfinite(std::real(value)) && std::isfinite(std::imag(value));
+  });
 }
 
 /// Also where groups on the way to `name` are missing, which H5Lexists alone calls a failure.

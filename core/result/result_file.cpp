@@ -20,27 +20,43 @@ namespace flatspeckle {
 
 namespace {
 
+/// Takes each alternative of a variant to that of these functions which is made for it.
+template <typename... Functions>
+struct Either : Functions... {
+  using Functions::operator()...;
+};
+template <typename... Functions>
+Either(Functions...) -> Either<Functions...>;
+
+std::size_t product(const std::vector<hsize_t>& extents) {
+  return std::accumulate(extents.begin(), extents.end(), std::size_t{1}, std::multiplies<>());
+}
+
+/// Values as HDF5 takes them: one after the other, texts by pointers.
+struct Raw {
+  Hdf5Handle type;
+  std::size_t count, value_bytes;
+  const void* first;
+  std::vector<const char*> texts = {};
+};
+
+/// Throws std::logic_error naming what they are the values of, if one is not finite.
 template <typename Number>
-void require_finite(const std::string& name, std::span<const Number> values) {
-  const auto finite = [](Number value) {
-    if constexpr (std::is_same_v<Number, Complex>)
-      return std::isfinite(value.real()) && std::isfinite(value.imag());
-    else if constexpr (std::is_same_v<Number, double>)
-      return std::isfinite(value);
-    else
-      return true;
-  };
-  if (!std::all_of(values.begin(), values.end(), finite))
-    throw std::logic_error(name + ": a value is not finite");
+Raw raw(const std::string& name, std::span<const Number> numbers) {
+  if (!all_finite(numbers)) throw std::logic_error(name + ": a value is not finite");
+  return {hdf5_type<Number>(), numbers.size(), sizeof(Number), numbers.data()};
+}
+Raw raw(const std::string&, std::span<const std::string> texts) {
+  Raw raw{hdf5_type<std::string>(), texts.size(), sizeof(const char*), nullptr};
+  for (const std::string& text : texts) raw.texts.push_back(text.c_str());
+  raw.first = raw.texts.data();
+  return raw;
 }
 
 /// Chunks of at most 1 MiB, shaped by halving the longest axis.
 std::vector<hsize_t> chunk_shape(std::vector<hsize_t> shape, std::size_t value_bytes) {
   constexpr hsize_t most_bytes = hsize_t{1} << 20;
-  const auto bytes = [&] {
-    return std::accumulate(shape.begin(), shape.end(), hsize_t{value_bytes}, std::multiplies<>());
-  };
-  while (bytes() > most_bytes) {
+  while (value_bytes * product(shape) > most_bytes) {
     hsize_t& longest = *std::max_element(shape.begin(), shape.end());
     longest = (longest + 1) / 2;
   }
@@ -67,72 +83,63 @@ class Writer {
     const Hdf5Handle object = call_.handle(H5Oopen(file_, name_.c_str(), H5P_DEFAULT), H5Oclose);
     if (call_.check(H5Aexists(object.get(), attribute.c_str())) > 0)
       throw std::logic_error(name_ + ": attribute " + attribute + " is written twice");
-    std::visit([&](const auto& given) { write_attribute(object.get(), attribute, given); }, value);
+    const auto list = [&]<typename Item>(const std::vector<Item>& items) {
+      write(object.get(), attribute, std::span<const Item>(items), {items.size()});
+    };
+    const auto scalar = [&]<typename Item>(const Item& item) {
+      write(object.get(), attribute, std::span<const Item>(&item, 1), {});
+    };
+    std::visit(Either{list, scalar}, value);
   }
 
   void begin(const std::vector<std::string>& scales, const std::vector<std::size_t>& chunk) const {
-    if (exists(file_, name_)) throw std::logic_error(name_ + ": written twice");
     std::vector<hsize_t> shape, stored(chunk.begin(), chunk.end());
     for (std::size_t i = 0; i < scales.size(); ++i) {
       shape.push_back(extent(scales[i]));
       stored[i] = std::min(stored[i], shape[i]);
     }
-    const Hdf5Handle set = create(complex_type(), shape, compressed(stored));
+    const Hdf5Handle set = create(hdf5_type<Complex>(), shape, compressed(stored));
     for (unsigned i = 0; i < scales.size(); ++i) attach(set.get(), i, scales[i]);
   }
 
   /// Opened and closed each time, so that no chunk waits in HDF5's cache for a full disk.
   void block(std::span<const Complex> values, const std::vector<std::size_t>& start,
              const std::vector<std::size_t>& count) const {
-    require_finite(name_, values);
+    const Raw block = raw(name_, values);
     const std::vector<hsize_t> from(start.begin(), start.end()),
         extents(count.begin(), count.end());
     const Hdf5Handle set = call_.handle(H5Dopen2(file_, name_.c_str(), H5P_DEFAULT), H5Dclose);
     const Hdf5Handle there = call_.handle(H5Dget_space(set.get()), H5Sclose);
-    const Hdf5Handle here = call_.handle(dataspace(extents), H5Sclose), type = complex_type();
-    if (static_cast<std::size_t>(H5Sget_simple_extent_npoints(here.get())) != values.size())
+    const Hdf5Handle here = call_.handle(dataspace(extents), H5Sclose);
+    if (product(extents) != block.count)
       throw std::logic_error(name_ + ": the number of values does not fit the block");
     call_.check(H5Sselect_hyperslab(there.get(), H5S_SELECT_SET, from.data(), nullptr,
                                     extents.data(), nullptr));
     call_.check(
-        H5Dwrite(set.get(), type.get(), here.get(), there.get(), H5P_DEFAULT, values.data()));
+        H5Dwrite(set.get(), block.type.get(), here.get(), there.get(), H5P_DEFAULT, block.first));
     call_.check(H5Dflush(set.get()));
   }
 
-  template <typename Number>
-  Hdf5Handle values(std::span<const Number> values, const std::vector<hsize_t>& shape) const {
-    if (exists(file_, name_)) throw std::logic_error(name_ + ": written twice");
-    require_finite(name_, values);
-    if (std::accumulate(shape.begin(), shape.end(), hsize_t{1}, std::multiplies<>()) !=
-        values.size())
+  /// Throws std::logic_error where there is one already.
+  Hdf5Handle values(const Raw& raw, const std::vector<hsize_t>& shape) const {
+    if (product(shape) != raw.count)
       throw std::logic_error(name_ + ": the number of values does not fit the axes");
-    const Hdf5Handle type = number_type<Number>();
-    Hdf5Handle set = create(type, shape, storage(shape, sizeof(Number)));
-    call_.check(H5Dwrite(set.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()));
+    Hdf5Handle set = create(raw.type, shape, storage(raw, shape));
+    call_.check(H5Dwrite(set.get(), raw.type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, raw.first));
     return set;
   }
 
-  template <typename Number>
-  void dataset(std::span<const Number> numbers, const std::vector<Axis>& axes) const {
-    attach(values(numbers, shape_of(axes)).get(), axes);
-  }
-
-  /// Of few; HDF5 keeps texts apart from the dataset, where filters do not reach them.
-  void dataset(std::span<const std::string> texts, const std::vector<Axis>& axes) const {
-    if (exists(file_, name_)) throw std::logic_error(name_ + ": written twice");
-    const auto shape = shape_of(axes);
-    if (std::accumulate(shape.begin(), shape.end(), hsize_t{1}, std::multiplies<>()) !=
-        texts.size())
-      throw std::logic_error(name_ + ": the number of texts does not fit the axes");
-    std::vector<const char*> pointers;
-    for (const std::string& text : texts) pointers.push_back(text.c_str());
-    const Hdf5Handle type = string_type(), set = create(type, shape, untimed());
-    call_.check(H5Dwrite(set.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, pointers.data()));
-    attach(set.get(), axes);
+  /// Attached to those of the axes that have scales.
+  void dataset(const Raw& raw, const std::vector<Axis>& axes) const {
+    std::vector<hsize_t> shape;
+    for (const Axis& axis : axes) shape.push_back(extent(axis));
+    const Hdf5Handle set = values(raw, shape);
+    for (unsigned i = 0; i < axes.size(); ++i)
+      if (const auto* scale = std::get_if<std::string>(&axes[i])) attach(set.get(), i, *scale);
   }
 
   void scale(std::span<const double> numbers) const {
-    const Hdf5Handle set = values(numbers, {numbers.size()});
+    const Hdf5Handle set = values(raw(name_, numbers), {numbers.size()});
     call_.check(H5DSset_scale(set.get(), last_part(name_).c_str()));
   }
 
@@ -153,6 +160,7 @@ class Writer {
 
   Hdf5Handle create(const Hdf5Handle& type, const std::vector<hsize_t>& shape,
                     const Hdf5Handle& layout) const {
+    if (exists(file_, name_)) throw std::logic_error(name_ + ": written twice");
     const Hdf5Handle space = call_.handle(dataspace(shape), H5Sclose);
     const Hdf5Handle links = intermediate_groups();
     return call_.handle(H5Dcreate2(file_, name_.c_str(), type.get(), space.get(), links.get(),
@@ -166,12 +174,11 @@ class Writer {
     return links;
   }
 
-  /// Small sets gain nothing from filters.
-  Hdf5Handle storage(const std::vector<hsize_t>& shape, std::size_t value_bytes) const {
-    constexpr hsize_t small = 4096;
-    const hsize_t bytes =
-        std::accumulate(shape.begin(), shape.end(), hsize_t{value_bytes}, std::multiplies<>());
-    return bytes <= small ? untimed() : compressed(chunk_shape(shape, value_bytes));
+  /// Small sets gain nothing from filters, which do not reach texts: HDF5 keeps these apart.
+  Hdf5Handle storage(const Raw& raw, const std::vector<hsize_t>& shape) const {
+    constexpr std::size_t small = 4096;
+    const bool plain = !raw.texts.empty() || raw.count * raw.value_bytes <= small;
+    return plain ? untimed() : compressed(chunk_shape(shape, raw.value_bytes));
   }
 
   /// No time stamps: the same results make the same bytes.
@@ -202,65 +209,21 @@ class Writer {
     return static_cast<hsize_t>(call_.check(H5Sget_simple_extent_npoints(space.get())));
   }
 
-  std::vector<hsize_t> shape_of(const std::vector<Axis>& axes) const {
-    std::vector<hsize_t> shape;
-    shape.reserve(axes.size());
-    for (const Axis& axis : axes) shape.push_back(extent(axis));
-    return shape;
-  }
-
-  /// Those of the axes that have scales.
-  void attach(hid_t set, const std::vector<Axis>& axes) const {
-    for (unsigned i = 0; i < axes.size(); ++i)
-      if (const auto* scale = std::get_if<std::string>(&axes[i])) attach(set, i, *scale);
-  }
   void attach(hid_t set, unsigned axis, const std::string& name) const {
     const Hdf5Handle scale = open_scale(name);
     call_.check(H5DSattach_scale(set, scale.get(), axis));
     call_.check(H5DSset_label(set, axis, last_part(name).c_str()));
   }
 
-  void write_raw_attribute(hid_t object, const std::string& attribute, hid_t type,
-                           const std::vector<hsize_t>& shape, const void* values) const {
+  template <typename Item>
+  void write(hid_t object, const std::string& attribute, std::span<const Item> items,
+             const std::vector<hsize_t>& shape) const {
+    const Raw values = raw(name_ + ", attribute " + attribute, items);
     const Hdf5Handle space = call_.handle(dataspace(shape), H5Sclose);
-    const Hdf5Handle handle = call_.handle(
-        H5Acreate2(object, attribute.c_str(), type, space.get(), H5P_DEFAULT, H5P_DEFAULT),
-        H5Aclose);
-    if (values != nullptr) call_.check(H5Awrite(handle.get(), type, values));  // not an empty list
-  }
-
-  template <typename Number>
-  void write_numbers(hid_t object, const std::string& attribute, std::span<const Number> values,
-                     const std::vector<hsize_t>& shape) const {
-    require_finite(name_ + ", attribute " + attribute, values);
-    const Hdf5Handle type = number_type<Number>();
-    write_raw_attribute(object, attribute, type.get(), shape, values.data());
-  }
-
-  template <typename Number>
-  void write_attribute(hid_t object, const std::string& attribute, const Number& value) const {
-    write_numbers<Number>(object, attribute, {&value, 1}, {});
-  }
-  void write_attribute(hid_t object, const std::string& attribute, const bool& value) const {
-    write_attribute(object, attribute, static_cast<std::uint8_t>(value));
-  }
-  template <typename Number>
-  void write_attribute(hid_t object, const std::string& attribute,
-                       const std::vector<Number>& values) const {
-    write_numbers<Number>(object, attribute, values, {values.size()});
-  }
-  void write_attribute(hid_t object, const std::string& attribute, const std::string& value) const {
-    const char* text = value.c_str();
-    const Hdf5Handle type = string_type();
-    write_raw_attribute(object, attribute, type.get(), {}, &text);
-  }
-  void write_attribute(hid_t object, const std::string& attribute,
-                       const std::vector<std::string>& values) const {
-    std::vector<const char*> texts;
-    texts.reserve(values.size());
-    for (const std::string& value : values) texts.push_back(value.c_str());
-    const Hdf5Handle type = string_type();
-    write_raw_attribute(object, attribute, type.get(), {texts.size()}, texts.data());
+    const Hdf5Handle handle = call_.handle(H5Acreate2(object, attribute.c_str(), values.type.get(),
+                                                      space.get(), H5P_DEFAULT, H5P_DEFAULT),
+                                           H5Aclose);
+    if (values.count > 0) call_.check(H5Awrite(handle.get(), values.type.get(), values.first));
   }
 
   std::string name_;
@@ -268,14 +231,15 @@ class Writer {
   hid_t file_ = -1;
 };
 
-template <typename Number>
-std::size_t bytes_of(std::span<const Number> numbers) {
-  return numbers.size_bytes();
-}
-std::size_t bytes_of(std::span<const std::string> texts) {
-  std::size_t bytes = 0;
-  for (const std::string& text : texts) bytes += text.size() + sizeof(std::uint64_t) * 4;
-  return bytes;
+/// What values take in a file.
+std::size_t bytes_of(const Values& values) {
+  const auto of_numbers = [](const auto& numbers) { return numbers.size_bytes(); };
+  const auto of_texts = [](std::span<const std::string> texts) {
+    std::size_t bytes = texts.size() * sizeof(std::uint64_t) * 4;
+    for (const std::string& text : texts) bytes += text.size();
+    return bytes;
+  };
+  return std::visit(Either{of_texts, of_numbers}, values);
 }
 
 /// An empty HDF5 file in memory: a full disk can then only show where we write it ourselves, in
@@ -323,11 +287,6 @@ void ResultFile::make_room(std::size_t bytes) {
   beside_->reserve(size + bytes + bytes / 64 + overhead);
 }
 
-void ResultFile::group(const std::string& name) {
-  make_room(0);
-  Writer(file_.get(), path_.string(), name).group();
-}
-
 bool ResultFile::has(const std::string& name) const {
   return exists(file_->get(), name);
 }
@@ -352,19 +311,12 @@ void ResultFile::scale(const std::string& name, std::span<const double> values,
   writer.describe(units, long_name);
 }
 
-void ResultFile::numbered_scale(const std::string& name, std::size_t count,
-                                const std::string& long_name) {
-  std::vector<double> numbers(count);
-  std::iota(numbers.begin(), numbers.end(), 0.0);
-  scale(name, numbers, "1", long_name);
-}
-
 void ResultFile::dataset(const std::string& name, const Values& values,
                          const std::vector<Axis>& axes, const std::string& units,
                          const std::string& long_name) {
-  make_room(std::visit([](const auto& given) { return bytes_of(given); }, values));
+  make_room(bytes_of(values));
   const Writer writer(file_.get(), path_.string(), name);
-  std::visit([&](const auto& given) { writer.dataset(given, axes); }, values);
+  std::visit([&](const auto& given) { writer.dataset(raw(name, given), axes); }, values);
   writer.describe(units, long_name);
 }
 

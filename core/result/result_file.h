@@ -24,9 +24,8 @@ using Values = std::variant<std::span<const double>, std::span<const Complex>,
                             std::span<const std::uint64_t>, std::span<const std::string>>;
 
 /// Value of an attribute; bool is stored as uint8.
-using Attribute =
-    std::variant<bool, std::int64_t, std::uint64_t, double, std::string, std::vector<double>,
-                 std::vector<std::uint64_t>, std::vector<std::string>>;
+using Attribute = std::variant<bool, std::int64_t, std::uint64_t, double, std::string,
+                               std::vector<double>, std::vector<std::string>>;
 
 /// A result file in the making (HDF5, readable by version 1.8 and later; h5py sees complex numbers
 /// as complex128). It is put together in memory or, where it may be large, on disk under a
@@ -47,7 +46,7 @@ class ResultFile {
   ResultFile& operator=(ResultFile&&) noexcept;
   ~ResultFile();
 
-  void group(const std::string& name);
+  const std::filesystem::path& path() const { return path_; }
   /// Whether there is such a group or dataset.
   bool has(const std::string& name) const;
 
@@ -63,17 +62,9 @@ class ResultFile {
   /// values have no unit.
   void scale(const std::string& name, std::span<const double> values, const std::string& units,
              const std::string& long_name);
-  /// An axis of things that are only counted: 0, 1, ...
-  void numbered_scale(const std::string& name, std::size_t count, const std::string& long_name);
-
   /// No axes: one scalar.
   void dataset(const std::string& name, const Values& values, const std::vector<Axis>& axes,
                const std::string& units, const std::string& long_name);
-  /// Texts have no units.
-  void dataset(const std::string& name, const std::vector<std::string>& texts,
-               const std::vector<Axis>& axes, const std::string& long_name) {
-    dataset(name, texts, axes, "", long_name);
-  }
 
   /// A complex dataset whose values come in blocks, compressed by chunks of this shape. Axes with
   /// scales only. What no block brings is 0.

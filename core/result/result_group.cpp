@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <numeric>
 #include <sstream>
 #include <stdexcept>
 
@@ -12,8 +13,8 @@ namespace {
 /// By the alternative of Values, as type_name.
 constexpr const char* value_types[] = {"float64", "complex", "uint64", "texts"};
 /// By that of Attribute, as AttributeRow has it.
-constexpr const char* attribute_types[] = {"bool", "int64",    "uint64",  "float64",
-                                           "text", "float64s", "uint64s", "texts"};
+constexpr const char* attribute_types[] = {"bool", "int64",    "uint64", "float64",
+                                           "text", "float64s", "texts"};
 
 bool is_role(const std::string& word) {
   return !word.empty() && std::isupper(static_cast<unsigned char>(word.front())) != 0;
@@ -65,7 +66,9 @@ void ResultGroup::put(const std::string& path, const Estimate& estimate) const {
 
 void ResultGroup::number(const std::string& path, std::size_t count) const {
   if (row(path).data != Data::numbers) throw std::logic_error(path + ": its row is no count");
-  file_.numbered_scale(prefix_ + path, count, row(path).long_name);
+  std::vector<double> numbers(count);
+  std::iota(numbers.begin(), numbers.end(), 0.0);
+  write(row(path), numbers);
 }
 
 void ResultGroup::begin(const std::string& path, const std::vector<std::size_t>& chunk) const {

@@ -38,20 +38,13 @@ class Reader {
     return shape;
   }
 
-  std::string first_scale(hid_t set, unsigned axis) const {
-    std::string name;
-    if (H5DSget_num_scales(set, axis) > 0)
-      call_.check(H5DSiterate_scales(set, axis, nullptr, store_name, &name));
-    return name;
-  }
-
   template <typename Number>
   std::vector<Number> values() const {
     const Hdf5Handle set = dataset();
     const Hdf5Handle stored = call_.handle(H5Dget_type(set.get()), H5Tclose);
     require_type<Number>(stored.get());
     std::vector<Number> values(size(set.get(), H5Tget_size(stored.get())));
-    const Hdf5Handle type = number_type<Number>();
+    const Hdf5Handle type = hdf5_type<Number>();
     call_.check(H5Dread(set.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()));
     require_finite(values);
     return values;
@@ -71,25 +64,21 @@ class Reader {
     const Hdf5Handle stored = call_.handle(H5Aget_type(attribute), H5Tclose);
     require_type<Number>(stored.get());
     std::vector<Number> values(attribute_size(attribute));
-    const Hdf5Handle type = number_type<Number>();
+    const Hdf5Handle type = hdf5_type<Number>();
     if (!values.empty()) call_.check(H5Aread(attribute, type.get(), values.data()));
     require_finite(values);
     return values;
   }
 
-  std::vector<std::string> strings(hid_t attribute) const {
+  std::string text(hid_t attribute) const {
     const Hdf5Handle stored = call_.handle(H5Aget_type(attribute), H5Tclose);
-    if (H5Tis_variable_str(stored.get()) <= 0) call_.check(-1);
-    std::vector<char*> texts(attribute_size(attribute));
-    if (texts.empty()) return {};
-    const Hdf5Handle space = call_.handle(H5Aget_space(attribute), H5Sclose);
-    const Hdf5Handle type = string_type();
-    call_.check(H5Aread(attribute, type.get(), texts.data()));
-    std::vector<std::string> values;
-    values.reserve(texts.size());
-    for (const char* text : texts) values.emplace_back(text == nullptr ? "" : text);
-    H5Dvlen_reclaim(type.get(), space.get(), H5P_DEFAULT, texts.data());
-    return values;
+    if (H5Tis_variable_str(stored.get()) <= 0 || attribute_size(attribute) != 1) call_.check(-1);
+    const Hdf5Handle type = hdf5_type<std::string>();
+    char* text = nullptr;
+    call_.check(H5Aread(attribute, type.get(), &text));
+    std::string value = text == nullptr ? "" : text;
+    H5free_memory(text);
+    return value;
   }
 
   template <typename Value>
@@ -99,14 +88,6 @@ class Reader {
   }
 
  private:
-  static herr_t store_name(hid_t, unsigned, hid_t scale, void* name) {
-    char text[1024] = "";
-    H5Iget_name(scale, text, sizeof text);
-    // Names of the root read "/tilt"; we write and ask for "tilt".
-    *static_cast<std::string*>(name) = text + (text[0] == '/' ? 1 : 0);
-    return 1;  // the first is enough
-  }
-
   /// How many numbers a dataset holds. What is not stored HDF5 would make up, gigabytes of it.
   std::size_t size(hid_t set, std::size_t number_bytes) const {
     constexpr double most_shrinkage = 1100;  // deflate's is 1032
@@ -131,11 +112,7 @@ class Reader {
   /// Result files hold nothing else (ResultFile), and nothing goes on with it.
   template <typename Number>
   void require_finite(const std::vector<Number>& values) const {
-    const auto is_finite = [](Number value) {
-      if constexpr (std::is_integral_v<Number>) return true;
-      return std::isfinite(std::real(value)) && std::isfinite(std::imag(value));
-    };
-    if (!std::ranges::all_of(values, is_finite))
+    if (!all_finite<Number>(values))
       throw InputError(path_ + ": " + name_ + " holds a number that is not finite");
   }
 
@@ -184,15 +161,6 @@ std::vector<std::size_t> ResultReader::shape(const std::string& name) const {
   return {extents.begin(), extents.end()};
 }
 
-std::vector<std::string> ResultReader::scales(const std::string& name) const {
-  const Reader reader(*file_, path_.string(), name);
-  const Hdf5Handle set = reader.dataset();
-  std::vector<std::string> scales(reader.shape(set.get()).size());
-  for (unsigned axis = 0; axis < scales.size(); ++axis)
-    scales[axis] = reader.first_scale(set.get(), axis);
-  return scales;
-}
-
 template <typename Number>
 std::vector<Number> ResultReader::dataset(const std::string& name) const {
   return Reader(*file_, path_.string(), name).values<Number>();
@@ -200,16 +168,13 @@ std::vector<Number> ResultReader::dataset(const std::string& name) const {
 
 template std::vector<double> ResultReader::dataset(const std::string&) const;
 template std::vector<Complex> ResultReader::dataset(const std::string&) const;
-template std::vector<std::uint64_t> ResultReader::dataset(const std::string&) const;
 
 template <typename Value>
 Value ResultReader::attribute(const std::string& object, const std::string& name) const {
   const Reader reader(*file_, path_.string(), object);
   const Hdf5Handle attribute = reader.attribute(name);
   if constexpr (std::is_same_v<Value, std::string>)
-    return reader.only(reader.strings(attribute.get()));
-  else if constexpr (std::is_same_v<Value, std::vector<std::string>>)
-    return reader.strings(attribute.get());
+    return reader.text(attribute.get());
   else if constexpr (std::is_same_v<Value, bool>)
     return reader.only(reader.numbers<std::uint8_t>(attribute.get())) != 0;
   else if constexpr (std::is_arithmetic_v<Value>)
@@ -219,14 +184,9 @@ Value ResultReader::attribute(const std::string& object, const std::string& name
 }
 
 template bool ResultReader::attribute(const std::string&, const std::string&) const;
-template std::int64_t ResultReader::attribute(const std::string&, const std::string&) const;
 template std::uint64_t ResultReader::attribute(const std::string&, const std::string&) const;
 template double ResultReader::attribute(const std::string&, const std::string&) const;
 template std::string ResultReader::attribute(const std::string&, const std::string&) const;
 template std::vector<double> ResultReader::attribute(const std::string&, const std::string&) const;
-template std::vector<std::uint64_t> ResultReader::attribute(const std::string&,
-                                                            const std::string&) const;
-template std::vector<std::string> ResultReader::attribute(const std::string&,
-                                                          const std::string&) const;
 
 }  // namespace flatspeckle

@@ -28,14 +28,12 @@ class ResultReader {
 
   /// Extents of a dataset; empty for a scalar.
   std::vector<std::size_t> shape(const std::string& name) const;
-  /// Full names of the scales of its axes, "" where an axis has none.
-  std::vector<std::string> scales(const std::string& name) const;
 
-  /// Number: double, Complex or std::uint64_t. Row-major order.
+  /// Number: double or Complex. Row-major order.
   template <typename Number>
   std::vector<Number> dataset(const std::string& name) const;
 
-  /// Value: any of the alternatives of Attribute (core/result/result_file.h).
+  /// Value: bool, std::uint64_t, double, std::vector<double> or std::string.
   template <typename Value>
   Value attribute(const std::string& object, const std::string& name) const;
 

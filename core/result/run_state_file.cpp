@@ -1,7 +1,6 @@
 #include "core/result/run_state_file.h"
 
 #include <cmath>
-#include <filesystem>
 #include <utility>
 
 #include "core/error.h"
@@ -11,15 +10,13 @@ namespace flatspeckle {
 
 namespace {
 
+/// The rows that have a finite error.
 Trace finite_rows(const Trace& trace) {
   Trace finite;
-  for (std::size_t row = 0; row < trace.relative_error.size(); ++row) {
-    if (!std::isfinite(trace.relative_error[row])) continue;
-    finite.wall_s.push_back(trace.wall_s[row]);
-    finite.cpu_s.push_back(trace.cpu_s[row]);
-    finite.samples.push_back(trace.samples[row]);
-    finite.relative_error.push_back(trace.relative_error[row]);
-  }
+  for (std::size_t row = 0; row < trace.relative_error.size(); ++row)
+    if (std::isfinite(trace.relative_error[row]))
+      for (const auto& [name, values] : trace_columns)
+        (finite.*values).push_back((trace.*values)[row]);
   return finite;
 }
 
@@ -45,26 +42,24 @@ const DatasetTable state_table{
 
 void write_trace(ResultFile& file, const std::string& group, const Trace& trace) {
   const Trace rows = finite_rows(trace);
-  const ResultGroup parent(file, trace_table, std::filesystem::path(group).parent_path().string());
-  parent.number("trace/checkpoint", rows.wall_s.size());
-  parent.put("trace/wall_s", rows.wall_s);
-  parent.put("trace/cpu_s", rows.cpu_s);
-  parent.put("trace/samples", rows.samples);
-  parent.put("trace/relative_error", rows.relative_error);
+  const ResultGroup out(file, trace_table, group);
+  out.number("trace/checkpoint", rows.wall_s.size());
+  for (const auto& [name, values] : trace_columns)
+    out.put("trace/" + std::string(name), rows.*values);
 }
 
 Trace read_trace(const ResultReader& file, const std::string& group) {
-  Trace trace{file.dataset<double>(group + "/wall_s"), file.dataset<double>(group + "/cpu_s"),
-              file.dataset<double>(group + "/samples"),
-              file.dataset<double>(group + "/relative_error")};
-  const std::size_t rows = trace.wall_s.size();
-  if (trace.cpu_s.size() != rows || trace.samples.size() != rows ||
-      trace.relative_error.size() != rows)
-    throw InputError(file.path().string() + ": " + group + ": columns of different lengths");
+  const std::string place = group + (group.empty() ? "trace/" : "/trace/");
+  Trace trace;
+  for (const auto& [name, values] : trace_columns) {
+    trace.*values = file.dataset<double>(place + name);
+    if ((trace.*values).size() != trace.wall_s.size())
+      throw InputError(file.path().string() + ": " + place + ": columns of different lengths");
+  }
   constexpr double most = 1e18;  // an integer holds it
   for (const double samples : trace.samples)
     if (!(samples >= 0 && samples < most))
-      throw InputError(file.path().string() + ": " + group + "/samples", samples,
+      throw InputError(file.path().string() + ": " + place + "samples", samples,
                        "must be a number of samples");
   return trace;
 }
@@ -79,11 +74,11 @@ void write_state(ResultFile& file, const std::string& group, const RunState& sta
   file.bind("SUMS", {state.sums.size()});
   out.put("group_samples", sums.samples);
   out.put("group_sums", sums.sums);
-  write_trace(file, group + "/trace", state.trace);
+  write_trace(file, group, state.trace);
 }
 
 RunState read_state(const ResultReader& file, const std::string& group, std::size_t size) {
-  RunState state{GroupedSums(size), read_trace(file, group + "/trace"),
+  RunState state{GroupedSums(size), read_trace(file, group),
                  file.attribute<double>(group, "wall_s"), file.attribute<double>(group, "cpu_s")};
   state.sums.restore({file.attribute<std::uint64_t>(group, "batches"),
                       file.dataset<double>(group + "/group_samples"),

@@ -10,8 +10,8 @@ namespace flatspeckle {
 
 extern const DatasetTable trace_table, state_table;
 
-/// group: "trace" or a group's name and "/trace". Rows
-/// without a finite error (fewer than two groups of batches) are left out.
+/// Into a group (empty: the root). Rows without a finite error (fewer than two groups of batches)
+/// are left out.
 void write_trace(ResultFile& file, const std::string& group, const Trace& trace);
 
 /// The trace that write_trace wrote. Throws InputError.

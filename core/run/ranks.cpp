@@ -16,7 +16,7 @@ namespace flatspeckle {
 
 namespace {
 
-Ranks joined;
+Ranks world;
 
 int number_in_environment(const char* first, const char* second, int otherwise) {
   for (const char* name : {first, second})
@@ -33,7 +33,7 @@ Ranks launched_ranks() {
 }
 
 const Ranks& ranks() {
-  return joined;
+  return world;
 }
 
 #ifdef FLATSPECKLE_MPI
@@ -78,19 +78,19 @@ void join_ranks() {
   if (launched_ranks().size < 2) return;  // joining alone would start a launcher
   int threads = MPI_THREAD_SINGLE;
   MPI_Init_thread(nullptr, nullptr, MPI_THREAD_SERIALIZED, &threads);
-  MPI_Comm_rank(MPI_COMM_WORLD, &joined.rank);
-  MPI_Comm_size(MPI_COMM_WORLD, &joined.size);
-  joined.sharers = count_sharers();
+  MPI_Comm_rank(MPI_COMM_WORLD, &world.rank);
+  MPI_Comm_size(MPI_COMM_WORLD, &world.size);
+  world.sharers = count_sharers();
 }
 
 void leave_ranks() {
-  if (joined.size > 1) MPI_Finalize();
+  if (world.size > 1) MPI_Finalize();
 }
 
 void abort_ranks(int status) {
   int left = 0;
   MPI_Finalized(&left);
-  if (joined.size > 1 && left == 0) MPI_Abort(MPI_COMM_WORLD, status);
+  if (world.size > 1 && left == 0) MPI_Abort(MPI_COMM_WORLD, status);
 }
 
 std::optional<Message> next_message() {

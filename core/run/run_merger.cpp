@@ -51,8 +51,7 @@ void RunMerger::drop_odd_row() {
   if (trace.samples.empty()) return;
   const double batches = std::round(trace.samples.back() / job_.samples_per_batch);
   if (is_checkpoint(static_cast<std::uint64_t>(batches))) return;
-  for (auto* column : {&trace.wall_s, &trace.cpu_s, &trace.samples, &trace.relative_error})
-    column->pop_back();
+  for (const TraceColumn& column : trace_columns) (trace.*column.values).pop_back();
 }
 
 void RunMerger::note_saved() {

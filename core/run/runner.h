@@ -34,6 +34,15 @@ struct StopRule {
 struct Trace {
   std::vector<double> wall_s, cpu_s, samples, relative_error;
 };
+/// All of them, by name.
+struct TraceColumn {
+  const char* name;
+  std::vector<double> Trace::*values;
+};
+inline constexpr TraceColumn trace_columns[] = {{"wall_s", &Trace::wall_s},
+                                                {"cpu_s", &Trace::cpu_s},
+                                                {"samples", &Trace::samples},
+                                                {"relative_error", &Trace::relative_error}};
 
 enum class StopReason { samples, seconds, target_error, interrupted };
 

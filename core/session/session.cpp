@@ -18,9 +18,6 @@ namespace flatspeckle {
 
 namespace {
 
-std::string trace_group(const std::string& run) {
-  return run.empty() ? "trace" : run + "/trace";
-}
 std::string state_group(const std::string& run) {
   return "state/" + (run.empty() ? "run" : run);
 }
@@ -33,9 +30,9 @@ Session::Session(std::string command_line, const Keys& keys, const RunSettings& 
       keys_(keys),
       settings_(settings),
       seed_(keys.find("seed") ? seed_of(keys, settings) : 0),
-      threads_(keys.find("threads") ? threads_of(keys, settings) : 1),
       started_(utc_now()) {
   keys.read(settings.out);
+  threads();
   if (keys.find("resume")) keys.read(settings.resume);
   if (only_prints) return;
   if (settings.out.empty())
@@ -46,19 +43,28 @@ Session::Session(std::string command_line, const Keys& keys, const RunSettings& 
                                         : check_result_path(settings.out);
 }
 
+int Session::threads() const {
+  return keys_.find("threads") ? threads_of(keys_, settings_) : 1;
+}
+
 Provenance Session::provenance() const {
   Provenance provenance;
   provenance.command_line = command_line_;
   provenance.config = keys_.config();
   provenance.seed = seed_;
-  provenance.threads = threads_;
+  provenance.threads = threads();
   provenance.started = started_;
   return provenance;
 }
 
-int Session::once(ResultFile::Storage storage,
+void Session::commit(ResultFile& file, const Provenance& provenance) {
+  write_provenance(file, provenance);
+  file.commit();
+  std::cout << "wrote " << file.path().string() << '\n';
+}
+
+int Session::once(ResultFile file,
                   const std::function<std::optional<Made>(ResultFile&)>& make) const {
-  ResultFile file(settings_.out, storage);
   const auto made = make(file);
   if (!made) return ExitStatus::interrupted_for_good;
   Provenance provenance = this->provenance();
@@ -67,9 +73,7 @@ int Session::once(ResultFile::Storage storage,
   provenance.wall_s = clock_.seconds();
   provenance.cpu_s = process_cpu_seconds();
   provenance.converged = made->status == ExitStatus::done;
-  write_provenance(file, provenance);
-  file.commit();
-  std::cout << "wrote " << settings_.out << '\n';
+  commit(file, provenance);
   return made->status;
 }
 
@@ -127,7 +131,7 @@ void Session::note_rounding(const PlannedRun& run) {
 void Session::run_one(const PlannedRun& run) {
   note_rounding(run);
   RunState& state = states_[run.name];
-  const RunOptions options{run.stop, threads_, run.label,
+  const RunOptions options{run.stop, threads(), run.label,
                            [this](const RunState&) { save_resumable(); }};
   const StopReason reason = run_batches(run.job, options, state);
   interrupted_ = reason == StopReason::interrupted;
@@ -146,7 +150,7 @@ int Session::finish(const std::function<void(ResultFile&)>& contents) {
   }
   ResultFile file(settings_.out);
   write_common(file, converged_);
-  for (const auto& [name, state] : states_) write_trace(file, trace_group(name), state.trace);
+  for (const auto& [name, state] : states_) write_trace(file, name, state.trace);
   contents(file);
   if (!converged_) write_states(file);
   file.commit_sealed(Durable::yes);

@@ -41,13 +41,13 @@ class Session {
           bool only_prints = false, Out kind = Out::result);
 
   std::uint64_t seed() const { return seed_; }
-  int threads() const { return threads_; }
+  /// Of this process: fewer where it shares its machine with other ranks, once it has joined them.
+  int threads() const;
   const std::string& out() const { return settings_.out; }
 
   /// What `make` fills in one go; nothing is written where it returns nothing, for a signal came
   /// that it caught.
-  int once(ResultFile::Storage storage,
-           const std::function<std::optional<Made>(ResultFile&)>& make) const;
+  int once(ResultFile file, const std::function<std::optional<Made>(ResultFile&)>& make) const;
 
   /// Runs all to their end, or until an interruption, or goes on with those that the file there
   /// holds. While they run, the file holds what could be resumed; at the end, the result. Each
@@ -63,6 +63,8 @@ class Session {
 
   /// How results of this call came about, but for plan and costs.
   Provenance provenance() const;
+  /// Ends a file that is whole but for that; says where it is.
+  static void commit(ResultFile& file, const Provenance& provenance);
 
  private:
   void resume();
@@ -78,7 +80,6 @@ class Session {
   const Keys& keys_;
   const RunSettings& settings_;
   std::uint64_t seed_;
-  int threads_;
   std::string started_;
   Stopwatch clock_;
 

@@ -21,6 +21,12 @@ struct FieldMoments {
   double samples = 0;
 };
 
+/// Of an estimator, as a batch job asks for it.
+inline auto relative_error_of(const Estimator& estimator) {
+  return
+      [estimator](const GroupedSums& sums) { return relative_error(jackknife(sums, estimator)); };
+}
+
 FieldMoments field_moments(const FieldJob& job, const GroupedSums& sums);
 
 }  // namespace flatspeckle

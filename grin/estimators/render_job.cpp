@@ -30,11 +30,11 @@ bool is_photon_map(const RenderRequest& request) {
   return request.method == RenderMethod::photon_map;
 }
 
-constexpr int most_scatterings = std::numeric_limits<int>::max();
+constexpr int unlimited = std::numeric_limits<int>::max();
 
 int path_limit(const RenderRequest& request) {
-  if (request.max_scatterings <= 0) return most_scatterings;
-  return static_cast<int>(std::min<std::int64_t>(request.max_scatterings, most_scatterings));
+  if (request.max_scatterings <= 0) return unlimited;
+  return static_cast<int>(std::min<std::int64_t>(request.max_scatterings, unlimited));
 }
 
 double photon_radius(const RenderScene& scene, const RenderRequest& request) {

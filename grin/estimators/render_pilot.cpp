@@ -11,7 +11,7 @@ namespace {
 
 constexpr int fewest_pairs = 4, most_pairs = 256;
 constexpr std::uint64_t enough_flights = 1 << 16;
-constexpr int most_scatterings = 1 << 15;  // of a pilot's path, which need not end
+constexpr int pilot_scatterings = 1 << 15;  // of a pilot's path, which need not end
 
 struct Pilot {
   int pairs = 0;
@@ -32,14 +32,14 @@ Pilot pilot(Transport& transport, const PathKernel& kernel, const TimeBins& bins
   Film film(pixels, bins, sums);
   RandomStream random(0, static_cast<std::uint64_t>(Stream::render), no_batch);
   const int limit = transport.max_scatterings;
-  transport.max_scatterings = std::min(limit, most_scatterings);
+  transport.max_scatterings = std::min(limit, pilot_scatterings);
   for (double& level : transport.join_levels) level = std::numeric_limits<double>::infinity();
   Pilot found;
   for (; found.pairs < most_pairs; ++found.pairs) {
     if (found.pairs >= fewest_pairs && found.counts.flights >= enough_flights) break;
     const std::uint64_t before = found.counts.flights;
     kernel(1, random, film, found.counts, &found.promises);
-    found.is_cut |= found.counts.flights - before >= most_scatterings;
+    found.is_cut |= found.counts.flights - before >= pilot_scatterings;
   }
   transport.max_scatterings = limit;
   return found;

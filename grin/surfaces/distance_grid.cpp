@@ -11,7 +11,7 @@ namespace flatspeckle::grin {
 
 namespace {
 
-constexpr int margin = 2;  ///< cells beyond the mesh's box
+constexpr int padding = 2;  ///< cells beyond the mesh's box
 
 void check(const TriangleMesh& mesh, int cells) {
   if (mesh.triangles.empty()) throw InputError("triangles of a mesh", 0, "at least one");
@@ -36,9 +36,9 @@ DistanceGrid::DistanceGrid(const TriangleMesh& mesh, int cells) {
     }
   spacing_ = (high - low).maxCoeff() / cells;
   if (!(spacing_ > 0)) throw InputError("size of a mesh", 0, "must be positive");
-  low_ = low - Vec3::Constant(margin * spacing_);
+  low_ = low - Vec3::Constant(padding * spacing_);
   for (int a = 0; a < 3; ++a)
-    nodes_[a] = static_cast<int>(std::ceil((high - low)[a] / spacing_)) + 2 * margin + 1;
+    nodes_[a] = static_cast<int>(std::ceil((high - low)[a] / spacing_)) + 2 * padding + 1;
   const MeshDistance exact(mesh);
   values_.resize(static_cast<std::size_t>(nodes_[0]) * nodes_[1] * nodes_[2]);
   for (int i = 0; i < nodes_[0]; ++i) {
@@ -112,8 +112,8 @@ double DistanceGrid::distance(const Vec3& x) const {
   const Vec3 nearest = x.cwiseMax(low_).cwiseMin(high());
   const double outside = (x - nearest).norm();
   if (outside == 0) return interpolated(x);
-  // The mesh is the margin inside the grid, the zero level within a cell of it.
-  return std::max(interpolated(nearest) - outside, outside + (margin - 1) * spacing_);
+  // The mesh is the padding inside the grid, the zero level within a cell of it.
+  return std::max(interpolated(nearest) - outside, outside + (padding - 1) * spacing_);
 }
 
 Vec3 DistanceGrid::normal(const Vec3& x) const {

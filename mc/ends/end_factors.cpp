@@ -63,8 +63,8 @@ std::vector<End> view_ends(const Scene& scene) {
   return ends;
 }
 
-template <bool near, bool phases>
-EndFactors<near, phases>::EndFactors(const Scene& scene, const std::vector<End>& ends)
+template <bool phases>
+EndFactors<phases>::EndFactors(const Scene& scene, const std::vector<End>& ends)
     : domain_(scene.domain), k_(scene.k), mu_t_(scene.medium.mu_t), directions_(ends.size()) {
   const bool box = domain_.kind == Domain::Kind::box;
   for (std::size_t j = 0; j < ends.size(); ++j) {
@@ -91,8 +91,8 @@ EndFactors<near, phases>::EndFactors(const Scene& scene, const std::vector<End>&
   point_wave_.resize(points_.size());
 }
 
-template <bool near, bool phases>
-void EndFactors<near, phases>::attenuate(Vec2 x, std::span<Complex> out) {
+template <bool phases>
+void EndFactors<phases>::attenuate(Vec2 x, std::span<Complex> out) {
   for (std::size_t j = 0; j < size(); ++j) {
     const double inside =
         std::min((edge_x_[j] - x.x) * per_cosine_x_[j], (edge_z_[j] - x.z) * per_cosine_z_[j]);
@@ -106,14 +106,12 @@ void EndFactors<near, phases>::attenuate(Vec2 x, std::span<Complex> out) {
     damping(log_magnitude_, magnitude_);
     std::copy(magnitude_.begin(), magnitude_.end(), out.begin());
   }
-  if constexpr (near) {
-    attenuate_points(x, out);
-    attenuate_beams(x, out);
-  }
+  if (!points_.empty()) attenuate_points(x, out);
+  if (!beams_.empty()) attenuate_beams(x, out);
 }
 
-template <bool near, bool phases>
-void EndFactors<near, phases>::attenuate_points(Vec2 x, std::span<Complex> out) {
+template <bool phases>
+void EndFactors<phases>::attenuate_points(Vec2 x, std::span<Complex> out) {
   constexpr double closest = 1e-200;
   for (std::size_t i = 0; i < points_.size(); ++i) {
     const Vec2 way = points_[i].point - x;
@@ -137,8 +135,8 @@ void EndFactors<near, phases>::attenuate_points(Vec2 x, std::span<Complex> out) 
   }
 }
 
-template <bool near, bool phases>
-void EndFactors<near, phases>::attenuate_beams(Vec2 x, std::span<Complex> out) {
+template <bool phases>
+void EndFactors<phases>::attenuate_beams(Vec2 x, std::span<Complex> out) {
   for (const auto& [j, beam] : beams_) {
     const Vec2 w = -beam.ray(x);
     directions_.set(j, w, angle_of(w));
@@ -148,9 +146,7 @@ void EndFactors<near, phases>::attenuate_beams(Vec2 x, std::span<Complex> out) {
   }
 }
 
-template class EndFactors<false, false>;
-template class EndFactors<false, true>;
-template class EndFactors<true, false>;
-template class EndFactors<true, true>;
+template class EndFactors<false>;
+template class EndFactors<true>;
 
 }  // namespace flatspeckle::mc

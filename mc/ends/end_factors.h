@@ -29,9 +29,9 @@ struct End {
 std::vector<End> light_ends(const Scene& scene);
 std::vector<End> view_ends(const Scene& scene);
 
-/// End factors e of C13 for a list of ends, times the amplitude towards them (C14). Near: some ends
-/// are points or beams. Phases: without them only magnitudes, which is all that intensities need.
-template <bool near, bool phases>
+/// End factors e of C13 for a list of ends, times the amplitude towards them (C14). Phases: without
+/// them only magnitudes, which is all that intensities need.
+template <bool phases>
 class EndFactors {
  public:
   EndFactors(const Scene& scene, const std::vector<End>& ends);

@@ -26,6 +26,12 @@ struct Directions {
   }
 };
 
+/// 1 - cos of the angle between unit vectors, without cancellation.
+inline double one_minus_cosine(Vec2 from, Vec2 to) {
+  const Vec2 step = to - from;
+  return dot(step, step) / 2;
+}
+
 /// w turned from +z towards +x by the angle of the unit vector `turn`.
 inline Vec2 turned(Vec2 w, Vec2 turn) {
   return {w.x * turn.z + w.z * turn.x, w.z * turn.z - w.x * turn.x};
@@ -69,8 +75,7 @@ struct HenyeyGreensteinScattering {
   grin::HenyeyGreenstein<2> phase;
 
   double density(Vec2 from, Vec2 to) const {
-    const Vec2 step = to - from;  // 1 - cos = |step|^2 / 2 does not cancel
-    return phase.density_beside(dot(step, step) / 2);
+    return phase.density_beside(one_minus_cosine(from, to));
   }
   double amplitude(Vec2 from, Vec2 to) const { return std::sqrt(density(from, to)); }
   void towards(Vec2 from, const Directions& to, std::span<Complex> out) const {

@@ -1,13 +1,13 @@
 #include "mc/estimators/brownian.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/error.h"
+#include "core/numbers/phasor.h"
 #include "core/result/result_group.h"
-#include "mc/ends/coherent_field.h"
-#include "mc/estimators/delay_scorer.h"
+#include "mc/estimators/path_ends.h"
 #include "mc/estimators/single_scattering.h"
-#include "mc/estimators/tallied_walks.h"
 #include "mc/theory/diffusion.h"
 
 namespace flatspeckle::mc {
@@ -15,6 +15,133 @@ namespace flatspeckle::mc {
 namespace {
 
 using Values = std::vector<Complex>;
+
+/// Sum of 1 - cos over the inner scatterers of a path.
+struct TurnTally {
+  double turn = 0;
+
+  void flight(double) {}
+  void scattering(Vec2 from, Vec2 to) { turn += one_minus_cosine(from, to); }
+};
+
+/// A e of some ends and how they decay, [delay][end].
+struct Decaying {
+  Values value;
+  std::vector<double> turn, decay;
+
+  Decaying(std::size_t ends, std::size_t delays) : value(ends), turn(ends), decay(ends * delays) {}
+};
+
+/// Adds weight |f|^2 of every channel, then weight Re f(0) conj(f(t)) for every delay. C14's F and
+/// R turn by other angles at the path's ends, so each has its own decay.
+template <typename Scattering, bool reversed, bool phases>
+class DelayScorer {
+ public:
+  DelayScorer(const Scene& scene, const Scattering& scattering, std::span<const double> delays,
+              std::span<Complex> sums)
+      : channels_(scene.request.channels),
+        scattering_(scattering),
+        delays_(delays),
+        sums_(sums),
+        ends_(scene, [&](std::size_t ends) { return Decaying(ends, delays.size()); }),
+        inner_(1, delays.size()),
+        exponent_(delays.size() * std::max(ends_.lights.size(), ends_.views.size())) {}
+
+  /// B = 1 at x.
+  void single(Vec2 x, double weight) {
+    auto& [lights, views, light_first, light, view_first, view] = ends_;
+    lights.attenuate(x, light.value);
+    views.attenuate(x, view.value);
+    for (std::size_t c = 0; c < channels_.size(); ++c) {
+      const auto [i, v] = channels_[c];
+      const Vec2 from = -lights.direction(i), to = views.direction(v);
+      const double square =
+          std::norm(light.value[i] * view.value[v] * scattering_.amplitude(from, to));
+      sums_[c] += weight * square;
+      inner_.turn[0] = one_minus_cosine(from, to);
+      decay(inner_);
+      for (std::size_t t = 0; t < delays_.size(); ++t)
+        sums_[(1 + t) * channels_.size() + c] += weight * square * inner_.decay[t];
+    }
+  }
+
+  void multiple(const TalliedPath<TurnTally>& path) {
+    ends_.find(path, [this](auto& ends, Vec2 x, Vec2 arrival, Decaying& out) {
+      ends.at(x, arrival, scattering_, out.value);
+      for (std::size_t j = 0; j < ends.size(); ++j)
+        out.turn[j] = one_minus_cosine(arrival, ends.direction(j));
+      decay(out);
+    });
+    inner_.turn[0] = path.tally.turn;
+    decay(inner_);
+    for (std::size_t c = 0; c < channels_.size(); ++c) score(c, path.weight);
+  }
+
+ private:
+  void decay(Decaying& ends) {
+    const std::size_t count = ends.turn.size();
+    for (std::size_t t = 0; t < delays_.size(); ++t)
+      for (std::size_t j = 0; j < count; ++j)
+        exponent_[t * count + j] = -2 * delays_[t] * ends.turn[j];
+    damping(std::span(exponent_).first(ends.decay.size()), ends.decay);
+  }
+
+  void score(std::size_t c, double weight) {
+    const auto& [lights, views, light_first, light_last, view_first, view_last] = ends_;
+    const auto [i, v] = channels_[c];
+    const Complex forward = product(light_first.value[i], view_last.value[v]);
+    Complex backward = 0;
+    if constexpr (reversed) backward = product(light_last.value[i], view_first.value[v]);
+    const Complex field = forward + backward;
+    const double with_forward = weight * product_with_conjugate(field, forward).real(),
+                 with_backward = weight * product_with_conjugate(field, backward).real();
+    sums_[c] += with_forward + with_backward;
+    for (std::size_t t = 0; t < delays_.size(); ++t) {
+      const std::size_t light = t * lights.size() + i, view = t * views.size() + v;
+      double sum = with_forward * light_first.decay[light] * view_last.decay[view];
+      if constexpr (reversed)
+        sum += with_backward * light_last.decay[light] * view_first.decay[view];
+      sums_[(1 + t) * channels_.size() + c] += inner_.decay[t] * sum;
+    }
+  }
+
+  const std::vector<Channel>& channels_;
+  const Scattering& scattering_;
+  std::span<const double> delays_;
+  std::span<Complex> sums_;
+  PathEnds<Decaying, reversed, phases> ends_;
+  Decaying inner_;  ///< of the inner scatterers, or the only one
+  std::vector<double> exponent_;
+};
+
+struct DelayKind {
+  using Sums = std::span<Complex>;
+  std::vector<double> delays;
+
+  std::size_t quantities() const { return 1 + delays.size(); }
+
+  TurnTally tally(const Scene&) const { return {}; }
+
+  template <bool reversed, bool phases, typename Scattering>
+  auto scorer(const Scene& scene, const Scattering& scattering, Sums sums) const {
+    return DelayScorer<Scattering, reversed, phases>(scene, scattering, delays, sums);
+  }
+
+  template <typename Scattering>
+  Values single(const Scene& scene, const Scattering& scattering) const {
+    Values all = single_scattering(scene, scattering);
+    const auto lights = light_ends(scene), views = view_ends(scene);
+    const std::size_t channels = all.size();
+    for (const double delay : delays) {
+      for (std::size_t c = 0; c < channels; ++c) {
+        const auto [i, v] = scene.request.channels[c];
+        const double turn = one_minus_cosine(-lights[i].towards, views[v].towards);
+        all.push_back(all[c] * std::exp(-2 * delay * turn));
+      }
+    }
+    return all;
+  }
+};
 
 void check(const Scene& scene, const std::vector<double>& delays) {
   if (scene.request.kind != CovarianceRequest::Kind::intensity)
@@ -26,82 +153,32 @@ void check(const Scene& scene, const std::vector<double>& delays) {
       throw InputError("delays", delay, "must not be negative, nor above 1e100");
 }
 
-/// B = 1 in closed form, [1 + delay][channel].
-Values closed_form(const Scene& scene, const Plan& plan, const std::vector<double>& delays) {
-  Values all;
-  with_scattering(scene, plan.phase,
-                  [&](const auto& scattering) { all = single_scattering(scene, scattering); });
-  const auto lights = light_ends(scene), views = view_ends(scene);
-  const std::size_t channels = all.size();
-  for (const double delay : delays) {
-    for (std::size_t c = 0; c < channels; ++c) {
-      const auto [i, v] = scene.request.channels[c];
-      const double turn = one_minus_cosine(-lights[i].towards, views[v].towards);
-      all.push_back(all[c] * std::exp(-2 * delay * turn));
-    }
+/// [delay][channel] over the intensities that come before them.
+Values correlation(const Values& all, std::size_t channels) {
+  Values correlation;
+  for (std::size_t i = channels; i < all.size(); ++i) {
+    const double intensity = all[i % channels].real();
+    correlation.push_back(intensity > 0 ? all[i] / intensity : 0);
   }
-  return all;
-}
-
-/// [1 + delay][channel] of all paths.
-Estimator with_single(const Scene& scene, const Plan& plan, const std::vector<double>& delays) {
-  if (plan.sampled_single || scene.medium.mu_s == 0) return sample_mean;
-  return
-      [single = closed_form(scene, plan, delays)](double samples, std::span<const Complex> sums) {
-        Values values = sample_mean(samples, sums);
-        std::transform(values.begin(), values.end(), single.begin(), values.begin(), std::plus<>());
-        return values;
-      };
+  return correlation;
 }
 
 }  // namespace
 
-DelayJob delay_job(const Scene& scene, const Plan& plan, const std::vector<double>& delays,
-                   std::uint64_t seed) {
+PathJob delay_job(const Scene& scene, const Plan& plan, const std::vector<double>& delays,
+                  std::uint64_t seed) {
   check(scene, delays);
-  const std::size_t channels = scene.request.channels.size();
-  const Estimator all = with_single(scene, plan, delays);
-  DelayJob job;
-  job.field.covariance = [all, channels](double samples, std::span<const Complex> sums) {
-    Values values = all(samples, sums);
-    values.resize(channels);
-    return values;
-  };
-  job.covariance = [all, channels](double samples, std::span<const Complex> sums) {
-    const Values values = all(samples, sums);
-    return Values(values.begin() + static_cast<std::ptrdiff_t>(channels), values.end());
-  };
-  job.correlation = [all, channels](double samples, std::span<const Complex> sums) {
-    const Values values = all(samples, sums);
-    Values correlation;
-    for (std::size_t i = channels; i < values.size(); ++i) {
-      const double intensity = values[i % channels].real();
-      correlation.push_back(intensity > 0 ? values[i] / intensity : 0);
-    }
-    return correlation;
-  };
-  if (has_coherent_field(scene))
-    job.field.mean = [field = coherent_field(scene)](double, std::span<const Complex>) {
-      return field;
-    };
-  job.field.batches.size = (1 + delays.size()) * channels;
-  job.field.batches.samples_per_batch = static_cast<double>(plan.paths_per_batch);
-  job.field.batches.run =
-      tallied_walks(scene, plan, seed, TurnTally{},
-                    [delays]<typename Scattering, typename Reversed, typename Phases>(
-                        const Scene& same_scene, const Scattering& scattering, Reversed, Phases,
-                        std::span<Complex> sums) {
-                      return DelayScorer<Scattering, Reversed::value, Phases::value>(
-                          same_scene, scattering, delays, sums);
-                    });
-  job.field.batches.relative_error = [all](const GroupedSums& sums) {
-    return relative_error(jackknife(sums, all));
-  };
+  PathJob job = path_job(DelayKind{delays}, scene, plan, seed);
+  job.field.batches.relative_error = relative_error_of(job.all);
   return job;
 }
 
-DelayEstimates delay_estimates(const DelayJob& job, const GroupedSums& sums) {
-  return {jackknife(sums, job.covariance), jackknife(sums, job.correlation)};
+DelayEstimates delay_estimates(const PathJob& job, const GroupedSums& sums) {
+  const Estimate all = jackknife(sums, job.all);
+  return {part(all, job.entries, all.value.size() - job.entries),
+          jackknife(sums, [&](double samples, std::span<const Complex> total) {
+            return correlation(job.all(samples, total), job.entries);
+          })};
 }
 
 const DatasetTable delays_table{"delays",

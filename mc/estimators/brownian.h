@@ -4,31 +4,24 @@
 #include <vector>
 
 #include "core/result/dataset_row.h"
-#include "flatland/request/field_moments.h"
-#include "flatland/scene/scene.h"
-#include "mc/walk/plan.h"
+#include "mc/estimators/path_job.h"
 
 namespace flatspeckle::mc {
 
 /// Fields of diffusing scatterers at two times (diffusing-wave spectroscopy; Pine et al. 1988). A
 /// displacement's variance is 2 D tau along each axis, so that a scatterer that turns light by
 /// theta multiplies a path's covariance by exp(-2 t (1 - cos theta)), t = k^2 D tau: the delays.
-/// The scatterers move independently and little against a mean free path.
-struct DelayJob {
-  FieldJob field;         ///< the intensities, at no delay
-  Estimator covariance;   ///< of the fields at time 0 and after each delay, [delay][channel]; real
-  Estimator correlation;  ///< that over the intensity; 0 where there is none
-};
-
+/// The scatterers move independently and little against a mean free path. The job's quantities are
+/// the intensity and the covariances of the fields at time 0 and after each delay, which are real.
 /// For an intensity request. Throws InputError for another, and for negative delays.
-DelayJob delay_job(const Scene& scene, const Plan& plan, const std::vector<double>& delays,
-                   std::uint64_t seed);
+PathJob delay_job(const Scene& scene, const Plan& plan, const std::vector<double>& delays,
+                  std::uint64_t seed);
 
-/// The two, [delay][channel].
+/// [delay][channel]: the covariances, and those over the intensity, 0 where there is none.
 struct DelayEstimates {
   Estimate covariance, correlation;
 };
-DelayEstimates delay_estimates(const DelayJob& job, const GroupedSums& sums);
+DelayEstimates delay_estimates(const PathJob& job, const GroupedSums& sums);
 
 extern const DatasetTable delays_table;
 /// With diffusion theory for light through a slab. The request's axes must have been written.

@@ -1,101 +1,94 @@
 #include "mc/estimators/covariance_estimator.h"
 
-#include <memory>
-
-#include "mc/ends/coherent_field.h"
+#include "mc/estimators/path_ends.h"
+#include "mc/estimators/path_job.h"
 #include "mc/estimators/single_scattering.h"
-#include "mc/walk/accumulator.h"
-#include "mc/walk/path_fields.h"
-#include "mc/walk/walk_setup.h"
 
 namespace flatspeckle::mc {
 
 namespace {
 
-template <bool reversed, bool weighted, bool near, bool phases, typename Scattering>
-PathBatches batches(const Scene& scene, const Plan& plan, const Scattering& scattering,
-                    std::uint64_t seed) {
-  using Shared = WalkSetup<Scattering, reversed, weighted>;
-  const auto setup = std::make_shared<const Shared>(scene, plan, scattering);
-  return [setup, seed](std::uint64_t number, Accumulator& accumulator) {
-    PathFields<Scattering, reversed, near, phases> fields(setup->scene, setup->scattering,
-                                                          accumulator);
-    setup->walk_batch(seed, number, fields);
-  };
-}
+/// The field f of every channel (C14), for an accumulator.
+template <typename Scattering, bool reversed, bool phases>
+class PathFields {
+ public:
+  PathFields(const Scene& scene, const Scattering& scattering, Accumulator& accumulator)
+      : scattering_(scattering),
+        channels_(scene.request.channels),
+        accumulator_(accumulator),
+        ends_(scene, [](std::size_t ends) { return std::vector<Complex>(ends); }),
+        field_(channels_.size()) {}
 
-template <typename Scattering>
-PathBatches specialise(const Scene& scene, const Plan& plan, const Scattering& scattering,
-                       std::uint64_t seed) {
-  PathBatches chosen;
-  with_flag(plan.weighted, [&](auto weighted) {
-    with_flag(plan.near, [&](auto near) {
-      constexpr bool w = decltype(weighted)::value, n = decltype(near)::value;
-      if (plan.reversed)
-        chosen = batches<true, w, n, true>(scene, plan, scattering, seed);
-      else if (plan.phases)
-        chosen = batches<false, w, n, true>(scene, plan, scattering, seed);
-      else
-        chosen = batches<false, w, n, false>(scene, plan, scattering, seed);
+  /// B = 1 at x.
+  void single(Vec2 x, double weight) {
+    auto& [lights, views, light_first, light, view_first, view] = ends_;
+    lights.attenuate(x, light);
+    views.attenuate(x, view);
+    for (std::size_t c = 0; c < channels_.size(); ++c) {
+      const auto [i, v] = channels_[c];
+      field_[c] = product(product(light[i], view[v]),
+                          scattering_.amplitude(-lights.direction(i), views.direction(v)));
+    }
+    accumulator_.add(weight, field_);
+  }
+
+  void multiple(const Path& path) {
+    ends_.find(path, [this](auto& ends, Vec2 x, Vec2 arrival, std::vector<Complex>& out) {
+      ends.at(x, arrival, scattering_, out);
     });
-  });
-  return chosen;
-}
+    for (std::size_t c = 0; c < channels_.size(); ++c) {
+      const auto [i, v] = channels_[c];
+      field_[c] = product(ends_.light_first[i], ends_.view_last[v]);
+      if constexpr (reversed) field_[c] += product(ends_.light_last[i], ends_.view_first[v]);
+    }
+    accumulator_.add(path.weight, field_);
+  }
 
-/// Sampled paths, and those of one scatterer where no walk samples them.
-Estimator covariance_of(const Scene& scene, const Plan& plan) {
-  if (plan.sampled_single || scene.medium.mu_s == 0) return sample_mean;
-  std::vector<Complex> single;
-  with_scattering(scene, plan.phase,
-                  [&](const auto& scattering) { single = single_scattering(scene, scattering); });
-  return [single](double samples, std::span<const Complex> sums) {
-    auto values = sample_mean(samples, sums);
-    for (std::size_t e = 0; e < values.size(); ++e) values[e] += single[e];
-    return values;
-  };
-}
+ private:
+  const Scattering& scattering_;
+  const std::vector<Channel>& channels_;
+  Accumulator& accumulator_;
+  PathEnds<std::vector<Complex>, reversed, phases> ends_;  ///< A e of every end
+  std::vector<Complex> field_;                             ///< per channel
+};
 
-SummedBatches listed_entries(const CovarianceRequest& request, const PathBatches& batches) {
+struct CovarianceKind {
+  using Sums = Accumulator&;
+
+  NoTally tally(const Scene&) const { return {}; }
+
+  template <bool reversed, bool phases, typename Scattering>
+  auto scorer(const Scene& scene, const Scattering& scattering, Accumulator& accumulator) const {
+    return PathFields<Scattering, reversed, phases>(scene, scattering, accumulator);
+  }
+
+  template <typename Scattering>
+  std::vector<Complex> single(const Scene& scene, const Scattering& scattering) const {
+    return single_scattering(scene, scattering);
+  }
+};
+
+template <typename Entries>
+auto into(const CovarianceRequest& request, const PathBatches& batches) {
   return [=](std::uint64_t number, std::span<Complex> sums) {
-    EntryAccumulator accumulator(request, sums);
-    batches(number, accumulator);
-  };
-}
-
-SummedBatches whole_matrix(const CovarianceRequest& request, const PathBatches& batches) {
-  return [=](std::uint64_t number, std::span<Complex> sums) {
-    RankKAccumulator accumulator(request, sums);
-    batches(number, accumulator);
-    accumulator.finish();
+    Entries entries(request, sums);
+    batches(number, entries);
+    entries.finish();
   };
 }
 
 }  // namespace
 
 PathBatches path_batches(const Scene& scene, const Plan& plan, std::uint64_t seed) {
-  if (scene.medium.mu_s == 0) return [](std::uint64_t, Accumulator&) {};
-  PathBatches chosen;
-  with_scattering(scene, plan.phase, [&](const auto& scattering) {
-    chosen = specialise(scene, plan, scattering, seed);
-  });
-  return chosen;
+  return walks(CovarianceKind(), scene, plan, seed);
 }
 
 FieldJob covariance_job(const Scene& scene, const Plan& plan, std::uint64_t seed) {
-  FieldJob job;
-  job.covariance = covariance_of(scene, plan);
-  if (has_coherent_field(scene)) {
-    job.mean = [field = coherent_field(scene)](double, std::span<const Complex>) { return field; };
-  }
-  job.batches.size = scene.request.entries.size();
-  job.batches.samples_per_batch = static_cast<double>(plan.paths_per_batch);
   const auto batches = path_batches(scene, plan, seed);
-  job.batches.run =
-      plan.rank_k ? whole_matrix(scene.request, batches) : listed_entries(scene.request, batches);
-  job.batches.relative_error = [covariance = job.covariance](const GroupedSums& sums) {
-    return relative_error(jackknife(sums, covariance));
-  };
-  return job;
+  const auto single = unsampled(CovarianceKind(), scene, plan);
+  if (plan.rank_k)
+    return path_job(scene, plan, 1, single, into<RankKAccumulator>(scene.request, batches)).field;
+  return path_job(scene, plan, 1, single, into<EntryAccumulator>(scene.request, batches)).field;
 }
 
 }  // namespace flatspeckle::mc

@@ -12,7 +12,7 @@
 #include "mc/estimators/flux_walk.h"
 #include "mc/walk/importance.h"
 #include "mc/walk/plan.h"
-#include "mc/walk/walk_setup.h"
+#include "mc/walk/walks.h"
 
 namespace flatspeckle::mc {
 

@@ -5,10 +5,8 @@
 
 #include "core/error.h"
 #include "core/result/result_group.h"
-#include "mc/ends/coherent_field.h"
 #include "mc/estimators/gradient_scorer.h"
 #include "mc/estimators/single_scattering.h"
-#include "mc/estimators/tallied_walks.h"
 #include "mc/theory/memory_effect.h"
 #include "mc/theory/moments_datasets.h"
 
@@ -32,14 +30,8 @@ std::vector<BulkParameter> sampled_parameters(const Scene& scene) {
 }
 
 std::string name_of(BulkParameter parameter) {
-  switch (parameter) {
-    case BulkParameter::mu_t:
-      return "mu_t";
-    case BulkParameter::g:
-      return "g";
-    default:
-      return "albedo";
-  }
+  constexpr const char* names[] = {"mu_t", "g", "albedo"};
+  return names[static_cast<std::size_t>(parameter)];
 }
 
 /// Central differences in mu_t of the closed form, of fourth order. It varies over a mean free path
@@ -71,22 +63,32 @@ std::vector<double> amplitude_slopes(const Scene& scene) {
     slopes.push_back(0);
     for (const auto channel : {entry.a, entry.b}) {
       const auto [i, v] = scene.request.channels[channel];
-      const Vec2 step = views[v].towards + lights[i].towards;
-      slopes.back() += henyey_greenstein_slope(scene.medium.g, dot(step, step) / 2) / 2;
+      const double turn = one_minus_cosine(-lights[i].towards, views[v].towards);
+      slopes.back() += henyey_greenstein_slope(scene.medium.g, turn) / 2;
     }
   }
   return slopes;
 }
 
-/// B = 1 in closed form, [1 + parameter][entry].
-Values closed_form_gradient(const Scene& scene, const Plan& plan,
-                            const std::vector<BulkParameter>& parameters) {
-  Values all;
-  with_scattering(scene, plan.phase, [&](const auto& scattering) {
+struct GradientKind {
+  using Sums = std::span<Complex>;
+  std::vector<BulkParameter> parameters;
+
+  std::size_t quantities() const { return 1 + parameters.size(); }
+
+  GradientTally tally(const Scene& scene) const { return {scene.medium.g}; }
+
+  template <bool reversed, bool phases, typename Scattering>
+  auto scorer(const Scene& scene, const Scattering& scattering, Sums sums) const {
+    return GradientScorer<Scattering, reversed, phases>(scene, scattering, parameters, sums);
+  }
+
+  template <typename Scattering>
+  Values single(const Scene& scene, const Scattering& scattering) const {
     const auto closed_form = [&](const Scene& any) { return single_scattering(any, scattering); };
     const Values single = closed_form(scene);
     const auto by_g = amplitude_slopes(scene);
-    all = single;
+    Values all = single;
     for (const BulkParameter parameter : parameters) {
       Values slope = single;
       if (parameter == BulkParameter::mu_t) slope = extinction_slope(scene, closed_form);
@@ -96,31 +98,19 @@ Values closed_form_gradient(const Scene& scene, const Plan& plan,
       }
       all.insert(all.end(), slope.begin(), slope.end());
     }
-  });
-  return all;
-}
-
-/// [1 + parameter][entry] of all paths.
-Estimator with_single(const Scene& scene, const Plan& plan,
-                      const std::vector<BulkParameter>& parameters) {
-  if (plan.sampled_single) return sample_mean;
-  return [single = closed_form_gradient(scene, plan, parameters)](double samples,
-                                                                  std::span<const Complex> sums) {
-    Values values = sample_mean(samples, sums);
-    std::transform(values.begin(), values.end(), single.begin(), values.begin(), std::plus<>());
-    return values;
-  };
-}
+    return all;
+  }
+};
 
 /// [parameter][entry] with the optical depth last.
-Estimator gradient_of(const Scene& scene, const Estimator& all) {
-  return [all, entries = scene.request.entries.size(), depth = scene.domain.depth](
-             double samples, std::span<const Complex> sums) {
-    Values values = all(samples, sums);
-    values.erase(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(entries));
-    for (std::size_t e = 0; e < entries; ++e) values.push_back(values[e] / depth);
-    return values;
-  };
+Estimator gradient_of(const PathJob& job, double depth) {
+  return
+      [all = job.all, entries = job.entries, depth](double samples, std::span<const Complex> sums) {
+        Values values = all(samples, sums);
+        values.erase(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(entries));
+        for (std::size_t e = 0; e < entries; ++e) values.push_back(values[e] / depth);
+        return values;
+      };
 }
 
 /// What memory_effect() makes of entries: C_E per tilt, then the range.
@@ -181,34 +171,10 @@ Plan gradient_plan(const Scene& scene, ReversedPaths reversed) {
 
 GradientJob gradient_job(const Scene& scene, const Plan& plan, std::uint64_t seed) {
   const auto parameters = sampled_parameters(scene);
-  const std::size_t entries = scene.request.entries.size();
-  const Estimator all = with_single(scene, plan, parameters);
-  GradientJob job;
+  GradientJob job{path_job(GradientKind{parameters}, scene, plan, seed), {}, {}};
   for (const BulkParameter parameter : parameters) job.parameters.push_back(name_of(parameter));
   job.parameters.emplace_back("optical_depth");
-  job.gradient = gradient_of(scene, all);
-  if (has_coherent_field(scene))
-    job.field.mean = [field = coherent_field(scene)](double, std::span<const Complex>) {
-      return field;
-    };
-  job.field.covariance = [all, entries](double samples, std::span<const Complex> sums) {
-    Values values = all(samples, sums);
-    values.resize(entries);
-    return values;
-  };
-  job.field.batches.size = (1 + parameters.size()) * entries;
-  job.field.batches.samples_per_batch = static_cast<double>(plan.paths_per_batch);
-  job.field.batches.run =
-      tallied_walks(scene, plan, seed, GradientTally{scene.medium.g},
-                    [parameters]<typename Scattering, typename Reversed, typename Phases>(
-                        const Scene& same_scene, const Scattering& scattering, Reversed, Phases,
-                        std::span<Complex> sums) {
-                      return GradientScorer<Scattering, Reversed::value, Phases::value>(
-                          same_scene, scattering, parameters, sums);
-                    });
-  job.field.batches.relative_error = [covariance = job.field.covariance](const GroupedSums& sums) {
-    return relative_error(jackknife(sums, covariance));
-  };
+  job.gradient = gradient_of(job, scene.domain.depth);
   return job;
 }
 

@@ -5,21 +5,15 @@
 #include <vector>
 
 #include "core/result/dataset_row.h"
-#include "flatland/request/field_moments.h"
-#include "flatland/scene/scene.h"
-#include "mc/walk/plan.h"
+#include "mc/estimators/path_job.h"
 
 namespace flatspeckle::mc {
-
-/// What a scene's bulk can be differentiated by, all others held fixed.
-enum class BulkParameter { mu_t, g, albedo };
 
 /// Derivatives of a scene's covariance from the paths that estimate it: the integrand of C14 is
 /// differentiated, the density that the paths are drawn from is not. The parameters are mu_t, g and
 /// albedo where they describe the scatterers as a bulk (all for hg, no g for points, mu_t alone for
 /// cylinders), and the optical depth, mu_t times the depth, at fixed depth.
-struct GradientJob {
-  FieldJob field;  ///< the covariance, as covariance_job() has it
+struct GradientJob : PathJob {
   std::vector<std::string> parameters;
   Estimator gradient;  ///< [parameter][entry]
 };
@@ -50,12 +44,5 @@ extern const DatasetTable gradient_table;
 /// The request's axes must have been written.
 void write_gradient(ResultFile& file, const CovarianceRequest& request, const GradientJob& job,
                     const GradientEstimates& gradient);
-
-/// d log p / dg of the phase function of C22 at a scattering angle of known 1 - cos.
-inline double henyey_greenstein_slope(double g, double one_minus_cosine) {
-  const double rest = 1 - g;
-  return 2 * (rest - one_minus_cosine) / (rest * rest + 2 * g * one_minus_cosine) -
-         2 * g / (rest * (1 + g));
-}
 
 }  // namespace flatspeckle::mc

@@ -5,11 +5,19 @@
 #include <vector>
 
 #include "flatland/scene/scene.h"
-#include "mc/ends/end_factors.h"
-#include "mc/estimators/gradient.h"
-#include "mc/walk/path_walk.h"
+#include "mc/estimators/path_ends.h"
 
 namespace flatspeckle::mc {
+
+/// What a scene's bulk can be differentiated by, all others held fixed.
+enum class BulkParameter { mu_t, g, albedo };
+
+/// d log p / dg of the phase function of C22 at a scattering angle of known 1 - cos.
+inline double henyey_greenstein_slope(double g, double one_minus_cosine) {
+  const double rest = 1 - g;
+  return 2 * (rest - one_minus_cosine) / (rest * rest + 2 * g * one_minus_cosine) -
+         2 * g / (rest * (1 + g));
+}
 
 /// What the logarithm of a path's integrand mu_s^B prod exp(-mu_t r) prod p depends on.
 struct GradientTally {
@@ -23,8 +31,7 @@ struct GradientTally {
     ++scatterers;
   }
   void scattering(Vec2 from, Vec2 to) {
-    const Vec2 step = to - from;
-    phase_slope += henyey_greenstein_slope(g, dot(step, step) / 2);
+    phase_slope += henyey_greenstein_slope(g, one_minus_cosine(from, to));
   }
 };
 
@@ -40,55 +47,52 @@ class GradientScorer {
         scattering_(scattering),
         parameters_(parameters),
         sums_(sums),
-        lights_(scene, light_ends(scene)),
-        views_(scene, view_ends(scene)),
+        ends_(scene, [](std::size_t ends) { return EndValues(ends); }),
         field_(request_.channels.size()),
         field_slope_(field_.size() * parameters.size()) {}
 
   /// B = 1 at x.
   void single(Vec2 x, double weight) {
-    attenuate(lights_, x, light_last_);
-    attenuate(views_, x, view_last_);
+    auto& [lights, views, light_first, light, view_first, view] = ends_;
+    attenuate(lights, x, light);
+    attenuate(views, x, view);
     clear();
     for (std::size_t c = 0; c < field_.size(); ++c) {
       const auto [i, v] = request_.channels[c];
-      const Vec2 from = -lights_.direction(i), to = views_.direction(v);
+      const Vec2 from = -lights.direction(i), to = views.direction(v);
       GradientTally tally{medium_.g};
       tally.scattering(from, to);
-      add_term(c, half_slopes(tally), light_last_, view_last_, scattering_.amplitude(from, to));
+      add_term(c, half_slopes(tally), light, view, scattering_.amplitude(from, to));
     }
     accumulate(weight);
   }
 
   void multiple(const TalliedPath<GradientTally>& path) {
-    if (path.new_start) {
-      at(lights_, path.first, -path.start, light_first_);
-      if constexpr (reversed) at(views_, path.first, -path.start, view_first_);
-    }
-    at(views_, path.last, path.arrival, view_last_);
-    if constexpr (reversed) at(lights_, path.last, path.arrival, light_last_);
+    ends_.find(path, [this](Ends& ends, Vec2 x, Vec2 arrival, EndValues& out) {
+      at(ends, x, arrival, out);
+    });
     const Slopes half = half_slopes(path.tally);
     clear();
     for (std::size_t c = 0; c < field_.size(); ++c) {
-      add_term(c, half, light_first_, view_last_, 1.0);
-      if constexpr (reversed) add_term(c, half, light_last_, view_first_, 1.0);
+      add_term(c, half, ends_.light_first, ends_.view_last, 1.0);
+      if constexpr (reversed) add_term(c, half, ends_.light_last, ends_.view_first, 1.0);
     }
     accumulate(path.weight);
   }
 
  private:
-  using Ends = EndFactors<true, phases>;
+  using Ends = EndFactors<phases>;
   /// Logarithmic derivatives, by parameter.
   using Slopes = std::array<double, 3>;
   /// A e of every end and its slopes.
   struct EndValues {
     std::vector<Complex> value;
     std::vector<Slopes> slopes;
+
+    explicit EndValues(std::size_t ends) : value(ends), slopes(ends) {}
   };
 
   void attenuate(Ends& ends, Vec2 x, EndValues& out) const {
-    out.value.resize(ends.size());
-    out.slopes.resize(ends.size());
     ends.attenuate(x, out.value);
     for (std::size_t p = 0; p < parameters_.size(); ++p)
       for (std::size_t j = 0; j < ends.size(); ++j)
@@ -101,10 +105,9 @@ class GradientScorer {
     scattering_.towards(arrival, ends.directions(), out.value);
     for (std::size_t p = 0; p < parameters_.size(); ++p) {
       if (parameters_[p] != BulkParameter::g) continue;
-      for (std::size_t j = 0; j < ends.size(); ++j) {
-        const Vec2 step = ends.direction(j) - arrival;
-        out.slopes[j][p] = henyey_greenstein_slope(medium_.g, dot(step, step) / 2) / 2;
-      }
+      for (std::size_t j = 0; j < ends.size(); ++j)
+        out.slopes[j][p] =
+            henyey_greenstein_slope(medium_.g, one_minus_cosine(arrival, ends.direction(j))) / 2;
     }
   }
 
@@ -160,8 +163,7 @@ class GradientScorer {
   const Scattering& scattering_;
   std::span<const BulkParameter> parameters_;
   std::span<Complex> sums_;
-  Ends lights_, views_;
-  EndValues light_first_, light_last_, view_first_, view_last_;
+  PathEnds<EndValues, reversed, phases> ends_;
   std::vector<Complex> field_;        ///< per channel
   std::vector<Complex> field_slope_;  ///< its derivatives, [parameter][channel]
 };

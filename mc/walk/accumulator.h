@@ -23,6 +23,7 @@ class EntryAccumulator : public Accumulator {
   EntryAccumulator(const CovarianceRequest& request, std::span<Complex> sums);
 
   void add(double weight, std::span<const Complex> field) override;
+  void finish() {}
 
  private:
   struct Term {

@@ -3,6 +3,7 @@
 import contextlib
 import os
 import pathlib
+import resource
 import subprocess
 import tempfile
 import unittest
@@ -16,6 +17,8 @@ DATA = pathlib.Path(os.environ["FLATSPECKLE_DATA"])
 BOX = {"width": 20, "depth": 10, "count": 31}
 CYLINDERS = {"width": 20, "depth": 10, "count": 20, "scatterer": "tm", "radius": 0.16}
 SLAB = {"domain": "slab", "depth": 100, "scatterer": "hg", "optical_depth": 2, "g": 0.5}
+# Bad input is refused before anything is computed; a program with sanitizers takes longer.
+MOST_CPU_S = 0.3 * float(os.environ.get("FLATSPECKLE_SLOWNESS", 1))
 TILTS = {"covariance": "memory_effect", "tilts": [0, 0.04, 0.16], "view_angles": [0.1, 0.5]}
 
 
@@ -63,6 +66,12 @@ def attributes(path):
         return dict(file.attrs)
 
 
+def cpu_of_children():
+    """CPU seconds of the processes that have ended."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
+
+
 def catches(process, number):
     """Whether the process has a handler for this signal by now."""
     with open(f"/proc/{process.pid}/status") as status:
@@ -79,10 +88,14 @@ class ProgramTest(unittest.TestCase):
         self.folder = pathlib.Path(folder.name)
 
     def call(self, *words, status=0, **keys):
-        """Runs the program with words, then keys as flags, and checks its exit status."""
+        """Runs the program with words, then keys as flags, and checks its exit status, and that it
+        is quick to refuse (2)."""
         command = [PROGRAM, *map(str, words), *flags(keys)]
+        before = cpu_of_children()
         done = subprocess.run(command, cwd=self.folder, capture_output=True, text=True, timeout=600)
         self.assertEqual(done.returncode, status, f"{command}\n{done.stdout}{done.stderr}")
+        if status == 2:
+            self.assertLess(cpu_of_children() - before, MOST_CPU_S, f"{command}\n{done.stderr}")
         return done
 
     def start(self, *words, **keys):

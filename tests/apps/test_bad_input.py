@@ -186,7 +186,14 @@ LIGHT_CASES = [
     ("covariance", {**BOX, **MOVE}, {"near_sources": "one.csv", "tilts": [0]},
      ["tilts = 0", "memory_effect and tilt_shift"]),
 ]
-SENSORS = {"out.csv": "x,z\n0,15\n1,15\n", "header.csv": "x,z\n", "one.csv": "x,z\n0,-3\n",
+WAVE = {**CYLINDERS, "method": "wave"}
+COVERED_CASES = [
+    (subcommand, scene, {key: name}, [f"{key} = (", "may cover", "radius"])
+    for subcommand, scene in (("validate", CYLINDERS), ("covariance", WAVE))
+    for key in ("near_sensors", "near_sources") for name in ("rim.csv", "inside.csv")
+]
+SENSORS = {"rim.csv": "x,z\n0,-30\n0,-0.0001\n", "inside.csv": "x,z\n0,1\n",
+           "out.csv": "x,z\n0,15\n1,15\n", "header.csv": "x,z\n", "one.csv": "x,z\n0,-3\n",
            "empty.csv": ""}
 REAL_KEYS = [
     ("covariance", BOX, ["width", "depth", "wavelength", "seconds"]),
@@ -217,6 +224,7 @@ class Keys(RefusingTest):
             self.write(name, text)
         self.check_cases(REQUEST_CASES)
         self.check_cases(LIGHT_CASES)
+        self.check_cases(COVERED_CASES)
 
     def test_real_numbers(self):
         for subcommand, scene, keys in REAL_KEYS:

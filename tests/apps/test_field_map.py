@@ -139,11 +139,11 @@ class Unfinished(ProgramTest):
         for number in signal.SIGINT, signal.SIGTERM:
             process = self.start("solve", **{**POINTS, "map_pixels": [4000, 4000]}, out="map.h5")
             deadline = time.monotonic() + 60
-            while not any(".tmp" in path.name for path in self.folder.iterdir()):
+            while not (any(".tmp" in path.name for path in self.folder.iterdir())
+                       and catches(process, number)):
                 time.sleep(0.002)
                 self.assertIsNone(process.poll())
                 self.assertLess(time.monotonic(), deadline)
-            self.assertTrue(catches(process, number))
             process.send_signal(number)
             self.assertEqual(process.wait(timeout=60), 130)
             self.assertEqual(self.listing(), self.before)

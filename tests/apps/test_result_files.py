@@ -254,7 +254,7 @@ class Validate(ResultTest):
 class Sweep(ResultTest):
     def test_shapes(self):
         done = self.call("sweep", **SWEEP, out="result.h5")
-        self.assertEqual(len(done.stdout.splitlines()), 1 + 2 * 3 * 2 + 1)
+        self.assertEqual(len(done.stdout.splitlines()), 1 + 2 * 3 * 2 + 2)
         file = self.open()
         extents = {"optical_depth": 2, "g": 3, "albedo": 2, "tilt": 4}
         grid = ("optical_depth", "g", "albedo")

@@ -10,10 +10,10 @@ namespace {
 struct Lens {
   std::string kind = "ball";
   double radius = 1;
-  std::optional<double> index;
-  std::vector<double> centre;
-  std::vector<std::string> names;
-  std::optional<std::int64_t> count;
+  std::optional<double> index = {};
+  std::vector<double> centre = {};
+  std::vector<std::string> names = {};
+  std::optional<std::int64_t> count = {};
   bool coated = false;
 };
 

@@ -72,16 +72,12 @@ TEST_CASE("rows give axes, units, names and companions") {
   out.file.commit();
 
   const ResultReader file(out.folder / "a.h5");
-  using Names = std::vector<std::string>;
-  CHECK(file.scales("mc/covariance") == Names{"tilt", "sensor"});
-  CHECK(file.scales("mc/covariance_error") == Names{"tilt", "sensor"});
   CHECK(file.dataset<Complex>("mc/covariance") == four);
   CHECK(file.attribute<std::string>("mc/covariance_error", "units") == "length");
   CHECK(file.attribute<std::string>("mc/covariance_error", "long_name") ==
         "standard error: covariance");
   CHECK(file.dataset<double>("mc/intensity") == std::vector<double>{1, 2});
   CHECK(file.dataset<double>("mc/intensity_error") == estimate.error);
-  CHECK(file.scales("mc/trace/count") == Names{"mc/trace/row"});
   CHECK(file.dataset<double>("mc/trace/row") == std::vector<double>{0, 1});
   CHECK(file.attribute<std::string>("sensor", "units") == "1");
   CHECK(file.dataset<double>("range") == std::vector<double>{1.5});

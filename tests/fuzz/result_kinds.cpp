@@ -64,7 +64,7 @@ void write_shard(const std::string& path) {
   file.attribute("/", "reached", true);
   file.attribute("/", "plan", "mc");
   file.attribute("/", "started", "now");
-  write_trace(file, "trace", {{1}, {1}, {80}, {0.5}});
+  write_trace(file, "", {{1}, {1}, {80}, {0.5}});
   file.commit();
 }
 

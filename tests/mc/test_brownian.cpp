@@ -15,12 +15,12 @@ using tests::HgBulk;
 using tests::pi;
 
 struct DelayRun {
-  DelayJob job;
+  PathJob job;
   GroupedSums sums;
 
   Estimate intensity() const { return jackknife(sums, job.field.covariance); }
-  Estimate covariance() const { return jackknife(sums, job.covariance); }
-  Estimate correlation() const { return jackknife(sums, job.correlation); }
+  Estimate covariance() const { return delay_estimates(job, sums).covariance; }
+  Estimate correlation() const { return delay_estimates(job, sums).correlation; }
 };
 
 DelayRun diffuse(const Scene& scene, const Plan& plan, const std::vector<double>& delays,

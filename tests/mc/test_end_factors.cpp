@@ -11,9 +11,9 @@ namespace {
 
 using tests::pi;
 
-template <bool near, bool phases>
+template <bool phases>
 Complex end_factor(const Scene& scene, const End& end, Vec2 x) {
-  EndFactors<near, phases> factors(scene, {end});
+  EndFactors<phases> factors(scene, {end});
   std::vector<Complex> out(1);
   factors.attenuate(x, out);
   return out[0];
@@ -35,16 +35,15 @@ TEST_CASE("the end factor of a light is C13") {
   const double behind = 2.5 / std::cos(angle);
   const Complex expected = std::polar(std::exp(-behind / (2 * mean_free_path)),
                                       scene.k * (std::sin(angle) * x.x + std::cos(angle) * x.z));
-  CHECK(std::abs(end_factor<false, true>(scene, light_ends(scene)[0], x) - expected) < 1e-13);
-  CHECK(std::abs(end_factor<false, false>(scene, light_ends(scene)[0], x) - std::abs(expected)) <
-        1e-14);
+  CHECK(std::abs(end_factor<true>(scene, light_ends(scene)[0], x) - expected) < 1e-13);
+  CHECK(std::abs(end_factor<false>(scene, light_ends(scene)[0], x) - std::abs(expected)) < 1e-14);
 }
 
 TEST_CASE("a light is a view of the opposite direction") {
   for (const double angle : {0.0, 0.4, 1.5, pi / 2, -pi / 2, 2.0, pi}) {
     const Scene scene = box(angle, far_view(angle + pi));
-    CHECK(std::abs(end_factor<false, true>(scene, light_ends(scene)[0], x) -
-                   end_factor<false, true>(scene, view_ends(scene)[0], x)) < 1e-12);
+    CHECK(std::abs(end_factor<true>(scene, light_ends(scene)[0], x) -
+                   end_factor<true>(scene, view_ends(scene)[0], x)) < 1e-12);
   }
 }
 
@@ -53,7 +52,7 @@ TEST_CASE("attenuation stops at the nearer edge, at a near sensor at the sensor"
     const Scene scene = box(0, far_view(angle));
     const double inside = scene.domain.distance_to_edge(x, direction(angle));
     CAPTURE(angle);
-    CHECK(std::abs(end_factor<false, true>(scene, view_ends(scene)[0], x)) ==
+    CHECK(std::abs(end_factor<true>(scene, view_ends(scene)[0], x)) ==
           doctest::Approx(std::exp(-inside / (2 * mean_free_path))).epsilon(1e-14));
   }
   for (const Vec2 sensor : {Vec2{0.2, 7}, Vec2{-1, 3.5}, Vec2{0.75, 2.4}}) {
@@ -61,10 +60,9 @@ TEST_CASE("attenuation stops at the nearer edge, at a near sensor at the sensor"
     const double r = length(sensor - x);
     const double inside = std::min(r, scene.domain.distance_to_edge(x, 1 / r * (sensor - x)));
     const Complex expected = std::exp(-inside / (2 * mean_free_path)) * outgoing_wave(scene.k, r);
-    const Complex found = end_factor<true, true>(scene, view_ends(scene)[0], x);
+    const Complex found = end_factor<true>(scene, view_ends(scene)[0], x);
     CHECK(std::abs(found - expected) < 1e-13 * std::abs(expected));
-    CHECK(std::abs(end_factor<true, false>(scene, view_ends(scene)[0], x) - std::abs(expected)) <
-          1e-13);
+    CHECK(std::abs(end_factor<false>(scene, view_ends(scene)[0], x) - std::abs(expected)) < 1e-13);
   }
 }
 

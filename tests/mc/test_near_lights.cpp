@@ -100,9 +100,9 @@ TEST_CASE("end factors of beams and sources are attenuated on the way in") {
     const Scene scene = box({light});
     std::vector<Complex> out(1);
     if (with_phase)
-      EndFactors<true, true>(scene, light_ends(scene)).attenuate(x, out);
+      EndFactors<true>(scene, light_ends(scene)).attenuate(x, out);
     else
-      EndFactors<true, false>(scene, light_ends(scene)).attenuate(x, out);
+      EndFactors<false>(scene, light_ends(scene)).attenuate(x, out);
     return out[0];
   };
   const Light beam = gaussian_beam(0, {0.5, -3}, 2);

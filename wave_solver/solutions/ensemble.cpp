@@ -1,10 +1,12 @@
 #include "wave_solver/solutions/ensemble.h"
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <vector>
 
 #include "core/error.h"
+#include "core/keys/number_text.h"
 #include "core/numbers/random.h"
 #include "wave_solver/solutions/wave_solution.h"
 
@@ -55,11 +57,27 @@ std::vector<Complex> sample_covariance(const CovarianceRequest& request, double 
   return covariance;
 }
 
+// Centres of disks are anywhere in the box; some placement would cover what is within a radius.
+void require_uncovered(const Scene& scene, const std::string& key, Vec2 point) {
+  const Domain& box = scene.domain;
+  const Vec2 beyond{std::max(0.0, std::abs(point.x) - box.width / 2),
+                    std::max({0.0, -point.z, point.z - box.depth})};
+  const double radius = scene.scatterer.disk_radius();
+  if (length(beyond) < radius)
+    throw InputError(key, "(" + number_text(point.x) + ", " + number_text(point.z) + ")",
+                     "a cylinder may cover it; the exact solver needs points a radius (" +
+                         number_text(radius) + ") and more outside of the box");
+}
+
 void require_solvable(const Scene& scene) {
   if (scene.domain.kind == Domain::Kind::slab)
     throw InputError("domain", "slab", "the wave solver needs a box");
   if (scene.scatterer.is_bulk())
     throw InputError("scatterer", "hg", "the wave solver needs point, soft, hard, tm or te");
+  for (const View& view : scene.request.views)
+    if (view.near) require_uncovered(scene, "near_sensors", view.point);
+  for (const Light& light : scene.request.lights)
+    if (light.kind == Light::Kind::point) require_uncovered(scene, "near_sources", light.point);
 }
 
 }  // namespace
@@ -86,9 +104,7 @@ FieldJob wave_job(const Scene& scene, std::uint64_t seed, double tolerance) {
       sums[u.size() + i] += u[a] * std::conj(u[b]);
     }
   };
-  job.batches.relative_error = [covariance = job.covariance](const GroupedSums& sums) {
-    return relative_error(jackknife(sums, covariance));
-  };
+  job.batches.relative_error = relative_error_of(job.covariance);
   return job;
 }
 

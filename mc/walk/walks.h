@@ -1,0 +1,97 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <type_traits>
+
+#include "flatland/scene/scene.h"
+#include "mc/ends/scattering.h"
+#include "mc/walk/path_walk.h"
+#include "mc/walk/plan.h"
+
+namespace flatspeckle::mc {
+
+/// Adds batch `number` to zeroed sums.
+using SummedBatches = std::function<void(std::uint64_t number, std::span<Complex> sums)>;
+
+/// Calls f with std::true_type or std::false_type.
+template <typename F>
+void with_flag(bool flag, F f) {
+  if (flag)
+    f(std::true_type{});
+  else
+    f(std::false_type{});
+}
+
+/// Calls f with a scene's scattering in one of its forms.
+template <typename F>
+void with_scattering(const Scene& scene, Plan::Phase phase, F f) {
+  switch (phase) {
+    case Plan::Phase::isotropic:
+      return f(IsotropicScattering{});
+    case Plan::Phase::henyey_greenstein:
+      return f(HenyeyGreensteinScattering{{scene.scatterer.g}});
+    case Plan::Phase::tabulated:
+      return f(TabulatedScattering(scene.medium, scene.k));
+  }
+}
+
+/// What all batches of walks share.
+template <typename Kind, typename Scattering, bool weighted, bool reversed, bool phases>
+class Walks {
+ public:
+  Walks(const Kind& kind, const Scene& scene, const Plan& plan, const Scattering& scattering)
+      : kind_(kind),
+        scene_(scene),
+        plan_(plan),
+        scattering_(scattering),
+        walk_(scene_, plan_, scattering_, kind_.tally(scene_)) {}
+  Walks(const Walks&) = delete;
+
+  void batch(std::uint64_t seed, std::uint64_t number, typename Kind::Sums sums) const {
+    RandomStream random(seed, static_cast<std::uint64_t>(Stream::light_paths), number);
+    auto scorer = kind_.template scorer<reversed, phases>(scene_, scattering_, sums);
+    auto own = walk_;
+    own.begin(random);
+    for (std::uint64_t path = 0; path < plan_.paths_per_batch; ++path) own.walk(random, scorer);
+  }
+
+ private:
+  using Tally = decltype(std::declval<const Kind&>().tally(std::declval<const Scene&>()));
+
+  const Kind kind_;
+  const Scene scene_;
+  const Plan plan_;
+  const Scattering scattering_;
+  const PathWalk<Scattering, reversed, weighted, Tally> walk_;
+};
+
+/// Numbered batches of plan.paths_per_batch walks, each handed to a scorer of an estimator's kind
+/// (path_walk.h). A kind is a type with
+///   Sums                            what a batch adds to
+///   tally(scene)                    what every path starts with
+///   scorer<reversed, phases>(scene, scattering, sums)
+template <typename Kind>
+auto walks(const Kind& kind, const Scene& scene, const Plan& plan, std::uint64_t seed) {
+  using Sums = typename Kind::Sums;
+  std::function<void(std::uint64_t number, Sums)> batches = [](std::uint64_t, Sums) {};
+  if (scene.medium.mu_s == 0) return batches;
+  const auto choose = [&]<typename Scattering>(const Scattering& scattering, auto weighted,
+                                               auto reversed, auto phases) {
+    const auto shared = std::make_shared<const Walks<Kind, Scattering, weighted, reversed, phases>>(
+        kind, scene, plan, scattering);
+    batches = [=](std::uint64_t number, Sums sums) { shared->batch(seed, number, sums); };
+  };
+  with_scattering(scene, plan.phase, [&](const auto& scattering) {
+    with_flag(plan.weighted, [&](auto weighted) {
+      if (plan.reversed) return choose(scattering, weighted, std::true_type{}, std::true_type{});
+      with_flag(plan.phases,
+                [&](auto phases) { choose(scattering, weighted, std::false_type{}, phases); });
+    });
+  });
+  return batches;
+}
+
+}  // namespace flatspeckle::mc
