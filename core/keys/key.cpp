@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <numbers>
 #include <sstream>
 
 #include "core/error.h"
@@ -144,6 +145,9 @@ Key& Key::positive_to(double high) {
   high_open_ = false;
   return *this;
 }
+Key& Key::angle() {
+  return from(-2 * std::numbers::pi, 2 * std::numbers::pi).unit("rad");
+}
 Key& Key::between(double low, double high) {
   low_ = low;
   high_ = high;
@@ -240,7 +244,7 @@ std::string Key::range() const {
     return (low_open_ ? "must be above " : "must be at least ") + limit_text(low_);
   const std::string low = limit_text(low_), high = limit_text(high_);
   return low_open_ ? "must be in (" + low + ", " + high + (high_open_ ? ')' : ']')
-                   : "must be from " + low + " to " + high;
+                   : "must be from " + low + " to " + high + (unit_ == "rad" ? " radians" : "");
 }
 
 std::vector<std::string> Key::value() const {

@@ -28,6 +28,7 @@ class Key {
   Key& from(double low, double high);     ///< both included
   Key& between(double low, double high);  ///< neither included
   Key& positive_to(double high);          ///< high included
+  Key& angle();                           ///< radians: who writes 45 means degrees
   Key& one_of(std::vector<std::string> words);
   /// So many numbers for each thing, in words.
   Key& each_of(std::size_t numbers, std::string what);
