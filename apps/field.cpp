@@ -36,7 +36,7 @@ void add_keys(Keys& keys, FieldKeys& values) {
   add_view_keys(keys, values.spec);
   keys.add("tilts", values.spec.tilts,
            "Rotations of the light: fields under each, in the same views")
-      .unit("rad");
+      .angle();
   keys.group("Fields");
   keys.add("fields", values.fields, "How many realizations, for errors at least 2")
       .from(2, std::numeric_limits<double>::infinity());

@@ -42,7 +42,7 @@ int flux(const Arguments& arguments) {
   add_bulk_keys(keys, spec);
   add_medium_keys(keys, spec);
   keys.group("Lights and views");
-  keys.add("light_angles", spec.light_angles, "Directions of the plane waves, from +z").unit("rad");
+  keys.add("light_angles", spec.light_angles, "Directions of the plane waves, from +z").angle();
   keys.add("angle_bins", angle_bins, "Equal bins of the exit angle over (-pi, pi]").from(1, 100000);
   add_run_keys(keys, run);
   if (!command.parse(arguments)) return ExitStatus::done;

@@ -61,7 +61,7 @@ void add_keys(Keys& keys, PlaceKeys& values) {
            "Of points poisson; of disks hard_disk (one after the other) or equilibrium (the fluid "
            "of "
            "hard disks)")
-      .one_of(placement_words());
+      .one_of(placement_words);
   keys.add("min_gap", values.min_gap,
            "Least distance between the rims of disks (default 1e-3 of the smallest radius)")
       .not_negative()

@@ -12,7 +12,6 @@
 #include "core/result/result_group.h"
 #include "core/run/interrupt.h"
 #include "core/session/session.h"
-#include "flatland/scene/scene_checks.h"
 #include "flatland/scene/scene_datasets.h"
 #include "wave_solver/maps/map_datasets.h"
 #include "wave_solver/solutions/wave_solution.h"
@@ -57,8 +56,8 @@ void add_keys(Keys& keys, SolveKeys& values) {
 }
 
 bool is_placement_rule(const SceneSpec& spec) {
-  const auto rules = placement_words();
-  return !spec.placement || std::find(rules.begin(), rules.end(), *spec.placement) != rules.end();
+  return !spec.placement ||
+         std::ranges::find(placement_words, *spec.placement) != placement_words.end();
 }
 
 [[noreturn]] void refuse_bulk(const SceneSpec& spec) {
@@ -111,8 +110,8 @@ struct Sensors {
 
 Sensors sensors_of(const Keys& keys, const SceneSpec& spec) {
   Sensors sensors;
-  all_radians("light_angles", keys.read(spec.light_angles));
-  all_radians("view_angles", keys.read(spec.view_angles));
+  keys.read(spec.light_angles);
+  keys.read(spec.view_angles);
   if (keys.read(spec.near_sensors).empty() || keys.given(spec.view_angles))
     sensors.angles = spec.view_angles;
   if (!spec.near_sensors.empty()) sensors.points = read_points(spec.near_sensors);

@@ -59,7 +59,7 @@ SweepPlan::SweepPlan()
   add_sweep_keys(keys, lists_);
   add_structure_key(keys, base);
   add_view_keys(keys, base);
-  keys.add("tilts", base.tilts, "Rotations of the light").unit("rad");
+  keys.add("tilts", base.tilts, "Rotations of the light").angle();
   keys.group("Methods");
   keys.add("method", method_, "Monte Carlo, exactly, or both").one_of({"mc", "wave", "both"});
   add_mc_keys(keys, methods);

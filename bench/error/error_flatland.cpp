@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "bench/error/error_exact.h"
+#include "bench/oracles/discrete_ordinates.h"
 #include "bench/oracles/textbook.h"
 #include "flatland/scene/scene.h"
 #include "mc/estimators/covariance_estimator.h"
@@ -61,6 +62,22 @@ SceneSpec slab() {
   spec.view_angles = {-0.9, -0.7, -0.4, 0, 0.2, 0.5, 0.8, 1.1};
   spec.covariance = "memory_effect";
   spec.tilts = tilts(3 / (2 * pi * 1000));  // q depth = 3
+  return spec;
+}
+
+double two_terms(double angle) {
+  return 0.9 * oracles::henyey_greenstein(0.8)(angle) +
+         0.1 * oracles::henyey_greenstein(-0.4)(angle);
+}
+
+/// Of a phase function without a form of its own; intensities, which discrete ordinates know too.
+SceneSpec two_term_slab() {
+  SceneSpec spec = slab();
+  spec.scatterer = "two_term_hg";
+  spec.g = std::nullopt;
+  std::get<TwoTermHg>(spec.bulk) = {0.8, -0.4, 0.9};
+  spec.covariance = "intensity";
+  spec.tilts = {};
   return spec;
 }
 
@@ -150,6 +167,27 @@ std::vector<Method> random_path_methods(const FlatScene& flat) {
           {flat.name, "fields", by(fields)}};
 }
 
+ErrorReference discrete_ordinates(const SceneSpec& spec) {
+  auto angles = spec.view_angles;
+  angles.push_back(0);  // the light
+  const oracles::SlabTransport theory({*spec.optical_depth, 1, two_terms}, angles, 100);
+  ErrorReference reference{{}, 1e-5, "discrete ordinates, 100 a quadrant"};
+  for (const double view : spec.view_angles)
+    reference.value.emplace_back(theory.covariance_without_reversed(0, view));
+  return reference;
+}
+
+ErrorRun two_term_run() {
+  const SceneSpec spec = two_term_slab();
+  const Method method{
+      .scene = "slab_two_term_hg",
+      .name = "ours",
+      .trial = [scene = make_scene(spec)](std::uint64_t seed) { return ours(scene, seed); }};
+  return {method.scene, method.name, [=](double cpu_seconds) {
+            return measure_error(method, discrete_ordinates(spec), cpu_seconds);
+          }};
+}
+
 ErrorRun run_of(const Method& method, const std::string& reference) {
   return {method.scene, method.name,
           [method, reference](double cpu_seconds) {
@@ -169,6 +207,7 @@ std::vector<ErrorRun> flatland_error_runs() {
     for (const Method& method : random_path_methods(flat))
       runs.push_back(run_of(method, flat.name));
   }
+  runs.push_back(two_term_run());
   return runs;
 }
 

@@ -2,6 +2,7 @@
 #include <numbers>
 #include <utility>
 
+#include "bench/oracles/discrete_ordinates.h"
 #include "bench/plan/plan_rooms.h"
 #include "bench/plan/plan_timing.h"
 #include "bench/scenes/standard_scenes.h"
@@ -92,6 +93,19 @@ PlanCase few_entries(const NamedScene& on) {
                  });
 }
 
+/// The same phase function as one of the bulk that has no form of its own.
+PlanCase bulk_table(const NamedScene& on) {
+  return case_of(
+      "a table of the phase function", on.name, Numbers::other, Measure::sample,
+      [scene = on.scene] {
+        Scene table = scene;
+        table.scatterer.kind = Scatterer::Kind::other_bulk;
+        table.medium.phase = {oracles::henyey_greenstein(scene.scatterer.g), scene.scatterer.g, ""};
+        return std::pair{kernel_of(mc::covariance_job(table, plan_of(table), seed)),
+                         kernel_of(mc::covariance_job(scene, plan_of(scene), seed + 1))};
+      });
+}
+
 PlanCase derivatives(const NamedScene& on) {
   return case_of("derivatives", on.name, Numbers::same, Measure::sample, [scene = on.scene] {
     const Plan plan = mc::gradient_plan(scene, mc::ReversedPaths::no);
@@ -147,6 +161,7 @@ std::vector<PlanCase> mc_plan_cases() {
            [](Plan& plan) { plan.sampled_single = true; }),
       flag("scores that promise little", forward, other, error,
            [](Plan& plan) { plan.score_level = 0; }),
+      bulk_table(forward),
       derivatives(forward),
       delays(around),
   };

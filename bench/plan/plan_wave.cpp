@@ -33,12 +33,6 @@ std::vector<double> angles(int count, double first, double last) {
   return values;
 }
 
-std::vector<View> far_views(const std::vector<double>& directions) {
-  std::vector<View> views;
-  for (double angle : directions) views.push_back(far_view(angle));
-  return views;
-}
-
 SolveOptions to(double tolerance, Method method = Method::dense) {
   return {.tolerance = tolerance, .sensors = {}, .diagnose = false, .method = method};
 }

@@ -32,12 +32,6 @@ Scene hg_box(double width, const Bulk& bulk, const CovarianceRequest& request) {
   return scene;
 }
 
-std::vector<View> far_views(const std::vector<double>& angles) {
-  std::vector<View> views;
-  for (const double angle : angles) views.push_back(far_view(angle));
-  return views;
-}
-
 GroupedSums summed(const BatchJob& job, std::uint64_t samples) {
   RunOptions options;
   options.stop.samples = samples;

@@ -15,8 +15,6 @@ Scene hg_slab(const Bulk& bulk, const CovarianceRequest& request);
 /// The same bulk in a box.
 Scene hg_box(double width, const Bulk& bulk, const CovarianceRequest& request);
 
-std::vector<View> far_views(const std::vector<double>& angles);
-
 /// On this thread.
 GroupedSums summed(const BatchJob& job, std::uint64_t samples);
 

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iomanip>
 #include <numbers>
 
 #include <boost/math/quadrature/gauss.hpp>
@@ -138,8 +141,7 @@ struct Flux {
   mc::FluxEstimates shares;
   Estimate total;  ///< of all shares together, per light
 };
-Flux flux(const Bulk& bulk, std::uint64_t paths, double light = 0) {
-  const Scene scene = hg_slab(bulk, intensity_request({light}, far_views({0})));
+Flux flux_of(const Scene& scene, std::uint64_t paths) {
   const mc::FluxJob job = mc::flux_job(scene, 1, 1);
   const GroupedSums sums = summed(job.batches, paths);
   return {mc::flux_estimates(job, sums),
@@ -148,21 +150,65 @@ Flux flux(const Bulk& bulk, std::uint64_t paths, double light = 0) {
           })};
 }
 
+Flux flux(const Bulk& bulk, std::uint64_t paths) {
+  return flux_of(hg_slab(bulk, intensity_request({0}, far_views({0}))), paths);
+}
+
 /// Walk by walk: without absorption none is lost.
 Finding lossless(const Bulk& bulk, std::uint64_t paths) {
   const double scattered = -std::expm1(-bulk.optical_depth);
   return {std::abs(flux(bulk, paths).total.value[0] / scattered - 1.0), 1e-10};
 }
 
-/// All orders of scattering in discrete ordinates.
-Finding crossing(const Bulk& bulk, std::uint64_t paths) {
-  const oracles::SlabTransport theory(
-      {bulk.optical_depth, bulk.albedo, oracles::henyey_greenstein(bulk.g)}, {0}, 50);
-  const auto shares = flux(bulk, paths).shares;
+/// All orders of scattering in discrete ordinates, so many a quadrant.
+Finding crossing(const mc::FluxEstimates& shares, const Bulk& bulk,
+                 const std::function<double(double)>& phase, int nodes) {
+  const oracles::SlabTransport theory({bulk.optical_depth, bulk.albedo, phase}, {0}, nodes);
   return worse(in_errors(shares.transmittance.value[0], shares.transmittance.error[0],
                          theory.transmittance(0), 0.05, 1e-4),
                in_errors(shares.reflectance.value[0], shares.reflectance.error[0],
                          theory.reflectance(0), 0.05, 1e-4));
+}
+
+Finding crossing(const Bulk& bulk, std::uint64_t paths) {
+  return crossing(flux(bulk, paths).shares, bulk, oracles::henyey_greenstein(bulk.g), 50);
+}
+
+SceneSpec bulk_slab(const std::string& scatterer, const Bulk& bulk) {
+  SceneSpec spec;
+  spec.domain = "slab";
+  spec.depth = bulk.depth;
+  spec.scatterer = scatterer;
+  spec.albedo = bulk.albedo;
+  spec.optical_depth = bulk.optical_depth;
+  return spec;
+}
+
+/// Two peaks, forwards and backwards.
+Finding two_peaks(double g, const Bulk& bulk, std::uint64_t paths) {
+  SceneSpec spec = bulk_slab("two_term_hg", bulk);
+  std::get<TwoTermHg>(spec.bulk) = {g, -g, 0.5};
+  const auto phase = [=](double angle) {
+    return (oracles::henyey_greenstein(g)(angle) + oracles::henyey_greenstein(-g)(angle)) / 2;
+  };
+  return crossing(flux_of(make_scene(spec), paths).shares, bulk, phase,
+                  static_cast<int>(6 / (1 - g)));
+}
+
+/// A table that is 0 but in a cone about the light.
+Finding cone(double half, const Bulk& bulk, std::uint64_t paths) {
+  const std::string path = std::filesystem::temp_directory_path() / "flatspeckle_cone.csv";
+  std::ofstream(path) << std::setprecision(17) << "angle,value\n0,1\n"
+                      << half << ",0\n"
+                      << pi << ",0\n";
+  SceneSpec spec = bulk_slab("phase_table", bulk);
+  std::get<PhaseTable>(spec.bulk).phase_table = path;
+  const Scene scene = make_scene(spec);
+  std::filesystem::remove(path);
+  const auto phase = [=](double angle) {
+    return std::max(0.0, 1 - std::abs(std::remainder(angle, 2 * pi)) / half) / half;
+  };
+  return crossing(flux_of(scene, paths).shares, bulk, phase, 200);
 }
 
 /// Of what is hardly absorbed: (1 - albedo) times the collisions.
@@ -210,6 +256,12 @@ void add_flux(ExtremeRows& rows) {
   rows.add("flux, OD 1e-3, g 0.5, albedo 0.7", "discrete ordinates, in errors", [] {
     return crossing({1e-3, 0.5, 0.7}, 50000);
   });
+  rows.add("flux, OD 5, peaks of g 0.95 forwards and backwards", "discrete ordinates, in errors",
+           [] { return two_peaks(0.95, {5}, 20000); });
+  rows.add("flux, OD 10, albedo 0.9, a table that is 0 beyond 0.3", "discrete ordinates, in errors",
+           [] {
+             return cone(0.3, {10, 0, 0.9}, 20000);
+           });
   rows.add("flux, OD 20, albedo 1 - 1e-9: absorbed", "integral equation, in errors",
            [] { return absorbed(1 - 1e-9); });
   rows.add("flux, OD 2, albedo 0: absorbed", "1 - exp(-2)", [] {

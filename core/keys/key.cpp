@@ -141,7 +141,7 @@ std::string Key::accepted() const {
   if (!words_.empty()) return "must be one of " + joined(words_, " ");
   if (exactly_ > 0) return "must be " + shape_;
   if (each_ > 0) return "must be " + std::to_string(each_) + " numbers for each: " + shape_;
-  return is_number() ? range_.text(is_whole()) : "must be a text";
+  return is_number() ? range() : "must be a text";
 }
 
 bool Key::Range::has(double value) const {
@@ -156,6 +156,11 @@ std::string Key::Range::text(bool whole) const {
   if (high == infinity) return (low_open ? "must be above " : "must be at least ") + least;
   return low_open ? "must be in (" + least + ", " + largest + (high_open ? ')' : ']')
                   : "must be from " + least + " to " + largest;
+}
+
+std::string Key::range() const {
+  const bool angle = unit_ == "rad" && range_.high < infinity;
+  return range_.text(is_whole()) + (angle ? " radians" : "");
 }
 
 std::vector<std::string> Key::value() const {
@@ -194,8 +199,7 @@ void Key::check() const {
 }
 
 void Key::check(double value, const std::string& text) const {
-  if (!range_.has(value))
-    throw InputError(name_, exactly_ > 0 ? shown() : text, range_.text(is_whole()));
+  if (!range_.has(value)) throw InputError(name_, exactly_ > 0 ? shown() : text, range());
   const bool positive = range_.low_open && range_.low == 0 && range_.high == infinity;
   if (positive && (value > most || value < 1 / most))
     throw InputError(name_, text, "must be from 1e-50 to 1e50");

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <type_traits>
@@ -33,6 +34,8 @@ class Key {
   Key& between(double low, double high) { return with(range_, {low, high}); }
   /// high included.
   Key& positive_to(double high) { return with(range_, {0, high, true, false}); }
+  /// Radians: who writes 45 means degrees.
+  Key& angle() { return from(-2 * std::numbers::pi, 2 * std::numbers::pi).unit("rad"); }
   Key& one_of(std::vector<std::string> words) { return with(words_, std::move(words)); }
   /// So many numbers for each thing, in words.
   Key& each_of(std::size_t numbers, std::string what) {
@@ -99,6 +102,7 @@ class Key {
     /// "must be positive", of whole numbers or any.
     std::string text(bool whole) const;
   };
+  std::string range() const;
 
   template <typename Value>
   Key& with(Value& member, std::type_identity_t<Value> value) {

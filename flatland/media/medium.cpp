@@ -75,10 +75,6 @@ BulkMedium correlated_medium(BulkMedium medium, double k, StructureTable structu
   return medium;
 }
 
-Complex scattering_amplitude(const BulkMedium& medium, double k, double theta) {
-  return structure_amplitude(medium.structure, k, theta) * amplitude(medium.t_matrix, k, theta);
-}
-
 std::vector<Complex> normalised_amplitudes(const BulkMedium& medium, double k,
                                            std::size_t intervals) {
   const double step = std::numbers::pi / static_cast<double>(intervals);

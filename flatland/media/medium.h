@@ -38,12 +38,10 @@ BulkMedium bulk_medium(const Scatterer& bulk, const BulkPhase& phase, double mu_
 /// albedo are those of |A|^2 S, absorption stays rho (sigma_e - sigma_s).
 BulkMedium correlated_medium(BulkMedium independent, double k, StructureTable structure);
 
-/// A(theta) sqrt(S(2 k |sin(theta/2)|)): the product of two channels' amplitudes then carries
-/// sqrt(S(q1) S(q2)), and a covariance stays positive semidefinite (C16).
-Complex scattering_amplitude(const BulkMedium& medium, double k, double theta);
-
-/// The same at theta = 0 .. pi in equal intervals, over the square root of mu_s / rho: the absolute
-/// square is the phase function, up to a factor of order 1. The medium scatters.
+/// A(theta) sqrt(S(2 k |sin(theta/2)|)) at theta = 0 .. pi in equal intervals, over the square root
+/// of mu_s / rho: the absolute square is the phase function, up to a factor of order 1. The product
+/// of two channels' amplitudes carries sqrt(S(q1) S(q2)), and a covariance stays positive
+/// semidefinite (C16). The medium scatters.
 std::vector<Complex> normalised_amplitudes(const BulkMedium& medium, double k,
                                            std::size_t intervals);
 

@@ -77,10 +77,6 @@ HardDiskFluid::HardDiskFluid(double packing, double diameter)
   assert(packing >= 0 && packing <= 0.7 && diameter > 0);
 }
 
-double HardDiskFluid::compressibility_factor() const {
-  return (1 + packing_ * packing_ / 8) / std::pow(1 - packing_, 2);
-}
-
 double HardDiskFluid::contact_value() const {
   // (Z - 1) / (2 eta), without cancellation.
   return (1 - 7 * packing_ / 16) / std::pow(1 - packing_, 2);

@@ -68,17 +68,6 @@ Scatterer row_scatterer(const Table& table, std::size_t row, Scatterer scatterer
 
 }  // namespace
 
-std::string placement_word(PlacementRule::Kind kind) {
-  switch (kind) {
-    case PlacementRule::Kind::hard_disk:
-      return "hard_disk";
-    case PlacementRule::Kind::equilibrium:
-      return "equilibrium";
-    default:
-      return "poisson";
-  }
-}
-
 Placement draw_placement(const Domain& box, const Scatterer& scatterer, const PlacementRule& rule,
                          RandomStream& random) {
   if (rule.mean_count > most_scatterers)

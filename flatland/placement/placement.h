@@ -31,8 +31,11 @@ struct PlacementRule {
   double min_gap = 0;                  ///< between the rims of disks
 };
 
-/// "poisson", "hard_disk", "equilibrium", as in scene files.
-std::string placement_word(PlacementRule::Kind kind);
+/// As in scene files, by kind.
+inline const std::vector<std::string> placement_words = {"poisson", "hard_disk", "equilibrium"};
+inline const std::string& placement_word(PlacementRule::Kind kind) {
+  return placement_words[static_cast<std::size_t>(kind)];
+}
 
 /// More is refused: no machine solves it.
 inline constexpr double most_scatterers = 1e7;

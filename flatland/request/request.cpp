@@ -126,12 +126,6 @@ View translated(View view, double shift) {
   return view;
 }
 
-std::vector<View> far_views(const std::vector<double>& angles) {
-  std::vector<View> views;
-  for (double angle : angles) views.push_back(far_view(angle));
-  return views;
-}
-
 /// Tilts with the views that C19 matches to them.
 void add_matched(CovarianceRequest& request, Moves& moves, const Light& light) {
   for (double tilt : request.tilts) {

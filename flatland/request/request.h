@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "flatland/request/light.h"
@@ -54,6 +55,10 @@ struct CovarianceRequest {
     return (moves + 1 + move) * reference_views + view;
   }
 };
+
+/// As in scene files, by kind.
+inline const std::vector<std::string> request_words = {"intensity",  "pairs",       "memory_effect",
+                                                       "tilt_shift", "translation", "full"};
 
 CovarianceRequest intensity_request(Lights lights, std::vector<View> views);
 CovarianceRequest full_request(Lights lights, std::vector<View> views);

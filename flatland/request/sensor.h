@@ -20,6 +20,11 @@ struct View {
 inline View far_view(double angle) {
   return {false, angle, {}};
 }
+inline std::vector<View> far_views(const std::vector<double>& angles) {
+  std::vector<View> views;
+  for (double angle : angles) views.push_back(far_view(angle));
+  return views;
+}
 inline View near_sensor(Vec2 point) {
   return {true, 0, point};
 }

@@ -6,64 +6,11 @@
 #include <cmath>
 
 #include "core/error.h"
-#include "core/numbers/bessel.h"
-#include "core/numbers/scaled_bessel.h"
+#include "flatland/scatterers/scatterer_kinds.h"
 
 namespace flatspeckle {
 
 namespace {
-
-using Kind = Scatterer::Kind;
-
-ExtendedComplex point_t_matrix(const Scatterer& point) {
-  if (point.albedo != 1) return -point.albedo;
-  const long double angle = 2 * static_cast<long double>(point.phase_shift);
-  return {(std::cos(angle) - 1) / 2, std::sin(angle) / 2};
-}
-
-// C7 with J_n'(mx) = (n/(mx) - r_n) J_n(mx), r_n = J_{n+1}(mx)/J_n(mx), and likewise outside:
-//   TM: T_n = -(J_{n+1} - m r_n J_n) / (H_{n+1} - m r_n H_n).
-// The terms n/x, which would cancel for small or faint cylinders, are gone.
-std::vector<ScaledComplex> tm_t_matrix(ExtendedComplex m, double x, int order) {
-  const auto ratios = bessel_ratios(order, m * static_cast<long double>(x));
-  const auto j = scaled_bessel_j(order + 1, x);
-  const auto h = scaled_hankel(order + 1, x);
-  std::vector<ScaledComplex> t(order + 1);
-  for (int n = 0; n <= order; ++n) {
-    const ExtendedComplex inside = m * ratios[n];
-    t[n] = -(j[n + 1] - inside * j[n]) / (h[n + 1] - inside * h[n]);
-  }
-  return t;
-}
-
-// TE: T_n = -(s J_n + J_{n+1}) / (s H_n + H_{n+1}),  s = (n/x)(1/m^2 - 1) - r_n / m.
-// In the numerator the leading terms x/(2(n+1)) of J_{n+1}/J_n and r_n/m, which are equal, are
-// taken out by J_{n+1} = x/(2(n+1)) (J_n + J_{n+2}) on both sides.
-std::vector<ScaledComplex> te_t_matrix(ExtendedComplex m, double x, int order) {
-  const auto ratios = bessel_ratios(order + 1, m * static_cast<long double>(x));
-  const auto j = scaled_bessel_j(order + 2, x);
-  const auto h = scaled_hankel(order + 1, x);
-  std::vector<ScaledComplex> t(order + 1);
-  for (int n = 0; n <= order; ++n) {
-    const long double leading = static_cast<long double>(x) / (2 * (n + 1));
-    const ExtendedComplex jump =
-        static_cast<long double>(n) / x * (1.0L - m) * (1.0L + m) / (m * m);
-    const ScaledComplex numerator =
-        (jump - leading * ratios[n] * ratios[n + 1]) * j[n] + leading * j[n + 2];
-    t[n] = -numerator / ((jump - ratios[n] / m) * h[n] + h[n + 1]);
-  }
-  return t;
-}
-
-std::vector<ScaledComplex> impenetrable_t_matrix(Kind kind, double x, int order) {
-  const auto j = scaled_bessel_j(order + 1, x);
-  const auto h = scaled_hankel(order + 1, x);
-  std::vector<ScaledComplex> t(order + 1);
-  for (int n = 0; n <= order; ++n)
-    t[n] = kind == Kind::soft ? -j[n] / h[n]
-                              : -cylinder_derivative(j, n, x) / cylinder_derivative(h, n, x);
-  return t;
-}
 
 // sum over n = -M .. M of terms that are even in n
 template <typename Term>
@@ -112,22 +59,7 @@ std::string index_fault(Complex index) {
 
 std::vector<ScaledComplex> scaled_t_matrix(const Scatterer& scatterer, double k, int order) {
   assert(!scatterer.is_bulk());
-  std::vector<ScaledComplex> t(order + 1);
-  const double x = k * scatterer.radius;
-  switch (scatterer.kind) {
-    case Kind::soft:
-    case Kind::hard:
-      return impenetrable_t_matrix(scatterer.kind, x, order);
-    case Kind::tm:
-      if (scatterer.index != 1.0) return tm_t_matrix(ExtendedComplex(scatterer.index), x, order);
-      break;
-    case Kind::te:
-      if (scatterer.index != 1.0) return te_t_matrix(ExtendedComplex(scatterer.index), x, order);
-      break;
-    default:
-      t[0] = point_t_matrix(scatterer);
-  }
-  return t;
+  return kind_of(scatterer).t_matrix(scatterer, k * scatterer.radius, order);
 }
 
 std::vector<ExtendedComplex> t_matrix(const Scatterer& scatterer, double k, int order) {
@@ -139,8 +71,7 @@ std::vector<ExtendedComplex> t_matrix(const Scatterer& scatterer, double k, int 
 
 int oscillating_order(const Scatterer& scatterer, double k) {
   if (!scatterer.is_disk()) return 0;
-  const bool penetrable = scatterer.kind == Kind::tm || scatterer.kind == Kind::te;
-  const double index = penetrable ? std::max(1.0, std::abs(scatterer.index)) : 1.0;
+  const double index = scatterer.is_penetrable() ? std::max(1.0, std::abs(scatterer.index)) : 1.0;
   const double size = k * scatterer.radius * index;
   constexpr double most = 1e4;
   if (!(size <= most))

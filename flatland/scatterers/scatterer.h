@@ -22,6 +22,8 @@ struct Scatterer {
 
   /// A disk of nonzero radius, which others must not overlap.
   bool is_disk() const { return kind != Kind::point && !is_bulk(); }
+  /// A cylinder that light enters.
+  bool is_penetrable() const { return kind == Kind::tm || kind == Kind::te; }
   bool is_bulk() const { return kind == Kind::hg || kind == Kind::other_bulk; }
 
   double disk_radius() const { return is_disk() ? radius : 0; }

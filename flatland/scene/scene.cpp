@@ -5,21 +5,12 @@
 #include <numbers>
 
 #include "core/error.h"
+#include "core/keys/chosen.h"
 #include "core/keys/number_text.h"
-#include "flatland/scene/scene_checks.h"
 
 namespace flatspeckle {
 
 namespace {
-
-using Kind = Scatterer::Kind;
-
-const Choices<Kind> scatterers = {{"point", Kind::point}, {"soft", Kind::soft},
-                                  {"hard", Kind::hard},   {"tm", Kind::tm},
-                                  {"te", Kind::te},       {"hg", Kind::hg}};
-const Choices<PlacementRule::Kind> placements = {{"poisson", PlacementRule::Kind::poisson},
-                                                 {"hard_disk", PlacementRule::Kind::hard_disk},
-                                                 {"equilibrium", PlacementRule::Kind::equilibrium}};
 
 Domain make_domain(const Keys& keys, const SceneSpec& spec) {
   Domain domain;
@@ -77,7 +68,7 @@ BulkMedium medium_of_scatterers(const SceneSpec& spec, const Scatterer& scattere
 PlacementRule::Kind placement_kind(const std::optional<std::string>& word, bool disks) {
   using Rule = PlacementRule::Kind;
   if (!word) return disks ? Rule::hard_disk : Rule::poisson;
-  const Rule rule = chosen(placements, *word);
+  const Rule rule = chosen<Rule>(placement_words, *word);
   if (disks == (rule == Rule::poisson))
     throw InputError("placement", *word,
                      disks ? "disks must not overlap: hard_disk or equilibrium"
@@ -167,33 +158,6 @@ Scene without_bulk(const Keys& keys, const SceneSpec& spec) {
 
 }  // namespace
 
-Scatterer make_scatterer(const Keys& keys, const SceneSpec& spec) {
-  keys.read(spec.wavelength);
-  Scatterer scatterer;
-  const std::string& word = keys.read(spec.scatterer);
-  const auto bulk = bulk_phase_words();
-  scatterer.kind = std::find(bulk.begin(), bulk.end(), word) != bulk.end()
-                       ? Kind::other_bulk
-                       : chosen(scatterers, word);
-  if (scatterer.is_disk()) scatterer.radius = keys.read(spec.radius).value_or(0);
-  if (scatterer.kind == Kind::tm || scatterer.kind == Kind::te)
-    if (const auto& index = keys.read(spec.index)) {
-      scatterer.index = parse_complex("index", *index);
-      if (const auto fault = index_fault(scatterer.index); !fault.empty())
-        throw InputError("index", *index, fault);
-    }
-  if (scatterer.kind == Kind::hg) scatterer.g = keys.read(spec.g).value_or(0);
-  if (scatterer.is_disk()) return scatterer;
-  scatterer.albedo = keys.read(spec.albedo).value_or(1);
-  if (scatterer.is_bulk()) return scatterer;
-  if (scatterer.albedo == 0) throw InputError("albedo", 0, "of points must be in (0, 1]");
-  const auto& phase_shift = keys.read(spec.phase_shift);
-  if (phase_shift && scatterer.albedo != 1)
-    throw InputError("phase_shift", *phase_shift, "an absorbing point is resonant; leave it out");
-  scatterer.phase_shift = phase_shift.value_or(scatterer.phase_shift);
-  return scatterer;
-}
-
 Scene make_scene(const Keys& keys, const SceneSpec& spec) {
   Scene scene = without_bulk(keys, spec);
   keys.refuse_unread();
@@ -228,17 +192,6 @@ std::string inputs_text(const Scene& scene) {
     add(light.point);
   }
   return text + scene.medium.structure.text() + scene.medium.phase.text;
-}
-
-std::vector<std::string> scatterer_words() {
-  auto words = words_of(scatterers);
-  const auto bulk = bulk_phase_words();
-  words.insert(words.end(), bulk.begin(), bulk.end());
-  return words;
-}
-
-std::vector<std::string> placement_words() {
-  return words_of(placements);
 }
 
 }  // namespace flatspeckle

@@ -10,20 +10,15 @@
 #include "flatland/media/medium.h"
 #include "flatland/placement/placement.h"
 #include "flatland/request/request.h"
-#include "flatland/scatterers/bulk_phases.h"
-#include "flatland/scatterers/scatterer.h"
+#include "flatland/scatterers/scatterer_kinds.h"
 
 namespace flatspeckle {
 
 /// Scene keys as the user gives them; names and meanings as in the README. Lengths in any one unit,
 /// angles in radians.
-struct SceneSpec {
-  double wavelength = 1;
+struct SceneSpec : ScattererValues {
   std::string domain = "box";
   std::optional<double> width, depth;
-  std::string scatterer = "point";
-  std::optional<double> radius, g, albedo, phase_shift;
-  std::optional<std::string> index;
   std::optional<std::int64_t> count;
   std::optional<double> density, mean_free_path, optical_depth;
   std::optional<std::string> placement;
@@ -38,7 +33,6 @@ struct SceneSpec {
   std::vector<double> tilts{}, shifts{};
   std::string covariance = "intensity";
   std::vector<double> pairs{};
-  BulkPhases bulk{};
 };
 
 /// All that a solver is told: one scene, two eyes.
@@ -68,12 +62,8 @@ void add_keys(Keys& keys, SceneSpec& spec);
 // What follows reads a spec by its keys and throws InputError naming key, value and what is
 // accepted.
 
-/// The scatterer alone; what `solve` needs beside a placement file.
-Scatterer make_scatterer(const Keys& keys, const SceneSpec& spec);
 /// Lights, views and entries alone.
 CovarianceRequest make_request(const Keys& keys, const SceneSpec& spec);
-/// Far views, or the near sensors that take their place.
-std::vector<View> requested_views(const Keys& keys, const SceneSpec& spec);
 /// Everything; the last to read the keys: it refuses what is given and was not read, before the
 /// work of deriving the bulk.
 Scene make_scene(const Keys& keys, const SceneSpec& spec);
@@ -87,10 +77,5 @@ void check_slab_request(const CovarianceRequest& request);
 
 /// What a scene took from other files, exactly: near sensors and sources, and the structure factor.
 std::string inputs_text(const Scene& scene);
-
-/// What `scatterer`, `placement` and `covariance` may be.
-std::vector<std::string> scatterer_words();
-std::vector<std::string> placement_words();
-std::vector<std::string> request_words();
 
 }  // namespace flatspeckle

@@ -57,7 +57,7 @@ void add_medium_keys(Keys& keys, SceneSpec& spec) {
            "Of points poisson; of disks hard_disk (default, one after the other) or equilibrium "
            "(the "
            "fluid of hard disks)")
-      .one_of(placement_words());
+      .one_of(placement_words);
   keys.add("min_gap", spec.min_gap, "Least distance between rims (default 1e-3 radius)")
       .not_negative()
       .unit("length")
@@ -74,10 +74,10 @@ void add_structure_key(Keys& keys, SceneSpec& spec) {
 void add_view_keys(Keys& keys, SceneSpec& spec) {
   keys.group("Lights and views");
   keys.add("light_angles", spec.light_angles, "Directions of plane waves and beams, from +z")
-      .unit("rad")
+      .angle()
       .only_of("plane waves and beams (near_sources, pairs: none)");
   keys.add("view_angles", spec.view_angles, "Directions of far views, from +z")
-      .unit("rad")
+      .angle()
       .only_of("far views (either near_sensors or view_angles; pairs name their own)");
   keys.add("near_sensors", spec.near_sensors, "CSV with columns x, z: near-field sensors")
       .only_of("near fields (pairs and memory_effect have far views only)");
@@ -104,10 +104,9 @@ void add_light_keys(Keys& keys, SceneSpec& spec) {
 
 void add_request_keys(Keys& keys, SceneSpec& spec) {
   keys.group("What is asked for");
-  keys.add("covariance", spec.covariance, "Which entries of the covariance")
-      .one_of(request_words());
+  keys.add("covariance", spec.covariance, "Which entries of the covariance").one_of(request_words);
   keys.add("tilts", spec.tilts, "Rotations of the light")
-      .unit("rad")
+      .angle()
       .only_of("covariance = memory_effect and tilt_shift");
   keys.add("shifts", spec.shifts,
            "tilt_shift: of the views, in k sin(view) or of near sensors along x; translation: of "
@@ -116,7 +115,7 @@ void add_request_keys(Keys& keys, SceneSpec& spec) {
       .only_of("covariance = tilt_shift and translation");
   keys.add("pairs", spec.pairs, "light 1, view 1, light 2, view 2 of each pair in turn")
       .each_of(4, "light 1, view 1, light 2, view 2")
-      .unit("rad")
+      .angle()
       .only_of("covariance = pairs");
 }
 

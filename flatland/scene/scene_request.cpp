@@ -1,31 +1,20 @@
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "core/error.h"
+#include "core/keys/chosen.h"
 #include "flatland/scene/scene.h"
-#include "flatland/scene/scene_checks.h"
 
 namespace flatspeckle {
 
 namespace {
-
-std::vector<View> far_views(const std::vector<double>& angles) {
-  std::vector<View> views;
-  for (double angle : angles) views.push_back(far_view(angle));
-  return views;
-}
 
 Lights near_lights(const Keys& keys, const SceneSpec& spec) {
   Lights lights;
   for (const Vec2& point : read_points(keys.read(spec.near_sources)))
     lights.push_back(point_source(point));
   return lights;
-}
-
-const std::vector<double>& light_angles(const Keys& keys, const SceneSpec& spec) {
-  not_empty("light_angles", spec.light_angles);
-  all_radians("light_angles", spec.light_angles);
-  return keys.read(spec.light_angles);
 }
 
 /// All angles with all positions of the focus.
@@ -37,7 +26,7 @@ Lights beams(const Keys& keys, const SceneSpec& spec) {
   if (positions.empty()) positions = {0};
   const double depth = keys.read(spec.beam_depth).value_or(0);
   Lights lights;
-  for (double angle : light_angles(keys, spec))
+  for (double angle : keys.required(spec.light_angles))
     for (double x : positions) lights.push_back(gaussian_beam(angle, {x, depth}, waist));
   return lights;
 }
@@ -45,7 +34,7 @@ Lights beams(const Keys& keys, const SceneSpec& spec) {
 Lights requested_lights(const Keys& keys, const SceneSpec& spec) {
   if (!spec.near_sources.empty()) return near_lights(keys, spec);
   if (spec.beam_waist) return beams(keys, spec);
-  return light_angles(keys, spec);
+  return keys.required(spec.light_angles);
 }
 
 Light only_light(const Keys& keys, const SceneSpec& spec) {
@@ -56,38 +45,44 @@ Light only_light(const Keys& keys, const SceneSpec& spec) {
   return lights.front();
 }
 
-std::vector<View> some_views(const Keys& keys, const SceneSpec& spec) {
-  auto views = requested_views(keys, spec);
-  if (views.empty()) throw InputError("view_angles = []: must hold at least one number");
+/// Far views, or the near sensors that take their place.
+std::vector<View> requested_views(const Keys& keys, const SceneSpec& spec) {
+  if (spec.near_sensors.empty()) return far_views(keys.required(spec.view_angles));
+  std::vector<View> views;
+  for (const Vec2& point : read_points(keys.read(spec.near_sensors)))
+    views.push_back(near_sensor(point));
   return views;
 }
 
+void no_repeats(const std::string& key, std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  const auto twice = std::adjacent_find(values.begin(), values.end());
+  if (twice != values.end()) throw InputError(key, *twice, "is given twice");
+}
+
 CovarianceRequest memory_effect(const Keys& keys, const SceneSpec& spec) {
-  if (light_angles(keys, spec).size() != 1)
+  if (keys.required(spec.light_angles).size() != 1)
     throw InputError("light_angles", spec.light_angles.size(),
                      "memory_effect tilts one light: give one angle");
   if (!requested_lights(keys, spec).all(Light::Kind::plane))
     throw InputError(
         "covariance", "memory_effect",
         "tilts a plane wave: use tilt_shift for a beam, translation for a near source");
-  not_empty("tilts", spec.tilts);
-  no_repeats("tilts", keys.read(spec.tilts));
-  not_empty("view_angles", spec.view_angles);
-  no_repeats("view_angles", keys.read(spec.view_angles));
+  no_repeats("tilts", keys.required(spec.tilts));
+  no_repeats("view_angles", keys.required(spec.view_angles));
   return memory_effect_request(2 * std::numbers::pi / spec.wavelength, spec.light_angles[0],
                                spec.view_angles, spec.tilts);
 }
 
 /// A range counts from the reference, which therefore is one of the steps.
 void steps_from_zero(const std::string& key, const std::vector<double>& steps) {
-  not_empty(key, steps);
   no_repeats(key, steps);
   if (std::find(steps.begin(), steps.end(), 0.0) == steps.end())
     throw InputError(key, steps.front(), "the list must hold 0, the reference, too");
 }
 
 std::vector<View> moved_views(const Keys& keys, const SceneSpec& spec) {
-  auto views = some_views(keys, spec);
+  auto views = requested_views(keys, spec);
   no_repeats("view_angles", spec.view_angles);
   return views;
 }
@@ -97,8 +92,8 @@ CovarianceRequest tilt_shift(const Keys& keys, const SceneSpec& spec) {
   if (light.kind == Light::Kind::point)
     throw InputError("near_sources", spec.near_sources,
                      "a point source has no direction to tilt: use covariance = translation");
-  steps_from_zero("tilts", keys.read(spec.tilts));
-  steps_from_zero("shifts", keys.read(spec.shifts));
+  steps_from_zero("tilts", keys.required(spec.tilts));
+  steps_from_zero("shifts", keys.required(spec.shifts));
   return tilt_shift_request(2 * std::numbers::pi / spec.wavelength, light, moved_views(keys, spec),
                             spec.tilts, spec.shifts);
 }
@@ -108,46 +103,23 @@ CovarianceRequest translation(const Keys& keys, const SceneSpec& spec) {
   if (light.kind == Light::Kind::plane)
     throw InputError("covariance", "translation",
                      "moves a beam or a near source; for a plane wave use tilt_shift");
-  steps_from_zero("shifts", keys.read(spec.shifts));
+  steps_from_zero("shifts", keys.required(spec.shifts));
   return translation_request(light, moved_views(keys, spec), spec.shifts);
 }
 
 CovarianceRequest angle_pairs(const Keys& keys, const SceneSpec& spec) {
-  const auto& angles = keys.read(spec.pairs);
-  not_empty("pairs", angles);
-  all_radians("pairs", angles);
+  const auto& angles = keys.required(spec.pairs);
   std::vector<AnglePair> pairs;
   for (std::size_t i = 0; i < angles.size(); i += 4)
     pairs.push_back({angles[i], angles[i + 1], angles[i + 2], angles[i + 3]});
   return pairs_request(pairs);
 }
 
-using Request = CovarianceRequest::Kind;
-const Choices<Request> requests = {
-    {"intensity", Request::intensity},         {"pairs", Request::pairs},
-    {"memory_effect", Request::memory_effect}, {"tilt_shift", Request::tilt_shift},
-    {"translation", Request::translation},     {"full", Request::full}};
-
 }  // namespace
 
-std::vector<std::string> request_words() {
-  return words_of(requests);
-}
-
-std::vector<View> requested_views(const Keys& keys, const SceneSpec& spec) {
-  if (spec.near_sensors.empty()) {
-    all_radians("view_angles", spec.view_angles);
-    return far_views(keys.read(spec.view_angles));
-  }
-  std::vector<View> views;
-  for (const Vec2& point : read_points(keys.read(spec.near_sensors)))
-    views.push_back(near_sensor(point));
-  return views;
-}
-
 CovarianceRequest make_request(const Keys& keys, const SceneSpec& spec) {
-  all_radians("tilts", spec.tilts);
-  switch (chosen(requests, keys.read(spec.covariance))) {
+  using Request = CovarianceRequest::Kind;
+  switch (chosen<Request>(request_words, keys.read(spec.covariance))) {
     case Request::memory_effect:
       return memory_effect(keys, spec);
     case Request::tilt_shift:
@@ -157,11 +129,11 @@ CovarianceRequest make_request(const Keys& keys, const SceneSpec& spec) {
     case Request::pairs:
       return angle_pairs(keys, spec);
     case Request::full:
-      return full_request(requested_lights(keys, spec), some_views(keys, spec));
+      return full_request(requested_lights(keys, spec), requested_views(keys, spec));
     case Request::intensity:
       break;
   }
-  return intensity_request(requested_lights(keys, spec), some_views(keys, spec));
+  return intensity_request(requested_lights(keys, spec), requested_views(keys, spec));
 }
 
 void check_slab_request(const CovarianceRequest& request) {

@@ -113,14 +113,7 @@ Estimator gradient_of(const PathJob& job, double depth) {
       };
 }
 
-/// What memory_effect() makes of entries: C_E per tilt, then the range.
-Values correlation_and_range(const CovarianceRequest& request, std::span<const Complex> entries) {
-  Values values = field_correlation(request, entries);
-  values.emplace_back(memory_effect_range(request.tilt_q, values).value);
-  return values;
-}
-
-/// Its derivative along that of the entries, by a central difference.
+/// Derivative of C_E and its range along that of the entries, by a central difference.
 Values directional_slope(const CovarianceRequest& request, std::span<const Complex> entries,
                          std::span<const Complex> along) {
   const auto largest = [](std::span<const Complex> values) {
@@ -134,7 +127,7 @@ Values directional_slope(const CovarianceRequest& request, std::span<const Compl
   const auto moved = [&](double by) {
     Values values(entries.begin(), entries.end());
     for (std::size_t e = 0; e < values.size(); ++e) values[e] += by * along[e];
-    return correlation_and_range(request, values);
+    return correlation_and_ranges(request, values);
   };
   const Values above = moved(step), below = moved(-step);
   for (std::size_t t = 0; t < slope.size(); ++t) slope[t] = (above[t] - below[t]) / (2 * step);

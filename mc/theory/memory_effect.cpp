@@ -42,6 +42,28 @@ double interpolate(const std::vector<CurvePoint>& curve, std::size_t i, double q
   return sum;
 }
 
+std::size_t place_of_zero(const std::vector<double>& steps) {
+  return static_cast<std::size_t>(std::find(steps.begin(), steps.end(), 0.0) - steps.begin());
+}
+
+/// Those of Correlations.
+std::vector<Range> ranges(const CovarianceRequest& request, std::span<const Complex> moves) {
+  using Kind = CovarianceRequest::Kind;
+  if (request.kind == Kind::translation) return {memory_effect_range(request.shifts, moves)};
+  if (request.kind != Kind::tilt_shift) return {memory_effect_range(request.tilt_q, moves)};
+  const std::size_t shifts = request.shifts.size(), no_tilt = place_of_zero(request.tilts),
+                    no_shift = place_of_zero(request.shifts);
+  std::vector<Complex> along_tilts;
+  for (std::size_t t = 0; t < request.tilts.size(); ++t)
+    along_tilts.push_back(moves[t * shifts + no_shift]);
+  const auto along_shifts = moves.subspan(no_tilt * shifts, shifts),
+             matched = moves.subspan(request.tilts.size() * shifts);
+  std::vector<Range> found = {memory_effect_range(request.tilt_q, along_tilts),
+                              memory_effect_range(request.shifts, along_shifts)};
+  if (!matched.empty()) found.push_back(memory_effect_range(request.tilt_q, matched));
+  return found;
+}
+
 }  // namespace
 
 std::vector<Complex> field_correlation(const CovarianceRequest& request,
@@ -89,23 +111,28 @@ bool few_steps(const std::vector<double>& steps, const Range& range) {
   return range.censored == Range::Censoring::none && steps_below(steps, range) < enough;
 }
 
+std::vector<Complex> correlation_and_ranges(const CovarianceRequest& request,
+                                            std::span<const Complex> entries) {
+  auto values = field_correlation(request, entries);
+  for (const Range& range : ranges(request, std::span(values))) values.emplace_back(range.value);
+  return values;
+}
+
+Correlations correlations(const CovarianceRequest& request, const GroupedSums& sums,
+                          const Estimator& covariance) {
+  const auto all = jackknife(sums, [&](double samples, std::span<const Complex> total) {
+    return correlation_and_ranges(request, covariance(samples, total));
+  });
+  Correlations found{part(all, 0, request.moves), {}};
+  for (const Range& range : ranges(request, found.moves.value))
+    found.ranges.push_back({range, all.error[request.moves + found.ranges.size()]});
+  return found;
+}
+
 MemoryEffect memory_effect(const CovarianceRequest& request, const GroupedSums& sums,
                            const Estimator& covariance) {
-  const auto& steps =
-      request.kind == CovarianceRequest::Kind::translation ? request.shifts : request.tilt_q;
-  // One jackknife for all: the correlations, then the range.
-  const auto estimate = jackknife(sums, [&](double samples, std::span<const Complex> total) {
-    auto values = field_correlation(request, covariance(samples, total));
-    values.emplace_back(memory_effect_range(steps, values).value);
-    return values;
-  });
-  MemoryEffect effect;
-  const std::span correlation(estimate.value.data(), request.moves);
-  for (Complex value : correlation) effect.correlation.push_back(value.real());
-  effect.correlation_error.assign(estimate.error.begin(), estimate.error.end() - 1);
-  effect.range = memory_effect_range(steps, correlation);
-  effect.range_error = estimate.error.back();
-  return effect;
+  const auto [moves, ranges] = correlations(request, sums, covariance);
+  return {real_parts(moves.value), moves.error, ranges.front().range, ranges.front().error};
 }
 
 }  // namespace flatspeckle::mc

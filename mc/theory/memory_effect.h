@@ -35,8 +35,27 @@ std::size_t steps_below(const std::vector<double>& steps, const Range& range);
 /// curve does between them, says too little.
 bool few_steps(const std::vector<double>& steps, const Range& range);
 
-/// field_correlation and the range with jackknife errors, of a memory_effect or translation
-/// request.
+/// A half-width and its jackknife error.
+struct RangeEstimate {
+  Range range;
+  double error = 0;
+};
+
+/// field_correlation of every move and half-widths, with jackknife errors. The only range of
+/// memory_effect and translation is that of their moves; those of tilt_shift are along tilts at
+/// shift 0, along shifts at tilt 0, and of far views along matched views. Tilts count in tilt_q.
+struct Correlations {
+  Estimate moves;
+  std::vector<RangeEstimate> ranges;
+};
+Correlations correlations(const CovarianceRequest& request, const GroupedSums& sums,
+                          const Estimator& covariance);
+
+/// field_correlation, then the values of those ranges.
+std::vector<Complex> correlation_and_ranges(const CovarianceRequest& request,
+                                            std::span<const Complex> entries);
+
+/// Of a memory_effect or translation request.
 struct MemoryEffect {
   std::vector<double> correlation, correlation_error;  ///< per tilt or shift
   Range range;

@@ -103,27 +103,28 @@ class MovesWriter {
   }
 
   /// Tilts with matched views, or translations: one curve.
-  void curve(const MemoryEffect& effect) {
+  void curve(const Correlations& found) {
     const bool tilts = request_.kind == Kind::memory_effect;
+    const RangeEstimate& only = found.ranges.front();
     entries("covariance", tilts ? "tilted_intensity" : "moved_intensity", 0, request_.moves);
-    out_.put("field_correlation", effect.correlation, effect.correlation_error);
-    tilts ? range("memory_effect_range", {effect.range, effect.range_error}, scene_.domain.depth)
-          : range("translation_range", {effect.range, effect.range_error}, 1);
-    ranges_.back().few_steps = few_steps(tilts ? request_.tilt_q : request_.shifts, effect.range);
+    out_.put("field_correlation", found.moves);
+    tilts ? range("memory_effect_range", only, scene_.domain.depth)
+          : range("translation_range", only, 1);
+    ranges_.back().few_steps = few_steps(tilts ? request_.tilt_q : request_.shifts, only.range);
   }
 
-  void map(const TiltShift& found) {
+  void map(const Correlations& found) {
     const std::size_t tilts = request_.tilts.size(), map = tilts * request_.shifts.size();
     const double depth = scene_.domain.depth;
     const bool far = !request_.views.front().near;
     entries("covariance", "moved_intensity", 0, map);
-    out_.put("field_correlation", found.correlation, found.correlation_error);
-    range("tilt_range", found.along_tilts, depth);
-    range("shift_range", found.along_shifts, far ? depth : 1);
+    out_.put("field_correlation", part(found.moves, 0, map));
+    range("tilt_range", found.ranges[0], depth);
+    range("shift_range", found.ranges[1], far ? depth : 1);
     if (!far) return;
     entries("matched_covariance", "matched_moved_intensity", map, tilts);
-    out_.put("matched_correlation", found.matched, found.matched_error);
-    range("memory_effect_range", found.along_matched, depth);
+    out_.put("matched_correlation", part(found.moves, map, tilts));
+    range("memory_effect_range", found.ranges[2], depth);
     if (request_.lights.all(Light::Kind::plane)) theory();
   }
 
@@ -214,8 +215,8 @@ std::vector<WrittenRange> write_moments(ResultFile& file, const std::string& gro
   file.bind("MOVES", moves_of(request));
   file.bind("SHIFT_RANGE", {request.views.front().near ? "length" : "1"});
   MovesWriter writer(out, scene, moments.covariance);
-  request.kind == Kind::tilt_shift ? writer.map(tilt_shift(request, sums, job.covariance))
-                                   : writer.curve(memory_effect(request, sums, job.covariance));
+  const Correlations found = correlations(request, sums, job.covariance);
+  request.kind == Kind::tilt_shift ? writer.map(found) : writer.curve(found);
   return writer.ranges();
 }
 

@@ -6,7 +6,7 @@
 #include "core/result/dataset_row.h"
 #include "flatland/request/field_moments.h"
 #include "flatland/scene/scene.h"
-#include "mc/theory/tilt_shift.h"
+#include "mc/theory/memory_effect.h"
 
 namespace flatspeckle::mc {
 

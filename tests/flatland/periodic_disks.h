@@ -6,8 +6,14 @@
 #include <vector>
 
 #include "flatland/media/domain.h"
+#include "flatland/media/structure_factor.h"
 
 namespace flatspeckle::tests {
+
+/// p / (rho k T) = 1 + 2 eta g(contact).
+inline double compressibility_factor(double packing) {
+  return 1 + 2 * packing * HardDiskFluid(packing, 1).contact_value();
+}
 
 /// Square box in which so many disks of diameter 1 have a packing fraction.
 inline Domain unit_disk_box(std::size_t disks, double packing) {

@@ -36,9 +36,9 @@ int make_medium(const Arguments& arguments) {
   for (double number : {scene.medium.mu_s, scene.medium.mu_t, scene.medium.g, scene.medium.albedo,
                         scene.medium.k_shift, scene.placement.mean_count})
     fuzz::require_finite(number);
-  for (double angle : {0.0, 1.0, 3.0})
-    if (scene.medium.has_scatterers)
-      fuzz::require_finite(std::abs(scattering_amplitude(scene.medium, scene.k, angle)));
+  if (scene.medium.mu_s > 0 && !scene.medium.t_matrix.empty())
+    for (const Complex amplitude : normalised_amplitudes(scene.medium, scene.k, 3))
+      fuzz::require_finite(std::abs(amplitude));
   return ExitStatus::done;
 }
 

@@ -4,7 +4,6 @@
 #include <doctest/doctest.h>
 
 #include "mc/theory/memory_effect.h"
-#include "mc/theory/tilt_shift.h"
 #include "tests/mc/estimates.h"
 
 namespace flatspeckle::mc {

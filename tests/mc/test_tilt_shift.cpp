@@ -3,7 +3,7 @@
 #include <doctest/doctest.h>
 
 #include "mc/theory/diffusion.h"
-#include "mc/theory/tilt_shift.h"
+#include "mc/theory/memory_effect.h"
 #include "tests/mc/estimates.h"
 
 namespace flatspeckle::mc {
@@ -55,14 +55,15 @@ TEST_CASE("at the matched shifts the map holds the memory effect") {
 TEST_CASE("an infinite slab refuses what does not match; a wide box has next to nothing there") {
   const auto request = map_request({0, 1.5});
   const auto run = tests::run(box(request), ReversedPaths::automatic, 60000, 3);
-  const auto map = tilt_shift(request, run.sums, run.job.covariance);
-  REQUIRE(map.correlation.size() == 6);
-  CHECK(map.correlation[0] == doctest::Approx(1).epsilon(1e-12));
-  CHECK(map.correlation[1] < 0.1);  // sinc(1.5 x 30 / 2) and noise
-  CHECK(map.matched[0] == doctest::Approx(1).epsilon(1e-12));
-  CHECK(map.matched[1] > 0.9);
-  CHECK(map.matched_error[1] > 0);
-  CHECK(map.matched_error[1] < 0.02);
+  const auto map = correlations(request, run.sums, run.job.covariance);
+  REQUIRE(map.moves.value.size() > 7);
+  CHECK(map.moves.value[0].real() == doctest::Approx(1).epsilon(1e-12));
+  CHECK(map.moves.value[1].real() < 0.1);  // sinc(1.5 x 30 / 2) and noise
+  // matched views
+  CHECK(map.moves.value[6].real() == doctest::Approx(1).epsilon(1e-12));
+  CHECK(map.moves.value[7].real() > 0.9);
+  CHECK(map.moves.error[7] > 0);
+  CHECK(map.moves.error[7] < 0.02);
 }
 
 TEST_CASE("half-widths of the map's axes are those of its width") {
@@ -77,12 +78,12 @@ TEST_CASE("half-widths of the map's axes are those of its width") {
       tilt_shift_request(k, plane_wave(light), tests::far_views({0.3}), small_tilts, steps);
   const auto run =
       tests::run(tests::hg_box(60, 4, {4, 0.4}, request), ReversedPaths::automatic, 60000, 4);
-  const auto map = tilt_shift(request, run.sums, run.job.covariance);
+  const auto map = correlations(request, run.sums, run.job.covariance);
   const double expected = 2 * 1.391557 / 60;
-  CHECK(map.along_shifts.range.value == doctest::Approx(expected).epsilon(0.1));
-  CHECK(map.along_tilts.range.value == doctest::Approx(expected).epsilon(0.1));
-  CHECK(map.along_shifts.error < 0.005);
-  CHECK(map.along_matched.range.censored == Range::Censoring::above_value);
+  CHECK(map.ranges[1].range.value == doctest::Approx(expected).epsilon(0.1));
+  CHECK(map.ranges[0].range.value == doctest::Approx(expected).epsilon(0.1));
+  CHECK(map.ranges[1].error < 0.005);
+  CHECK(map.ranges[2].range.censored == Range::Censoring::above_value);
 }
 
 TEST_CASE("near sensors shift along x") {
@@ -96,10 +97,10 @@ TEST_CASE("near sensors shift along x") {
   // A shift of 0.4 wavelengths matters where light comes from all around; a tilt that changes the
   // phase by 0.08 over a mean free path does not.
   const auto run = tests::run(box(request), ReversedPaths::automatic, 40000, 5);
-  const auto map = tilt_shift(request, run.sums, run.job.covariance);
-  CHECK(map.matched.empty());
-  CHECK(map.correlation[1] < 0.9);
-  CHECK(map.correlation[2] > 0.9);
+  const auto map = correlations(request, run.sums, run.job.covariance);
+  CHECK(map.moves.value.size() == 4);  // none matched
+  CHECK(map.moves.value[1].real() < 0.9);
+  CHECK(map.moves.value[2].real() > 0.9);
 }
 
 TEST_CASE("single scattering is C21, with views summed before the modulus") {

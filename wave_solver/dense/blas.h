@@ -3,6 +3,7 @@
 // The BLAS and LAPACK that the room uses, with C++ complex numbers.
 
 #include <complex>
+#include <cstddef>
 
 #include <cblas.h>
 
@@ -17,6 +18,39 @@ namespace flatspeckle::wave {
 inline void blas_single_thread() {
   static const bool done = (openblas_set_num_threads(1), true);
   static_cast<void>(done);
+}
+
+inline blasint blas_size(std::size_t n) {
+  return static_cast<blasint>(n);
+}
+
+// Column-major matrices with their leading dimensions.
+
+/// C = alpha op(A) op(B) + beta C; op(A) is rows x inner.
+inline void multiply(CBLAS_TRANSPOSE op_a, CBLAS_TRANSPOSE op_b, std::size_t rows,
+                     std::size_t columns, std::size_t inner, std::complex<double> alpha,
+                     const std::complex<double>* a, std::size_t lda, const std::complex<double>* b,
+                     std::size_t ldb, std::complex<double> beta, std::complex<double>* c,
+                     std::size_t ldc) {
+  cblas_zgemm(CblasColMajor, op_a, op_b, blas_size(rows), blas_size(columns), blas_size(inner),
+              &alpha, a, blas_size(lda), b, blas_size(ldb), &beta, c, blas_size(ldc));
+}
+
+/// X = op(T)^-1 X, or X op(T)^-1 from the right; X is rows x columns.
+inline void triangular_solve(CBLAS_SIDE side, CBLAS_UPLO triangle, CBLAS_TRANSPOSE op,
+                             std::size_t rows, std::size_t columns, const std::complex<double>* t,
+                             std::size_t ldt, std::complex<double>* x, std::size_t ldx) {
+  const std::complex<double> one = 1;
+  cblas_ztrsm(CblasColMajor, side, triangle, op, CblasNonUnit, blas_size(rows), blas_size(columns),
+              &one, t, blas_size(ldt), x, blas_size(ldx));
+}
+
+/// C -= W W^T in the lower triangle; W is n x depth, with C's leading dimension.
+inline void subtract_square(std::size_t n, std::size_t depth, const std::complex<double>* w,
+                            std::complex<double>* c, std::size_t ld) {
+  const std::complex<double> one = 1, minus_one = -1;
+  cblas_zsyrk(CblasColMajor, CblasLower, CblasNoTrans, blas_size(n), blas_size(depth), &minus_one,
+              w, blas_size(ld), &one, c, blas_size(ld));
 }
 
 }  // namespace flatspeckle::wave

@@ -9,24 +9,6 @@ namespace flatspeckle::wave {
 
 namespace {
 
-void triangular_solve(CBLAS_SIDE side, CBLAS_TRANSPOSE transpose, std::size_t rows,
-                      std::size_t columns, const Complex* l, std::size_t ld, Complex* x,
-                      std::size_t ldx) {
-  const Complex one = 1;
-  cblas_ztrsm(CblasColMajor, side, CblasLower, transpose, CblasNonUnit, static_cast<blasint>(rows),
-              static_cast<blasint>(columns), &one, l, static_cast<blasint>(ld), x,
-              static_cast<blasint>(ldx));
-}
-
-// C -= W W^T, lower triangle
-void subtract_square(std::size_t n, std::size_t depth, const Complex* w, Complex* c,
-                     std::size_t ld) {
-  const Complex one = 1, minus_one = -1;
-  cblas_zsyrk(CblasColMajor, CblasLower, CblasNoTrans, static_cast<blasint>(n),
-              static_cast<blasint>(depth), &minus_one, w, static_cast<blasint>(ld), &one, c,
-              static_cast<blasint>(ld));
-}
-
 // Column by column.
 bool factor_small(Complex* a, std::size_t n, std::size_t ld) {
   for (std::size_t j = 0; j < n; ++j) {
@@ -49,7 +31,7 @@ bool factor_block(Complex* a, std::size_t n, std::size_t ld) {
   if (n <= small) return factor_small(a, n, ld);
   const std::size_t half = n / 2;
   if (!factor_block(a, half, ld)) return false;
-  triangular_solve(CblasRight, CblasTrans, n - half, half, a, ld, a + half, ld);
+  triangular_solve(CblasRight, CblasLower, CblasTrans, n - half, half, a, ld, a + half, ld);
   subtract_square(n - half, half, a + half, a + half * (ld + 1), ld);
   return factor_block(a + half * (ld + 1), n - half, ld);
 }
@@ -62,7 +44,7 @@ bool factor_symmetric(Complex* a, std::size_t n, std::size_t ld) {
     Complex* corner = a + first * (ld + 1);
     if (!factor_block(corner, size, ld)) return false;
     if (rest == 0) break;
-    triangular_solve(CblasRight, CblasTrans, rest, size, corner, ld, corner + size, ld);
+    triangular_solve(CblasRight, CblasLower, CblasTrans, rest, size, corner, ld, corner + size, ld);
     subtract_square(rest, size, corner + size, corner + size * (ld + 1), ld);
   }
   return true;
@@ -70,12 +52,14 @@ bool factor_symmetric(Complex* a, std::size_t n, std::size_t ld) {
 
 void solve_forward(const Complex* l, std::size_t n, std::size_t ld, Complex* x, std::size_t columns,
                    std::size_t ldx) {
-  if (n > 0 && columns > 0) triangular_solve(CblasLeft, CblasNoTrans, n, columns, l, ld, x, ldx);
+  if (n > 0 && columns > 0)
+    triangular_solve(CblasLeft, CblasLower, CblasNoTrans, n, columns, l, ld, x, ldx);
 }
 
 void solve_backward(const Complex* l, std::size_t n, std::size_t ld, Complex* x,
                     std::size_t columns, std::size_t ldx) {
-  if (n > 0 && columns > 0) triangular_solve(CblasLeft, CblasTrans, n, columns, l, ld, x, ldx);
+  if (n > 0 && columns > 0)
+    triangular_solve(CblasLeft, CblasLower, CblasTrans, n, columns, l, ld, x, ldx);
 }
 
 }  // namespace flatspeckle::wave

@@ -31,8 +31,7 @@ int most_paired(const Scatterer& disk) {
 // Modes of large or dense disks resonate among many.
 double safety(const Scatterer& disk, double k) {
   const double x = k * disk.radius;
-  const bool penetrable = disk.kind == Scatterer::Kind::tm || disk.kind == Scatterer::Kind::te;
-  if (!penetrable) return 20 + 2 * x;
+  if (!disk.is_penetrable()) return 20 + 2 * x;
   const double contrast = std::max(1.0, (disk.index * disk.index).real() - 1);
   return (8 + 2 * x) * contrast * contrast;
 }

@@ -20,10 +20,6 @@ constexpr std::size_t chunk = 256;  // points that stay in cache with the waves 
 
 using Pixels = std::vector<std::uint32_t>;
 
-bool is_penetrable(const Scatterer& scatterer) {
-  return scatterer.kind == Scatterer::Kind::tm || scatterer.kind == Scatterer::Kind::te;
-}
-
 std::vector<Vec2> positions(const MapGrid& grid, const MapTile& tile, const Pixels& pixels) {
   std::vector<Vec2> result;
   for (const std::uint32_t pixel : pixels)
@@ -176,7 +172,7 @@ void FieldMap::fill_inside(const MapTile& tile, const Points& points,
   const TMatrixSystem& system = solution_.system();
   parallel_for(points.inside.size(), [&](std::size_t j) {
     const Pixels& pixels = points.inside[j];
-    if (pixels.empty() || !is_penetrable(system.placement()[j].scatterer)) return;
+    if (pixels.empty() || !system.placement()[j].scatterer.is_penetrable()) return;
     const std::size_t modes = system.modes(j).modes.size();
     std::vector<Complex> waves(pixels.size() * modes);
     field_inside(system, j, positions(grid_, tile, pixels), {waves.data(), pixels.size()});

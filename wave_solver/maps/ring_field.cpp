@@ -17,12 +17,8 @@ namespace {
 void add_columns(std::span<const Complex> values, std::size_t points, const Complex* x,
                  std::size_t ldx, double factor, std::span<Complex> field) {
   if (points == 0 || values.empty()) return;
-  const Complex alpha = factor, one = 1;
-  const auto rows = static_cast<blasint>(points);
-  cblas_zgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, rows,
-              static_cast<blasint>(field.size() / points),
-              static_cast<blasint>(values.size() / points), &alpha, values.data(), rows, x,
-              static_cast<blasint>(ldx), &one, field.data(), rows);
+  multiply(CblasNoTrans, CblasNoTrans, points, field.size() / points, values.size() / points,
+           factor, values.data(), points, x, ldx, 1, field.data(), points);
 }
 
 const Complex* coefficients(const WaveSolution& solution, std::size_t scatterer) {
@@ -107,12 +103,9 @@ void RingField::place_rings() {
   charges_.resize(lights * positions_.size());
   for (std::size_t j = 0; j < placement.size(); ++j) {
     const MultipoleRing& own = ring(j).ring;
-    const auto points = static_cast<blasint>(own.points);
-    const Complex one = 1, zero = 0;
-    cblas_zgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, points, static_cast<blasint>(lights),
-                static_cast<blasint>(system.modes(j).modes.size()), &one, own.charges.data(),
-                points, coefficients(solution_, j), static_cast<blasint>(system.unknowns()), &zero,
-                &charges_[first_[j]], static_cast<blasint>(positions_.size()));
+    multiply(CblasNoTrans, CblasNoTrans, own.points, lights, system.modes(j).modes.size(), 1,
+             own.charges.data(), own.points, coefficients(solution_, j), system.unknowns(), 0,
+             &charges_[first_[j]], positions_.size());
   }
 }
 

@@ -10,12 +10,6 @@ namespace flatspeckle::wave {
 
 namespace {
 
-const Complex one = 1, minus_one = -1;
-
-blasint blas(std::size_t n) {
-  return static_cast<blasint>(n);
-}
-
 std::vector<Complex> submatrix(const std::vector<Complex>& m, std::size_t n,
                                const std::vector<std::size_t>& rows,
                                const std::vector<std::size_t>& columns) {
@@ -53,25 +47,24 @@ void scatter(const std::vector<Complex>& part, const std::vector<std::size_t>& u
 void add_product(CBLAS_TRANSPOSE transpose, std::size_t rows, std::size_t columns,
                  std::size_t inner, double factor, const std::vector<Complex>& a,
                  const std::vector<double>& b, double old, std::vector<Complex>& c) {
-  cblas_dgemm(CblasColMajor, CblasNoTrans, transpose, blas(2 * rows), blas(columns), blas(inner),
-              factor, reinterpret_cast<const double*>(a.data()), blas(2 * rows), b.data(),
-              blas(transpose == CblasTrans ? columns : inner), old,
-              reinterpret_cast<double*>(c.data()), blas(2 * rows));
+  cblas_dgemm(CblasColMajor, CblasNoTrans, transpose, blas_size(2 * rows), blas_size(columns),
+              blas_size(inner), factor, reinterpret_cast<const double*>(a.data()),
+              blas_size(2 * rows), b.data(), blas_size(transpose == CblasTrans ? columns : inner),
+              old, reinterpret_cast<double*>(c.data()), blas_size(2 * rows));
 }
 
 // C <- C - A B, or A B^T
 void subtract_product(CBLAS_TRANSPOSE transpose, std::size_t rows, std::size_t columns,
                       std::size_t inner, const std::vector<Complex>& a,
                       const std::vector<Complex>& b, std::size_t ldb, std::vector<Complex>& c) {
-  cblas_zgemm(CblasColMajor, CblasNoTrans, transpose, blas(rows), blas(columns), blas(inner),
-              &minus_one, a.data(), blas(rows), b.data(), blas(ldb), &one, c.data(), blas(rows));
+  multiply(CblasNoTrans, transpose, rows, columns, inner, -1, a.data(), rows, b.data(), ldb, 1,
+           c.data(), rows);
 }
 
 // X <- X L^-T (transposed) or X L^-1
 void divide(CBLAS_TRANSPOSE transpose, std::size_t rows, std::size_t n,
             const std::vector<Complex>& l, std::vector<Complex>& x) {
-  cblas_ztrsm(CblasColMajor, CblasRight, CblasLower, transpose, CblasNonUnit, blas(rows), blas(n),
-              &one, l.data(), blas(n), x.data(), blas(rows));
+  triangular_solve(CblasRight, CblasLower, transpose, rows, n, l.data(), n, x.data(), rows);
 }
 
 }  // namespace
@@ -92,8 +85,7 @@ SkeletonElimination::SkeletonElimination(const std::vector<std::size_t>& unknown
     throw std::runtime_error("the multiple-scattering equations of a box are singular");
   if (s == 0) return;
   divide(CblasTrans, s, r, l_, e_);
-  cblas_zsyrk(CblasColMajor, CblasLower, CblasNoTrans, blas(s), blas(r), &minus_one, e_.data(),
-              blas(s), &one, rest_.data(), blas(s));
+  subtract_square(s, r, e_.data(), rest_.data(), s);
   mirror_lower(rest_, s);
 }
 

@@ -95,7 +95,7 @@ double mismatch(Kind kind, const Trace& outside, const Trace& inside) {
 double residual_on(const WaveSolution& solution, const Rim& rim) {
   const TMatrixSystem& system = solution.system();
   const auto& [position, scatterer] = system.placement()[rim.disk];
-  const bool penetrable = scatterer.kind == Kind::tm || scatterer.kind == Kind::te;
+  const bool penetrable = scatterer.is_penetrable();
   if (penetrable && is_transparent(system, rim.disk)) return 0;
   const auto inside_waves = penetrable ? rim_waves(system, rim.disk) : std::vector<RimWave>{};
   const int count = 2 * std::min(system.order(rim.disk), 24) + 8;

@@ -119,9 +119,8 @@ LightBasis light_basis(std::span<const double> angles, double k, const Circle& c
   while (rank < std::min(rows, columns) && diagonal(rank) > tolerance) ++rank;
   if (4 * rank > 3 * columns) return all;
   // The columns left out are R11^-1 R12 of those kept.
-  const Complex one = 1;
-  cblas_ztrsm(CblasColMajor, CblasLeft, CblasUpper, CblasNoTrans, CblasNonUnit, rank,
-              columns - rank, &one, matrix.data(), rows, &matrix[rank * rows], rows);
+  triangular_solve(CblasLeft, CblasUpper, CblasNoTrans, rank, columns - rank, matrix.data(), rows,
+                   &matrix[rank * rows], rows);
   LightBasis basis;
   basis.weights.resize(lights * rank);
   const auto phase = [&](std::size_t light) {

@@ -55,13 +55,11 @@ double unscaled_residual(const TMatrixSystem& system, std::span<const Complex> s
 std::vector<Complex> transposed_product(const std::vector<Complex>& a, const Complex* b,
                                         std::size_t columns_b, std::size_t n) {
   if (n == 0) return {};
-  const auto columns_a = static_cast<blasint>(a.size() / n),
-             columns = static_cast<blasint>(columns_b), rows = static_cast<blasint>(n);
-  std::vector<Complex> result(columns_b * (a.size() / n));
+  const std::size_t columns_a = a.size() / n;
+  std::vector<Complex> result(columns_b * columns_a);
   if (result.empty()) return result;
-  const Complex one = 1, zero = 0;
-  cblas_zgemm(CblasColMajor, CblasTrans, CblasNoTrans, columns_a, columns, rows, &one, a.data(),
-              rows, b, rows, &zero, result.data(), columns_a);
+  multiply(CblasTrans, CblasNoTrans, columns_a, columns_b, n, 1, a.data(), n, b, n, 0,
+           result.data(), columns_a);
   return result;
 }
 
@@ -69,12 +67,9 @@ std::vector<Complex> transposed_product(const std::vector<Complex>& a, const Com
 std::vector<Complex> expanded(const LightBasis& basis, std::vector<Complex> columns,
                               std::size_t n) {
   if (basis.weights.empty() || n == 0) return columns;
-  const auto rank = static_cast<blasint>(basis.size()), rows = static_cast<blasint>(n),
-             lights = static_cast<blasint>(basis.count());
   std::vector<Complex> all(n * basis.count());
-  const Complex one = 1, zero = 0;
-  cblas_zgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, rows, lights, rank, &one, columns.data(),
-              rows, basis.weights.data(), rank, &zero, all.data(), rows);
+  multiply(CblasNoTrans, CblasNoTrans, n, basis.count(), basis.size(), 1, columns.data(), n,
+           basis.weights.data(), basis.size(), 0, all.data(), n);
   return all;
 }
 
@@ -105,12 +100,6 @@ std::vector<Complex> right_sides(const TMatrixSystem& system, const LightBasis& 
     sides.insert(sides.end(), side.begin(), side.end());
   }
   return sides;
-}
-
-std::vector<View> far_views(const std::vector<double>& angles) {
-  std::vector<View> views;
-  for (double angle : angles) views.push_back(far_view(angle));
-  return views;
 }
 
 bool all_far(const std::vector<View>& views) {

@@ -11,8 +11,6 @@ namespace flatspeckle::wave {
 
 namespace {
 
-const Complex one = 1, zero = 0, minus_one = -1;
-
 void check(lapack_int info) {
   if (info != 0)
     throw std::runtime_error("gmres: the matrix gave what is not finite, or LAPACK failed");
@@ -51,10 +49,8 @@ ColumnMajor orthonormalize(ColumnMajor& w, double drop) {
 ColumnMajor product(const ColumnMajor& a, const ColumnMajor& b) {
   ColumnMajor c(a.rows, b.columns);
   if (c.data.empty() || a.columns == 0) return c;
-  cblas_zgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, static_cast<int>(a.rows),
-              static_cast<int>(b.columns), static_cast<int>(a.columns), &one, a.data.data(),
-              static_cast<int>(a.rows), b.data.data(), static_cast<int>(b.rows), &zero,
-              c.data.data(), static_cast<int>(c.rows));
+  multiply(CblasNoTrans, CblasNoTrans, a.rows, b.columns, a.columns, 1, a.data.data(), a.rows,
+           b.data.data(), b.rows, 0, c.data.data(), c.rows);
   return c;
 }
 
@@ -72,32 +68,26 @@ ColumnMajor KrylovBasis::project_out(ColumnMajor& w) const {
   const std::size_t slices = (rows_ + slice - 1) / slice;
   ColumnMajor c(size(), w.columns);
   if (w.columns == 0) return c;
-  const int rows = static_cast<int>(rows_), columns = static_cast<int>(w.columns);
-  const int count = static_cast<int>(size());
   std::vector<ColumnMajor> parts(slices, c);
   parallel_for(slices, [&](std::size_t s) {
     const std::size_t first = s * slice;
-    cblas_zgemm(CblasColMajor, CblasConjTrans, CblasNoTrans, count, columns,
-                static_cast<int>(std::min(slice, rows_ - first)), &one, &data_[first], rows,
-                &w.data[first], rows, &zero, parts[s].data.data(), count);
+    multiply(CblasConjTrans, CblasNoTrans, size(), w.columns, std::min(slice, rows_ - first), 1,
+             &data_[first], rows_, &w.data[first], rows_, 0, parts[s].data.data(), size());
   });
   for (const ColumnMajor& part : parts)
     for (std::size_t i = 0; i < c.data.size(); ++i) c.data[i] += part.data[i];
   parallel_for(slices, [&](std::size_t s) {
     const std::size_t first = s * slice;
-    cblas_zgemm(CblasColMajor, CblasNoTrans, CblasNoTrans,
-                static_cast<int>(std::min(slice, rows_ - first)), columns, count, &minus_one,
-                &data_[first], rows, c.data.data(), count, &one, &w.data[first], rows);
+    multiply(CblasNoTrans, CblasNoTrans, std::min(slice, rows_ - first), w.columns, size(), -1,
+             &data_[first], rows_, c.data.data(), size(), 1, &w.data[first], rows_);
   });
   return c;
 }
 
 ColumnMajor KrylovBasis::combine(const ColumnMajor& y) const {
   ColumnMajor x(rows_, y.columns);
-  cblas_zgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, static_cast<int>(rows_),
-              static_cast<int>(y.columns), static_cast<int>(y.rows), &one, data_.data(),
-              static_cast<int>(rows_), y.data.data(), static_cast<int>(y.rows), &zero,
-              x.data.data(), static_cast<int>(rows_));
+  multiply(CblasNoTrans, CblasNoTrans, rows_, y.columns, y.rows, 1, data_.data(), rows_,
+           y.data.data(), y.rows, 0, x.data.data(), rows_);
   return x;
 }
 
@@ -134,9 +124,8 @@ ColumnMajor HessenbergLeastSquares::solution() {
   for (std::size_t j = 0; j < n; ++j)
     std::copy(columns_[j].begin(), columns_[j].end(), r.column(j));
   for (std::size_t j = 0; j < y.columns; ++j) std::copy_n(g_.column(j), n, y.column(j));
-  cblas_ztrsm(CblasColMajor, CblasLeft, CblasUpper, CblasNoTrans, CblasNonUnit, static_cast<int>(n),
-              static_cast<int>(y.columns), &one, r.data.data(), static_cast<int>(n), y.data.data(),
-              static_cast<int>(n));
+  triangular_solve(CblasLeft, CblasUpper, CblasNoTrans, n, y.columns, r.data.data(), n,
+                   y.data.data(), n);
   return y;
 }
 

@@ -135,12 +135,6 @@ class Block {
 
 }  // namespace
 
-std::vector<double> relative_residuals(const BlockMap& a, std::size_t unknowns,
-                                       std::span<const Complex> x, std::span<const Complex> b) {
-  if (b.empty()) return {};
-  return relative(remainder(a, x, b), units(b, unknowns));
-}
-
 GmresResult gmres(const BlockMap& a, std::size_t unknowns, std::span<const Complex> right_sides,
                   const GmresOptions& options) {
   GmresResult result;

@@ -11,10 +11,6 @@ namespace flatspeckle::wave {
 /// A linear map of blocks of columns, [column][unknown] to the same.
 using BlockMap = std::function<std::vector<Complex>(std::span<const Complex>)>;
 
-/// ||b - A x|| / ||b|| of every column; ||A x|| where b = 0.
-std::vector<double> relative_residuals(const BlockMap& a, std::size_t unknowns,
-                                       std::span<const Complex> x, std::span<const Complex> b);
-
 struct GmresOptions {
   double tolerance = 1e-10;  ///< of every column's ||b - A x|| / ||b||
   int block = 16;            ///< right sides that share one Krylov space

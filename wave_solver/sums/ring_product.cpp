@@ -16,17 +16,6 @@ namespace flatspeckle::wave {
 
 namespace {
 
-const Complex one = 1, zero = 0, minus_one = -1;
-
-// c <- alpha op(a) b + beta c, column-major.
-void multiply(CBLAS_TRANSPOSE transposed, std::size_t rows, std::size_t columns, std::size_t inner,
-              const Complex& alpha, const Complex* a, std::size_t lda, const Complex* b,
-              std::size_t ldb, const Complex& beta, Complex* c, std::size_t ldc) {
-  cblas_zgemm(CblasColMajor, transposed, CblasNoTrans, static_cast<int>(rows),
-              static_cast<int>(columns), static_cast<int>(inner), &alpha, a, static_cast<int>(lda),
-              b, static_cast<int>(ldb), &beta, c, static_cast<int>(ldc));
-}
-
 std::vector<Vec2> centres(const Placement& placement) {
   std::vector<Vec2> positions;
   for (const auto& placed : placement) positions.push_back(placed.position);
@@ -138,10 +127,10 @@ void RingProduct::subtract_far(const Placement& placement, std::size_t row, cons
   split.far(distance, far);
   const std::size_t rows = modes(row), columns = modes(column.scatterer);
   std::vector<Complex> received(to.points * columns);
-  multiply(CblasNoTrans, to.points, columns, from.points, one, far.data(), to.points,
-           from.charges.data(), from.points, zero, received.data(), to.points);
-  multiply(CblasTrans, rows, columns, to.points, minus_one, to.charges.data(), to.points,
-           received.data(), to.points, one, &blocks_[column.block], rows);
+  multiply(CblasNoTrans, CblasNoTrans, to.points, columns, from.points, 1, far.data(), to.points,
+           from.charges.data(), from.points, 0, received.data(), to.points);
+  multiply(CblasTrans, CblasNoTrans, rows, columns, to.points, -1, to.charges.data(), to.points,
+           received.data(), to.points, 1, &blocks_[column.block], rows);
 }
 
 std::vector<Complex> RingProduct::operator()(std::span<const Complex> x) const {
@@ -150,21 +139,22 @@ std::vector<Complex> RingProduct::operator()(std::span<const Complex> x) const {
   std::vector<Complex> charges(columns * ring_points_), fields(charges.size()), y(x.size());
   if (far_) {
     parallel_for(kind_.size(), [&](std::size_t j) {
-      multiply(CblasNoTrans, ring(j).points, columns, modes(j), one, ring(j).charges.data(),
-               ring(j).points, &x[first_[j]], unknowns, zero, &charges[ring_first_[j]],
-               ring_points_);
+      multiply(CblasNoTrans, CblasNoTrans, ring(j).points, columns, modes(j), 1,
+               ring(j).charges.data(), ring(j).points, &x[first_[j]], unknowns, 0,
+               &charges[ring_first_[j]], ring_points_);
     });
     far_->add(charges, fields);
   }
   parallel_for(kind_.size(), [&](std::size_t j) {
     for (const Neighbour& near : neighbours_[j])
-      multiply(near.transposed ? CblasTrans : CblasNoTrans, modes(j), columns,
-               modes(near.scatterer), one, &blocks_[near.block],
+      multiply(near.transposed ? CblasTrans : CblasNoTrans, CblasNoTrans, modes(j), columns,
+               modes(near.scatterer), 1, &blocks_[near.block],
                near.transposed ? modes(near.scatterer) : modes(j), &x[first_[near.scatterer]],
-               unknowns, one, &y[first_[j]], unknowns);
+               unknowns, 1, &y[first_[j]], unknowns);
     if (far_)
-      multiply(CblasTrans, modes(j), columns, ring(j).points, one, ring(j).charges.data(),
-               ring(j).points, &fields[ring_first_[j]], ring_points_, one, &y[first_[j]], unknowns);
+      multiply(CblasTrans, CblasNoTrans, modes(j), columns, ring(j).points, 1,
+               ring(j).charges.data(), ring(j).points, &fields[ring_first_[j]], ring_points_, 1,
+               &y[first_[j]], unknowns);
   });
   return y;
 }

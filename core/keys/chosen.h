@@ -1,0 +1,18 @@
+#pragma once
+
+#include <algorithm>
+#include <cassert>
+#include <string>
+#include <vector>
+
+namespace flatspeckle {
+
+/// The enumerator of a word that is one of them, which stand in the order of the enumerators.
+template <typename Choice>
+Choice chosen(const std::vector<std::string>& words, const std::string& word) {
+  const auto found = std::ranges::find(words, word);
+  assert(found != words.end());
+  return static_cast<Choice>(found - words.begin());
+}
+
+}  // namespace flatspeckle

@@ -1,0 +1,23 @@
+#include "core/numbers/bessel.h"
+#include "core/numbers/scaled_bessel.h"
+#include "flatland/scatterers/scatterer_kinds.h"
+
+namespace flatspeckle {
+
+namespace {
+
+// C7: the normal derivative is 0 at the rim.
+std::vector<ScaledComplex> t_matrix(const Scatterer&, double x, int order) {
+  const auto j = scaled_bessel_j(order + 1, x);
+  const auto h = scaled_hankel(order + 1, x);
+  std::vector<ScaledComplex> t(order + 1);
+  for (int n = 0; n <= order; ++n)
+    t[n] = -cylinder_derivative(j, n, x) / cylinder_derivative(h, n, x);
+  return t;
+}
+
+}  // namespace
+
+const ScattererKind hard_kind{"hard", Scatterer::Kind::hard, read_radius, t_matrix};
+
+}  // namespace flatspeckle

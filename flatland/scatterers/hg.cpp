@@ -1,0 +1,16 @@
+#include "flatland/scatterers/scatterer_kinds.h"
+
+namespace flatspeckle {
+
+namespace {
+
+void read(const Keys& keys, const ScattererValues& values, Scatterer& made) {
+  made.g = keys.read(values.g).value_or(0);
+  read_albedo(keys, values, made);
+}
+
+}  // namespace
+
+const ScattererKind hg_kind{"hg", Scatterer::Kind::hg, read, nullptr};
+
+}  // namespace flatspeckle

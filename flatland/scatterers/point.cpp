@@ -1,0 +1,31 @@
+#include <cmath>
+
+#include "flatland/scatterers/scatterer_kinds.h"
+
+namespace flatspeckle {
+
+namespace {
+
+void read(const Keys& keys, const ScattererValues& values, Scatterer& made) {
+  read_albedo(keys, values, made);
+  if (made.albedo == 0) throw InputError("albedo", 0, "of points must be in (0, 1]");
+  const auto& phase_shift = keys.read(values.phase_shift);
+  if (phase_shift && made.albedo != 1)
+    throw InputError("phase_shift", *phase_shift, "an absorbing point is resonant; leave it out");
+  made.phase_shift = phase_shift.value_or(made.phase_shift);
+}
+
+// C8
+std::vector<ScaledComplex> t_matrix(const Scatterer& point, double, int order) {
+  std::vector<ScaledComplex> t(order + 1);
+  const long double angle = 2 * static_cast<long double>(point.phase_shift);
+  t[0] = point.albedo != 1 ? ExtendedComplex(-point.albedo)
+                           : ExtendedComplex((std::cos(angle) - 1) / 2, std::sin(angle) / 2);
+  return t;
+}
+
+}  // namespace
+
+const ScattererKind point_kind{"point", Scatterer::Kind::point, read, t_matrix};
+
+}  // namespace flatspeckle

@@ -1,0 +1,21 @@
+#include "core/numbers/scaled_bessel.h"
+#include "flatland/scatterers/scatterer_kinds.h"
+
+namespace flatspeckle {
+
+namespace {
+
+// C7: the field is 0 at the rim.
+std::vector<ScaledComplex> t_matrix(const Scatterer&, double x, int order) {
+  const auto j = scaled_bessel_j(order + 1, x);
+  const auto h = scaled_hankel(order + 1, x);
+  std::vector<ScaledComplex> t(order + 1);
+  for (int n = 0; n <= order; ++n) t[n] = -j[n] / h[n];
+  return t;
+}
+
+}  // namespace
+
+const ScattererKind soft_kind{"soft", Scatterer::Kind::soft, read_radius, t_matrix};
+
+}  // namespace flatspeckle

@@ -1,0 +1,34 @@
+#include "core/numbers/bessel.h"
+#include "core/numbers/scaled_bessel.h"
+#include "flatland/scatterers/scatterer_kinds.h"
+
+namespace flatspeckle {
+
+namespace {
+
+// C7 as in tm.cpp: T_n = -(s J_n + J_{n+1}) / (s H_n + H_{n+1}),  s = (n/x)(1/m^2 - 1) - r_n / m.
+// In the numerator the leading terms x/(2(n+1)) of J_{n+1}/J_n and r_n/m, which are equal, are
+// taken out by J_{n+1} = x/(2(n+1)) (J_n + J_{n+2}) on both sides.
+std::vector<ScaledComplex> t_matrix(const Scatterer& cylinder, double x, int order) {
+  std::vector<ScaledComplex> t(order + 1);
+  if (cylinder.index == 1.0) return t;
+  const ExtendedComplex m(cylinder.index);
+  const auto ratios = bessel_ratios(order + 1, m * static_cast<long double>(x));
+  const auto j = scaled_bessel_j(order + 2, x);
+  const auto h = scaled_hankel(order + 1, x);
+  for (int n = 0; n <= order; ++n) {
+    const long double leading = static_cast<long double>(x) / (2 * (n + 1));
+    const ExtendedComplex jump =
+        static_cast<long double>(n) / x * (1.0L - m) * (1.0L + m) / (m * m);
+    const ScaledComplex numerator =
+        (jump - leading * ratios[n] * ratios[n + 1]) * j[n] + leading * j[n + 2];
+    t[n] = -numerator / ((jump - ratios[n] / m) * h[n] + h[n + 1]);
+  }
+  return t;
+}
+
+}  // namespace
+
+const ScattererKind te_kind{"te", Scatterer::Kind::te, read_radius_and_index, t_matrix};
+
+}  // namespace flatspeckle

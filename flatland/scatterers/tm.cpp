@@ -1,0 +1,30 @@
+#include "core/numbers/bessel.h"
+#include "core/numbers/scaled_bessel.h"
+#include "flatland/scatterers/scatterer_kinds.h"
+
+namespace flatspeckle {
+
+namespace {
+
+// C7 with J_n'(mx) = (n/(mx) - r_n) J_n(mx), r_n = J_{n+1}(mx)/J_n(mx), and likewise outside:
+//   T_n = -(J_{n+1} - m r_n J_n) / (H_{n+1} - m r_n H_n).
+// The terms n/x, which would cancel for small or faint cylinders, are gone.
+std::vector<ScaledComplex> t_matrix(const Scatterer& cylinder, double x, int order) {
+  std::vector<ScaledComplex> t(order + 1);
+  if (cylinder.index == 1.0) return t;
+  const ExtendedComplex m(cylinder.index);
+  const auto ratios = bessel_ratios(order, m * static_cast<long double>(x));
+  const auto j = scaled_bessel_j(order + 1, x);
+  const auto h = scaled_hankel(order + 1, x);
+  for (int n = 0; n <= order; ++n) {
+    const ExtendedComplex inside = m * ratios[n];
+    t[n] = -(j[n + 1] - inside * j[n]) / (h[n + 1] - inside * h[n]);
+  }
+  return t;
+}
+
+}  // namespace
+
+const ScattererKind tm_kind{"tm", Scatterer::Kind::tm, read_radius_and_index, t_matrix};
+
+}  // namespace flatspeckle
