@@ -11,6 +11,7 @@ function(flatspeckle_room name)
   target_compile_features(${target} PUBLIC cxx_std_20)
   target_link_libraries(${target} PUBLIC ${room_LINK} PRIVATE ${room_PRIVATE_LINK})
   flatspeckle_flags(${target})
+  flatspeckle_unity(${target})
   install(TARGETS ${target} EXPORT flatspeckle ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
   install(DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR}/
           DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/flatspeckle/${name} FILES_MATCHING PATTERN "*.h")
@@ -30,10 +31,8 @@ function(flatspeckle_flags target)
   endif()
 endfunction()
 
-# Eigen and the larger headers of the standard library are parsed once for the target, not for each
-# file. The preset dev goes without, so that a file without the includes it needs does not compile.
-function(flatspeckle_precompile target)
-  target_precompile_headers(${target} PRIVATE
-    <algorithm> <array> <cmath> <complex> <filesystem> <functional> <map> <memory> <numbers>
-    <optional> <span> <sstream> <string> <variant> <vector> <Eigen/Geometry> <Random123/threefry.h>)
+# Files of a room are compiled a few at a time, which parses what they include once. The preset dev
+# goes without, so that a file without the includes it needs does not compile.
+function(flatspeckle_unity target)
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${FLATSPECKLE_UNITY} UNITY_BUILD_BATCH_SIZE 6)
 endfunction()

@@ -7,7 +7,7 @@ namespace flatspeckle {
 namespace {
 
 // C7: the normal derivative is 0 at the rim.
-std::vector<ScaledComplex> t_matrix(const Scatterer&, double x, int order) {
+std::vector<ScaledComplex> hard_t_matrix(const Scatterer&, double x, int order) {
   const auto j = scaled_bessel_j(order + 1, x);
   const auto h = scaled_hankel(order + 1, x);
   std::vector<ScaledComplex> t(order + 1);
@@ -18,6 +18,6 @@ std::vector<ScaledComplex> t_matrix(const Scatterer&, double x, int order) {
 
 }  // namespace
 
-const ScattererKind hard_kind{"hard", Scatterer::Kind::hard, read_radius, t_matrix};
+const ScattererKind hard_kind{"hard", Scatterer::Kind::hard, read_radius, hard_t_matrix};
 
 }  // namespace flatspeckle

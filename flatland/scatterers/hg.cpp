@@ -4,13 +4,13 @@ namespace flatspeckle {
 
 namespace {
 
-void read(const Keys& keys, const ScattererValues& values, Scatterer& made) {
+void read_hg(const Keys& keys, const ScattererValues& values, Scatterer& made) {
   made.g = keys.read(values.g).value_or(0);
   read_albedo(keys, values, made);
 }
 
 }  // namespace
 
-const ScattererKind hg_kind{"hg", Scatterer::Kind::hg, read, nullptr};
+const ScattererKind hg_kind{"hg", Scatterer::Kind::hg, read_hg, nullptr};
 
 }  // namespace flatspeckle

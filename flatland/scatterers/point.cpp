@@ -6,7 +6,7 @@ namespace flatspeckle {
 
 namespace {
 
-void read(const Keys& keys, const ScattererValues& values, Scatterer& made) {
+void read_point(const Keys& keys, const ScattererValues& values, Scatterer& made) {
   read_albedo(keys, values, made);
   if (made.albedo == 0) throw InputError("albedo", 0, "of points must be in (0, 1]");
   const auto& phase_shift = keys.read(values.phase_shift);
@@ -16,7 +16,7 @@ void read(const Keys& keys, const ScattererValues& values, Scatterer& made) {
 }
 
 // C8
-std::vector<ScaledComplex> t_matrix(const Scatterer& point, double, int order) {
+std::vector<ScaledComplex> point_t_matrix(const Scatterer& point, double, int order) {
   std::vector<ScaledComplex> t(order + 1);
   const long double angle = 2 * static_cast<long double>(point.phase_shift);
   t[0] = point.albedo != 1 ? ExtendedComplex(-point.albedo)
@@ -26,6 +26,6 @@ std::vector<ScaledComplex> t_matrix(const Scatterer& point, double, int order) {
 
 }  // namespace
 
-const ScattererKind point_kind{"point", Scatterer::Kind::point, read, t_matrix};
+const ScattererKind point_kind{"point", Scatterer::Kind::point, read_point, point_t_matrix};
 
 }  // namespace flatspeckle

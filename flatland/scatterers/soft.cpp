@@ -6,7 +6,7 @@ namespace flatspeckle {
 namespace {
 
 // C7: the field is 0 at the rim.
-std::vector<ScaledComplex> t_matrix(const Scatterer&, double x, int order) {
+std::vector<ScaledComplex> soft_t_matrix(const Scatterer&, double x, int order) {
   const auto j = scaled_bessel_j(order + 1, x);
   const auto h = scaled_hankel(order + 1, x);
   std::vector<ScaledComplex> t(order + 1);
@@ -16,6 +16,6 @@ std::vector<ScaledComplex> t_matrix(const Scatterer&, double x, int order) {
 
 }  // namespace
 
-const ScattererKind soft_kind{"soft", Scatterer::Kind::soft, read_radius, t_matrix};
+const ScattererKind soft_kind{"soft", Scatterer::Kind::soft, read_radius, soft_t_matrix};
 
 }  // namespace flatspeckle

@@ -9,7 +9,7 @@ namespace {
 // C7 as in tm.cpp: T_n = -(s J_n + J_{n+1}) / (s H_n + H_{n+1}),  s = (n/x)(1/m^2 - 1) - r_n / m.
 // In the numerator the leading terms x/(2(n+1)) of J_{n+1}/J_n and r_n/m, which are equal, are
 // taken out by J_{n+1} = x/(2(n+1)) (J_n + J_{n+2}) on both sides.
-std::vector<ScaledComplex> t_matrix(const Scatterer& cylinder, double x, int order) {
+std::vector<ScaledComplex> te_t_matrix(const Scatterer& cylinder, double x, int order) {
   std::vector<ScaledComplex> t(order + 1);
   if (cylinder.index == 1.0) return t;
   const ExtendedComplex m(cylinder.index);
@@ -29,6 +29,6 @@ std::vector<ScaledComplex> t_matrix(const Scatterer& cylinder, double x, int ord
 
 }  // namespace
 
-const ScattererKind te_kind{"te", Scatterer::Kind::te, read_radius_and_index, t_matrix};
+const ScattererKind te_kind{"te", Scatterer::Kind::te, read_radius_and_index, te_t_matrix};
 
 }  // namespace flatspeckle

@@ -9,7 +9,7 @@ namespace {
 // C7 with J_n'(mx) = (n/(mx) - r_n) J_n(mx), r_n = J_{n+1}(mx)/J_n(mx), and likewise outside:
 //   T_n = -(J_{n+1} - m r_n J_n) / (H_{n+1} - m r_n H_n).
 // The terms n/x, which would cancel for small or faint cylinders, are gone.
-std::vector<ScaledComplex> t_matrix(const Scatterer& cylinder, double x, int order) {
+std::vector<ScaledComplex> tm_t_matrix(const Scatterer& cylinder, double x, int order) {
   std::vector<ScaledComplex> t(order + 1);
   if (cylinder.index == 1.0) return t;
   const ExtendedComplex m(cylinder.index);
@@ -25,6 +25,6 @@ std::vector<ScaledComplex> t_matrix(const Scatterer& cylinder, double x, int ord
 
 }  // namespace
 
-const ScattererKind tm_kind{"tm", Scatterer::Kind::tm, read_radius_and_index, t_matrix};
+const ScattererKind tm_kind{"tm", Scatterer::Kind::tm, read_radius_and_index, tm_t_matrix};
 
 }  // namespace flatspeckle

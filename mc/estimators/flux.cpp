@@ -18,7 +18,7 @@ namespace flatspeckle::mc {
 
 namespace {
 
-constexpr std::uint64_t paths_per_batch = 200;
+constexpr std::uint64_t walks_per_batch = 200;
 
 template <typename Scattering>
 SummedBatches walks(const std::shared_ptr<const Scene>& scene, const Scattering& scattering,
@@ -31,8 +31,8 @@ SummedBatches walks(const std::shared_ptr<const Scene>& scene, const Scattering&
       const LightEntry entry(scene->domain, lights[light], kappa);
       FluxWalk walk(*scene, scattering, entry, random, sums.subspan(light * size, size));
       // stratified depths of the first collision: errors a tenth smaller
-      for (std::uint64_t path = 0; path < paths_per_batch; ++path)
-        walk.walk((static_cast<double>(path) + random.uniform()) / paths_per_batch);
+      for (std::uint64_t path = 0; path < walks_per_batch; ++path)
+        walk.walk((static_cast<double>(path) + random.uniform()) / walks_per_batch);
     }
   };
 }
@@ -43,7 +43,7 @@ SummedBatches absorption(const std::shared_ptr<const Scene>& scene) {
     const auto lights = scene->request.lights.angles();
     for (std::size_t light = 0; light < lights.size(); ++light)
       sums[light * (sums.size() / lights.size()) + absorbed] =
-          paths_per_batch * (1 - direct_transmittance(*scene, lights[light]));
+          walks_per_batch * (1 - direct_transmittance(*scene, lights[light]));
   };
 }
 
@@ -64,7 +64,7 @@ std::string describe(const BulkMedium& medium, double kappa) {
     text << "absorbing, decay length of diffuse light " << 1 / kappa;
   else
     text << "lossless";
-  text << "; " << paths_per_batch << " paths per batch and light";
+  text << "; " << walks_per_batch << " paths per batch and light";
   return text.str();
 }
 
@@ -88,7 +88,7 @@ FluxJob flux_job(const Scene& original, std::size_t angle_bins, std::uint64_t se
   const double kappa = medium.mu_s > 0 ? medium.mu_t * diffusion_rate(medium.albedo, medium.g) : 0;
   FluxJob job{{}, scene->request.lights.size(), angle_bins, describe(medium, kappa)};
   job.batches.size = job.lights * (flux_shares + angle_bins);
-  job.batches.samples_per_batch = static_cast<double>(paths_per_batch);
+  job.batches.samples_per_batch = static_cast<double>(walks_per_batch);
   job.batches.relative_error = [shape = job](const GroupedSums& sums) {
     return worst_relative_error(shape, sums);
   };

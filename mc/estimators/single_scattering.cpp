@@ -28,8 +28,8 @@ struct Leg {
 };
 
 /// The integral along z at one x. The exponent is linear between the legs' turns.
-Complex column(const Domain& domain, double mu_t, double kappa_z, const std::array<Leg, 4>& legs,
-               double x) {
+Complex depth_column(const Domain& domain, double mu_t, double kappa_z,
+                     const std::array<Leg, 4>& legs, double x) {
   std::array<double, 6> cut{};
   cut[1] = domain.depth;
   for (std::size_t j = 0; j < 4; ++j) cut[2 + j] = std::clamp(legs[j].turn(x), 0.0, domain.depth);
@@ -97,12 +97,12 @@ Complex attenuated_wave_integral(const Domain& domain, double mu_t, Vec2 kappa,
   if (domain.kind == Domain::Kind::slab) box.width = never;
   const std::array<Leg, 4> legs = {Leg(box, towards[0]), Leg(box, towards[1]), Leg(box, towards[2]),
                                    Leg(box, towards[3])};
-  if (domain.kind == Domain::Kind::slab) return column(box, mu_t, kappa.z, legs, 0);
+  if (domain.kind == Domain::Kind::slab) return depth_column(box, mu_t, kappa.z, legs, 0);
   const auto cut = kinks(box, legs);
   Complex sum = 0;
   for (std::size_t i = 0; i + 1 < cut.size(); ++i) {
     const auto integrand = [&](double x) {
-      return std::polar(1.0, kappa.x * x) * column(box, mu_t, kappa.z, legs, x);
+      return std::polar(1.0, kappa.x * x) * depth_column(box, mu_t, kappa.z, legs, x);
     };
     if (cut[i + 1] > cut[i])
       sum += integrate(integrand, cut[i], cut[i + 1],

@@ -10,7 +10,7 @@ namespace flatspeckle::wave {
 
 namespace {
 
-constexpr double nowhere = std::numeric_limits<double>::infinity();
+constexpr double far_away = std::numeric_limits<double>::infinity();
 
 struct Extent {
   double width = 0;  // of the square that holds the centres
@@ -18,7 +18,7 @@ struct Extent {
 };
 
 Extent extent_of(const Placement& placement) {
-  Vec2 low{nowhere, nowhere}, high{-nowhere, -nowhere};
+  Vec2 low{far_away, nowhere}, high{-nowhere, -nowhere};
   Extent extent;
   for (const auto& [position, scatterer] : placement) {
     low = {std::min(low.x, position.x), std::min(low.z, position.z)};
@@ -31,13 +31,13 @@ Extent extent_of(const Placement& placement) {
 
 struct Candidate {
   Neighbour neighbour;
-  double image = nowhere;
+  double image = far_away;
 };
 
 Candidate nearest_in(const CellGrid& grid, const Placement& placement, std::size_t j) {
   const Vec2 position = placement[j].position;
   const double radius = placement[j].scatterer.disk_radius();
-  Candidate best{{j, nowhere}, nowhere};
+  Candidate best{{j, far_away}, nowhere};
   grid.any_near(position, [&](Vec2 other, std::size_t l) {
     if (l == j) return false;
     const double distance = length(other - position);

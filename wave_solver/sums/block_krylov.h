@@ -17,6 +17,7 @@ struct ColumnMajor {
   Complex* column(std::size_t j) { return data.data() + rows * j; }
 };
 
+using flatspeckle::product;  // of numbers, beside this one
 ColumnMajor product(const ColumnMajor& a, const ColumnMajor& b);
 
 /// 2-norms of columns of the given length.
