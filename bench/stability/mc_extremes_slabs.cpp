@@ -258,9 +258,9 @@ void add_flux(ExtremeRows& rows) {
   });
   rows.add("flux, OD 5, peaks of g 0.95 forwards and backwards", "discrete ordinates, in errors",
            [] { return two_peaks(0.95, {5}, 20000); });
-  rows.add("flux, OD 10, albedo 0.9, a table that is 0 beyond 0.3", "discrete ordinates, in errors",
+  rows.add("flux, OD 10, albedo 0.9, a table that is 0 beyond 1", "discrete ordinates, in errors",
            [] {
-             return cone(0.3, {10, 0, 0.9}, 20000);
+             return cone(1, {10, 0, 0.9}, 40000);
            });
   rows.add("flux, OD 20, albedo 1 - 1e-9: absorbed", "integral equation, in errors",
            [] { return absorbed(1 - 1e-9); });

@@ -10,6 +10,12 @@ namespace flatspeckle {
 
 namespace {
 
+const std::vector<double>& at_least_one(const Keys& keys, const std::vector<double>& numbers) {
+  if (numbers.empty())
+    throw InputError(keys.name(numbers) + " = []: must hold at least one number");
+  return keys.read(numbers);
+}
+
 Lights near_lights(const Keys& keys, const SceneSpec& spec) {
   Lights lights;
   for (const Vec2& point : read_points(keys.read(spec.near_sources)))
@@ -26,7 +32,7 @@ Lights beams(const Keys& keys, const SceneSpec& spec) {
   if (positions.empty()) positions = {0};
   const double depth = keys.read(spec.beam_depth).value_or(0);
   Lights lights;
-  for (double angle : keys.required(spec.light_angles))
+  for (double angle : at_least_one(keys, spec.light_angles))
     for (double x : positions) lights.push_back(gaussian_beam(angle, {x, depth}, waist));
   return lights;
 }
@@ -34,7 +40,7 @@ Lights beams(const Keys& keys, const SceneSpec& spec) {
 Lights requested_lights(const Keys& keys, const SceneSpec& spec) {
   if (!spec.near_sources.empty()) return near_lights(keys, spec);
   if (spec.beam_waist) return beams(keys, spec);
-  return keys.required(spec.light_angles);
+  return at_least_one(keys, spec.light_angles);
 }
 
 Light only_light(const Keys& keys, const SceneSpec& spec) {
@@ -47,7 +53,7 @@ Light only_light(const Keys& keys, const SceneSpec& spec) {
 
 /// Far views, or the near sensors that take their place.
 std::vector<View> requested_views(const Keys& keys, const SceneSpec& spec) {
-  if (spec.near_sensors.empty()) return far_views(keys.required(spec.view_angles));
+  if (spec.near_sensors.empty()) return far_views(at_least_one(keys, spec.view_angles));
   std::vector<View> views;
   for (const Vec2& point : read_points(keys.read(spec.near_sensors)))
     views.push_back(near_sensor(point));
@@ -61,15 +67,15 @@ void no_repeats(const std::string& key, std::vector<double> values) {
 }
 
 CovarianceRequest memory_effect(const Keys& keys, const SceneSpec& spec) {
-  if (keys.required(spec.light_angles).size() != 1)
+  if (at_least_one(keys, spec.light_angles).size() != 1)
     throw InputError("light_angles", spec.light_angles.size(),
                      "memory_effect tilts one light: give one angle");
   if (!requested_lights(keys, spec).all(Light::Kind::plane))
     throw InputError(
         "covariance", "memory_effect",
         "tilts a plane wave: use tilt_shift for a beam, translation for a near source");
-  no_repeats("tilts", keys.required(spec.tilts));
-  no_repeats("view_angles", keys.required(spec.view_angles));
+  no_repeats("tilts", at_least_one(keys, spec.tilts));
+  no_repeats("view_angles", at_least_one(keys, spec.view_angles));
   return memory_effect_request(2 * std::numbers::pi / spec.wavelength, spec.light_angles[0],
                                spec.view_angles, spec.tilts);
 }
@@ -92,8 +98,8 @@ CovarianceRequest tilt_shift(const Keys& keys, const SceneSpec& spec) {
   if (light.kind == Light::Kind::point)
     throw InputError("near_sources", spec.near_sources,
                      "a point source has no direction to tilt: use covariance = translation");
-  steps_from_zero("tilts", keys.required(spec.tilts));
-  steps_from_zero("shifts", keys.required(spec.shifts));
+  steps_from_zero("tilts", at_least_one(keys, spec.tilts));
+  steps_from_zero("shifts", at_least_one(keys, spec.shifts));
   return tilt_shift_request(2 * std::numbers::pi / spec.wavelength, light, moved_views(keys, spec),
                             spec.tilts, spec.shifts);
 }
@@ -103,12 +109,12 @@ CovarianceRequest translation(const Keys& keys, const SceneSpec& spec) {
   if (light.kind == Light::Kind::plane)
     throw InputError("covariance", "translation",
                      "moves a beam or a near source; for a plane wave use tilt_shift");
-  steps_from_zero("shifts", keys.required(spec.shifts));
+  steps_from_zero("shifts", at_least_one(keys, spec.shifts));
   return translation_request(light, moved_views(keys, spec), spec.shifts);
 }
 
 CovarianceRequest angle_pairs(const Keys& keys, const SceneSpec& spec) {
-  const auto& angles = keys.required(spec.pairs);
+  const auto& angles = at_least_one(keys, spec.pairs);
   std::vector<AnglePair> pairs;
   for (std::size_t i = 0; i < angles.size(); i += 4)
     pairs.push_back({angles[i], angles[i + 1], angles[i + 2], angles[i + 3]});
