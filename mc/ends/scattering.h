@@ -116,7 +116,8 @@ class TabulatedScattering {
   /// Angles up to some turns.
   Complex at(double angle) const {
     const double turns = std::abs(angle) / (2 * std::numbers::pi);
-    const double part = std::abs(turns - static_cast<double>(static_cast<int>(turns + 0.5)));
+    const int nearest = (static_cast<int>(2 * turns) + 1) / 2;
+    const double part = std::abs(turns - nearest);
     const double position = 2 * part * static_cast<double>(intervals_);
     const std::size_t i = std::min(static_cast<std::size_t>(position), intervals_ - 1);
     const double t = position - static_cast<double>(i);

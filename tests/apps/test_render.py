@@ -372,7 +372,7 @@ class Refused(RenderTest):
         self.refuse("sensor_size is not given", sensor_size=None)
         self.refuse("sensor_up", sensor_up=[0, 0, 1])
         self.refuse("acceptance = 2", acceptance=2)
-        self.refuse("pixels = 0 3", pixels=[0, 3])
+        self.refuse("pixels = 0", pixels=[0, 3])
         self.refuse("pixels = 4", "columns rows", pixels=[4])
         self.refuse("field_of_view", "is a key of", field_of_view=1)
         self.refuse("field_of_view is not given", **{**camera, "field_of_view": None})

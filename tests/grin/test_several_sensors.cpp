@@ -30,7 +30,7 @@ ScatteringMedium medium_of(const SpacePhaseFunction& phase, double albedo) {
 void check_agree(double a, double error_a, double b, double error_b) {
   CAPTURE(a);
   CAPTURE(b);
-  CHECK(std::abs(a - b) < 4 * std::hypot(error_a, error_b));
+  CHECK(std::abs(a - b) <= 4 * std::hypot(error_a, error_b));  // both dark, or by chance
 }
 
 RenderResult result_of(const RenderScene& scene, RenderMethod method, double samples) {

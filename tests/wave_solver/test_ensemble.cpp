@@ -49,6 +49,24 @@ TEST_CASE("A batch depends on seed and number alone") {
   CHECK(batch(wave_job(scene, 8, 1e-8), 3) != first);
 }
 
+TEST_CASE("Sensors and sources that a cylinder may cover are refused") {
+  SceneSpec spec;
+  spec.width = 20;
+  spec.depth = 10;
+  spec.count = 5;
+  spec.scatterer = "soft";
+  spec.radius = 0.5;
+  Scene scene = make_scene(spec);
+  const auto make = [&](Vec2 sensor, Vec2 source) {
+    scene.request = intensity_request(Lights{point_source(source)}, {near_sensor(sensor)});
+    return wave_job(scene, 1, 1e-6);
+  };
+  CHECK_NOTHROW(make({0, -0.51}, {10.51, 3}));
+  CHECK_THROWS_AS(make({0, -0.49}, {10.51, 3}), InputError);
+  CHECK_THROWS_AS(make({0, -0.51}, {10.3, 10.3}), InputError);
+  CHECK_NOTHROW(make({0, -0.51}, {10.4, 10.4}));
+}
+
 TEST_CASE("Threads do not change a bit") {
   const FieldJob job =
       wave_job(box_points(intensity_request({0, 0.3}, {far_view(0.5), far_view(3)})), 5, 1e-8);
