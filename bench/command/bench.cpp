@@ -148,9 +148,9 @@ Outcome what_plans_leave_out(ResultFile& file, bool quick) {
           rows.size(), static_cast<std::size_t>(failed)};
 }
 
-using Kind = Outcome (*)(ResultFile&, bool quick);
+using Report = Outcome (*)(ResultFile&, bool quick);
 
-Kind kind_named(const std::string& word) {
+Report report_named(const std::string& word) {
   if (word == "error") return error_against_time;
   if (word == "stability") return stability;
   if (word == "plan") return what_plans_leave_out;
@@ -182,7 +182,7 @@ int bench(const Arguments& arguments) {
   }
   if (!command.parse(flags)) return ExitStatus::done;
   if (word.empty()) throw InputError("bench: must be followed by error, stability or plan");
-  const Kind kind = kind_named(word);
+  const Report kind = report_named(word);
   const Session session(command.text(), keys, values.run, command.only_prints());
   keys.read(values.quick);
   if (!command.settle()) return ExitStatus::done;

@@ -6,7 +6,7 @@
 namespace flatspeckle::grin {
 
 namespace {
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 }
 
 FocusedSound::FocusedSound(double background, double amplitude, double k,

@@ -5,7 +5,7 @@
 namespace flatspeckle::grin {
 
 namespace {
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 }
 
 TabulatedPhaseFunction::TabulatedPhaseFunction(const std::function<double(double)>& p,
