@@ -1,0 +1,20 @@
+#pragma once
+
+#include <complex>
+
+#include <Eigen/Core>
+
+namespace flatspeckle::mc {
+
+using Matrix = Eigen::MatrixXd;
+/// Complex rows, one for each channel: in memory a real matrix of twice as many rows, so that
+/// products with real matrices are real ones.
+using Rows = Eigen::MatrixXcd;
+
+/// Dense algebra by the system's BLAS and LAPACK, on one thread.
+Matrix product(const Matrix& a, const Matrix& b);
+Rows product(const Rows& rows, const Matrix& a);
+/// Throws std::runtime_error for a singular matrix.
+Matrix inverse(Matrix a);
+
+}  // namespace flatspeckle::mc

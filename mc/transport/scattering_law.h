@@ -1,0 +1,38 @@
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "flatland/scene/scene.h"
+
+namespace flatspeckle::mc {
+
+/// What a scatterer of a medium does to pairs of directions, without chance: the amplitude A of C14
+/// over sqrt(sigma_s), so that |A|^2 is the phase function p, and p in Fourier modes,
+///   p(theta) = (1 + 2 sum_m modes[m] cos(m theta)) / (2 pi).
+class ScatteringLaw {
+ public:
+  /// The medium scatters.
+  explicit ScatteringLaw(const Scene& scene);
+
+  /// A(theta - a) conj(A(theta - b)) of two lights, or of two views.
+  Complex pair(double a, double b, double theta) const {
+    return a == b ? Complex(std::norm(amplitude(theta - a)))
+                  : product_with_conjugate(amplitude(theta - a), amplitude(theta - b));
+  }
+  Complex amplitude(double angle) const;
+
+  const std::vector<double>& modes() const { return modes_; }
+  /// The angle within which p changes.
+  double width() const { return width_; }
+
+ private:
+  void tabulate(const Scene& scene);
+
+  std::function<double(double)> density_;  ///< of a bulk: p of an angle in [0, pi]
+  std::vector<Complex> table_;             ///< of scatterers: A at equal steps over [0, pi]
+  std::vector<double> modes_;
+  double width_ = 0;
+};
+
+}  // namespace flatspeckle::mc

@@ -1,0 +1,189 @@
+#include "mc/transport/slab_covariance.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <utility>
+
+#include "core/run/parallel.h"
+#include "mc/estimators/single_scattering.h"
+#include "mc/transport/chains.h"
+#include "mc/transport/scattering_matrices.h"
+
+namespace flatspeckle::mc {
+
+namespace {
+
+/// A scattering law as single_scattering() takes it.
+struct Amplitudes {
+  const ScatteringLaw& law;
+  Complex amplitude(Vec2 from, Vec2 to) const {
+    return law.amplitude(angle_of(to) - angle_of(from));
+  }
+};
+
+/// What groups of one grid share.
+struct Discrete {
+  AngularGrid grid;
+  ScatteringMatrices matrices;
+
+  Discrete(const std::vector<Focus>& foci, int order, const ScatteringLaw& law, double albedo)
+      : grid(foci, order, law.width()), matrices(grid, law, albedo) {}
+  Discrete(const Discrete&) = delete;
+};
+
+/// One per link of the group.
+std::vector<Complex> solved(const Scene& scene, const ChainGroup& group,
+                            const ScatteringMatrices& matrices) {
+  const double optical_depth = scene.medium.mu_t * scene.domain.depth;
+  std::vector<Complex> values(group.links.size());
+  for (const auto parity : ScatteringMatrices::parities(group.q)) {
+    const auto response = layer_response(matrices.transport(group.q, parity), optical_depth,
+                                         matrices.lights(scene, group.lights, parity),
+                                         matrices.views(scene, group.views, parity));
+    for (std::size_t i = 0; i < values.size(); ++i)
+      values[i] += response.collected(group.links[i].view, group.links[i].light);
+  }
+  return values;
+}
+
+/// What the tolerance of each entry is relative to.
+std::vector<double> scales(const CovarianceRequest& request, const std::vector<Complex>& values) {
+  std::map<std::size_t, double> intensity;
+  for (std::size_t e = 0; e < values.size(); ++e)
+    if (request.entries[e].a == request.entries[e].b)
+      intensity[request.entries[e].a] = std::abs(values[e]);
+  std::vector<double> scale;
+  for (std::size_t e = 0; e < values.size(); ++e) {
+    const auto a = intensity.find(request.entries[e].a), b = intensity.find(request.entries[e].b);
+    const bool known = a != intensity.end() && b != intensity.end();
+    scale.push_back(std::max(std::abs(values[e]), known ? std::sqrt(a->second * b->second) : 0));
+  }
+  return scale;
+}
+
+class Refiner {
+ public:
+  Refiner(const Scene& scene, bool reversed, const Refinement& refinement)
+      : scene_(scene),
+        refinement_(refinement),
+        law_(scene),
+        single_(single_scattering(scene, Amplitudes{law_})) {
+    for (ChainGroup& group : grouped(scene, law_, chains(scene.request, reversed)))
+      parts_.push_back({std::move(group), {}, {}, 0, false});
+  }
+
+  Refined refined() {
+    for (int order = refinement_.first_order, steps = 0; step(order); ++steps) {
+      if (steps > 0) settle();
+      order = (4 * order + 2) / 3;
+    }
+    return {sum(&Part::value), difference(), ordinates_};
+  }
+
+ private:
+  struct Part {
+    ChainGroup group;
+    std::vector<Complex> value, before;  ///< per link, of the last two orders
+    int size = 0;
+    bool done = false;
+  };
+
+  /// Solves what is not done with more ordinates; false if that is nothing.
+  bool step(int order) {
+    std::vector<Part*> open;
+    std::map<std::vector<double>, std::unique_ptr<Discrete>> grids;
+    for (Part& part : parts_)
+      if (!part.done) {
+        open.push_back(&part);
+        grids[centres(part)];
+      }
+    for (Part* part : open)
+      if (auto& grid = grids[centres(*part)]; !grid)
+        grid = std::make_unique<Discrete>(part->group.foci, order, law_, scene_.medium.albedo);
+    parallel_for(open.size(), [&](std::size_t i) {
+      Part& part = *open[i];
+      const Discrete& discrete = *grids.at(centres(part));
+      part.before = std::exchange(part.value, solved(scene_, part.group, discrete.matrices));
+      part.size = static_cast<int>(2 * discrete.grid.size());
+    });
+    for (const Part* part : open) ordinates_ = std::max(ordinates_, part->size);
+    return !open.empty();
+  }
+
+  /// Parts whose last two orders agree, or that would become too large, are done.
+  void settle() {
+    const auto scale = scales(scene_.request, sum(&Part::value));
+    for (Part& part : parts_) {
+      double worst = 0;
+      for (std::size_t i = 0; i < part.value.size(); ++i)
+        if (const double size = scale[part.group.links[i].entry]; size > 0)
+          worst = std::max(worst, std::abs(part.value[i] - part.before[i]) / size);
+      part.done = worst <= refinement_.tolerance / 2 || 4 * part.size > 3 * refinement_.most_ordinates;
+    }
+  }
+
+  static std::vector<double> centres(const Part& part) {
+    std::vector<double> angles;
+    for (const Focus& focus : part.group.foci) angles.push_back(focus.angle);
+    return angles;
+  }
+
+  std::vector<Complex> sum(std::vector<Complex> Part::* values) const {
+    std::vector<Complex> entries = single_;
+    for (const Part& part : parts_)
+      for (std::size_t i = 0; i < part.group.links.size(); ++i)
+        entries[part.group.links[i].entry] += (part.*values)[i];
+    return entries;
+  }
+
+  std::vector<Complex> difference() const {
+    auto fine = sum(&Part::value);
+    const auto coarse = sum(&Part::before);
+    for (std::size_t e = 0; e < fine.size(); ++e) fine[e] -= coarse[e];
+    return fine;
+  }
+
+  const Scene& scene_;
+  Refinement refinement_;
+  ScatteringLaw law_;
+  std::vector<Complex> single_;
+  std::vector<Part> parts_;
+  int ordinates_ = 0;
+};
+
+}  // namespace
+
+Refined slab_covariance(const Scene& slab, bool reversed, const Refinement& refinement) {
+  const std::size_t entries = slab.request.entries.size();
+  if (slab.medium.mu_s == 0)
+    return {std::vector<Complex>(entries), std::vector<Complex>(entries), 0};
+  return Refiner(slab, reversed, refinement).refined();
+}
+
+FieldJob slab_covariance_job(const Scene& slab, bool reversed, const Refinement& refinement) {
+  struct Solution {
+    std::once_flag once;
+    Refined refined;
+  };
+  const auto solution = std::make_shared<Solution>();
+  FieldJob job;
+  job.covariance = sample_mean;
+  job.batches.size = slab.request.entries.size();
+  job.batches.samples_per_batch = 1;
+  job.batches.run = [=](std::uint64_t number, std::span<Complex> sums) {
+    std::call_once(solution->once,
+                   [&] { solution->refined = slab_covariance(slab, reversed, refinement); });
+    const double sign = number % 2 == 0 ? 1 : -1;
+    for (std::size_t e = 0; e < sums.size(); ++e)
+      sums[e] += solution->refined.value[e] + sign * solution->refined.difference[e];
+  };
+  job.batches.relative_error = [](const GroupedSums& sums) {
+    return relative_error(jackknife(sums, sample_mean));
+  };
+  return job;
+}
+
+}  // namespace flatspeckle::mc
