@@ -31,8 +31,10 @@ void split(double from, double to, const std::vector<Focus>& foci, std::vector<d
 std::vector<Focus> sharp(std::vector<Focus> foci) {
   std::sort(foci.begin(), foci.end(), [](auto& a, auto& b) { return a.angle < b.angle; });
   std::vector<Focus> kept;
-  for (const Focus& focus : foci) {
+  for (Focus focus : foci) {
     if ((growth - 1) * focus.width > right_angle) continue;
+    if (focus.angle < focus.width) focus.angle = 0;
+    if (right_angle - focus.angle < focus.width / 100) focus.angle = right_angle;
     if (!kept.empty() && focus.angle - kept.back().angle < kept.back().width / 2) {
       kept.back().width = std::min(kept.back().width, focus.width);
       continue;
@@ -46,8 +48,7 @@ std::vector<double> panel_ends(const std::vector<Focus>& all) {
   const auto foci = sharp(all);
   std::vector<double> cuts{0};
   for (const Focus& focus : foci)
-    if (focus.angle > focus.width && right_angle - focus.angle > focus.width / 100)
-      cuts.push_back(focus.angle);
+    if (focus.angle > 0 && focus.angle < right_angle) cuts.push_back(focus.angle);
   cuts.push_back(right_angle);
   std::vector<double> ends{0};
   for (std::size_t i = 0; i + 1 < cuts.size(); ++i) split(cuts[i], cuts[i + 1], foci, ends);
@@ -100,7 +101,8 @@ void AngularGrid::add_panel(double from, double to, double fine) {
   const bool last = is_last(panel);
   const Quadrature rule = last ? gauss_jacobi(order_) : gauss_legendre(order_);
   for (int j = 0; j < order_; ++j) {
-    const double u = rule.node[j], complement = last ? width * u * u : right_angle - from - u * width;
+    const double u = rule.node[j],
+                 complement = last ? width * u * u : right_angle - from - u * width;
     angle_[panel.first + j] = right_angle - complement;
     cosine_[panel.first + j] = std::sin(complement);
     weight_[panel.first + j] = (last ? 2 : 1) * width * rule.weight[j];
@@ -125,10 +127,13 @@ AngularGrid::Modes AngularGrid::mode_integrals(int modes) const {
   Modes found{Matrix::Zero(size(), modes + 1), Matrix::Zero(size(), modes + 1)};
   for (const Subpanel& part : subpanels_) {
     const Eigen::Index n = part.angle.size();
+    const Eigen::ArrayXd c = part.angle.array().cos(), s = part.angle.array().sin();
     Matrix cosine(n, modes + 1), sine(n, modes + 1);
-    for (Eigen::Index m = 0; m <= modes; ++m) {
-      cosine.col(m) = (static_cast<double>(m) * part.angle.array()).cos();
-      sine.col(m) = (static_cast<double>(m) * part.angle.array()).sin();
+    cosine.col(0).setOnes();
+    sine.col(0).setZero();
+    for (Eigen::Index m = 0; m < modes; ++m) {
+      cosine.col(m + 1) = c * cosine.col(m).array() - s * sine.col(m).array();
+      sine.col(m + 1) = s * cosine.col(m).array() + c * sine.col(m).array();
     }
     found.cosine.middleRows(part.first, order_) += product(part.weighted_basis, cosine);
     found.sine.middleRows(part.first, order_) += product(part.weighted_basis, sine);

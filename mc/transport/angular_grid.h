@@ -1,5 +1,6 @@
 #pragma once
 
+#include <compare>
 #include <vector>
 
 #include "core/numbers/complex.h"
@@ -7,9 +8,11 @@
 
 namespace flatspeckle::mc {
 
-/// Where radiance changes within a small angle: near a light where scattering is forward-peaked.
+/// Where radiance changes within a small angle: near a light where scattering is forward-peaked, or
+/// where the phase of a pair of lights stands still.
 struct Focus {
-  double angle, width;  ///< of the first quadrant
+  double angle, width;  ///< angle in the first quadrant
+  auto operator<=>(const Focus&) const = default;
 };
 
 /// Ordinates of a quadrant, 0 < theta < pi/2, which stand for the other three by symmetry: panels

@@ -15,11 +15,12 @@ double folded(double angle) {
   return std::min(from_z, std::numbers::pi - from_z);
 }
 
-/// One angle for lights that are near to each other in units of what a phase function resolves, so
-/// that they share a grid.
+/// Foci of pairs of lights. Lights that are near to each other, in units of what the phase function
+/// resolves, have one, so that their pairs share a grid.
 class Foci {
  public:
-  Foci(const std::vector<Chain>& chains, double width) : width_(width) {
+  Foci(const Scene& scene, const std::vector<Chain>& chains, double width)
+      : scene_(scene), width_(width) {
     std::vector<double> all;
     for (const Chain& chain : chains)
       for (const double angle : {chain.lights.first, chain.lights.second})
@@ -29,19 +30,27 @@ class Foci {
       if (centres_.empty() || angle - centres_.back() > width / 2) centres_.push_back(angle);
   }
 
-  std::vector<double> of(Pair lights) const {
-    constexpr double all_circle = 0.4;  // no panel is split for such widths
-    if (width_ > all_circle) return {};
-    std::vector<double> found;
-    for (const double angle : {folded(lights.first), folded(lights.second)}) {
-      const double centre = *std::prev(std::upper_bound(centres_.begin(), centres_.end(), angle));
-      if (std::find(found.begin(), found.end(), centre) == found.end()) found.push_back(centre);
-    }
+  std::vector<Focus> of(Pair lights, double q) const {
+    constexpr double too_wide = 0.4;  // for any panel to be split
+    std::vector<Focus> found;
+    const auto add = [&](double angle, double width) {
+      if (width < too_wide) found.push_back({angle, width});
+    };
+    for (const double angle : {folded(lights.first), folded(lights.second)})
+      add(*std::prev(std::upper_bound(centres_.begin(), centres_.end(), angle)), width_);
+    // Uniform panels resolve the phase of some ten turns with fewer ordinates.
+    constexpr double many_turns = 150;
+    const double optical_depth = scene_.medium.mu_t * scene_.domain.depth;
+    if (std::abs(q) * std::min(4.0, optical_depth) > many_turns)
+      add(folded((lights.first + lights.second) / 2),
+          1 / (std::abs(q) * std::min(1.0, optical_depth)));
     std::sort(found.begin(), found.end());
+    found.erase(std::unique(found.begin(), found.end()), found.end());
     return found;
   }
 
  private:
+  const Scene& scene_;
   double width_;
   std::vector<double> centres_;
 };
@@ -65,8 +74,7 @@ std::vector<Chain> chains(const CovarianceRequest& request, bool reversed) {
     const auto [i1, v1] = angles(request.entries[e].a);
     const auto [i2, v2] = angles(request.entries[e].b);
     all.push_back({{i1, i2}, {v1, v2}, e});
-    if (reversed)
-      all.push_back({{i1, v2 + std::numbers::pi}, {v1, i2 + std::numbers::pi}, e});
+    if (reversed) all.push_back({{i1, v2 + std::numbers::pi}, {v1, i2 + std::numbers::pi}, e});
   }
   return all;
 }
@@ -75,18 +83,16 @@ std::vector<ChainGroup> grouped(const Scene& scene, const ScatteringLaw& law,
                                 const std::vector<Chain>& chains) {
   constexpr double same_momentum = 1e-12;  // of k
   const double unit = same_momentum * scene.k / scene.medium.mu_t;
-  const Foci foci(chains, law.width());
-  std::map<std::pair<double, std::vector<double>>, ChainGroup> groups;
+  const Foci foci(scene, chains, law.width());
+  std::map<std::pair<double, std::vector<Focus>>, ChainGroup> groups;
   for (const Chain& chain : chains) {
     const double q = unit * std::round(transverse_momentum(scene, chain.lights) / unit);
-    const auto centres = foci.of(chain.lights);
-    ChainGroup& group = groups[{q, centres}];
-    if (group.links.empty()) {
-      group.q = q;
-      for (const double centre : centres) group.foci.push_back({centre, law.width()});
-    }
-    group.links.push_back({number_of(group.lights, chain.lights),
-                           number_of(group.views, chain.views), chain.entry});
+    const auto own = foci.of(chain.lights, q);
+    ChainGroup& group = groups[{q, own}];
+    group.q = q;
+    group.foci = own;
+    group.links.push_back(
+        {number_of(group.lights, chain.lights), number_of(group.views, chain.views), chain.entry});
   }
   std::vector<ChainGroup> list;
   for (auto& [key, group] : groups) list.push_back(std::move(group));

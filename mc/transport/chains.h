@@ -17,7 +17,7 @@ struct Chain {
 
 /// Chains of one transverse frequency on one angular grid: pairs once, chains by their numbers.
 struct ChainGroup {
-  double q;                ///< per mu_t
+  double q;  ///< per mu_t
   std::vector<Focus> foci;
   std::vector<Pair> lights, views;
   struct Link {

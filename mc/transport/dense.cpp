@@ -8,6 +8,8 @@
 #define lapack_complex_float std::complex<float>
 #include <lapacke.h>
 
+#include "core/numbers/complex.h"
+
 namespace flatspeckle::mc {
 
 namespace {
@@ -35,6 +37,23 @@ Rows product(const Rows& rows, const Matrix& a) {
   multiply(reinterpret_cast<const double*>(rows.data()), 2 * rows.rows(), a,
            reinterpret_cast<double*>(c.data()));
   return c;
+}
+
+Rows product_transposed(const Rows& a, const Rows& b) {
+  Rows c(a.rows(), b.rows());
+  const auto m = static_cast<blasint>(a.rows()), n = static_cast<blasint>(b.rows()),
+             inner = static_cast<blasint>(a.cols());
+  const std::complex<double> one = 1, zero = 0;
+  cblas_zgemm(CblasColMajor, CblasNoTrans, CblasTrans, m, n, inner, &one, a.data(), m, b.data(), n,
+              &zero, c.data(), m);
+  return c;
+}
+
+Rows scaled(std::span<const std::complex<double>> factor, Rows rows) {
+  for (Eigen::Index j = 0; j < rows.cols(); ++j)
+    for (Eigen::Index i = 0; i < rows.rows(); ++i)
+      rows(i, j) = flatspeckle::product(factor[static_cast<std::size_t>(i)], rows(i, j));
+  return rows;
 }
 
 Matrix inverse(Matrix a) {

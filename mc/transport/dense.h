@@ -1,6 +1,7 @@
 #pragma once
 
 #include <complex>
+#include <span>
 
 #include <Eigen/Core>
 
@@ -14,6 +15,10 @@ using Rows = Eigen::MatrixXcd;
 /// Dense algebra by the system's BLAS and LAPACK, on one thread.
 Matrix product(const Matrix& a, const Matrix& b);
 Rows product(const Rows& rows, const Matrix& a);
+/// a b^T
+Rows product_transposed(const Rows& a, const Rows& b);
+/// Each row times its factor.
+Rows scaled(std::span<const std::complex<double>> factor, Rows rows);
 /// Throws std::runtime_error for a singular matrix.
 Matrix inverse(Matrix a);
 

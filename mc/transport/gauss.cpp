@@ -8,15 +8,16 @@ namespace flatspeckle::mc {
 
 namespace {
 
-/// Golub and Welsch (1969) for the weight (1 + x)^beta on [-1, 1], mapped to [0, 1]; `total`: of the
-/// weights.
+/// Golub and Welsch (1969) for the weight (1 + x)^beta on [-1, 1], mapped to [0, 1]; `total`: of
+/// the weights.
 Quadrature gauss(int n, double beta, double total) {
   Eigen::VectorXd diagonal(n), beside(std::max(n - 1, 1));
   for (int j = 0; j < n; ++j) {
     const double a = 2 * j + beta;
     diagonal[j] = j == 0 ? beta / (beta + 2) : beta * beta / (a * (a + 2));
     const double i = j + 1, s = 2 * i + beta;
-    if (j + 1 < n) beside[j] = std::sqrt(4 * i * i * (i + beta) * (i + beta) / (s * s * (s * s - 1)));
+    if (j + 1 < n)
+      beside[j] = std::sqrt(4 * i * i * (i + beta) * (i + beta) / (s * s * (s * s - 1)));
   }
   Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver;
   solver.computeFromTridiagonal(diagonal, beside.head(n - 1));

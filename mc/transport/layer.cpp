@@ -21,14 +21,16 @@ Matrix share(const Matrix& a) {
   return product(inverse(Matrix::Identity(a.rows(), a.cols()) + a), a);
 }
 
-PairWaves joined(const PairWaves& a, const PairWaves& b) {
-  const auto stacked = [](const auto& upper, const auto& lower) {
-    Rows both(upper.rows() + lower.rows(), upper.cols());
-    both << upper, lower;
-    return both;
-  };
-  return {stacked(a.top, b.top), stacked(a.bottom, b.bottom), stacked(a.down, b.down),
-          stacked(a.up, b.up)};
+std::vector<Complex> joined(std::vector<Complex> list, const std::vector<Complex>& rest) {
+  list.insert(list.end(), rest.begin(), rest.end());
+  return list;
+}
+
+Rows joined(const Rows& upper, const Rows& lower) {
+  Rows both(upper.rows() + lower.rows(), upper.cols());
+  both.topRows(upper.rows()) = upper;
+  both.bottomRows(lower.rows()) = lower;
+  return both;
 }
 
 /// Radiance of both ways, in rows.
@@ -42,13 +44,35 @@ struct BothWays {
   }
 };
 
-BothWays scaled(const Eigen::VectorXcd& factor, const BothWays& rows) {
-  return {factor.asDiagonal() * rows.down, factor.asDiagonal() * rows.up};
+BothWays scaled(const std::vector<Complex>& factor, const BothWays& rows) {
+  return {flatspeckle::mc::scaled(factor, rows.down), flatspeckle::mc::scaled(factor, rows.up)};
 }
 
-/// A layer by what leaves it, the same from above and below: `reflected` and `lost` = 1 - transmitted
-/// radiance (of a thin layer small, so that albedo 1 balances to rounding of it), and what leaves
-/// of the lights and, turned round, of the views.
+std::vector<Complex> times(double factor, std::vector<Complex> list) {
+  for (Complex& value : list) value *= factor;
+  return list;
+}
+
+/// exp(depth rate) of each.
+std::vector<Complex> damping(std::vector<Complex> rates, double depth) {
+  for (Complex& rate : rates) rate = std::exp(depth * rate);
+  return rates;
+}
+
+/// depth int_0^1 exp(rate u) u^power du by its series.
+Complex moment(Complex rate, std::size_t power, double depth) {
+  constexpr int terms = 30;
+  Complex sum = 0, term = depth;
+  for (int i = 0; i < terms; ++i) {
+    sum += term / static_cast<double>(static_cast<std::size_t>(i) + power + 1);
+    term *= rate / static_cast<double>(i + 1);
+  }
+  return sum;
+}
+
+/// A layer by what leaves it, the same from above and below: `reflected` and `lost` = 1 -
+/// transmitted radiance (of a thin layer small, so that albedo 1 balances to rounding of it), and
+/// what leaves of the lights and, turned round, of the views.
 class Layer {
  public:
   Layer(const TransportOperator& medium, double depth, const PairWaves& lights,
@@ -62,8 +86,9 @@ class Layer {
  private:
   void start_radiance(const TransportOperator& medium);
   void start_pairs(const TransportOperator& medium);
-  Eigen::MatrixXcd collected_in_series(const std::vector<BothWays>& series) const;
-  Eigen::MatrixXcd contracted(const Rows& views, const Rows& lights) const;
+  Rows collected_in_series(const std::vector<BothWays>& series) const;
+  Rows contracted(const Rows& views, Rows lights) const;
+  std::vector<Complex> rates() const;
   Rows of_lights(const Rows& rows) const { return rows.topRows(lights_); }
   Rows of_views(const Rows& rows) const { return rows.bottomRows(rows.rows() - lights_); }
 
@@ -72,7 +97,7 @@ class Layer {
   PairWaves waves_;
   Matrix reflected_, lost_, transmitted_;
   BothWays leaves_;
-  Eigen::MatrixXcd collected_;
+  Rows collected_;
 };
 
 Layer::Layer(const TransportOperator& medium, double depth, const PairWaves& lights,
@@ -80,7 +105,8 @@ Layer::Layer(const TransportOperator& medium, double depth, const PairWaves& lig
     : depth_(depth),
       lights_(lights.top.size()),
       even_(medium.even),
-      waves_(joined(lights, views)) {
+      waves_{joined(lights.top, views.top), joined(lights.bottom, views.bottom),
+             joined(lights.down, views.down), joined(lights.up, views.up)} {
   start_radiance(medium);
   start_pairs(medium);
 }
@@ -103,54 +129,48 @@ void Layer::start_radiance(const TransportOperator& medium) {
 void Layer::start_pairs(const TransportOperator& medium) {
   constexpr int terms = 30;
   const Matrix a = (medium.x + medium.y) / 2, b = (medium.x - medium.y) / 2;
-  const Eigen::VectorXcd rate = waves_.top - waves_.bottom,
-                         start = (depth_ * waves_.bottom.array()).exp();
-  BothWays fed = scaled(start, {waves_.down, -waves_.up});
+  BothWays fed = scaled(damping(waves_.bottom, depth_), {waves_.down, -waves_.up});
   std::vector<BothWays> series;
-  BothWays sum{Rows::Zero(fed.down.rows(), fed.down.cols()),
-               Rows::Zero(fed.up.rows(), fed.up.cols())};
-  BothWays term = sum;
+  BothWays sum{0 * fed.down, 0 * fed.up}, term = sum;
   for (int j = 0; j < terms; ++j) {
-    BothWays next{product(term.up, b) - product(term.down, a),
-                  product(term.up, a) - product(term.down, b)};
-    next += fed;
-    const Eigen::VectorXcd step = Eigen::VectorXcd::Constant(rate.size(), depth_ / (j + 1));
-    term = scaled(step, next);
-    fed = scaled(rate.array() * step.array(), fed);
+    const double step = depth_ / (j + 1);
+    term = {step * (product(term.up, b) - product(term.down, a) + fed.down),
+            step * (product(term.up, a) - product(term.down, b) + fed.up)};
+    fed = scaled(times(step, rates()), fed);
     sum += term;
     series.push_back({of_lights(term.down), of_lights(term.up)});
   }
   leaves_ = {sum.down - product(sum.up, reflected_), -product(sum.up, transmitted_)};
-  collected_ =
-      collected_in_series(series) - contracted(of_views(leaves_.down), of_lights(sum.up));
+  collected_ = collected_in_series(series) - contracted(of_views(leaves_.down), of_lights(sum.up));
 }
 
 /// What views collect of the radiance sum_j series[j] (z / depth)^(j+1).
-Eigen::MatrixXcd Layer::collected_in_series(const std::vector<BothWays>& series) const {
+Rows Layer::collected_in_series(const std::vector<BothWays>& series) const {
   const Rows from_up = of_views(waves_.down), from_down = of_views(waves_.up);
-  const Eigen::Index views = from_up.rows();
-  const Eigen::VectorXcd rate = depth_ * (waves_.top - waves_.bottom).tail(views),
-                         start = (depth_ * waves_.bottom.array()).exp().tail(views);
-  Eigen::MatrixXcd collected = Eigen::MatrixXcd::Zero(views, lights_);
+  const auto rate = times(depth_, rates()), start = damping(waves_.bottom, depth_);
+  Rows collected = Rows::Zero(from_up.rows(), lights_);
   for (std::size_t j = 0; j < series.size(); ++j) {
-    // depth int_0^1 exp(rate u) u^(j+1) du
-    Eigen::VectorXcd moment = Eigen::VectorXcd::Zero(views),
-                     power = Eigen::VectorXcd::Constant(views, depth_);
-    for (std::size_t i = 0; i < series.size(); ++i) {
-      moment += power / static_cast<double>(i + j + 2);
-      power = power.array() * rate.array() / static_cast<double>(i + 1);
-    }
-    collected += (start.array() * moment.array()).matrix().asDiagonal() *
-                 (contracted(from_down, series[j].down) + contracted(from_up, series[j].up));
+    std::vector<Complex> factor;
+    for (auto v = static_cast<std::size_t>(lights_); v < rate.size(); ++v)
+      factor.push_back(start[v] * moment(rate[v], j + 1, depth_));
+    collected += flatspeckle::mc::scaled(
+        factor, contracted(from_down, series[j].down) + contracted(from_up, series[j].up));
   }
   return collected;
 }
 
 /// [view][light]; of the signs that rows have, one is turned back.
-Eigen::MatrixXcd Layer::contracted(const Rows& views, const Rows& lights) const {
-  const Eigen::Index odd = views.cols() - even_;
-  return views.leftCols(even_) * lights.leftCols(even_).transpose() -
-         views.rightCols(odd) * lights.rightCols(odd).transpose();
+Rows Layer::contracted(const Rows& views, Rows lights) const {
+  lights.rightCols(lights.cols() - even_) *= -1;
+  return product_transposed(views, lights);
+}
+
+/// Of waves along z from the bottom to the top.
+std::vector<Complex> Layer::rates() const {
+  std::vector<Complex> list;
+  for (std::size_t i = 0; i < waves_.top.size(); ++i)
+    list.push_back(waves_.top[i] - waves_.bottom[i]);
+  return list;
 }
 
 /// Of radiance between the halves: down = r lights' + reflected up, up likewise; (1 - r^2)^-1 sums
@@ -159,18 +179,17 @@ void Layer::double_depth() {
   const Eigen::Index n = lost_.rows();
   const Matrix sums = inverse(Matrix::Identity(n, n) - product(reflected_, reflected_)),
                down = product(sums, transmitted_), up = product(reflected_, down);
-  const Eigen::VectorXcd upper = (depth_ * waves_.bottom.array()).exp(),
-                         lower = (depth_ * waves_.top.array()).exp();
+  const auto upper = damping(waves_.bottom, depth_), lower = damping(waves_.top, depth_);
   const BothWays above = scaled(upper, leaves_), below = scaled(lower, leaves_);
   const Rows meets_down = above.down + product(below.up, reflected_),
              meets_up = below.up + product(above.down, reflected_);
-  const Eigen::Index views = waves_.top.size() - lights_;
-  const auto factor = [&](const Eigen::VectorXcd& all) {
-    return all.tail(views) * all.head(lights_).transpose();
-  };
-  collected_ = collected_.cwiseProduct(factor(upper) + factor(lower)) +
-               contracted(of_views(above.down), product(of_lights(meets_up), sums)) +
-               contracted(of_views(below.up), product(of_lights(meets_down), sums));
+  const auto lights = static_cast<std::size_t>(lights_);
+  for (std::size_t l = 0; l < lights; ++l)
+    for (std::size_t v = lights; v < upper.size(); ++v)
+      collected_(static_cast<Eigen::Index>(v - lights), static_cast<Eigen::Index>(l)) *=
+          upper[v] * upper[l] + lower[v] * lower[l];
+  collected_ += contracted(of_views(above.down), product(of_lights(meets_up), sums)) +
+                contracted(of_views(below.up), product(of_lights(meets_down), sums));
   leaves_ = {below.down + product(meets_down, down), above.up + product(meets_up, down)};
   lost_ = 2 * lost_ - product(lost_, lost_) - product(transmitted_, product(reflected_, up));
   reflected_ += product(transmitted_, up);
@@ -180,7 +199,7 @@ void Layer::double_depth() {
 
 double fastest_rate(const TransportOperator& medium, const PairWaves& waves) {
   double rate = medium.fastest;
-  for (Eigen::Index i = 0; i < waves.top.size(); ++i)
+  for (std::size_t i = 0; i < waves.top.size(); ++i)
     rate = std::max(rate, std::abs(waves.top[i] - waves.bottom[i]));
   return rate;
 }

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <vector>
+
+#include "core/numbers/complex.h"
 #include "mc/transport/dense.h"
 
 namespace flatspeckle::mc {
@@ -16,10 +19,10 @@ struct TransportOperator {
 
 /// Pairs of lights or of views, a row each: what exp(top z + bottom (depth - z)) of a light feeds
 /// into L+ and L- per mean free path, or a view of that sensitivity collects from L- and L+ (turned
-/// round: a view is a light that time runs backwards for). Signs of all but the first `even` columns
-/// are turned.
+/// round: a view is a light that time runs backwards for). Signs of all but the first `even`
+/// columns are turned.
 struct PairWaves {
-  Eigen::VectorXcd top, bottom;
+  std::vector<Complex> top, bottom;
   Rows down, up;
 };
 
@@ -27,7 +30,7 @@ struct PairWaves {
 /// [view][light]. Signs as above.
 struct LayerResponse {
   Rows up, down;
-  Eigen::MatrixXcd collected;
+  Rows collected;
 };
 
 /// By doubling from a layer so thin that its series converge to rounding.

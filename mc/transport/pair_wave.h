@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <compare>
 #include <numbers>
 
 #include "flatland/scene/scene.h"

@@ -2,10 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fftw3.h>
 #include <mutex>
 #include <numbers>
-
-#include <fftw3.h>
 
 namespace flatspeckle::mc {
 

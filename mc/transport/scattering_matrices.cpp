@@ -56,7 +56,8 @@ Matrix ScatteringMatrices::block(double q, const Blocks& scattering, Parity pari
   const Matrix extinction = grid_.cosine().cwiseInverse().asDiagonal();
   if (parity == Parity::even) return extinction - scattering.even;
   if (parity == Parity::odd) return extinction - scattering.odd;
-  const Matrix across = (q * grid_.angle().array().sin() / grid_.cosine().array()).matrix().asDiagonal();
+  const Matrix across =
+      (q * grid_.angle().array().sin() / grid_.cosine().array()).matrix().asDiagonal();
   Matrix all(2 * n, 2 * n);
   all << extinction - scattering.even, -across, across, extinction - scattering.odd;
   return all;
@@ -72,8 +73,7 @@ PairWaves ScatteringMatrices::waves(const std::vector<Pair>& pairs, Parity parit
                                     double factor) const {
   const Eigen::Index n = grid_.size(), size = parity == Parity::both ? 2 * n : n;
   const auto count = static_cast<Eigen::Index>(pairs.size());
-  PairWaves found{Eigen::VectorXcd(count), Eigen::VectorXcd(count), Rows(count, size),
-                  Rows(count, size)};
+  PairWaves found{{}, {}, Rows(count, size), Rows(count, size)};
   for (Eigen::Index i = 0; i < count; ++i) {
     const Pair pair = pairs[static_cast<std::size_t>(i)];
     const auto fed = [&](double turn, double sign) -> Eigen::VectorXcd {
@@ -99,10 +99,10 @@ PairWaves ScatteringMatrices::waves(const std::vector<Pair>& pairs, Parity parit
 PairWaves ScatteringMatrices::lights(const Scene& scene, const std::vector<Pair>& pairs,
                                      Parity parity) const {
   PairWaves found = waves(pairs, parity, albedo_);
-  for (std::size_t i = 0; i < pairs.size(); ++i) {
-    const PairWave wave = pair_wave(scene, pairs[i]);
-    found.top[static_cast<Eigen::Index>(i)] = wave.top;
-    found.bottom[static_cast<Eigen::Index>(i)] = wave.bottom;
+  for (const Pair& pair : pairs) {
+    const PairWave wave = pair_wave(scene, pair);
+    found.top.push_back(wave.top);
+    found.bottom.push_back(wave.bottom);
   }
   return found;
 }
@@ -111,10 +111,10 @@ PairWaves ScatteringMatrices::views(const Scene& scene, const std::vector<Pair>&
                                     Parity parity) const {
   PairWaves found = waves(pairs, parity, albedo_);
   found.down.swap(found.up);
-  for (std::size_t i = 0; i < pairs.size(); ++i) {
-    const PairWave wave = pair_wave(scene, turned_round(pairs[i]));
-    found.top[static_cast<Eigen::Index>(i)] = wave.top;
-    found.bottom[static_cast<Eigen::Index>(i)] = wave.bottom;
+  for (const Pair& pair : pairs) {
+    const PairWave wave = pair_wave(scene, turned_round(pair));
+    found.top.push_back(wave.top);
+    found.bottom.push_back(wave.bottom);
   }
   return found;
 }

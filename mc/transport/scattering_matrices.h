@@ -9,11 +9,11 @@
 
 namespace flatspeckle::mc {
 
-/// Transport through a medium on an angular grid, in Galerkin's form: scattering from the polynomials
-/// of one panel into those of another is integrated exactly, so that it conserves energy and is
-/// reciprocal on any grid, and forward peaks that the ordinates do not see cost no accuracy where
-/// radiance is smooth. Unknowns are radiance times sqrt(weight cos(theta)), its parts even in theta
-/// and those odd, over i, in theta: so everything is real but the lights.
+/// Transport through a medium on an angular grid, in Galerkin's form: scattering from the
+/// polynomials of one panel into those of another is integrated exactly, so that it conserves
+/// energy and is reciprocal on any grid, and forward peaks that the ordinates do not see cost no
+/// accuracy where radiance is smooth. Unknowns are radiance times sqrt(weight cos(theta)), its
+/// parts even in theta and those odd, over i, in theta: so everything is real but the lights.
 class ScatteringMatrices {
  public:
   ScatteringMatrices(const AngularGrid& grid, const ScatteringLaw& law, double albedo);
@@ -37,7 +37,7 @@ class ScatteringMatrices {
   const AngularGrid& grid_;
   const ScatteringLaw& law_;
   double albedo_;
-  Eigen::VectorXd root_;   ///< 1 / sqrt(weight cos(theta))
+  Eigen::VectorXd root_;     ///< 1 / sqrt(weight cos(theta))
   Blocks sum_, difference_;  ///< forward plus, minus backward scattering, times the albedo
 };
 

@@ -94,18 +94,17 @@ class Refiner {
   /// Solves what is not done with more ordinates; false if that is nothing.
   bool step(int order) {
     std::vector<Part*> open;
-    std::map<std::vector<double>, std::unique_ptr<Discrete>> grids;
-    for (Part& part : parts_)
-      if (!part.done) {
-        open.push_back(&part);
-        grids[centres(part)];
-      }
-    for (Part* part : open)
-      if (auto& grid = grids[centres(*part)]; !grid)
-        grid = std::make_unique<Discrete>(part->group.foci, order, law_, scene_.medium.albedo);
+    std::map<std::vector<Focus>, std::unique_ptr<Discrete>> grids;
+    for (Part& part : parts_) {
+      if (part.done) continue;
+      open.push_back(&part);
+      auto& grid = grids[part.group.foci];
+      if (!grid)
+        grid = std::make_unique<Discrete>(part.group.foci, order, law_, scene_.medium.albedo);
+    }
     parallel_for(open.size(), [&](std::size_t i) {
       Part& part = *open[i];
-      const Discrete& discrete = *grids.at(centres(part));
+      const Discrete& discrete = *grids.at(part.group.foci);
       part.before = std::exchange(part.value, solved(scene_, part.group, discrete.matrices));
       part.size = static_cast<int>(2 * discrete.grid.size());
     });
@@ -121,17 +120,12 @@ class Refiner {
       for (std::size_t i = 0; i < part.value.size(); ++i)
         if (const double size = scale[part.group.links[i].entry]; size > 0)
           worst = std::max(worst, std::abs(part.value[i] - part.before[i]) / size);
-      part.done = worst <= refinement_.tolerance / 2 || 4 * part.size > 3 * refinement_.most_ordinates;
+      part.done =
+          worst <= refinement_.tolerance / 2 || 4 * part.size > 3 * refinement_.most_ordinates;
     }
   }
 
-  static std::vector<double> centres(const Part& part) {
-    std::vector<double> angles;
-    for (const Focus& focus : part.group.foci) angles.push_back(focus.angle);
-    return angles;
-  }
-
-  std::vector<Complex> sum(std::vector<Complex> Part::* values) const {
+  std::vector<Complex> sum(std::vector<Complex> Part::*values) const {
     std::vector<Complex> entries = single_;
     for (const Part& part : parts_)
       for (std::size_t i = 0; i < part.group.links.size(); ++i)
