@@ -15,6 +15,11 @@ double folded(double angle) {
   return std::min(from_z, std::numbers::pi - from_z);
 }
 
+void add(std::vector<Focus>& foci, double angle, double width) {
+  constexpr double too_wide = 0.4;  // for any panel to be split
+  if (width < too_wide) foci.push_back({angle, width});
+}
+
 /// Foci of pairs of lights. Lights that are near to each other, in units of what the phase function
 /// resolves, have one, so that their pairs share a grid.
 class Foci {
@@ -31,18 +36,14 @@ class Foci {
   }
 
   std::vector<Focus> of(Pair lights, double q) const {
-    constexpr double too_wide = 0.4;  // for any panel to be split
     std::vector<Focus> found;
-    const auto add = [&](double angle, double width) {
-      if (width < too_wide) found.push_back({angle, width});
-    };
     for (const double angle : {folded(lights.first), folded(lights.second)})
-      add(*std::prev(std::upper_bound(centres_.begin(), centres_.end(), angle)), width_);
+      add(found, *std::prev(std::upper_bound(centres_.begin(), centres_.end(), angle)), width_);
     // Uniform panels resolve the phase of some ten turns with fewer ordinates.
     constexpr double many_turns = 150;
     const double optical_depth = scene_.medium.mu_t * scene_.domain.depth;
     if (std::abs(q) * std::min(4.0, optical_depth) > many_turns)
-      add(folded((lights.first + lights.second) / 2),
+      add(found, folded((lights.first + lights.second) / 2),
           1 / (std::abs(q) * std::min(1.0, optical_depth)));
     std::sort(found.begin(), found.end());
     found.erase(std::unique(found.begin(), found.end()), found.end());
@@ -63,6 +64,12 @@ Eigen::Index number_of(std::vector<Pair>& list, Pair pair) {
 }
 
 }  // namespace
+
+std::vector<Focus> light_foci(Pair lights, double width) {
+  std::vector<Focus> found;
+  for (const double angle : {lights.first, lights.second}) add(found, folded(angle), width);
+  return found;
+}
 
 std::vector<Chain> chains(const CovarianceRequest& request, bool reversed) {
   std::vector<Chain> all;

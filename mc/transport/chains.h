@@ -27,6 +27,9 @@ struct ChainGroup {
   std::vector<Link> links;
 };
 
+/// Of two lights, where a phase function changes within an angle of `width`; none if that is wide.
+std::vector<Focus> light_foci(Pair lights, double width);
+
 /// Ladders of all entries, and with `reversed` their reversed paths (C38).
 std::vector<Chain> chains(const CovarianceRequest& request, bool reversed);
 

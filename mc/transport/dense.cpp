@@ -1,5 +1,6 @@
 #include "mc/transport/dense.h"
 
+#include <algorithm>
 #include <stdexcept>
 #include <vector>
 
@@ -17,8 +18,9 @@ namespace {
 void multiply(const double* a, Eigen::Index rows, const Matrix& b, double* c) {
   const auto m = static_cast<blasint>(rows), n = static_cast<blasint>(b.cols()),
              inner = static_cast<blasint>(b.rows());
-  cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, m, n, inner, 1, a, m, b.data(), inner, 0,
-              c, m);
+  const auto height = std::max<blasint>(m, 1);  // BLAS wants it even of nothing
+  cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, m, n, inner, 1, a, height, b.data(), inner,
+              0, c, height);
 }
 
 /// The matrices are small, and tilts run beside each other.
@@ -44,8 +46,9 @@ Rows product_transposed(const Rows& a, const Rows& b) {
   const auto m = static_cast<blasint>(a.rows()), n = static_cast<blasint>(b.rows()),
              inner = static_cast<blasint>(a.cols());
   const std::complex<double> one = 1, zero = 0;
-  cblas_zgemm(CblasColMajor, CblasNoTrans, CblasTrans, m, n, inner, &one, a.data(), m, b.data(), n,
-              &zero, c.data(), m);
+  const auto height = std::max<blasint>(m, 1);
+  cblas_zgemm(CblasColMajor, CblasNoTrans, CblasTrans, m, n, inner, &one, a.data(), height,
+              b.data(), std::max<blasint>(n, 1), &zero, c.data(), height);
   return c;
 }
 

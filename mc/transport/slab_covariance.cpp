@@ -4,7 +4,6 @@
 #include <cmath>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <utility>
 
 #include "core/run/parallel.h"
@@ -78,7 +77,7 @@ class Refiner {
   Refined refined() {
     for (int order = refinement_.first_order, steps = 0; step(order); ++steps) {
       if (steps > 0) settle();
-      order = (4 * order + 2) / 3;
+      order = Refinement::next_order(order);
     }
     return {sum(&Part::value), difference(), ordinates_};
   }
@@ -158,25 +157,10 @@ Refined slab_covariance(const Scene& slab, bool reversed, const Refinement& refi
 }
 
 FieldJob slab_covariance_job(const Scene& slab, bool reversed, const Refinement& refinement) {
-  struct Solution {
-    std::once_flag once;
-    Refined refined;
-  };
-  const auto solution = std::make_shared<Solution>();
   FieldJob job;
   job.covariance = sample_mean;
-  job.batches.size = slab.request.entries.size();
-  job.batches.samples_per_batch = 1;
-  job.batches.run = [=](std::uint64_t number, std::span<Complex> sums) {
-    std::call_once(solution->once,
-                   [&] { solution->refined = slab_covariance(slab, reversed, refinement); });
-    const double sign = number % 2 == 0 ? 1 : -1;
-    for (std::size_t e = 0; e < sums.size(); ++e)
-      sums[e] += solution->refined.value[e] + sign * solution->refined.difference[e];
-  };
-  job.batches.relative_error = [](const GroupedSums& sums) {
-    return relative_error(jackknife(sums, sample_mean));
-  };
+  job.batches = two_batches(slab.request.entries.size(),
+                            [=] { return slab_covariance(slab, reversed, refinement); });
   return job;
 }
 
