@@ -44,7 +44,7 @@ class Foci {
     const double optical_depth = scene_.medium.mu_t * scene_.domain.depth;
     if (std::abs(q) * std::min(4.0, optical_depth) > many_turns)
       add(found, folded((lights.first + lights.second) / 2),
-          1 / (std::abs(q) * std::min(1.0, optical_depth)));
+          std::max(0.01, 1 / (std::abs(q) * std::min(1.0, optical_depth))));
     std::sort(found.begin(), found.end());
     found.erase(std::unique(found.begin(), found.end()), found.end());
     return found;

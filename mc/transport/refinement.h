@@ -11,7 +11,7 @@ namespace flatspeckle::mc {
 /// ordinates to a relative tolerance.
 struct Refinement {
   double tolerance = 1e-6;
-  int first_order = 6;        ///< nodes of a panel
+  int first_order = 5;        ///< nodes of a panel
   int most_ordinates = 1500;  ///< of both ways together; past it the error tells what is missing
 
   static int next_order(int order) { return (4 * order + 2) / 3; }

@@ -119,4 +119,31 @@ PairWaves ScatteringMatrices::views(const Scene& scene, const std::vector<Pair>&
   return found;
 }
 
+Complex ScatteringMatrices::double_scattering(const DoubleScattering& paths,
+                                              const PairWaves& lights, Eigen::Index light,
+                                              const PairWaves& views, Eigen::Index view,
+                                              Parity parity) const {
+  const Eigen::Index n = grid_.size();
+  Complex sum = 0;
+  for (Eigen::Index j = 0; j < n; ++j) {
+    const double cosine = grid_.cosine()[j], sine = std::sin(grid_.angle()[j]);
+    for (const bool down : {true, false}) {
+      const Rows &fed = down ? lights.down : lights.up, &collected = down ? views.up : views.down;
+      const auto along = [&](double sign) {
+        return cosine * paths.along(sign * sine, cosine, down);
+      };
+      const Complex first = fed(light, j) * collected(view, j);
+      if (parity != Parity::both) {
+        sum += (parity == Parity::even ? first : -first) * along(1);
+        continue;
+      }
+      const Complex second = fed(light, n + j) * collected(view, n + j),
+                    mixed = Complex(0, 1) * (fed(light, j) * collected(view, n + j) +
+                                             fed(light, n + j) * collected(view, j));
+      sum += (first - second - mixed) / 2.0 * along(1) + (first - second + mixed) / 2.0 * along(-1);
+    }
+  }
+  return sum;
+}
+
 }  // namespace flatspeckle::mc

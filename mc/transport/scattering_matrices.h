@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "mc/transport/angular_grid.h"
+#include "mc/transport/double_scattering.h"
 #include "mc/transport/layer.h"
 #include "mc/transport/pair_wave.h"
 #include "mc/transport/scattering_law.h"
@@ -26,6 +27,11 @@ class ScatteringMatrices {
   /// What pairs feed, and what views collect; shares of mu_t.
   PairWaves lights(const Scene& scene, const std::vector<Pair>& pairs, Parity parity) const;
   PairWaves views(const Scene& scene, const std::vector<Pair>& pairs, Parity parity) const;
+
+  /// What these ordinates make of paths of two scatterings, of one light and one view by number.
+  Complex double_scattering(const DoubleScattering& paths, const PairWaves& lights,
+                            Eigen::Index light, const PairWaves& views, Eigen::Index view,
+                            Parity parity) const;
 
  private:
   struct Blocks {

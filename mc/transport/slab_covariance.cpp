@@ -33,17 +33,27 @@ struct Discrete {
   Discrete(const Discrete&) = delete;
 };
 
-/// One per link of the group.
+DoubleScattering twice(const Scene& scene, const ChainGroup& group, const ChainGroup::Link& link) {
+  return {scene, group.q, group.lights[static_cast<std::size_t>(link.light)],
+          group.views[static_cast<std::size_t>(link.view)]};
+}
+
+/// Paths of three scatterings and more, one value per link of the group.
 std::vector<Complex> solved(const Scene& scene, const ChainGroup& group,
                             const ScatteringMatrices& matrices) {
   const double optical_depth = scene.medium.mu_t * scene.domain.depth;
   std::vector<Complex> values(group.links.size());
   for (const auto parity : ScatteringMatrices::parities(group.q)) {
-    const auto response = layer_response(matrices.transport(group.q, parity), optical_depth,
-                                         matrices.lights(scene, group.lights, parity),
-                                         matrices.views(scene, group.views, parity));
-    for (std::size_t i = 0; i < values.size(); ++i)
-      values[i] += response.collected(group.links[i].view, group.links[i].light);
+    const auto lights = matrices.lights(scene, group.lights, parity),
+               views = matrices.views(scene, group.views, parity);
+    const auto response =
+        layer_response(matrices.transport(group.q, parity), optical_depth, lights, views);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      const auto& link = group.links[i];
+      values[i] += response.collected(link.view, link.light) -
+                   matrices.double_scattering(twice(scene, group, link), lights, link.light, views,
+                                              link.view, parity);
+    }
   }
   return values;
 }
@@ -57,8 +67,11 @@ std::vector<double> scales(const CovarianceRequest& request, const std::vector<C
   std::vector<double> scale;
   for (std::size_t e = 0; e < values.size(); ++e) {
     const auto a = intensity.find(request.entries[e].a), b = intensity.find(request.entries[e].b);
-    const bool known = a != intensity.end() && b != intensity.end();
-    scale.push_back(std::max(std::abs(values[e]), known ? std::sqrt(a->second * b->second) : 0));
+    double reference = 0;
+    if (a != intensity.end()) reference = a->second;
+    if (b != intensity.end())
+      reference = a != intensity.end() ? std::sqrt(reference * b->second) : b->second;
+    scale.push_back(std::max(std::abs(values[e]), reference));
   }
   return scale;
 }
@@ -69,16 +82,16 @@ class Refiner {
       : scene_(scene),
         refinement_(refinement),
         law_(scene),
-        single_(single_scattering(scene, Amplitudes{law_})) {
+        few_(single_scattering(scene, Amplitudes{law_})) {
     for (ChainGroup& group : grouped(scene, law_, chains(scene.request, reversed)))
       parts_.push_back({std::move(group), {}, {}, 0, false});
   }
 
   Refined refined() {
-    for (int order = refinement_.first_order, steps = 0; step(order); ++steps) {
-      if (steps > 0) settle();
-      order = Refinement::next_order(order);
-    }
+    int order = refinement_.first_order;
+    step(order);
+    add_double_scattering();
+    while (step(order = Refinement::next_order(order))) settle();
     return {sum(&Part::value), difference(), ordinates_};
   }
 
@@ -111,6 +124,23 @@ class Refiner {
     return !open.empty();
   }
 
+  /// Once how large the entries are is known.
+  void add_double_scattering() {
+    constexpr double part_of_tolerance = 0.01;
+    const auto scale = scales(scene_.request, sum(&Part::value));
+    std::vector<std::vector<Complex>> found(parts_.size());
+    parallel_for(parts_.size(), [&](std::size_t p) {
+      for (const auto& link : parts_[p].group.links)
+        found[p].push_back(
+            twice(scene_, parts_[p].group, link)
+                .total(law_, part_of_tolerance * refinement_.tolerance * scale[link.entry]));
+    });
+    const double albedo = scene_.medium.albedo;
+    for (std::size_t p = 0; p < parts_.size(); ++p)
+      for (std::size_t i = 0; i < found[p].size(); ++i)
+        few_[parts_[p].group.links[i].entry] += albedo * albedo * found[p][i];
+  }
+
   /// Parts whose last two orders agree, or that would become too large, are done.
   void settle() {
     const auto scale = scales(scene_.request, sum(&Part::value));
@@ -125,7 +155,7 @@ class Refiner {
   }
 
   std::vector<Complex> sum(std::vector<Complex> Part::*values) const {
-    std::vector<Complex> entries = single_;
+    std::vector<Complex> entries = few_;
     for (const Part& part : parts_)
       for (std::size_t i = 0; i < part.group.links.size(); ++i)
         entries[part.group.links[i].entry] += (part.*values)[i];
@@ -142,7 +172,7 @@ class Refiner {
   const Scene& scene_;
   Refinement refinement_;
   ScatteringLaw law_;
-  std::vector<Complex> single_;
+  std::vector<Complex> few_;  ///< paths of one scattering and of two
   std::vector<Part> parts_;
   int ordinates_ = 0;
 };

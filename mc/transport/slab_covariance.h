@@ -9,7 +9,7 @@ namespace flatspeckle::mc {
 /// The covariance of C14 and C18 on a slab, per entry of the request, as linear transport of pairs
 /// at one transverse frequency (conventions, C35 to C40): what covariance_job() estimates, single
 /// scattering in closed form. reversed: with reversed paths (C38). The tolerance is relative to the
-/// entry, or to the root of its two intensities where the request has them.
+/// entry, or to the root of its two intensities (or that which the request has) where that is more.
 Refined slab_covariance(const Scene& slab, bool reversed, const Refinement& refinement);
 
 /// The same as a job (two_batches()).
