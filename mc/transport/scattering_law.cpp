@@ -39,7 +39,7 @@ std::vector<double> cosine_modes(const std::function<double(double)>& p, int int
 
 /// The modes above rounding, normalised; of a table with kinks the first 4096.
 std::vector<double> significant_modes(const std::function<double(double)>& p) {
-  constexpr double rounding = 1e-14;
+  constexpr double rounding = 1e-13;
   constexpr int most = 4096;
   for (int intervals = 64;; intervals *= 4) {
     auto modes = cosine_modes(p, intervals);
@@ -67,7 +67,7 @@ ScatteringLaw::ScatteringLaw(const Scene& scene) {
   else
     tabulate(scene);
   modes_ = significant_modes([this](double theta) { return std::norm(amplitude(theta)); });
-  constexpr double modes_per_width = 32;  // g^m of Henyey-Greenstein is then 1e-14
+  constexpr double modes_per_width = 30;  // g^m of Henyey-Greenstein is then 1e-13
   width_ = std::min(pi, modes_per_width / static_cast<double>(modes_.size()));
 }
 
