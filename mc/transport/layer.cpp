@@ -161,7 +161,8 @@ Rows Layer::collected_in_series(const std::vector<BothWays>& series) const {
 
 /// [view][light]; of the signs that rows have, one is turned back.
 Rows Layer::contracted(const Rows& views, Rows lights) const {
-  lights.rightCols(lights.cols() - even_) *= -1;
+  for (Eigen::Index j = even_; j < lights.cols(); ++j)
+    for (Eigen::Index i = 0; i < lights.rows(); ++i) lights(i, j) = -lights(i, j);
   return product_transposed(views, lights);
 }
 

@@ -69,6 +69,9 @@ ScatteringLaw::ScatteringLaw(const Scene& scene) {
   modes_ = significant_modes([this](double theta) { return std::norm(amplitude(theta)); });
   constexpr double modes_per_width = 30;  // g^m of Henyey-Greenstein is then 1e-13
   width_ = std::min(pi, modes_per_width / static_cast<double>(modes_.size()));
+  const auto large = [](double mode) { return std::abs(mode) > 0.01; };
+  const auto lobes = std::find_if(modes_.rbegin(), modes_.rend(), large).base() - modes_.begin();
+  if (!is_peaked()) least_order_ = static_cast<int>(std::min<std::ptrdiff_t>(lobes / 2, 16));
 }
 
 void ScatteringLaw::tabulate(const Scene& scene) {

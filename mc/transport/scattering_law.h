@@ -25,6 +25,10 @@ class ScatteringLaw {
   const std::vector<double>& modes() const { return modes_; }
   /// The angle within which p changes.
   double width() const { return width_; }
+  /// Narrower than what a quadrant's polynomials see.
+  bool is_peaked() const { return width_ < 0.4; }
+  /// If it is not: nodes on a quadrant that see its lobes.
+  int least_order() const { return least_order_; }
 
  private:
   void tabulate(const Scene& scene);
@@ -33,6 +37,7 @@ class ScatteringLaw {
   std::vector<Complex> table_;             ///< of scatterers: A at equal steps over [0, pi]
   std::vector<double> modes_;
   double width_ = 0;
+  int least_order_ = 0;
 };
 
 }  // namespace flatspeckle::mc

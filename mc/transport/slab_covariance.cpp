@@ -84,11 +84,11 @@ class Refiner {
         law_(scene),
         few_(single_scattering(scene, Amplitudes{law_})) {
     for (ChainGroup& group : grouped(scene, law_, chains(scene.request, reversed)))
-      parts_.push_back({std::move(group), {}, {}, 0, false});
+      parts_.push_back({std::move(group), {}, {}, 0, false, false});
   }
 
   Refined refined() {
-    int order = refinement_.first_order;
+    int order = std::max(refinement_.first_order, law_.least_order());
     step(order);
     add_double_scattering();
     while (step(order = Refinement::next_order(order))) settle();
@@ -100,7 +100,7 @@ class Refiner {
     ChainGroup group;
     std::vector<Complex> value, before;  ///< per link, of the last two orders
     int size = 0;
-    bool done = false;
+    bool done = false, near = false;  ///< near: the last step came close to the tolerance
   };
 
   /// Solves what is not done with more ordinates; false if that is nothing.
@@ -149,8 +149,11 @@ class Refiner {
       for (std::size_t i = 0; i < part.value.size(); ++i)
         if (const double size = scale[part.group.links[i].entry]; size > 0)
           worst = std::max(worst, std::abs(part.value[i] - part.before[i]) / size);
+      // One small difference may be chance: the one before must have been small too.
+      const double tolerance = refinement_.tolerance / 2;
       part.done =
-          worst <= refinement_.tolerance / 2 || 4 * part.size > 3 * refinement_.most_ordinates;
+          (worst <= tolerance && part.near) || 4 * part.size > 3 * refinement_.most_ordinates;
+      part.near = worst <= 100 * tolerance;
     }
   }
 

@@ -89,9 +89,11 @@ std::vector<Complex> shares(const Scene& scene, double light, std::size_t bins,
 Refined refined_shares(const Scene& scene, double light, std::size_t bins, const ScatteringLaw& law,
                        const Refinement& refinement) {
   Refined found;
-  int order = refinement.first_order;
+  int order = std::max(refinement.first_order, law.least_order());
   auto before = shares(scene, light, bins, law, order, found.ordinates);
-  for (bool done = false; !done;) {
+  for (double last = 1, worst = 1;
+       worst > refinement.tolerance || last > 100 * refinement.tolerance;) {
+    if (4 * found.ordinates > 3 * refinement.most_ordinates) break;
     order = Refinement::next_order(order);
     found.value = shares(scene, light, bins, law, order, found.ordinates);
     found.difference = found.value;
@@ -99,8 +101,7 @@ Refined refined_shares(const Scene& scene, double light, std::size_t bins, const
     const auto relative = [&](FluxShare share) {
       return std::abs(found.difference[share]) / std::abs(found.value[share]);
     };
-    done = std::max(relative(reflected), relative(transmitted)) <= refinement.tolerance ||
-           4 * found.ordinates > 3 * refinement.most_ordinates;
+    last = std::exchange(worst, std::max(relative(reflected), relative(transmitted)));
     before = found.value;
   }
   return found;
