@@ -56,7 +56,7 @@ std::vector<double> significant_modes(const std::function<double(double)>& p) {
 
 }  // namespace
 
-ScatteringLaw::ScatteringLaw(const Scene& scene) {
+ScatteringLaw::ScatteringLaw(const Scene& scene, double delay) : delay_(delay) {
   const Scatterer& scatterer = scene.scatterer;
   if (scatterer.kind == Scatterer::Kind::hg)
     density_ = henyey_greenstein(scatterer.g);
@@ -66,7 +66,16 @@ ScatteringLaw::ScatteringLaw(const Scene& scene) {
     density_ = scene.medium.phase.density;
   else
     tabulate(scene);
-  modes_ = significant_modes([this](double theta) { return std::norm(amplitude(theta)); });
+  const auto p = [this](double theta) { return std::norm(amplitude(theta)); };
+  modes_ = significant_modes(p);
+  if (delay > 0) {
+    const auto decayed = [&](double theta) { return p(theta) * decay(theta); };
+    const int intervals = 4 * static_cast<int>(modes_.size() + 16);
+    const double share =
+        cosine_modes(decayed, intervals).front() / cosine_modes(p, intervals).front();
+    modes_ = significant_modes(decayed);
+    for (double& mode : modes_) mode *= share;
+  }
   constexpr double modes_per_width = 30;  // g^m of Henyey-Greenstein is then 1e-13
   width_ = std::min(pi, modes_per_width / static_cast<double>(modes_.size()));
   const auto large = [](double mode) { return std::abs(mode) > 0.01; };

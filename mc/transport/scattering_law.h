@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <functional>
 #include <vector>
 
@@ -9,16 +10,22 @@ namespace flatspeckle::mc {
 
 /// What a scatterer of a medium does to pairs of directions, without chance: the amplitude A of C14
 /// over sqrt(sigma_s), so that |A|^2 is the phase function p, and p in Fourier modes,
-///   p(theta) = (1 + 2 sum_m modes[m] cos(m theta)) / (2 pi).
+///   p(theta) = (modes[0] + 2 sum_m modes[m] cos(m theta)) / (2 pi).
+/// Of fields at two times, between which the scatterers diffuse, the later one is the second of a
+/// pair: each turn by theta loses exp(-2 delay (1 - cos theta)) (brownian.h).
 class ScatteringLaw {
  public:
   /// The medium scatters.
-  explicit ScatteringLaw(const Scene& scene);
+  explicit ScatteringLaw(const Scene& scene, double delay = 0);
 
   /// A(theta - a) conj(A(theta - b)) of two lights, or of two views.
   Complex pair(double a, double b, double theta) const {
-    return a == b ? Complex(std::norm(amplitude(theta - a)))
-                  : product_with_conjugate(amplitude(theta - a), amplitude(theta - b));
+    return decay(theta - b) *
+           (a == b ? Complex(std::norm(amplitude(theta - a)))
+                   : product_with_conjugate(amplitude(theta - a), amplitude(theta - b)));
+  }
+  double decay(double angle) const {
+    return delay_ == 0 ? 1 : std::exp(-2 * delay_ * (1 - std::cos(angle)));
   }
   Complex amplitude(double angle) const;
 
@@ -36,7 +43,7 @@ class ScatteringLaw {
   std::function<double(double)> density_;  ///< of a bulk: p of an angle in [0, pi]
   std::vector<Complex> table_;             ///< of scatterers: A at equal steps over [0, pi]
   std::vector<double> modes_;
-  double width_ = 0;
+  double delay_, width_ = 0;
   int least_order_ = 0;
 };
 

@@ -78,11 +78,15 @@ std::vector<double> scales(const CovarianceRequest& request, const std::vector<C
 
 class Refiner {
  public:
-  Refiner(const Scene& scene, bool reversed, const Refinement& refinement)
+  Refiner(const Scene& scene, bool reversed, const Refinement& refinement, double delay)
       : scene_(scene),
         refinement_(refinement),
-        law_(scene),
+        law_(scene, delay),
         few_(single_scattering(scene, Amplitudes{law_})) {
+    for (std::size_t e = 0; e < few_.size(); ++e) {
+      const auto [light, view] = scene.request.channels[scene.request.entries[e].b];
+      few_[e] *= law_.decay(scene.request.views[view].angle - scene.request.lights[light].angle);
+    }
     for (ChainGroup& group : grouped(scene, law_, chains(scene.request, reversed)))
       parts_.push_back({std::move(group), {}, {}, 0, false, false});
   }
@@ -182,11 +186,12 @@ class Refiner {
 
 }  // namespace
 
-Refined slab_covariance(const Scene& slab, bool reversed, const Refinement& refinement) {
+Refined slab_covariance(const Scene& slab, bool reversed, const Refinement& refinement,
+                        double delay) {
   const std::size_t entries = slab.request.entries.size();
   if (slab.medium.mu_s == 0)
     return {std::vector<Complex>(entries), std::vector<Complex>(entries), 0};
-  return Refiner(slab, reversed, refinement).refined();
+  return Refiner(slab, reversed, refinement, delay).refined();
 }
 
 FieldJob slab_covariance_job(const Scene& slab, bool reversed, const Refinement& refinement) {

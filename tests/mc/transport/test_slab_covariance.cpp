@@ -5,6 +5,7 @@
 
 #include "bench/oracles/pair_transport.h"
 #include "bench/oracles/slab_theory.h"
+#include "mc/estimators/brownian.h"
 #include "mc/theory/memory_effect.h"
 #include "mc/transport/slab_covariance.h"
 #include "tests/mc/transport/slabs.h"
@@ -173,6 +174,24 @@ TEST_CASE("the transport job states values with their differences as errors") {
   for (std::size_t e = 0; e < refined.value.size(); ++e) {
     CHECK(std::abs(found.value[e] - refined.value[e]) < 1e-14);
     CHECK(found.error[e] == doctest::Approx(std::abs(refined.difference[e])).epsilon(1e-6));
+  }
+}
+
+TEST_CASE("fields of diffusing scatterers at two times, as by Monte Carlo") {
+  const std::vector<double> delays = {0.003, 0.03, 0.3};
+  for (const double g : {0.0, 0.8}) {
+    const auto request = intensity_request({0.2}, {far_view(0.5), far_view(pi + 0.2)});
+    const Scene scene = hg_slab(300, {60, g, 0.97}, request);
+    const auto job = delay_job(scene, make_plan(scene, ReversedPaths::yes), delays, 5);
+    const auto found = delay_estimates(job, tests::summed(job.field.batches, 200000)).covariance;
+    for (std::size_t t = 0; t < delays.size(); ++t) {
+      const auto expected = slab_covariance(scene, true, {1e-5}, delays[t]).value;
+      for (std::size_t v = 0; v < 2; ++v) {
+        const std::size_t e = 2 * t + v;
+        CHECK_WITHIN_4_SIGMA(found.value[e], found.error[e], expected[v], 0);
+        CHECK(found.error[e] < 0.05 * std::abs(expected[v]));
+      }
+    }
   }
 }
 
