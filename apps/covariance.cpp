@@ -51,6 +51,7 @@ int covariance(const Arguments& arguments) {
 
   Session session(command.text(), keys, run, command.only_prints());
   const std::string by = chosen(keys, method, spec, extras);
+  if (by == "transport") check_transport(spec);
   const StopRule stop = by == "transport" ? both_batches()
                         : by == "wave" && methods.wave_samples
                             ? stop_rule(keys, run, methods.wave_samples)

@@ -97,9 +97,12 @@ Estimation mc_estimation(const Scene& scene, mc::ReversedPaths reversed, std::ui
               (structure.independent() ? "" : "; structure factor " + structure.origin())};
 }
 
+void check_transport(const SceneSpec& spec) {
+  if (spec.domain != "slab")
+    throw InputError("method", "transport", "needs domain = slab; take another method");
+}
+
 Estimation transport_estimation(const Scene& scene, mc::ReversedPaths reversed, double tolerance) {
-  if (scene.domain.kind != Domain::Kind::slab)
-    throw InputError("method", "transport", "needs domain = slab; take mc or wave");
   const bool with_reversed = mc::make_plan(scene, reversed).reversed;
   std::ostringstream plan;
   plan << "transport: pairs at one transverse frequency, by doubling; "

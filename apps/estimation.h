@@ -55,7 +55,9 @@ void note(const Neglected& neglected);
 Scene rounded_scene(const Keys& keys, const SceneSpec& spec);
 
 Estimation mc_estimation(const Scene& scene, mc::ReversedPaths reversed, std::uint64_t seed);
-/// Of a slab. Throws InputError for a box.
+/// Throws InputError for what is no slab.
+void check_transport(const SceneSpec& spec);
+/// Of a slab.
 Estimation transport_estimation(const Scene& scene, mc::ReversedPaths reversed, double tolerance);
 /// Throws InputError.
 Estimation wave_estimation(const Scene& scene, double tolerance, std::uint64_t seed);

@@ -4,7 +4,6 @@
 
 #include "apps/estimation.h"
 #include "apps/subcommands.h"
-#include "core/error.h"
 #include "core/session/session.h"
 #include "flatland/scene/scene_datasets.h"
 #include "mc/transport/slab_flux.h"
@@ -60,12 +59,11 @@ int flux(const Arguments& arguments) {
   Session session(command.text(), keys, run, command.only_prints());
   if (keys.read(method) == "auto") method = spec.domain == "slab" ? "transport" : "mc";
   const bool by_mc = method == "mc";
+  if (!by_mc) check_transport(spec);
   const StopRule stop = by_mc ? stop_rule(keys, run) : both_batches();
   if (!by_mc) keys.read(methods.tolerance);
   const auto bins = static_cast<std::size_t>(keys.read(angle_bins));
   const Scene scene = make_scene(keys, spec);
-  if (!by_mc && scene.domain.kind != Domain::Kind::slab)
-    throw InputError("method", method, "needs domain = slab; take mc");
   const mc::FluxJob job = by_mc ? mc::flux_job(scene, bins, session.seed())
                                 : mc::slab_flux_job(scene, bins, {methods.tolerance});
   if (!command.settle()) return ExitStatus::done;

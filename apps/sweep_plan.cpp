@@ -100,7 +100,10 @@ void SweepPlan::check() {
   if (!keys.read(share_).empty()) share = share_of(share_);
   reversed_ = reversed_paths(keys, methods);
   keys.read(methods.wave_tolerance);
-  if (word == "transport") keys.read(methods.tolerance);
+  if (word == "transport") {
+    check_transport(base);
+    keys.read(methods.tolerance);
+  }
   points = sweep_points(keys, lists_);
   check_points();
 }
