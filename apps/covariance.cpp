@@ -18,6 +18,14 @@ void print_medium(const Scene& scene) {
   std::printf("\n");
 }
 
+/// What `auto` stands for: what only Monte Carlo tells is left to it.
+std::string chosen(const Keys& keys, const std::string& method, const SceneSpec& spec,
+                   const Extras& extras) {
+  if (keys.read(method) != "auto") return method;
+  const bool asks_mc = extras.gradient || !extras.delays.empty();
+  return spec.domain == "slab" && !asks_mc ? "transport" : "mc";
+}
+
 }  // namespace
 
 int covariance(const Arguments& arguments) {
@@ -30,28 +38,40 @@ int covariance(const Arguments& arguments) {
   Keys& keys = command.keys();
   add_keys(keys, spec);
   keys.group("Methods");
-  keys.add("method", method, "Monte Carlo or exactly").one_of({"mc", "wave"});
+  keys.add("method", method,
+           "Monte Carlo, exactly, or of a slab by transport without chance; auto: transport where "
+           "it can be")
+      .one_of({"mc", "wave", "transport", "auto"});
   add_extra_keys(keys, extras);
   add_mc_keys(keys, methods);
   add_wave_keys(keys, methods);
+  add_transport_keys(keys, methods);
   add_run_keys(keys, run);
   if (!command.parse(arguments)) return ExitStatus::done;
 
   Session session(command.text(), keys, run, command.only_prints());
-  const bool by_mc = keys.read(method) == "mc";
-  const StopRule stop = !by_mc && methods.wave_samples ? stop_rule(keys, run, methods.wave_samples)
-                                                       : stop_rule(keys, run);
+  const std::string by = chosen(keys, method, spec, extras);
+  if (by == "transport") check_transport(spec);
+  const StopRule stop = by == "transport" ? both_batches()
+                        : by == "wave" && methods.wave_samples
+                            ? stop_rule(keys, run, methods.wave_samples)
+                            : stop_rule(keys, run);
   const auto reversed = reversed_paths(keys, methods);
-  const double tolerance = keys.read(methods.wave_tolerance);
-  keys.read(methods.wave_samples);
-  keys.read(run.samples);
-  if (by_mc) read_extras(keys, extras);
+  const double wave_tolerance = keys.read(methods.wave_tolerance);
+  if (by != "transport") {
+    keys.read(methods.wave_samples);
+    keys.read(run.samples);
+  }
+  if (by == "mc") read_extras(keys, extras);
+  if (by == "transport") keys.read(methods.tolerance);
   const Scene scene = make_scene(keys, spec);
   const auto [estimation, write_extras] =
-      by_mc ? extended_estimation(scene, reversed, extras, session.seed())
-            : ExtendedEstimation{wave_estimation(scene, tolerance, session.seed()), {}};
+      by == "mc" ? extended_estimation(scene, reversed, extras, session.seed())
+      : by == "wave"
+          ? ExtendedEstimation{wave_estimation(scene, wave_tolerance, session.seed()), {}}
+          : ExtendedEstimation{transport_estimation(scene, reversed, methods.tolerance), {}};
   if (!command.settle()) return ExitStatus::done;
-  if (by_mc) {
+  if (by != "wave") {
     Neglected neglected;
     neglected.add(scene);
     note(neglected);
@@ -69,6 +89,7 @@ int covariance(const Arguments& arguments) {
                        write_axes(file, scene);
                        print_ranges("", mc::write_moments(file, "", job, scene, sums, moments));
                        if (write) write(file, sums);
+                       if (by == "transport") write_numerical_errors(file);
                      });
 }
 

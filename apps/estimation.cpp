@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "mc/estimators/covariance_estimator.h"
+#include "mc/transport/slab_covariance.h"
 #include "wave_solver/solutions/ensemble.h"
 
 namespace flatspeckle::apps {
@@ -35,6 +36,22 @@ void add_wave_keys(Keys& keys, MethodSettings& settings) {
       .positive()
       .effort()
       .only_of("the exact solver");
+}
+
+void add_transport_keys(Keys& keys, MethodSettings& settings) {
+  keys.group("Methods");
+  keys.add("tolerance", settings.tolerance,
+           "Of transport: relative difference from a solution with fewer ordinates")
+      .between(0, 1)
+      .only_of("method = transport");
+}
+
+StopRule both_batches() {
+  return {.samples = 2, .seconds = {}, .target_error = {}};
+}
+
+void write_numerical_errors(ResultFile& file) {
+  file.attribute("/", "errors", std::string("numerical: differences from fewer ordinates"));
 }
 
 void note_rounding(const Scene& scene) {
@@ -78,6 +95,19 @@ Estimation mc_estimation(const Scene& scene, mc::ReversedPaths reversed, std::ui
   return {mc::covariance_job(scene, plan, seed),
           "mc: " + plan.describe() +
               (structure.independent() ? "" : "; structure factor " + structure.origin())};
+}
+
+void check_transport(const SceneSpec& spec) {
+  if (spec.domain != "slab")
+    throw InputError("method", "transport", "needs domain = slab; take another method");
+}
+
+Estimation transport_estimation(const Scene& scene, mc::ReversedPaths reversed, double tolerance) {
+  const bool with_reversed = mc::make_plan(scene, reversed).reversed;
+  std::ostringstream plan;
+  plan << "transport: pairs at one transverse frequency, by doubling; "
+       << (with_reversed ? "reversed paths" : "no reversed paths") << "; tolerance " << tolerance;
+  return {mc::slab_covariance_job(scene, with_reversed, {tolerance}), plan.str()};
 }
 
 Estimation wave_estimation(const Scene& scene, double tolerance, std::uint64_t seed) {

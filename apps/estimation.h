@@ -5,6 +5,7 @@
 #include <string>
 
 #include "core/keys/keys.h"
+#include "core/result/result_file.h"
 #include "flatland/request/field_moments.h"
 #include "flatland/scene/scene.h"
 #include "mc/walk/plan.h"
@@ -16,10 +17,12 @@ struct MethodSettings {
   std::string reversed_paths = "auto";
   double wave_tolerance = 1e-6;
   std::optional<std::int64_t> wave_samples;
+  double tolerance = 1e-6;
 };
 
 void add_mc_keys(Keys& keys, MethodSettings& settings);
 void add_wave_keys(Keys& keys, MethodSettings& settings);
+void add_transport_keys(Keys& keys, MethodSettings& settings);
 
 mc::ReversedPaths reversed_paths(const Keys& keys, const MethodSettings& settings);
 
@@ -28,6 +31,11 @@ struct Estimation {
   FieldJob job;
   std::string plan;
 };
+
+/// Of a method without chance, whose jobs are two batches.
+StopRule both_batches();
+/// Says in a result that its errors are those of a method without chance.
+void write_numerical_errors(ResultFile& file);
 
 /// Disks are placed in whole numbers: says so on standard error where that changes the density
 /// (conventions, C12).
@@ -47,6 +55,10 @@ void note(const Neglected& neglected);
 Scene rounded_scene(const Keys& keys, const SceneSpec& spec);
 
 Estimation mc_estimation(const Scene& scene, mc::ReversedPaths reversed, std::uint64_t seed);
+/// Throws InputError for what is no slab.
+void check_transport(const SceneSpec& spec);
+/// Of a slab.
+Estimation transport_estimation(const Scene& scene, mc::ReversedPaths reversed, double tolerance);
 /// Throws InputError.
 Estimation wave_estimation(const Scene& scene, double tolerance, std::uint64_t seed);
 

@@ -2,9 +2,11 @@
 
 #include <cstdio>
 
+#include "apps/estimation.h"
 #include "apps/subcommands.h"
 #include "core/session/session.h"
 #include "flatland/scene/scene_datasets.h"
+#include "mc/transport/slab_flux.h"
 
 namespace flatspeckle::apps {
 
@@ -34,6 +36,8 @@ void print_table(const Scene& scene, const mc::FluxEstimates& flux) {
 int flux(const Arguments& arguments) {
   SceneSpec spec;
   RunSettings run;
+  MethodSettings methods;
+  std::string method = "mc";
   std::int64_t angle_bins = 90;
   Subcommand command("flux",
                      "Reflected, transmitted and absorbed power of a scene: intensity only");
@@ -44,21 +48,32 @@ int flux(const Arguments& arguments) {
   keys.group("Lights and views");
   keys.add("light_angles", spec.light_angles, "Directions of the plane waves, from +z").angle();
   keys.add("angle_bins", angle_bins, "Equal bins of the exit angle over (-pi, pi]").from(1, 100000);
+  keys.group("Methods");
+  keys.add("method", method,
+           "Monte Carlo, or of a slab by transport without chance; auto: the latter")
+      .one_of({"mc", "transport", "auto"});
+  add_transport_keys(keys, methods);
   add_run_keys(keys, run);
   if (!command.parse(arguments)) return ExitStatus::done;
 
   Session session(command.text(), keys, run, command.only_prints());
-  const StopRule stop = stop_rule(keys, run);
+  if (keys.read(method) == "auto") method = spec.domain == "slab" ? "transport" : "mc";
+  const bool by_mc = method == "mc";
+  if (!by_mc) check_transport(spec);
+  const StopRule stop = by_mc ? stop_rule(keys, run) : both_batches();
+  if (!by_mc) keys.read(methods.tolerance);
   const auto bins = static_cast<std::size_t>(keys.read(angle_bins));
   const Scene scene = make_scene(keys, spec);
-  const mc::FluxJob job = mc::flux_job(scene, bins, session.seed());
+  const mc::FluxJob job = by_mc ? mc::flux_job(scene, bins, session.seed())
+                                : mc::slab_flux_job(scene, bins, {methods.tolerance});
   if (!command.settle()) return ExitStatus::done;
-  return session.run("mc: " + job.plan, {{"", "flux", job.batches, stop}}, "",
-                     [&](ResultFile& file) {
+  return session.run((by_mc ? "mc: " : "transport: ") + job.plan, {{"", "flux", job.batches, stop}},
+                     "", [&](ResultFile& file) {
                        const auto estimates = mc::flux_estimates(job, session.sums(""));
                        print_table(scene, estimates);
                        write_medium(file, scene);
                        mc::write_flux(file, scene, estimates);
+                       if (!by_mc) write_numerical_errors(file);
                      });
 }
 

@@ -61,9 +61,11 @@ SweepPlan::SweepPlan()
   add_view_keys(keys, base);
   keys.add("tilts", base.tilts, "Rotations of the light").angle();
   keys.group("Methods");
-  keys.add("method", method_, "Monte Carlo, exactly, or both").one_of({"mc", "wave", "both"});
+  keys.add("method", method_, "Monte Carlo, exactly, both, or of slabs by transport without chance")
+      .one_of({"mc", "wave", "both", "transport"});
   add_mc_keys(keys, methods);
   add_wave_keys(keys, methods);
+  add_transport_keys(keys, methods);
   add_run_keys(keys, settings);
   keys.add("shard", share_,
            "i/n: work on every nth point only, from number i = 0 .. n - 1 on; then merge")
@@ -95,6 +97,10 @@ void SweepPlan::check() {
   if (!keys.read(share_).empty()) share = share_of(share_);
   reversed_ = reversed_paths(keys, methods);
   keys.read(methods.wave_tolerance);
+  if (word == "transport") {
+    check_transport(base);
+    keys.read(methods.tolerance);
+  }
   points = sweep_points(keys, lists_);
   check_points();
 }
@@ -108,7 +114,7 @@ void SweepPlan::check_points() {
     check_scene(scene);
     if (method(run) == "wave") note_rounding(scene);
     if (method(run) == "wave" || run == 0) estimation(run, scene);
-    if (method(run) == "mc") neglected.add(scene);
+    if (method(run) != "wave") neglected.add(scene);
   });
   note(neglected);
 }
@@ -148,11 +154,13 @@ Scene SweepPlan::scene(std::size_t run) const {
 }
 
 Estimation SweepPlan::estimation(std::size_t run, const Scene& scene) const {
+  if (method(run) == "transport") return transport_estimation(scene, reversed_, methods.tolerance);
   return method(run) == "mc" ? mc_estimation(scene, reversed_, session().seed())
                              : wave_estimation(scene, methods.wave_tolerance, session().seed());
 }
 
 StopRule SweepPlan::stop(std::size_t run) const {
+  if (method(run) == "transport") return both_batches();
   return method(run) == "wave" ? wave_stop_ : mc_stop_;
 }
 

@@ -13,7 +13,7 @@ namespace flatspeckle::mc {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// Narrows a chord to low <= position + t speed <= high.
 void narrow(Chord& chord, double position, double speed, double low, double high) {

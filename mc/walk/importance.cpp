@@ -13,7 +13,7 @@ namespace flatspeckle::mc {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// Whether a rate lies below the smallest root of the dispersion relation
 ///   h_0 = 2 s / (h_1 - s / (h_2 - s / ...)),  h_n = 1 - albedo g^n,  s = rate^2 / 4,

@@ -58,6 +58,8 @@ BOX_CASES = [
     ("covariance", BOX, {"threads": 1000000}, ["threads = 1000000", "from 0 to 1024"]),
     ("covariance", BOX, {"tilts": [0.1]}, ["tilts = 0.1", "memory_effect"]),
     ("covariance", BOX, {"pairs": [0, 0, 0, 0]}, ["pairs = 0", "covariance = pairs"]),
+    ("covariance", BOX, {"method": "transport"}, ["method = transport", "slab"]),
+    ("flux", BOX, {"method": "transport"}, ["method = transport", "slab"]),
     ("covariance", BOX, {"method": "wave", "wave_tolerance": 0}, ["wave_tolerance = 0", "(0, 1)"]),
     ("covariance", BOX, {"method": "wave", "wave_tolerance": "nan"},
      ["wave_tolerance = nan", "(0, 1)"]),

@@ -1,0 +1,29 @@
+#include "mc/transport/refinement.h"
+
+#include <memory>
+#include <mutex>
+
+namespace flatspeckle::mc {
+
+BatchJob two_batches(std::size_t size, const std::function<Refined()>& solve) {
+  struct Solution {
+    std::once_flag once;
+    Refined refined;
+  };
+  const auto solution = std::make_shared<Solution>();
+  BatchJob job;
+  job.size = size;
+  job.samples_per_batch = 1;
+  job.run = [=](std::uint64_t number, std::span<Complex> sums) {
+    std::call_once(solution->once, [&] { solution->refined = solve(); });
+    const double sign = number % 2 == 0 ? 1 : -1;
+    for (std::size_t e = 0; e < sums.size(); ++e)
+      sums[e] += solution->refined.value[e] + sign * solution->refined.difference[e];
+  };
+  job.relative_error = [](const GroupedSums& sums) {
+    return relative_error(jackknife(sums, sample_mean));
+  };
+  return job;
+}
+
+}  // namespace flatspeckle::mc

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "core/run/runner.h"
+
+namespace flatspeckle::mc {
+
+/// How far a solution without chance is refined: until it agrees with that of a quarter fewer
+/// ordinates to a relative tolerance.
+struct Refinement {
+  double tolerance = 1e-6;
+  int first_order = 5;        ///< nodes of a panel
+  int most_ordinates = 1500;  ///< of both ways together; past it the error tells what is missing
+
+  static int next_order(int order) { return (4 * order + 2) / 3; }
+};
+
+/// Values and their difference from those of fewer ordinates, which is more than their error.
+struct Refined {
+  std::vector<Complex> value, difference;
+  int ordinates = 0;  ///< the most that any part has needed
+};
+
+/// A solution as a job of two batches, the values plus and minus their difference: what the
+/// statistics of batches call the standard error of any function of them is its difference then.
+/// Solved when the first batch runs.
+BatchJob two_batches(std::size_t size, const std::function<Refined()>& solve);
+
+}  // namespace flatspeckle::mc

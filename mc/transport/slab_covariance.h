@@ -1,0 +1,20 @@
+#pragma once
+
+#include "flatland/request/field_moments.h"
+#include "flatland/scene/scene.h"
+#include "mc/transport/refinement.h"
+
+namespace flatspeckle::mc {
+
+/// The covariance of C14 and C18 on a slab, per entry of the request, as linear transport of pairs
+/// at one transverse frequency (conventions, C35 to C40): what covariance_job() estimates, single
+/// scattering in closed form. reversed: with reversed paths (C38). The tolerance is relative to the
+/// entry, or to the root of its two intensities (or that which the request has) where that is more.
+/// delay: of the second channel of each entry, k^2 D tau as the scatterers diffuse (brownian.h).
+Refined slab_covariance(const Scene& slab, bool reversed, const Refinement& refinement,
+                        double delay = 0);
+
+/// The same as a job (two_batches()).
+FieldJob slab_covariance_job(const Scene& slab, bool reversed, const Refinement& refinement);
+
+}  // namespace flatspeckle::mc

@@ -1,0 +1,211 @@
+#include <algorithm>
+#include <cmath>
+
+#include <doctest/doctest.h>
+
+#include "bench/oracles/pair_transport.h"
+#include "bench/oracles/slab_theory.h"
+#include "mc/estimators/brownian.h"
+#include "mc/theory/memory_effect.h"
+#include "mc/transport/slab_covariance.h"
+#include "tests/mc/transport/slabs.h"
+
+namespace flatspeckle::mc {
+
+namespace {
+
+using tests::deflected;
+using tests::hg_slab;
+using tests::pi;
+using tests::wavenumber;
+
+/// Depth 2000, light along the normal: intensity, C_E for q L = 2, reflected ladder at pi - 0.2.
+std::vector<double> known(double optical_depth, double g, double albedo,
+                          const Refinement& refinement) {
+  constexpr double depth = 2000;
+  const tests::HgBulk bulk{depth / optical_depth, g, albedo};
+  const auto request = memory_effect_request(wavenumber, 0, {0}, {deflected(0, 2 / depth)});
+  const auto tilted = slab_covariance(hg_slab(depth, bulk, request), false, refinement);
+  const auto back = slab_covariance(
+      hg_slab(depth, bulk, intensity_request({0.0}, {far_view(pi - 0.2)})), false, refinement);
+  return {tilted.value[request.reference_intensity(0)].real(),
+          field_correlation(request, tilted.value)[0].real(), back.value[0].real()};
+}
+
+/// Where C_I falls to 1/2 for light along the normal, q L.
+double half_width(double optical_depth, double g, double albedo) {
+  constexpr double depth = 2000;
+  std::vector<double> tilts;
+  for (int i = 0; i <= 48; ++i) tilts.push_back(deflected(0, 0.0625 * i / depth));
+  const auto request = memory_effect_request(wavenumber, 0, {0}, tilts);
+  const auto found =
+      slab_covariance(hg_slab(depth, {depth / optical_depth, g, albedo}, request), false, {1e-7});
+  return depth * memory_effect_range(request.tilt_q, field_correlation(request, found.value)).value;
+}
+
+double backscattered(double d, bool reversed, double tolerance = 1e-8) {
+  const auto request = intensity_request({0.0}, {far_view(pi - d)});
+  return slab_covariance(hg_slab(200, {50, 0.5, 0.98}, request), reversed, {tolerance})
+      .value[0]
+      .real();
+}
+
+}  // namespace
+
+TEST_CASE("slab transport: known intensities and correlations") {
+  const auto check = [](const std::vector<double>& found, const std::vector<double>& expected,
+                        double last_digit) {
+    for (std::size_t i = 0; i < found.size(); ++i)
+      CHECK(std::abs(found[i] - expected[i]) < 0.51 * last_digit);
+  };
+  check(known(10, 0, 1, {1e-8}), {0.0877521, 0.5056681, 0.4149210}, 1e-7);
+  check(known(10, 0.9, 1, {1e-7}), {0.439608, 0.764401, 0.140830}, 1e-6);
+  check(known(30, 0.9, 0.99, {1e-7}), {0.12780, 0.55225, 0.20458}, 1e-5);
+}
+
+TEST_CASE("slab transport: known ranges of the memory effect") {
+  CHECK(half_width(10, 0, 1) == doctest::Approx(1.3688).epsilon(4e-5));
+  CHECK(half_width(10, 0.5, 1) == doctest::Approx(1.29155).epsilon(4e-5));
+  CHECK(half_width(10, 0.8, 1) == doctest::Approx(1.3816).epsilon(4e-5));
+  CHECK(half_width(10, 0.9, 1) == doctest::Approx(2.5815).epsilon(4e-5));
+  CHECK(half_width(10, 0, 0.9) == doctest::Approx(2.1543).epsilon(4e-5));
+  CHECK(half_width(40, 0, 1) == doctest::Approx(1.4396).epsilon(4e-5));
+}
+
+TEST_CASE("slab transport: known cone of coherent backscattering") {
+  CHECK(std::abs(backscattered(0, false) - 0.209971) < 1e-6);
+  CHECK(std::abs(backscattered(0.3, false) - 0.204302) < 1e-6);
+  const double distance[] = {0, 0.002, 0.01, 0.05},
+               reversed[] = {0.183984, 0.083290, 0.019222, 0.004523};
+  for (int i = 0; i < 4; ++i)
+    CHECK(std::abs(backscattered(distance[i], true, 1e-7) - backscattered(distance[i], false) -
+                   reversed[i]) < 1e-6);
+  CHECK(std::abs(backscattered(0.3, true, 1e-6) - backscattered(0.3, false) - 0.000755) < 1e-6);
+}
+
+TEST_CASE("slab transport converges to nine digits") {
+  for (const double g : {0.0, 0.9, -0.5}) {
+    const auto fine = known(10, g, 0.99, {1e-12, 20}), coarse = known(10, g, 0.99, {1e-9});
+    for (std::size_t i = 0; i < fine.size(); ++i)
+      CHECK(coarse[i] == doctest::Approx(fine[i]).epsilon(1e-9));
+  }
+}
+
+TEST_CASE("slab transport: entries are right to the tolerance") {
+  constexpr double tolerance = 1e-3;
+  for (const double g : {0.0, 0.8, 0.98}) {
+    const auto request = memory_effect_request(wavenumber, 0.3, {0.1, pi - 0.4}, {0, 1e-4, 1e-3});
+    const Scene scene = hg_slab(1000, {200, g, 0.95}, request);
+    const auto rough = slab_covariance(scene, true, {tolerance}),
+               exact = slab_covariance(scene, true, {1e-6});
+    for (std::size_t e = 0; e < rough.value.size(); ++e) {
+      const double intensity = std::abs(exact.value[request.reference_intensity(e % 2)]);
+      CHECK(std::abs(rough.value[e] - exact.value[e]) <= tolerance * intensity);
+      CHECK(std::abs(rough.difference[e]) <= 2 * tolerance * intensity);
+    }
+  }
+}
+
+TEST_CASE("slab transport agrees with other solutions of the same equation") {
+  constexpr double depth = 1000;
+  for (const double light : {0.0, 0.4}) {
+    for (const double tilt : {0.0, 1.0, -5.0, 20.0}) {  // q L
+      const double q = tilt / depth, optical_depth = 3, view = -0.2;
+      const AnglePair pair{light, view, deflected(light, q), deflected(view, q)};
+      const auto request = pairs_request({pair});
+      const Complex found =
+          slab_covariance(hg_slab(depth, {depth / optical_depth, 0, 0.9}, request), false, {})
+              .value[0];
+      const oracles::IsotropicSlab theory(wavenumber, depth, optical_depth / depth, 0.9);
+      const Complex expected = theory.without_reversed({light, view}, {pair.light2, pair.view2});
+      CHECK(std::abs(found - expected) < 3e-4 * std::abs(expected));
+      const double g = 0.7;
+      const Complex peaked =
+          slab_covariance(hg_slab(depth, {depth / optical_depth, g, 0.9}, request), false, {})
+              .value[0];
+      const oracles::PairTransport transport(
+          {wavenumber, depth, optical_depth / depth, 0.9,
+           [g](double angle) {
+             return (1 - g * g) / (2 * pi * (1 + g * g - 2 * g * std::cos(angle)));
+           }},
+          {{light, pair.light2}}, {{view, pair.view2}}, 5);
+      CHECK(std::abs(peaked - transport.covariance(0, 0)) < 1e-5 * std::abs(peaked));
+    }
+  }
+}
+
+TEST_CASE("reversed paths of isotropic slabs as by the integral equation") {
+  for (const double d : {0.0, 0.004, 0.03}) {
+    const double light = 0.2, view = pi + light - d;
+    const Scene scene = hg_slab(200, {50, 0, 0.95}, intensity_request({light}, {far_view(view)}));
+    const oracles::IsotropicSlab theory(wavenumber, 200, 1 / 50.0, 0.95);
+    CHECK(slab_covariance(scene, true, {}).value[0].real() ==
+          doctest::Approx(theory.with_reversed({light, view}, {light, view}).real()).epsilon(3e-4));
+  }
+}
+
+TEST_CASE("thin and thick slabs, also without absorption") {
+  const auto intensity = [](double optical_depth, double g, double albedo, double view) {
+    const auto request = intensity_request({0.0}, {far_view(view)});
+    return slab_covariance(hg_slab(1000, {1000 / optical_depth, g, albedo}, request), false, {})
+        .value[0]
+        .real();
+  };
+  const double thin = 1e-3;
+  CHECK(intensity(thin, 0, 1, 0.3) == doctest::Approx(thin / (2 * pi)).epsilon(5e-3));
+  // diffusion: transmission falls as 1 / (depth + 2 z0), z0 = 0.818 transport mean free paths
+  for (const double g : {0.0, 0.8}) {
+    const double once = intensity(5e3 / (1 - g), g, 1, 0),
+                 twice = intensity(1e4 / (1 - g), g, 1, 0);
+    CHECK(once / twice == doctest::Approx((1e4 + 2 * 0.8181) / (5e3 + 2 * 0.8181)).epsilon(1e-6));
+  }
+  // absorption: by the same factor for each length
+  const double one = intensity(40, 0, 0.9, 0), two = intensity(60, 0, 0.9, 0),
+               three = intensity(80, 0, 0.9, 0);
+  CHECK(one / two == doctest::Approx(two / three).epsilon(1e-6));
+}
+
+TEST_CASE("the transport job states values with their differences as errors") {
+  const auto request = memory_effect_request(wavenumber, 0, {0}, {0, 1e-4, 3e-4, 1e-3});
+  const Scene scene = hg_slab(1000, {200, 0.5, 1}, request);
+  const auto refined = slab_covariance(scene, false, {});
+  const FieldJob job = slab_covariance_job(scene, false, {});
+  const auto found = jackknife(tests::summed(job.batches, 2), job.covariance);
+  for (std::size_t e = 0; e < refined.value.size(); ++e) {
+    CHECK(std::abs(found.value[e] - refined.value[e]) < 1e-14);
+    CHECK(found.error[e] == doctest::Approx(std::abs(refined.difference[e])).epsilon(1e-6));
+  }
+}
+
+TEST_CASE("fields of diffusing scatterers at two times, as by Monte Carlo") {
+  const std::vector<double> delays = {0.003, 0.03, 0.3};
+  for (const double g : {0.0, 0.8}) {
+    const auto request = intensity_request({0.2}, {far_view(0.5), far_view(pi + 0.2)});
+    const Scene scene = hg_slab(300, {60, g, 0.97}, request);
+    const auto job = delay_job(scene, make_plan(scene, ReversedPaths::yes), delays, 5);
+    const auto found = delay_estimates(job, tests::summed(job.field.batches, 200000)).covariance;
+    for (std::size_t t = 0; t < delays.size(); ++t) {
+      const auto expected = slab_covariance(scene, true, {1e-5}, delays[t]).value;
+      for (std::size_t v = 0; v < 2; ++v) {
+        const std::size_t e = 2 * t + v;
+        CHECK_WITHIN_4_SIGMA(found.value[e], found.error[e], expected[v], 0);
+        CHECK(found.error[e] < 0.05 * std::abs(expected[v]));
+      }
+    }
+  }
+}
+
+TEST_CASE("Monte Carlo on random slabs agrees with transport") {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    const Scene scene = tests::RandomSlab(seed).scene();
+    const auto expected = slab_covariance(scene, true, {1e-5}).value;
+    const auto found = tests::run(scene, ReversedPaths::yes, 30000, seed).entries();
+    CAPTURE(seed);
+    for (std::size_t e = 0; e < expected.size(); ++e) {
+      CAPTURE(e);
+      CHECK_WITHIN_4_SIGMA(found.value[e], found.error[e], expected[e], 0);
+    }
+  }
+}
+
+}  // namespace flatspeckle::mc
