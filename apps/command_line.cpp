@@ -23,7 +23,7 @@ std::string with_figure(const std::string& argument) {
   return argument;
 }
 
-std::string joined(const Arguments& arguments) {
+std::string line_of(const Arguments& arguments) {
   std::string text;
   for (const auto& argument : arguments) {
     const bool plain =
@@ -136,7 +136,7 @@ bool Subcommand::parse(const Arguments& arguments) {
     print_help();
     return false;
   }
-  text_ = joined(arguments);
+  text_ = line_of(arguments);
   return true;
 }
 

@@ -63,7 +63,7 @@ namespace {
 using Points = std::vector<std::reference_wrapper<const PointResult>>;
 
 /// The curves of all points, one after the other.
-std::vector<double> joined(const Points& points, std::vector<double> PointResult::*curve) {
+std::vector<double> of_points(const Points& points, std::vector<double> PointResult::*curve) {
   std::vector<double> values;
   for (const PointResult& point : points)
     values.insert(values.end(), (point.*curve).begin(), (point.*curve).end());
@@ -137,8 +137,8 @@ class SweepWriter {
     const auto steps = [&](const PointResult& point) {
       return mc::steps_below(scene.request.tilt_q, range_in_q(scene, point));
     };
-    out.put("field_correlation", joined(points, &PointResult::correlation),
-            joined(points, &PointResult::correlation_error));
+    out.put("field_correlation", of_points(points, &PointResult::correlation),
+            of_points(points, &PointResult::correlation_error));
     out.put("memory_effect_range", column(points, &PointResult::range),
             column(points, &PointResult::range_error));
     out.put("range_censored", column(points, &PointResult::range_censored));

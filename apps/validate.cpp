@@ -24,8 +24,6 @@ const DatasetTable validate_table{
 
 namespace {
 
-using Kind = CovarianceRequest::Kind;
-
 /// What the Monte Carlo method neglects, as a fraction: corrections of order 1/(k mean free path);
 /// the shift of the wavenumber (refraction at the faces, local fields); and correlations, of order
 /// the packing fraction where they are not taken in, of its square where they are (C16). As

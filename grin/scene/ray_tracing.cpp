@@ -24,10 +24,10 @@ void check_start(const SceneField& scene, const RayStops& stops, std::size_t num
       refuse("behind stop_plane = " + listed(plane->point) + ' ' + listed(plane->outwards));
 }
 
-class Tracer {
+class BundleTracer {
  public:
-  Tracer(const SceneField& scene, const RayStops& stops, const RaySteps& steps,
-         std::size_t path_points)
+  BundleTracer(const SceneField& scene, const RayStops& stops, const RaySteps& steps,
+               std::size_t path_points)
       : scene_(scene),
         stops_(stops),
         steps_(steps),
@@ -120,7 +120,7 @@ std::vector<TracedRay> trace_rays(const SceneField& scene, const RayStops& stops
                                   std::size_t path_points) {
   for (std::size_t i = 0; i < starts.size(); ++i) check_start(scene, stops, i, starts[i]);
   std::vector<TracedRay> rays(starts.size());
-  const Tracer tracer(scene, stops, steps, path_points);
+  const BundleTracer tracer(scene, stops, steps, path_points);
   parallel_for(starts.size(), [&](std::size_t i) { rays[i] = tracer.trace(i, starts[i]); });
   return rays;
 }

@@ -9,8 +9,8 @@ namespace flatspeckle::mc {
 
 namespace {
 
-constexpr double never = 1e300;
-constexpr double parallel = 1e-12;  ///< to an edge, which is then never met
+constexpr double no_side = 1e300;
+constexpr double parallel = 1e-12;  ///< to an edge, which is then no_side met
 
 /// Distance to the edge along a unit vector: the lesser of a function of z (to a face) and one of x
 /// (to a side).
@@ -21,8 +21,8 @@ struct Leg {
   Leg(const Domain& domain, Vec2 w)
       : u(w), face(w.z > 0 ? domain.depth : 0), side(std::copysign(domain.width / 2, w.x)) {}
 
-  double to_face(double z) const { return std::abs(u.z) < parallel ? never : (face - z) / u.z; }
-  double to_side(double x) const { return std::abs(u.x) < parallel ? never : (side - x) / u.x; }
+  double to_face(double z) const { return std::abs(u.z) < parallel ? no_side : (face - z) / u.z; }
+  double to_side(double x) const { return std::abs(u.x) < parallel ? no_side : (side - x) / u.x; }
   /// Where both are equal, above or below the medium too.
   double turn(double x) const { return face - u.z * to_side(x); }
 };
@@ -83,7 +83,7 @@ double radians(const Domain& domain, double mu_t, Vec2 kappa, const std::array<L
                                   std::clamp(leg.turn(from), 0.0, domain.depth));
     const double longest =
         std::min((to - from) / std::abs(leg.u.x),
-                 std::abs(leg.u.z) < parallel ? never : domain.depth / std::abs(leg.u.z));
+                 std::abs(leg.u.z) < parallel ? no_side : domain.depth / std::abs(leg.u.z));
     sum += std::abs(kappa.z) * moved + mu_t * longest / 2;
   }
   return sum / 3;  // eight nodes are enough for that much at once
@@ -94,7 +94,7 @@ double radians(const Domain& domain, double mu_t, Vec2 kappa, const std::array<L
 Complex attenuated_wave_integral(const Domain& domain, double mu_t, Vec2 kappa,
                                  const std::array<Vec2, 4>& towards) {
   Domain box = domain;
-  if (domain.kind == Domain::Kind::slab) box.width = never;
+  if (domain.kind == Domain::Kind::slab) box.width = no_side;
   const std::array<Leg, 4> legs = {Leg(box, towards[0]), Leg(box, towards[1]), Leg(box, towards[2]),
                                    Leg(box, towards[3])};
   if (domain.kind == Domain::Kind::slab) return depth_column(box, mu_t, kappa.z, legs, 0);

@@ -39,7 +39,7 @@ class Flux(ProgramTest):
                             ({"view_angles": [0.1]}, "view_angles: unknown key"),
                             ({"covariance": "full"}, "covariance: unknown key"),
                             ({"tilts": [0.1]}, "tilts: unknown key"),
-                            ({"method": "wave"}, "method: unknown key"),
+                            ({"method": "wave"}, "must be one of mc transport auto"),
                             ({"light_angles": [2]}, "light_angles = 2")):
             done = self.call("flux", **(SLAB | keys), out="x.h5", status=2)
             self.assertIn(words, done.stderr)

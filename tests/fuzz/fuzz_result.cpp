@@ -43,11 +43,11 @@ AnyType any_type(Bytes& bytes) {
     case 2:
       return {compound({"r"}, H5T_NATIVE_DOUBLE), true};
     case 3: {
-      const Hdf5Handle text = string_type();
+      const Hdf5Handle text = hdf5_type<std::string>();
       return {compound({"r", "i"}, text.get()), false};
     }
     case 4:
-      return {string_type(), false};
+      return {hdf5_type<std::string>(), false};
     case 5:
       return {{H5Tcreate(H5T_STRING, 5), H5Tclose}, true};
     case 6:

@@ -12,14 +12,14 @@ namespace {
 
 constexpr double far_away = std::numeric_limits<double>::infinity();
 
-struct Extent {
+struct DiskExtent {
   double width = 0;  // of the square that holds the centres
   double largest_radius = 0;
 };
 
-Extent extent_of(const Placement& placement) {
+DiskExtent extent_of(const Placement& placement) {
   Vec2 low{far_away, nowhere}, high{-nowhere, -nowhere};
-  Extent extent;
+  DiskExtent extent;
   for (const auto& [position, scatterer] : placement) {
     low = {std::min(low.x, position.x), std::min(low.z, position.z)};
     high = {std::max(high.x, position.x), std::max(high.z, position.z)};
@@ -63,7 +63,7 @@ std::vector<Neighbour> nearest_neighbours(const Placement& placement) {
   std::vector<Neighbour> nearest(placement.size());
   std::vector<std::size_t> left;
   for (std::size_t j = 0; j < placement.size(); ++j) left.push_back(j);
-  const Extent extent = extent_of(placement);
+  const DiskExtent extent = extent_of(placement);
   const double spacing = extent.width / std::sqrt(static_cast<double>(placement.size()));
   for (double cell = std::max({spacing, 2.5 * extent.largest_radius, 1e-300}); !left.empty();
        cell *= 2) {

@@ -15,8 +15,9 @@ namespace flatspeckle::wave {
 
 namespace {
 
-constexpr std::uint32_t nowhere = ~std::uint32_t{0};
-constexpr std::size_t chunk = 256;  // points that stay in cache with the waves of a scatterer
+constexpr std::uint32_t no_place = ~std::uint32_t{0};
+constexpr std::size_t points_at_a_time =
+    256;  // points that stay in cache with the waves of a scatterer
 
 using Pixels = std::vector<std::uint32_t>;
 
@@ -82,7 +83,7 @@ FieldMap::Points FieldMap::place(const MapTile& tile) const {
   std::vector<bool> covered(tile.pixels());
   for (const Pixels& inside : points.inside)
     for (const std::uint32_t pixel : inside) covered[pixel] = true;
-  points.place.assign(tile.pixels(), nowhere);
+  points.place.assign(tile.pixels(), no_place);
   for (std::uint32_t pixel = 0; pixel < tile.pixels(); ++pixel) {
     if (covered[pixel]) continue;
     points.place[pixel] = static_cast<std::uint32_t>(points.outside.size());
@@ -126,8 +127,9 @@ std::vector<Complex> FieldMap::outside(const MapTile& tile, const Points& points
 std::vector<Complex> FieldMap::direct(const std::vector<Vec2>& points) const {
   const std::size_t lights = solution_.light_angles().size();
   std::vector<Complex> field(lights * points.size());
-  parallel_for((points.size() + chunk - 1) / chunk, [&](std::size_t part) {
-    const std::size_t first = part * chunk, count = std::min(chunk, points.size() - first);
+  parallel_for((points.size() + points_at_a_time - 1) / points_at_a_time, [&](std::size_t part) {
+    const std::size_t first = part * points_at_a_time,
+                      count = std::min(points_at_a_time, points.size() - first);
     std::vector<Complex> sum(lights * count);
     for (std::size_t j = 0; j < solution_.system().placement().size(); ++j)
       add_scattered(solution_, j, std::span(points).subspan(first, count), sum);
@@ -147,7 +149,7 @@ void FieldMap::correct_near(const MapTile& tile, const Points& points,
     const auto ring =
         ring_of_pixels(grid_, tile, centre, scatterer.disk_radius(), rings_->clearance(j));
     std::copy_if(ring.begin(), ring.end(), std::back_inserter(near[j]),
-                 [&](std::uint32_t pixel) { return points.place[pixel] != nowhere; });
+                 [&](std::uint32_t pixel) { return points.place[pixel] != no_place; });
     if (!near[j].empty()) corrections[j] = rings_->correction(j, positions(grid_, tile, near[j]));
   });
   const std::size_t lights = solution_.light_angles().size(), count = points.outside.size();

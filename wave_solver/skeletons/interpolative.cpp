@@ -13,7 +13,7 @@ namespace {
 
 // Samples that are eliminated together; those that at least are looked at to tell the error, since
 // each of them knows of some of the rows only.
-constexpr std::size_t window = 64;
+constexpr std::size_t sample_window = 64;
 
 std::size_t panel_of(std::size_t columns) {
   return columns < 400 ? 8 : 16;
@@ -108,7 +108,7 @@ class PivotedLu {
 
 RowSketch::RowSketch(std::size_t columns, RandomStream random)
     : columns_(columns),
-      samples_(columns + window),
+      samples_(columns + sample_window),
       random_(random),
       sums_(columns_ * samples_),
       part_(columns) {}
@@ -139,8 +139,8 @@ Interpolation interpolate(RowSketch sketch, double tolerance) {
   PivotedLu lu(std::move(sketch.sums_), columns);
   std::size_t last = 0;  // samples that are up to date
   while (lu.rank() < columns) {
-    if (lu.rank() + window > last) {
-      const std::size_t next = std::min(last + 2 * window, lu.samples());
+    if (lu.rank() + sample_window > last) {
+      const std::size_t next = std::min(last + 2 * sample_window, lu.samples());
       lu.update(0, last, next);
       last = next;
     }
