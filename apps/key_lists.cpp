@@ -1,7 +1,9 @@
 #include "apps/key_lists.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <iostream>
+#include <map>
 #include <set>
 
 #include "core/keys/number_text.h"
@@ -58,10 +60,25 @@ void print_json(const Keys& keys, const std::string& subcommand) {
   std::cout << "\n]";
 }
 
+/// Groups whole, in the order in which they come first.
+std::vector<const Key*> in_groups(const Keys& keys) {
+  std::map<std::string, std::size_t> first;
+  std::vector<const Key*> rows;
+  for (const Key& key : keys.rows()) {
+    first.emplace(key.group(), first.size());
+    rows.push_back(&key);
+  }
+  std::stable_sort(rows.begin(), rows.end(), [&](const Key* a, const Key* b) {
+    return first[a->group()] < first[b->group()];
+  });
+  return rows;
+}
+
 void print_markdown(const Keys& keys, const std::string& subcommand) {
   std::cout << "\n## " << subcommand << '\n';
   std::string group;
-  for (const Key& key : keys.rows()) {
+  for (const Key* row : in_groups(keys)) {
+    const Key& key = *row;
     if (key.group() != group)
       std::cout << "\n**" << key.group() << "**\n\n| key | default | meaning |\n|---|---|---|\n";
     group = key.group();
@@ -91,7 +108,8 @@ void print_dictionary(const Keys& keys) {
 
 void print_help_lines(const Keys& keys) {
   std::string group;
-  for (const Key& key : keys.rows()) {
+  for (const Key* row : in_groups(keys)) {
+    const Key& key = *row;
     if (key.group() != group)
       std::printf("%s%s:\n", group.empty() ? "" : "\n", key.group().c_str());
     group = key.group();

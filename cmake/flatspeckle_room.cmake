@@ -35,4 +35,7 @@ endfunction()
 # goes without, so that a file without the includes it needs does not compile.
 function(flatspeckle_unity target)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ${FLATSPECKLE_UNITY} UNITY_BUILD_BATCH_SIZE 6)
+  if(FLATSPECKLE_UNITY)  # clang would see names of one file shadowed by another's
+    target_compile_options(${target} PRIVATE -Wno-shadow)
+  endif()
 endfunction()
