@@ -18,7 +18,7 @@ struct DiskExtent {
 };
 
 DiskExtent extent_of(const Placement& placement) {
-  Vec2 low{far_away, nowhere}, high{-nowhere, -nowhere};
+  Vec2 low{far_away, far_away}, high{-far_away, -far_away};
   DiskExtent extent;
   for (const auto& [position, scatterer] : placement) {
     low = {std::min(low.x, position.x), std::min(low.z, position.z)};
@@ -37,7 +37,7 @@ struct Candidate {
 Candidate nearest_in(const CellGrid& grid, const Placement& placement, std::size_t j) {
   const Vec2 position = placement[j].position;
   const double radius = placement[j].scatterer.disk_radius();
-  Candidate best{{j, far_away}, nowhere};
+  Candidate best{{j, far_away}, far_away};
   grid.any_near(position, [&](Vec2 other, std::size_t l) {
     if (l == j) return false;
     const double distance = length(other - position);
