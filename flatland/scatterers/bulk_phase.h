@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cmath>
 #include <functional>
+#include <numbers>
 #include <string>
 
 namespace flatspeckle {
@@ -12,5 +14,12 @@ struct BulkPhase {
   double g = 0;      ///< mean cosine
   std::string text;  ///< of a table: every number, which tells one from another
 };
+
+/// C22, per radian; for |g| near 1 to all digits.
+inline double henyey_greenstein(double g, double theta) {
+  const double half_sine = std::sin(theta / 2);
+  return (1 - g) * (1 + g) /
+         (2 * std::numbers::pi * ((1 - g) * (1 - g) + 4 * g * half_sine * half_sine));
+}
 
 }  // namespace flatspeckle

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <cmath>
-#include <numbers>
 #include <optional>
 
 #include "core/keys/keys.h"
@@ -32,12 +30,10 @@ inline void add_keys(Keys& keys, TwoTermHg& values) {
 inline BulkPhase make_phase(const Keys& keys, const TwoTermHg& values) {
   const double g1 = keys.required(values.g), g2 = keys.required(values.g_back),
                share = keys.required(values.forward_share);
-  const auto term = [](double g, double theta) {
-    const double half_sine = std::sin(theta / 2);
-    return (1 - g) * (1 + g) /
-           (2 * std::numbers::pi * ((1 - g) * (1 - g) + 4 * g * half_sine * half_sine));
-  };
-  return {[=](double theta) { return share * term(g1, theta) + (1 - share) * term(g2, theta); },
+  return {[=](double theta) {
+            return share * henyey_greenstein(g1, theta) +
+                   (1 - share) * henyey_greenstein(g2, theta);
+          },
           share * g1 + (1 - share) * g2, ""};
 }
 

@@ -4,10 +4,7 @@
 #include <cmath>
 #include <memory>
 
-#include <cblas.h>
-#define lapack_complex_double std::complex<double>
-#define lapack_complex_float std::complex<float>
-#include <lapacke.h>
+#include "core/numbers/blas.h"
 
 namespace flatspeckle::mc {
 
@@ -21,11 +18,6 @@ Complex circular_gaussian(RandomStream& random) {
 
 RandomStream stream_of(std::uint64_t seed, std::uint64_t number) {
   return {seed, static_cast<std::uint64_t>(Stream::fields), number};
-}
-
-void blas_single_thread() {
-  static const bool done = (openblas_set_num_threads(1), true);
-  static_cast<void>(done);
 }
 
 }  // namespace

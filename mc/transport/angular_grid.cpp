@@ -4,8 +4,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "mc/transport/gauss.h"
-
 namespace flatspeckle::mc {
 
 namespace {
@@ -82,7 +80,12 @@ std::vector<double> mapped(const std::vector<double>& unit, double from, double 
 
 }  // namespace
 
-AngularGrid::AngularGrid(const std::vector<Focus>& foci, int order, double fine) : order_(order) {
+AngularGrid::AngularGrid(const std::vector<Focus>& foci, int order, double fine)
+    : order_(order),
+      nodes_(gauss_legendre(order)),
+      last_nodes_(gauss_jacobi(order)),
+      inner_(gauss_legendre(std::max(order + 6, 14))),
+      exact_(gauss_legendre(order + 1)) {
   const auto ends = panel_ends(foci);
   const auto size = static_cast<Eigen::Index>(ends.size() - 1) * order;
   for (Eigen::VectorXd* values : {&angle_, &cosine_, &weight_}) values->resize(size);
@@ -93,13 +96,17 @@ bool AngularGrid::is_last(const Panel& panel) const {
   return panel.to >= right_angle;
 }
 
+const Quadrature& AngularGrid::nodes_of(const Panel& panel) const {
+  return is_last(panel) ? last_nodes_ : nodes_;
+}
+
 /// A point u of [0, 1] is theta = from + u width, or on the last panel pi/2 - u^2 width.
 void AngularGrid::add_panel(double from, double to, double fine) {
   const double width = to - from;
   panels_.push_back({from, to, static_cast<Eigen::Index>(panels_.size()) * order_});
   const Panel& panel = panels_.back();
   const bool last = is_last(panel);
-  const Quadrature rule = last ? gauss_jacobi(order_) : gauss_legendre(order_);
+  const Quadrature& rule = nodes_of(panel);
   for (int j = 0; j < order_; ++j) {
     const double u = rule.node[j],
                  complement = last ? width * u * u : right_angle - from - u * width;
@@ -108,16 +115,15 @@ void AngularGrid::add_panel(double from, double to, double fine) {
     weight_[panel.first + j] = (last ? 2 : 1) * width * rule.weight[j];
   }
   const int parts = std::max(1, static_cast<int>(std::ceil((last ? 2 : 1) * width / fine)));
-  const Quadrature inner = gauss_legendre(std::max(order_ + 6, 14));
   for (int part = 0; part < parts; ++part) {
-    const auto at = mapped(inner.node, static_cast<double>(part) / parts,
+    const auto at = mapped(inner_.node, static_cast<double>(part) / parts,
                            static_cast<double>(part + 1) / parts);
     Subpanel subpanel{panel.first, Eigen::VectorXd(at.size()), lagrange(rule.node, at)};
     for (std::size_t i = 0; i < at.size(); ++i) {
       const auto column = static_cast<Eigen::Index>(i);
       subpanel.angle[column] = last ? to - width * at[i] * at[i] : from + width * at[i];
       subpanel.weighted_basis.col(column) *=
-          width / parts * inner.weight[i] * (last ? 2 * at[i] : 1);
+          width / parts * inner_.weight[i] * (last ? 2 * at[i] : 1);
     }
     subpanels_.push_back(std::move(subpanel));
   }
@@ -143,7 +149,6 @@ AngularGrid::Modes AngularGrid::mode_integrals(int modes) const {
 
 Eigen::VectorXd AngularGrid::interval_integrals(double from, double to) const {
   Eigen::VectorXd found = Eigen::VectorXd::Zero(size());
-  const Quadrature exact = gauss_legendre(order_ + 1);
   for (const Panel& panel : panels_) {
     const double low = std::max(from, panel.from), high = std::min(to, panel.to);
     if (low >= high) continue;
@@ -153,10 +158,10 @@ Eigen::VectorXd AngularGrid::interval_integrals(double from, double to) const {
       return last ? std::sqrt((right_angle - angle) / width) : (angle - panel.from) / width;
     };
     const double start = unit(last ? high : low), end = unit(last ? low : high);
-    const auto at = mapped(exact.node, start, end);
-    const Matrix values = lagrange((last ? gauss_jacobi(order_) : gauss_legendre(order_)).node, at);
+    const auto at = mapped(exact_.node, start, end);
+    const Matrix values = lagrange(nodes_of(panel).node, at);
     for (std::size_t i = 0; i < at.size(); ++i)
-      found.segment(panel.first, order_) += width * (end - start) * exact.weight[i] *
+      found.segment(panel.first, order_) += width * (end - start) * exact_.weight[i] *
                                             (last ? 2 * at[i] : 1) *
                                             values.col(static_cast<Eigen::Index>(i));
   }

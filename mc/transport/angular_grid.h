@@ -5,6 +5,7 @@
 
 #include "core/numbers/complex.h"
 #include "mc/transport/dense.h"
+#include "mc/transport/gauss.h"
 
 namespace flatspeckle::mc {
 
@@ -62,10 +63,13 @@ class AngularGrid {
     Matrix weighted_basis;  ///< l_j at the angles, times their weights: [node][angle]
   };
   void add_panel(double from, double to, double fine);
-  Matrix basis(const Panel& panel, const std::vector<double>& at) const;
   bool is_last(const Panel& panel) const;
+  const Quadrature& nodes_of(const Panel& panel) const;
 
   int order_;
+  Quadrature nodes_, last_nodes_;  ///< of a panel, of the last
+  Quadrature inner_;               ///< of a subpanel
+  Quadrature exact_;               ///< for polynomials of a panel
   Eigen::VectorXd angle_, cosine_, weight_;
   std::vector<Panel> panels_;
   std::vector<Subpanel> subpanels_;

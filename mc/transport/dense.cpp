@@ -4,11 +4,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include <cblas.h>
-#define lapack_complex_double std::complex<double>
-#define lapack_complex_float std::complex<float>
-#include <lapacke.h>
-
+#include "core/numbers/blas.h"
 #include "core/numbers/complex.h"
 
 namespace flatspeckle::mc {
@@ -22,9 +18,6 @@ void multiply(const double* a, Eigen::Index rows, const Matrix& b, double* c) {
   cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, m, n, inner, 1, a, height, b.data(), inner,
               0, c, height);
 }
-
-/// The matrices are small, and tilts run beside each other.
-const bool on_one_thread = (openblas_set_num_threads(1), true);
 
 }  // namespace
 

@@ -12,14 +12,6 @@ namespace {
 
 using std::numbers::pi;
 
-/// p of C22.
-std::function<double(double)> henyey_greenstein(double g) {
-  return [g](double theta) {
-    const double half_sine = std::sin(theta / 2);
-    return (1 - g) * (1 + g) / (2 * pi * ((1 - g) * (1 - g) + 4 * g * half_sine * half_sine));
-  };
-}
-
 /// int p cos(m theta) over the circle, m = 0 .. intervals, by the trapezoidal rule.
 std::vector<double> cosine_modes(const std::function<double(double)>& p, int intervals) {
   static std::mutex planning;
@@ -59,7 +51,7 @@ std::vector<double> significant_modes(const std::function<double(double)>& p) {
 ScatteringLaw::ScatteringLaw(const Scene& scene, double delay) : delay_(delay) {
   const Scatterer& scatterer = scene.scatterer;
   if (scatterer.kind == Scatterer::Kind::hg)
-    density_ = henyey_greenstein(scatterer.g);
+    density_ = [g = scatterer.g](double theta) { return henyey_greenstein(g, theta); };
   else if (scatterer.kind == Scatterer::Kind::point)
     density_ = [](double) { return 1 / (2 * pi); };
   else if (scene.medium.phase.density)

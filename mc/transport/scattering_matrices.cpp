@@ -23,6 +23,11 @@ Matrix gram(const Matrix& integrals, const std::vector<double>& modes, std::size
   return product(weighted, taken.transpose());
 }
 
+void add(PairWaves& waves, const PairWave& wave) {
+  waves.top.push_back(wave.top);
+  waves.bottom.push_back(wave.bottom);
+}
+
 }  // namespace
 
 ScatteringMatrices::ScatteringMatrices(const AngularGrid& grid, const ScatteringLaw& law,
@@ -69,8 +74,7 @@ TransportOperator ScatteringMatrices::transport(double q, Parity parity) const {
           (1 + std::abs(q)) / *std::min_element(grid_.cosine().begin(), grid_.cosine().end())};
 }
 
-PairWaves ScatteringMatrices::waves(const std::vector<Pair>& pairs, Parity parity,
-                                    double factor) const {
+PairWaves ScatteringMatrices::waves(const std::vector<Pair>& pairs, Parity parity) const {
   const Eigen::Index n = grid_.size(), size = parity == Parity::both ? 2 * n : n;
   const auto count = static_cast<Eigen::Index>(pairs.size());
   PairWaves found{{}, {}, Rows(count, size), Rows(count, size)};
@@ -82,7 +86,7 @@ PairWaves ScatteringMatrices::waves(const std::vector<Pair>& pairs, Parity parit
       });
     };
     const auto split = [&](const Eigen::VectorXcd& right, const Eigen::VectorXcd& left) {
-      const double share = factor * std::numbers::sqrt2 / 2;
+      const double share = albedo_ * std::numbers::sqrt2 / 2;
       Eigen::VectorXcd parts(size);
       for (Eigen::Index j = 0; j < n; ++j) {
         if (parity != Parity::odd) parts[j] = share * (right[j] + left[j]);
@@ -98,24 +102,16 @@ PairWaves ScatteringMatrices::waves(const std::vector<Pair>& pairs, Parity parit
 
 PairWaves ScatteringMatrices::lights(const Scene& scene, const std::vector<Pair>& pairs,
                                      Parity parity) const {
-  PairWaves found = waves(pairs, parity, albedo_);
-  for (const Pair& pair : pairs) {
-    const PairWave wave = pair_wave(scene, pair);
-    found.top.push_back(wave.top);
-    found.bottom.push_back(wave.bottom);
-  }
+  PairWaves found = waves(pairs, parity);
+  for (const Pair& pair : pairs) add(found, pair_wave(scene, pair));
   return found;
 }
 
 PairWaves ScatteringMatrices::views(const Scene& scene, const std::vector<Pair>& pairs,
                                     Parity parity) const {
-  PairWaves found = waves(pairs, parity, albedo_);
+  PairWaves found = waves(pairs, parity);
   found.down.swap(found.up);
-  for (const Pair& pair : pairs) {
-    const PairWave wave = pair_wave(scene, turned_round(pair));
-    found.top.push_back(wave.top);
-    found.bottom.push_back(wave.bottom);
-  }
+  for (const Pair& pair : pairs) add(found, pair_wave(scene, turned_round(pair)));
   return found;
 }
 

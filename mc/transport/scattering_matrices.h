@@ -24,7 +24,8 @@ class ScatteringMatrices {
   static std::vector<Parity> parities(double q);
   TransportOperator transport(double q, Parity parity) const;
 
-  /// What pairs feed, and what views collect; shares of mu_t.
+  /// What pairs feed, and what views collect: waves of lights and of views turned round; shares of
+  /// mu_t.
   PairWaves lights(const Scene& scene, const std::vector<Pair>& pairs, Parity parity) const;
   PairWaves views(const Scene& scene, const std::vector<Pair>& pairs, Parity parity) const;
 
@@ -38,7 +39,7 @@ class ScatteringMatrices {
     Matrix even, odd;
   };
   Matrix block(double q, const Blocks& scattering, Parity parity) const;
-  PairWaves waves(const std::vector<Pair>& pairs, Parity parity, double factor) const;
+  PairWaves waves(const std::vector<Pair>& pairs, Parity parity) const;
 
   const AngularGrid& grid_;
   const ScatteringLaw& law_;

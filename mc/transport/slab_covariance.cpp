@@ -6,6 +6,7 @@
 #include <memory>
 #include <utility>
 
+#include "core/numbers/blas.h"
 #include "core/run/parallel.h"
 #include "mc/estimators/single_scattering.h"
 #include "mc/transport/chains.h"
@@ -191,6 +192,7 @@ Refined slab_covariance(const Scene& slab, bool reversed, const Refinement& refi
   const std::size_t entries = slab.request.entries.size();
   if (slab.medium.mu_s == 0)
     return {std::vector<Complex>(entries), std::vector<Complex>(entries), 0};
+  blas_single_thread();
   return Refiner(slab, reversed, refinement, delay).refined();
 }
 

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <utility>
 
+#include "core/numbers/blas.h"
 #include "core/run/parallel.h"
 #include "mc/estimators/flux_walk.h"
 #include "mc/transport/chains.h"
@@ -119,6 +120,7 @@ Refined slab_flux(const Scene& slab, std::size_t angle_bins, const Refinement& r
       all.value[i * size + absorbed] = 1 - direct_transmittance(slab, lights[i]);
     return all;
   }
+  blas_single_thread();
   const ScatteringLaw law(slab);
   std::vector<Refined> each(lights.size());
   parallel_for(lights.size(), [&](std::size_t i) {

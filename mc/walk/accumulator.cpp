@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <cblas.h>
+#include "core/numbers/blas.h"
 
 namespace flatspeckle::mc {
 
@@ -30,8 +30,7 @@ RankKAccumulator::RankKAccumulator(const CovarianceRequest& request, std::span<C
       sums_(sums),
       collected_(channels_ * columns_at_once),
       matrix_(channels_ * channels_) {
-  static const bool single_threaded = (openblas_set_num_threads(1), true);
-  (void)single_threaded;
+  blas_single_thread();
 }
 
 void RankKAccumulator::add(double weight, std::span<const Complex> field) {
@@ -42,8 +41,8 @@ void RankKAccumulator::add(double weight, std::span<const Complex> field) {
 }
 
 void RankKAccumulator::update() {
-  const auto n = static_cast<blasint>(channels_);
-  cblas_zherk(CblasColMajor, CblasLower, CblasNoTrans, n, static_cast<blasint>(columns_), 1.0,
+  const auto n = blas_size(channels_);
+  cblas_zherk(CblasColMajor, CblasLower, CblasNoTrans, n, blas_size(columns_), 1.0,
               collected_.data(), n, 1.0, matrix_.data(), n);
   columns_ = 0;
 }

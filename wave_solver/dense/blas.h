@@ -1,30 +1,10 @@
 #pragma once
 
-// The BLAS and LAPACK that the room uses, with C++ complex numbers.
+// Products and solves of complex matrices, column-major with their leading dimensions.
 
-#include <complex>
-#include <cstddef>
-
-#include <cblas.h>
-
-#define lapack_complex_double std::complex<double>
-#define lapack_complex_float std::complex<float>
-#include <lapacke.h>
+#include "core/numbers/blas.h"
 
 namespace flatspeckle::wave {
-
-/// Parallelism is ours, over realizations, boxes or columns: threads inside BLAS would only compete
-/// with it. Call before any BLAS work.
-inline void blas_single_thread() {
-  static const bool done = (openblas_set_num_threads(1), true);
-  static_cast<void>(done);
-}
-
-inline blasint blas_size(std::size_t n) {
-  return static_cast<blasint>(n);
-}
-
-// Column-major matrices with their leading dimensions.
 
 /// C = alpha op(A) op(B) + beta C; op(A) is rows x inner.
 inline void multiply(CBLAS_TRANSPOSE op_a, CBLAS_TRANSPOSE op_b, std::size_t rows,

@@ -1,0 +1,27 @@
+#pragma once
+
+// The system's BLAS and LAPACK, with C++ complex numbers.
+
+#include <complex>
+#include <cstddef>
+
+#include <cblas.h>
+
+#define lapack_complex_double std::complex<double>
+#define lapack_complex_float std::complex<float>
+#include <lapacke.h>
+
+namespace flatspeckle {
+
+/// Parallelism is ours, over realizations, boxes, tilts or columns: threads inside BLAS would only
+/// compete with it. Call before any BLAS work.
+inline void blas_single_thread() {
+  static const bool done = (openblas_set_num_threads(1), true);
+  static_cast<void>(done);
+}
+
+inline blasint blas_size(std::size_t n) {
+  return static_cast<blasint>(n);
+}
+
+}  // namespace flatspeckle
