@@ -5,6 +5,7 @@
 #include "apps/subcommands.h"
 #include "core/session/session.h"
 #include "flatland/scene/scene_datasets.h"
+#include "mc/transport/refinement.h"
 
 namespace flatspeckle::apps {
 
@@ -18,12 +19,14 @@ void print_medium(const Scene& scene) {
   std::printf("\n");
 }
 
-/// What `auto` stands for: what only Monte Carlo tells is left to it.
-std::string chosen(const Keys& keys, const std::string& method, const SceneSpec& spec,
-                   const Extras& extras) {
-  if (keys.read(method) != "auto") return method;
-  const bool asks_mc = extras.gradient || !extras.delays.empty();
-  return spec.domain == "slab" && !asks_mc ? "transport" : "mc";
+StopRule stop_of(const std::string& method, const Keys& keys, const RunSettings& run,
+                 const MethodSettings& methods) {
+  if (method == "transport") return both_batches();
+  const bool own = method == "wave" && methods.wave_samples;
+  const StopRule stop = own ? stop_rule(keys, run, methods.wave_samples) : stop_rule(keys, run);
+  keys.read(methods.wave_samples);
+  keys.read(run.samples);
+  return stop;
 }
 
 }  // namespace
@@ -33,14 +36,14 @@ int covariance(const Arguments& arguments) {
   RunSettings run;
   MethodSettings methods;
   Extras extras;
-  std::string method = "mc";
+  std::string method = "auto";
   Subcommand command("covariance", "Covariance and intensity of the speckle field of a scene");
   Keys& keys = command.keys();
   add_keys(keys, spec);
   keys.group("Methods");
   keys.add("method", method,
            "Monte Carlo, exactly, or of a slab by transport without chance; auto: transport where "
-           "it can be")
+           "it can be, unless samples or seconds are given")
       .one_of({"mc", "wave", "transport", "auto"});
   add_extra_keys(keys, extras);
   add_mc_keys(keys, methods);
@@ -50,28 +53,20 @@ int covariance(const Arguments& arguments) {
   if (!command.parse(arguments)) return ExitStatus::done;
 
   Session session(command.text(), keys, run, command.only_prints());
-  const std::string by = chosen(keys, method, spec, extras);
-  if (by == "transport") check_transport(spec);
-  const StopRule stop = by == "transport" ? both_batches()
-                        : by == "wave" && methods.wave_samples
-                            ? stop_rule(keys, run, methods.wave_samples)
-                            : stop_rule(keys, run);
+  choose_method(keys, method, spec, run, extras.gradient || !extras.delays.empty());
+  if (method == "transport") read_transport(keys, methods, spec, run);
+  const StopRule stop = stop_of(method, keys, run, methods);
   const auto reversed = reversed_paths(keys, methods);
   const double wave_tolerance = keys.read(methods.wave_tolerance);
-  if (by != "transport") {
-    keys.read(methods.wave_samples);
-    keys.read(run.samples);
-  }
-  if (by == "mc") read_extras(keys, extras);
-  if (by == "transport") keys.read(methods.tolerance);
+  if (method == "mc") read_extras(keys, extras);
   const Scene scene = make_scene(keys, spec);
   const auto [estimation, write_extras] =
-      by == "mc" ? extended_estimation(scene, reversed, extras, session.seed())
-      : by == "wave"
+      method == "mc" ? extended_estimation(scene, reversed, extras, session.seed())
+      : method == "wave"
           ? ExtendedEstimation{wave_estimation(scene, wave_tolerance, session.seed()), {}}
           : ExtendedEstimation{transport_estimation(scene, reversed, methods.tolerance), {}};
   if (!command.settle()) return ExitStatus::done;
-  if (by != "wave") {
+  if (method != "wave") {
     Neglected neglected;
     neglected.add(scene);
     note(neglected);
@@ -89,7 +84,7 @@ int covariance(const Arguments& arguments) {
                        write_axes(file, scene);
                        print_ranges("", mc::write_moments(file, "", job, scene, sums, moments));
                        if (write) write(file, sums);
-                       if (by == "transport") write_numerical_errors(file);
+                       if (method == "transport") mc::write_numerical(file);
                      });
 }
 

@@ -46,12 +46,23 @@ void add_transport_keys(Keys& keys, MethodSettings& settings) {
       .only_of("method = transport");
 }
 
-StopRule both_batches() {
-  return {.samples = 2, .seconds = {}, .target_error = {}};
+void choose_method(const Keys& keys, std::string& method, const SceneSpec& spec,
+                   const RunSettings& run, bool needs_chance) {
+  if (keys.read(method) != "auto") return;
+  const bool to_last = keys.given(run.samples) || keys.given(run.seconds);
+  method = spec.domain == "slab" && !to_last && !needs_chance ? "transport" : "mc";
 }
 
-void write_numerical_errors(ResultFile& file) {
-  file.attribute("/", "errors", std::string("numerical: differences from fewer ordinates"));
+void read_transport(const Keys& keys, MethodSettings& settings, const SceneSpec& spec,
+                    const RunSettings& run) {
+  if (spec.domain != "slab")
+    throw InputError("method", "transport", "needs domain = slab; take another method");
+  const double asked = keys.read(run.target_error).value_or(1);
+  settings.tolerance = std::min(keys.read(settings.tolerance), asked);
+}
+
+StopRule both_batches() {
+  return {.samples = 2, .seconds = {}, .target_error = {}};
 }
 
 void note_rounding(const Scene& scene) {
@@ -95,11 +106,6 @@ Estimation mc_estimation(const Scene& scene, mc::ReversedPaths reversed, std::ui
   return {mc::covariance_job(scene, plan, seed),
           "mc: " + plan.describe() +
               (structure.independent() ? "" : "; structure factor " + structure.origin())};
-}
-
-void check_transport(const SceneSpec& spec) {
-  if (spec.domain != "slab")
-    throw InputError("method", "transport", "needs domain = slab; take another method");
 }
 
 Estimation transport_estimation(const Scene& scene, mc::ReversedPaths reversed, double tolerance) {

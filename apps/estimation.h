@@ -5,7 +5,7 @@
 #include <string>
 
 #include "core/keys/keys.h"
-#include "core/result/result_file.h"
+#include "core/session/run_settings.h"
 #include "flatland/request/field_moments.h"
 #include "flatland/scene/scene.h"
 #include "mc/walk/plan.h"
@@ -32,10 +32,16 @@ struct Estimation {
   std::string plan;
 };
 
+/// Puts into `method` what auto stands for: of a slab transport, unless what only Monte Carlo does
+/// (`needs_chance`) or heeds is asked for.
+void choose_method(const Keys& keys, std::string& method, const SceneSpec& spec,
+                   const RunSettings& run, bool needs_chance = false);
+
+/// Reads what transport heeds. Throws InputError for what is no slab.
+void read_transport(const Keys& keys, MethodSettings& settings, const SceneSpec& spec,
+                    const RunSettings& run);
 /// Of a method without chance, whose jobs are two batches.
 StopRule both_batches();
-/// Says in a result that its errors are those of a method without chance.
-void write_numerical_errors(ResultFile& file);
 
 /// Disks are placed in whole numbers: says so on standard error where that changes the density
 /// (conventions, C12).
@@ -55,8 +61,6 @@ void note(const Neglected& neglected);
 Scene rounded_scene(const Keys& keys, const SceneSpec& spec);
 
 Estimation mc_estimation(const Scene& scene, mc::ReversedPaths reversed, std::uint64_t seed);
-/// Throws InputError for what is no slab.
-void check_transport(const SceneSpec& spec);
 /// Of a slab.
 Estimation transport_estimation(const Scene& scene, mc::ReversedPaths reversed, double tolerance);
 /// Throws InputError.

@@ -6,6 +6,7 @@
 #include "apps/subcommands.h"
 #include "core/session/session.h"
 #include "flatland/scene/scene_datasets.h"
+#include "mc/transport/refinement.h"
 #include "mc/transport/slab_flux.h"
 
 namespace flatspeckle::apps {
@@ -37,7 +38,7 @@ int flux(const Arguments& arguments) {
   SceneSpec spec;
   RunSettings run;
   MethodSettings methods;
-  std::string method = "mc";
+  std::string method = "auto";
   std::int64_t angle_bins = 90;
   Subcommand command("flux",
                      "Reflected, transmitted and absorbed power of a scene: intensity only");
@@ -49,19 +50,20 @@ int flux(const Arguments& arguments) {
   keys.add("light_angles", spec.light_angles, "Directions of the plane waves, from +z").angle();
   keys.add("angle_bins", angle_bins, "Equal bins of the exit angle over (-pi, pi]").from(1, 100000);
   keys.group("Methods");
-  keys.add("method", method,
-           "Monte Carlo, or of a slab by transport without chance; auto: the latter")
+  keys.add(
+          "method", method,
+          "Monte Carlo, or of a slab by transport without chance; auto: the latter, unless samples "
+          "or seconds are given")
       .one_of({"mc", "transport", "auto"});
   add_transport_keys(keys, methods);
   add_run_keys(keys, run);
   if (!command.parse(arguments)) return ExitStatus::done;
 
   Session session(command.text(), keys, run, command.only_prints());
-  if (keys.read(method) == "auto") method = spec.domain == "slab" ? "transport" : "mc";
+  choose_method(keys, method, spec, run);
   const bool by_mc = method == "mc";
-  if (!by_mc) check_transport(spec);
+  if (!by_mc) read_transport(keys, methods, spec, run);
   const StopRule stop = by_mc ? stop_rule(keys, run) : both_batches();
-  if (!by_mc) keys.read(methods.tolerance);
   const auto bins = static_cast<std::size_t>(keys.read(angle_bins));
   const Scene scene = make_scene(keys, spec);
   const mc::FluxJob job = by_mc ? mc::flux_job(scene, bins, session.seed())
@@ -73,7 +75,7 @@ int flux(const Arguments& arguments) {
                        print_table(scene, estimates);
                        write_medium(file, scene);
                        mc::write_flux(file, scene, estimates);
-                       if (!by_mc) write_numerical_errors(file);
+                       if (!by_mc) mc::write_numerical(file);
                      });
 }
 

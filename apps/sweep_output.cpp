@@ -11,6 +11,7 @@
 #include "flatland/scene/scene_datasets.h"
 #include "mc/theory/diffusion.h"
 #include "mc/theory/moments_datasets.h"
+#include "mc/transport/refinement.h"
 
 namespace flatspeckle::apps {
 
@@ -150,6 +151,7 @@ class SweepWriter {
     out.put("wall_s", column(points, &PointResult::wall_s));
     if (const auto target = plan_.stop(plan_.run(method, 0)).target_error)
       out.attribute("target_error", *target);
+    if (plan_.method_words[method] == "transport") mc::write_numerical(file_, group);
     write_traces(out, points, group);
   }
 

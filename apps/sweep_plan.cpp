@@ -61,8 +61,10 @@ SweepPlan::SweepPlan()
   add_view_keys(keys, base);
   keys.add("tilts", base.tilts, "Rotations of the light").angle();
   keys.group("Methods");
-  keys.add("method", method_, "Monte Carlo, exactly, both, or of slabs by transport without chance")
-      .one_of({"mc", "wave", "both", "transport"});
+  keys.add("method", method_,
+           "Monte Carlo, exactly, of slabs by transport without chance; both: Monte Carlo and what "
+           "it is checked by; auto: of slabs transport, unless samples or seconds are given")
+      .one_of({"mc", "wave", "transport", "both", "auto"});
   add_mc_keys(keys, methods);
   add_wave_keys(keys, methods);
   add_transport_keys(keys, methods);
@@ -88,19 +90,20 @@ void SweepPlan::parse_config(const std::string& config, const std::string& comma
 /// All that can be refused: every point must make a scene that the method can take.
 void SweepPlan::check() {
   const Keys& keys = command_.keys();
-  mc_stop_ = wave_stop_ = stop_rule(keys, settings);
-  if (keys.read(methods.wave_samples)) wave_stop_ = stop_rule(keys, settings, methods.wave_samples);
+  choose_method(keys, method_, base, settings);
+  method_words = method_ == "both"
+                     ? std::vector<std::string>{"mc", base.domain == "slab" ? "transport" : "wave"}
+                     : std::vector{method_};
+  const auto has = [&](const char* word) { return std::ranges::count(method_words, word) > 0; };
+  if (has("transport")) read_transport(keys, methods, base, settings);
+  if (has("mc") || has("wave")) mc_stop_ = wave_stop_ = stop_rule(keys, settings);
+  if (const auto& own = keys.read(methods.wave_samples); own && has("wave"))
+    wave_stop_ = stop_rule(keys, settings, methods.wave_samples);
   for (StopRule* stop : {&mc_stop_, &wave_stop_})
     if (!stop->samples && !stop->target_error) stop->target_error = default_target_error;
-  const std::string& word = keys.read(method_);
-  method_words = word == "both" ? std::vector<std::string>{"mc", "wave"} : std::vector{word};
   if (!keys.read(share_).empty()) share = share_of(share_);
   reversed_ = reversed_paths(keys, methods);
   keys.read(methods.wave_tolerance);
-  if (word == "transport") {
-    check_transport(base);
-    keys.read(methods.tolerance);
-  }
   points = sweep_points(keys, lists_);
   check_points();
 }

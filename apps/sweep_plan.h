@@ -37,7 +37,7 @@ class SweepPlan {
   RunSettings settings;
   MethodSettings methods;
   SweepPoints points;
-  std::vector<std::string> method_words;  ///< mc, wave or both
+  std::vector<std::string> method_words;  ///< of mc, wave, transport
   std::optional<SweepShare> share;
 
   const Session& session() const { return *session_; }
@@ -64,7 +64,7 @@ class SweepPlan {
   Scene scene_of(const Keyed<SceneSpec>& point) const;
 
   SweepLists lists_;
-  std::string method_ = "mc", share_;
+  std::string method_ = "auto", share_;
   mc::ReversedPaths reversed_ = mc::ReversedPaths::automatic;
   StopRule mc_stop_, wave_stop_;
   Subcommand command_;

@@ -10,7 +10,7 @@ import numpy as np
 from matplotlib.transforms import offset_copy
 
 MOST_CURVES, MOST_PANELS, ACROSS = 8, 12, 3
-ASIDE = {None: 0, "mc": -2.5, "wave": 2.5}  # points of print
+ASIDE = {None: 0, "mc": -2.5, "wave": 2.5, "transport": 2.5}  # points of print
 DASH = {"marker": "_", "markersize": 9, "markeredgewidth": 0.7}  # diffusion theory of one point
 ABOVE = 1  # in range_censored: the curve stays above 1/2
 
@@ -109,7 +109,7 @@ def entries(sweep, curves, panels, single):
     theory = range_axes.diffusion_in_view(sweep, single)[1]
     for number, value in enumerate(sweep.values(curves) if curves else []):
         line = style.look(number)["linestyle"] if theory else "none"
-        look = curve_looks.curve_look(number, "wave" if len(sweep.prefixes) > 1 else None)
+        look = curve_looks.curve_look(number, curve_looks.last_method(sweep))
         yield (plt.Line2D([], [], linewidth=0.7, linestyle=line, **{**look, "markersize": 3}),
                sweep_file.text(curves, value))
     yield from curve_looks.method_entries(sweep)

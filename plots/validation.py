@@ -1,9 +1,11 @@
 #!/usr/bin/env python3
-"""Validation: Monte Carlo against the exact wave solver, entry by entry, and their residual."""
+"""Validation: Monte Carlo against the exact wave solver, or of a slab against transport, entry by
+entry, and their residual."""
 
 from dataclasses import dataclass
 
 from lib import style
+from lib.sweep_file import METHODS
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -16,21 +18,22 @@ ENTRIES = "number of the entry"
 
 @dataclass
 class Comparison:
-    """Both solvers' entries [curve, x] and their errors; complex ones by distance in the plane."""
+    """Both methods' entries [curve, x] and their errors; complex ones by distance in the plane."""
 
+    reference: str
     x: np.ndarray
     x_label: str
     curve_labels: list
     y_label: str
     mc: np.ndarray
     mc_error: np.ndarray
-    wave: np.ndarray
-    wave_error: np.ndarray
+    exact: np.ndarray
+    exact_error: np.ndarray
 
     def residual(self):
-        """mc - wave in combined standard errors, and those. A complex residual: its magnitude."""
-        combined = np.hypot(self.mc_error, self.wave_error)
-        difference = self.mc - self.wave
+        """mc - reference in combined standard errors, and those. A complex residual: its magnitude."""
+        combined = np.hypot(self.mc_error, self.exact_error)
+        difference = self.mc - self.exact
         if np.iscomplexobj(difference):
             difference = np.abs(difference)
         # Entries that are exactly 0 for both have no errors and agree.
@@ -38,39 +41,45 @@ class Comparison:
                          where=combined > 0), combined
 
 
+def reference_of(result):
+    return "transport" if result.has("transport/trace") else "wave"
+
+
 def read_entries(result, name):
-    entries = [result.values(f"{room}/{name}{ending}")
-               for room in ("mc", "wave") for ending in ("", "_error")]
+    methods = ("mc", reference_of(result))
+    entries = [result.values(f"{method}/{name}{ending}")
+               for method in methods for ending in ("", "_error")]
     if len({entry.shape for entry in entries}) > 1:
-        raise style.Unusable(f"{result.path}: mc and wave {name} are not of one shape")
+        raise style.Unusable(f"{result.path}: {name} of {' and '.join(methods)} is not of one shape")
     return entries
 
 
-def numbered(entries):
+def numbered(reference, entries):
     """Pairs, or the lower triangle of a full covariance [light, view, light, view], row by row."""
     if entries[0].ndim == 4:
         size = entries[0].shape[0] * entries[0].shape[1]
         entries = [entry.reshape(size, size)[np.tril_indices(size)] for entry in entries]
-    return Comparison(np.arange(entries[0].size), ENTRIES, ["entries"], "covariance $|C|$",
+    return Comparison(reference, np.arange(entries[0].size), ENTRIES, ["entries"], "covariance $|C|$",
                       *(entry[None] for entry in entries))
 
 
 def read_comparison(result):
+    reference = reference_of(result)
     if result.has("mc/intensity"):
         lights, views = (result.axis("mc/intensity", axis) for axis in (0, 1))
         curves = [f"light {style.angle(light)}" for light in lights]
-        return Comparison(views, "view angle", curves, r"intensity $C_{vv}$",
+        return Comparison(reference, views, "view angle", curves, r"intensity $C_{vv}$",
                           *read_entries(result, "intensity"))
     if not result.has("mc/covariance"):
         raise style.Unusable(f"{result.path}: has neither mc/intensity nor mc/covariance")
     entries = read_entries(result, "covariance")
     if entries[0].ndim != 2:
-        return numbered(entries)
+        return numbered(reference, entries)
     tilts, views = (result.axis("mc/covariance", axis) for axis in (0, 1))
     if len(views) > max(6, len(tilts)):
-        return Comparison(views, "view angle", [f"tilt {style.angle(tilt)}" for tilt in tilts],
-                          "covariance $|C|$", *entries)
-    return Comparison(tilts, "tilt", [f"view {style.angle(view)}" for view in views],
+        curves = [f"tilt {style.angle(tilt)}" for tilt in tilts]
+        return Comparison(reference, views, "view angle", curves, "covariance $|C|$", *entries)
+    return Comparison(reference, tilts, "tilt", [f"view {style.angle(view)}" for view in views],
                       "covariance $|C|$", *(entry.T for entry in entries))
 
 
@@ -84,14 +93,14 @@ def draw_values(axis, data, allowance):
     for number, label in enumerate(data.curve_labels):
         look, order = style.look(number), np.argsort(data.x)
         x = shifted(data.x, number, len(data.curve_labels))[order]
-        mc, wave = np.abs(data.mc[number][order]), np.abs(data.wave[number][order])
+        mc, exact = np.abs(data.mc[number][order]), np.abs(data.exact[number][order])
         common = {"color": look["color"], "marker": look["marker"], "elinewidth": 0.7}
         axis.vlines(x, mc * (1 - allowance), mc * (1 + allowance), color=look["color"], alpha=0.15,
                     linewidth=4, zorder=0)
         axis.plot(x, mc, color=look["color"], linestyle=look["linestyle"], linewidth=0.5, alpha=0.6)
         axis.errorbar(x, mc, data.mc_error[number][order], linestyle="none", **common,
                       markerfacecolor="white", markersize=5)
-        axis.errorbar(x, wave, data.wave_error[number][order], linestyle="none", **common,
+        axis.errorbar(x, exact, data.exact_error[number][order], linestyle="none", **common,
                       markersize=2.5, label=label)
     axis.set_ylim(bottom=-0.03 * axis.get_ylim()[1])
     axis.set_ylabel(data.y_label)
@@ -112,12 +121,13 @@ def draw_residual(axis, data, allowance):
                   linestyle="none", markersize=3)
     largest = max(SIGMAS, np.abs(residual).max()) * 1.25
     axis.set_ylim(-largest if signed else 0, largest)
-    axis.set_ylabel(r"(mc $-$ wave) / $\sigma$" if signed else r"|mc $-$ wave| / $\sigma$")
+    difference = rf"mc $-$ {data.reference}"
+    axis.set_ylabel(rf"({difference}) / $\sigma$" if signed else rf"|{difference}| / $\sigma$")
 
 
 def add_legend(figure, axis, data, allowance):
     handles, labels = axis.get_legend_handles_labels()
-    kinds = (("white", 5, "open: Monte Carlo"), ("black", 2.5, "filled: wave solver"))
+    kinds = (("white", 5, "open: Monte Carlo"), ("black", 2.5, f"filled: {METHODS[data.reference]}"))
     for fill, size, label in kinds:
         handles.append(plt.Line2D([], [], color="black", marker="o", markerfacecolor=fill,
                                   markersize=size, linestyle="none"))

@@ -190,6 +190,12 @@ void BatchPool::end(std::size_t number, const Run& run, std::unique_lock<std::mu
   lock.lock();
 }
 
+void BatchPool::interrupt() {
+  const std::lock_guard lock(mutex_);
+  stopped_ = StopReason::interrupted;
+  changed_.notify_all();
+}
+
 void BatchPool::fail(std::exception_ptr error) {
   const std::lock_guard lock(mutex_);
   if (!error_) error_ = std::move(error);

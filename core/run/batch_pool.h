@@ -35,6 +35,9 @@ class BatchPool {
   /// cpu_s: what the thread has spent since its last delivery. Merges what can be merged.
   void deliver(const Batch& batch, std::vector<Complex> sums, double cpu_s);
 
+  /// A thread has given up its batch, for a signal came: the runs end as interrupted.
+  void interrupt();
+
   /// A thread threw: no more batches are handed out, and finish() throws this.
   void fail(std::exception_ptr error);
 

@@ -9,4 +9,10 @@ void catch_interrupts();
 /// Whether a signal has come since catch_interrupts().
 bool interrupted();
 
+/// What a long batch throws where it stops half-way, for a signal has come: that batch is lost.
+struct Interrupted {};
+inline void stop_if_interrupted() {
+  if (interrupted()) throw Interrupted{};
+}
+
 }  // namespace flatspeckle

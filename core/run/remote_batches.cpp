@@ -5,6 +5,7 @@
 #include <iostream>
 #include <thread>
 
+#include "core/run/interrupt.h"
 #include "core/run/ranks.h"
 #include "core/run/stopwatch.h"
 
@@ -15,7 +16,7 @@ namespace {
 /// A rank begins with one greeting; then each of its threads asks again and again, with the batch
 /// that it has done, if any.
 struct Request {
-  enum Kind : std::uint32_t { greeting, first, delivery } kind = first;
+  enum Kind : std::uint32_t { greeting, first, delivery, interrupted } kind = first;
   std::uint32_t threads = 0;
   std::uint64_t run = 0, number = 0;
   double cpu_s = 0;
@@ -92,7 +93,12 @@ void work_remotely(Jobs& jobs) {
     }
     const auto job = jobs.get(reply.run);
     std::vector<Complex> sums(job->size);
-    job->run(reply.number, sums);
+    try {
+      job->run(reply.number, sums);
+    } catch (const Interrupted&) {
+      reply = value_of<Reply>(ask(bytes_of(Request{Request::interrupted})));
+      continue;
+    }
     const double cpu_now = thread_cpu_seconds();
     const Request done{Request::delivery, 0, reply.run, reply.number, cpu_now - cpu_before};
     cpu_before = cpu_now;
@@ -120,7 +126,9 @@ void RankServer::take_in(BatchPool* pool, int rank, const Bytes& message) {
     threads_ += static_cast<int>(request.threads);
   } else if (pool != nullptr) {
     try {
-      if (request.kind == Request::delivery)
+      if (request.kind == Request::interrupted)
+        pool->interrupt();
+      else if (request.kind == Request::delivery)
         pool->deliver({request.run, request.number, nullptr}, sums_of(message), request.cpu_s);
     } catch (...) {
       pool->fail(std::current_exception());

@@ -7,6 +7,7 @@
 #include <omp.h>
 
 #include "core/run/batch_pool.h"
+#include "core/run/interrupt.h"
 #include "core/run/ranks.h"
 #include "core/run/remote_batches.h"
 #include "core/run/stopwatch.h"
@@ -25,6 +26,8 @@ void work(BatchPool& pool) {
       pool.deliver(*batch, std::move(sums), cpu_now - cpu_before);
       cpu_before = cpu_now;
     }
+  } catch (const Interrupted&) {
+    pool.interrupt();
   } catch (...) {
     pool.fail(std::current_exception());
   }

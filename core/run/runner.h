@@ -15,7 +15,8 @@ namespace flatspeckle {
 struct BatchJob {
   std::size_t size = 0;  ///< complex sums per batch
   double samples_per_batch = 1;
-  /// Adds batch `number` to `sums` (zeroed). Called from several threads at once.
+  /// Adds batch `number` to `sums` (zeroed). Called from several threads at once. A long one looks
+  /// whether it is to stop (interrupt.h).
   std::function<void(std::uint64_t number, std::span<Complex> sums)> run;
   /// Relative error of what has been merged so far; steers the target and fills the trace.
   std::function<double(const GroupedSums&)> relative_error;

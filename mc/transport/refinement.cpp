@@ -3,7 +3,14 @@
 #include <memory>
 #include <mutex>
 
+#include "core/result/result_group.h"
+
 namespace flatspeckle::mc {
+
+const DatasetTable numerical_table{
+    .name = "numerical",
+    .rows = {},
+    .attributes = {{"", "errors", "text", "what the errors are, where they are not statistical"}}};
 
 BatchJob two_batches(std::size_t size, const std::function<Refined()>& solve) {
   struct Solution {
@@ -24,6 +31,11 @@ BatchJob two_batches(std::size_t size, const std::function<Refined()>& solve) {
     return relative_error(jackknife(sums, sample_mean));
   };
   return job;
+}
+
+void write_numerical(ResultFile& file, const std::string& group) {
+  ResultGroup(file, numerical_table, group)
+      .attribute("errors", "numerical: differences from fewer ordinates");
 }
 
 }  // namespace flatspeckle::mc

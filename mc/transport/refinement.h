@@ -1,8 +1,11 @@
 #pragma once
 
 #include <functional>
+#include <string>
 #include <vector>
 
+#include "core/result/dataset_row.h"
+#include "core/result/result_file.h"
 #include "core/run/runner.h"
 
 namespace flatspeckle::mc {
@@ -27,5 +30,9 @@ struct Refined {
 /// statistics of batches call the standard error of any function of them is its difference then.
 /// Solved when the first batch runs.
 BatchJob two_batches(std::size_t size, const std::function<Refined()>& solve);
+
+extern const DatasetTable numerical_table;
+/// Says of a result, or of a group of it, that its errors are such differences.
+void write_numerical(ResultFile& file, const std::string& group = "");
 
 }  // namespace flatspeckle::mc

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/numbers/blas.h"
+#include "core/run/interrupt.h"
 #include "core/run/parallel.h"
 #include "mc/estimators/single_scattering.h"
 #include "mc/transport/chains.h"
@@ -120,6 +121,7 @@ class Refiner {
         grid = std::make_unique<Discrete>(part.group.foci, order, law_, scene_.medium.albedo);
     }
     parallel_for(open.size(), [&](std::size_t i) {
+      stop_if_interrupted();
       Part& part = *open[i];
       const Discrete& discrete = *grids.at(part.group.foci);
       part.before = std::exchange(part.value, solved(scene_, part.group, discrete.matrices));
@@ -135,6 +137,7 @@ class Refiner {
     const auto scale = scales(scene_.request, sum(&Part::value));
     std::vector<std::vector<Complex>> found(parts_.size());
     parallel_for(parts_.size(), [&](std::size_t p) {
+      stop_if_interrupted();
       for (const auto& link : parts_[p].group.links)
         found[p].push_back(
             twice(scene_, parts_[p].group, link)

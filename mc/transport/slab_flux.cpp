@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/numbers/blas.h"
+#include "core/run/interrupt.h"
 #include "core/run/parallel.h"
 #include "mc/estimators/flux_walk.h"
 #include "mc/transport/chains.h"
@@ -94,6 +95,7 @@ Refined refined_shares(const Scene& scene, double light, std::size_t bins, const
   auto before = shares(scene, light, bins, law, order, found.ordinates);
   for (double last = 1, worst = 1;
        worst > refinement.tolerance || last > 100 * refinement.tolerance;) {
+    stop_if_interrupted();
     if (4 * found.ordinates > 3 * refinement.most_ordinates) break;
     order = Refinement::next_order(order);
     found.value = shares(scene, light, bins, law, order, found.ordinates);

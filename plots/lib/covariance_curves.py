@@ -24,15 +24,16 @@ class Series:
 
 
 def read_groups(result):
-    """(method, prefix of its datasets): both groups of a `validate` result, the root of others."""
+    """(method, prefix of its datasets): the groups of a `validate` result, the root of others."""
     if result.has("mc/field_correlation"):
-        return [(method, f"{method}/") for method in METHODS]
+        return [(method, f"{method}/") for method in METHODS
+                if result.has(f"{method}/field_correlation")]
     if not result.has("field_correlation"):
         raise style.Unusable(f"{result.path}: has no field_correlation; needs a sweep, or "
                              'covariance = "memory_effect"')
     method = str(result.attribute("plan", "")).split(":")[0]
     if method not in METHODS:
-        raise style.Unusable(f"{result.path}: attribute plan names neither method, mc nor wave")
+        raise style.Unusable(f"{result.path}: attribute plan names no method")
     return [(method, "")]
 
 

@@ -11,9 +11,9 @@ FEW_STEPS = f"fewer than {LEAST_STEPS} tilts up to the range"
 
 
 def method_look(method, colour, size=3.5):
-    """Monte Carlo open and large where both methods are drawn: the wave solver shows inside."""
-    sizes = {None: size, "mc": 1.6 * size, "wave": 0.7 * size}
-    return {"color": colour, "markersize": sizes[method],
+    """Monte Carlo open and large where both methods are drawn: the other shows inside."""
+    scales = {None: 1, "mc": 1.6}
+    return {"color": colour, "markersize": scales.get(method, 0.7) * size,
             "markerfacecolor": "none" if method == "mc" else colour}
 
 
@@ -25,12 +25,17 @@ def curve_look(number, method):
     return {"marker": look["marker"], **method_look(method, look["color"], 3), **fill}
 
 
+def last_method(sweep):
+    """Whose points stand for a curve; None of one method alone."""
+    return list(sweep.prefixes)[-1]
+
+
 def method_entries(sweep):
     """Of both methods, where a file holds both."""
     if len(sweep.prefixes) > 1:
-        for method, name in METHODS.items():
+        for method in sweep.prefixes:
             yield plt.Line2D([], [], linestyle="none", marker="o",
-                             **method_look(method, "black")), name
+                             **method_look(method, "black")), METHODS[method]
 
 
 def range_entries(sweep):

@@ -8,7 +8,7 @@ from matplotlib.transforms import offset_copy
 
 MOST_POINTS = 40
 STEP = 0.2  # inches from row to row
-ASIDE = {None: 0, "mc": 2, "wave": -2}  # points of print
+ASIDE = {None: 0, "mc": 2, "wave": -2, "transport": -2}  # points of print
 ABOVE = 1  # in range_censored: the curve stays above 1/2
 THEORY = {"color": "black", "marker": "|", "markersize": 8, "linestyle": "none"}
 

@@ -68,7 +68,7 @@ class Drawing:
             axis.plot(1000 * tilt, field**2, color="0.55", linewidth=1.6, zorder=0.5)
 
     def deviations(self, axes, parts):
-        """Monte Carlo less the wave solver, in combined standard errors of C_E."""
+        """Monte Carlo less the other method, in combined standard errors of C_E."""
         deviation = self.sweep.table("deviation")
         limit = 1.15 * max(np.abs(deviation[self.sweep.rows]).max(), 1.5 * BAND)
         for axis, rows in zip(axes.flat, parts):
@@ -86,7 +86,7 @@ class Drawing:
 
     def curve_entries(self):
         """Legend entries of the curves: (handle, label)."""
-        sweep, method = self.sweep, "wave" if len(self.sweep.prefixes) > 1 else None
+        sweep, method = self.sweep, curve_looks.last_method(self.sweep)
         line = sweep.result.has("diffusion_theory")
         for number, value in enumerate(sweep.values(self.curves) if self.curves else []):
             row = sweep.rows[sweep.columns[self.curves][sweep.rows] == value][0]

@@ -5,7 +5,7 @@ from lib import style
 
 import numpy as np
 
-METHODS = {"mc": "Monte Carlo", "wave": "wave solver"}
+METHODS = {"mc": "Monte Carlo", "wave": "wave solver", "transport": "transport"}
 PARAMETERS = ("density", "radius", "index", "optical_depth", "g", "albedo")
 NAMES = {"density": "density", "radius": "radius", "index": "index", "optical_depth": "OD",
          "g": "$g$", "albedo": "albedo"}

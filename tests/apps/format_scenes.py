@@ -50,6 +50,7 @@ RUNS = {
     "short": ("covariance", {**BOX, "target_error": 1e-9}, 3),
     "validate": ("validate", {**BOX, **FAR}),
     "short_both": ("validate", {**BOX, "target_error": 1e-9}, 3),
+    "transport": ("covariance", {**SLAB, **FAR, "method": "transport", "samples": None}),
     "solve": ("solve", {**CYLINDERS, **FAR, "map": [-5, 5, 0, 4]}),
     "solve_near": ("solve", {"placement": "disks.csv", "near_sensors": "sensors.csv",
                              "scatterer": "tm"}),

@@ -117,7 +117,6 @@ BULK_CASES = [
      ["covariance", "slab", "intensity or memory_effect"]),
     ("covariance", SLAB, {"method": "wave"}, ["domain = slab", "box"]),
     ("covariance", HG_BOX, {"method": "wave"}, ["scatterer = hg", "point, soft, hard, tm or te"]),
-    ("validate", SLAB, {}, ["domain = slab", "box"]),
     ("validate", HG_BOX, {}, ["scatterer = hg", "point, soft, hard, tm or te"]),
     ("solve", SLAB, {}, ["domain = slab", "box"]),
     ("solve", HG_BOX, {}, ["scatterer = hg", "point, soft, hard, tm or te"]),

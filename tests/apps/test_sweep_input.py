@@ -24,7 +24,7 @@ class BadInput(SweepTest):
         self.assertEqual(list(self.finished()), list(self.finished())[:1])
 
     def test_method(self):
-        self.check("method = exact", "mc wave both", method="exact")
+        self.check("method = exact", "mc wave transport both auto", method="exact")
         self.check("slab", "box", method="wave")
         self.check("slab", "box", method="both")
 

@@ -71,7 +71,7 @@ class Interruption(SweepTest):
     def test_in_the_midst_of_points(self):
         """Points that stop at a number of samples, and such that stop at an error, of which many
         are unfinished at a time."""
-        for stop in ({}, {"samples": None, "target_error": 0.0008}):
+        for stop in ({}, {"samples": None, "method": "mc", "target_error": 0.0008}):
             with self.subTest(stop=stop):
                 keys = {**SLOW, **stop}
                 self.call("sweep", **keys, out="whole.h5")

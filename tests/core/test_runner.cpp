@@ -112,6 +112,19 @@ TEST_CASE("an error in a batch comes out of the run") {
   CHECK_THROWS_WITH(run(job, stop, 4), "batch 20");
 }
 
+TEST_CASE("a batch that gives up ends the run as interrupted, with the batches before it") {
+  auto job = uneven_job();
+  job.run = [body = job.run](std::uint64_t number, std::span<Complex> sums) {
+    if (number == 20) throw Interrupted{};
+    body(number, sums);
+  };
+  StopRule stop;
+  stop.samples = 100'000;
+  RunState state;
+  CHECK(run_batches(job, {stop, 2, "", {}}, state) == StopReason::interrupted);
+  CHECK(state.sums.batches() == 20);
+}
+
 // Last: the flag stays raised for the rest of this program.
 TEST_CASE("zz a signal ends the run after the batches in hand, without a gap") {
   catch_interrupts();

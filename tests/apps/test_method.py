@@ -1,0 +1,63 @@
+"""What method = auto stands for, and slabs by Monte Carlo and transport beside each other."""
+
+import unittest
+
+import h5py
+import numpy as np
+
+from program import BOX, SLAB, ProgramTest
+
+SWEEP = {"g": [0, 0.5], "optical_depth": 4, "depth": 50, "tilts": [0, 0.01, 0.02, 0.03, 0.05]}
+
+
+class Method(ProgramTest):
+    def attributes(self, subcommand, keys):
+        self.call(subcommand, **keys, out="x.h5")
+        with h5py.File(self.folder / "x.h5") as file:
+            return dict(file.attrs)
+
+    def test_auto(self):
+        few = {"samples": 2000}
+        for subcommand, keys, method in (("covariance", SLAB, "transport"),
+                                         ("covariance", SLAB | {"target_error": 0.1}, "transport"),
+                                         ("covariance", SLAB | few, "mc"),
+                                         ("covariance", SLAB | few | {"gradient": True}, "mc"),
+                                         ("covariance", BOX | few, "mc"),
+                                         ("flux", SLAB, "transport"), ("flux", BOX | few, "mc"),
+                                         ("sweep", SWEEP, "transport"), ("sweep", SWEEP | few, "mc")):
+            with self.subTest(subcommand=subcommand, keys=keys):
+                found = self.attributes(subcommand, keys)
+                self.assertEqual(found["plan"].split(":")[0], method)
+                self.assertIn(f'method = "{method}"', found["config"])
+                self.assertEqual("errors" in found, method == "transport")
+
+    def test_an_error_is_heeded(self):
+        rough, fine = (self.attributes("flux", SLAB | {"target_error": error})["config"]
+                       for error in (0.1, 1e-8))
+        self.assertIn("tolerance = 1e-06", rough)
+        self.assertIn("tolerance = 1e-08", fine)
+
+    def test_what_only_chance_heeds(self):
+        for subcommand, keys in (("covariance", SLAB), ("flux", SLAB), ("sweep", SWEEP)):
+            for key in ("samples", "seconds"):
+                done = self.call(subcommand, **keys, method="transport", out="x.h5", status=2,
+                                 **{key: 10})
+                self.assertIn(f"{key} = 10: nothing here has use for it", done.stderr)
+
+    def test_validate_and_sweep_of_both(self):
+        self.call("validate", **SLAB, view_angles=[0, 0.5, 3.1], samples=20000, out="x.h5")
+        with h5py.File(self.folder / "x.h5") as file:
+            self.assertEqual(file["transport/intensity"].shape, (1, 3))
+            self.assertLess(np.max(file["deviation"][:]), 4)
+            self.assertEqual(file.attrs["bias_allowance"], 0)
+            self.assertIn("numerical", file["transport"].attrs["errors"])
+            error = file["transport/intensity_error"][:] / file["transport/intensity"][:]
+            self.assertLess(np.max(error), 1e-5)
+        self.call("sweep", **SWEEP, method="both", samples=20000, out="x.h5")
+        with h5py.File(self.folder / "x.h5") as file:
+            mc, transport = (file[f"{name}/field_correlation"][:] for name in ("mc", "transport"))
+            self.assertLess(np.max(np.abs(mc - transport)), 0.05)
+
+
+if __name__ == "__main__":
+    unittest.main()
