@@ -147,7 +147,6 @@ void BatchPool::deliver(const Batch& batch, std::vector<Complex> sums, double cp
   run->waiting.emplace(batch.number, Sums{std::move(sums), cpu_s});
   if (!run->merging) merge(batch.run, *run, lock);
   changed_.notify_all();
-  if (const double wall = clock_.seconds(); progress_.due(wall)) progress_.update(wall, figures());
 }
 
 void BatchPool::merge(std::size_t number, Run& run, std::unique_lock<std::mutex>& lock) {
@@ -188,6 +187,11 @@ void BatchPool::end(std::size_t number, const Run& run, std::unique_lock<std::mu
   lock.unlock();
   if (list_.ended) list_.ended(number, reason);
   lock.lock();
+}
+
+void BatchPool::show_progress() {
+  const std::lock_guard lock(mutex_);
+  if (const double wall = clock_.seconds(); progress_.due(wall)) progress_.update(wall, figures());
 }
 
 void BatchPool::interrupt() {
@@ -236,7 +240,8 @@ double BatchPool::seconds_left() const {
   const double begun = static_cast<double>(ended_ + runs_.size());
   left += static_cast<double>(list_.count - next_run_) * whole / begun;
   const double seconds = left * clock_.seconds() / cpu_s_;
-  return options_.seconds ? std::min(seconds, *options_.seconds - clock_.seconds()) : seconds;
+  if (!options_.seconds) return seconds;
+  return std::clamp(*options_.seconds - clock_.seconds(), 0.0, std::max(seconds, 0.0));
 }
 
 }  // namespace flatspeckle

@@ -2,6 +2,7 @@
 
 #include <condition_variable>
 #include <exception>
+#include <limits>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -40,6 +41,9 @@ class BatchPool {
 
   /// A thread threw: no more batches are handed out, and finish() throws this.
   void fail(std::exception_ptr error);
+
+  /// Shows how the work gets on, where that is due.
+  void show_progress();
 
   /// After the last delivery.
   PoolEnd finish();
@@ -89,7 +93,8 @@ class BatchPool {
   Runs runs_;
   std::size_t next_run_ = 0, opening_ = 0, ended_ = 0;
   std::size_t idle_ = 0;  ///< that needed no work
-  double cpu_s_ = 0, ended_cpu_s_ = 0, first_samples_ = 0, new_samples_ = 0, last_error_ = 0;
+  double cpu_s_ = 0, ended_cpu_s_ = 0, first_samples_ = 0, new_samples_ = 0;
+  double last_error_ = std::numeric_limits<double>::infinity();
   std::optional<StopReason> stopped_;
   std::exception_ptr error_;
 };

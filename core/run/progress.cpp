@@ -48,7 +48,10 @@ void Progress::update(double wall_s, const Figures& figures) {
   if (!due(wall_s)) return;
   next_ = wall_s + (terminal_ ? 0.2 : std::clamp(0.02 * wall_s, 10.0, 600.0));
   show(figures);
-  std::fprintf(stderr, ", %.*f/s", figures.rate < 10 ? 2 : 0, figures.rate);
+  if (figures.samples > 0)
+    std::fprintf(stderr, ", %.*f/s", figures.rate < 10 ? 2 : 0, figures.rate);
+  else
+    std::fprintf(stderr, " in %s", duration(wall_s).c_str());
   if (std::isfinite(figures.error)) std::fprintf(stderr, ", error %.2g %%", 100 * figures.error);
   if (std::isfinite(figures.seconds_left))
     std::fprintf(stderr, ", %s left", duration(figures.seconds_left).c_str());

@@ -1,7 +1,10 @@
 #include "core/run/runner.h"
 
 #include <algorithm>
+#include <chrono>
+#include <condition_variable>
 #include <exception>
+#include <mutex>
 #include <thread>
 
 #include <omp.h>
@@ -33,6 +36,26 @@ void work(BatchPool& pool) {
   }
 }
 
+/// Shows how a pool gets on, however long its batches are.
+class Watch {
+ public:
+  explicit Watch(BatchPool& pool)
+      : thread_([this, &pool](const std::stop_token& end) { show(pool, end); }) {}
+
+ private:
+  void show(BatchPool& pool, const std::stop_token& end) {
+    std::unique_lock lock(mutex_);
+    while (!end.stop_requested()) {
+      ended_.wait_for(lock, end, std::chrono::milliseconds(200), [] { return false; });
+      pool.show_progress();
+    }
+  }
+
+  std::mutex mutex_;
+  std::condition_variable_any ended_;
+  std::jthread thread_;  // last: ends before what it uses
+};
+
 }  // namespace
 
 int default_threads() {
@@ -44,8 +67,11 @@ PoolEnd run_pool(const RunList& runs, const PoolOptions& options) {
   BatchPool pool(runs, options, threads * ranks().size);
   std::thread server;
   if (options.server != nullptr) server = std::thread([&] { options.server->serve(pool); });
+  {
+    const Watch watch(pool);
 #pragma omp parallel num_threads(threads)
-  work(pool);
+    work(pool);
+  }
   if (server.joinable()) server.join();
   return pool.finish();
 }

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "core/run/interrupt.h"
+
 namespace flatspeckle::mc {
 
 namespace {
@@ -212,7 +214,10 @@ LayerResponse layer_response(const TransportOperator& medium, double depth, cons
   const double rate = std::max(fastest_rate(medium, lights), fastest_rate(medium, views));
   const int doublings = std::max(0, static_cast<int>(std::ceil(std::log2(depth * rate / 2))));
   Layer layer(medium, std::ldexp(depth, -doublings), lights, views);
-  for (int i = 0; i < doublings; ++i) layer.double_depth();
+  for (int i = 0; i < doublings; ++i) {
+    stop_if_interrupted();
+    layer.double_depth();
+  }
   return layer.response();
 }
 

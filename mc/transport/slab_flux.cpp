@@ -88,6 +88,19 @@ std::vector<Complex> shares(const Scene& scene, double light, std::size_t bins,
   return found;
 }
 
+/// Of what leaves through a face relative to itself; of bins relative to all that leaves, and a
+/// hundredth of it, for peaks of large disks would take a hundred times as long.
+double worst_difference(const Refined& shares) {
+  double worst = 0, leaving = 0;
+  for (const FluxShare share : {reflected, transmitted}) {
+    worst = std::max(worst, std::abs(shares.difference[share] / shares.value[share]));
+    leaving += shares.value[share].real();
+  }
+  for (std::size_t i = flux_shares; i < shares.value.size(); ++i)
+    worst = std::max(worst, std::abs(shares.difference[i]) / leaving / 100);
+  return worst;
+}
+
 Refined refined_shares(const Scene& scene, double light, std::size_t bins, const ScatteringLaw& law,
                        const Refinement& refinement) {
   Refined found;
@@ -101,10 +114,7 @@ Refined refined_shares(const Scene& scene, double light, std::size_t bins, const
     found.value = shares(scene, light, bins, law, order, found.ordinates);
     found.difference = found.value;
     for (std::size_t i = 0; i < before.size(); ++i) found.difference[i] -= before[i];
-    const auto relative = [&](FluxShare share) {
-      return std::abs(found.difference[share]) / std::abs(found.value[share]);
-    };
-    last = std::exchange(worst, std::max(relative(reflected), relative(transmitted)));
+    last = std::exchange(worst, worst_difference(found));
     before = found.value;
   }
   return found;
