@@ -8,6 +8,7 @@
 
 #include "core/numbers/complex.h"
 #include "core/numbers/random.h"
+#include "core/run/interrupt.h"
 #include "flatland/scene/scene.h"
 #include "grin/media/free_flight.h"
 
@@ -141,6 +142,8 @@ class FluxWalk {
 
   /// To the next collision; false if that would be outside.
   bool fly(Particle& particle) {
+    constexpr std::uint64_t between_looks = 4096;
+    if (++flights_ % between_looks == 0) stop_if_interrupted();
     const double stretch = entry_.stretch(particle.w, mu_t_);
     const double edge = domain_.distance_to_edge(particle.x, particle.w);
     const double u = random_.uniform();
@@ -198,6 +201,7 @@ class FluxWalk {
   double power_ = 0;  ///< share of the light along this ray that collides
   double drift_ = 0;
   std::vector<Particle> flying_;
+  std::uint64_t flights_ = 0;
 };
 
 }  // namespace flatspeckle::mc

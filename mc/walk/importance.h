@@ -29,12 +29,18 @@ class DepthImportance {
   /// nothing.
   double rise() const;
   bool steep() const { return steep_; }
+  /// Whether light dies out exponentially, not only as by the faces of a lossless slab: there
+  /// walkers of equal weight are as good at any depth.
+  bool dies_out() const { return dies_out_; }
+  /// Of a path and all that it splits into, on the mean, by diffusion theory.
+  double scatterings() const { return scatterings_; }
 
  private:
   std::size_t interval(double z) const;
 
   double step_;
-  bool steep_ = false;
+  bool steep_ = false, dies_out_ = false;
+  double scatterings_ = 0;
   std::vector<double> log_worth_;  ///< at equally spaced depths
 };
 

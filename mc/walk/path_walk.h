@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/numbers/random.h"
+#include "core/run/interrupt.h"
 #include "flatland/scene/scene.h"
 #include "grin/media/free_flight.h"
 #include "mc/ends/scattering.h"
@@ -107,7 +108,9 @@ class PathWalk {
   }
 
   /// To the next scatterer; false if there is none.
-  bool step(Walker& walker, RandomStream& random) const {
+  bool step(Walker& walker, RandomStream& random) {
+    constexpr std::uint64_t between_looks = 4096;
+    if (++steps_ % between_looks == 0) stop_if_interrupted();
     const Vec2 w = scattering_.sample(walker.arrival, random);
     const double flight = sample_flight(walker, w, random);
     if (flight >= domain_.distance_to_edge(walker.x, w)) return false;
@@ -214,6 +217,7 @@ class PathWalk {
   TalliedPath<Tally> path_;
   double start_density_ = -1, log_worth_first_ = 0, expected_first_ = 0;
   double ticket_ = 0;  ///< a score at every whole number
+  std::uint64_t steps_ = 0;
 };
 
 }  // namespace flatspeckle::mc

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "core/error.h"
 #include "mc/walk/importance.h"
 
 namespace flatspeckle::mc {
@@ -31,13 +32,30 @@ double score_level(double g) {
 
 /// Whether a box is so narrow that little reaches the views without absorption either.
 bool loses_by_the_sides(const Scene& scene) {
-  return scene.domain.kind == Domain::Kind::box && scene.medium.mu_s > 0 &&
-         DepthImportance(scene).steep();
+  if (scene.domain.kind != Domain::Kind::box || scene.medium.mu_s == 0) return false;
+  const DepthImportance importance(scene);
+  return importance.steep() && importance.dies_out();
 }
 
-/// So many that the sums of a batch cost less to merge than to make.
-std::uint64_t paths_per_batch(const Plan& plan, std::size_t channels) {
-  return plan.rank_k && channels > 100 ? 2000 : 400;
+/// Of a batch: tens of milliseconds.
+constexpr double most_scatterings = 1e6;
+
+/// Throws InputError for media in which a single path takes seconds.
+double scatterings_per_path(const Scene& scene) {
+  const double scatterings = DepthImportance(scene).scatterings();
+  if (scatterings < 100 * most_scatterings) return scatterings;
+  throw InputError("optical_depth", scene.medium.mu_t * scene.domain.depth,
+                   "a light path and what it splits into scatter more than 1e8 times; take a "
+                   "thinner medium, or a slab, whose transport needs no paths");
+}
+
+/// So many that the sums of a batch cost less to merge than to make; where walkers split into many,
+/// so few that a batch does not take long.
+std::uint64_t paths_per_batch(const Scene& scene, const Plan& plan) {
+  const std::uint64_t most = plan.rank_k && scene.request.channels.size() > 100 ? 2000 : 400;
+  if (!plan.weighted || scene.medium.mu_s == 0) return most;
+  const double paths = most_scatterings / scatterings_per_path(scene);
+  return paths < static_cast<double>(most) ? std::max<std::uint64_t>(1, std::llround(paths)) : most;
 }
 
 }  // namespace
@@ -64,7 +82,7 @@ Plan make_plan(const Scene& scene, ReversedPaths reversed) {
   plan.weighted = scene.medium.albedo < 1 - 1e-12 || loses_by_the_sides(scene);
   constexpr std::size_t few = 20000;  // entries; a millisecond each at the most
   plan.sampled_single = plan.near || plan.rank_k || request.entries.size() > few;
-  plan.paths_per_batch = paths_per_batch(plan, request.channels.size());
+  plan.paths_per_batch = paths_per_batch(scene, plan);
   return plan;
 }
 
