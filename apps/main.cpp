@@ -11,6 +11,7 @@
 #include "apps/subcommands.h"
 #include "core/error.h"
 #include "core/result/version.h"
+#include "core/run/interrupt.h"
 #include "core/run/ranks.h"
 
 namespace {
@@ -27,7 +28,8 @@ void print_usage() {
   std::puts(
       "\n  flatspeckle SUBCOMMAND --help lists the keys; flatspeckle --version tells the version.\n"
       "  Exit status: 0 done, 2 bad input, 3 stopped before the target error was reached,\n"
-      "  4 input or output failed, 5 a row of a benchmark failed, 75 interrupted and resumable.");
+      "  4 input or output failed, 5 a row of a benchmark failed, 75 interrupted and resumable,\n"
+      "  130 interrupted, nothing to resume.");
 }
 
 const SubcommandEntry& subcommand_named(const std::string& word) {
@@ -71,6 +73,7 @@ int fail(std::string what, int status) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  set_signals();
   try {
     return run({argv, argv + argc});
   } catch (const InputError& error) {

@@ -11,6 +11,7 @@
 #include "core/run/interrupt.h"
 #include "core/run/ranks.h"
 #include "core/run/remote_batches.h"
+#include "core/session/output_lock.h"
 #include "core/session/shard_folder.h"
 
 namespace flatspeckle::apps {
@@ -90,6 +91,7 @@ void refuse_leftovers(const SweepPlan& plan, const ShardFolder& folder,
 /// Of this process alone, or of rank 0.
 int lead(const SweepPlan& plan, RankServer* server) {
   const std::string& out = plan.settings.out;
+  const OutputLock lock(plan.share ? out + ".shard-" + std::to_string(plan.share->number) : out);
   ShardFolder folder(shards_of(out));
   if (is_complete(plan, folder)) {
     std::cout << out << " is complete; nothing to resume\n";

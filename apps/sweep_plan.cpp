@@ -76,7 +76,8 @@ SweepPlan::SweepPlan()
 
 bool SweepPlan::parse(const Arguments& arguments) {
   if (!command_.parse(arguments)) return false;
-  session_.emplace(command_.text(), command_.keys(), settings, command_.only_prints());
+  session_.emplace(command_.text(), command_.keys(), settings, command_.only_prints(),
+                   Session::Out::shared);
   check();
   return command_.settle();
 }

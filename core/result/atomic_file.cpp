@@ -34,6 +34,28 @@ int create(const fs::path& path) {
   return ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
 }
 
+/// Where a link points to. Throws InputError for a loop of them.
+fs::path followed(fs::path path) {
+  constexpr int most_links = 40;
+  std::error_code none;
+  for (int links = 0; fs::is_symlink(path, none); ++links) {
+    if (links == most_links)
+      throw InputError("cannot write " + path.string() + ": a loop of symbolic links");
+    const fs::path target = fs::read_symlink(path, none);
+    path = target.is_absolute() ? target : folder_of(path) / target;
+  }
+  return path;
+}
+
+/// Of a file that is there; the superuser is asked to mind it too.
+bool is_protected(const fs::path& path) {
+  constexpr fs::perms write =
+      fs::perms::owner_write | fs::perms::group_write | fs::perms::others_write;
+  std::error_code none;
+  return (fs::status(path, none).permissions() & write) == fs::perms::none ||
+         ::access(path.c_str(), W_OK) != 0;
+}
+
 /// The new name itself survives a power failure only once its folder is on the disk.
 bool sync_folder(const fs::path& folder) {
   const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
@@ -46,12 +68,15 @@ bool sync_folder(const fs::path& folder) {
 
 }  // namespace
 
-void check_writable(const fs::path& path) {
-  if (!path.has_filename())
-    throw InputError("cannot write \"" + path.string() + "\": no file name");
+void check_writable(const fs::path& given) {
+  if (!given.has_filename())
+    throw InputError("cannot write \"" + given.string() + "\": no file name");
+  const fs::path path = followed(given);
   std::error_code unknown;  // leaves it to the attempt below to complain
   if (fs::exists(path, unknown) && !fs::is_regular_file(path, unknown))
     throw InputError("cannot write " + path.string() + ": not a regular file");
+  if (fs::exists(path, unknown) && is_protected(path))
+    throw IoError("cannot write " + path.string() + ": it is write-protected");
   const fs::path temporary = temporary_beside(path);
   const int descriptor = create(temporary);
   if (descriptor < 0) {
@@ -64,7 +89,9 @@ void check_writable(const fs::path& path) {
 }
 
 FileBeside::FileBeside(fs::path path)
-    : path_(std::move(path)), temporary_(temporary_beside(path_)), descriptor_(create(temporary_)) {
+    : path_(followed(std::move(path))),
+      temporary_(temporary_beside(path_)),
+      descriptor_(create(temporary_)) {
   if (descriptor_ < 0) fail(errno);
 }
 

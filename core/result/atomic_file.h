@@ -9,7 +9,7 @@ namespace flatspeckle {
 
 /// Makes sure, before long work, that a file can be put at `path`; leaves nothing behind. Throws
 /// InputError where the folder is missing or something that is no file is there, IoError where the
-/// folder is closed to us or the disk is full.
+/// folder is closed to us, the file is write-protected or the disk is full.
 void check_writable(const std::filesystem::path& path);
 
 /// Whether a file that is in place must survive a failure of the machine, which takes some
@@ -17,7 +17,7 @@ void check_writable(const std::filesystem::path& path);
 enum class Durable { yes, no };
 
 /// A file that grows beside `path` under a temporary name (.name.tmp-PID), and is removed again
-/// unless it was put in place.
+/// unless it was put in place. Symbolic links are followed.
 class FileBeside {
  public:
   /// Makes an empty one. Throws IoError.

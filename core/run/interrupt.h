@@ -1,10 +1,19 @@
 #pragma once
 
+#include <string>
+
 namespace flatspeckle {
 
-/// After this, SIGINT and SIGTERM set a flag that ends runs after the batches in hand; a second
+/// After this, SIGINT and SIGTERM end the program at once with exit status 130, and neither a
+/// closed pipe nor a limit on the size of files ends it: writing fails.
+void set_signals();
+
+/// After this, SIGINT, SIGTERM and SIGHUP set a flag that ends runs after the batches in hand; a second
 /// signal ends the program at once.
 void catch_interrupts();
+
+/// A file that is removed, too, where the program ends with 130; empty: none.
+void remove_if_ended(const std::string& path);
 
 /// Whether a signal has come since catch_interrupts().
 bool interrupted();

@@ -41,6 +41,7 @@ Session::Session(std::string command_line, const Keys& keys, const RunSettings& 
                                                      : "placement file (--out FILE.csv)"));
   settings.resume || kind == Out::other ? check_writable(settings.out)
                                         : check_result_path(settings.out);
+  if (kind != Out::shared) lock_ = std::make_unique<const OutputLock>(settings.out);
 }
 
 int Session::threads() const {
@@ -104,7 +105,8 @@ int Session::run(std::string plan, std::vector<PlannedRun> runs, const std::stri
   runs_ = std::move(runs);
   identity_ = "flatspeckle " + version() + '\n' + keys_.identity() + inputs;
   for (const auto& run : runs_) states_[run.name];
-  const bool exists = std::filesystem::exists(settings_.out);
+  known_ = stamp_of(settings_.out);
+  const bool exists = known_.has_value();
   has_older_ = exists && !settings_.resume;
   if (exists && settings_.resume) resume();
   if (already_complete_) {
@@ -153,6 +155,7 @@ int Session::finish(const std::function<void(ResultFile&)>& contents) {
   for (const auto& [name, state] : states_) write_trace(file, name, state.trace);
   contents(file);
   if (!converged_) write_states(file);
+  set_strangers_aside();
   file.commit_sealed(Durable::yes);
   std::error_code none;
   if (!older_aside_.empty()) std::filesystem::remove(older_aside_, none);
@@ -175,14 +178,8 @@ void Session::write_common(ResultFile& file, bool converged) const {
   write_provenance(file, provenance);
 }
 
-/// By a second name for it: the first is its own until the new file takes it.
 void Session::set_older_aside() {
-  namespace fs = std::filesystem;
-  older_aside_ = free_aside(settings_.out).string();
-  std::error_code failed;
-  fs::create_hard_link(settings_.out, older_aside_, failed);
-  if (failed) fs::rename(settings_.out, older_aside_, failed);  // of file systems without
-  if (failed) throw IoError("renaming " + settings_.out + " failed: " + failed.message());
+  older_aside_ = set_aside(settings_.out).string();
   has_older_ = false;
 }
 
@@ -190,8 +187,20 @@ void Session::save_resumable() {
   ResultFile file(settings_.out);
   write_common(file, false);
   write_states(file);
+  set_strangers_aside();
   if (has_older_) set_older_aside();
   file.commit_sealed(Durable::yes);
+  known_ = stamp_of(settings_.out);
+}
+
+/// What something else has put there since: this program keeps off (OutputLock).
+void Session::set_strangers_aside() {
+  const auto found = stamp_of(settings_.out);
+  if (!found || found == known_) return;
+  const auto place = set_aside(settings_.out);
+  std::cerr << "warning: another file stood at " << settings_.out << "; it is now "
+            << place.string() << '\n';
+  has_older_ = false;
 }
 
 void Session::write_states(ResultFile& file) const {

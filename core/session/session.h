@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,7 +12,9 @@
 #include "core/result/result_file.h"
 #include "core/run/runner.h"
 #include "core/run/stopwatch.h"
+#include "core/session/aside.h"
 #include "core/session/exit_status.h"
+#include "core/session/output_lock.h"
 #include "core/session/run_settings.h"
 
 namespace flatspeckle {
@@ -36,7 +39,9 @@ class Session {
  public:
   /// command_line: as typed. Reads seed and threads. only_prints: no result is wanted.
   /// Throws InputError where `out` is missing or not writable.
-  enum class Out { result, other };  ///< kinds of files; one that is no result may be replaced
+  /// Kinds of files: one that is no result may be replaced; a result that several processes make
+  /// together they keep to themselves.
+  enum class Out { result, other, shared };
   Session(std::string command_line, const Keys& keys, const RunSettings& settings,
           bool only_prints = false, Out kind = Out::result);
 
@@ -74,6 +79,7 @@ class Session {
   void write_common(ResultFile& file, bool converged) const;
   void save_resumable();
   void set_older_aside();
+  void set_strangers_aside();
   void write_states(ResultFile& file) const;
 
   std::string command_line_;
@@ -82,12 +88,14 @@ class Session {
   std::uint64_t seed_;
   std::string started_;
   Stopwatch clock_;
+  std::unique_ptr<const OutputLock> lock_;
 
   std::string plan_, identity_;
   std::vector<PlannedRun> runs_;
   std::map<std::string, RunState> states_;
-  bool has_older_ = false;   ///< the file there is none of these runs
-  std::string older_aside_;  ///< where it is now
+  bool has_older_ = false;          ///< the file there is none of these runs
+  std::string older_aside_;         ///< where it is now
+  std::optional<FileStamp> known_;  ///< of the file there, when it was last looked at or written
   bool already_complete_ = false, interrupted_ = false, converged_ = true;
 };
 

@@ -185,7 +185,7 @@ class BadInput(FieldTest):
         process = self.start("field", **BOX, **VIEWS, fields=1_000_000, method="paths",
                              out="field.h5")
         deadline = time.monotonic() + 60
-        while not catches(process, signal.SIGINT):
+        while not catches(process, signal.SIGHUP):
             time.sleep(0.002)
             self.assertLess(time.monotonic(), deadline)
         process.send_signal(signal.SIGINT)

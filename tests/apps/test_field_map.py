@@ -140,7 +140,7 @@ class Unfinished(ProgramTest):
             process = self.start("solve", **{**POINTS, "map_pixels": [4000, 4000]}, out="map.h5")
             deadline = time.monotonic() + 60
             while not (any(".tmp" in path.name for path in self.folder.iterdir())
-                       and catches(process, number)):
+                       and catches(process, signal.SIGHUP)):
                 time.sleep(0.002)
                 self.assertIsNone(process.poll())
                 self.assertLess(time.monotonic(), deadline)
