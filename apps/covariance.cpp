@@ -62,14 +62,14 @@ int covariance(const Arguments& arguments) {
     keys.read(methods.wave_samples);
     keys.read(run.samples);
   }
-  if (by == "mc") read_extras(keys, extras);
+  if (by != "wave") read_extras(keys, extras);
   if (by == "transport") keys.read(methods.tolerance);
   const Scene scene = make_scene(keys, spec);
   const auto [estimation, write_extras] =
       by == "mc" ? extended_estimation(scene, reversed, extras, session.seed())
       : by == "wave"
           ? ExtendedEstimation{wave_estimation(scene, wave_tolerance, session.seed()), {}}
-          : ExtendedEstimation{transport_estimation(scene, reversed, methods.tolerance), {}};
+          : extended_transport(scene, reversed, extras, methods.tolerance);
   if (!command.settle()) return ExitStatus::done;
   if (by != "wave") {
     Neglected neglected;

@@ -2,6 +2,7 @@
 
 #include "apps/moments_table.h"
 #include "core/error.h"
+#include "mc/transport/slab_covariance.h"
 
 namespace flatspeckle::apps {
 
@@ -27,17 +28,33 @@ ExtendedEstimation with_gradient(const Scene& scene, mc::ReversedPaths reversed,
           }};
 }
 
-ExtendedEstimation with_delays(const Scene& scene, mc::ReversedPaths reversed,
-                               const std::vector<double>& delays, std::uint64_t seed) {
-  require_plane_waves("delays", scene.request);
-  const auto plan = mc::make_plan(scene, reversed);
-  const auto job = mc::delay_job(scene, plan, delays, seed);
-  return {{job.field, "mc: " + plan.describe() + "; scatterers diffuse"},
+ExtendedEstimation with_delays(const Scene& scene, const mc::PathJob& job,
+                               const std::vector<double>& delays, const std::string& plan) {
+  return {{job.field, plan + "; scatterers diffuse"},
           [scene, job, delays](ResultFile& file, const GroupedSums& sums) {
-            const auto found = mc::delay_estimates(job, sums);
+            const auto found = mc::delay_estimates(scene.request, job, sums);
             print_delays(scene.request, delays, found.correlation);
             mc::write_delays(file, scene, delays, found);
           }};
+}
+
+ExtendedEstimation mc_delays(const Scene& scene, mc::ReversedPaths reversed,
+                             const std::vector<double>& delays, std::uint64_t seed) {
+  require_plane_waves("delays", scene.request);
+  const auto plan = mc::make_plan(scene, reversed);
+  return with_delays(scene, mc::delay_job(scene, plan, delays, seed), delays,
+                     "mc: " + plan.describe());
+}
+
+ExtendedEstimation transport_delays(const Scene& scene, mc::ReversedPaths reversed,
+                                    const std::vector<double>& delays, double tolerance) {
+  using Kind = CovarianceRequest::Kind;
+  if (scene.request.kind != Kind::intensity && scene.request.kind != Kind::memory_effect)
+    throw InputError("delays: needs covariance = intensity or memory_effect");
+  mc::check_delays(scene, delays);
+  const bool with_reversed = mc::make_plan(scene, reversed).reversed;
+  return with_delays(scene, mc::slab_delay_job(scene, with_reversed, {tolerance}, delays), delays,
+                     transport_estimation(scene, reversed, tolerance).plan);
 }
 
 }  // namespace
@@ -50,7 +67,7 @@ void add_extra_keys(Keys& keys, Extras& extras) {
   keys.add("delays", extras.delays,
            "Also the field's correlation after delays, as the scatterers diffuse: k^2 D tau")
       .not_negative()
-      .only_of("method = mc");
+      .only_of("method = mc or transport");
 }
 
 void read_extras(const Keys& keys, const Extras& extras) {
@@ -61,8 +78,15 @@ void read_extras(const Keys& keys, const Extras& extras) {
 ExtendedEstimation extended_estimation(const Scene& scene, mc::ReversedPaths reversed,
                                        const Extras& extras, std::uint64_t seed) {
   if (extras.gradient) return with_gradient(scene, reversed, seed);
-  if (!extras.delays.empty()) return with_delays(scene, reversed, extras.delays, seed);
+  if (!extras.delays.empty()) return mc_delays(scene, reversed, extras.delays, seed);
   return {mc_estimation(scene, reversed, seed), {}};
+}
+
+ExtendedEstimation extended_transport(const Scene& scene, mc::ReversedPaths reversed,
+                                      const Extras& extras, double tolerance) {
+  if (extras.gradient) throw InputError("gradient: needs method = mc");
+  if (!extras.delays.empty()) return transport_delays(scene, reversed, extras.delays, tolerance);
+  return {transport_estimation(scene, reversed, tolerance), {}};
 }
 
 }  // namespace flatspeckle::apps

@@ -8,7 +8,7 @@
 
 namespace flatspeckle::apps {
 
-/// What Monte Carlo tells of a scene besides its covariance, from the same paths.
+/// What Monte Carlo and transport tell of a scene besides its covariance.
 struct Extras {
   bool gradient = false;
   std::vector<double> delays;
@@ -24,8 +24,11 @@ struct ExtendedEstimation {
 /// Reads the keys. Throws InputError for extras that exclude each other.
 void read_extras(const Keys& keys, const Extras& extras);
 
-/// Throws InputError for extras that the scene cannot have.
+/// By Monte Carlo. Throws InputError for extras that the scene cannot have.
 ExtendedEstimation extended_estimation(const Scene& scene, mc::ReversedPaths reversed,
                                        const Extras& extras, std::uint64_t seed);
+/// The same of a slab by transport.
+ExtendedEstimation extended_transport(const Scene& scene, mc::ReversedPaths reversed,
+                                      const Extras& extras, double tolerance);
 
 }  // namespace flatspeckle::apps

@@ -35,7 +35,7 @@ std::string range_text(const mc::Range& range, double error);
 void print_gradient(const CovarianceRequest& request, const mc::GradientJob& job,
                     const mc::GradientEstimates& gradient);
 
-/// The correlation after each delay.
+/// The correlation after each delay, of channels or of tilts.
 void print_delays(const CovarianceRequest& request, const std::vector<double>& delays,
                   const Estimate& correlation);
 

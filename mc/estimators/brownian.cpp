@@ -9,6 +9,7 @@
 #include "mc/estimators/path_ends.h"
 #include "mc/estimators/single_scattering.h"
 #include "mc/theory/diffusion.h"
+#include "mc/theory/memory_effect.h"
 
 namespace flatspeckle::mc {
 
@@ -143,9 +144,41 @@ struct DelayKind {
   }
 };
 
-void check(const Scene& scene, const std::vector<double>& delays) {
-  if (scene.request.kind != CovarianceRequest::Kind::intensity)
-    throw InputError("delays: needs covariance = intensity");
+/// Entries that a delay changes: all, or those of reference and tilted field.
+std::size_t moving_entries(const CovarianceRequest& request) {
+  return request.has_reference() ? request.reference_intensity(0) : request.entries.size();
+}
+
+/// Of [1 + delay][entry], without delay first: [delay][moving entry].
+Values delayed(const CovarianceRequest& request, const Values& all) {
+  const std::size_t entries = request.entries.size();
+  Values covariance;
+  for (std::size_t i = entries; i < all.size(); ++i)
+    if (i % entries < moving_entries(request)) covariance.push_back(all[i]);
+  return covariance;
+}
+
+/// The same over intensities, at once.
+Values correlation(const CovarianceRequest& request, const Values& all) {
+  const std::size_t entries = request.entries.size(), moving = moving_entries(request);
+  const Values covariance = delayed(request, all);
+  Values correlation, now(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(entries));
+  for (std::size_t first = 0; first < covariance.size(); first += moving) {
+    if (request.has_reference()) {
+      std::copy_n(covariance.begin() + static_cast<std::ptrdiff_t>(first), moving, now.begin());
+      const Values tilted = field_correlation(request, now);
+      correlation.insert(correlation.end(), tilted.begin(), tilted.end());
+      continue;
+    }
+    for (std::size_t c = 0; c < moving; ++c)
+      correlation.push_back(now[c].real() > 0 ? covariance[first + c] / now[c].real() : 0);
+  }
+  return correlation;
+}
+
+}  // namespace
+
+void check_delays(const Scene& scene, const std::vector<double>& delays) {
   if (!scene.medium.structure.independent())
     throw InputError("delays: scatterers at correlated positions do not move independently");
   for (const double delay : delays)
@@ -153,47 +186,48 @@ void check(const Scene& scene, const std::vector<double>& delays) {
       throw InputError("delays", delay, "must not be negative, nor above 1e100");
 }
 
-/// [delay][channel] over the intensities that come before them.
-Values correlation(const Values& all, std::size_t channels) {
-  Values correlation;
-  for (std::size_t i = channels; i < all.size(); ++i) {
-    const double intensity = all[i % channels].real();
-    correlation.push_back(intensity > 0 ? all[i] / intensity : 0);
-  }
-  return correlation;
-}
-
-}  // namespace
-
 PathJob delay_job(const Scene& scene, const Plan& plan, const std::vector<double>& delays,
                   std::uint64_t seed) {
-  check(scene, delays);
+  if (scene.request.kind != CovarianceRequest::Kind::intensity)
+    throw InputError("delays: needs covariance = intensity");
+  check_delays(scene, delays);
   PathJob job = path_job(DelayKind{delays}, scene, plan, seed);
   job.field.batches.relative_error = relative_error_of(job.all);
   return job;
 }
 
-DelayEstimates delay_estimates(const PathJob& job, const GroupedSums& sums) {
-  const Estimate all = jackknife(sums, job.all);
-  return {part(all, job.entries, all.value.size() - job.entries),
-          jackknife(sums, [&](double samples, std::span<const Complex> total) {
-            return correlation(job.all(samples, total), job.entries);
-          })};
+DelayEstimates delay_estimates(const CovarianceRequest& request, const PathJob& job,
+                               const GroupedSums& sums) {
+  const auto estimate = [&](const auto& f) {
+    return jackknife(sums, [&](double samples, std::span<const Complex> total) {
+      return f(request, job.all(samples, total));
+    });
+  };
+  return {estimate(delayed), estimate(correlation)};
 }
 
-const DatasetTable delays_table{"delays",
-                                {{"delay", Data::scale, "", "1", "k^2 D tau"},
-                                 {"covariance", Data::estimate, "delay LIGHT VIEW", "COVARIANCE",
-                                  "covariance of the field with itself after a delay"},
-                                 {"field_correlation", Data::estimate, "delay LIGHT VIEW", "1",
-                                  "field correlation after a delay"},
-                                 {"diffusion_theory", Data::real, "delay", "1",
-                                  "field correlation of transmitted light in diffusion theory"}}};
+const DatasetTable delays_table{
+    "delays",
+    {{"delay", Data::scale, "", "1", "k^2 D tau"},
+     {"covariance", Data::estimate, "delay LIGHT VIEW", "COVARIANCE",
+      "covariance of the field with itself after a delay"},
+     {"field_correlation", Data::estimate, "delay LIGHT VIEW", "1",
+      "field correlation after a delay"},
+     {"diffusion_theory", Data::real, "delay", "1",
+      "field correlation of transmitted light in diffusion theory"},
+     {"delayed_covariance", Data::complex_estimate, "delay tilt VIEW", "COVARIANCE",
+      "covariance of reference and moved field after a delay"},
+     {"delayed_correlation", Data::estimate, "delay tilt", "1",
+      "C_E of reference and moved field after a delay"}}};
 
 void write_delays(ResultFile& file, const Scene& scene, const std::vector<double>& delays,
                   const DelayEstimates& found) {
   const ResultGroup root(file, delays_table);
   root.put("delay", delays);
+  if (scene.request.has_reference()) {
+    root.put("delayed_covariance", found.covariance);
+    return root.put("delayed_correlation", found.correlation);
+  }
   root.put("covariance", found.covariance);
   root.put("field_correlation", found.correlation);
   if (scene.domain.kind != Domain::Kind::slab || !scene.request.transmission_only()) return;

@@ -17,11 +17,17 @@ namespace flatspeckle::mc {
 PathJob delay_job(const Scene& scene, const Plan& plan, const std::vector<double>& delays,
                   std::uint64_t seed);
 
-/// [delay][channel]: the covariances, and those over the intensity, 0 where there is none.
+/// Throws InputError for a structure factor, and for negative delays.
+void check_delays(const Scene& scene, const std::vector<double>& delays);
+
+/// Of a request for intensities, [delay][channel]: the covariances, and those over the intensity, 0
+/// where there is none. Of one for a memory effect: the covariances of the reference with the
+/// tilted field after the delay, [delay][tilt][view], and C_E, [delay][tilt] (C19).
 struct DelayEstimates {
   Estimate covariance, correlation;
 };
-DelayEstimates delay_estimates(const PathJob& job, const GroupedSums& sums);
+DelayEstimates delay_estimates(const CovarianceRequest& request, const PathJob& job,
+                               const GroupedSums& sums);
 
 extern const DatasetTable delays_table;
 /// With diffusion theory for light through a slab. The request's axes must have been written.

@@ -1,9 +1,16 @@
 #include "mc/transport/refinement.h"
 
+#include <algorithm>
 #include <memory>
 #include <mutex>
 
 namespace flatspeckle::mc {
+
+void Refined::append(const Refined& other) {
+  value.insert(value.end(), other.value.begin(), other.value.end());
+  difference.insert(difference.end(), other.difference.begin(), other.difference.end());
+  ordinates = std::max(ordinates, other.ordinates);
+}
 
 BatchJob two_batches(std::size_t size, const std::function<Refined()>& solve) {
   struct Solution {

@@ -204,4 +204,21 @@ FieldJob slab_covariance_job(const Scene& slab, bool reversed, const Refinement&
   return job;
 }
 
+PathJob slab_delay_job(const Scene& slab, bool reversed, const Refinement& refinement,
+                       const std::vector<double>& delays) {
+  const std::size_t entries = slab.request.entries.size();
+  const auto solve = [=] {
+    Refined all = slab_covariance(slab, reversed, refinement);
+    for (const double delay : delays)
+      all.append(slab_covariance(slab, reversed, refinement, delay));
+    return all;
+  };
+  PathJob job{slab_covariance_job(slab, reversed, refinement), sample_mean, entries};
+  job.field.batches = two_batches((1 + delays.size()) * entries, solve);
+  job.field.covariance = [entries](double samples, std::span<const Complex> sums) {
+    return sample_mean(samples, sums.first(entries));
+  };
+  return job;
+}
+
 }  // namespace flatspeckle::mc

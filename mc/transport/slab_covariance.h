@@ -2,6 +2,7 @@
 
 #include "flatland/request/field_moments.h"
 #include "flatland/scene/scene.h"
+#include "mc/estimators/path_job.h"
 #include "mc/transport/refinement.h"
 
 namespace flatspeckle::mc {
@@ -16,5 +17,9 @@ Refined slab_covariance(const Scene& slab, bool reversed, const Refinement& refi
 
 /// The same as a job (two_batches()).
 FieldJob slab_covariance_job(const Scene& slab, bool reversed, const Refinement& refinement);
+
+/// Quantities as those of delay_job(): the entries without delay, then after each.
+PathJob slab_delay_job(const Scene& slab, bool reversed, const Refinement& refinement,
+                       const std::vector<double>& delays);
 
 }  // namespace flatspeckle::mc

@@ -79,6 +79,23 @@ class Extras(ProgramTest):
             self.assertEqual(file["diffusion_theory"].shape, (2,))
             self.assertAlmostEqual(file["diffusion_theory"][0], 1)
 
+    def test_delays_by_transport(self):
+        delays = {"delays": [0, 0.01], "method": "transport"}
+        self.call("covariance", **SLAB, **delays, out="transport.h5")
+        self.call("covariance", **SLAB, delays=[0, 0.01], samples=20000, out="mc.h5")
+        files = [h5py.File(self.folder / f"{name}.h5") for name in ("transport", "mc")]
+        found, expected = (file["field_correlation"][()] for file in files)
+        error = files[1]["field_correlation_error"][()]
+        self.assertTrue(np.all(np.abs(found - expected) <= 4 * error + 1e-12))
+        self.assertEqual(set(files[0]), set(files[1]))
+        for file in files:
+            file.close()
+        self.call("covariance", **SLAB, **TILTS, **delays, out="tilts.h5")
+        with h5py.File(self.folder / "tilts.h5") as file:
+            self.check(file, "delayed_covariance", ("delay", "tilt", "view_angle"), True)
+            self.check(file, "delayed_correlation", ("delay", "tilt"), False)
+            np.testing.assert_allclose(file["delayed_correlation"][0], file["field_correlation"])
+
     def test_resumed(self):
         """In the same numbers, and not with other extras."""
         for keys in ({"delays": [0.1, 1]}, {"gradient": True}):
@@ -100,6 +117,10 @@ class Refused(RefusingTest):
                             ({"delays": [-0.1]}, ["delays = -0.1", "must not be negative"]),
                             ({"delays": ["nan"]}, ["delays = nan", "must not be negative"]),
                             ({"delays": [0.1], **TILTS}, ["delays", "covariance = intensity"]),
+                            ({"delays": [0.1], "domain": "slab", "width": None, "count": None,
+                              "density": 0.1, "covariance": "pairs", "pairs": [0, 0.5, 0, 0.5],
+                              "method": "transport"},
+                             ["delays", "covariance = intensity or memory_effect"]),
                             ({"gradient": True, "count": 0}, ["gradient", "does not scatter"])):
             self.assert_refused_both_ways("covariance", BOX, keys, words)
 

@@ -6,6 +6,7 @@
 #include "bench/oracles/pair_transport.h"
 #include "bench/oracles/slab_theory.h"
 #include "mc/estimators/brownian.h"
+#include "mc/theory/diffusion.h"
 #include "mc/theory/memory_effect.h"
 #include "mc/transport/slab_covariance.h"
 #include "tests/mc/transport/slabs.h"
@@ -183,7 +184,8 @@ TEST_CASE("fields of diffusing scatterers at two times, as by Monte Carlo") {
     const auto request = intensity_request({0.2}, {far_view(0.5), far_view(pi + 0.2)});
     const Scene scene = hg_slab(300, {60, g, 0.97}, request);
     const auto job = delay_job(scene, make_plan(scene, ReversedPaths::yes), delays, 5);
-    const auto found = delay_estimates(job, tests::summed(job.field.batches, 200000)).covariance;
+    const auto sums = tests::summed(job.field.batches, 200000);
+    const auto found = delay_estimates(request, job, sums).covariance;
     for (std::size_t t = 0; t < delays.size(); ++t) {
       const auto expected = slab_covariance(scene, true, {1e-5}, delays[t]).value;
       for (std::size_t v = 0; v < 2; ++v) {
@@ -191,6 +193,31 @@ TEST_CASE("fields of diffusing scatterers at two times, as by Monte Carlo") {
         CHECK_WITHIN_4_SIGMA(found.value[e], found.error[e], expected[v], 0);
         CHECK(found.error[e] < 0.05 * std::abs(expected[v]));
       }
+    }
+  }
+}
+
+TEST_CASE("tilts and delays of a thick slab together, as diffusion theory has them") {
+  constexpr double depth = 1000, optical_depth = 1000;
+  const std::vector<double> tilts = {0, 1e-4, 3e-4}, delays = {0, 2e-7, 1e-6};
+  const auto request = memory_effect_request(wavenumber, 0, {0}, tilts);
+  const Scene scene = hg_slab(depth, {depth / optical_depth, 0.3}, request);
+  const auto job = slab_delay_job(scene, false, {}, delays);
+  const auto sums = tests::summed(job.field.batches, 2);
+  const auto found = delay_estimates(request, job, sums);
+  const auto still = slab_covariance(scene, false, {}).value;
+  for (std::size_t i = 0; i < tilts.size(); ++i) {
+    CHECK(std::abs(found.covariance.value[i] - still[i]) < 1e-14);
+    for (std::size_t t = 0; t < delays.size(); ++t) {
+      CAPTURE(i);
+      CAPTURE(t);
+      // as absorption, a delay is added to the square of a tilt (C20)
+      const double loss = 2 * delays[t] * (1 - scene.medium.g) * scene.medium.mu_s,
+                   l = scene.medium.transport_mean_free_path(), q = request.tilt_q[i],
+                   expected = diffusion_field_correlation(scene.medium, depth,
+                                                          std::sqrt(q * q + 2 * loss / l));
+      CHECK(found.correlation.value[t * tilts.size() + i].real() ==
+            doctest::Approx(expected).epsilon(2e-3));
     }
   }
 }
