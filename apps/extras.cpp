@@ -14,18 +14,29 @@ void require_plane_waves(const std::string& key, const CovarianceRequest& reques
     throw InputError(key + ": needs plane waves, and no tilt_shift");
 }
 
-ExtendedEstimation with_gradient(const Scene& scene, mc::ReversedPaths reversed,
-                                 std::uint64_t seed) {
-  require_plane_waves("gradient", scene.request);
-  const auto plan = mc::gradient_plan(scene, reversed);
-  const auto job = mc::gradient_job(scene, plan, seed);
-  std::string text = "mc: " + plan.describe() + "; derivatives by";
+ExtendedEstimation with_gradient(const Scene& scene, const mc::GradientJob& job,
+                                 const std::string& plan) {
+  std::string text = plan + "; derivatives by";
   for (const auto& parameter : job.parameters) text += ' ' + parameter;
   return {{job.field, text}, [scene, job](ResultFile& file, const GroupedSums& sums) {
             const auto gradient = mc::gradient_estimates(scene, sums, job);
             print_gradient(scene.request, job, gradient);
             mc::write_gradient(file, scene.request, job, gradient);
           }};
+}
+
+ExtendedEstimation mc_gradient(const Scene& scene, mc::ReversedPaths reversed, std::uint64_t seed) {
+  require_plane_waves("gradient", scene.request);
+  const auto plan = mc::gradient_plan(scene, reversed);
+  return with_gradient(scene, mc::gradient_job(scene, plan, seed), "mc: " + plan.describe());
+}
+
+ExtendedEstimation transport_gradient(const Scene& scene, mc::ReversedPaths reversed,
+                                      double tolerance) {
+  mc::check_gradient(scene);
+  const bool with_reversed = mc::make_plan(scene, reversed).reversed;
+  return with_gradient(scene, mc::slab_gradient_job(scene, with_reversed, {tolerance}),
+                       transport_estimation(scene, reversed, tolerance).plan);
 }
 
 ExtendedEstimation with_delays(const Scene& scene, const mc::PathJob& job,
@@ -63,7 +74,7 @@ void add_extra_keys(Keys& keys, Extras& extras) {
   keys.group("Methods");
   keys.add("gradient", extras.gradient,
            "Also derivatives of the covariance by mu_t, g, albedo and optical depth")
-      .only_of("method = mc");
+      .only_of("method = mc or transport");
   keys.add("delays", extras.delays,
            "Also the field's correlation after delays, as the scatterers diffuse: k^2 D tau")
       .not_negative()
@@ -77,14 +88,14 @@ void read_extras(const Keys& keys, const Extras& extras) {
 
 ExtendedEstimation extended_estimation(const Scene& scene, mc::ReversedPaths reversed,
                                        const Extras& extras, std::uint64_t seed) {
-  if (extras.gradient) return with_gradient(scene, reversed, seed);
+  if (extras.gradient) return mc_gradient(scene, reversed, seed);
   if (!extras.delays.empty()) return mc_delays(scene, reversed, extras.delays, seed);
   return {mc_estimation(scene, reversed, seed), {}};
 }
 
 ExtendedEstimation extended_transport(const Scene& scene, mc::ReversedPaths reversed,
                                       const Extras& extras, double tolerance) {
-  if (extras.gradient) throw InputError("gradient: needs method = mc");
+  if (extras.gradient) return transport_gradient(scene, reversed, tolerance);
   if (!extras.delays.empty()) return transport_delays(scene, reversed, extras.delays, tolerance);
   return {transport_estimation(scene, reversed, tolerance), {}};
 }

@@ -5,14 +5,17 @@
 #include <numbers>
 
 #include "flatland/scene/scene.h"
+#include "mc/transport/dual.h"
 
 namespace flatspeckle::mc {
 
 /// e_1 conj(e_2) of two far lights within a slab (C13), exp(top z + bottom (depth - z)); lengths in
 /// mean free paths. A pair of views is that of the lights turned round.
-struct PairWave {
-  Complex top = 0, bottom = 0;
+template <typename Number>
+struct PairWaveOf {
+  ComplexOf<Number> top{}, bottom{};
 };
+using PairWave = PairWaveOf<double>;
 
 /// Directions of two lights, from above or below; none along the slab.
 struct Pair {
@@ -24,12 +27,16 @@ inline Pair turned_round(Pair pair) {
   return {pair.first + std::numbers::pi, pair.second + std::numbers::pi};
 }
 
-inline PairWave pair_wave(const Scene& scene, Pair pair) {
+/// length: of a mean free path over the scene's: 1, and its derivative.
+template <typename Number = double>
+PairWaveOf<Number> pair_wave(const Scene& scene, Pair pair, Number length = {1}) {
   const double first = std::cos(pair.first), second = std::cos(pair.second);
-  PairWave wave;
-  for (const double cosine : {first, second})
-    (cosine > 0 ? wave.top : wave.bottom) -= 1 / (2 * std::abs(cosine));
-  wave.top += Complex(0, scene.k / scene.medium.mu_t * (first - second));
+  PairWaveOf<Number> wave;
+  for (const double cosine : {first, second}) {
+    auto& end = cosine > 0 ? wave.top : wave.bottom;
+    end = end - 1 / (2 * std::abs(cosine));
+  }
+  wave.top += Complex(0, scene.k / scene.medium.mu_t * (first - second)) * length;
   return wave;
 }
 

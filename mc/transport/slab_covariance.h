@@ -2,6 +2,7 @@
 
 #include "flatland/request/field_moments.h"
 #include "flatland/scene/scene.h"
+#include "mc/estimators/gradient.h"
 #include "mc/estimators/path_job.h"
 #include "mc/transport/refinement.h"
 
@@ -17,6 +18,15 @@ Refined slab_covariance(const Scene& slab, bool reversed, const Refinement& refi
 
 /// The same as a job (two_batches()).
 FieldJob slab_covariance_job(const Scene& slab, bool reversed, const Refinement& refinement);
+
+/// Values per entry, then derivatives by a parameter: exact, of the doubling itself. The tolerance
+/// of a derivative is relative to the entry where that is more than what a relative change of the
+/// parameter makes. The slab scatters.
+Refined slab_slopes(const Scene& slab, bool reversed, const Refinement& refinement,
+                    BulkParameter parameter);
+
+/// As the gradient_job() of Monte Carlo.
+GradientJob slab_gradient_job(const Scene& slab, bool reversed, const Refinement& refinement);
 
 /// Quantities as those of delay_job(): the entries without delay, then after each.
 PathJob slab_delay_job(const Scene& slab, bool reversed, const Refinement& refinement,

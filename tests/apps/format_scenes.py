@@ -47,6 +47,8 @@ RUNS = {
     "gradient_pairs": ("covariance", {**HG, **PAIRS, "gradient": True}),
     "gradient_curve": ("covariance", {**SLAB, **TILTS, "gradient": True}),
     "delays": ("covariance", {**SLAB, "delays": [0, 0.1, 1]}),
+    "delays_curve": ("covariance", {**SLAB, **TILTS, "delays": [0, 0.1], "method": "transport",
+                                    "samples": None}),
     "short": ("covariance", {**BOX, "target_error": 1e-9}, 3),
     "validate": ("validate", {**BOX, **FAR}),
     "short_both": ("validate", {**BOX, "target_error": 1e-9}, 3),
