@@ -59,6 +59,22 @@ class Extras(ProgramTest):
         first, second = (datasets(self.folder / f"{name}.h5") for name in ("with", "without"))
         np.testing.assert_allclose(first["intensity"], second["intensity"], rtol=1e-12)
 
+    def test_gradient_by_transport(self):
+        for keys in ({**TILTS, "tilts": [0, 0.001, 0.003, 0.006]}, {"view_angles": [0.1, 3.2]}):
+            with self.subTest(keys=keys):
+                self.call("covariance", **SLAB, **keys, gradient=True, method="transport",
+                          out="transport.h5")
+                self.call("covariance", **SLAB, **keys, gradient=True, samples=40000, out="mc.h5")
+                with h5py.File(self.folder / "transport.h5") as found, \
+                        h5py.File(self.folder / "mc.h5") as expected:
+                    self.assertEqual(set(found), set(expected))
+                    for name in expected:
+                        if not name.endswith("gradient"):
+                            continue
+                        difference = np.abs(found[name][()] - expected[name][()])
+                        error = expected[name + "_error"][()]
+                        self.assertTrue(np.all(difference <= 4 * error + 1e-9), name)
+
     def test_points_have_no_g(self):
         self.call("covariance", **BOX, **VIEWS, gradient=True, samples=4000, out="result.h5")
         with h5py.File(self.folder / "result.h5") as file:
