@@ -62,7 +62,7 @@ int covariance(const Arguments& arguments) {
     keys.read(methods.wave_samples);
     keys.read(run.samples);
   }
-  if (by != "wave") read_extras(keys, extras);
+  if (by != "wave") read_extras(keys, extras, by == "transport");
   if (by == "transport") keys.read(methods.tolerance);
   const Scene scene = make_scene(keys, spec);
   const auto [estimation, write_extras] =

@@ -14,6 +14,7 @@
 #include "mc/estimators/gradient.h"
 #include "mc/speckle/field_datasets.h"
 #include "mc/theory/moments_datasets.h"
+#include "mc/transport/frequency_shifts.h"
 #include "wave_solver/maps/map_datasets.h"
 
 namespace flatspeckle::apps {
@@ -34,6 +35,7 @@ std::vector<const DatasetTable*> all_tables() {
                                              &mc::moves_table,
                                              &mc::gradient_table,
                                              &mc::delays_table,
+                                             &mc::frequency_table,
                                              &validate_table,
                                              &wave::solution_table,
                                              &wave::map_table,

@@ -2,6 +2,7 @@
 
 #include "apps/moments_table.h"
 #include "core/error.h"
+#include "mc/transport/frequency_shifts.h"
 #include "mc/transport/slab_covariance.h"
 
 namespace flatspeckle::apps {
@@ -43,8 +44,8 @@ ExtendedEstimation with_delays(const Scene& scene, const mc::PathJob& job,
                                const std::vector<double>& delays, const std::string& plan) {
   return {{job.field, plan + "; scatterers diffuse"},
           [scene, job, delays](ResultFile& file, const GroupedSums& sums) {
-            const auto found = mc::delay_estimates(scene.request, job, sums);
-            print_delays(scene.request, delays, found.correlation);
+            const auto found = mc::change_estimates(scene.request, job, sums);
+            print_changes(scene.request, "delay", delays, found.correlation);
             mc::write_delays(file, scene, delays, found);
           }};
 }
@@ -57,15 +58,37 @@ ExtendedEstimation mc_delays(const Scene& scene, mc::ReversedPaths reversed,
                      "mc: " + plan.describe());
 }
 
-ExtendedEstimation transport_delays(const Scene& scene, mc::ReversedPaths reversed,
-                                    const std::vector<double>& delays, double tolerance) {
+/// Intensities or a memory effect, and the same with every change.
+mc::PathJob change_job(const Scene& scene, mc::ReversedPaths reversed, const std::string& key,
+                       const std::vector<mc::FieldChange>& changes, double tolerance) {
   using Kind = CovarianceRequest::Kind;
   if (scene.request.kind != Kind::intensity && scene.request.kind != Kind::memory_effect)
-    throw InputError("delays: needs covariance = intensity or memory_effect");
-  mc::check_delays(scene, delays);
+    throw InputError(key + ": needs covariance = intensity or memory_effect");
   const bool with_reversed = mc::make_plan(scene, reversed).reversed;
-  return with_delays(scene, mc::slab_delay_job(scene, with_reversed, {tolerance}, delays), delays,
+  return mc::slab_change_job(scene, with_reversed, {tolerance}, changes);
+}
+
+ExtendedEstimation transport_delays(const Scene& scene, mc::ReversedPaths reversed,
+                                    const std::vector<double>& delays, double tolerance) {
+  mc::check_delays(scene, delays);
+  std::vector<mc::FieldChange> changes;
+  for (const double delay : delays) changes.push_back({.delay = delay});
+  return with_delays(scene, change_job(scene, reversed, "delays", changes, tolerance), delays,
                      transport_estimation(scene, reversed, tolerance).plan);
+}
+
+ExtendedEstimation transport_frequency_shifts(const Scene& scene, mc::ReversedPaths reversed,
+                                              const std::vector<double>& shifts, double tolerance) {
+  mc::check_frequency_shifts(scene, shifts);
+  std::vector<mc::FieldChange> changes;
+  for (const double shift : shifts) changes.push_back({.shift = shift});
+  const auto job = change_job(scene, reversed, "frequency_shifts", changes, tolerance);
+  return {{job.field, transport_estimation(scene, reversed, tolerance).plan + "; two frequencies"},
+          [scene, job, shifts](ResultFile& file, const GroupedSums& sums) {
+            const auto found = mc::change_estimates(scene.request, job, sums);
+            print_changes(scene.request, "shift", shifts, found.correlation);
+            mc::write_frequency_shifts(file, scene.request, shifts, found);
+          }};
 }
 
 }  // namespace
@@ -79,11 +102,17 @@ void add_extra_keys(Keys& keys, Extras& extras) {
            "Also the field's correlation after delays, as the scatterers diffuse: k^2 D tau")
       .not_negative()
       .only_of("method = mc or transport");
+  keys.add("frequency_shifts", extras.frequency_shifts,
+           "Also the field's correlation with that at shifted frequencies, relative to its own")
+      .only_of("method = transport");
 }
 
-void read_extras(const Keys& keys, const Extras& extras) {
-  const bool delays = !keys.read(extras.delays).empty();
-  if (keys.read(extras.gradient) && delays) throw InputError("gradient, delays: give one of them");
+void read_extras(const Keys& keys, const Extras& extras, bool of_transport) {
+  const bool delays = !keys.read(extras.delays).empty(), gradient = keys.read(extras.gradient),
+             shifts = of_transport && !keys.read(extras.frequency_shifts).empty();
+  if (gradient && delays) throw InputError("gradient, delays: give one of them");
+  if (shifts && (gradient || delays))
+    throw InputError("gradient, delays, frequency_shifts: give one of them");
 }
 
 ExtendedEstimation extended_estimation(const Scene& scene, mc::ReversedPaths reversed,
@@ -97,6 +126,8 @@ ExtendedEstimation extended_transport(const Scene& scene, mc::ReversedPaths reve
                                       const Extras& extras, double tolerance) {
   if (extras.gradient) return transport_gradient(scene, reversed, tolerance);
   if (!extras.delays.empty()) return transport_delays(scene, reversed, extras.delays, tolerance);
+  if (!extras.frequency_shifts.empty())
+    return transport_frequency_shifts(scene, reversed, extras.frequency_shifts, tolerance);
   return {transport_estimation(scene, reversed, tolerance), {}};
 }
 

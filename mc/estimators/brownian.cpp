@@ -9,7 +9,6 @@
 #include "mc/estimators/path_ends.h"
 #include "mc/estimators/single_scattering.h"
 #include "mc/theory/diffusion.h"
-#include "mc/theory/memory_effect.h"
 
 namespace flatspeckle::mc {
 
@@ -144,38 +143,6 @@ struct DelayKind {
   }
 };
 
-/// Entries that a delay changes: all, or those of reference and tilted field.
-std::size_t moving_entries(const CovarianceRequest& request) {
-  return request.has_reference() ? request.reference_intensity(0) : request.entries.size();
-}
-
-/// Of [1 + delay][entry], without delay first: [delay][moving entry].
-Values delayed(const CovarianceRequest& request, const Values& all) {
-  const std::size_t entries = request.entries.size();
-  Values covariance;
-  for (std::size_t i = entries; i < all.size(); ++i)
-    if (i % entries < moving_entries(request)) covariance.push_back(all[i]);
-  return covariance;
-}
-
-/// The same over intensities, at once.
-Values correlation(const CovarianceRequest& request, const Values& all) {
-  const std::size_t entries = request.entries.size(), moving = moving_entries(request);
-  const Values covariance = delayed(request, all);
-  Values correlation, now(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(entries));
-  for (std::size_t first = 0; first < covariance.size(); first += moving) {
-    if (request.has_reference()) {
-      std::copy_n(covariance.begin() + static_cast<std::ptrdiff_t>(first), moving, now.begin());
-      const Values tilted = field_correlation(request, now);
-      correlation.insert(correlation.end(), tilted.begin(), tilted.end());
-      continue;
-    }
-    for (std::size_t c = 0; c < moving; ++c)
-      correlation.push_back(now[c].real() > 0 ? covariance[first + c] / now[c].real() : 0);
-  }
-  return correlation;
-}
-
 }  // namespace
 
 void check_delays(const Scene& scene, const std::vector<double>& delays) {
@@ -196,16 +163,6 @@ PathJob delay_job(const Scene& scene, const Plan& plan, const std::vector<double
   return job;
 }
 
-DelayEstimates delay_estimates(const CovarianceRequest& request, const PathJob& job,
-                               const GroupedSums& sums) {
-  const auto estimate = [&](const auto& f) {
-    return jackknife(sums, [&](double samples, std::span<const Complex> total) {
-      return f(request, job.all(samples, total));
-    });
-  };
-  return {estimate(delayed), estimate(correlation)};
-}
-
 const DatasetTable delays_table{
     "delays",
     {{"delay", Data::scale, "", "1", "k^2 D tau"},
@@ -221,7 +178,7 @@ const DatasetTable delays_table{
       "C_E of reference and moved field after a delay"}}};
 
 void write_delays(ResultFile& file, const Scene& scene, const std::vector<double>& delays,
-                  const DelayEstimates& found) {
+                  const ChangeEstimates& found) {
   const ResultGroup root(file, delays_table);
   root.put("delay", delays);
   if (scene.request.has_reference()) {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/result/dataset_row.h"
-#include "mc/estimators/path_job.h"
+#include "mc/estimators/changed_fields.h"
 
 namespace flatspeckle::mc {
 
@@ -20,19 +20,10 @@ PathJob delay_job(const Scene& scene, const Plan& plan, const std::vector<double
 /// Throws InputError for a structure factor, and for negative delays.
 void check_delays(const Scene& scene, const std::vector<double>& delays);
 
-/// Of a request for intensities, [delay][channel]: the covariances, and those over the intensity, 0
-/// where there is none. Of one for a memory effect: the covariances of the reference with the
-/// tilted field after the delay, [delay][tilt][view], and C_E, [delay][tilt] (C19).
-struct DelayEstimates {
-  Estimate covariance, correlation;
-};
-DelayEstimates delay_estimates(const CovarianceRequest& request, const PathJob& job,
-                               const GroupedSums& sums);
-
 extern const DatasetTable delays_table;
 /// With diffusion theory for light through a slab. The request's axes must have been written.
 void write_delays(ResultFile& file, const Scene& scene, const std::vector<double>& delays,
-                  const DelayEstimates& found);
+                  const ChangeEstimates& found);
 
 /// Diffusion theory of the correlation in transmission through a slab: motion is absorption 2 t (1
 /// - g) mu_s, which is added to mu_a in the kappa^2 of C20. A limit for thick slabs and small t.

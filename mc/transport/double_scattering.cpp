@@ -61,13 +61,14 @@ double magnitude(const Dual<Complex>& z) {
 
 template <typename Number>
 DoubleScatteringOf<Number>::DoubleScatteringOf(const Scene& scene, double q, Pair lights,
-                                               Pair views, Number length)
-    : optical_depth_(scene.medium.mu_t * scene.domain.depth / length),
-      q_(q * length),
+                                               Pair views, const Departure<Number>& departure)
+    : optical_depth_(scene.medium.mu_t * scene.domain.depth / departure.length),
+      q_(q * departure.length),
+      extinction_(departure.extinction(scene)),
       lights_(lights),
       views_(views),
-      light_(pair_wave(scene, lights, length)),
-      view_(pair_wave(scene, turned_round(views), length)) {}
+      light_(pair_wave(scene, lights, departure)),
+      view_(pair_wave(scene, turned_round(views), departure)) {}
 
 template <typename Number>
 ComplexOf<Number> DoubleScatteringOf<Number>::once() const {
@@ -77,7 +78,7 @@ ComplexOf<Number> DoubleScatteringOf<Number>::once() const {
 
 template <typename Number>
 ComplexOf<Number> DoubleScatteringOf<Number>::along(double sine, double cosine, bool down) const {
-  const C loss = (1.0 + Complex(0, sine) * q_) / cosine,
+  const C loss = (as_complex(extinction_) + Complex(0, sine) * q_) / cosine,
           between = down ? view_.top + light_.bottom : light_.top + view_.bottom;
   return optical_depth_ * optical_depth_ / cosine *
          divided_difference(C(optical_depth_ * (light_.top + view_.top)),
@@ -125,6 +126,7 @@ ComplexOf<Number> DoubleScatteringOf<Number>::total(const Law& law, double toler
 }
 
 template class DoubleScatteringOf<double>;
+template class DoubleScatteringOf<Complex>;
 template class DoubleScatteringOf<Dual<double>>;
 
 }  // namespace flatspeckle::mc

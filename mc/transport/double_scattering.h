@@ -15,8 +15,8 @@ class DoubleScatteringOf {
   using C = ComplexOf<Number>;
   using Law = LawOf<Number>;
 
-  /// length: of a mean free path over the scene's: 1, and its derivative.
-  DoubleScatteringOf(const Scene& scene, double q, Pair lights, Pair views, Number length = {1});
+  DoubleScatteringOf(const Scene& scene, double q, Pair lights, Pair views,
+                     const Departure<Number>& departure = {});
 
   /// What one scattering makes of the pairs, with their amplitudes but the scatterer's.
   C once() const;
@@ -31,7 +31,8 @@ class DoubleScatteringOf {
   C integral(const Law& law, double from, double to, double tolerance, C estimate, int depth) const;
   C gauss(const Law& law, double from, double to) const;
 
-  Number optical_depth_, q_;
+  RealOf<Number> optical_depth_, q_;
+  Number extinction_;
   Pair lights_, views_;
   PairWaveOf<Number> light_, view_;
 };

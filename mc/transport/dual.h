@@ -11,7 +11,7 @@ namespace flatspeckle::mc {
 /// calculus (automatic differentiation, forward mode).
 template <typename T>
 struct Dual {
-  T value, slope;
+  T value{}, slope{};
 
   Dual& operator+=(const Dual& other) {
     value += other.value;
@@ -94,6 +94,25 @@ struct ComplexNumbers<Dual<double>> {
 };
 template <typename Number>
 using ComplexOf = typename ComplexNumbers<Number>::Type;
+
+inline Complex as_complex(Complex a) {
+  return a;
+}
+inline Dual<Complex> as_complex(const Dual<double>& a) {
+  return {a.value, a.slope};
+}
+
+/// Calculations with complex extinction have real depths.
+template <typename Number>
+struct RealNumbers {
+  using Type = Number;
+};
+template <>
+struct RealNumbers<Complex> {
+  using Type = double;
+};
+template <typename Number>
+using RealOf = typename RealNumbers<Number>::Type;
 
 /// Values, then derivatives.
 inline std::vector<Complex> flat(std::vector<Complex> values) {

@@ -15,6 +15,11 @@ struct DenseNumbers {
   using ComplexRows = Rows;
 };
 template <>
+struct DenseNumbers<Complex> {
+  using RealMatrix = Rows;
+  using ComplexRows = Rows;
+};
+template <>
 struct DenseNumbers<Dual<double>> {
   using RealMatrix = Dual<Matrix>;
   using ComplexRows = Dual<Rows>;
@@ -47,6 +52,9 @@ inline Dual<Complex> entry(const Dual<Rows>& rows, Eigen::Index i, Eigen::Index 
 
 inline Matrix identity_like(const Matrix& a) {
   return Matrix::Identity(a.rows(), a.cols());
+}
+inline Rows identity_like(const Rows& a) {
+  return Rows::Identity(a.rows(), a.cols());
 }
 inline Dual<Matrix> identity_like(const Dual<Matrix>& a) {
   return {identity_like(a.value), Matrix::Zero(a.value.rows(), a.value.cols())};

@@ -13,8 +13,8 @@ namespace {
 template <typename M>
 M tanh_ratio(const M& k) {
   const M one = identity_like(k), k2 = product(k, k), k3 = product(k2, k);
-  return product(inverse(M(135135 * one + 62370 * k + 3150 * k2 + 28 * k3)),
-                 M(135135 * one + 17325 * k + 378 * k2 + k3));
+  return product(inverse(M(135135.0 * one + 62370.0 * k + 3150.0 * k2 + 28.0 * k3)),
+                 M(135135.0 * one + 17325.0 * k + 378.0 * k2 + k3));
 }
 
 /// (1 + a)^-1 a
@@ -104,7 +104,7 @@ class Layer {
   using R = RowsOf<Number>;
   using C = ComplexOf<Number>;
 
-  Layer(const Operator& medium, Number depth, const Waves& lights, const Waves& views);
+  Layer(const Operator& medium, RealOf<Number> depth, const Waves& lights, const Waves& views);
   /// Puts another one on top.
   void double_depth();
   LayerResponseOf<Number> response() const {
@@ -124,7 +124,7 @@ class Layer {
     return linear([this](const Rows& r) -> Rows { return r.bottomRows(r.rows() - lights_); }, rows);
   }
 
-  Number depth_;
+  RealOf<Number> depth_;
   Eigen::Index lights_, even_;
   Waves waves_;
   M reflected_, lost_, transmitted_;
@@ -133,7 +133,8 @@ class Layer {
 };
 
 template <typename Number>
-Layer<Number>::Layer(const Operator& medium, Number depth, const Waves& lights, const Waves& views)
+Layer<Number>::Layer(const Operator& medium, RealOf<Number> depth, const Waves& lights,
+                     const Waves& views)
     : depth_(depth),
       lights_(static_cast<Eigen::Index>(lights.top.size())),
       even_(medium.even),
@@ -147,7 +148,7 @@ Layer<Number>::Layer(const Operator& medium, Number depth, const Waves& lights, 
 /// for opposite radiance from both sides, m = (d/2) y tanh_ratio(x y d^2/4).
 template <typename Number>
 void Layer<Number>::start_radiance(const Operator& medium) {
-  const Number half = depth_ / 2;
+  const RealOf<Number> half = depth_ / 2.0;
   const auto loss = [&](const M& inner, const M& outer) {
     return share(M(half * product(outer, tanh_ratio(M(half * half * product(inner, outer))))));
   };
@@ -167,7 +168,7 @@ void Layer<Number>::start_pairs(const Operator& medium) {
   std::vector<BothWays<R>> series;
   BothWays<R> sum{0.0 * fed.down, 0.0 * fed.up}, term = sum;
   for (int j = 0; j < terms; ++j) {
-    const Number step = depth_ / (j + 1);
+    const RealOf<Number> step = depth_ / (j + 1.0);
     term = {step * (product(term.up, b) - product(term.down, a) + fed.down),
             step * (product(term.up, a) - product(term.down, b) + fed.up)};
     fed = scaled(times(step, rates()), fed);
@@ -236,7 +237,7 @@ void Layer<Number>::double_depth() {
   lost_ = 2.0 * lost_ - product(lost_, lost_) - product(transmitted_, product(reflected_, up));
   reflected_ += product(transmitted_, up);
   transmitted_ = one - lost_;
-  depth_ = 2 * depth_;
+  depth_ = 2.0 * depth_;
 }
 
 template <typename Number>
@@ -250,8 +251,8 @@ double fastest_rate(const TransportOperatorOf<Number>& medium, const PairWavesOf
 }  // namespace
 
 template <typename Number>
-LayerResponseOf<Number> layer_response(const TransportOperatorOf<Number>& medium, Number depth,
-                                       const PairWavesOf<Number>& lights,
+LayerResponseOf<Number> layer_response(const TransportOperatorOf<Number>& medium,
+                                       RealOf<Number> depth, const PairWavesOf<Number>& lights,
                                        const PairWavesOf<Number>& views) {
   const double rate = std::max(fastest_rate(medium, lights), fastest_rate(medium, views));
   const int doublings =
@@ -263,6 +264,9 @@ LayerResponseOf<Number> layer_response(const TransportOperatorOf<Number>& medium
 
 template LayerResponse layer_response(const TransportOperator&, double, const PairWaves&,
                                       const PairWaves&);
+template LayerResponseOf<Complex> layer_response(const TransportOperatorOf<Complex>&, double,
+                                                 const PairWavesOf<Complex>&,
+                                                 const PairWavesOf<Complex>&);
 template LayerResponseOf<Dual<double>> layer_response(const TransportOperatorOf<Dual<double>>&,
                                                       Dual<double>,
                                                       const PairWavesOf<Dual<double>>&,

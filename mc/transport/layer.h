@@ -38,11 +38,11 @@ struct LayerResponseOf {
 };
 using LayerResponse = LayerResponseOf<double>;
 
-/// By doubling from a layer so thin that its series converge to rounding. Number: double, or
-/// Dual<double> for derivatives too.
+/// By doubling from a layer so thin that its series converge to rounding. Number: double,
+/// Complex for complex extinction, or Dual<double> for derivatives too.
 template <typename Number>
-LayerResponseOf<Number> layer_response(const TransportOperatorOf<Number>& medium, Number depth,
-                                       const PairWavesOf<Number>& lights,
+LayerResponseOf<Number> layer_response(const TransportOperatorOf<Number>& medium,
+                                       RealOf<Number> depth, const PairWavesOf<Number>& lights,
                                        const PairWavesOf<Number>& views);
 
 }  // namespace flatspeckle::mc

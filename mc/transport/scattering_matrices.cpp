@@ -37,9 +37,10 @@ int degree(const Dual<std::vector<double>>& modes) {
 }
 
 /// [even, -across; across, odd]
-Matrix both_parities(const Matrix& even, const Matrix& odd, const Matrix& across) {
+template <typename M>
+M both_parities(const M& even, const M& odd, const M& across) {
   const Eigen::Index n = even.rows();
-  Matrix all(2 * n, 2 * n);
+  M all(2 * n, 2 * n);
   all << even, -across, across, odd;
   return all;
 }
@@ -52,21 +53,20 @@ Dual<Matrix> both_parities(const Dual<Matrix>& even, const Dual<Matrix>& odd,
 Matrix times(double factor, const Matrix& a) {
   return factor * a;
 }
+Rows times(Complex factor, const Matrix& a) {
+  Rows b(a.rows(), a.cols());
+  b.real() = factor.real() * a;
+  b.imag() = factor.imag() * a;
+  return b;
+}
 Dual<Matrix> times(const Dual<double>& factor, const Matrix& a) {
   return {factor.value * a, factor.slope * a};
-}
-
-Matrix difference(const Matrix& a, const Matrix& b) {
-  return a - b;
-}
-Dual<Matrix> difference(const Matrix& a, const Dual<Matrix>& b) {
-  return {a - b.value, -b.slope};
 }
 
 /// What f(number) gives of complex numbers.
 template <typename Number, typename F>
 auto each_part(const F& f) {
-  if constexpr (std::is_same_v<Number, double>)
+  if constexpr (!std::is_same_v<Number, Dual<double>>)
     return f([](Complex z) { return z; });
   else
     return Dual{f([](const Dual<Complex>& z) { return z.value; }),
@@ -83,11 +83,13 @@ void add(PairWavesOf<Number>& waves, const PairWaveOf<Number>& wave) {
 
 template <typename Number>
 ScatteringMatricesOf<Number>::ScatteringMatricesOf(const AngularGrid& grid, const Law& law,
-                                                   Number albedo, Number length)
+                                                   RealOf<Number> albedo, Number extinction,
+                                                   const Departure<Number>& departure)
     : grid_(grid),
       law_(law),
       albedo_(albedo),
-      length_(length),
+      extinction_(extinction),
+      departure_(departure),
       root_(grid.weight().cwiseProduct(grid.cosine()).unaryExpr([](double square) {
         return 1 / std::sqrt(square);
       })) {
@@ -113,20 +115,21 @@ std::vector<Parity> ScatteringMatricesOf<Number>::parities(double q) {
 template <typename Number>
 MatrixOf<Number> ScatteringMatricesOf<Number>::block(double q, const Blocks& scattering,
                                                      Parity parity) const {
-  const Matrix extinction = grid_.cosine().cwiseInverse().asDiagonal();
-  if (parity == Parity::even) return difference(extinction, scattering.even);
-  if (parity == Parity::odd) return difference(extinction, scattering.odd);
+  const M extinction = times(extinction_, Matrix(grid_.cosine().cwiseInverse().asDiagonal()));
+  if (parity == Parity::even) return extinction - scattering.even;
+  if (parity == Parity::odd) return extinction - scattering.odd;
   const Matrix across =
       (q * grid_.angle().array().sin() / grid_.cosine().array()).matrix().asDiagonal();
-  return both_parities(difference(extinction, scattering.even),
-                       difference(extinction, scattering.odd), times(length_, across));
+  return both_parities(M(extinction - scattering.even), M(extinction - scattering.odd),
+                       M(times(departure_.length, across)));
 }
 
 template <typename Number>
 TransportOperatorOf<Number> ScatteringMatricesOf<Number>::transport(double q, Parity parity) const {
   return {block(q, difference_, parity), block(q, sum_, parity),
           parity == Parity::odd ? 0 : grid_.size(),
-          (1 + std::abs(q)) / *std::min_element(grid_.cosine().begin(), grid_.cosine().end())};
+          (std::abs(value_of(extinction_)) + std::abs(q)) /
+              *std::min_element(grid_.cosine().begin(), grid_.cosine().end())};
 }
 
 template <typename Number>
@@ -168,7 +171,7 @@ PairWavesOf<Number> ScatteringMatricesOf<Number>::lights(const Scene& scene,
                                                          const std::vector<Pair>& pairs,
                                                          Parity parity) const {
   Waves found = waves(pairs, parity);
-  for (const Pair& pair : pairs) add(found, pair_wave(scene, pair, length_));
+  for (const Pair& pair : pairs) add(found, pair_wave(scene, pair, departure_));
   return found;
 }
 
@@ -178,7 +181,7 @@ PairWavesOf<Number> ScatteringMatricesOf<Number>::views(const Scene& scene,
                                                         Parity parity) const {
   Waves found = waves(pairs, parity);
   std::swap(found.down, found.up);
-  for (const Pair& pair : pairs) add(found, pair_wave(scene, turned_round(pair), length_));
+  for (const Pair& pair : pairs) add(found, pair_wave(scene, turned_round(pair), departure_));
   return found;
 }
 
@@ -214,6 +217,7 @@ ComplexOf<Number> ScatteringMatricesOf<Number>::double_scattering(
 }
 
 template class ScatteringMatricesOf<double>;
+template class ScatteringMatricesOf<Complex>;
 template class ScatteringMatricesOf<Dual<double>>;
 
 }  // namespace flatspeckle::mc

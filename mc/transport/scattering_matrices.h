@@ -27,8 +27,9 @@ class ScatteringMatricesOf {
   using Waves = PairWavesOf<Number>;
   using Parity = flatspeckle::mc::Parity;
 
-  /// length: of a mean free path over the scene's: 1, and its derivative.
-  ScatteringMatricesOf(const AngularGrid& grid, const Law& law, Number albedo, Number length = {1});
+  /// extinction: over mu_t, with C39's difference in wavenumber.
+  ScatteringMatricesOf(const AngularGrid& grid, const Law& law, RealOf<Number> albedo,
+                       Number extinction = {1}, const Departure<Number>& departure = {});
 
   static std::vector<Parity> parities(double q);
   TransportOperatorOf<Number> transport(double q, Parity parity) const;
@@ -45,14 +46,16 @@ class ScatteringMatricesOf {
 
  private:
   struct Blocks {
-    M even, odd;
+    MatrixOf<RealOf<Number>> even, odd;
   };
   M block(double q, const Blocks& scattering, Parity parity) const;
   Waves waves(const std::vector<Pair>& pairs, Parity parity) const;
 
   const AngularGrid& grid_;
   const Law& law_;
-  Number albedo_, length_;
+  RealOf<Number> albedo_;
+  Number extinction_;
+  Departure<Number> departure_;
   Eigen::VectorXd root_;     ///< 1 / sqrt(weight cos(theta))
   Blocks sum_, difference_;  ///< forward plus, minus backward scattering, times the albedo
 };

@@ -21,13 +21,15 @@ struct Slab {
   const Scene& scene;
   const ScatteringLaw& resolved;  ///< what grids are made for
   const LawOf<Number>& law;
-  Number albedo;
-  Number length{1};  ///< of a mean free path over the scene's
+  RealOf<Number> albedo;
+  Departure<Number> departure{};
 
-  Number optical_depth() const { return scene.medium.mu_t * scene.domain.depth / length; }
+  RealOf<Number> optical_depth() const {
+    return scene.medium.mu_t * scene.domain.depth / departure.length;
+  }
   DoubleScatteringOf<Number> twice(const ChainGroup& group, const ChainGroup::Link& link) const {
     return {scene, group.q, group.lights[static_cast<std::size_t>(link.light)],
-            group.views[static_cast<std::size_t>(link.view)], length};
+            group.views[static_cast<std::size_t>(link.view)], departure};
   }
 };
 
@@ -39,7 +41,8 @@ struct Discrete {
 
   Discrete(const std::vector<Focus>& foci, int order, const Slab<Number>& slab)
       : grid(foci, order, slab.resolved.width()),
-        matrices(grid, slab.law, slab.albedo, slab.length) {}
+        matrices(grid, slab.law, slab.albedo, slab.departure.extinction(slab.scene),
+                 slab.departure) {}
   Discrete(const Discrete&) = delete;
 };
 
@@ -47,8 +50,9 @@ struct Discrete {
 template <typename Number>
 std::vector<ComplexOf<Number>> scattered_once(const Slab<Number>& slab) {
   std::vector<ComplexOf<Number>> values;
-  for (const auto& [lights, views, entry] : chains(slab.scene.request, false)) {
-    const DoubleScatteringOf<Number> pair(slab.scene, 0, lights, views, slab.length);
+  for (const auto& [lights, views, entry] :
+       chains(slab.scene.request, false, slab.departure.shift)) {
+    const DoubleScatteringOf<Number> pair(slab.scene, 0, lights, views, slab.departure);
     values.push_back(slab.albedo * (pair.once() * slab.law.pair(lights.first - views.first,
                                                                 lights.second - views.second, 0)));
   }
@@ -112,7 +116,9 @@ class Refiner {
         request_(slab.scene.request),
         refinement_(refinement),
         few_(flat(scattered_once(slab))) {
-    for (ChainGroup& group : grouped(slab.scene, slab.resolved, chains(request_, reversed)))
+    for (ChainGroup& group :
+         grouped(slab.scene, slab.resolved, chains(request_, reversed, slab.departure.shift),
+                 slab.departure.shift))
       parts_.push_back({std::move(group), {}, {}, 0, false, false});
   }
 
@@ -218,13 +224,17 @@ class Refiner {
 }  // namespace
 
 Refined slab_covariance(const Scene& slab, bool reversed, const Refinement& refinement,
-                        double delay) {
+                        const FieldChange& change) {
   const std::size_t entries = slab.request.entries.size();
   if (slab.medium.mu_s == 0)
     return {std::vector<Complex>(entries), std::vector<Complex>(entries), 0};
   blas_single_thread();
-  const ScatteringLaw law(slab, delay);
-  return Refiner<double>({slab, law, law, slab.medium.albedo}, reversed, refinement).refined();
+  const ScatteringLaw law(slab, change.delay);
+  const double albedo = slab.medium.albedo;
+  if (change.shift == 0)
+    return Refiner<double>({slab, law, law, albedo}, reversed, refinement).refined();
+  return Refiner<Complex>({slab, law, law, albedo, {1, change.shift}}, reversed, refinement)
+      .refined();
 }
 
 Refined slab_slopes(const Scene& slab, bool reversed, const Refinement& refinement,
@@ -239,7 +249,7 @@ Refined slab_slopes(const Scene& slab, bool reversed, const Refinement& refineme
                                        law,
                                        slope,
                                        {albedo, seed(BulkParameter::albedo, albedo)},
-                                       {1, seed(BulkParameter::mu_t, -1)}},
+                                       {{1, seed(BulkParameter::mu_t, -1)}}},
                                       reversed, refinement)
                     .refined();
   const double unit = parameter == BulkParameter::mu_t     ? mu_t
@@ -276,15 +286,15 @@ PathJob two_batch_job(const Scene& slab, std::size_t quantities,
 
 }  // namespace
 
-PathJob slab_delay_job(const Scene& slab, bool reversed, const Refinement& refinement,
-                       const std::vector<double>& delays) {
+PathJob slab_change_job(const Scene& slab, bool reversed, const Refinement& refinement,
+                        const std::vector<FieldChange>& changes) {
   const auto solve = [=] {
     Refined all = slab_covariance(slab, reversed, refinement);
-    for (const double delay : delays)
-      all.append(slab_covariance(slab, reversed, refinement, delay));
+    for (const FieldChange& change : changes)
+      all.append(slab_covariance(slab, reversed, refinement, change));
     return all;
   };
-  return two_batch_job(slab, 1 + delays.size(), solve);
+  return two_batch_job(slab, 1 + changes.size(), solve);
 }
 
 GradientJob slab_gradient_job(const Scene& slab, bool reversed, const Refinement& refinement) {

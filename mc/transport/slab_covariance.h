@@ -8,13 +8,21 @@
 
 namespace flatspeckle::mc {
 
+/// How a field differs from another besides its light and view.
+struct FieldChange {
+  double delay = 0;  ///< k^2 D tau: recorded later, as the scatterers diffuse (brownian.h)
+  /// Of its wavenumber, relative; its view is turned so that transverse momenta match. Attenuation
+  /// and scattering stay those of k.
+  double shift = 0;
+};
+
 /// The covariance of C14 and C18 on a slab, per entry of the request, as linear transport of pairs
 /// at one transverse frequency (conventions, C35 to C40): what covariance_job() estimates, single
 /// scattering in closed form. reversed: with reversed paths (C38). The tolerance is relative to the
 /// entry, or to the root of its two intensities (or that which the request has) where that is more.
-/// delay: of the second channel of each entry, k^2 D tau as the scatterers diffuse (brownian.h).
+/// change: of the second field of each entry.
 Refined slab_covariance(const Scene& slab, bool reversed, const Refinement& refinement,
-                        double delay = 0);
+                        const FieldChange& change = {});
 
 /// The same as a job (two_batches()).
 FieldJob slab_covariance_job(const Scene& slab, bool reversed, const Refinement& refinement);
@@ -28,8 +36,8 @@ Refined slab_slopes(const Scene& slab, bool reversed, const Refinement& refineme
 /// As the gradient_job() of Monte Carlo.
 GradientJob slab_gradient_job(const Scene& slab, bool reversed, const Refinement& refinement);
 
-/// Quantities as those of delay_job(): the entries without delay, then after each.
-PathJob slab_delay_job(const Scene& slab, bool reversed, const Refinement& refinement,
-                       const std::vector<double>& delays);
+/// Quantities as those of delay_job(): the entries without change, then with each.
+PathJob slab_change_job(const Scene& slab, bool reversed, const Refinement& refinement,
+                        const std::vector<FieldChange>& changes);
 
 }  // namespace flatspeckle::mc

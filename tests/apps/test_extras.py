@@ -11,6 +11,7 @@ from refusing import RefusingTest
 HG = {"width": 20, "depth": 10, "scatterer": "hg", "optical_depth": 2, "g": 0.5, "albedo": 0.9}
 VIEWS = {"light_angles": [0, 0.3], "view_angles": [0.1, 0.5, 3.0]}
 PAIRS = {"covariance": "pairs", "pairs": [0, 0.1, 0.04, 0.14, 0, 0.5, 0, 0.5]}
+POINTS = {"domain": "slab", "width": None, "count": None, "density": 0.1, "method": "transport"}
 LV = ("light_angle", "view_angle")
 MATRIX = (*LV, "light_angle_2", "view_angle_2")
 # request -> the shape of one parameter, and whether it is complex
@@ -112,6 +113,22 @@ class Extras(ProgramTest):
             self.check(file, "delayed_correlation", ("delay", "tilt"), False)
             np.testing.assert_allclose(file["delayed_correlation"][0], file["field_correlation"])
 
+    def test_frequency_shifts(self):
+        shifts = {"frequency_shifts": [0, 1e-3, 0.01], "method": "transport"}
+        self.call("covariance", **SLAB, **shifts, out="result.h5")
+        with h5py.File(self.folder / "result.h5") as file:
+            for name in ("frequency_covariance", "frequency_correlation"):
+                self.check(file, name, ("frequency_shift", *LV), True)
+            correlation = np.abs(file["frequency_correlation"][:, 0, 0])
+            self.assertAlmostEqual(correlation[0], 1)
+            self.assertTrue(np.all(np.diff(correlation) < 0))
+        self.call("covariance", **SLAB, **TILTS, **shifts, out="tilts.h5")
+        with h5py.File(self.folder / "tilts.h5") as file:
+            self.check(file, "frequency_tilt_covariance",
+                       ("frequency_shift", "tilt", "view_angle"), True)
+            np.testing.assert_allclose(file["frequency_tilt_correlation"][0],
+                                       file["field_correlation"], rtol=1e-12)
+
     def test_resumed(self):
         """In the same numbers, and not with other extras."""
         for keys in ({"delays": [0.1, 1]}, {"gradient": True}):
@@ -130,12 +147,19 @@ class Refused(RefusingTest):
         for keys, words in (({"gradient": True, "delays": [0.1]}, ["gradient, delays"]),
                             ({"gradient": True, "method": "wave"}, ["gradient", "method = mc"]),
                             ({"delays": [0.1], "method": "wave"}, ["delays", "method = mc"]),
+                            ({"frequency_shifts": [0.1]},
+                             ["frequency_shifts", "method = transport"]),
+                            ({**POINTS, "frequency_shifts": [0.3]},
+                             ["frequency_shifts = 0.3", "-0.1 to 0.1"]),
+                            ({**POINTS, "frequency_shifts": [0.01], "delays": [0.1]},
+                             ["frequency_shifts: give one"]),
+                            ({**POINTS, "frequency_shifts": [-0.1], "light_angles": [1.5],
+                              "view_angles": [-1.5]}, ["frequency_shifts = -0.1", "horizon"]),
                             ({"delays": [-0.1]}, ["delays = -0.1", "must not be negative"]),
                             ({"delays": ["nan"]}, ["delays = nan", "must not be negative"]),
                             ({"delays": [0.1], **TILTS}, ["delays", "covariance = intensity"]),
-                            ({"delays": [0.1], "domain": "slab", "width": None, "count": None,
-                              "density": 0.1, "covariance": "pairs", "pairs": [0, 0.5, 0, 0.5],
-                              "method": "transport"},
+                            ({**POINTS, "delays": [0.1], "covariance": "pairs",
+                              "pairs": [0, 0.5, 0, 0.5]},
                              ["delays", "covariance = intensity or memory_effect"]),
                             ({"gradient": True, "count": 0}, ["gradient", "does not scatter"])):
             self.assert_refused_both_ways("covariance", BOX, keys, words)

@@ -20,8 +20,8 @@ struct DelayRun {
   GroupedSums sums;
 
   Estimate intensity() const { return jackknife(sums, job.field.covariance); }
-  Estimate covariance() const { return delay_estimates(request, job, sums).covariance; }
-  Estimate correlation() const { return delay_estimates(request, job, sums).correlation; }
+  Estimate covariance() const { return change_estimates(request, job, sums).covariance; }
+  Estimate correlation() const { return change_estimates(request, job, sums).correlation; }
 };
 
 DelayRun diffuse(const Scene& scene, const Plan& plan, const std::vector<double>& delays,

@@ -100,7 +100,7 @@ TEST_CASE("diffusing points decorrelate the exact fields as Monte Carlo says") {
   REQUIRE(plan.reversed);
   const auto job = mc::delay_job(scene, plan, delays, 1);
   const auto mc =
-      mc::delay_estimates(scene.request, job, run(job.field.batches, 300'000).sums).correlation;
+      mc::change_estimates(scene.request, job, run(job.field.batches, 300'000).sums).correlation;
 
   // What the method neglects: 80,000 placements show up to 0.02 more than Monte Carlo here, and
   // half of that at a third of the density.

@@ -185,9 +185,9 @@ TEST_CASE("fields of diffusing scatterers at two times, as by Monte Carlo") {
     const Scene scene = hg_slab(300, {60, g, 0.97}, request);
     const auto job = delay_job(scene, make_plan(scene, ReversedPaths::yes), delays, 5);
     const auto sums = tests::summed(job.field.batches, 200000);
-    const auto found = delay_estimates(request, job, sums).covariance;
+    const auto found = change_estimates(request, job, sums).covariance;
     for (std::size_t t = 0; t < delays.size(); ++t) {
-      const auto expected = slab_covariance(scene, true, {1e-5}, delays[t]).value;
+      const auto expected = slab_covariance(scene, true, {1e-5}, {.delay = delays[t]}).value;
       for (std::size_t v = 0; v < 2; ++v) {
         const std::size_t e = 2 * t + v;
         CHECK_WITHIN_4_SIGMA(found.value[e], found.error[e], expected[v], 0);
@@ -202,9 +202,11 @@ TEST_CASE("tilts and delays of a thick slab together, as diffusion theory has th
   const std::vector<double> tilts = {0, 1e-4, 3e-4}, delays = {0, 2e-7, 1e-6};
   const auto request = memory_effect_request(wavenumber, 0, {0}, tilts);
   const Scene scene = hg_slab(depth, {depth / optical_depth, 0.3}, request);
-  const auto job = slab_delay_job(scene, false, {}, delays);
+  std::vector<FieldChange> changes;
+  for (const double delay : delays) changes.push_back({.delay = delay});
+  const auto job = slab_change_job(scene, false, {}, changes);
   const auto sums = tests::summed(job.field.batches, 2);
-  const auto found = delay_estimates(request, job, sums);
+  const auto found = change_estimates(request, job, sums);
   const auto still = slab_covariance(scene, false, {}).value;
   for (std::size_t i = 0; i < tilts.size(); ++i) {
     CHECK(std::abs(found.covariance.value[i] - still[i]) < 1e-14);
