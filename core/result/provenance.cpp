@@ -28,6 +28,7 @@ const DatasetTable provenance_table{
         {"", "samples", "float64", "light paths, placements, fields, rays, trials, camera paths"},
         {"", "identity", "text", "what --resume compares"},
         {"", "converged", "bool", "0: stopped before the target error, or interrupted"},
+        {"", "errors", "text", "what errors are where they are not statistical, but numerical"},
     }};
 
 void write_provenance(ResultFile& file, const Provenance& provenance) {
