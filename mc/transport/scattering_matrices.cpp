@@ -151,10 +151,10 @@ PairWavesOf<Number> ScatteringMatricesOf<Number>::waves(const std::vector<Pair>&
     return each_part<Number>([&](const auto& part) {
       Rows rows(count, size);
       for (Eigen::Index i = 0; i < count; ++i) {
-        const auto [first, second] = pairs[static_cast<std::size_t>(i)];
+        const Pair pair = pairs[static_cast<std::size_t>(i)];
         const auto towards = [&](double sign) -> Eigen::VectorXcd {
           return root_.asDiagonal() * grid_.integrals([&](double theta) {
-            return part(law_.pair(first, second, turn + sign * theta));
+            return part(law_.pair(pair.first, pair.second, turn + sign * theta));
           });
         };
         rows.row(i) = turn == 0 ? split(towards(1), towards(-1)).transpose()
