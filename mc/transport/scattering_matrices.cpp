@@ -69,8 +69,8 @@ auto each_part(const F& f) {
   if constexpr (!std::is_same_v<Number, Dual<double>>)
     return f([](Complex z) { return z; });
   else
-    return Dual{f([](const Dual<Complex>& z) { return z.value; }),
-                f([](const Dual<Complex>& z) { return z.slope; })};
+    return Dual<Rows>{f([](const Dual<Complex>& z) { return z.value; }),
+                      f([](const Dual<Complex>& z) { return z.slope; })};
 }
 
 template <typename Number>

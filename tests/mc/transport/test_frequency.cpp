@@ -1,5 +1,6 @@
 #include <cmath>
 #include <random>
+#include <tuple>
 
 #include <doctest/doctest.h>
 
@@ -86,7 +87,9 @@ TEST_CASE("two frequencies along the same walks") {
       CAPTURE(light);
       CAPTURE(shift * k);
       const double view = -0.2;
-      const auto [expected, error] = PhotonWalks(3, 0.95, light, view, k, shift).mean(200000);
+      Complex expected;
+      double error = 0;
+      std::tie(expected, error) = PhotonWalks(3, 0.95, light, view, k, shift).mean(200000);
       const Complex found = shifted(seen(3 * free_path, {free_path, 0, 0.95}, light, view), shift);
       CHECK_WITHIN_4_SIGMA(found, error, expected, 0);
       CHECK(error <
