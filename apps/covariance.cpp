@@ -53,18 +53,18 @@ int covariance(const Arguments& arguments) {
   if (!command.parse(arguments)) return ExitStatus::done;
 
   Session session(command.text(), keys, run, command.only_prints());
-  choose_method(keys, method, spec, run, extras.gradient || !extras.delays.empty());
+  choose_method(keys, method, spec, run);
   if (method == "transport") read_transport(keys, methods, spec, run);
   const StopRule stop = stop_of(method, keys, run, methods);
   const auto reversed = reversed_paths(keys, methods);
   const double wave_tolerance = keys.read(methods.wave_tolerance);
-  if (method == "mc") read_extras(keys, extras);
+  if (method != "wave") read_extras(keys, extras, method == "transport");
   const Scene scene = make_scene(keys, spec);
   const auto [estimation, write_extras] =
       method == "mc" ? extended_estimation(scene, reversed, extras, session.seed())
       : method == "wave"
           ? ExtendedEstimation{wave_estimation(scene, wave_tolerance, session.seed()), {}}
-          : ExtendedEstimation{transport_estimation(scene, reversed, methods.tolerance), {}};
+          : extended_transport(scene, reversed, extras, methods.tolerance);
   if (!command.settle()) return ExitStatus::done;
   if (method != "wave") {
     Neglected neglected;

@@ -14,6 +14,7 @@
 #include "mc/estimators/gradient.h"
 #include "mc/speckle/field_datasets.h"
 #include "mc/theory/moments_datasets.h"
+#include "mc/transport/frequency_shifts.h"
 #include "mc/transport/refinement.h"
 #include "wave_solver/maps/map_datasets.h"
 
@@ -36,6 +37,7 @@ std::vector<const DatasetTable*> all_tables() {
                                              &mc::gradient_table,
                                              &mc::delays_table,
                                              &mc::numerical_table,
+                                             &mc::frequency_table,
                                              &validate_table,
                                              &wave::solution_table,
                                              &wave::map_table,

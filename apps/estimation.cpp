@@ -47,10 +47,10 @@ void add_transport_keys(Keys& keys, MethodSettings& settings) {
 }
 
 void choose_method(const Keys& keys, std::string& method, const SceneSpec& spec,
-                   const RunSettings& run, bool needs_chance) {
+                   const RunSettings& run) {
   if (keys.read(method) != "auto") return;
   const bool to_last = keys.given(run.samples) || keys.given(run.seconds);
-  method = spec.domain == "slab" && !to_last && !needs_chance ? "transport" : "mc";
+  method = spec.domain == "slab" && !to_last ? "transport" : "mc";
 }
 
 void read_transport(const Keys& keys, MethodSettings& settings, const SceneSpec& spec,

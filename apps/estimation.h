@@ -32,10 +32,10 @@ struct Estimation {
   std::string plan;
 };
 
-/// Puts into `method` what auto stands for: of a slab transport, unless what only Monte Carlo does
-/// (`needs_chance`) or heeds is asked for.
+/// Puts into `method` what auto stands for: of a slab transport, unless what only Monte Carlo heeds
+/// is given.
 void choose_method(const Keys& keys, std::string& method, const SceneSpec& spec,
-                   const RunSettings& run, bool needs_chance = false);
+                   const RunSettings& run);
 
 /// Reads what transport heeds. Throws InputError for what is no slab.
 void read_transport(const Keys& keys, MethodSettings& settings, const SceneSpec& spec,

@@ -87,15 +87,23 @@ void print_gradient(const CovarianceRequest& request, const mc::GradientJob& job
                 range.value[p].real(), range.error[p]);
 }
 
-void print_delays(const CovarianceRequest& request, const std::vector<double>& delays,
-                  const Estimate& correlation) {
-  std::printf("%-17s %10s %12s %9s\n", "light    view", "delay", "correlation", "error");
-  const std::size_t channels = request.channels.size(), rows = channels * delays.size();
+void print_changes(const CovarianceRequest& request, const char* change,
+                   const std::vector<double>& sizes, const Estimate& correlation) {
+  const bool tilts = request.has_reference();
+  const auto name = [&](std::size_t c) {
+    if (!tilts) return shown_channel(request, static_cast<std::uint32_t>(c));
+    char text[24];
+    std::snprintf(text, sizeof text, "%-17.6g", request.tilts[c]);
+    return std::string(text);
+  };
+  std::printf("%-17s %10s %21s %9s\n", tilts ? "tilt" : "light    view", change, "correlation",
+              "error");
+  const std::size_t channels = tilts ? request.moves : request.channels.size(),
+                    rows = channels * sizes.size();
   for (std::size_t row = 0; row < std::min(rows, most_rows); ++row) {
-    const std::size_t c = row / delays.size(), t = row % delays.size(), i = t * channels + c;
-    std::printf("%s %10.4g %12.5g %9.2g\n",
-                shown_channel(request, static_cast<std::uint32_t>(c)).c_str(), delays[t],
-                correlation.value[i].real(), correlation.error[i]);
+    const std::size_t c = row / sizes.size(), t = row % sizes.size(), i = t * channels + c;
+    std::printf("%s %10.4g %21s %9.2g\n", name(c).c_str(), sizes[t],
+                shown_value(correlation.value[i]).c_str(), correlation.error[i]);
   }
   if (rows > most_rows) std::printf("... and %zu more\n", rows - most_rows);
 }

@@ -35,8 +35,8 @@ std::string range_text(const mc::Range& range, double error);
 void print_gradient(const CovarianceRequest& request, const mc::GradientJob& job,
                     const mc::GradientEstimates& gradient);
 
-/// The correlation after each delay.
-void print_delays(const CovarianceRequest& request, const std::vector<double>& delays,
-                  const Estimate& correlation);
+/// The correlation after each change (a delay, a shift), of channels or of tilts.
+void print_changes(const CovarianceRequest& request, const char* change,
+                   const std::vector<double>& sizes, const Estimate& correlation);
 
 }  // namespace flatspeckle::apps

@@ -143,9 +143,9 @@ struct DelayKind {
   }
 };
 
-void check(const Scene& scene, const std::vector<double>& delays) {
-  if (scene.request.kind != CovarianceRequest::Kind::intensity)
-    throw InputError("delays: needs covariance = intensity");
+}  // namespace
+
+void check_delays(const Scene& scene, const std::vector<double>& delays) {
   if (!scene.medium.structure.independent())
     throw InputError("delays: scatterers at correlated positions do not move independently");
   for (const double delay : delays)
@@ -153,47 +153,38 @@ void check(const Scene& scene, const std::vector<double>& delays) {
       throw InputError("delays", delay, "must not be negative, nor above 1e100");
 }
 
-/// [delay][channel] over the intensities that come before them.
-Values correlation(const Values& all, std::size_t channels) {
-  Values correlation;
-  for (std::size_t i = channels; i < all.size(); ++i) {
-    const double intensity = all[i % channels].real();
-    correlation.push_back(intensity > 0 ? all[i] / intensity : 0);
-  }
-  return correlation;
-}
-
-}  // namespace
-
 PathJob delay_job(const Scene& scene, const Plan& plan, const std::vector<double>& delays,
                   std::uint64_t seed) {
-  check(scene, delays);
+  if (scene.request.kind != CovarianceRequest::Kind::intensity)
+    throw InputError("delays: needs covariance = intensity");
+  check_delays(scene, delays);
   PathJob job = path_job(DelayKind{delays}, scene, plan, seed);
   job.field.batches.relative_error = relative_error_of(job.all);
   return job;
 }
 
-DelayEstimates delay_estimates(const PathJob& job, const GroupedSums& sums) {
-  const Estimate all = jackknife(sums, job.all);
-  return {part(all, job.entries, all.value.size() - job.entries),
-          jackknife(sums, [&](double samples, std::span<const Complex> total) {
-            return correlation(job.all(samples, total), job.entries);
-          })};
-}
-
-const DatasetTable delays_table{"delays",
-                                {{"delay", Data::scale, "", "1", "k^2 D tau"},
-                                 {"covariance", Data::estimate, "delay LIGHT VIEW", "COVARIANCE",
-                                  "covariance of the field with itself after a delay"},
-                                 {"field_correlation", Data::estimate, "delay LIGHT VIEW", "1",
-                                  "field correlation after a delay"},
-                                 {"diffusion_theory", Data::real, "delay", "1",
-                                  "field correlation of transmitted light in diffusion theory"}}};
+const DatasetTable delays_table{
+    "delays",
+    {{"delay", Data::scale, "", "1", "k^2 D tau"},
+     {"covariance", Data::estimate, "delay LIGHT VIEW", "COVARIANCE",
+      "covariance of the field with itself after a delay"},
+     {"field_correlation", Data::estimate, "delay LIGHT VIEW", "1",
+      "field correlation after a delay"},
+     {"diffusion_theory", Data::real, "delay", "1",
+      "field correlation of transmitted light in diffusion theory"},
+     {"delayed_covariance", Data::complex_estimate, "delay tilt VIEW", "COVARIANCE",
+      "covariance of reference and moved field after a delay"},
+     {"delayed_correlation", Data::estimate, "delay tilt", "1",
+      "C_E of reference and moved field after a delay"}}};
 
 void write_delays(ResultFile& file, const Scene& scene, const std::vector<double>& delays,
-                  const DelayEstimates& found) {
+                  const ChangeEstimates& found) {
   const ResultGroup root(file, delays_table);
   root.put("delay", delays);
+  if (scene.request.has_reference()) {
+    root.put("delayed_covariance", found.covariance);
+    return root.put("delayed_correlation", found.correlation);
+  }
   root.put("covariance", found.covariance);
   root.put("field_correlation", found.correlation);
   if (scene.domain.kind != Domain::Kind::slab || !scene.request.transmission_only()) return;

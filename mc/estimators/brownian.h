@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/result/dataset_row.h"
-#include "mc/estimators/path_job.h"
+#include "mc/estimators/changed_fields.h"
 
 namespace flatspeckle::mc {
 
@@ -17,16 +17,13 @@ namespace flatspeckle::mc {
 PathJob delay_job(const Scene& scene, const Plan& plan, const std::vector<double>& delays,
                   std::uint64_t seed);
 
-/// [delay][channel]: the covariances, and those over the intensity, 0 where there is none.
-struct DelayEstimates {
-  Estimate covariance, correlation;
-};
-DelayEstimates delay_estimates(const PathJob& job, const GroupedSums& sums);
+/// Throws InputError for a structure factor, and for negative delays.
+void check_delays(const Scene& scene, const std::vector<double>& delays);
 
 extern const DatasetTable delays_table;
 /// With diffusion theory for light through a slab. The request's axes must have been written.
 void write_delays(ResultFile& file, const Scene& scene, const std::vector<double>& delays,
-                  const DelayEstimates& found);
+                  const ChangeEstimates& found);
 
 /// Diffusion theory of the correlation in transmission through a slab: motion is absorption 2 t (1
 /// - g) mu_s, which is added to mu_a in the kappa^2 of C20. A limit for thick slabs and small t.

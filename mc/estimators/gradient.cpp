@@ -16,19 +16,6 @@ namespace {
 
 using Values = std::vector<Complex>;
 
-/// Those that paths are differentiated by; the optical depth follows from mu_t.
-std::vector<BulkParameter> sampled_parameters(const Scene& scene) {
-  switch (scene.scatterer.kind) {
-    case Scatterer::Kind::hg:
-      return {BulkParameter::mu_t, BulkParameter::g, BulkParameter::albedo};
-    case Scatterer::Kind::other_bulk:
-    case Scatterer::Kind::point:
-      return {BulkParameter::mu_t, BulkParameter::albedo};
-    default:
-      return {BulkParameter::mu_t};
-  }
-}
-
 std::string name_of(BulkParameter parameter) {
   constexpr const char* names[] = {"mu_t", "g", "albedo"};
   return names[static_cast<std::size_t>(parameter)];
@@ -149,13 +136,37 @@ Estimate each(const Estimate& all, std::size_t parameters,
 
 }  // namespace
 
-Plan gradient_plan(const Scene& scene, ReversedPaths reversed) {
+std::vector<BulkParameter> bulk_parameters(const Scene& scene) {
+  switch (scene.scatterer.kind) {
+    case Scatterer::Kind::hg:
+      return {BulkParameter::mu_t, BulkParameter::g, BulkParameter::albedo};
+    case Scatterer::Kind::other_bulk:
+    case Scatterer::Kind::point:
+      return {BulkParameter::mu_t, BulkParameter::albedo};
+    default:
+      return {BulkParameter::mu_t};
+  }
+}
+
+GradientJob gradient_job(const PathJob& paths, const Scene& scene) {
+  GradientJob job{paths, {}, gradient_of(paths, scene.domain.depth)};
+  for (const BulkParameter parameter : bulk_parameters(scene))
+    job.parameters.push_back(name_of(parameter));
+  job.parameters.emplace_back("optical_depth");
+  return job;
+}
+
+void check_gradient(const Scene& scene) {
   if (scene.medium.mu_s == 0)
     throw InputError("gradient: a medium that does not scatter has no derivatives");
   constexpr std::size_t most = 20000;
   if (scene.request.entries.size() > most)
     throw InputError("gradient: " + std::to_string(scene.request.entries.size()) +
                      " entries of the covariance are too many, at most " + std::to_string(most));
+}
+
+Plan gradient_plan(const Scene& scene, ReversedPaths reversed) {
+  check_gradient(scene);
   Plan plan = make_plan(scene, reversed);
   plan.rank_k = false;
   if (scene.scatterer.kind == Scatterer::Kind::hg) plan.phase = Plan::Phase::henyey_greenstein;
@@ -163,12 +174,7 @@ Plan gradient_plan(const Scene& scene, ReversedPaths reversed) {
 }
 
 GradientJob gradient_job(const Scene& scene, const Plan& plan, std::uint64_t seed) {
-  const auto parameters = sampled_parameters(scene);
-  GradientJob job{path_job(GradientKind{parameters}, scene, plan, seed), {}, {}};
-  for (const BulkParameter parameter : parameters) job.parameters.push_back(name_of(parameter));
-  job.parameters.emplace_back("optical_depth");
-  job.gradient = gradient_of(job, scene.domain.depth);
-  return job;
+  return gradient_job(path_job(GradientKind{bulk_parameters(scene)}, scene, plan, seed), scene);
 }
 
 CorrelationGradient memory_effect_gradient(const CovarianceRequest& request,

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/result/dataset_row.h"
+#include "mc/estimators/bulk_parameter.h"
 #include "mc/estimators/path_job.h"
 
 namespace flatspeckle::mc {
@@ -18,8 +19,16 @@ struct GradientJob : PathJob {
   Estimator gradient;  ///< [parameter][entry]
 };
 
-/// As make_plan(), but g = 0 of hg is free to change. Throws InputError for a scene that does not
-/// scatter or a request of too many entries.
+/// What a scene's paths are differentiated by; the optical depth follows from mu_t.
+std::vector<BulkParameter> bulk_parameters(const Scene& scene);
+
+/// Of a job whose quantities after the covariance are derivatives by bulk_parameters().
+GradientJob gradient_job(const PathJob& job, const Scene& scene);
+
+/// Throws InputError for a scene that does not scatter or a request of too many entries.
+void check_gradient(const Scene& scene);
+
+/// As make_plan(), but g = 0 of hg is free to change. Throws as check_gradient().
 Plan gradient_plan(const Scene& scene, ReversedPaths reversed);
 
 GradientJob gradient_job(const Scene& scene, const Plan& plan, std::uint64_t seed);

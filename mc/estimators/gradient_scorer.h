@@ -5,19 +5,10 @@
 #include <vector>
 
 #include "flatland/scene/scene.h"
+#include "mc/estimators/bulk_parameter.h"
 #include "mc/estimators/path_ends.h"
 
 namespace flatspeckle::mc {
-
-/// What a scene's bulk can be differentiated by, all others held fixed.
-enum class BulkParameter { mu_t, g, albedo };
-
-/// d log p / dg of the phase function of C22 at a scattering angle of known 1 - cos.
-inline double henyey_greenstein_slope(double g, double one_minus_cosine) {
-  const double rest = 1 - g;
-  return 2 * (rest - one_minus_cosine) / (rest * rest + 2 * g * one_minus_cosine) -
-         2 * g / (rest * (1 + g));
-}
 
 /// What the logarithm of a path's integrand mu_s^B prod exp(-mu_t r) prod p depends on.
 struct GradientTally {

@@ -71,15 +71,24 @@ std::vector<Focus> light_foci(Pair lights, double width) {
   return found;
 }
 
-std::vector<Chain> chains(const CovarianceRequest& request, bool reversed) {
+double matched_view(const CovarianceRequest& request, const Entry& entry, double shift) {
+  const auto sine = [&](const auto& end) { return std::sin(end.angle); };
+  const Channel a = request.channels[entry.a], b = request.channels[entry.b];
+  const double view = request.views[b.view].angle;
+  if (shift == 0) return view;
+  const double turned =
+      std::asin(sine(request.lights[b.light]) -
+                (sine(request.lights[a.light]) - sine(request.views[a.view])) / (1 + shift));
+  return std::cos(view) > 0 ? turned : std::numbers::pi - turned;
+}
+
+std::vector<Chain> chains(const CovarianceRequest& request, bool reversed, double shift) {
   std::vector<Chain> all;
   for (std::size_t e = 0; e < request.entries.size(); ++e) {
-    const auto angles = [&](std::size_t channel) {
-      const Channel c = request.channels[channel];
-      return Pair{request.lights[c.light].angle, request.views[c.view].angle};
-    };
-    const auto [i1, v1] = angles(request.entries[e].a);
-    const auto [i2, v2] = angles(request.entries[e].b);
+    const Entry entry = request.entries[e];
+    const Channel a = request.channels[entry.a], b = request.channels[entry.b];
+    const double i1 = request.lights[a.light].angle, v1 = request.views[a.view].angle,
+                 i2 = request.lights[b.light].angle, v2 = matched_view(request, entry, shift);
     all.push_back({{i1, i2}, {v1, v2}, e});
     if (reversed) all.push_back({{i1, v2 + std::numbers::pi}, {v1, i2 + std::numbers::pi}, e});
   }
@@ -87,13 +96,13 @@ std::vector<Chain> chains(const CovarianceRequest& request, bool reversed) {
 }
 
 std::vector<ChainGroup> grouped(const Scene& scene, const ScatteringLaw& law,
-                                const std::vector<Chain>& chains) {
+                                const std::vector<Chain>& chains, double shift) {
   constexpr double same_momentum = 1e-12;  // of k
   const double unit = same_momentum * scene.k / scene.medium.mu_t;
   const Foci foci(scene, chains, law.width());
   std::map<std::pair<double, std::vector<Focus>>, ChainGroup> groups;
   for (const Chain& chain : chains) {
-    const double q = unit * std::round(transverse_momentum(scene, chain.lights) / unit);
+    const double q = unit * std::round(transverse_momentum(scene, chain.lights, shift) / unit);
     const auto own = foci.of(chain.lights, q);
     ChainGroup& group = groups[{q, own}];
     group.q = q;

@@ -5,6 +5,8 @@
 
 #include <Eigen/Core>
 
+#include "core/numbers/complex.h"
+
 namespace flatspeckle::mc {
 
 using Matrix = Eigen::MatrixXd;
@@ -12,14 +14,18 @@ using Matrix = Eigen::MatrixXd;
 /// products with real matrices are real ones.
 using Rows = Eigen::MatrixXcd;
 
+using flatspeckle::product;  // of numbers: those of matrices would hide it
+
 /// Dense algebra by the system's BLAS and LAPACK, on one thread.
 Matrix product(const Matrix& a, const Matrix& b);
 Rows product(const Rows& rows, const Matrix& a);
+Rows product(const Rows& a, const Rows& b);
 /// a b^T
 Rows product_transposed(const Rows& a, const Rows& b);
 /// Each row times its factor.
 Rows scaled(std::span<const std::complex<double>> factor, Rows rows);
 /// Throws std::runtime_error for a singular matrix.
 Matrix inverse(Matrix a);
+Rows inverse(Rows a);
 
 }  // namespace flatspeckle::mc

@@ -14,89 +14,119 @@ namespace {
 using std::numbers::pi;
 
 /// (exp(a) - exp(b)) / (a - b)
-Complex divided_difference(Complex a, Complex b) {
-  if (a.real() < b.real()) std::swap(a, b);
-  const Complex z = b - a;
-  if (std::abs(z) < 1e-3) return std::exp(a) * (1.0 + z / 2.0 * (1.0 + z / 3.0 * (1.0 + z / 4.0)));
-  return std::exp(a) * ((std::exp(z) - 1.0) / z);
+template <typename C>
+C divided_difference(C a, C b) {
+  if (value_of(a).real() < value_of(b).real()) std::swap(a, b);
+  const C z = b - a;
+  if (std::abs(value_of(z)) < 1e-3)
+    return exp(a) * (1.0 + z / 2.0 * (1.0 + z / 3.0 * (1.0 + z / 4.0 * (1.0 + z / 5.0))));
+  return exp(a) * ((exp(z) - 1.0) / z);
 }
 
 /// The second divided difference of exp: int exp(a x + b y + c z) over x + y + z = 1, x, y, z > 0.
-Complex divided_difference(Complex a, Complex b, Complex c) {
+template <typename C>
+C divided_difference(C a, C b, C c) {
   // a and c furthest apart
-  const double ab = std::norm(a - b), bc = std::norm(b - c), ca = std::norm(c - a);
+  const double ab = std::norm(value_of(a - b)), bc = std::norm(value_of(b - c)),
+               ca = std::norm(value_of(c - a));
   if (ab >= bc && ab >= ca)
     std::swap(b, c);
   else if (bc >= ca)
     std::swap(a, b);
-  if (std::norm(a - c) > 0.25)
+  if (std::norm(value_of(a - c)) > 0.25)
     return (divided_difference(a, b) - divided_difference(b, c)) / (a - c);
   // exp(m) sum_k h_k / (k + 2)!, h_k the complete symmetric polynomials of the distances from m
-  const Complex middle = (a + b + c) / 3.0, x = a - middle, y = b - middle, z = c - middle;
-  const Complex second = x * y + y * z + z * x, third = x * y * z;
-  std::array<Complex, 3> h{0, 0, 1};  // h_{k-2}, h_{k-1}, h_k; the distances add up to 0
-  Complex sum = 0.5;
+  const C middle = (a + b + c) / 3.0, x = a - middle, y = b - middle, z = c - middle;
+  const C second = x * y + y * z + z * x, third = x * y * z;
+  // h_{k-2}, h_{k-1}, h_k; the distances add up to 0
+  std::array<C, 3> h{C{}, C{}, exp(C{})};
+  C sum = 0.5 * h[2];
   double factorial = 2;
   for (int k = 1; k <= 12; ++k) {
-    h = {h[1], h[2], -second * h[1] + third * h[0]};
+    h = {h[1], h[2], third * h[0] - second * h[1]};
     factorial *= k + 2;
     sum += h[2] / factorial;
   }
-  return std::exp(middle) * sum;
+  return exp(middle) * sum;
+}
+
+double magnitude(Complex z) {
+  return std::abs(z);
+}
+double magnitude(const Dual<Complex>& z) {
+  return std::max(std::abs(z.value), std::abs(z.slope));
 }
 
 }  // namespace
 
-DoubleScattering::DoubleScattering(const Scene& scene, double q, Pair lights, Pair views)
-    : optical_depth_(scene.medium.mu_t * scene.domain.depth),
-      q_(q),
+template <typename Number>
+DoubleScatteringOf<Number>::DoubleScatteringOf(const Scene& scene, double q, Pair lights,
+                                               Pair views, const Departure<Number>& departure)
+    : optical_depth_(scene.medium.mu_t * scene.domain.depth / departure.length),
+      q_(q * departure.length),
+      extinction_(departure.extinction(scene)),
       lights_(lights),
       views_(views),
-      light_(pair_wave(scene, lights)),
-      view_(pair_wave(scene, turned_round(views))) {}
+      light_(pair_wave(scene, lights, departure)),
+      view_(pair_wave(scene, turned_round(views), departure)) {}
 
-Complex DoubleScattering::along(double sine, double cosine, bool down) const {
-  const Complex loss = Complex(1, q_ * sine) / cosine,
-                between = down ? view_.top + light_.bottom : light_.top + view_.bottom;
-  return optical_depth_ * optical_depth_ / cosine *
-         divided_difference(optical_depth_ * (light_.top + view_.top),
-                            optical_depth_ * (between - loss),
-                            optical_depth_ * (light_.bottom + view_.bottom));
+template <typename Number>
+ComplexOf<Number> DoubleScatteringOf<Number>::once() const {
+  return optical_depth_ * divided_difference(C(optical_depth_ * (light_.top + view_.top)),
+                                             C(optical_depth_ * (light_.bottom + view_.bottom)));
 }
 
-Complex DoubleScattering::gauss(const ScatteringLaw& law, double from, double to) const {
+template <typename Number>
+ComplexOf<Number> DoubleScatteringOf<Number>::along(double sine, double cosine, bool down) const {
+  const C loss = (as_complex(extinction_) + Complex(0, sine) * q_) / cosine,
+          between = down ? view_.top + light_.bottom : light_.top + view_.bottom;
+  return optical_depth_ * optical_depth_ / cosine *
+         divided_difference(C(optical_depth_ * (light_.top + view_.top)),
+                            C(optical_depth_ * (between - loss)),
+                            C(optical_depth_ * (light_.bottom + view_.bottom)));
+}
+
+template <typename Number>
+ComplexOf<Number> DoubleScatteringOf<Number>::gauss(const Law& law, double from, double to) const {
   static const Quadrature rule = gauss_legendre(10);
-  Complex sum = 0;
+  C sum{};
   for (std::size_t i = 0; i < rule.node.size(); ++i) {
     const double theta = from + rule.node[i] * (to - from), cosine = std::cos(theta);
-    sum += rule.weight[i] * along(std::sin(theta), std::abs(cosine), cosine > 0) *
-           law.pair(lights_.first, lights_.second, theta) *
-           law.pair(views_.first, views_.second, theta);
+    sum += rule.weight[i] * (along(std::sin(theta), std::abs(cosine), cosine > 0) *
+                             law.pair(lights_.first, lights_.second, theta) *
+                             law.pair(views_.first, views_.second, theta));
   }
   return (to - from) * sum;
 }
 
-Complex DoubleScattering::integral(const ScatteringLaw& law, double from, double to,
-                                   double tolerance, Complex estimate, int depth) const {
+template <typename Number>
+ComplexOf<Number> DoubleScatteringOf<Number>::integral(const Law& law, double from, double to,
+                                                       double tolerance, C estimate,
+                                                       int depth) const {
   constexpr int deepest = 24;
   const double middle = (from + to) / 2;
-  const Complex left = gauss(law, from, middle), right = gauss(law, middle, to);
-  if (std::abs(left + right - estimate) <= tolerance || depth == deepest) return left + right;
+  const C left = gauss(law, from, middle), right = gauss(law, middle, to);
+  if (magnitude(left + right - estimate) <= tolerance || depth == deepest) return left + right;
   return integral(law, from, middle, tolerance, left, depth + 1) +
          integral(law, middle, to, tolerance, right, depth + 1);
 }
 
-Complex DoubleScattering::total(const ScatteringLaw& law, double tolerance) const {
+template <typename Number>
+ComplexOf<Number> DoubleScatteringOf<Number>::total(const Law& law, double tolerance) const {
   std::vector<double> cuts{-pi, -pi / 2, pi / 2, pi};
   for (const double angle : {lights_.first, lights_.second, views_.first, views_.second,
                              (lights_.first + lights_.second) / 2})
     cuts.push_back(std::remainder(angle, 2 * pi));
   std::sort(cuts.begin(), cuts.end());
-  Complex sum = 0;
+  C sum{};
   for (std::size_t i = 0; i + 1 < cuts.size(); ++i)
     if (cuts[i + 1] > cuts[i])
       sum += integral(law, cuts[i], cuts[i + 1], tolerance, gauss(law, cuts[i], cuts[i + 1]), 0);
   return sum;
 }
+
+template class DoubleScatteringOf<double>;
+template class DoubleScatteringOf<Complex>;
+template class DoubleScatteringOf<Dual<double>>;
 
 }  // namespace flatspeckle::mc

@@ -9,24 +9,33 @@ namespace flatspeckle::mc {
 /// at one depth and into the view at another. An integral over theta alone, the rest is in closed
 /// form: exact where forward peaks, or the phase of a large transverse momentum, ask for many
 /// ordinates.
-class DoubleScattering {
+template <typename Number>
+class DoubleScatteringOf {
  public:
-  DoubleScattering(const Scene& scene, double q, Pair lights, Pair views);
+  using C = ComplexOf<Number>;
+  using Law = LawOf<Number>;
+
+  DoubleScatteringOf(const Scene& scene, double q, Pair lights, Pair views,
+                     const Departure<Number>& departure = {});
+
+  /// What one scattering makes of the pairs, with their amplitudes but the scatterer's.
+  C once() const;
 
   /// Of unit sources and sensitivities along theta, on the way down or up: per cos(theta).
-  Complex along(double sine, double cosine, bool down) const;
+  C along(double sine, double cosine, bool down) const;
 
   /// Including both pairs' amplitudes, by quadrature refined to a tolerance.
-  Complex total(const ScatteringLaw& law, double tolerance) const;
+  C total(const Law& law, double tolerance) const;
 
  private:
-  Complex integral(const ScatteringLaw& law, double from, double to, double tolerance,
-                   Complex estimate, int depth) const;
-  Complex gauss(const ScatteringLaw& law, double from, double to) const;
+  C integral(const Law& law, double from, double to, double tolerance, C estimate, int depth) const;
+  C gauss(const Law& law, double from, double to) const;
 
-  double optical_depth_, q_;
+  RealOf<Number> optical_depth_, q_;
+  Number extinction_;
   Pair lights_, views_;
-  PairWave light_, view_;
+  PairWaveOf<Number> light_, view_;
 };
+using DoubleScattering = DoubleScatteringOf<double>;
 
 }  // namespace flatspeckle::mc

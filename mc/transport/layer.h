@@ -2,8 +2,7 @@
 
 #include <vector>
 
-#include "core/numbers/complex.h"
-#include "mc/transport/dense.h"
+#include "mc/transport/dual_dense.h"
 
 namespace flatspeckle::mc {
 
@@ -11,30 +10,39 @@ namespace flatspeckle::mc {
 /// L+, and up, L-, at n ordinates, in a basis in which all is real,
 ///   S' = -x D,  D' = -y S,  S = L+ + L-,  D = L+ - L-.
 /// x and y with the signs of all but the first `even` rows turned are symmetric.
-struct TransportOperator {
-  Matrix x, y;
+template <typename Number>
+struct TransportOperatorOf {
+  MatrixOf<Number> x, y;
   Eigen::Index even = 0;
   double fastest = 0;  ///< bounds the rates of change along z
 };
+using TransportOperator = TransportOperatorOf<double>;
 
 /// Pairs of lights or of views, a row each: what exp(top z + bottom (depth - z)) of a light feeds
 /// into L+ and L- per mean free path, or a view of that sensitivity collects from L- and L+ (turned
 /// round: a view is a light that time runs backwards for). Signs of all but the first `even`
 /// columns are turned.
-struct PairWaves {
-  std::vector<Complex> top, bottom;
-  Rows down, up;
+template <typename Number>
+struct PairWavesOf {
+  std::vector<ComplexOf<Number>> top, bottom;
+  RowsOf<Number> down, up;
 };
+using PairWaves = PairWavesOf<double>;
 
 /// What leaves the slab through its faces, a row for each light, and what views collect of it,
 /// [view][light]. Signs as above.
-struct LayerResponse {
-  Rows up, down;
-  Rows collected;
+template <typename Number>
+struct LayerResponseOf {
+  RowsOf<Number> up, down;
+  RowsOf<Number> collected;
 };
+using LayerResponse = LayerResponseOf<double>;
 
-/// By doubling from a layer so thin that its series converge to rounding.
-LayerResponse layer_response(const TransportOperator& medium, double depth, const PairWaves& lights,
-                             const PairWaves& views);
+/// By doubling from a layer so thin that its series converge to rounding. Number: double,
+/// Complex for complex extinction, or Dual<double> for derivatives too.
+template <typename Number>
+LayerResponseOf<Number> layer_response(const TransportOperatorOf<Number>& medium,
+                                       RealOf<Number> depth, const PairWavesOf<Number>& lights,
+                                       const PairWavesOf<Number>& views);
 
 }  // namespace flatspeckle::mc

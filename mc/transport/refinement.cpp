@@ -1,5 +1,6 @@
 #include "mc/transport/refinement.h"
 
+#include <algorithm>
 #include <memory>
 #include <mutex>
 
@@ -11,6 +12,12 @@ const DatasetTable numerical_table{
     .name = "numerical",
     .rows = {},
     .attributes = {{"", "errors", "text", "what the errors are, where they are not statistical"}}};
+
+void Refined::append(const Refined& other) {
+  value.insert(value.end(), other.value.begin(), other.value.end());
+  difference.insert(difference.end(), other.difference.begin(), other.difference.end());
+  ordinates = std::max(ordinates, other.ordinates);
+}
 
 BatchJob two_batches(std::size_t size, const std::function<Refined()>& solve) {
   struct Solution {

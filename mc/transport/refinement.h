@@ -24,6 +24,8 @@ struct Refinement {
 struct Refined {
   std::vector<Complex> value, difference;
   int ordinates = 0;  ///< the most that any part has needed
+
+  void append(const Refined& other);
 };
 
 /// A solution as a job of two batches, the values plus and minus their difference: what the

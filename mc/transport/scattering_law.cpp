@@ -6,6 +6,8 @@
 #include <mutex>
 #include <numbers>
 
+#include "mc/estimators/bulk_parameter.h"
+
 namespace flatspeckle::mc {
 
 namespace {
@@ -48,7 +50,7 @@ std::vector<double> significant_modes(const std::function<double(double)>& p) {
 
 }  // namespace
 
-ScatteringLaw::ScatteringLaw(const Scene& scene, double delay) : delay_(delay) {
+ScatteringLaw::ScatteringLaw(const Scene& scene, double delay) : delay_(delay), g_(scene.medium.g) {
   const Scatterer& scatterer = scene.scatterer;
   if (scatterer.kind == Scatterer::Kind::hg)
     density_ = [g = scatterer.g](double theta) { return henyey_greenstein(g, theta); };
@@ -73,6 +75,19 @@ ScatteringLaw::ScatteringLaw(const Scene& scene, double delay) : delay_(delay) {
   const auto large = [](double mode) { return std::abs(mode) > 0.01; };
   const auto lobes = std::find_if(modes_.rbegin(), modes_.rend(), large).base() - modes_.begin();
   if (!is_peaked()) least_order_ = static_cast<int>(std::min<std::ptrdiff_t>(lobes / 2, 16));
+}
+
+double ScatteringLaw::slope(double angle) const {
+  const double half = std::sin(angle / 2);
+  return henyey_greenstein_slope(g_, 2 * half * half);
+}
+
+/// The modes of Henyey-Greenstein's function are g^m.
+ScatteringSlope::ScatteringSlope(const ScatteringLaw& law, bool by_g) : law_(law), by_g_(by_g) {
+  modes_.value = law.modes();
+  modes_.slope.assign(std::max<std::size_t>(law.modes().size(), 2), 0);
+  for (std::size_t m = 1; by_g && m < modes_.slope.size(); ++m)
+    modes_.slope[m] = static_cast<double>(m) * std::pow(law.g(), static_cast<double>(m - 1));
 }
 
 void ScatteringLaw::tabulate(const Scene& scene) {

@@ -9,7 +9,6 @@
 #include "core/numbers/blas.h"
 #include "core/run/interrupt.h"
 #include "core/run/parallel.h"
-#include "mc/estimators/single_scattering.h"
 #include "mc/transport/chains.h"
 #include "mc/transport/scattering_matrices.h"
 
@@ -17,51 +16,72 @@ namespace flatspeckle::mc {
 
 namespace {
 
-/// A scattering law as single_scattering() takes it.
-struct Amplitudes {
-  const ScatteringLaw& law;
-  Complex amplitude(Vec2 from, Vec2 to) const {
-    return law.amplitude(angle_of(to) - angle_of(from));
+/// A slab, and for Dual<double> what it is differentiated by.
+template <typename Number>
+struct Slab {
+  const Scene& scene;
+  const ScatteringLaw& resolved;  ///< what grids are made for
+  const LawOf<Number>& law;
+  RealOf<Number> albedo;
+  Departure<Number> departure{};
+
+  RealOf<Number> optical_depth() const {
+    return scene.medium.mu_t * scene.domain.depth / departure.length;
+  }
+  DoubleScatteringOf<Number> twice(const ChainGroup& group, const ChainGroup::Link& link) const {
+    return {scene, group.q, group.lights[static_cast<std::size_t>(link.light)],
+            group.views[static_cast<std::size_t>(link.view)], departure};
   }
 };
 
 /// What groups of one grid share.
+template <typename Number>
 struct Discrete {
   AngularGrid grid;
-  ScatteringMatrices matrices;
+  ScatteringMatricesOf<Number> matrices;
 
-  Discrete(const std::vector<Focus>& foci, int order, const ScatteringLaw& law, double albedo)
-      : grid(foci, order, law.width()), matrices(grid, law, albedo) {}
+  Discrete(const std::vector<Focus>& foci, int order, const Slab<Number>& slab)
+      : grid(foci, order, slab.resolved.width()),
+        matrices(grid, slab.law, slab.albedo, slab.departure.extinction(slab.scene),
+                 slab.departure) {}
   Discrete(const Discrete&) = delete;
 };
 
-DoubleScattering twice(const Scene& scene, const ChainGroup& group, const ChainGroup::Link& link) {
-  return {scene, group.q, group.lights[static_cast<std::size_t>(link.light)],
-          group.views[static_cast<std::size_t>(link.view)]};
-}
-
-/// Paths of three scatterings and more, one value per link of the group.
-std::vector<Complex> solved(const Scene& scene, const ChainGroup& group,
-                            const ScatteringMatrices& matrices) {
-  const double optical_depth = scene.medium.mu_t * scene.domain.depth;
-  std::vector<Complex> values(group.links.size());
-  for (const auto parity : ScatteringMatrices::parities(group.q)) {
-    const auto lights = matrices.lights(scene, group.lights, parity),
-               views = matrices.views(scene, group.views, parity);
-    const auto response =
-        layer_response(matrices.transport(group.q, parity), optical_depth, lights, views);
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      const auto& link = group.links[i];
-      values[i] += response.collected(link.view, link.light) -
-                   matrices.double_scattering(twice(scene, group, link), lights, link.light, views,
-                                              link.view, parity);
-    }
+/// Paths of one scattering, per entry.
+template <typename Number>
+std::vector<ComplexOf<Number>> scattered_once(const Slab<Number>& slab) {
+  std::vector<ComplexOf<Number>> values;
+  for (const auto& [lights, views, entry] :
+       chains(slab.scene.request, false, slab.departure.shift)) {
+    const DoubleScatteringOf<Number> pair(slab.scene, 0, lights, views, slab.departure);
+    values.push_back(slab.albedo * (pair.once() * slab.law.pair(lights.first - views.first,
+                                                                lights.second - views.second, 0)));
   }
   return values;
 }
 
-/// What the tolerance of each entry is relative to.
-std::vector<double> scales(const CovarianceRequest& request, const std::vector<Complex>& values) {
+/// Paths of three scatterings and more, per link of the group.
+template <typename Number>
+std::vector<Complex> solved(const Slab<Number>& slab, const ChainGroup& group,
+                            const ScatteringMatricesOf<Number>& matrices) {
+  std::vector<ComplexOf<Number>> values(group.links.size());
+  for (const auto parity : matrices.parities(group.q)) {
+    const auto lights = matrices.lights(slab.scene, group.lights, parity),
+               views = matrices.views(slab.scene, group.views, parity);
+    const auto response =
+        layer_response(matrices.transport(group.q, parity), slab.optical_depth(), lights, views);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      const auto& link = group.links[i];
+      values[i] += entry(response.collected, link.view, link.light) -
+                   matrices.double_scattering(slab.twice(group, link), lights, link.light, views,
+                                              link.view, parity);
+    }
+  }
+  return flat(values);
+}
+
+/// What entries are relative to.
+std::vector<double> magnitudes(const CovarianceRequest& request, std::span<const Complex> values) {
   std::map<std::size_t, double> intensity;
   for (std::size_t e = 0; e < values.size(); ++e)
     if (request.entries[e].a == request.entries[e].b)
@@ -78,23 +98,33 @@ std::vector<double> scales(const CovarianceRequest& request, const std::vector<C
   return scale;
 }
 
+/// What the tolerance of each entry is relative to, and that of its derivative: that or the entry.
+std::vector<double> scales(const CovarianceRequest& request, const std::vector<Complex>& values) {
+  const std::size_t entries = request.entries.size();
+  auto scale = magnitudes(request, std::span(values).first(entries));
+  if (values.size() == entries) return scale;
+  const auto slope = magnitudes(request, std::span(values).last(entries));
+  for (std::size_t e = 0; e < entries; ++e) scale.push_back(std::max(scale[e], slope[e]));
+  return scale;
+}
+
+/// Per entry or link: values, and for Dual<double> then derivatives.
+template <typename Number>
 class Refiner {
  public:
-  Refiner(const Scene& scene, bool reversed, const Refinement& refinement, double delay)
-      : scene_(scene),
+  Refiner(const Slab<Number>& slab, bool reversed, const Refinement& refinement)
+      : slab_(slab),
+        request_(slab.scene.request),
         refinement_(refinement),
-        law_(scene, delay),
-        few_(single_scattering(scene, Amplitudes{law_})) {
-    for (std::size_t e = 0; e < few_.size(); ++e) {
-      const auto [light, view] = scene.request.channels[scene.request.entries[e].b];
-      few_[e] *= law_.decay(scene.request.views[view].angle - scene.request.lights[light].angle);
-    }
-    for (ChainGroup& group : grouped(scene, law_, chains(scene.request, reversed)))
+        few_(flat(scattered_once(slab))) {
+    for (ChainGroup& group :
+         grouped(slab.scene, slab.resolved, chains(request_, reversed, slab.departure.shift),
+                 slab.departure.shift))
       parts_.push_back({std::move(group), {}, {}, 0, false, false});
   }
 
   Refined refined() {
-    int order = std::max(refinement_.first_order, law_.least_order());
+    int order = std::max(refinement_.first_order, slab_.resolved.least_order());
     step(order);
     add_double_scattering();
     while (step(order = Refinement::next_order(order))) settle();
@@ -104,7 +134,7 @@ class Refiner {
  private:
   struct Part {
     ChainGroup group;
-    std::vector<Complex> value, before;  ///< per link, of the last two orders
+    std::vector<Complex> value, before;  ///< of the last two orders
     int size = 0;
     bool done = false, near = false;  ///< near: the last step came close to the tolerance
   };
@@ -112,19 +142,18 @@ class Refiner {
   /// Solves what is not done with more ordinates; false if that is nothing.
   bool step(int order) {
     std::vector<Part*> open;
-    std::map<std::vector<Focus>, std::unique_ptr<Discrete>> grids;
+    std::map<std::vector<Focus>, std::unique_ptr<Discrete<Number>>> grids;
     for (Part& part : parts_) {
       if (part.done) continue;
       open.push_back(&part);
       auto& grid = grids[part.group.foci];
-      if (!grid)
-        grid = std::make_unique<Discrete>(part.group.foci, order, law_, scene_.medium.albedo);
+      if (!grid) grid = std::make_unique<Discrete<Number>>(part.group.foci, order, slab_);
     }
     parallel_for(open.size(), [&](std::size_t i) {
       stop_if_interrupted();
       Part& part = *open[i];
-      const Discrete& discrete = *grids.at(part.group.foci);
-      part.before = std::exchange(part.value, solved(scene_, part.group, discrete.matrices));
+      const auto& discrete = *grids.at(part.group.foci);
+      part.before = std::exchange(part.value, solved(slab_, part.group, discrete.matrices));
       part.size = static_cast<int>(2 * discrete.grid.size());
     });
     for (const Part* part : open) ordinates_ = std::max(ordinates_, part->size);
@@ -134,28 +163,37 @@ class Refiner {
   /// Once how large the entries are is known.
   void add_double_scattering() {
     constexpr double part_of_tolerance = 0.01;
-    const auto scale = scales(scene_.request, sum(&Part::value));
-    std::vector<std::vector<Complex>> found(parts_.size());
+    const auto scale = scales(request_, sum(&Part::value));
+    std::vector<std::vector<ComplexOf<Number>>> found(parts_.size());
     parallel_for(parts_.size(), [&](std::size_t p) {
       stop_if_interrupted();
       for (const auto& link : parts_[p].group.links)
         found[p].push_back(
-            twice(scene_, parts_[p].group, link)
-                .total(law_, part_of_tolerance * refinement_.tolerance * scale[link.entry]));
+            slab_.albedo * slab_.albedo *
+            slab_.twice(parts_[p].group, link)
+                .total(slab_.law, part_of_tolerance * refinement_.tolerance * scale[link.entry]));
     });
-    const double albedo = scene_.medium.albedo;
-    for (std::size_t p = 0; p < parts_.size(); ++p)
-      for (std::size_t i = 0; i < found[p].size(); ++i)
-        few_[parts_[p].group.links[i].entry] += albedo * albedo * found[p][i];
+    for (std::size_t p = 0; p < parts_.size(); ++p) add(few_, parts_[p].group, flat(found[p]));
+  }
+
+  /// To entries what their links give.
+  void add(std::vector<Complex>& entries, const ChainGroup& group,
+           const std::vector<Complex>& values) const {
+    for (std::size_t i = 0; i < values.size(); ++i) entries[entry_of(group, i)] += values[i];
+  }
+
+  std::size_t entry_of(const ChainGroup& group, std::size_t i) const {
+    const std::size_t links = group.links.size();
+    return i / links * request_.entries.size() + group.links[i % links].entry;
   }
 
   /// Parts whose last two orders agree, or that would become too large, are done.
   void settle() {
-    const auto scale = scales(scene_.request, sum(&Part::value));
+    const auto scale = scales(request_, sum(&Part::value));
     for (Part& part : parts_) {
       double worst = 0;
       for (std::size_t i = 0; i < part.value.size(); ++i)
-        if (const double size = scale[part.group.links[i].entry]; size > 0)
+        if (const double size = scale[entry_of(part.group, i)]; size > 0)
           worst = std::max(worst, std::abs(part.value[i] - part.before[i]) / size);
       // One small difference may be chance: the one before must have been small too.
       const double tolerance = refinement_.tolerance / 2;
@@ -167,9 +205,7 @@ class Refiner {
 
   std::vector<Complex> sum(std::vector<Complex> Part::*values) const {
     std::vector<Complex> entries = few_;
-    for (const Part& part : parts_)
-      for (std::size_t i = 0; i < part.group.links.size(); ++i)
-        entries[part.group.links[i].entry] += (part.*values)[i];
+    for (const Part& part : parts_) add(entries, part.group, part.*values);
     return entries;
   }
 
@@ -180,9 +216,9 @@ class Refiner {
     return fine;
   }
 
-  const Scene& scene_;
+  const Slab<Number>& slab_;
+  const CovarianceRequest& request_;
   Refinement refinement_;
-  ScatteringLaw law_;
   std::vector<Complex> few_;  ///< paths of one scattering and of two
   std::vector<Part> parts_;
   int ordinates_ = 0;
@@ -191,12 +227,40 @@ class Refiner {
 }  // namespace
 
 Refined slab_covariance(const Scene& slab, bool reversed, const Refinement& refinement,
-                        double delay) {
+                        const FieldChange& change) {
   const std::size_t entries = slab.request.entries.size();
   if (slab.medium.mu_s == 0)
     return {std::vector<Complex>(entries), std::vector<Complex>(entries), 0};
   blas_single_thread();
-  return Refiner(slab, reversed, refinement, delay).refined();
+  const ScatteringLaw law(slab, change.delay);
+  const double albedo = slab.medium.albedo;
+  if (change.shift == 0)
+    return Refiner<double>({slab, law, law, albedo}, reversed, refinement).refined();
+  return Refiner<Complex>({slab, law, law, albedo, {1, change.shift}}, reversed, refinement)
+      .refined();
+}
+
+Refined slab_slopes(const Scene& slab, bool reversed, const Refinement& refinement,
+                    BulkParameter parameter) {
+  const auto seed = [&](BulkParameter of, double slope) { return parameter == of ? slope : 0; };
+  const double albedo = slab.medium.albedo, mu_t = slab.medium.mu_t;
+  blas_single_thread();
+  const ScatteringLaw law(slab);
+  const ScatteringSlope slope(law, parameter == BulkParameter::g);
+  // Logarithmic derivatives are as large as the values, whatever the units.
+  Refined all = Refiner<Dual<double>>({slab,
+                                       law,
+                                       slope,
+                                       {albedo, seed(BulkParameter::albedo, albedo)},
+                                       {{1, seed(BulkParameter::mu_t, -1)}}},
+                                      reversed, refinement)
+                    .refined();
+  const double unit = parameter == BulkParameter::mu_t     ? mu_t
+                      : parameter == BulkParameter::albedo ? albedo
+                                                           : 1;
+  for (auto* list : {&all.value, &all.difference})
+    for (std::size_t e = slab.request.entries.size(); e < list->size(); ++e) (*list)[e] /= unit;
+  return all;
 }
 
 FieldJob slab_covariance_job(const Scene& slab, bool reversed, const Refinement& refinement) {
@@ -205,6 +269,51 @@ FieldJob slab_covariance_job(const Scene& slab, bool reversed, const Refinement&
   job.batches = two_batches(slab.request.entries.size(),
                             [=] { return slab_covariance(slab, reversed, refinement); });
   return job;
+}
+
+namespace {
+
+/// Quantities of which the first are the covariance.
+PathJob two_batch_job(const Scene& slab, std::size_t quantities,
+                      const std::function<Refined()>& solve) {
+  const std::size_t entries = slab.request.entries.size();
+  PathJob job;
+  job.entries = entries;
+  job.all = sample_mean;
+  job.field.covariance = [entries](double samples, std::span<const Complex> sums) {
+    return sample_mean(samples, sums.first(entries));
+  };
+  job.field.batches = two_batches(quantities * entries, solve);
+  return job;
+}
+
+}  // namespace
+
+PathJob slab_change_job(const Scene& slab, bool reversed, const Refinement& refinement,
+                        const std::vector<FieldChange>& changes) {
+  const auto solve = [=] {
+    Refined all = slab_covariance(slab, reversed, refinement);
+    for (const FieldChange& change : changes)
+      all.append(slab_covariance(slab, reversed, refinement, change));
+    return all;
+  };
+  return two_batch_job(slab, 1 + changes.size(), solve);
+}
+
+GradientJob slab_gradient_job(const Scene& slab, bool reversed, const Refinement& refinement) {
+  const auto parameters = bulk_parameters(slab);
+  const auto entries = static_cast<std::ptrdiff_t>(slab.request.entries.size());
+  const auto solve = [=] {
+    Refined all = slab_slopes(slab, reversed, refinement, parameters.front());
+    for (std::size_t p = 1; p < parameters.size(); ++p) {
+      Refined one = slab_slopes(slab, reversed, refinement, parameters[p]);
+      for (auto* list : {&one.value, &one.difference})
+        list->erase(list->begin(), list->begin() + entries);
+      all.append(one);
+    }
+    return all;
+  };
+  return gradient_job(two_batch_job(slab, 1 + parameters.size(), solve), slab);
 }
 
 }  // namespace flatspeckle::mc

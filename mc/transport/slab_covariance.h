@@ -2,19 +2,42 @@
 
 #include "flatland/request/field_moments.h"
 #include "flatland/scene/scene.h"
+#include "mc/estimators/gradient.h"
+#include "mc/estimators/path_job.h"
 #include "mc/transport/refinement.h"
 
 namespace flatspeckle::mc {
+
+/// How a field differs from another besides its light and view.
+struct FieldChange {
+  double delay = 0;  ///< k^2 D tau: recorded later, as the scatterers diffuse (brownian.h)
+  /// Of its wavenumber, relative; its view is turned so that transverse momenta match. Attenuation
+  /// and scattering stay those of k.
+  double shift = 0;
+};
 
 /// The covariance of C14 and C18 on a slab, per entry of the request, as linear transport of pairs
 /// at one transverse frequency (conventions, C35 to C40): what covariance_job() estimates, single
 /// scattering in closed form. reversed: with reversed paths (C38). The tolerance is relative to the
 /// entry, or to the root of its two intensities (or that which the request has) where that is more.
-/// delay: of the second channel of each entry, k^2 D tau as the scatterers diffuse (brownian.h).
+/// change: of the second field of each entry.
 Refined slab_covariance(const Scene& slab, bool reversed, const Refinement& refinement,
-                        double delay = 0);
+                        const FieldChange& change = {});
 
 /// The same as a job (two_batches()).
 FieldJob slab_covariance_job(const Scene& slab, bool reversed, const Refinement& refinement);
+
+/// Values per entry, then derivatives by a parameter: exact, of the doubling itself. The tolerance
+/// of a derivative is relative to the entry where that is more than what a relative change of the
+/// parameter makes. The slab scatters.
+Refined slab_slopes(const Scene& slab, bool reversed, const Refinement& refinement,
+                    BulkParameter parameter);
+
+/// As the gradient_job() of Monte Carlo.
+GradientJob slab_gradient_job(const Scene& slab, bool reversed, const Refinement& refinement);
+
+/// Quantities as those of delay_job(): the entries without change, then with each.
+PathJob slab_change_job(const Scene& slab, bool reversed, const Refinement& refinement,
+                        const std::vector<FieldChange>& changes);
 
 }  // namespace flatspeckle::mc

@@ -10,6 +10,7 @@ FAR = {"light_angles": [0, 0.3], "view_angles": [0.1, 0.5, 3.0]}
 NEAR = {"near_sources": "sources.csv", "near_sensors": "sensors.csv", "method": "wave"}
 SINES = [round(math.asin(0.02 * i), 9) for i in range(12)]
 TILTS = {"covariance": "memory_effect", "tilts": [0, 0.04, 0.16]}
+SMALL_TILTS = {**TILTS, "tilts": [0, 0.001]}
 FULL = {"covariance": "full"}
 PAIRS = {"covariance": "pairs", "pairs": [0, 0.1, 0.04, 0.14, 0, 0.5, 0, 0.5]}
 MAP = {"covariance": "tilt_shift", "tilts": [0, 0.01, 0.03], "shifts": [-0.1, 0, 0.1]}
@@ -47,6 +48,12 @@ RUNS = {
     "gradient_pairs": ("covariance", {**HG, **PAIRS, "gradient": True}),
     "gradient_curve": ("covariance", {**SLAB, **TILTS, "gradient": True}),
     "delays": ("covariance", {**SLAB, "delays": [0, 0.1, 1]}),
+    "delays_curve": ("covariance", {**SLAB, **SMALL_TILTS, "delays": [0, 0.1], "method": "transport",
+                                    "samples": None}),
+    "shifts": ("covariance", {**SLAB, "frequency_shifts": [0, 1e-3], "method": "transport",
+                              "samples": None}),
+    "shifts_curve": ("covariance", {**SLAB, **SMALL_TILTS, "frequency_shifts": [0, 1e-3],
+                                    "method": "transport", "samples": None}),
     "short": ("covariance", {**BOX, "target_error": 1e-9}, 3),
     "validate": ("validate", {**BOX, **FAR}),
     "short_both": ("validate", {**BOX, "target_error": 1e-9}, 3),

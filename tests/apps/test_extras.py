@@ -11,6 +11,8 @@ from refusing import RefusingTest
 HG = {"width": 20, "depth": 10, "scatterer": "hg", "optical_depth": 2, "g": 0.5, "albedo": 0.9}
 VIEWS = {"light_angles": [0, 0.3], "view_angles": [0.1, 0.5, 3.0]}
 PAIRS = {"covariance": "pairs", "pairs": [0, 0.1, 0.04, 0.14, 0, 0.5, 0, 0.5]}
+SMALL_TILTS = {**TILTS, "tilts": [0, 0.001, 0.003, 0.006]}
+POINTS = {"domain": "slab", "width": None, "count": None, "density": 0.1, "method": "transport"}
 LV = ("light_angle", "view_angle")
 MATRIX = (*LV, "light_angle_2", "view_angle_2")
 # request -> the shape of one parameter, and whether it is complex
@@ -59,6 +61,22 @@ class Extras(ProgramTest):
         first, second = (datasets(self.folder / f"{name}.h5") for name in ("with", "without"))
         np.testing.assert_allclose(first["intensity"], second["intensity"], rtol=1e-12)
 
+    def test_gradient_by_transport(self):
+        for keys in (SMALL_TILTS, {"view_angles": [0.1, 3.2]}):
+            with self.subTest(keys=keys):
+                self.call("covariance", **SLAB, **keys, gradient=True, method="transport",
+                          out="transport.h5")
+                self.call("covariance", **SLAB, **keys, gradient=True, samples=40000, out="mc.h5")
+                with h5py.File(self.folder / "transport.h5") as found, \
+                        h5py.File(self.folder / "mc.h5") as expected:
+                    self.assertEqual(set(found), set(expected))
+                    for name in expected:
+                        if not name.endswith("gradient"):
+                            continue
+                        difference = np.abs(found[name][()] - expected[name][()])
+                        error = expected[name + "_error"][()]
+                        self.assertTrue(np.all(difference <= 4 * error + 1e-9), name)
+
     def test_points_have_no_g(self):
         self.call("covariance", **BOX, **VIEWS, gradient=True, samples=4000, out="result.h5")
         with h5py.File(self.folder / "result.h5") as file:
@@ -79,6 +97,39 @@ class Extras(ProgramTest):
             self.assertEqual(file["diffusion_theory"].shape, (2,))
             self.assertAlmostEqual(file["diffusion_theory"][0], 1)
 
+    def test_delays_by_transport(self):
+        delays = {"delays": [0, 0.01], "method": "transport"}
+        self.call("covariance", **SLAB, **delays, out="transport.h5")
+        self.call("covariance", **SLAB, delays=[0, 0.01], samples=20000, out="mc.h5")
+        files = [h5py.File(self.folder / f"{name}.h5") for name in ("transport", "mc")]
+        found, expected = (file["field_correlation"][()] for file in files)
+        error = files[1]["field_correlation_error"][()]
+        self.assertTrue(np.all(np.abs(found - expected) <= 4 * error + 1e-12))
+        self.assertEqual(set(files[0]), set(files[1]))
+        for file in files:
+            file.close()
+        self.call("covariance", **SLAB, **SMALL_TILTS, **delays, out="tilts.h5")
+        with h5py.File(self.folder / "tilts.h5") as file:
+            self.check(file, "delayed_covariance", ("delay", "tilt", "view_angle"), True)
+            self.check(file, "delayed_correlation", ("delay", "tilt"), False)
+            np.testing.assert_allclose(file["delayed_correlation"][0], file["field_correlation"])
+
+    def test_frequency_shifts(self):
+        shifts = {"frequency_shifts": [0, 1e-3, 0.01], "method": "transport"}
+        self.call("covariance", **SLAB, **shifts, out="result.h5")
+        with h5py.File(self.folder / "result.h5") as file:
+            for name in ("frequency_covariance", "frequency_correlation"):
+                self.check(file, name, ("frequency_shift", *LV), True)
+            correlation = np.abs(file["frequency_correlation"][:, 0, 0])
+            self.assertAlmostEqual(correlation[0], 1)
+            self.assertTrue(np.all(np.diff(correlation) < 0))
+        self.call("covariance", **SLAB, **SMALL_TILTS, **shifts, out="tilts.h5")
+        with h5py.File(self.folder / "tilts.h5") as file:
+            self.check(file, "frequency_tilt_covariance",
+                       ("frequency_shift", "tilt", "view_angle"), True)
+            np.testing.assert_allclose(file["frequency_tilt_correlation"][0],
+                                       file["field_correlation"], rtol=1e-12)
+
     def test_resumed(self):
         """In the same numbers, and not with other extras."""
         for keys in ({"delays": [0.1, 1]}, {"gradient": True}):
@@ -97,9 +148,20 @@ class Refused(RefusingTest):
         for keys, words in (({"gradient": True, "delays": [0.1]}, ["gradient, delays"]),
                             ({"gradient": True, "method": "wave"}, ["gradient", "method = mc"]),
                             ({"delays": [0.1], "method": "wave"}, ["delays", "method = mc"]),
+                            ({"frequency_shifts": [0.1]},
+                             ["frequency_shifts", "method = transport"]),
+                            ({**POINTS, "frequency_shifts": [0.3]},
+                             ["frequency_shifts = 0.3", "-0.1 to 0.1"]),
+                            ({**POINTS, "frequency_shifts": [0.01], "delays": [0.1]},
+                             ["frequency_shifts: give one"]),
+                            ({**POINTS, "frequency_shifts": [-0.1], "light_angles": [1.5],
+                              "view_angles": [-1.5]}, ["frequency_shifts = -0.1", "horizon"]),
                             ({"delays": [-0.1]}, ["delays = -0.1", "must not be negative"]),
                             ({"delays": ["nan"]}, ["delays = nan", "must not be negative"]),
                             ({"delays": [0.1], **TILTS}, ["delays", "covariance = intensity"]),
+                            ({**POINTS, "delays": [0.1], "covariance": "pairs",
+                              "pairs": [0, 0.5, 0, 0.5]},
+                             ["delays", "covariance = intensity or memory_effect"]),
                             ({"gradient": True, "count": 0}, ["gradient", "does not scatter"])):
             self.assert_refused_both_ways("covariance", BOX, keys, words)
 

@@ -15,17 +15,18 @@ using tests::HgBulk;
 using tests::pi;
 
 struct DelayRun {
+  CovarianceRequest request;
   PathJob job;
   GroupedSums sums;
 
   Estimate intensity() const { return jackknife(sums, job.field.covariance); }
-  Estimate covariance() const { return delay_estimates(job, sums).covariance; }
-  Estimate correlation() const { return delay_estimates(job, sums).correlation; }
+  Estimate covariance() const { return change_estimates(request, job, sums).covariance; }
+  Estimate correlation() const { return change_estimates(request, job, sums).correlation; }
 };
 
 DelayRun diffuse(const Scene& scene, const Plan& plan, const std::vector<double>& delays,
                  std::uint64_t paths, std::uint64_t seed) {
-  DelayRun result{delay_job(scene, plan, delays, seed), {}};
+  DelayRun result{scene.request, delay_job(scene, plan, delays, seed), {}};
   result.sums = tests::summed(result.job.field.batches, paths);
   return result;
 }

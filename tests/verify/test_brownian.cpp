@@ -99,7 +99,8 @@ TEST_CASE("diffusing points decorrelate the exact fields as Monte Carlo says") {
   const auto plan = mc::make_plan(scene, mc::ReversedPaths::automatic);
   REQUIRE(plan.reversed);
   const auto job = mc::delay_job(scene, plan, delays, 1);
-  const auto mc = mc::delay_estimates(job, run(job.field.batches, 300'000).sums).correlation;
+  const auto mc =
+      mc::change_estimates(scene.request, job, run(job.field.batches, 300'000).sums).correlation;
 
   // What the method neglects: 80,000 placements show up to 0.02 more than Monte Carlo here, and
   // half of that at a third of the density.

@@ -6,6 +6,7 @@
 #include "bench/oracles/pair_transport.h"
 #include "bench/oracles/slab_theory.h"
 #include "mc/estimators/brownian.h"
+#include "mc/theory/diffusion.h"
 #include "mc/theory/memory_effect.h"
 #include "mc/transport/slab_covariance.h"
 #include "tests/mc/transport/slabs.h"
@@ -183,15 +184,85 @@ TEST_CASE("fields of diffusing scatterers at two times, as by Monte Carlo") {
     const auto request = intensity_request({0.2}, {far_view(0.5), far_view(pi + 0.2)});
     const Scene scene = hg_slab(300, {60, g, 0.97}, request);
     const auto job = delay_job(scene, make_plan(scene, ReversedPaths::yes), delays, 5);
-    const auto found = delay_estimates(job, tests::summed(job.field.batches, 200000)).covariance;
+    const auto sums = tests::summed(job.field.batches, 200000);
+    const auto found = change_estimates(request, job, sums).covariance;
     for (std::size_t t = 0; t < delays.size(); ++t) {
-      const auto expected = slab_covariance(scene, true, {1e-5}, delays[t]).value;
+      const auto expected = slab_covariance(scene, true, {1e-5}, {.delay = delays[t]}).value;
       for (std::size_t v = 0; v < 2; ++v) {
         const std::size_t e = 2 * t + v;
         CHECK_WITHIN_4_SIGMA(found.value[e], found.error[e], expected[v], 0);
         CHECK(found.error[e] < 0.05 * std::abs(expected[v]));
       }
     }
+  }
+}
+
+TEST_CASE("tilts and delays of a thick slab together, as diffusion theory has them") {
+  constexpr double depth = 1000, optical_depth = 1000;
+  const std::vector<double> tilts = {0, 1e-4, 3e-4}, delays = {0, 2e-7, 1e-6};
+  const auto request = memory_effect_request(wavenumber, 0, {0}, tilts);
+  const Scene scene = hg_slab(depth, {depth / optical_depth, 0.3}, request);
+  std::vector<FieldChange> changes;
+  for (const double delay : delays) changes.push_back({.delay = delay});
+  const auto job = slab_change_job(scene, false, {}, changes);
+  const auto sums = tests::summed(job.field.batches, 2);
+  const auto found = change_estimates(request, job, sums);
+  const auto still = slab_covariance(scene, false, {}).value;
+  for (std::size_t i = 0; i < tilts.size(); ++i) {
+    CHECK(std::abs(found.covariance.value[i] - still[i]) < 1e-14);
+    for (std::size_t t = 0; t < delays.size(); ++t) {
+      CAPTURE(i);
+      CAPTURE(t);
+      // as absorption, a delay is added to the square of a tilt (C20)
+      const double loss = 2 * delays[t] * (1 - scene.medium.g) * scene.medium.mu_s,
+                   l = scene.medium.transport_mean_free_path(), q = request.tilt_q[i],
+                   expected = diffusion_field_correlation(scene.medium, depth,
+                                                          std::sqrt(q * q + 2 * loss / l));
+      CHECK(found.correlation.value[t * tilts.size() + i].real() ==
+            doctest::Approx(expected).epsilon(2e-3));
+    }
+  }
+}
+
+TEST_CASE("derivatives of the doubling are finite differences of converged solutions") {
+  struct Case {
+    double optical_depth, g, albedo, view;
+    bool reversed;
+  };
+  constexpr double depth = 200;
+  const Refinement refinement{1e-9, 8};
+  for (const Case& slab : {Case{3, 0, 1, 0.1, false}, Case{2, 0.6, 0.9, pi + 0.201, true}}) {
+    CAPTURE(slab.g);
+    const auto request = memory_effect_request(wavenumber, 0.2, {slab.view}, {0, 0.5 / depth});
+    const auto scene = [&](double mu_t, double g, double albedo) {
+      return hg_slab(depth, {1 / mu_t, g, albedo}, request);
+    };
+    const double mu_t = slab.optical_depth / depth;
+    const auto check = [&](BulkParameter parameter, double scale, const auto& at) {
+      CAPTURE(static_cast<int>(parameter));
+      const auto found = slab_slopes(at(0), slab.reversed, refinement, parameter).value;
+      const double step = 0.02 * scale;
+      std::vector<std::vector<Complex>> values;
+      for (const double steps : {-3, -2, -1, 1, 2, 3})
+        values.push_back(slab_covariance(at(steps * step), slab.reversed, refinement).value);
+      const std::size_t entries = request.entries.size();
+      for (std::size_t e = 0; e < entries; ++e) {
+        CAPTURE(e);
+        const Complex expected =
+            (values[5][e] - values[0][e] - 9.0 * (values[4][e] - values[1][e]) +
+             45.0 * (values[3][e] - values[2][e])) /
+            (60 * step);
+        CHECK(std::abs(found[entries + e] - expected) <
+              1e-7 * std::max(std::abs(expected), std::abs(found[e]) / scale));
+      }
+    };
+    check(BulkParameter::mu_t, mu_t,
+          [&](double step) { return scene(mu_t + step, slab.g, slab.albedo); });
+    check(BulkParameter::g, 1 - std::abs(slab.g),
+          [&](double step) { return scene(mu_t, slab.g + step, slab.albedo); });
+    if (slab.albedo < 1)
+      check(BulkParameter::albedo, slab.albedo,
+            [&](double step) { return scene(mu_t, slab.g, slab.albedo + step); });
   }
 }
 

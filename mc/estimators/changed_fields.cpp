@@ -1,0 +1,57 @@
+#include "mc/estimators/changed_fields.h"
+
+#include <algorithm>
+
+#include "mc/theory/memory_effect.h"
+
+namespace flatspeckle::mc {
+
+namespace {
+
+using Values = std::vector<Complex>;
+
+/// Entries that change: all, or those of reference and tilted field.
+std::size_t changing_entries(const CovarianceRequest& request) {
+  return request.has_reference() ? request.reference_intensity(0) : request.entries.size();
+}
+
+/// Of [1 + change][entry], without change first: [change][changing entry].
+Values changed(const CovarianceRequest& request, const Values& all) {
+  const std::size_t entries = request.entries.size();
+  Values covariance;
+  for (std::size_t i = entries; i < all.size(); ++i)
+    if (i % entries < changing_entries(request)) covariance.push_back(all[i]);
+  return covariance;
+}
+
+/// The same over intensities without change.
+Values correlation(const CovarianceRequest& request, const Values& all) {
+  const std::size_t entries = request.entries.size(), count = changing_entries(request);
+  const Values covariance = changed(request, all);
+  Values correlation, now(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(entries));
+  for (std::size_t first = 0; first < covariance.size(); first += count) {
+    if (request.has_reference()) {
+      std::copy_n(covariance.begin() + static_cast<std::ptrdiff_t>(first), count, now.begin());
+      const Values tilted = field_correlation(request, now);
+      correlation.insert(correlation.end(), tilted.begin(), tilted.end());
+      continue;
+    }
+    for (std::size_t c = 0; c < count; ++c)
+      correlation.push_back(now[c].real() > 0 ? covariance[first + c] / now[c].real() : 0);
+  }
+  return correlation;
+}
+
+}  // namespace
+
+ChangeEstimates change_estimates(const CovarianceRequest& request, const PathJob& job,
+                                 const GroupedSums& sums) {
+  const auto estimate = [&](const auto& f) {
+    return jackknife(sums, [&](double samples, std::span<const Complex> total) {
+      return f(request, job.all(samples, total));
+    });
+  };
+  return {estimate(changed), estimate(correlation)};
+}
+
+}  // namespace flatspeckle::mc

@@ -1,0 +1,128 @@
+#pragma once
+
+#include <complex>
+#include <vector>
+
+#include "core/numbers/complex.h"
+
+namespace flatspeckle::mc {
+
+/// A number or matrix with its derivative by one parameter; what is done to it follows the rules of
+/// calculus (automatic differentiation, forward mode).
+template <typename T>
+struct Dual {
+  T value{}, slope{};
+
+  Dual& operator+=(const Dual& other) {
+    value += other.value;
+    slope += other.slope;
+    return *this;
+  }
+};
+
+template <typename T>
+Dual<T> operator+(const Dual<T>& a, const Dual<T>& b) {
+  return {a.value + b.value, a.slope + b.slope};
+}
+template <typename T>
+Dual<T> operator-(const Dual<T>& a, const Dual<T>& b) {
+  return {a.value - b.value, a.slope - b.slope};
+}
+template <typename T>
+Dual<T> operator-(const Dual<T>& a) {
+  return {-a.value, -a.slope};
+}
+/// Of numbers, or of a number and a matrix.
+template <typename A, typename B>
+Dual<B> operator*(const Dual<A>& a, const Dual<B>& b) {
+  return {a.value * b.value, a.slope * b.value + a.value * b.slope};
+}
+template <typename T>
+Dual<T> operator*(double a, const Dual<T>& b) {
+  return {a * b.value, a * b.slope};
+}
+inline Dual<Complex> operator*(Complex a, const Dual<Complex>& b) {
+  return {a * b.value, a * b.slope};
+}
+inline Dual<Complex> operator*(Complex a, const Dual<double>& b) {
+  return {a * b.value, a * b.slope};
+}
+template <typename T>
+Dual<T> operator/(const Dual<T>& a, const Dual<T>& b) {
+  const T ratio = a.value / b.value;
+  return {ratio, (a.slope - ratio * b.slope) / b.value};
+}
+template <typename T>
+Dual<T> operator/(const Dual<T>& a, double b) {
+  return {a.value / b, a.slope / b};
+}
+inline Dual<double> operator/(double a, const Dual<double>& b) {
+  return {a / b.value, -a / (b.value * b.value) * b.slope};
+}
+template <typename T>
+Dual<T> operator+(double a, const Dual<T>& b) {
+  return {a + b.value, b.slope};
+}
+template <typename T>
+Dual<T> operator-(const Dual<T>& a, double b) {
+  return {a.value - b, a.slope};
+}
+inline Dual<Complex> exp(const Dual<Complex>& a) {
+  const Complex value = std::exp(a.value);
+  return {value, value * a.slope};
+}
+
+inline double value_of(double a) {
+  return a;
+}
+inline Complex value_of(Complex a) {
+  return a;
+}
+template <typename T>
+const T& value_of(const Dual<T>& a) {
+  return a.value;
+}
+
+/// The complex numbers of calculations with a Number.
+template <typename Number>
+struct ComplexNumbers {
+  using Type = Complex;
+};
+template <>
+struct ComplexNumbers<Dual<double>> {
+  using Type = Dual<Complex>;
+};
+template <typename Number>
+using ComplexOf = typename ComplexNumbers<Number>::Type;
+
+inline Complex as_complex(Complex a) {
+  return a;
+}
+inline Dual<Complex> as_complex(const Dual<double>& a) {
+  return {a.value, a.slope};
+}
+
+/// Calculations with complex extinction have real depths.
+template <typename Number>
+struct RealNumbers {
+  using Type = Number;
+};
+template <>
+struct RealNumbers<Complex> {
+  using Type = double;
+};
+template <typename Number>
+using RealOf = typename RealNumbers<Number>::Type;
+
+/// Values, then derivatives.
+inline std::vector<Complex> flat(std::vector<Complex> values) {
+  return values;
+}
+inline std::vector<Complex> flat(const std::vector<Dual<Complex>>& list) {
+  std::vector<Complex> all;
+  for (const auto& dual : list) all.push_back(dual.value);
+  for (const auto& dual : list) all.push_back(dual.slope);
+  return all;
+}
+
+}  // namespace flatspeckle::mc
