@@ -5,21 +5,15 @@
 #include <cmath>
 #include <utility>
 
+#include "mc/transport/divided_difference.h"
 #include "mc/transport/gauss.h"
 
 namespace flatspeckle::mc {
 
 namespace {
 
+using mc::divided_difference;
 using std::numbers::pi;
-
-/// (exp(a) - exp(b)) / (a - b)
-Complex divided_difference(Complex a, Complex b) {
-  if (a.real() < b.real()) std::swap(a, b);
-  const Complex z = b - a;
-  if (std::abs(z) < 1e-3) return std::exp(a) * (1.0 + z / 2.0 * (1.0 + z / 3.0 * (1.0 + z / 4.0)));
-  return std::exp(a) * ((std::exp(z) - 1.0) / z);
-}
 
 /// The second divided difference of exp: int exp(a x + b y + c z) over x + y + z = 1, x, y, z > 0.
 Complex divided_difference(Complex a, Complex b, Complex c) {

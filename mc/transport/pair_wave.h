@@ -24,13 +24,16 @@ inline Pair turned_round(Pair pair) {
   return {pair.first + std::numbers::pi, pair.second + std::numbers::pi};
 }
 
-inline PairWave pair_wave(const Scene& scene, Pair pair) {
-  const double first = std::cos(pair.first), second = std::cos(pair.second);
+/// Of two lights by the cosines of their directions; k: per extinction coefficient.
+inline PairWave pair_wave(double k, double first, double second) {
   PairWave wave;
   for (const double cosine : {first, second})
     (cosine > 0 ? wave.top : wave.bottom) -= 1 / (2 * std::abs(cosine));
-  wave.top += Complex(0, scene.k / scene.medium.mu_t * (first - second));
+  wave.top += Complex(0, k * (first - second));
   return wave;
+}
+inline PairWave pair_wave(const Scene& scene, Pair pair) {
+  return pair_wave(scene.k / scene.medium.mu_t, std::cos(pair.first), std::cos(pair.second));
 }
 
 /// Transverse momentum of a pair (C35), per extinction coefficient.

@@ -1,9 +1,28 @@
 #include "mc/transport/refinement.h"
 
+#include <algorithm>
+#include <cmath>
+#include <map>
 #include <memory>
 #include <mutex>
 
 namespace flatspeckle::mc {
+
+std::vector<double> scales(const std::vector<Entry>& entries, const std::vector<Complex>& values) {
+  std::map<std::size_t, double> intensity;
+  for (std::size_t e = 0; e < values.size(); ++e)
+    if (entries[e].a == entries[e].b) intensity[entries[e].a] = std::abs(values[e]);
+  std::vector<double> scale;
+  for (std::size_t e = 0; e < values.size(); ++e) {
+    const auto a = intensity.find(entries[e].a), b = intensity.find(entries[e].b);
+    double reference = 0;
+    if (a != intensity.end()) reference = a->second;
+    if (b != intensity.end())
+      reference = a != intensity.end() ? std::sqrt(reference * b->second) : b->second;
+    scale.push_back(std::max(std::abs(values[e]), reference));
+  }
+  return scale;
+}
 
 BatchJob two_batches(std::size_t size, const std::function<Refined()>& solve) {
   struct Solution {

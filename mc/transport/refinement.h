@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/run/runner.h"
+#include "flatland/request/request.h"
 
 namespace flatspeckle::mc {
 
@@ -22,6 +23,10 @@ struct Refined {
   std::vector<Complex> value, difference;
   int ordinates = 0;  ///< the most that any part has needed
 };
+
+/// What the tolerance of each entry is relative to: its value, or the root of its two intensities
+/// (or that which there is) where that is more.
+std::vector<double> scales(const std::vector<Entry>& entries, const std::vector<Complex>& values);
 
 /// A solution as a job of two batches, the values plus and minus their difference: what the
 /// statistics of batches call the standard error of any function of them is its difference then.

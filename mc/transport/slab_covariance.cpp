@@ -59,24 +59,6 @@ std::vector<Complex> solved(const Scene& scene, const ChainGroup& group,
   return values;
 }
 
-/// What the tolerance of each entry is relative to.
-std::vector<double> scales(const CovarianceRequest& request, const std::vector<Complex>& values) {
-  std::map<std::size_t, double> intensity;
-  for (std::size_t e = 0; e < values.size(); ++e)
-    if (request.entries[e].a == request.entries[e].b)
-      intensity[request.entries[e].a] = std::abs(values[e]);
-  std::vector<double> scale;
-  for (std::size_t e = 0; e < values.size(); ++e) {
-    const auto a = intensity.find(request.entries[e].a), b = intensity.find(request.entries[e].b);
-    double reference = 0;
-    if (a != intensity.end()) reference = a->second;
-    if (b != intensity.end())
-      reference = a != intensity.end() ? std::sqrt(reference * b->second) : b->second;
-    scale.push_back(std::max(std::abs(values[e]), reference));
-  }
-  return scale;
-}
-
 class Refiner {
  public:
   Refiner(const Scene& scene, bool reversed, const Refinement& refinement, double delay)
@@ -132,7 +114,7 @@ class Refiner {
   /// Once how large the entries are is known.
   void add_double_scattering() {
     constexpr double part_of_tolerance = 0.01;
-    const auto scale = scales(scene_.request, sum(&Part::value));
+    const auto scale = scales(scene_.request.entries, sum(&Part::value));
     std::vector<std::vector<Complex>> found(parts_.size());
     parallel_for(parts_.size(), [&](std::size_t p) {
       for (const auto& link : parts_[p].group.links)
@@ -148,7 +130,7 @@ class Refiner {
 
   /// Parts whose last two orders agree, or that would become too large, are done.
   void settle() {
-    const auto scale = scales(scene_.request, sum(&Part::value));
+    const auto scale = scales(scene_.request.entries, sum(&Part::value));
     for (Part& part : parts_) {
       double worst = 0;
       for (std::size_t i = 0; i < part.value.size(); ++i)
