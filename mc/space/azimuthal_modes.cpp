@@ -4,24 +4,11 @@
 #include <cmath>
 #include <numbers>
 
-#include "mc/space/associated_legendre.h"
-
 namespace flatspeckle::mc {
 
 namespace {
 
 using std::numbers::pi;
-
-/// sum over l = m + first, m + first + 2, .. of moments[l] v_l v_l^T
-Matrix moment_gram(const Matrix& integrals, const std::vector<double>& moments, int m, int first) {
-  const auto count = std::max<Eigen::Index>((integrals.cols() - first + 1) / 2, 0);
-  Matrix taken(integrals.rows(), count), weighted(integrals.rows(), count);
-  for (Eigen::Index i = 0; i < count; ++i) {
-    taken.col(i) = integrals.col(first + 2 * i);
-    weighted.col(i) = moments[static_cast<std::size_t>(m + first + 2 * i)] * taken.col(i);
-  }
-  return product(weighted, taken.transpose());
-}
 
 /// i^m
 Complex turned(int m) {
@@ -31,31 +18,9 @@ Complex turned(int m) {
 
 }  // namespace
 
-AzimuthalModes::AzimuthalModes(const AngularGrid& grid, const SpaceLaw& law, double albedo,
+AzimuthalModes::AzimuthalModes(const PolarMatrices& polar, const SpaceLaw& law, double albedo,
                                int highest)
-    : grid_(grid),
-      law_(law),
-      albedo_(albedo),
-      highest_(highest),
-      weight_(grid.integrals_of(
-          1, [](const Eigen::VectorXd& angle) -> Matrix { return angle.array().sin(); })),
-      root_(weight_.cwiseProduct(grid.cosine()).cwiseSqrt().cwiseInverse()) {
-  for (int m = 0; m <= highest; ++m) scattering_.push_back(scattering(m));
-}
-
-/// Backwards, theta -> pi - theta, P_l^m has the sign (-1)^(l + m).
-AzimuthalModes::Scattering AzimuthalModes::scattering(int m) const {
-  const auto last = static_cast<int>(law_.moments().size()) - 1;
-  const Matrix integrals =
-      grid_.integrals_of(std::max(last - m + 1, 0), [&](const Eigen::VectorXd& angle) -> Matrix {
-        return angle.array().sin().matrix().asDiagonal() * associated_legendre(angle, m, last);
-      });
-  const auto scaled = [&](int first) {
-    return Matrix(2 * albedo_ * root_.asDiagonal() *
-                  moment_gram(integrals, law_.moments(), m, first) * root_.asDiagonal());
-  };
-  return {scaled(1), scaled(0)};
-}
+    : polar_(polar), grid_(polar.grid()), law_(law), albedo_(albedo), highest_(highest) {}
 
 std::vector<AzimuthalModes::Part> AzimuthalModes::parts(double q) const {
   std::vector<Part> list;
@@ -83,7 +48,7 @@ Matrix AzimuthalModes::block(double q, const Part& part, Matrix Scattering::*sca
   for (Eigen::Index a = 0; a < count; ++a) {
     const int m = mode(part.functions[a]);
     all.block(a * n, a * n, n, n) =
-        Matrix(extinction.matrix().asDiagonal()) - scattering_[m].*scattering;
+        Matrix(extinction.matrix().asDiagonal()) - polar_.of_mode(m).*scattering;
     for (Eigen::Index b = 0; b < count; ++b) {
       const int other = mode(part.functions[b]);
       if (std::abs(other - m) != 1) continue;
@@ -130,8 +95,8 @@ Rows AzimuthalModes::fed(const SpacePair& pair, const Matrix& directions, const 
     }
     return product(values, azimuthal);
   };
-  const Matrix integrals =
-      albedo_ * root_.asDiagonal() * grid_.integrals_of(azimuthal.cols(), projected);
+  const Matrix integrals = albedo_ * polar_.root().cwiseInverse().asDiagonal() *
+                           grid_.integrals_of(azimuthal.cols(), projected);
   Rows rows(1, integrals.size());
   for (Eigen::Index f = 0; f < integrals.cols(); ++f)
     rows.middleCols(f * grid_.size(), grid_.size()) =
@@ -199,7 +164,7 @@ PairWaves AzimuthalModes::part_of(const PairWaves& all, const Part& part) const 
 }
 
 Eigen::VectorXd AzimuthalModes::power() const {
-  return std::sqrt(2 * pi) * root_.cwiseInverse();
+  return std::sqrt(2 * pi) * polar_.root();
 }
 
 }  // namespace flatspeckle::mc

@@ -41,11 +41,12 @@ struct Solution {
   int ordinates = 0;  ///< of both ways, times azimuthal functions that are coupled
 };
 
-Solution solve_group(const SpaceSlab& slab, const SpaceGroup& group, Resolution resolution) {
+Solution solve_group(const SpaceSlab& slab, const SpaceGroup& group, Resolution resolution,
+                     PolarMatricesOf& polar) {
   const double k = slab.k / slab.mu_t, q = k * group.momentum.norm();
   const Eigen::Vector2d x = q == 0 ? Eigen::Vector2d(1, 0) : group.momentum.normalized();
-  const AngularGrid grid(group.foci, resolution.order, slab.law.width());
-  const AzimuthalModes modes(grid, slab.law, slab.albedo, resolution.modes);
+  const AzimuthalModes modes(polar.at(group.foci, resolution.order), slab.law, slab.albedo,
+                             resolution.modes);
   const auto lights = modes.lights(k, x, group.lights), views = modes.views(k, x, group.views);
   Solution found{std::vector<Complex>(group.links.size())};
   for (const auto& part : modes.parts(q)) {
@@ -79,12 +80,14 @@ double worst_of(const std::vector<Complex>& change, const std::vector<double>& s
 /// A group, refined on its own.
 class GroupRefiner {
  public:
-  GroupRefiner(const SpaceSlab& slab, const SpaceGroup& group, const Refinement& refinement)
+  GroupRefiner(const SpaceSlab& slab, const SpaceGroup& group, const Refinement& refinement,
+               PolarMatricesOf& polar)
       : slab_(slab),
         group_(group),
         refinement_(refinement),
+        polar_(polar),
         resolution_{refinement.first_order, 2},
-        coarse_(solve_group(slab, group, resolution_)) {}
+        coarse_(solved(resolution_)) {}
 
   const std::vector<Complex>& first() const { return coarse_.value; }
 
@@ -92,8 +95,8 @@ class GroupRefiner {
   Refined refined(const std::vector<double>& scale) {
     const double tolerance = refinement_.tolerance / 2;
     for (bool near = false;;) {
-      const Solution finer = solve_group(slab_, group_, resolution_.finer_order()),
-                     wider = solve_group(slab_, group_, resolution_.finer_modes());
+      const Solution finer = solved(resolution_.finer_order()),
+                     wider = solved(resolution_.finer_modes());
       const auto by_order = finer.value - coarse_.value, by_modes = wider.value - coarse_.value;
       const double of_order = worst_of(by_order, scale), of_modes = worst_of(by_modes, scale);
       const double worst = std::max(of_order, of_modes);
@@ -106,16 +109,19 @@ class GroupRefiner {
                  refine_modes = of_modes > tolerance || worst <= tolerance;
       if (refine_order) resolution_ = resolution_.finer_order();
       if (refine_modes) resolution_ = resolution_.finer_modes();
-      coarse_ = refine_order && refine_modes ? solve_group(slab_, group_, resolution_)
-                : refine_order               ? finer
-                                             : wider;
+      coarse_ = refine_order && refine_modes ? solved(resolution_) : refine_order ? finer : wider;
     }
   }
 
  private:
+  Solution solved(Resolution resolution) const {
+    return solve_group(slab_, group_, resolution, polar_);
+  }
+
   const SpaceSlab& slab_;
   const SpaceGroup& group_;
   Refinement refinement_;
+  PolarMatricesOf& polar_;
   Resolution resolution_;
   Solution coarse_;
 };
@@ -139,9 +145,10 @@ Refined space_covariance(const SpaceSlab& slab, const SpaceRequest& request, boo
   if (reversed)
     for (const SpaceChain& chain : reversed_ladders(request)) chains.push_back(chain);
   const auto groups = grouped(chains, slab.law.width());
+  PolarMatricesOf polar(slab.law, slab.albedo);
   std::vector<std::unique_ptr<GroupRefiner>> refiners(groups.size());
   parallel_for(groups.size(), [&](std::size_t g) {
-    refiners[g] = std::make_unique<GroupRefiner>(slab, groups[g], refinement);
+    refiners[g] = std::make_unique<GroupRefiner>(slab, groups[g], refinement, polar);
   });
   auto first = all.value;
   for (std::size_t g = 0; g < groups.size(); ++g) add_links(groups[g], refiners[g]->first(), first);

@@ -13,8 +13,8 @@ namespace {
 
 /// {reflected, transmitted}: without momentum, of the mode m = 0 alone.
 std::pair<double, double> leaving(const SpaceSlab& slab, double angle, int order) {
-  const AngularGrid grid({{angle, slab.law.width()}}, order, slab.law.width());
-  const AzimuthalModes modes(grid, slab.law, slab.albedo, 0);
+  const PolarMatrices polar({{angle, slab.law.width()}}, order, slab.law, slab.albedo);
+  const AzimuthalModes modes(polar, slab.law, slab.albedo, 0);
   const Eigen::Vector3d light(std::sin(angle), 0, std::cos(angle));
   const double k = slab.k / slab.mu_t;
   const Eigen::Vector2d x(1, 0);
