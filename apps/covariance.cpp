@@ -5,6 +5,7 @@
 #include "apps/subcommands.h"
 #include "core/session/session.h"
 #include "flatland/scene/scene_datasets.h"
+#include "mc/space/space_scene.h"
 
 namespace flatspeckle::apps {
 
@@ -46,6 +47,7 @@ int covariance(const Arguments& arguments) {
   add_mc_keys(keys, methods);
   add_wave_keys(keys, methods);
   add_transport_keys(keys, methods);
+  add_dimension_key(keys, methods);
   add_run_keys(keys, run);
   if (!command.parse(arguments)) return ExitStatus::done;
 
@@ -64,7 +66,8 @@ int covariance(const Arguments& arguments) {
   }
   if (by == "mc") read_extras(keys, extras);
   if (by == "transport") keys.read(methods.tolerance);
-  const Scene scene = make_scene(keys, spec);
+  const bool space = by == "transport" && keys.read(methods.dimension) == 3;
+  const Scene plane = make_scene(keys, spec), scene = space ? mc::in_space(plane, spec) : plane;
   const auto [estimation, write_extras] =
       by == "mc" ? extended_estimation(scene, reversed, extras, session.seed())
       : by == "wave"

@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "mc/estimators/covariance_estimator.h"
+#include "mc/space/space_scene.h"
 #include "mc/transport/slab_covariance.h"
 #include "wave_solver/solutions/ensemble.h"
 
@@ -43,6 +44,14 @@ void add_transport_keys(Keys& keys, MethodSettings& settings) {
   keys.add("tolerance", settings.tolerance,
            "Of transport: relative difference from a solution with fewer ordinates")
       .between(0, 1)
+      .only_of("method = transport");
+}
+
+void add_dimension_key(Keys& keys, MethodSettings& settings) {
+  keys.group("Methods");
+  keys.add("dimension", settings.dimension,
+           "Of space: 2, or 3 for scalar waves, lights and views in the plane of incidence")
+      .from(2, 3)
       .only_of("method = transport");
 }
 
@@ -105,8 +114,14 @@ void check_transport(const SceneSpec& spec) {
 Estimation transport_estimation(const Scene& scene, mc::ReversedPaths reversed, double tolerance) {
   const bool with_reversed = mc::make_plan(scene, reversed).reversed;
   std::ostringstream plan;
-  plan << "transport: pairs at one transverse frequency, by doubling; "
-       << (with_reversed ? "reversed paths" : "no reversed paths") << "; tolerance " << tolerance;
+  const bool space = scene.medium.dimension == 3;
+  plan << "transport: pairs at one transverse frequency" << (space ? " in space" : "")
+       << ", by doubling; " << (with_reversed ? "reversed paths" : "no reversed paths")
+       << "; tolerance " << tolerance;
+  if (space)
+    return {mc::space_covariance_job(mc::space_slab(scene), mc::space_request(scene.request),
+                                     with_reversed, {tolerance}),
+            plan.str()};
   return {mc::slab_covariance_job(scene, with_reversed, {tolerance}), plan.str()};
 }
 

@@ -102,7 +102,7 @@ class GroupRefiner {
       const double worst = std::max(of_order, of_modes);
       const int ordinates = std::max(finer.ordinates, wider.ordinates);
       // One small difference may be chance: the one before must have been small too.
-      if ((worst <= tolerance && near) || 2 * ordinates > 3 * refinement_.most_ordinates)
+      if ((worst <= tolerance && near) || 4 * ordinates > 3 * refinement_.most_ordinates)
         return {coarse_.value + by_order + by_modes, by_order + by_modes, ordinates};
       near = worst <= 100 * tolerance;
       const bool refine_order = of_order > tolerance || worst <= tolerance,

@@ -5,12 +5,16 @@
 
 #include <Eigen/Core>
 
+#include "core/numbers/complex.h"
+
 namespace flatspeckle::mc {
 
 using Matrix = Eigen::MatrixXd;
 /// Complex rows, one for each channel: in memory a real matrix of twice as many rows, so that
 /// products with real matrices are real ones.
 using Rows = Eigen::MatrixXcd;
+
+using flatspeckle::product;  // of numbers, which these would hide
 
 /// Dense algebra by the system's BLAS and LAPACK, on one thread.
 Matrix product(const Matrix& a, const Matrix& b);
