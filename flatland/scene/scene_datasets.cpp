@@ -109,6 +109,7 @@ void write_move_axes(ResultFile& file, const CovarianceRequest& request) {
 
 void write_domain(ResultFile& file, const Scene& scene) {
   const ResultGroup root(file, scene_table);
+  if (scene.medium.dimension == 3) root.attribute("dimension", std::uint64_t{3});
   root.attribute("wavelength", scene.wavelength);
   root.attribute("depth", scene.domain.depth);
   if (scene.domain.kind == Domain::Kind::box) root.attribute("width", scene.domain.width);
@@ -118,7 +119,6 @@ void write_medium(ResultFile& file, const Scene& scene) {
   const auto& medium = scene.medium;
   const ResultGroup root(file, scene_table);
   write_domain(file, scene);
-  if (medium.dimension == 3) root.attribute("dimension", std::uint64_t{3});
   root.attribute("g", medium.g);
   root.attribute("albedo", medium.albedo);
   root.attribute("optical_depth", medium.mu_t * scene.domain.depth);

@@ -114,19 +114,19 @@ TEST_CASE("slabs in space: the covariance of a walk at oblique lights, tilts alo
         const oracles::SpacePairWalk ladder{
             slab.k / slab.mu_t, optical_depth, g,           albedo,
             lights.first,       lights.second, views.first, views.second};
-        auto [value, error] = ladder.estimate(60000, 1, true);
+        auto [value, error] = ladder.estimate(40000, 1, true);
         if (reversed) {
           auto other = ladder;
           other.light2 = -views.second;
           other.view2 = -lights.second;
-          const auto more = other.estimate(60000, 2, false);
+          const auto more = other.estimate(40000, 2, false);
           value += more.value;
           error = std::hypot(error, more.error);
         }
-        const Complex found = covariance(slab, lights, views, reversed, 1e-4);
+        const Complex found = covariance(slab, lights, views, reversed, 1e-3);
         CHECK(std::abs(found.real() - value.real()) < 4 * error);
         CHECK(std::abs(found.imag() - value.imag()) < 4 * error);
-        CHECK(error < 0.1 * std::abs(found));
+        CHECK(error < 0.15 * std::abs(found));  // or it would tell little
       }
   }
 }
