@@ -7,7 +7,8 @@ import h5py
 from program import ProgramTest
 
 DEPTH = 2000
-SPACE = {"domain": "slab", "depth": DEPTH, "optical_depth": 10, "method": "transport", "dimension": 3}
+SPACE = {"domain": "slab", "depth": DEPTH, "optical_depth": 10, "method": "transport",
+         "dimension": 3}
 Q_TILTS = [1.2, 1.4, 1.6]  # conventions, C41
 TILTS = {"covariance": "memory_effect", "tilts": [q / (6.283185307179586 * DEPTH) for q in Q_TILTS],
          "tolerance": 1e-5}
@@ -19,7 +20,8 @@ class Space(ProgramTest):
         with h5py.File(self.folder / "x.h5") as file:
             self.assertEqual(file.attrs["dimension"], 3)
             self.assertIn("numerical", file.attrs["errors"])
-            return file["reference_intensity"][0], file["field_correlation"][:] ** 2, file.attrs["g"]
+            correlation = file["field_correlation"][:] ** 2
+            return file["reference_intensity"][0], correlation, file.attrs["g"]
 
     def test_known_numbers(self):
         for g, intensity, known in ((0, 0.058862, [0.5923, 0.4977, 0.4106]),
@@ -47,7 +49,8 @@ class Space(ProgramTest):
                 "tilts": [q / (6.283185307179586 * DEPTH) for q in Q_TILTS], "tolerance": 1e-4}
         self.call("sweep", **keys, dimension=3, out="space.h5")
         self.call("sweep", **keys, out="plane.h5")
-        with h5py.File(self.folder / "space.h5") as space, h5py.File(self.folder / "plane.h5") as plane:
+        with (h5py.File(self.folder / "space.h5") as space,
+              h5py.File(self.folder / "plane.h5") as plane):
             self.assertEqual(space.attrs["dimension"], 3)
             self.assertNotIn("dimension", plane.attrs)
             self.assertAlmostEqual(space["memory_effect_range"][:].flat[0], 1.395, delta=2e-3)

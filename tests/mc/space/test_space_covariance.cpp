@@ -103,6 +103,12 @@ TEST_CASE("slabs in space: the difference is more than the error") {
           tolerance * std::abs(exact));
 }
 
+TEST_CASE("slabs in space: nine digits") {
+  const auto slab = hg_space(depth, 10, 0.5, 1);
+  const auto rough = memory_effect(slab, {1.4}, 1e-6), exact = memory_effect(slab, {1.4}, 1e-9);
+  for (std::size_t i = 0; i < 2; ++i) CHECK(std::abs(rough[i] / exact[i] - 1) < 1e-9);
+}
+
 TEST_CASE("slabs in space: the covariance of a walk at oblique lights, tilts along and across") {
   for (const auto& [g, optical_depth, albedo] :
        {std::array{0.0, 2.0, 1.0}, {0.6, 4.0, 0.95}, {0.9, 5.0, 0.99}}) {
