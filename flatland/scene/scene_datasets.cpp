@@ -14,6 +14,7 @@ const DatasetTable scene_table{
         {"", "optical_depth", "float64", "mu_t L"},
         {"", "dimension", "uint64",
          "3: scalar waves in space, covariances per illuminated area; absent: of the plane"},
+        {"", "errors", "text", "of transport: numerical, where standard errors stand otherwise"},
         {"", "g", "float64", "mean cosine of scattering"},
         {"", "albedo", "float64", "mu_s/mu_t"},
         {"", "mean_free_path", "float64", "1/mu_t, of what scatters"},

@@ -47,6 +47,7 @@ RUNS = {
     "gradient_pairs": ("covariance", {**HG, **PAIRS, "gradient": True}),
     "gradient_curve": ("covariance", {**SLAB, **TILTS, "gradient": True}),
     "delays": ("covariance", {**SLAB, "delays": [0, 0.1, 1]}),
+    "space": ("covariance", {**SLAB, "method": "transport", "dimension": 3, "tolerance": 1e-3}),
     "short": ("covariance", {**BOX, "target_error": 1e-9}, 3),
     "validate": ("validate", {**BOX, **FAR}),
     "short_both": ("validate", {**BOX, "target_error": 1e-9}, 3),
@@ -93,6 +94,8 @@ def cost(subcommand, keys):
     if subcommand == "field":
         return {"fields": 4, "threads": 2}
     both = subcommand == "validate" or keys.get("method") == "both"
+    if keys.get("method") == "transport":
+        return {"threads": 2}
     return {"samples": 4 if keys.get("method") == "wave" else 2000,
             "wave_samples": 4 if both else None, "threads": 2}
 
