@@ -5,6 +5,7 @@
 #include "apps/subcommands.h"
 #include "core/session/session.h"
 #include "flatland/scene/scene_datasets.h"
+#include "mc/space/space_scene.h"
 #include "mc/transport/refinement.h"
 
 namespace flatspeckle::apps {
@@ -49,6 +50,7 @@ int covariance(const Arguments& arguments) {
   add_mc_keys(keys, methods);
   add_wave_keys(keys, methods);
   add_transport_keys(keys, methods);
+  add_dimension_key(keys, methods);
   add_run_keys(keys, run);
   if (!command.parse(arguments)) return ExitStatus::done;
 
@@ -58,8 +60,9 @@ int covariance(const Arguments& arguments) {
   const StopRule stop = stop_of(method, keys, run, methods);
   const auto reversed = reversed_paths(keys, methods);
   const double wave_tolerance = keys.read(methods.wave_tolerance);
-  if (method != "wave") read_extras(keys, extras, method == "transport");
-  const Scene scene = make_scene(keys, spec);
+  const bool space = method == "transport" && keys.read(methods.dimension) == 3;
+  if (method != "wave" && !space) read_extras(keys, extras, method == "transport");
+  const Scene plane = make_scene(keys, spec), scene = space ? mc::in_space(plane, spec) : plane;
   const auto [estimation, write_extras] =
       method == "mc" ? extended_estimation(scene, reversed, extras, session.seed())
       : method == "wave"

@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "mc/estimators/covariance_estimator.h"
+#include "mc/space/space_scene.h"
 #include "mc/transport/slab_covariance.h"
 #include "wave_solver/solutions/ensemble.h"
 
@@ -51,6 +52,14 @@ void choose_method(const Keys& keys, std::string& method, const SceneSpec& spec,
   if (keys.read(method) != "auto") return;
   const bool to_last = keys.given(run.samples) || keys.given(run.seconds);
   method = spec.domain == "slab" && !to_last ? "transport" : "mc";
+}
+
+void add_dimension_key(Keys& keys, MethodSettings& settings) {
+  keys.group("Methods");
+  keys.add("dimension", settings.dimension,
+           "Of space: 2, or 3 for scalar waves, lights and views in the plane of incidence")
+      .from(2, 3)
+      .only_of("method = transport");
 }
 
 void read_transport(const Keys& keys, MethodSettings& settings, const SceneSpec& spec,
@@ -111,8 +120,14 @@ Estimation mc_estimation(const Scene& scene, mc::ReversedPaths reversed, std::ui
 Estimation transport_estimation(const Scene& scene, mc::ReversedPaths reversed, double tolerance) {
   const bool with_reversed = mc::make_plan(scene, reversed).reversed;
   std::ostringstream plan;
-  plan << "transport: pairs at one transverse frequency, by doubling; "
-       << (with_reversed ? "reversed paths" : "no reversed paths") << "; tolerance " << tolerance;
+  const bool space = scene.medium.dimension == 3;
+  plan << "transport: pairs at one transverse frequency" << (space ? " in space" : "")
+       << ", by doubling; " << (with_reversed ? "reversed paths" : "no reversed paths")
+       << "; tolerance " << tolerance;
+  if (space)
+    return {mc::space_covariance_job(mc::space_slab(scene), mc::space_request(scene.request),
+                                     with_reversed, {tolerance}),
+            plan.str()};
   return {mc::slab_covariance_job(scene, with_reversed, {tolerance}), plan.str()};
 }
 

@@ -18,11 +18,13 @@ struct MethodSettings {
   double wave_tolerance = 1e-6;
   std::optional<std::int64_t> wave_samples;
   double tolerance = 1e-6;
+  std::int64_t dimension = 2;
 };
 
 void add_mc_keys(Keys& keys, MethodSettings& settings);
 void add_wave_keys(Keys& keys, MethodSettings& settings);
 void add_transport_keys(Keys& keys, MethodSettings& settings);
+void add_dimension_key(Keys& keys, MethodSettings& settings);
 
 mc::ReversedPaths reversed_paths(const Keys& keys, const MethodSettings& settings);
 
@@ -61,7 +63,7 @@ void note(const Neglected& neglected);
 Scene rounded_scene(const Keys& keys, const SceneSpec& spec);
 
 Estimation mc_estimation(const Scene& scene, mc::ReversedPaths reversed, std::uint64_t seed);
-/// Of a slab.
+/// Of a slab, of the plane or in space.
 Estimation transport_estimation(const Scene& scene, mc::ReversedPaths reversed, double tolerance);
 /// Throws InputError.
 Estimation wave_estimation(const Scene& scene, double tolerance, std::uint64_t seed);

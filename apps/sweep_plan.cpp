@@ -6,6 +6,7 @@
 
 #include "core/error.h"
 #include "core/result/version.h"
+#include "mc/space/space_scene.h"
 
 namespace flatspeckle::apps {
 
@@ -68,6 +69,7 @@ SweepPlan::SweepPlan()
   add_mc_keys(keys, methods);
   add_wave_keys(keys, methods);
   add_transport_keys(keys, methods);
+  add_dimension_key(keys, methods);
   add_run_keys(keys, settings);
   keys.add("shard", share_,
            "i/n: work on every nth point only, from number i = 0 .. n - 1 on; then merge")
@@ -105,6 +107,7 @@ void SweepPlan::check() {
   if (!keys.read(share_).empty()) share = share_of(share_);
   reversed_ = reversed_paths(keys, methods);
   keys.read(methods.wave_tolerance);
+  if (method_ == "transport") keys.read(methods.dimension);
   points = sweep_points(keys, lists_);
   check_points();
 }
@@ -146,9 +149,9 @@ void SweepPlan::with_point(std::size_t run,
 }
 
 Scene SweepPlan::scene_of(const Keyed<SceneSpec>& point) const {
-  return (method_words.size() > 1 ? rounded_scene
-                                  : static_cast<Scene (*)(const Keys&, const SceneSpec&)>(
-                                        make_scene))(point.keys, point.values);
+  if (method_words.size() > 1) return rounded_scene(point.keys, point.values);
+  const Scene scene = make_scene(point.keys, point.values);
+  return methods.dimension == 3 ? mc::in_space(scene, point.values) : scene;
 }
 
 Scene SweepPlan::scene(std::size_t run) const {

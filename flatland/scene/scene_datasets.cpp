@@ -12,6 +12,8 @@ const DatasetTable scene_table{
         {"", "depth", "float64", "of the medium: the L of q L"},
         {"", "width", "float64", "of a box"},
         {"", "optical_depth", "float64", "mu_t L"},
+        {"", "dimension", "uint64",
+         "3: scalar waves in space, covariances per illuminated area; absent: of the plane"},
         {"", "g", "float64", "mean cosine of scattering"},
         {"", "albedo", "float64", "mu_s/mu_t"},
         {"", "mean_free_path", "float64", "1/mu_t, of what scatters"},
@@ -107,6 +109,7 @@ void write_move_axes(ResultFile& file, const CovarianceRequest& request) {
 
 void write_domain(ResultFile& file, const Scene& scene) {
   const ResultGroup root(file, scene_table);
+  if (scene.medium.dimension == 3) root.attribute("dimension", std::uint64_t{3});
   root.attribute("wavelength", scene.wavelength);
   root.attribute("depth", scene.domain.depth);
   if (scene.domain.kind == Domain::Kind::box) root.attribute("width", scene.domain.width);

@@ -17,9 +17,9 @@ double log_sinh(double a) {
 double diffusion_field_correlation(const BulkMedium& medium, double thickness, double q) {
   const double transport_length = medium.transport_mean_free_path();
   const double source = std::min(transport_length, thickness),
-               extrapolation = 0.818 * transport_length;
+               extrapolation = (medium.dimension == 3 ? 0.7104 : 0.818) * transport_length;
   const double mu_a = medium.mu_t - medium.mu_s;
-  const double kappa2 = 2 * mu_a / transport_length;
+  const double kappa2 = medium.dimension * mu_a / transport_length;
   // f of C20; below the least Q it has its limit at 0 to rounding.
   const auto log_f = [&](double q2) {
     const double rate = std::max(std::sqrt(q2), 1e-5 / thickness);

@@ -43,6 +43,15 @@ class AngularGrid {
     return found;
   }
 
+  /// The same of many functions: f(angles) returns [angle][function].
+  template <typename F>
+  Matrix integrals_of(Eigen::Index functions, const F& f) const {
+    Matrix found = Matrix::Zero(size(), functions);
+    for (const Subpanel& part : subpanels_)
+      found.middleRows(part.first, order_) += product(part.weighted_basis, f(part.angle));
+    return found;
+  }
+
   /// The same of cos(m theta) and sin(m theta), m = 0 .. modes: [node][m].
   struct Modes {
     Matrix cosine, sine;

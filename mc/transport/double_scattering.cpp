@@ -5,23 +5,15 @@
 #include <cmath>
 #include <utility>
 
+#include "mc/transport/divided_difference.h"
 #include "mc/transport/gauss.h"
 
 namespace flatspeckle::mc {
 
 namespace {
 
+using mc::divided_difference;
 using std::numbers::pi;
-
-/// (exp(a) - exp(b)) / (a - b)
-template <typename C>
-C divided_difference(C a, C b) {
-  if (value_of(a).real() < value_of(b).real()) std::swap(a, b);
-  const C z = b - a;
-  if (std::abs(value_of(z)) < 1e-3)
-    return exp(a) * (1.0 + z / 2.0 * (1.0 + z / 3.0 * (1.0 + z / 4.0 * (1.0 + z / 5.0))));
-  return exp(a) * ((exp(z) - 1.0) / z);
-}
 
 /// The second divided difference of exp: int exp(a x + b y + c z) over x + y + z = 1, x, y, z > 0.
 template <typename C>

@@ -58,6 +58,15 @@ PairWaveOf<Number> pair_wave(const Scene& scene, Pair pair, const Departure<Numb
   return wave;
 }
 
+/// Of two lights by the cosines of their directions; k: per extinction coefficient.
+inline PairWave pair_wave(double k, double first, double second) {
+  PairWave wave;
+  for (const double cosine : {first, second})
+    (cosine > 0 ? wave.top : wave.bottom) -= 1 / (2 * std::abs(cosine));
+  wave.top += Complex(0, k * (first - second));
+  return wave;
+}
+
 /// Transverse momentum of a pair (C35), per extinction coefficient. shift: Departure's.
 inline double transverse_momentum(const Scene& scene, Pair pair, double shift) {
   return scene.k / scene.medium.mu_t * (std::sin(pair.first) - (1 + shift) * std::sin(pair.second));

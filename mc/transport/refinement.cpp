@@ -1,6 +1,8 @@
 #include "mc/transport/refinement.h"
 
 #include <algorithm>
+#include <cmath>
+#include <map>
 #include <memory>
 #include <mutex>
 
@@ -17,6 +19,22 @@ void Refined::append(const Refined& other) {
   value.insert(value.end(), other.value.begin(), other.value.end());
   difference.insert(difference.end(), other.difference.begin(), other.difference.end());
   ordinates = std::max(ordinates, other.ordinates);
+}
+
+std::vector<double> scales(const std::vector<Entry>& entries, std::span<const Complex> values) {
+  std::map<std::size_t, double> intensity;
+  for (std::size_t e = 0; e < values.size(); ++e)
+    if (entries[e].a == entries[e].b) intensity[entries[e].a] = std::abs(values[e]);
+  std::vector<double> scale;
+  for (std::size_t e = 0; e < values.size(); ++e) {
+    const auto a = intensity.find(entries[e].a), b = intensity.find(entries[e].b);
+    double reference = 0;
+    if (a != intensity.end()) reference = a->second;
+    if (b != intensity.end())
+      reference = a != intensity.end() ? std::sqrt(reference * b->second) : b->second;
+    scale.push_back(std::max(std::abs(values[e]), reference));
+  }
+  return scale;
 }
 
 BatchJob two_batches(std::size_t size, const std::function<Refined()>& solve) {

@@ -7,6 +7,7 @@
 #include "core/result/dataset_row.h"
 #include "core/result/result_file.h"
 #include "core/run/runner.h"
+#include "flatland/request/request.h"
 
 namespace flatspeckle::mc {
 
@@ -27,6 +28,10 @@ struct Refined {
 
   void append(const Refined& other);
 };
+
+/// What the tolerance of each entry is relative to: its value, or the root of its two intensities
+/// (or that which there is) where that is more.
+std::vector<double> scales(const std::vector<Entry>& entries, std::span<const Complex> values);
 
 /// A solution as a job of two batches, the values plus and minus their difference: what the
 /// statistics of batches call the standard error of any function of them is its difference then.

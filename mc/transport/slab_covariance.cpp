@@ -80,30 +80,13 @@ std::vector<Complex> solved(const Slab<Number>& slab, const ChainGroup& group,
   return flat(values);
 }
 
-/// What entries are relative to.
-std::vector<double> magnitudes(const CovarianceRequest& request, std::span<const Complex> values) {
-  std::map<std::size_t, double> intensity;
-  for (std::size_t e = 0; e < values.size(); ++e)
-    if (request.entries[e].a == request.entries[e].b)
-      intensity[request.entries[e].a] = std::abs(values[e]);
-  std::vector<double> scale;
-  for (std::size_t e = 0; e < values.size(); ++e) {
-    const auto a = intensity.find(request.entries[e].a), b = intensity.find(request.entries[e].b);
-    double reference = 0;
-    if (a != intensity.end()) reference = a->second;
-    if (b != intensity.end())
-      reference = a != intensity.end() ? std::sqrt(reference * b->second) : b->second;
-    scale.push_back(std::max(std::abs(values[e]), reference));
-  }
-  return scale;
-}
-
 /// What the tolerance of each entry is relative to, and that of its derivative: that or the entry.
-std::vector<double> scales(const CovarianceRequest& request, const std::vector<Complex>& values) {
+std::vector<double> scales_with_slopes(const CovarianceRequest& request,
+                                       std::span<const Complex> values) {
   const std::size_t entries = request.entries.size();
-  auto scale = magnitudes(request, std::span(values).first(entries));
+  auto scale = scales(request.entries, values.first(entries));
   if (values.size() == entries) return scale;
-  const auto slope = magnitudes(request, std::span(values).last(entries));
+  const auto slope = scales(request.entries, values.last(entries));
   for (std::size_t e = 0; e < entries; ++e) scale.push_back(std::max(scale[e], slope[e]));
   return scale;
 }
@@ -163,7 +146,7 @@ class Refiner {
   /// Once how large the entries are is known.
   void add_double_scattering() {
     constexpr double part_of_tolerance = 0.01;
-    const auto scale = scales(request_, sum(&Part::value));
+    const auto scale = scales_with_slopes(request_, sum(&Part::value));
     std::vector<std::vector<ComplexOf<Number>>> found(parts_.size());
     parallel_for(parts_.size(), [&](std::size_t p) {
       stop_if_interrupted();
@@ -189,7 +172,7 @@ class Refiner {
 
   /// Parts whose last two orders agree, or that would become too large, are done.
   void settle() {
-    const auto scale = scales(request_, sum(&Part::value));
+    const auto scale = scales_with_slopes(request_, sum(&Part::value));
     for (Part& part : parts_) {
       double worst = 0;
       for (std::size_t i = 0; i < part.value.size(); ++i)

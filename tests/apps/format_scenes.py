@@ -54,6 +54,8 @@ RUNS = {
                               "samples": None}),
     "shifts_curve": ("covariance", {**SLAB, **SMALL_TILTS, "frequency_shifts": [0, 1e-3],
                                     "method": "transport", "samples": None}),
+    "space": ("covariance", {**SLAB, "method": "transport", "dimension": 3, "tolerance": 1e-3,
+                            "samples": None}),
     "short": ("covariance", {**BOX, "target_error": 1e-9}, 3),
     "validate": ("validate", {**BOX, **FAR}),
     "short_both": ("validate", {**BOX, "target_error": 1e-9}, 3),
@@ -101,6 +103,8 @@ def cost(subcommand, keys):
     if subcommand == "field":
         return {"fields": 4, "threads": 2}
     both = subcommand == "validate" or keys.get("method") == "both"
+    if keys.get("method") == "transport":
+        return {"threads": 2}
     return {"samples": 4 if keys.get("method") == "wave" else 2000,
             "wave_samples": 4 if both else None, "threads": 2}
 

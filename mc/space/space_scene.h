@@ -1,0 +1,16 @@
+#pragma once
+
+#include "flatland/scene/scene.h"
+#include "mc/space/space_covariance.h"
+
+namespace flatspeckle::mc {
+
+/// A slab that has the same keys in space: lights and views lie in the plane of incidence, the
+/// phase function is per steradian, and `dimension` of the medium says so. Throws InputError for
+/// scatterers of the plane: what may be in space is hg, two_term_hg and phase_table.
+Scene in_space(Scene slab, const ScattererValues& values);
+
+/// Of a scene in space.
+SpaceSlab space_slab(const Scene& scene);
+
+}  // namespace flatspeckle::mc

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cmath>
+#include <numbers>
+
+#include "grin/media/phase_function.h"
+#include "mc/space/space_covariance.h"
+
+namespace flatspeckle::mc::tests {
+
+/// Henyey-Greenstein, wavelength 1.
+inline SpaceSlab hg_space(double depth, double optical_depth, double g, double albedo) {
+  return {2 * std::numbers::pi, optical_depth / depth, depth, albedo,
+          SpaceLaw([g](double cosine) { return grin::HenyeyGreenstein<3>{g}.density_at(cosine); })};
+}
+
+/// A unit vector by its components along the slab, down into it.
+inline Eigen::Vector3d downward(double x, double y) {
+  return {x, y, std::sqrt(1 - x * x - y * y)};
+}
+
+/// By the angle to z and the azimuth.
+inline Eigen::Vector3d spherical(double angle, double azimuth) {
+  return {std::sin(angle) * std::cos(azimuth), std::sin(angle) * std::sin(azimuth),
+          std::cos(angle)};
+}
+
+/// Of channels (light, view): the covariance of each with the first, then all intensities.
+inline SpaceRequest against_first(const std::vector<Eigen::Vector3d>& lights,
+                                  const std::vector<Eigen::Vector3d>& views) {
+  SpaceRequest request{lights, views, {}, {}};
+  for (std::uint32_t i = 0; i < lights.size(); ++i) request.channels.push_back({i, i});
+  for (std::uint32_t i = 1; i < lights.size(); ++i) request.entries.push_back({0, i});
+  for (std::uint32_t i = 0; i < lights.size(); ++i) request.entries.push_back({i, i});
+  return request;
+}
+
+}  // namespace flatspeckle::mc::tests
