@@ -25,8 +25,7 @@ StopRule stop_of(const std::string& method, const Keys& keys, const RunSettings&
   if (method == "transport") return both_batches();
   const bool own = method == "wave" && methods.wave_samples;
   const StopRule stop = own ? stop_rule(keys, run, methods.wave_samples) : stop_rule(keys, run);
-  keys.read(methods.wave_samples);
-  keys.read(run.samples);
+  keys.read(run.samples);  // of light paths, in a scene for several methods
   return stop;
 }
 
@@ -58,16 +57,17 @@ int covariance(const Arguments& arguments) {
   choose_method(keys, method, spec, run);
   if (method == "transport") read_transport(keys, methods, spec, run);
   const StopRule stop = stop_of(method, keys, run, methods);
-  const auto reversed = reversed_paths(keys, methods);
-  const double wave_tolerance = keys.read(methods.wave_tolerance);
+  const auto reversed = method == "wave" ? mc::ReversedPaths::no : reversed_paths(keys, methods);
+  if (method == "wave") keys.read(methods.wave_tolerance);
   const bool space = method == "transport" && keys.read(methods.dimension) == 3;
   if (method != "wave" && !space) read_extras(keys, extras, method == "transport");
   const Scene plane = make_scene(keys, spec), scene = space ? mc::in_space(plane, spec) : plane;
   const auto [estimation, write_extras] =
       method == "mc" ? extended_estimation(scene, reversed, extras, session.seed())
       : method == "wave"
-          ? ExtendedEstimation{wave_estimation(scene, wave_tolerance, session.seed()), {}}
+          ? ExtendedEstimation{wave_estimation(scene, methods.wave_tolerance, session.seed()), {}}
           : extended_transport(scene, reversed, extras, methods.tolerance);
+  disregard_unused(keys, spec, {method});
   if (!command.settle()) return ExitStatus::done;
   if (method != "wave") {
     Neglected neglected;

@@ -62,6 +62,14 @@ void add_dimension_key(Keys& keys, MethodSettings& settings) {
       .only_of("method = transport");
 }
 
+void disregard_unused(const Keys& keys, const SceneSpec& spec,
+                      const std::vector<std::string>& methods) {
+  const auto waves = std::ranges::count(methods, "wave");
+  if (waves == 0) keys.disregard(spec.placement);
+  if (waves == 0 && spec.structure == "none") keys.disregard(spec.min_gap);
+  if (waves == std::ssize(methods)) keys.disregard(spec.structure);
+}
+
 void read_transport(const Keys& keys, MethodSettings& settings, const SceneSpec& spec,
                     const RunSettings& run) {
   if (spec.domain != "slab")

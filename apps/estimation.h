@@ -3,6 +3,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/keys/keys.h"
 #include "core/session/run_settings.h"
@@ -38,6 +39,10 @@ struct Estimation {
 /// is given.
 void choose_method(const Keys& keys, std::string& method, const SceneSpec& spec,
                    const RunSettings& run);
+
+/// What make_scene() reads and none of the methods makes use of counts as not read.
+void disregard_unused(const Keys& keys, const SceneSpec& spec,
+                      const std::vector<std::string>& methods);
 
 /// Reads what transport heeds. Throws InputError for what is no slab.
 void read_transport(const Keys& keys, MethodSettings& settings, const SceneSpec& spec,

@@ -64,9 +64,10 @@ mc::FieldDemand demand_of(const Keys& keys, const FieldKeys& values) {
                                    : method == "covariance" ? covariance
                                                             : automatic};
   demand.fields = static_cast<std::uint64_t>(keys.read(values.fields));
-  if (const auto& paths_each = keys.read(values.paths_per_field))
-    demand.paths_per_field = static_cast<std::uint64_t>(*paths_each);
-  demand.covariance_error = keys.read(values.target_error);
+  if (demand.method != covariance)
+    if (const auto& paths_each = keys.read(values.paths_per_field))
+      demand.paths_per_field = static_cast<std::uint64_t>(*paths_each);
+  if (demand.method != paths) demand.covariance_error = keys.read(values.target_error);
   return demand;
 }
 

@@ -9,6 +9,7 @@
 #include "apps/field_map_output.h"
 #include "apps/subcommands.h"
 #include "core/error.h"
+#include "core/keys/csv.h"
 #include "core/result/result_group.h"
 #include "core/run/interrupt.h"
 #include "core/session/session.h"
@@ -66,10 +67,14 @@ bool is_placement_rule(const SceneSpec& spec) {
 }
 
 /// A file brings its own positions: keys that would place scatterers find no use.
-Placement placement_of_file(const Keys& keys, const SceneSpec& spec) {
+Placement placement_of_file(const Keys& keys, const SceneSpec& spec, const RunSettings& run) {
   const Scatterer scatterer = make_scatterer(keys, spec);
   if (scatterer.is_bulk()) refuse_bulk(spec);
   const std::string& path = *keys.read(spec.placement);
+  const Table table = read_csv(path);
+  if (table.has("radius")) keys.disregard(spec.radius);
+  if (table.has("index_re")) keys.disregard(spec.index);
+  keys.disregard(run.seed);  // it draws nothing
   try {
     keys.refuse_unread();
   } catch (const InputError& error) {
@@ -147,8 +152,8 @@ int solve(const Arguments& arguments) {
   keys.read(values.solver);
   std::optional<Scene> scene;
   if (is_placement_rule(spec)) scene = make_scene(keys, spec);
-  const Placement placement =
-      scene ? drawn_placement(spec, *scene, session.seed()) : placement_of_file(keys, spec);
+  const Placement placement = scene ? drawn_placement(spec, *scene, session.seed())
+                                    : placement_of_file(keys, spec, values.run);
   if (!command.settle()) return ExitStatus::done;
   omp_set_num_threads(session.threads());
   const auto solution = solved(values, placement, grid, sensors.points);

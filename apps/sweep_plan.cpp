@@ -100,16 +100,17 @@ void SweepPlan::check() {
   const auto has = [&](const char* word) { return std::ranges::count(method_words, word) > 0; };
   if (has("transport")) read_transport(keys, methods, base, settings);
   if (has("mc") || has("wave")) mc_stop_ = wave_stop_ = stop_rule(keys, settings);
-  if (const auto& own = keys.read(methods.wave_samples); own && has("wave"))
+  if (has("wave") && keys.read(methods.wave_samples))
     wave_stop_ = stop_rule(keys, settings, methods.wave_samples);
   for (StopRule* stop : {&mc_stop_, &wave_stop_})
     if (!stop->samples && !stop->target_error) stop->target_error = default_target_error;
   if (!keys.read(share_).empty()) share = share_of(share_);
-  reversed_ = reversed_paths(keys, methods);
-  keys.read(methods.wave_tolerance);
+  if (method_ != "wave") reversed_ = reversed_paths(keys, methods);
+  if (has("wave")) keys.read(methods.wave_tolerance);
   if (method_ == "transport") keys.read(methods.dimension);
   points = sweep_points(keys, lists_);
   check_points();
+  disregard_unused(keys, base, method_words);
 }
 
 void SweepPlan::check_points() {

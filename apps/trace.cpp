@@ -109,6 +109,7 @@ int trace(const Arguments& arguments) {
 
   const Session session(command.text(), keys, run, command.only_prints());
   const TraceScene scene = make_trace_scene(keys, values);
+  if (!scene.curves) keys.disregard(run.seed);
   if (!command.settle()) return ExitStatus::done;
   omp_set_num_threads(session.threads());
   return session.once(ResultFile(session.out()), [&](ResultFile& file) -> std::optional<Made> {

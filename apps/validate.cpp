@@ -173,18 +173,20 @@ int validate(const Arguments& arguments) {
   if (scene.medium.mu_s == 0)
     throw InputError("scatterer", spec.scatterer,
                      "this scene does not scatter, there is nothing to compare");
-  const auto [name, reference, reference_stop, bias] = refer(scene);
+  const auto chosen = refer(scene);
+  const std::string& name = chosen.name;
+  const Estimation& reference = chosen.estimation;
   const Estimation mc = mc_estimation(scene, reversed, session.seed());
   if (!command.settle()) return ExitStatus::done;
   return session.run(
       mc.plan + "\n" + reference.plan,
-      {{"mc", "mc", mc.job.batches, stop}, {name, name, reference.job.batches, reference_stop}},
+      {{"mc", "mc", mc.job.batches, stop}, {name, name, reference.job.batches, chosen.stop}},
       inputs_text(scene), [&](ResultFile& file) {
         const GroupedSums &mc_sums = session.sums("mc"), &reference_sums = session.sums(name);
         const FieldMoments mc_moments = field_moments(mc.job, mc_sums),
                            reference_moments = field_moments(reference.job, reference_sums);
         const Comparison comparison{name, reference_moments.covariance, mc_moments.covariance,
-                                    bias};
+                                    chosen.bias};
         print_comparison(scene, comparison);
         write_medium(file, scene);
         write_axes(file, scene);

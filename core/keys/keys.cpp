@@ -49,7 +49,7 @@ std::string Keys::only_of(const std::string& name) const {
 void Keys::refuse_unread() const {
   for (const Key& key : rows_) {
     if (!key.given() || read_.contains(key.name())) continue;
-    const std::string of = only_of(key.name());
+    const std::string of = disregarded_.contains(key.name()) ? "" : only_of(key.name());
     throw InputError(
         key.name(), key.shown(),
         of.empty() ? "nothing here has use for it; leave it out" : "is a key of " + of + " only");

@@ -60,6 +60,11 @@ class Keys {
     require_set(row_of(&member));
     return read(member);
   }
+  /// What was read but turned out to have no say counts as not read.
+  void disregard(const auto& member) const {
+    if (const Key* const key = row_of(&member); key != nullptr && read_.erase(key->name()) > 0)
+      disregarded_.insert(key->name());
+  }
   bool given(const auto& member) const {
     const Key* const key = row_of(&member);
     return key != nullptr && key->given();
@@ -88,6 +93,7 @@ class Keys {
 
   std::string group_, only_of_;
   std::deque<Key> rows_;
+  mutable std::set<std::string> disregarded_;
   mutable std::map<std::string, const Key*> read_;  ///< the row of each name that was
 };
 

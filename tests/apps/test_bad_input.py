@@ -8,6 +8,8 @@ from program import BOX, CYLINDERS, DATA, SLAB, TILTS, ProgramTest, flags, toml
 from refusing import COMMANDS, SWEEP, RefusingTest
 
 POSITIVE = "must be positive"
+NO_USE = "nothing here has use for it"
+DISKS = {**CYLINDERS, "index": "1.5"}
 HG_BOX = {"width": 20, "depth": 10, "scatterer": "hg", "optical_depth": 1}
 PAIRS = {"covariance": "pairs", "pairs": [0, 0.1, 0.04, 0.14]}
 
@@ -65,6 +67,16 @@ BOX_CASES = [
     ("covariance", SLAB, {"method": "transport", "dimension": 4}, ["dimension = 4", "from 2 to 3"]),
     ("covariance", SLAB, {"method": "transport", "dimension": 3, "scatterer": "point", "g": None},
      ["scatterer = point", "hg", "phase_table"]),
+    ("covariance", BOX, {"wave_samples": 4}, ["wave_samples = 4", "exact solver only"]),
+    ("covariance", BOX, {"wave_tolerance": 1e-3}, ["wave_tolerance = 0.001", "exact solver only"]),
+    ("covariance", DISKS, {"placement": "equilibrium"}, ["placement = equilibrium", NO_USE]),
+    ("covariance", DISKS, {"min_gap": 0.01}, ["min_gap = 0.01", NO_USE]),
+    ("covariance", DISKS, {"method": "wave", "structure": "hard_disks"},
+     ["structure = hard_disks", NO_USE]),
+    ("covariance", DISKS, {"method": "wave", "reversed_paths": "yes"},
+     ["reversed_paths = yes", NO_USE]),
+    ("field", BOX, {"method": "paths", "target_error": 0.1}, ["target_error = 0.1", NO_USE]),
+    ("field", BOX, {"method": "covariance", "paths_per_field": 9}, ["paths_per_field = 9", NO_USE]),
     ("covariance", BOX, {"method": "wave", "wave_tolerance": 0}, ["wave_tolerance = 0", "(0, 1)"]),
     ("covariance", BOX, {"method": "wave", "wave_tolerance": "nan"},
      ["wave_tolerance = nan", "(0, 1)"]),
