@@ -25,7 +25,8 @@ StopRule stop_of(const std::string& method, const Keys& keys, const RunSettings&
   if (method == "transport") return both_batches();
   const bool own = method == "wave" && methods.wave_samples;
   const StopRule stop = own ? stop_rule(keys, run, methods.wave_samples) : stop_rule(keys, run);
-  keys.read(run.samples);  // of light paths, in a scene for several methods
+  keys.read(run.samples);  // one of both, in a scene for several methods
+  keys.read(methods.wave_samples);
   return stop;
 }
 

@@ -71,15 +71,15 @@ Placement placement_of_file(const Keys& keys, const SceneSpec& spec, const RunSe
   const Scatterer scatterer = make_scatterer(keys, spec);
   if (scatterer.is_bulk()) refuse_bulk(spec);
   const std::string& path = *keys.read(spec.placement);
-  const Table table = read_csv(path);
-  if (table.has("radius")) keys.disregard(spec.radius);
-  if (table.has("index_re")) keys.disregard(spec.index);
-  keys.disregard(run.seed);  // it draws nothing
   try {
     keys.refuse_unread();
   } catch (const InputError& error) {
     throw InputError(std::string(error.what()) + " (the placement comes from " + path + ')');
   }
+  const Table table = read_csv(path);
+  if (table.has("radius")) keys.disregard(spec.radius);
+  if (table.has("index_re")) keys.disregard(spec.index);
+  keys.disregard(run.seed);  // nothing is drawn
   return read_placement(path, scatterer);
 }
 

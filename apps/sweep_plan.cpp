@@ -100,7 +100,7 @@ void SweepPlan::check() {
   const auto has = [&](const char* word) { return std::ranges::count(method_words, word) > 0; };
   if (has("transport")) read_transport(keys, methods, base, settings);
   if (has("mc") || has("wave")) mc_stop_ = wave_stop_ = stop_rule(keys, settings);
-  if (has("wave") && keys.read(methods.wave_samples))
+  if (const auto& own = keys.read(methods.wave_samples); own && has("wave"))
     wave_stop_ = stop_rule(keys, settings, methods.wave_samples);
   for (StopRule* stop : {&mc_stop_, &wave_stop_})
     if (!stop->samples && !stop->target_error) stop->target_error = default_target_error;

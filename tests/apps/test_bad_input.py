@@ -67,7 +67,6 @@ BOX_CASES = [
     ("covariance", SLAB, {"method": "transport", "dimension": 4}, ["dimension = 4", "from 2 to 3"]),
     ("covariance", SLAB, {"method": "transport", "dimension": 3, "scatterer": "point", "g": None},
      ["scatterer = point", "hg", "phase_table"]),
-    ("covariance", BOX, {"wave_samples": 4}, ["wave_samples = 4", "exact solver only"]),
     ("covariance", BOX, {"wave_tolerance": 1e-3}, ["wave_tolerance = 0.001", "exact solver only"]),
     ("covariance", DISKS, {"placement": "equilibrium"}, ["placement = equilibrium", NO_USE]),
     ("covariance", DISKS, {"min_gap": 0.01}, ["min_gap = 0.01", NO_USE]),
@@ -115,6 +114,10 @@ DISK_CASES = [
     ("solve", CYLINDERS, {"seed": -1}, ["seed = -1", "must not be negative"]),
     ("solve", CYLINDERS, {"samples": 10}, ["samples", "unknown"]),
     ("solve", CYLINDERS, {"placement": "no.csv"}, ["placement", "no.csv"]),
+    ("solve", {"placement": "disks.csv", "scatterer": "tm", "index": "1.5", "radius": 0.5}, {},
+     ["radius = 0.5", NO_USE]),
+    ("solve", {"placement": "disks.csv", "scatterer": "tm", "index": "1.5", "seed": 4}, {},
+     ["seed = 4", NO_USE]),
 ]
 BULK_CASES = [
     ("covariance", SLAB, {"g": 1}, ["g = 1", "(-1, 1)"]),
@@ -232,6 +235,7 @@ class Keys(RefusingTest):
         self.check_cases(BOX_CASES)
 
     def test_disks(self):
+        self.write("disks.csv", "x,z,radius\n0,0,0.3\n1,2,0.2\n")
         self.check_cases(DISK_CASES)
 
     def test_bulk(self):
