@@ -8,6 +8,7 @@
 #include <new>
 #include <thread>
 
+#include "apps/blas_kernel.h"
 #include "apps/subcommands.h"
 #include "core/error.h"
 #include "core/result/version.h"
@@ -73,6 +74,7 @@ int fail(std::string what, int status) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  use_fast_blas(argv);
   set_signals();
   try {
     return run({argv, argv + argc});

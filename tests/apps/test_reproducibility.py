@@ -102,10 +102,11 @@ class PrintedConfiguration(ProgramTest):
                 self.assertEqual(read[key], 10 if value == "1e1" else value)
 
     def test_the_same_number_in_other_words(self):
-        plain = self.call("covariance", "--print-config", **CYLINDERS, min_gap=0.001).stdout
+        disks = {**CYLINDERS, "method": "wave"}
+        plain = self.call("covariance", "--print-config", **disks, min_gap=0.001).stdout
         for width, gap in (("20.0", "1e-3"), ("2e1", "0.0010"), ("2.0E+1", "1.e-03")):
             with self.subTest(width=width):
-                keys = {**CYLINDERS, "width": width, "min_gap": gap}
+                keys = {**disks, "width": width, "min_gap": gap}
                 self.assertEqual(self.call("covariance", "--print-config", **keys).stdout, plain)
 
 
