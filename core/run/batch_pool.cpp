@@ -28,7 +28,8 @@ void BatchPool::look_for_end() {
 bool BatchPool::may_take(const Run& run) const {
   if (stopped_ && (*stopped_ == StopReason::interrupted || run.next >= fewest_batches))
     return false;
-  return run.next < run.limit && run.next < run.merged + lookahead_;
+  const std::uint64_t ahead = run.job->one_by_one ? 1 : lookahead_;
+  return run.next < run.limit && run.next < run.merged + ahead;
 }
 
 BatchPool::Use BatchPool::use_of(const Run& run, int rank) {

@@ -8,8 +8,8 @@ namespace flatspeckle {
 /// closed pipe nor a limit on the size of files ends it: writing fails.
 void set_signals();
 
-/// After this, SIGINT, SIGTERM and SIGHUP set a flag that ends runs after the batches in hand; a second
-/// signal ends the program at once.
+/// After this, SIGINT, SIGTERM and SIGHUP set a flag that ends runs after the batches in hand; a
+/// second signal ends the program at once.
 void catch_interrupts();
 
 /// A file that is removed, too, where the program ends with 130; empty: none.

@@ -20,6 +20,8 @@ struct BatchJob {
   std::function<void(std::uint64_t number, std::span<Complex> sums)> run;
   /// Relative error of what has been merged so far; steers the target and fills the trace.
   std::function<double(const GroupedSums&)> relative_error;
+  /// Batches share their work: a thread that took the second would wait for the first.
+  bool one_by_one = false;
 };
 
 /// When to stop; any that is set may. At least one must be. Samples are rounded up to whole

@@ -46,6 +46,7 @@ BatchJob two_batches(std::size_t size, const std::function<Refined()>& solve) {
   BatchJob job;
   job.size = size;
   job.samples_per_batch = 1;
+  job.one_by_one = true;
   job.run = [=](std::uint64_t number, std::span<Complex> sums) {
     std::call_once(solution->once, [&] { solution->refined = solve(); });
     const double sign = number % 2 == 0 ? 1 : -1;

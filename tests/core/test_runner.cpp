@@ -125,6 +125,21 @@ TEST_CASE("a batch that gives up ends the run as interrupted, with the batches b
   CHECK(state.sums.batches() == 20);
 }
 
+TEST_CASE("batches that share work are never under way together") {
+  auto job = uneven_job();
+  job.one_by_one = true;
+  std::atomic<int> under_way{0}, most{0};
+  job.run = [&, body = job.run](std::uint64_t number, std::span<Complex> sums) {
+    most = std::max(most.load(), ++under_way);
+    body(number, sums);
+    --under_way;
+  };
+  StopRule stop;
+  stop.samples = 20'000;
+  CHECK(same_sums(run(job, stop, 4), run(uneven_job(), stop, 1)));
+  CHECK(most == 1);
+}
+
 // Last: the flag stays raised for the rest of this program.
 TEST_CASE("zz a signal ends the run after the batches in hand, without a gap") {
   catch_interrupts();
