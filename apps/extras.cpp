@@ -96,7 +96,8 @@ ExtendedEstimation transport_frequency_shifts(const Scene& scene, mc::ReversedPa
 void add_extra_keys(Keys& keys, Extras& extras) {
   keys.group("Methods");
   keys.add("gradient", extras.gradient,
-           "Also derivatives of the covariance by mu_t, g, albedo and optical depth")
+           "Also derivatives of the covariance by mu_t, g, albedo and optical depth; by transport "
+           "of cylinders by radius and index too")
       .only_of("method = mc or transport");
   keys.add("delays", extras.delays,
            "Also the field's correlation after delays, as the scatterers diffuse: k^2 D tau")

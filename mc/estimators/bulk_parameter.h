@@ -2,8 +2,9 @@
 
 namespace flatspeckle::mc {
 
-/// What a scene's bulk can be differentiated by, all others held fixed.
-enum class BulkParameter { mu_t, g, albedo };
+/// What a scene's bulk can be differentiated by, all others held fixed: radius and (real part of
+/// the) index of cylinders at fixed density.
+enum class BulkParameter { mu_t, g, albedo, radius, index };
 
 /// d log p / dg of the phase function of C22 at a scattering angle of known 1 - cos.
 inline double henyey_greenstein_slope(double g, double one_minus_cosine) {

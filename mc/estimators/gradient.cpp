@@ -17,7 +17,7 @@ namespace {
 using Values = std::vector<Complex>;
 
 std::string name_of(BulkParameter parameter) {
-  constexpr const char* names[] = {"mu_t", "g", "albedo"};
+  constexpr const char* names[] = {"mu_t", "g", "albedo", "radius", "index"};
   return names[static_cast<std::size_t>(parameter)];
 }
 
@@ -148,10 +148,10 @@ std::vector<BulkParameter> bulk_parameters(const Scene& scene) {
   }
 }
 
-GradientJob gradient_job(const PathJob& paths, const Scene& scene) {
+GradientJob gradient_job(const PathJob& paths, const std::vector<BulkParameter>& parameters,
+                         const Scene& scene) {
   GradientJob job{paths, {}, gradient_of(paths, scene.domain.depth)};
-  for (const BulkParameter parameter : bulk_parameters(scene))
-    job.parameters.push_back(name_of(parameter));
+  for (const BulkParameter parameter : parameters) job.parameters.push_back(name_of(parameter));
   job.parameters.emplace_back("optical_depth");
   return job;
 }
@@ -174,7 +174,8 @@ Plan gradient_plan(const Scene& scene, ReversedPaths reversed) {
 }
 
 GradientJob gradient_job(const Scene& scene, const Plan& plan, std::uint64_t seed) {
-  return gradient_job(path_job(GradientKind{bulk_parameters(scene)}, scene, plan, seed), scene);
+  const auto parameters = bulk_parameters(scene);
+  return gradient_job(path_job(GradientKind{parameters}, scene, plan, seed), parameters, scene);
 }
 
 CorrelationGradient memory_effect_gradient(const CovarianceRequest& request,
@@ -215,8 +216,9 @@ const DatasetTable gradient_table{
     .name = "gradient",
     .rows = {{"parameter", Data::numbers, "", "1",
               "what derivatives are by: see the attribute names"}},
-    .attributes = {{"parameter", "names", "texts",
-                    "mu_t, g, albedo, optical_depth, as far as the scene has them"}}};
+    .attributes = {
+        {"parameter", "names", "texts",
+         "mu_t, g, albedo, radius, index, optical_depth, as far as the scene has them"}}};
 
 void write_gradient(ResultFile& file, const CovarianceRequest& request, const GradientJob& job,
                     const GradientEstimates& gradient) {

@@ -22,8 +22,9 @@ struct GradientJob : PathJob {
 /// What a scene's paths are differentiated by; the optical depth follows from mu_t.
 std::vector<BulkParameter> bulk_parameters(const Scene& scene);
 
-/// Of a job whose quantities after the covariance are derivatives by bulk_parameters().
-GradientJob gradient_job(const PathJob& job, const Scene& scene);
+/// Of a job whose quantities after the covariance are derivatives by the parameters, mu_t first.
+GradientJob gradient_job(const PathJob& job, const std::vector<BulkParameter>& parameters,
+                         const Scene& scene);
 
 /// Throws InputError for a scene that does not scatter or a request of too many entries.
 void check_gradient(const Scene& scene);

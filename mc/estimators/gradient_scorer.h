@@ -115,6 +115,9 @@ class GradientScorer {
         case BulkParameter::albedo:
           half[p] = tally.scatterers / medium_.albedo / 2;
           break;
+        case BulkParameter::radius:
+        case BulkParameter::index:
+          break;  // of transport alone
       }
     }
     return half;

@@ -29,9 +29,9 @@ std::vector<CurvePoint> one_side(const std::vector<double>& tilt_q,
   return curve;
 }
 
-/// Lagrange interpolation through the (up to four) points around interval i, i+1.
+/// Lagrange interpolation through the (up to six) points around interval i, i+1.
 double interpolate(const std::vector<CurvePoint>& curve, std::size_t i, double q) {
-  const std::size_t first = i > 0 ? i - 1 : 0, last = std::min(i + 2, curve.size() - 1);
+  const std::size_t first = i > 1 ? i - 2 : 0, last = std::min(i + 3, curve.size() - 1);
   double sum = 0;
   for (std::size_t a = first; a <= last; ++a) {
     double basis = curve[a].intensity_correlation;

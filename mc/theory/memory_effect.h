@@ -25,8 +25,8 @@ struct Range {
 
 /// Censored above the last tilt if C_I does not fall to 1/2 there, and below the first one that is
 /// not 0 if C_I has fallen already. Else the first crossing of C_I = 1/2 on the side of positive q
-/// (of negative q where there is no positive one), by cubic interpolation of C_I through the four
-/// nearest tilts.
+/// (of negative q where there is no positive one), by interpolation of C_I of degree five through
+/// the six nearest tilts: to 1e-5 where they are spaced by a sixth.
 Range memory_effect_range(const std::vector<double>& tilt_q, std::span<const Complex> correlation);
 
 /// Steps between 0 and a range.

@@ -82,14 +82,6 @@ double ScatteringLaw::slope(double angle) const {
   return henyey_greenstein_slope(g_, 2 * half * half);
 }
 
-/// The modes of Henyey-Greenstein's function are g^m.
-ScatteringSlope::ScatteringSlope(const ScatteringLaw& law, bool by_g) : law_(law), by_g_(by_g) {
-  modes_.value = law.modes();
-  modes_.slope.assign(std::max<std::size_t>(law.modes().size(), 2), 0);
-  for (std::size_t m = 1; by_g && m < modes_.slope.size(); ++m)
-    modes_.slope[m] = static_cast<double>(m) * std::pow(law.g(), static_cast<double>(m - 1));
-}
-
 void ScatteringLaw::tabulate(const Scene& scene) {
   const std::size_t steps_per_order = 2048;
   table_ = normalised_amplitudes(scene.medium, scene.k,

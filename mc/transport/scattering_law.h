@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "flatland/scene/scene.h"
-#include "mc/transport/dual.h"
+#include "core/numbers/complex.h"
 
 namespace flatspeckle::mc {
 
@@ -53,35 +53,5 @@ class ScatteringLaw {
   double g_ = 0;  ///< the mean cosine
   int least_order_ = 0;
 };
-
-/// The same with derivatives: by g (of Henyey-Greenstein's function), or by what it does not know.
-class ScatteringSlope {
- public:
-  ScatteringSlope(const ScatteringLaw& law, bool by_g);
-
-  Dual<Complex> pair(double a, double b, double theta) const {
-    const Complex value = law_.pair(a, b, theta);
-    return {value,
-            by_g_ ? (law_.slope(theta - a) + law_.slope(theta - b)) / 2 * value : Complex(0)};
-  }
-  const Dual<std::vector<double>>& modes() const { return modes_; }
-
- private:
-  const ScatteringLaw& law_;
-  bool by_g_;
-  Dual<std::vector<double>> modes_;
-};
-
-template <typename Number>
-struct LawNumbers {
-  using Law = ScatteringLaw;
-};
-template <>
-struct LawNumbers<Dual<double>> {
-  using Law = ScatteringSlope;
-};
-/// A scattering law of calculations with a Number.
-template <typename Number>
-using LawOf = typename LawNumbers<Number>::Law;
 
 }  // namespace flatspeckle::mc

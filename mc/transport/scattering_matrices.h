@@ -6,7 +6,7 @@
 #include "mc/transport/double_scattering.h"
 #include "mc/transport/layer.h"
 #include "mc/transport/pair_wave.h"
-#include "mc/transport/scattering_law.h"
+#include "mc/transport/bulk_slope.h"
 
 namespace flatspeckle::mc {
 

@@ -10,6 +10,7 @@
 #include "core/run/interrupt.h"
 #include "core/run/parallel.h"
 #include "mc/transport/chains.h"
+#include "mc/transport/range_refinement.h"
 #include "mc/transport/scattering_matrices.h"
 
 namespace flatspeckle::mc {
@@ -225,32 +226,28 @@ Refined slab_covariance(const Scene& slab, bool reversed, const Refinement& refi
 
 Refined slab_slopes(const Scene& slab, bool reversed, const Refinement& refinement,
                     BulkParameter parameter) {
-  const auto seed = [&](BulkParameter of, double slope) { return parameter == of ? slope : 0; };
-  const double albedo = slab.medium.albedo, mu_t = slab.medium.mu_t;
   blas_single_thread();
   const ScatteringLaw law(slab);
-  const ScatteringSlope slope(law, parameter == BulkParameter::g);
-  // Logarithmic derivatives are as large as the values, whatever the units.
-  Refined all = Refiner<Dual<double>>({slab,
-                                       law,
-                                       slope,
-                                       {albedo, seed(BulkParameter::albedo, albedo)},
-                                       {{1, seed(BulkParameter::mu_t, -1)}}},
-                                      reversed, refinement)
-                    .refined();
-  const double unit = parameter == BulkParameter::mu_t     ? mu_t
-                      : parameter == BulkParameter::albedo ? albedo
-                                                           : 1;
+  const BulkSlope slope = bulk_slope(slab, law, parameter);
+  Refined all =
+      Refiner<Dual<double>>(
+          {slab, law, slope.law, {slab.medium.albedo, slope.albedo}, {{1, -slope.log_mu_t}}},
+          reversed, refinement)
+          .refined();
   for (auto* list : {&all.value, &all.difference})
-    for (std::size_t e = slab.request.entries.size(); e < list->size(); ++e) (*list)[e] /= unit;
+    for (std::size_t e = slab.request.entries.size(); e < list->size(); ++e)
+      (*list)[e] /= slope.unit;
   return all;
 }
 
 FieldJob slab_covariance_job(const Scene& slab, bool reversed, const Refinement& refinement) {
   FieldJob job;
   job.covariance = sample_mean;
-  job.batches = two_batches(slab.request.entries.size(),
-                            [=] { return slab_covariance(slab, reversed, refinement); });
+  job.batches = two_batches(slab.request.entries.size(), [=] {
+    return refined_range(slab.request, refinement, [&](const Refinement& finer) {
+      return slab_covariance(slab, reversed, finer);
+    });
+  });
   return job;
 }
 
@@ -284,7 +281,7 @@ PathJob slab_change_job(const Scene& slab, bool reversed, const Refinement& refi
 }
 
 GradientJob slab_gradient_job(const Scene& slab, bool reversed, const Refinement& refinement) {
-  const auto parameters = bulk_parameters(slab);
+  const auto parameters = slab_parameters(slab);
   const auto entries = static_cast<std::ptrdiff_t>(slab.request.entries.size());
   const auto solve = [=] {
     Refined all = slab_slopes(slab, reversed, refinement, parameters.front());
@@ -296,7 +293,7 @@ GradientJob slab_gradient_job(const Scene& slab, bool reversed, const Refinement
     }
     return all;
   };
-  return gradient_job(two_batch_job(slab, 1 + parameters.size(), solve), slab);
+  return gradient_job(two_batch_job(slab, 1 + parameters.size(), solve), parameters, slab);
 }
 
 }  // namespace flatspeckle::mc

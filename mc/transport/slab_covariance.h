@@ -24,7 +24,7 @@ struct FieldChange {
 Refined slab_covariance(const Scene& slab, bool reversed, const Refinement& refinement,
                         const FieldChange& change = {});
 
-/// The same as a job (two_batches()).
+/// The same as a job (two_batches()); the tolerance holds for a range too (range_refinement.h).
 FieldJob slab_covariance_job(const Scene& slab, bool reversed, const Refinement& refinement);
 
 /// Values per entry, then derivatives by a parameter: exact, of the doubling itself. The tolerance

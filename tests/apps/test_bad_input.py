@@ -386,7 +386,7 @@ class AcceptedScenes(ProgramTest):
     def test_shipped_scenes(self):
         for scene in sorted((DATA / "scenes").glob("*.toml")):
             text = scene.read_text()
-            tilts = {"slab_hg": 33, "gallery": 40}.get(scene.stem)
+            tilts = {"slab_hg": 33, "gallery": 40, "diffusion_map": 40}.get(scene.stem)
             for subcommand in (("sweep",) if tilts else ("solve",) if "\nmap = " in text else
                                ("field",) if "\nfields = " in text else
                                ("render",) if "\nsensor = " in text else

@@ -16,21 +16,29 @@ inline double deflected(double angle, double q) {
   return std::cos(angle) > 0 ? turned : pi - turned;
 }
 
-/// A slab of optical depth 0.3 to 30, any albedo above 0.5, of Henyey-Greenstein's function, points
-/// or cylinders, and pairs of channels: intensities, small and large tilts, seen in transmission
-/// and reflection, near exact backscattering and far from it.
+/// Of what random slabs are drawn.
+struct SlabRanges {
+  double thinnest = 0.3, thickest = 30;  ///< optical depths
+  double least_g = -0.5, largest_g = 0.95;
+};
+
+/// A slab of any albedo above 0.5, of Henyey-Greenstein's function, points or cylinders, and pairs
+/// of channels: intensities, small and large tilts, seen in transmission and reflection, near exact
+/// backscattering and far from it.
 class RandomSlab {
  public:
-  explicit RandomSlab(std::uint64_t seed) : random_(seed) {}
+  explicit RandomSlab(std::uint64_t seed, const SlabRanges& ranges = {})
+      : random_(seed), ranges_(ranges) {}
 
   Scene scene() {
     SceneSpec spec;
     spec.domain = "slab";
     spec.depth = std::exp(uniform(std::log(100.0), std::log(2000.0)));
-    const double optical_depth = std::exp(uniform(std::log(0.3), std::log(30.0)));
+    const double optical_depth =
+        std::exp(uniform(std::log(ranges_.thinnest), std::log(ranges_.thickest)));
     if (uniform(0, 1) < 0.7) {
       spec.scatterer = "hg";
-      spec.g = uniform(-0.5, 0.95);
+      spec.g = uniform(ranges_.least_g, ranges_.largest_g);
       spec.albedo = uniform(0, 1) < 0.3 ? 1 : uniform(0.5, 1);
       spec.mean_free_path = *spec.depth / optical_depth;
     } else {
@@ -67,6 +75,7 @@ class RandomSlab {
   }
 
   std::mt19937_64 random_;
+  SlabRanges ranges_;
 };
 
 }  // namespace flatspeckle::mc::tests

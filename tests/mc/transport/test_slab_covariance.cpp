@@ -224,13 +224,38 @@ TEST_CASE("tilts and delays of a thick slab together, as diffusion theory has th
   }
 }
 
+namespace {
+
+/// Values, then derivatives, are those of the scenes `at` steps away, by differences of sixth
+/// order. scale: over which the values change.
+template <typename At>
+void check_slopes(BulkParameter parameter, double scale, bool reversed, const At& at) {
+  CAPTURE(static_cast<int>(parameter));
+  const Refinement refinement{1e-9, 8};
+  const auto found = slab_slopes(at(0), reversed, refinement, parameter).value;
+  const double step = 0.02 * scale;
+  std::vector<std::vector<Complex>> values;
+  for (const double steps : {-3, -2, -1, 1, 2, 3})
+    values.push_back(slab_covariance(at(steps * step), reversed, refinement).value);
+  const std::size_t entries = found.size() / 2;
+  for (std::size_t e = 0; e < entries; ++e) {
+    CAPTURE(e);
+    const Complex expected = (values[5][e] - values[0][e] - 9.0 * (values[4][e] - values[1][e]) +
+                              45.0 * (values[3][e] - values[2][e])) /
+                             (60 * step);
+    CHECK(std::abs(found[entries + e] - expected) <
+          1e-7 * std::max(std::abs(expected), std::abs(found[e]) / scale));
+  }
+}
+
+}  // namespace
+
 TEST_CASE("derivatives of the doubling are finite differences of converged solutions") {
   struct Case {
     double optical_depth, g, albedo, view;
     bool reversed;
   };
   constexpr double depth = 200;
-  const Refinement refinement{1e-9, 8};
   for (const Case& slab : {Case{3, 0, 1, 0.1, false}, Case{2, 0.6, 0.9, pi + 0.201, true}}) {
     CAPTURE(slab.g);
     const auto request = memory_effect_request(wavenumber, 0.2, {slab.view}, {0, 0.5 / depth});
@@ -238,31 +263,37 @@ TEST_CASE("derivatives of the doubling are finite differences of converged solut
       return hg_slab(depth, {1 / mu_t, g, albedo}, request);
     };
     const double mu_t = slab.optical_depth / depth;
-    const auto check = [&](BulkParameter parameter, double scale, const auto& at) {
-      CAPTURE(static_cast<int>(parameter));
-      const auto found = slab_slopes(at(0), slab.reversed, refinement, parameter).value;
-      const double step = 0.02 * scale;
-      std::vector<std::vector<Complex>> values;
-      for (const double steps : {-3, -2, -1, 1, 2, 3})
-        values.push_back(slab_covariance(at(steps * step), slab.reversed, refinement).value);
-      const std::size_t entries = request.entries.size();
-      for (std::size_t e = 0; e < entries; ++e) {
-        CAPTURE(e);
-        const Complex expected =
-            (values[5][e] - values[0][e] - 9.0 * (values[4][e] - values[1][e]) +
-             45.0 * (values[3][e] - values[2][e])) /
-            (60 * step);
-        CHECK(std::abs(found[entries + e] - expected) <
-              1e-7 * std::max(std::abs(expected), std::abs(found[e]) / scale));
-      }
-    };
-    check(BulkParameter::mu_t, mu_t,
-          [&](double step) { return scene(mu_t + step, slab.g, slab.albedo); });
-    check(BulkParameter::g, 1 - std::abs(slab.g),
-          [&](double step) { return scene(mu_t, slab.g + step, slab.albedo); });
+    check_slopes(BulkParameter::mu_t, mu_t, slab.reversed,
+                 [&](double step) { return scene(mu_t + step, slab.g, slab.albedo); });
+    check_slopes(BulkParameter::g, 1 - std::abs(slab.g), slab.reversed,
+                 [&](double step) { return scene(mu_t, slab.g + step, slab.albedo); });
     if (slab.albedo < 1)
-      check(BulkParameter::albedo, slab.albedo,
-            [&](double step) { return scene(mu_t, slab.g, slab.albedo + step); });
+      check_slopes(BulkParameter::albedo, slab.albedo, slab.reversed,
+                   [&](double step) { return scene(mu_t, slab.g, slab.albedo + step); });
+  }
+}
+
+TEST_CASE("derivatives by the radius and the index of cylinders") {
+  constexpr double depth = 200, radius = 0.2, index = 1.4;
+  for (const char* kind : {"te", "soft"}) {
+    CAPTURE(kind);
+    const auto request = memory_effect_request(wavenumber, 0.2, {0.1}, {0, 0.5 / depth});
+    const auto scene = [&](double wider, double denser) {
+      SceneSpec spec;
+      spec.domain = "slab";
+      spec.depth = depth;
+      spec.scatterer = kind;
+      spec.radius = radius + wider;
+      spec.density = 0.05;
+      if (spec.scatterer == "te") spec.index = std::to_string(index + denser) + "+0.01i";
+      Scene made = make_scene(spec);
+      made.request = request;
+      return made;
+    };
+    check_slopes(BulkParameter::radius, radius / 4, false,
+                 [&](double step) { return scene(step, 0); });
+    if (scene(0, 0).scatterer.is_penetrable())
+      check_slopes(BulkParameter::index, 0.1, false, [&](double step) { return scene(0, step); });
   }
 }
 

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <vector>
+
+#include "mc/estimators/bulk_parameter.h"
+#include "mc/transport/dual.h"
+#include "mc/transport/scattering_law.h"
+
+namespace flatspeckle::mc {
+
+/// A scattering law with its derivative by the logarithm of what its scatterers are, or by g.
+class ScatteringSlope {
+ public:
+  /// A law next to it, and its weight in a difference.
+  struct Neighbour {
+    double weight;
+    ScatteringLaw law;
+  };
+
+  /// Does not know of the parameter.
+  explicit ScatteringSlope(const ScatteringLaw& law);
+  /// Of Henyey-Greenstein's function by g.
+  static ScatteringSlope by_g(const ScatteringLaw& law);
+  ScatteringSlope(const ScatteringLaw& law, std::vector<Neighbour> neighbours);
+
+  Dual<Complex> pair(double a, double b, double theta) const;
+  const Dual<std::vector<double>>& modes() const { return modes_; }
+
+ private:
+  const ScatteringLaw& law_;
+  bool by_g_ = false;
+  std::vector<Neighbour> neighbours_;
+  Dual<std::vector<double>> modes_;
+};
+
+/// What a change of one parameter does to a slab's medium. Derivatives are by parameter/unit: those
+/// by a logarithm are as large as the values.
+struct BulkSlope {
+  double unit = 1, log_mu_t = 0, albedo = 0;
+  ScatteringSlope law;
+};
+
+/// law: the scene's, and outlives the slope. Radius and index: by differences of fourth order of
+/// the T-matrix, to 1e-10 or so.
+BulkSlope bulk_slope(const Scene& scene, const ScatteringLaw& law, BulkParameter parameter);
+
+/// By what transport differentiates: bulk_parameters(), and of cylinders at independent positions
+/// the radius and, where light enters them, the index.
+std::vector<BulkParameter> slab_parameters(const Scene& scene);
+
+template <typename Number>
+struct LawNumbers {
+  using Law = ScatteringLaw;
+};
+template <>
+struct LawNumbers<Dual<double>> {
+  using Law = ScatteringSlope;
+};
+/// A scattering law of calculations with a Number.
+template <typename Number>
+using LawOf = typename LawNumbers<Number>::Law;
+
+}  // namespace flatspeckle::mc

@@ -1,0 +1,115 @@
+#!/usr/bin/env python3
+"""Map of the memory-effect range, q L at C_I = 1/2, over optical depth and g of a sweep, one panel
+per albedo, with lines where diffusion theory is wrong by 1, 5 and 20 %. Hatched: the curve stays
+above 1/2 within the tilts. Dashed: thickness in transport mean free paths."""
+
+from lib import page, style, sweep_file
+
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.colors import LogNorm
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
+AXES = ("g", "optical_depth")
+LEAST_VALUES = 5  # along each axis, for lines between them
+WRONG_BY = {0.01: (0, (1, 1)), 0.05: "-", 0.2: (0, (5, 1.5))}  # line styles
+THICKNESSES = (1, 10)  # transport mean free paths
+MAP = plt.get_cmap("cividis")
+
+
+def check(sweep):
+    """Refuses what is no map."""
+    if sweep.optional("diffusion_range") is None:
+        raise style.Unusable(f"{sweep.path}: has no diffusion_range, which slabs alone have")
+    for name in AXES:
+        if sweep.is_list or len(sweep.values(name)) < LEAST_VALUES:
+            raise style.Unusable(f"{sweep.path}: the map needs a grid with at least {LEAST_VALUES} "
+                                 "values of g and of optical_depth")
+    others = [name for name in sweep.varying() if name not in (*AXES, "albedo")]
+    if others:
+        raise style.Unusable(f"{sweep.path}: besides g, optical_depth and albedo it varies "
+                             f"{others[0]}; try --select {sweep.example(others[0], 1)}")
+    cells = np.prod([len(sweep.values(name)) for name in (*AXES, "albedo")])
+    if len(sweep.rows) < cells:
+        raise style.Unusable(f"{sweep.path}: {cells - len(sweep.rows)} of {cells} points are not "
+                             "finished")
+    if len(sweep.values("albedo")) > 4:
+        raise style.Unusable(f"{sweep.path}: more than 4 albedos do not fit a page; "
+                             f"try --select {sweep.example('albedo', 3)}")
+
+
+def table(sweep, rows, values):
+    """Values of a panel's points as [g, optical depth]."""
+    order = np.lexsort((sweep.columns["optical_depth"][rows], sweep.columns["g"][rows]))
+    return values[rows[order]].reshape([len(sweep.values(name)) for name in AXES])
+
+
+def wrong_by(diffusion, ranges):
+    """Relative error of diffusion theory, the larger ratio: no less far off where too short."""
+    return np.maximum(diffusion / ranges, ranges / diffusion) - 1
+
+
+def thickness_of(optical_depth, g, albedo):
+    """In transport mean free paths 1/(mu_t - g mu_s)."""
+    return optical_depth * (1 - g * albedo)
+
+
+def draw_panel(axis, sweep, rows, method, norm):
+    depths, cosines = (sweep.values(name) for name in reversed(AXES))
+    ranges, bounds, diffusion = (
+        table(sweep, rows, values) for values in (sweep.of(method, "memory_effect_range"),
+                                                  sweep.of(method, "range_censored") > 0,
+                                                  sweep.optional("diffusion_range")))
+    image = axis.pcolormesh(depths, cosines, ranges, norm=norm, cmap=MAP, shading="gouraud",
+                            rasterized=True)
+    if bounds.any():
+        axis.contourf(depths, cosines, bounds.astype(float), [0.5, 1], colors="none",
+                      hatches=["////"])
+    known = np.ma.array(np.log(wrong_by(diffusion, ranges)), mask=bounds)
+    for level, line in WRONG_BY.items():
+        for colour, width, style_of_line in (("white", 1.8, "-"), ("black", 0.9, line)):
+            axis.contour(depths, cosines, known, [np.log(level)], colors=colour, linewidths=width,
+                         linestyles=[style_of_line])
+    grid = thickness_of(depths[None, :], cosines[:, None], sweep.columns["albedo"][rows[0]])
+    axis.contour(depths, cosines, grid, THICKNESSES, colors=style.COLOURS[1], linewidths=0.7,
+                 linestyles="--")
+    axis.set_xscale("log")
+    axis.set_xlabel("optical depth")
+    axis.set_ylabel("mean cosine $g$")
+    return image
+
+
+def entries():
+    """Legend entries (handle, label)."""
+    for level, line in WRONG_BY.items():
+        yield (plt.Line2D([], [], color="black", linewidth=0.9, linestyle=line),
+               f"diffusion theory wrong by {100 * level:.0f} %")
+    yield (plt.Line2D([], [], color=style.COLOURS[1], linewidth=0.7, linestyle="--"),
+           f"{' and '.join(map(str, THICKNESSES))} transport mean free paths")
+    yield (plt.Rectangle((0, 0), 1, 1, fill=False, hatch="////", edgecolor="0.4"),
+           "bound: no crossing of 1/2")
+
+
+def draw(results, arguments):
+    sweep = sweep_file.read(results, arguments)
+    check(sweep)
+    method = next(iter(sweep.prefixes))
+    parts = sweep.groups("albedo" if "albedo" in sweep.columns else None, sweep.rows)
+    figure, axes = page.page_of_panels(1, len(parts), len(parts))
+    ranges = sweep.of(method, "memory_effect_range")[sweep.rows]
+    norm = LogNorm(ranges.min(), ranges.max())
+    for axis, (albedo, rows) in zip(axes.flat, parts):
+        image = draw_panel(axis, sweep, rows, method, norm)
+        axis.set_title(sweep_file.text("albedo", albedo), fontsize=7.5, pad=3)
+    page.outer_labels(axes, len(parts))
+    bar = figure.colorbar(image, ax=list(axes.flat), aspect=25, pad=0.015, fraction=0.05)
+    bar.ax.yaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+    bar.ax.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    bar.ax.yaxis.set_minor_formatter(NullFormatter())
+    bar.set_label(r"range $qL$ at $C_I = 1/2$")
+    page.legend_outside(figure, list(entries()), sweep.unfinished())
+    return figure
+
+
+if __name__ == "__main__":
+    style.main(draw, __doc__, add_options=sweep_file.add_select)

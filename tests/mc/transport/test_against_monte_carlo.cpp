@@ -1,0 +1,74 @@
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <boost/math/distributions/normal.hpp>
+
+#include "tests/mc/transport/slabs.h"
+
+namespace flatspeckle::mc {
+
+namespace {
+
+constexpr double precise = 1e-3;
+constexpr std::uint64_t first_paths = 40000, most_paths = 20'000'000;
+
+/// Largest error relative to the sizes of the entries, the roots of their two intensities.
+double largest(const Estimate& found, const std::vector<double>& size) {
+  double worst = 0;
+  for (std::size_t e = 0; e < size.size(); ++e) worst = std::max(worst, found.error[e] / size[e]);
+  return worst;
+}
+
+/// Run until every error is precise, or for the most paths.
+Estimate precise_estimate(const Scene& scene, std::uint64_t seed, const std::vector<double>& size) {
+  const double first =
+      largest(tests::run(scene, ReversedPaths::yes, first_paths, seed).entries(), size);
+  const double paths = first_paths * std::pow(first / precise, 2);
+  return tests::run(scene, ReversedPaths::yes,
+                    static_cast<std::uint64_t>(std::min<double>(paths, most_paths)), seed + 1000)
+      .entries();
+}
+
+/// Distance of Kolmogorov and Smirnov from the standard normal distribution, with Stephens' (1970)
+/// factor for few samples.
+double distance_from_normal(std::vector<double> z) {
+  std::ranges::sort(z);
+  const boost::math::normal normal;
+  const auto count = static_cast<double>(z.size());
+  double distance = 0;
+  for (std::size_t i = 0; i < z.size(); ++i) {
+    const double below = boost::math::cdf(normal, z[i]), rank = static_cast<double>(i);
+    distance = std::max({distance, below - rank / count, (rank + 1) / count - below});
+  }
+  return distance * (std::sqrt(count) + 0.12 + 0.11 / std::sqrt(count));
+}
+
+}  // namespace
+
+TEST_CASE("Monte Carlo on sixty random slabs: errors of 0.1 % are normal about transport") {
+  constexpr double one_percent = 1.628;  // of Kolmogorov's distribution
+  std::vector<double> z;
+  int imprecise = 0;
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    CAPTURE(seed);
+    const Scene scene = tests::RandomSlab(seed, {1e-3, 1e3, -0.9, 0.99}).scene();
+    const auto expected = slab_covariance(scene, true, {1e-5}).value;
+    const auto size = scales(scene.request.entries, expected);
+    const Estimate found = precise_estimate(scene, seed, size);
+    if (largest(found, size) > 1.2 * precise) ++imprecise;
+    std::vector<std::size_t> intensities;
+    for (std::size_t e = 0; e < expected.size(); ++e) {
+      CAPTURE(e);
+      CHECK_WITHIN_4_SIGMA(found.value[e], found.error[e], expected[e], 0);
+      if (scene.request.entries[e].a == scene.request.entries[e].b) intensities.push_back(e);
+    }
+    const std::size_t e = intensities[seed % intensities.size()];
+    z.push_back((found.value[e] - expected[e]).real() / found.error[e]);
+  }
+  MESSAGE(imprecise, " slabs short of 0.1 %; Kolmogorov-Smirnov ", distance_from_normal(z));
+  CHECK(imprecise <= 6);
+  CHECK(distance_from_normal(z) < one_percent);
+}
+
+}  // namespace flatspeckle::mc
