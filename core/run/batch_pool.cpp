@@ -15,7 +15,7 @@ BatchPool::BatchPool(const RunList& runs, const PoolOptions& options, int worker
       options_(options),
       lookahead_(16 * static_cast<std::uint64_t>(workers)),
       other_ranks_(options.server == nullptr ? 0 : static_cast<std::size_t>(ranks().size - 1)),
-      progress_(options.label) {}
+      progress_(options.label, options.unit) {}
 
 void BatchPool::look_for_end() {
   if (stopped_) return;

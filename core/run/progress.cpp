@@ -41,14 +41,17 @@ bool Progress::due(double wall_s) const {
 void Progress::show(const Figures& figures) const {
   std::fprintf(stderr, "%s%s: ", terminal_ ? "\r\033[K" : "", label_.c_str());
   if (!figures.done.empty()) std::fprintf(stderr, "%s, ", figures.done.c_str());
-  std::fprintf(stderr, "%.0f %s", figures.samples, unit_.c_str());
+  if (unit_.empty())
+    std::fputs("solution", stderr);
+  else
+    std::fprintf(stderr, "%.0f %s", figures.samples, unit_.c_str());
 }
 
 void Progress::update(double wall_s, const Figures& figures) {
   if (!due(wall_s)) return;
   next_ = wall_s + (terminal_ ? 0.2 : std::clamp(0.02 * wall_s, 10.0, 600.0));
   show(figures);
-  if (figures.samples > 0)
+  if (figures.samples > 0 && !unit_.empty())
     std::fprintf(stderr, ", %.*f/s", figures.rate < 10 ? 2 : 0, figures.rate);
   else
     std::fprintf(stderr, " in %s", duration(wall_s).c_str());

@@ -9,7 +9,7 @@ namespace flatspeckle {
 /// a line every ten seconds at first, then ever more rarely. Silent without a label.
 class Progress {
  public:
-  /// unit: what the samples are called.
+  /// unit: what the samples are called; empty where there is nothing to count.
   explicit Progress(std::string label, std::string unit = "samples");
 
   struct Figures {

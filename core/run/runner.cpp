@@ -89,6 +89,7 @@ StopReason run_batches(const BatchJob& job, const RunOptions& options, RunState&
   if (options.checkpoint) one.checkpoint = [&](std::size_t) { options.checkpoint(state); };
   PoolOptions pool{seconds, options.threads, options.label, ""};
   if (seconds) *pool.seconds -= state.wall_s;
+  if (job.one_by_one) pool.unit.clear();
   const double cpu_before = state.cpu_s;
   const PoolEnd end = run_pool(one, pool);
   state.cpu_s = cpu_before + end.cpu_s;

@@ -20,7 +20,8 @@ struct BatchJob {
   std::function<void(std::uint64_t number, std::span<Complex> sums)> run;
   /// Relative error of what has been merged so far; steers the target and fills the trace.
   std::function<double(const GroupedSums&)> relative_error;
-  /// Batches share their work: a thread that took the second would wait for the first.
+  /// Batches share their work, a solution without chance: a thread that took the second would wait
+  /// for the first, and their number says nothing.
   bool one_by_one = false;
 };
 
@@ -98,6 +99,7 @@ struct PoolOptions {
   std::string label, run_name = "runs";  ///< for the progress; silent without a label
   RankServer* server = nullptr;          ///< to other ranks, where they work too
   double seconds_between_saves = 60;     ///< of each run, by its checkpoint()
+  std::string unit = "samples";          ///< for the progress; empty: they are not worth counting
 };
 
 /// reason: samples where all runs have ended, else why they have not.
