@@ -4,6 +4,8 @@
 #include <cmath>
 #include <memory>
 
+#include <Eigen/Core>
+
 #include "core/numbers/blas.h"
 
 namespace flatspeckle::mc {
@@ -79,13 +81,12 @@ CovarianceFactor::CovarianceFactor(std::size_t channels, std::span<const Complex
   }
 }
 
+/// By Eigen: zgemv of OpenBLAS 0.3.21 reads beyond the end of a matrix (its issue 4013).
 void CovarianceFactor::apply(std::span<const Complex> noise, std::span<Complex> out) const {
-  std::fill(out.begin(), out.end(), 0);
-  if (rank_ == 0) return;
-  const Complex one = 1, none = 0;
-  const auto n = static_cast<blasint>(channels());
-  cblas_zgemv(CblasColMajor, CblasNoTrans, n, static_cast<blasint>(rank_), &one, factor_.data(), n,
-              noise.data(), 1, &none, out.data(), 1);
+  const auto size = [](std::size_t count) { return static_cast<Eigen::Index>(count); };
+  const Eigen::Map<const Eigen::MatrixXcd> factor(factor_.data(), size(channels()), size(rank_));
+  const Eigen::Map<const Eigen::VectorXcd> drawn(noise.data(), size(rank_));
+  Eigen::Map<Eigen::VectorXcd>(out.data(), size(channels())).noalias() = factor * drawn;
 }
 
 FieldDraw fields_from_covariance(CovarianceFactor factor, std::uint64_t seed) {

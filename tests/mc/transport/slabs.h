@@ -36,7 +36,8 @@ class RandomSlab {
     spec.depth = std::exp(uniform(std::log(100.0), std::log(2000.0)));
     const double optical_depth =
         std::exp(uniform(std::log(ranges_.thinnest), std::log(ranges_.thickest)));
-    if (uniform(0, 1) < 0.7) {
+    constexpr double thickest_of_disks = 30;  // they would not fit
+    if (uniform(0, 1) < 0.7 || optical_depth > thickest_of_disks) {
       spec.scatterer = "hg";
       spec.g = uniform(ranges_.least_g, ranges_.largest_g);
       spec.albedo = uniform(0, 1) < 0.3 ? 1 : uniform(0.5, 1);

@@ -1,0 +1,76 @@
+#!/usr/bin/env python3
+"""Ratio of the memory-effect ranges of two sweeps over optical depth and g, in space over in the
+plane say: FIRST over SECOND against optical depth, a curve for each g. Points that are bounds in
+either are left out."""
+
+from lib import page, style, sweep_file
+
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
+METHOD_AXES = ("optical_depth", "g")
+MOST_CURVES = 8
+
+
+def name_of(sweep):
+    dimension = sweep.result.attribute("dimension", 2)
+    return f"{dimension}D"
+
+
+def ranges(sweep):
+    """{(optical depth, g): (range, error)} of a sweep's points that are no bounds."""
+    for name in METHOD_AXES:
+        if name not in sweep.columns:
+            raise style.Unusable(f"{sweep.path}: has no axis {name}")
+    others = [name for name in sweep.varying() if name not in METHOD_AXES]
+    if others:
+        raise style.Unusable(f"{sweep.path}: varies {others[0]} too; "
+                             f"try --select {sweep.example(others[0], 1)}")
+    method = next(iter(sweep.prefixes))
+    value, error, censored = (sweep.of(method, name) for name in (
+        "memory_effect_range", "memory_effect_range_error", "range_censored"))
+    keys = zip(*(np.round(sweep.columns[name], 9) for name in METHOD_AXES))
+    return {key: (value[row], error[row]) for row, key in enumerate(keys)
+            if row in sweep.rows and censored[row] == 0}
+
+
+def curves(first, second):
+    """[(g, optical depths, ratios, errors)] of the points that both have."""
+    common = sorted(set(first) & set(second))
+    for g in sorted({g for _, g in common}):
+        depths = np.array([depth for depth, of_g in common if of_g == g])
+        a, b = (np.array([points[depth, g] for depth in depths]).T for points in (first, second))
+        ratio = a[0] / b[0]
+        yield g, depths, ratio, ratio * np.hypot(a[1] / a[0], b[1] / b[0])
+
+
+def draw(results, arguments):
+    if len(results) != 2:
+        raise style.Unusable("takes two results, FIRST.h5 SECOND.h5")
+    sweeps = [sweep_file.read([result], arguments) for result in results]
+    drawn = list(curves(*map(ranges, sweeps)))
+    if not drawn:
+        raise style.Unusable(f"{sweeps[0].path} and {sweeps[1].path} have no point in common")
+    if len(drawn) > MOST_CURVES:
+        raise style.Unusable(f"{len(drawn)} values of g, at most {MOST_CURVES} are legible; "
+                             f"try --select {sweeps[0].example('g', MOST_CURVES)}")
+    figure, axis = plt.subplots(figsize=(style.COLUMN, 2.5))
+    axis.axhline(1, color=style.GREY, linewidth=0.5)
+    entries = []
+    for number, (g, depths, ratio, error) in enumerate(drawn):
+        look = style.look(number)
+        axis.errorbar(depths, ratio, yerr=error, **look)
+        entries.append((plt.Line2D([], [], **look), sweep_file.text("g", g)))
+    axis.set_xscale("log")
+    axis.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+    axis.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axis.xaxis.set_minor_formatter(NullFormatter())
+    axis.set_xlabel("optical depth")
+    axis.set_ylabel(f"range at $C_I = 1/2$: {' over '.join(map(name_of, sweeps))}")
+    page.legend_outside(figure, entries, sweeps[0].notes())
+    return figure
+
+
+if __name__ == "__main__":
+    style.main(draw, __doc__, several=True, add_options=sweep_file.add_select)
