@@ -4,8 +4,6 @@
 #include <cmath>
 #include <memory>
 
-#include <Eigen/Core>
-
 #include "core/numbers/blas.h"
 
 namespace flatspeckle::mc {
@@ -81,12 +79,13 @@ CovarianceFactor::CovarianceFactor(std::size_t channels, std::span<const Complex
   }
 }
 
-/// By Eigen: zgemv of OpenBLAS 0.3.21 reads beyond the end of a matrix (its issue 4013).
+/// Not by zgemv: that of OpenBLAS 0.3.21 reads beyond the end of a matrix (its issue 4013).
 void CovarianceFactor::apply(std::span<const Complex> noise, std::span<Complex> out) const {
-  const auto size = [](std::size_t count) { return static_cast<Eigen::Index>(count); };
-  const Eigen::Map<const Eigen::MatrixXcd> factor(factor_.data(), size(channels()), size(rank_));
-  const Eigen::Map<const Eigen::VectorXcd> drawn(noise.data(), size(rank_));
-  Eigen::Map<Eigen::VectorXcd>(out.data(), size(channels())).noalias() = factor * drawn;
+  std::fill(out.begin(), out.end(), 0);
+  for (std::size_t k = 0; k < rank_; ++k) {
+    const Complex* const column = factor_.data() + k * channels();
+    for (std::size_t c = 0; c < channels(); ++c) out[c] += product(column[c], noise[k]);
+  }
 }
 
 FieldDraw fields_from_covariance(CovarianceFactor factor, std::uint64_t seed) {
