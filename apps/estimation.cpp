@@ -117,7 +117,15 @@ Scene rounded_scene(const Keys& keys, const SceneSpec& spec) {
   return make_scene(rounded);
 }
 
+void require_far_ends(const Scene& scene) {
+  if (scene.domain.kind == Domain::Kind::slab && has_near_ends(scene.request))
+    throw InputError(
+        "method: beams, near sources and near sensors beside a slab are of transport "
+        "alone; or take a box");
+}
+
 Estimation mc_estimation(const Scene& scene, mc::ReversedPaths reversed, std::uint64_t seed) {
+  require_far_ends(scene);
   const auto plan = mc::make_plan(scene, reversed);
   const auto& structure = scene.medium.structure;
   return {mc::covariance_job(scene, plan, seed),
@@ -128,10 +136,11 @@ Estimation mc_estimation(const Scene& scene, mc::ReversedPaths reversed, std::ui
 Estimation transport_estimation(const Scene& scene, mc::ReversedPaths reversed, double tolerance) {
   const bool with_reversed = mc::make_plan(scene, reversed).reversed;
   std::ostringstream plan;
-  const bool space = scene.medium.dimension == 3;
+  const bool space = scene.medium.dimension == 3, near = has_near_ends(scene.request);
+  if (space && near) throw InputError("dimension", 3, "is of plane waves and far views");
   plan << "transport: pairs at one transverse frequency" << (space ? " in space" : "")
-       << ", by doubling; " << (with_reversed ? "reversed paths" : "no reversed paths")
-       << "; tolerance " << tolerance;
+       << ", by doubling; " << (near ? "near ends as plane waves; " : "")
+       << (with_reversed ? "reversed paths" : "no reversed paths") << "; tolerance " << tolerance;
   if (space)
     return {mc::space_covariance_job(mc::space_slab(scene), mc::space_request(scene.request),
                                      with_reversed, {tolerance}),

@@ -67,6 +67,9 @@ void note(const Neglected& neglected);
 /// The scene with the rounded number in place of its density, so that both solvers have the same.
 Scene rounded_scene(const Keys& keys, const SceneSpec& spec);
 
+/// Monte Carlo knows near ends in boxes alone. Throws InputError.
+void require_far_ends(const Scene& scene);
+
 Estimation mc_estimation(const Scene& scene, mc::ReversedPaths reversed, std::uint64_t seed);
 /// Of a slab, of the plane or in space.
 Estimation transport_estimation(const Scene& scene, mc::ReversedPaths reversed, double tolerance);

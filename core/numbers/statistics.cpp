@@ -86,6 +86,17 @@ Estimate part(const Estimate& all, std::size_t first, std::size_t count) {
           {all.error.begin() + from, all.error.begin() + to}};
 }
 
+namespace {
+
+/// For values whose squares are below all numbers: a power of two, so that they keep their digits.
+double lift(double size) {
+  constexpr double small = 1e-100;
+  constexpr int most = 1000;
+  return size > 0 && size < small ? std::ldexp(1.0, std::min(-std::ilogb(size), most)) : 1;
+}
+
+}  // namespace
+
 Estimate jackknife(const GroupedSums& sums, const Estimator& theta) {
   const double samples = sums.total_samples();
   const std::vector<Complex> total = sums.total();
@@ -99,7 +110,8 @@ Estimate jackknife(const GroupedSums& sums, const Estimator& theta) {
   // weigh 1/(h-1); sums of their deviations d from theta suffice.
   double sum_w = 0;
   std::vector<Complex> sum_d(size), sum_mean(size);
-  std::vector<double> sum_dd(size);
+  std::vector<double> sum_dd(size), lifted(size);
+  for (std::size_t i = 0; i < size; ++i) lifted[i] = lift(std::abs(estimate.value[i]));
   std::vector<Complex> without(total.size());
   for (std::size_t group = 0; group < groups; ++group) {
     const auto left_out = sums.group_sums(group);
@@ -108,7 +120,7 @@ Estimate jackknife(const GroupedSums& sums, const Estimator& theta) {
     const auto value = theta(samples - sums.group_samples(group), without);
     sum_w += 1 / h_minus_1;
     for (std::size_t i = 0; i < size; ++i) {
-      const Complex difference = estimate.value[i] - value[i];
+      const Complex difference = lifted[i] * (estimate.value[i] - value[i]);
       sum_d[i] += difference;
       sum_dd[i] += h_minus_1 * std::norm(difference);
       sum_mean[i] += h_minus_1 / (h_minus_1 + 1) * difference;
@@ -119,15 +131,17 @@ Estimate jackknife(const GroupedSums& sums, const Estimator& theta) {
     const Complex mean = sum_mean[i];  // jackknife estimate minus theta
     const double spread =
         sum_dd[i] - 2 * (std::conj(mean) * sum_d[i]).real() + sum_w * std::norm(mean);
-    estimate.error[i] = std::sqrt(std::max(0.0, spread) / static_cast<double>(groups));
+    estimate.error[i] = std::sqrt(std::max(0.0, spread) / static_cast<double>(groups)) / lifted[i];
   }
   return estimate;
 }
 
 double relative_error(const Estimate& estimate) {
-  double error2 = 0, value2 = 0;
-  for (double error : estimate.error) error2 += error * error;
-  for (Complex value : estimate.value) value2 += std::norm(value);
+  double error2 = 0, value2 = 0, largest = 0;
+  for (Complex value : estimate.value) largest = std::max(largest, std::abs(value));
+  const double lifted = lift(largest);
+  for (double error : estimate.error) error2 += lifted * error * (lifted * error);
+  for (Complex value : estimate.value) value2 += std::norm(lifted * value);
   return error2 == 0 ? 0 : std::sqrt(error2 / value2);
 }
 

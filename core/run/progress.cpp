@@ -42,7 +42,7 @@ void Progress::show(const Figures& figures) const {
   std::fprintf(stderr, "%s%s: ", terminal_ ? "\r\033[K" : "", label_.c_str());
   if (!figures.done.empty()) std::fprintf(stderr, "%s, ", figures.done.c_str());
   if (unit_.empty())
-    std::fputs("solution", stderr);
+    std::fputs("solved", stderr);
   else
     std::fprintf(stderr, "%.0f %s", figures.samples, unit_.c_str());
 }
@@ -50,8 +50,13 @@ void Progress::show(const Figures& figures) const {
 void Progress::update(double wall_s, const Figures& figures) {
   if (!due(wall_s)) return;
   next_ = wall_s + (terminal_ ? 0.2 : std::clamp(0.02 * wall_s, 10.0, 600.0));
+  if (unit_.empty()) {
+    std::fprintf(stderr, "%s%s: solving for %s%s", terminal_ ? "\r\033[K" : "", label_.c_str(),
+                 duration(wall_s).c_str(), terminal_ ? "" : "\n");
+    return;
+  }
   show(figures);
-  if (figures.samples > 0 && !unit_.empty())
+  if (figures.samples > 0)
     std::fprintf(stderr, ", %.*f/s", figures.rate < 10 ? 2 : 0, figures.rate);
   else
     std::fprintf(stderr, " in %s", duration(wall_s).c_str());

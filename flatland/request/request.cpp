@@ -154,6 +154,10 @@ std::vector<double> CovarianceRequest::reference_angles() const {
   return angles;
 }
 
+bool has_near_ends(const CovarianceRequest& request) {
+  return !request.lights.all(Light::Kind::plane) || std::ranges::any_of(request.views, &View::near);
+}
+
 CovarianceRequest intensity_request(Lights lights, std::vector<View> views) {
   auto request = every_channel(std::move(lights), std::move(views));
   request.kind = CovarianceRequest::Kind::intensity;

@@ -60,6 +60,9 @@ struct CovarianceRequest {
 inline const std::vector<std::string> request_words = {"intensity",  "pairs",       "memory_effect",
                                                        "tilt_shift", "translation", "full"};
 
+/// Whether it has beams, near sources or near sensors.
+bool has_near_ends(const CovarianceRequest& request);
+
 CovarianceRequest intensity_request(Lights lights, std::vector<View> views);
 CovarianceRequest full_request(Lights lights, std::vector<View> views);
 /// pairs: angles (light 1, view 1, light 2, view 2) of each.

@@ -71,9 +71,10 @@ Scene make_scene(const Keys& keys, const SceneSpec& spec);
 Scene make_scene(const SceneSpec& spec);
 CovarianceRequest make_request(const SceneSpec& spec);
 
-/// The infinite slab has far fields only, lights from below the horizon, and (C18) only entries
-/// whose transverse momenta match. Throws InputError.
-void check_slab_request(const CovarianceRequest& request);
+/// The infinite slab has lights from below the horizon, and (C18) of plane waves and far views only
+/// entries whose transverse momenta match; near ends, which transport alone takes, on one side of
+/// the light's way. Throws InputError.
+void check_slab_request(const CovarianceRequest& request, double depth);
 
 /// What a scene took from other files, exactly: near sensors and sources, and the structure factor.
 std::string inputs_text(const Scene& scene);

@@ -142,14 +142,33 @@ CovarianceRequest make_request(const Keys& keys, const SceneSpec& spec) {
   return intensity_request(requested_lights(keys, spec), requested_views(keys, spec));
 }
 
-void check_slab_request(const CovarianceRequest& request) {
-  if (!request.lights.all(Light::Kind::plane))
-    throw InputError("near_sources, beam_waist: a slab has plane waves only; take a box");
+namespace {
+
+/// Near ends stand outside of the slab, on one side of the light's way alone: directions of the
+/// other fix what correlates.
+void check_near_ends(const CovarianceRequest& request, double depth) {
+  const bool near_lights = !request.lights.all(Light::Kind::plane);
   for (const Light& light : request.lights)
-    if (std::cos(light.angle) <= 0)
+    if (light.kind == Light::Kind::point && light.point.z >= 0)
+      throw InputError("near_sources", light.point.z, "light enters a slab at z = 0: z < 0");
+  for (const View& view : request.views) {
+    if (!view.near) continue;
+    if (near_lights)
+      throw InputError(
+          "near_sensors: of a slab lit by a beam or a near source take far views; or "
+          "take a box");
+    if (view.point.z >= 0 && view.point.z <= depth)
+      throw InputError("near_sensors", view.point.z, "stand outside of the slab: z < 0 or > depth");
+  }
+}
+
+}  // namespace
+
+void check_slab_request(const CovarianceRequest& request, double depth) {
+  for (const Light& light : request.lights)
+    if (light.kind != Light::Kind::point && std::cos(light.angle) <= 0)
       throw InputError("light_angles", light.angle, "light enters a slab at z = 0: |angle| < pi/2");
-  for (const auto& view : request.views)
-    if (view.near) throw InputError("near_sensors: a slab has far views only");
+  if (has_near_ends(request)) return check_near_ends(request, depth);
   if (request.kind == CovarianceRequest::Kind::tilt_shift)
     throw InputError("covariance", "tilt_shift",
                      "on an infinite slab only matched views correlate: use memory_effect, or a "

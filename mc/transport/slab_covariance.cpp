@@ -10,6 +10,7 @@
 #include "core/run/interrupt.h"
 #include "core/run/parallel.h"
 #include "mc/transport/chains.h"
+#include "mc/transport/finite_ends.h"
 #include "mc/transport/range_refinement.h"
 #include "mc/transport/scattering_matrices.h"
 
@@ -215,6 +216,10 @@ Refined slab_covariance(const Scene& slab, bool reversed, const Refinement& refi
   const std::size_t entries = slab.request.entries.size();
   if (slab.medium.mu_s == 0)
     return {std::vector<Complex>(entries), std::vector<Complex>(entries), 0};
+  if (has_near_ends(slab.request))
+    return finite_ends_covariance(slab, refinement, [&](const Scene& of_plane_waves) {
+      return slab_covariance(of_plane_waves, reversed, refinement, change);
+    });
   blas_single_thread();
   const ScatteringLaw law(slab, change.delay);
   const double albedo = slab.medium.albedo;

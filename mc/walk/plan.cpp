@@ -13,8 +13,10 @@ namespace {
 
 /// More than a right angle away from exact backscattering the reversed paths only add terms that
 /// oscillate away, of the order of the 1/(k mean free path) that the method neglects anyway.
-bool can_see_backscattering(const CovarianceRequest& request) {
+bool can_see_backscattering(const CovarianceRequest& request, const Domain& domain) {
   return std::any_of(request.views.begin(), request.views.end(), [&](const View& view) {
+    if (domain.kind == Domain::Kind::slab && has_near_ends(request))
+      return view.near ? view.point.z < 0 : std::cos(view.angle) < 0;
     if (view.near) return true;
     return std::any_of(request.lights.begin(), request.lights.end(), [&](const Light& light) {
       return light.kind == Light::Kind::point ||
@@ -71,11 +73,9 @@ Plan make_plan(const Scene& scene, ReversedPaths reversed) {
   Plan plan;
   plan.domain = scene.domain.kind;
   plan.phase = phase_of(scene.scatterer);
-  plan.reversed = reversed == ReversedPaths::yes ||
-                  (reversed == ReversedPaths::automatic && can_see_backscattering(request));
-  plan.near = !request.lights.all(Light::Kind::plane) ||
-              std::any_of(request.views.begin(), request.views.end(),
-                          [](const View& view) { return view.near; });
+  plan.reversed = reversed == ReversedPaths::yes || (reversed == ReversedPaths::automatic &&
+                                                     can_see_backscattering(request, scene.domain));
+  plan.near = has_near_ends(request);
   plan.rank_k = request.kind == CovarianceRequest::Kind::full;
   plan.score_level = score_level(scene.medium.g);
   plan.phases = plan.reversed || request.kind != CovarianceRequest::Kind::intensity;

@@ -26,6 +26,21 @@ TEST_CASE("the jackknife of a mean is the standard error of the mean") {
   CHECK(estimate.error[0] == doctest::Approx(std::sqrt(variance / 100)).epsilon(1e-10));
 }
 
+TEST_CASE("values whose squares are below all numbers have errors too") {
+  for (const double tiny : {1e-120, 1e-240, 1e-290}) {
+    GroupedSums sums(1), small(1);
+    RandomStream random(1, 1, 0);
+    for (int i = 0; i < 100; ++i) {
+      const Complex value(random.uniform(), random.uniform()), less = tiny * value;
+      sums.add(1, {&value, 1});
+      small.add(1, {&less, 1});
+    }
+    const Estimate expected = jackknife(sums, sample_mean), found = jackknife(small, sample_mean);
+    CHECK(found.error[0] / tiny == doctest::Approx(expected.error[0]).epsilon(1e-10));
+    CHECK(relative_error(found) == doctest::Approx(relative_error(expected)).epsilon(1e-10));
+  }
+}
+
 TEST_CASE("with more batches than groups, and groups of unequal size, errors stay right") {
   // 300 batches in 256 groups: 44 groups hold two batches. The spread of many such estimates is
   // known: a uniform has variance 1/12.

@@ -91,10 +91,10 @@ TEST_CASE("Monte Carlo on sixty random slabs: errors of 0.1 % are normal about t
   deviations.check_normal();
 }
 
-TEST_CASE("Monte Carlo on slabs from optical depth 1e-3 to 1e3 is within its errors of transport") {
+TEST_CASE("Monte Carlo on slabs from optical depth 1e-3 to 100 is within its errors of transport") {
   Deviations deviations;
   for (std::uint64_t seed = 1; seed <= 60; ++seed) {
-    const Scene scene = tests::RandomSlab(seed, {1e-3, 1e3, -0.9, 0.99}).scene();
+    const Scene scene = tests::RandomSlab(seed, {1e-3, 100, -0.9, 0.99}).scene();
     // in thin slabs rare paths along the slab carry the error
     const double optical_depth = scene.medium.mu_t * scene.domain.depth,
                  paths = 20000 + 400000 / (1 + optical_depth);

@@ -1,0 +1,77 @@
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "tests/mc/transport/slabs.h"
+
+namespace flatspeckle::mc {
+
+namespace {
+
+using std::numbers::pi;
+using tests::hg_box, tests::hg_slab, tests::wavenumber;
+
+/// The same medium as a slab, and as a box so wide that no light reaches its sides.
+void check_against_box(double width, double depth, const tests::HgBulk& bulk,
+                       const CovarianceRequest& request, ReversedPaths reversed,
+                       std::uint64_t paths, double precise) {
+  const bool with_reversed = reversed == ReversedPaths::yes;
+  const auto expected = slab_covariance(hg_slab(depth, bulk, request), with_reversed, {1e-4}).value;
+  const auto found = tests::run(hg_box(width, depth, bulk, request), reversed, paths, 1).entries();
+  for (std::size_t e = 0; e < expected.size(); ++e) {
+    CAPTURE(e);
+    CHECK_WITHIN_4_SIGMA(found.value[e], found.error[e], expected[e], 0);
+    if (request.entries[e].a == request.entries[e].b)
+      CHECK(found.error[e] < precise * std::abs(expected[e]));
+  }
+}
+
+}  // namespace
+
+TEST_CASE("a wide beam beside a slab is a plane wave of its width") {
+  constexpr double depth = 20, waist = 3000;
+  const tests::HgBulk bulk{10, 0.3, 0.9};
+  const std::vector<double> views = {0.3, pi - 0.5};
+  const Light beam = gaussian_beam(0.2, {5, -3}, waist);
+  const auto found = slab_covariance(
+      hg_slab(depth, bulk, intensity_request({{beam}}, far_views(views))), false, {});
+  const auto plane =
+      slab_covariance(hg_slab(depth, bulk, intensity_request({0.2}, far_views(views))), false, {});
+  // int |u|^2 dx over the slab's face, which the axis meets at an angle
+  const double width = waist * std::sqrt(pi / 2) / std::cos(0.2);
+  for (std::size_t v = 0; v < views.size(); ++v)
+    CHECK(std::abs(found.value[v] / (width * plane.value[v]) - 1.0) < 1e-5);
+}
+
+TEST_CASE("beams beside a slab as in a wide box by Monte Carlo") {
+  constexpr double depth = 20;
+  const Light beam = gaussian_beam(0.2, {0, -30}, 8), moved = gaussian_beam(0.2, {4, -30}, 8);
+  check_against_box(1500, depth, {10, 0.3, 0.9},
+                    full_request({{beam, moved}}, far_views({0.1, 0.13, pi - 0.3})),
+                    ReversedPaths::no, 400000, 0.02);
+}
+
+TEST_CASE("backscattering of a beam from a slab as from a wide box by Monte Carlo") {
+  const Light beam = gaussian_beam(0.2, {0, 0}, 20);
+  check_against_box(1000, 20, {10, 0.3, 0.9},
+                    intensity_request({{beam}}, far_views({pi + 0.2, pi + 0.205})),
+                    ReversedPaths::yes, 400000, 0.02);
+}
+
+TEST_CASE("near sources beside a slab as in a wide box by Monte Carlo") {
+  constexpr double depth = 20;
+  const Light source = point_source({0, -3}), moved = point_source({0.5, -3});
+  check_against_box(3000, depth, {10, 0.3, 0.9},
+                    full_request({{source, moved}}, far_views({0.1, pi - 0.3})), ReversedPaths::no,
+                    400000, 0.03);
+}
+
+TEST_CASE("near sensors beside a slab as in a wide box by Monte Carlo") {
+  constexpr double depth = 20;
+  const std::vector<View> sensors = {near_sensor({0, depth + 3}), near_sensor({0.2, depth + 3}),
+                                     near_sensor({0, -3})};
+  check_against_box(2000, depth, {10, 0.3, 0.9}, full_request({0.2, 0.205}, sensors),
+                    ReversedPaths::no, 400000, 0.05);
+}
+
+}  // namespace flatspeckle::mc
