@@ -59,7 +59,7 @@ void add_dimension_key(Keys& keys, MethodSettings& settings) {
   keys.add("dimension", settings.dimension,
            "Of space: 2, or 3 for scalar waves, lights and views in the plane of incidence")
       .from(2, 3)
-      .only_of("method = transport");
+      .only_of("slabs, by transport or Monte Carlo");
 }
 
 void disregard_unused(const Keys& keys, const SceneSpec& spec,
@@ -115,6 +115,10 @@ Scene rounded_scene(const Keys& keys, const SceneSpec& spec) {
   rounded.density = rounded.mean_free_path = rounded.optical_depth = std::nullopt;
   rounded.count = std::llround(scene.placement.mean_count);
   return make_scene(rounded);
+}
+
+Scene with_dimension(const MethodSettings& settings, const Scene& scene, const SceneSpec& spec) {
+  return settings.dimension == 3 ? mc::in_space(scene, spec) : scene;
 }
 
 Estimation mc_estimation(const Scene& scene, mc::ReversedPaths reversed, std::uint64_t seed) {

@@ -6,8 +6,8 @@
 namespace flatspeckle::mc {
 
 /// A slab that has the same keys in space: lights and views lie in the plane of incidence, the
-/// phase function is per steradian, and `dimension` of the medium says so. Throws InputError for
-/// scatterers of the plane: what may be in space is hg, two_term_hg and phase_table.
+/// medium has a phase function per steradian, and its `dimension` says so. Throws InputError for
+/// boxes, and for scatterers of the plane: what may be in space is hg, two_term_hg and phase_table.
 Scene in_space(Scene slab, const ScattererValues& values);
 
 /// Of a scene in space.
