@@ -60,8 +60,7 @@ int covariance(const Arguments& arguments) {
   const auto reversed = method == "wave" ? mc::ReversedPaths::no : reversed_paths(keys, methods);
   if (method == "wave") keys.read(methods.wave_tolerance);
   if (method != "wave") keys.read(methods.dimension);
-  const bool space_transport = method == "transport" && methods.dimension == 3;
-  if (method != "wave" && !space_transport) read_extras(keys, extras, method == "transport");
+  if (method != "wave") read_extras(keys, extras, method == "transport");
   const Scene scene = with_dimension(methods, make_scene(keys, spec), spec);
   const auto [estimation, write_extras] =
       method == "mc" ? extended_estimation(scene, reversed, extras, session.seed())

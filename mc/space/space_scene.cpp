@@ -4,6 +4,7 @@
 
 #include "core/error.h"
 #include "grin/media/hg_phase.h"
+#include "grin/media/rayleigh_phase.h"
 #include "grin/media/table_phase.h"
 #include "grin/media/two_term_phase.h"
 
@@ -25,9 +26,11 @@ void set_phase(BulkMedium& medium, const Scatterer& scatterer, const ScattererVa
     const auto& path = std::get<PhaseTable>(values.bulk).phase_table;
     return set_phase(medium, grin::TablePhase(AngleTable(PhaseTable::word, path)));
   }
+  if (values.scatterer == Rayleigh::word) return set_phase(medium, grin::RayleighPhase());
   if (values.scatterer != TwoTermHg::word)
-    throw InputError("scatterer", values.scatterer,
-                     "with dimension = 3: hg (g = 0 is isotropic), two_term_hg or phase_table");
+    throw InputError(
+        "scatterer", values.scatterer,
+        "with dimension = 3: hg (g = 0 is isotropic), two_term_hg, phase_table or rayleigh");
   const auto& terms = std::get<TwoTermHg>(values.bulk);
   set_phase(medium, grin::TwoTermPhase{{*terms.g}, {*terms.g_back}, *terms.forward_share});
 }
@@ -43,9 +46,21 @@ Scene in_space(Scene slab, const ScattererValues& values) {
   return slab;
 }
 
-SpaceSlab space_slab(const Scene& scene) {
+SpaceSlab space_slab(const Scene& scene, double delay) {
   return {scene.k, scene.medium.mu_t, scene.domain.depth, scene.medium.albedo,
-          SpaceLaw(scene.medium.space_phase.density)};
+          SpaceLaw(scene.medium.space_phase.density, delay)};
+}
+
+PathJob space_delay_job(const Scene& scene, bool reversed, const Refinement& refinement,
+                        const std::vector<double>& delays) {
+  const auto solve = [=] {
+    const SpaceRequest request = space_request(scene.request);
+    Refined all = space_covariance(space_slab(scene), request, reversed, refinement);
+    for (const double delay : delays)
+      all.append(space_covariance(space_slab(scene, delay), request, reversed, refinement));
+    return all;
+  };
+  return two_batch_job(scene.request.entries.size(), 1 + delays.size(), solve);
 }
 
 }  // namespace flatspeckle::mc
