@@ -5,7 +5,6 @@
 #include "apps/subcommands.h"
 #include "core/session/session.h"
 #include "flatland/scene/scene_datasets.h"
-#include "mc/space/space_scene.h"
 #include "mc/transport/refinement.h"
 
 namespace flatspeckle::apps {
@@ -60,9 +59,9 @@ int covariance(const Arguments& arguments) {
   const StopRule stop = stop_of(method, keys, run, methods);
   const auto reversed = method == "wave" ? mc::ReversedPaths::no : reversed_paths(keys, methods);
   if (method == "wave") keys.read(methods.wave_tolerance);
-  const bool space = method == "transport" && keys.read(methods.dimension) == 3;
-  if (method != "wave" && !space) read_extras(keys, extras, method == "transport");
-  const Scene plane = make_scene(keys, spec), scene = space ? mc::in_space(plane, spec) : plane;
+  if (method != "wave") keys.read(methods.dimension);
+  if (method != "wave") read_extras(keys, extras, method == "transport");
+  const Scene scene = with_dimension(methods, make_scene(keys, spec), spec);
   const auto [estimation, write_extras] =
       method == "mc" ? extended_estimation(scene, reversed, extras, session.seed())
       : method == "wave"

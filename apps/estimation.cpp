@@ -59,7 +59,7 @@ void add_dimension_key(Keys& keys, MethodSettings& settings) {
   keys.add("dimension", settings.dimension,
            "Of space: 2, or 3 for scalar waves, lights and views in the plane of incidence")
       .from(2, 3)
-      .only_of("method = transport");
+      .only_of("slabs, by transport or Monte Carlo");
 }
 
 void disregard_unused(const Keys& keys, const SceneSpec& spec,
@@ -122,6 +122,10 @@ void require_far_ends(const Scene& scene) {
     throw InputError(
         "method: beams, near sources and near sensors beside a slab are of transport "
         "alone; or take a box");
+}
+
+Scene with_dimension(const MethodSettings& settings, const Scene& scene, const SceneSpec& spec) {
+  return settings.dimension == 3 ? mc::in_space(scene, spec) : scene;
 }
 
 Estimation mc_estimation(const Scene& scene, mc::ReversedPaths reversed, std::uint64_t seed) {

@@ -70,6 +70,10 @@ Scene rounded_scene(const Keys& keys, const SceneSpec& spec);
 /// Monte Carlo knows near ends in boxes alone. Throws InputError.
 void require_far_ends(const Scene& scene);
 
+/// The scene of the plane, or with `dimension` = 3 the one of space that has the same keys. Throws
+/// InputError for what is no slab.
+Scene with_dimension(const MethodSettings& settings, const Scene& scene, const SceneSpec& spec);
+
 Estimation mc_estimation(const Scene& scene, mc::ReversedPaths reversed, std::uint64_t seed);
 /// Of a slab, of the plane or in space.
 Estimation transport_estimation(const Scene& scene, mc::ReversedPaths reversed, double tolerance);

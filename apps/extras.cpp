@@ -2,6 +2,7 @@
 
 #include "apps/moments_table.h"
 #include "core/error.h"
+#include "mc/space/space_scene.h"
 #include "mc/transport/frequency_shifts.h"
 #include "mc/transport/slab_covariance.h"
 
@@ -37,8 +38,16 @@ ExtendedEstimation mc_gradient(const Scene& scene, mc::ReversedPaths reversed, s
   return with_gradient(scene, mc::gradient_job(scene, plan, seed), "mc: " + plan.describe());
 }
 
+/// Of what transport has in the plane alone.
+void require_plane(const Scene& scene, const std::string& key) {
+  if (scene.medium.dimension == 3)
+    throw InputError(key + ": not by transport with dimension = 3" +
+                     (key == "gradient" ? "; take method = mc" : ""));
+}
+
 ExtendedEstimation transport_gradient(const Scene& scene, mc::ReversedPaths reversed,
                                       double tolerance) {
+  require_plane(scene, "gradient");
   mc::check_gradient(scene);
   refuse_near_ends("gradient", scene.request);
   const bool with_reversed = mc::make_plan(scene, reversed).reversed;
@@ -65,32 +74,41 @@ ExtendedEstimation mc_delays(const Scene& scene, mc::ReversedPaths reversed,
                      "mc: " + plan.describe());
 }
 
-/// Intensities or a memory effect, and the same with every change.
-mc::PathJob change_job(const Scene& scene, mc::ReversedPaths reversed, const std::string& key,
-                       const std::vector<mc::FieldChange>& changes, double tolerance) {
+/// Changes are of these alone.
+void require_intensity_or_tilts(const std::string& key, const CovarianceRequest& request) {
   using Kind = CovarianceRequest::Kind;
-  if (scene.request.kind != Kind::intensity && scene.request.kind != Kind::memory_effect)
+  if (request.kind != Kind::intensity && request.kind != Kind::memory_effect)
     throw InputError(key + ": needs covariance = intensity or memory_effect");
+}
+
+mc::PathJob delay_job(const Scene& scene, mc::ReversedPaths reversed,
+                      const std::vector<double>& delays, double tolerance) {
   const bool with_reversed = mc::make_plan(scene, reversed).reversed;
+  if (scene.medium.dimension == 3)
+    return mc::space_delay_job(scene, with_reversed, {tolerance}, delays);
+  std::vector<mc::FieldChange> changes;
+  for (const double delay : delays) changes.push_back({.delay = delay});
   return mc::slab_change_job(scene, with_reversed, {tolerance}, changes);
 }
 
 ExtendedEstimation transport_delays(const Scene& scene, mc::ReversedPaths reversed,
                                     const std::vector<double>& delays, double tolerance) {
   mc::check_delays(scene, delays);
-  std::vector<mc::FieldChange> changes;
-  for (const double delay : delays) changes.push_back({.delay = delay});
-  return with_delays(scene, change_job(scene, reversed, "delays", changes, tolerance), delays,
+  require_intensity_or_tilts("delays", scene.request);
+  return with_delays(scene, delay_job(scene, reversed, delays, tolerance), delays,
                      transport_estimation(scene, reversed, tolerance).plan);
 }
 
 ExtendedEstimation transport_frequency_shifts(const Scene& scene, mc::ReversedPaths reversed,
                                               const std::vector<double>& shifts, double tolerance) {
   refuse_near_ends("frequency_shifts", scene.request);
+  require_plane(scene, "frequency_shifts");
   mc::check_frequency_shifts(scene, shifts);
+  require_intensity_or_tilts("frequency_shifts", scene.request);
   std::vector<mc::FieldChange> changes;
   for (const double shift : shifts) changes.push_back({.shift = shift});
-  const auto job = change_job(scene, reversed, "frequency_shifts", changes, tolerance);
+  const auto job =
+      mc::slab_change_job(scene, mc::make_plan(scene, reversed).reversed, {tolerance}, changes);
   return {{job.field, transport_estimation(scene, reversed, tolerance).plan + "; two frequencies"},
           [scene, job, shifts](ResultFile& file, const GroupedSums& sums) {
             const auto found = mc::change_estimates(scene.request, job, sums);

@@ -6,7 +6,6 @@
 
 #include "core/error.h"
 #include "core/result/version.h"
-#include "mc/space/space_scene.h"
 
 namespace flatspeckle::apps {
 
@@ -106,8 +105,10 @@ void SweepPlan::check() {
     if (!stop->samples && !stop->target_error) stop->target_error = default_target_error;
   if (!keys.read(share_).empty()) share = share_of(share_);
   if (method_ != "wave") reversed_ = reversed_paths(keys, methods);
-  if (has("wave")) keys.read(methods.wave_tolerance);
-  if (method_ == "transport") keys.read(methods.dimension);
+  if (has("wave"))
+    keys.read(methods.wave_tolerance);
+  else
+    keys.read(methods.dimension);
   points = sweep_points(keys, lists_);
   check_points();
   disregard_unused(keys, base, method_words);
@@ -150,9 +151,9 @@ void SweepPlan::with_point(std::size_t run,
 }
 
 Scene SweepPlan::scene_of(const Keyed<SceneSpec>& point) const {
-  if (method_words.size() > 1) return rounded_scene(point.keys, point.values);
-  const Scene scene = make_scene(point.keys, point.values);
-  return methods.dimension == 3 ? mc::in_space(scene, point.values) : scene;
+  const Scene scene = method_words.size() > 1 ? rounded_scene(point.keys, point.values)
+                                              : make_scene(point.keys, point.values);
+  return with_dimension(methods, scene, point.values);
 }
 
 Scene SweepPlan::scene(std::size_t run) const {

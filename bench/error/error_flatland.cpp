@@ -9,6 +9,7 @@
 #include "bench/oracles/textbook.h"
 #include "flatland/scene/scene.h"
 #include "mc/estimators/covariance_estimator.h"
+#include "mc/space/space_scene.h"
 #include "mc/speckle/speckle_field.h"
 
 namespace flatspeckle::bench {
@@ -188,6 +189,23 @@ ErrorRun two_term_run() {
           }};
 }
 
+/// The slab in space, by what transport has there.
+ErrorRun space_run() {
+  const SceneSpec spec = slab();
+  const auto scene = std::make_shared<const Scene>(mc::in_space(make_scene(spec), spec));
+  const Method method{.scene = "slab_hg, in space",
+                      .name = "ours",
+                      .trial = [scene](std::uint64_t seed) { return ours(*scene, seed); },
+                      .slow = true};
+  const auto run = [=](double cpu_seconds) {
+    constexpr double tolerance = 1e-4;
+    const auto request = mc::space_request(scene->request);
+    const auto exact = mc::space_covariance(mc::space_slab(*scene), request, false, {tolerance});
+    return measure_error(method, {exact.value, tolerance, "transport"}, cpu_seconds);
+  };
+  return {method.scene, method.name, run, method.slow};
+}
+
 ErrorRun run_of(const Method& method, const std::string& reference) {
   return {method.scene, method.name,
           [method, reference](double cpu_seconds) {
@@ -208,6 +226,7 @@ std::vector<ErrorRun> flatland_error_runs() {
       runs.push_back(run_of(method, flat.name));
   }
   runs.push_back(two_term_run());
+  runs.push_back(space_run());
   return runs;
 }
 

@@ -47,6 +47,7 @@ std::vector<ExtremeCase> wave_extremes();
 std::vector<ExtremeCase> wave_point_extremes();
 std::vector<ExtremeCase> mc_theory_extremes();
 std::vector<ExtremeCase> mc_slab_extremes();
+std::vector<ExtremeCase> mc_transport_extremes();
 std::vector<ExtremeCase> mc_box_extremes();
 std::vector<ExtremeCase> index_extremes();
 std::vector<ExtremeCase> ray_extremes();

@@ -12,7 +12,7 @@ namespace flatspeckle {
 /// Bulk optical properties (C5). Lengths in the scene's unit. Where positions are correlated (C16),
 /// those of the medium in which each scatterer has the amplitude A sqrt(S).
 struct BulkMedium {
-  int dimension = 2;  ///< 3: of space, where `phase` is per steradian, for scalar waves (C41)
+  int dimension = 2;  ///< 3: of space, for scalar waves (C41)
   double mu_s = 0, mu_t = 0;
   double g = 0, albedo = 1;
   double k_shift = 0;           ///< Re k_eff - k (C15); not defined (0) for the bulk
@@ -22,7 +22,8 @@ struct BulkMedium {
   CrossSections cross_sections;  ///< of one scatterer alone, like its T-matrix
   std::vector<ExtendedComplex> t_matrix;
   StructureTable structure;
-  BulkPhase phase;  ///< empty but for Scatterer::Kind::other_bulk
+  BulkPhase phase;         ///< empty but for Scatterer::Kind::other_bulk
+  SpacePhase space_phase;  ///< empty in the plane
 
   double mean_free_path() const { return 1 / mu_t; }
   double transport_mean_free_path() const { return 1 / (mu_t - mu_s * g); }

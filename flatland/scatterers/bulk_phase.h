@@ -5,6 +5,8 @@
 #include <numbers>
 #include <string>
 
+#include "core/numbers/random.h"
+
 namespace flatspeckle {
 
 /// A phase function of the bulk, even in the scattering angle (conventions, C5).
@@ -13,6 +15,12 @@ struct BulkPhase {
   std::function<double(double theta)> density;
   double g = 0;      ///< mean cosine
   std::string text;  ///< of a table: every number, which tells one from another
+};
+
+/// A phase function of scalar waves in space, per steradian (conventions, C41).
+struct SpacePhase {
+  std::function<double(double cosine)> density;
+  std::function<double(RandomStream& random)> one_minus_cosine;  ///< of a turn drawn from it
 };
 
 /// C22, per radian; for |g| near 1 to all digits.

@@ -6,13 +6,14 @@
 
 #include "core/keys/kinds.h"
 #include "flatland/scatterers/phase_table.h"
+#include "flatland/scatterers/rayleigh.h"
 #include "flatland/scatterers/two_term_hg.h"
 
 namespace flatspeckle {
 
 /// The phase functions that a scene may have in place of scatterers, beside hg: each a type with a
 /// word, keys and make_phase, in a file of its own. This is their list.
-using BulkPhases = std::tuple<TwoTermHg, PhaseTable>;
+using BulkPhases = std::tuple<TwoTermHg, PhaseTable, Rayleigh>;
 
 inline void add_keys(Keys& keys, BulkPhases& all) {
   each_kind(all, [&](auto& one) { add_keys(keys, one); });

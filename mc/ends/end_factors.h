@@ -40,7 +40,8 @@ class EndFactors {
 
   /// out[j] = A(arrival -> end j) e_j(x), for light that reaches x along `arrival`.
   template <typename Scattering>
-  void at(Vec2 x, Vec2 arrival, const Scattering& scattering, std::span<Complex> out) {
+  void at(Vec2 x, const typename Scattering::Direction& arrival, const Scattering& scattering,
+          std::span<Complex> out) {
     attenuate(x, out);
     scattering.towards(arrival, directions_, out);
   }

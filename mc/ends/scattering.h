@@ -54,9 +54,10 @@ inline Vec2 sample_disk(RandomStream& random) {
 /// What happens at a scatterer, in the three forms that a plan picks from. amplitude() is A of C14
 /// divided by sqrt(sigma_s), so that |amplitude|^2 is the phase function; towards() multiplies
 /// out[j] by the amplitude from one direction to each of many; sample() draws a new direction from
-/// the phase function.
+/// the phase function. In space there is a fourth (space_scattering.h), with directions of its own.
 
 struct IsotropicScattering {
+  using Direction = Vec2;
   static constexpr grin::Isotropic<2> phase{};
 
   double density(Vec2, Vec2) const { return phase.value; }
@@ -72,6 +73,7 @@ struct IsotropicScattering {
 };
 
 struct HenyeyGreensteinScattering {
+  using Direction = Vec2;
   grin::HenyeyGreenstein<2> phase;
 
   double density(Vec2 from, Vec2 to) const {
@@ -92,6 +94,8 @@ struct HenyeyGreensteinScattering {
 /// the root of a phase function of the bulk, tabulated and linear between the nodes.
 class TabulatedScattering {
  public:
+  using Direction = Vec2;
+
   TabulatedScattering(const BulkMedium& medium, double k)
       : intervals_(4096 *
                    (medium.phase.density ? 16 : std::max<std::size_t>(medium.t_matrix.size(), 2))),

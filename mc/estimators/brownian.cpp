@@ -21,7 +21,10 @@ struct TurnTally {
   double turn = 0;
 
   void flight(double) {}
-  void scattering(Vec2 from, Vec2 to) { turn += one_minus_cosine(from, to); }
+  template <typename Direction>
+  void scattering(const Direction& from, const Direction& to) {
+    turn += one_minus_cosine(from, to);
+  }
 };
 
 /// A e of some ends and how they decay, [delay][end].
@@ -36,6 +39,8 @@ struct Decaying {
 /// R turn by other angles at the path's ends, so each has its own decay.
 template <typename Scattering, bool reversed, bool phases>
 class DelayScorer {
+  using Direction = typename Scattering::Direction;
+
  public:
   DelayScorer(const Scene& scene, const Scattering& scattering, std::span<const double> delays,
               std::span<Complex> sums)
@@ -65,11 +70,11 @@ class DelayScorer {
     }
   }
 
-  void multiple(const TalliedPath<TurnTally>& path) {
-    ends_.find(path, [this](auto& ends, Vec2 x, Vec2 arrival, Decaying& out) {
+  void multiple(const TalliedPath<Direction, TurnTally>& path) {
+    ends_.find(path, [this](auto& ends, Vec2 x, const Direction& arrival, Decaying& out) {
       ends.at(x, arrival, scattering_, out.value);
       for (std::size_t j = 0; j < ends.size(); ++j)
-        out.turn[j] = one_minus_cosine(arrival, ends.direction(j));
+        out.turn[j] = one_minus_cosine(arrival, Direction(ends.direction(j)));
       decay(out);
     });
     inner_.turn[0] = path.tally.turn;
@@ -194,9 +199,9 @@ void write_delays(ResultFile& file, const Scene& scene, const std::vector<double
 }
 
 double diffusion_delay_correlation(const BulkMedium& medium, double thickness, double delay) {
-  // kappa^2 = 2 mu_a / l*, and what adds to it acts like the square of a tilt's wavenumber
+  // kappa^2 = mu_a dimension / l*, and what adds to it acts like the square of a tilt's wavenumber
   const double loss = 2 * delay * (1 - medium.g) * medium.mu_s;
-  const double q = std::sqrt(2 * loss / medium.transport_mean_free_path());
+  const double q = std::sqrt(medium.dimension * loss / medium.transport_mean_free_path());
   return diffusion_field_correlation(medium, thickness, q);
 }
 

@@ -6,10 +6,11 @@ namespace flatspeckle::mc {
 /// the) index of cylinders at fixed density.
 enum class BulkParameter { mu_t, g, albedo, radius, index };
 
-/// d log p / dg of the phase function of C22 at a scattering angle of known 1 - cos.
-inline double henyey_greenstein_slope(double g, double one_minus_cosine) {
+/// d log p / dg of Henyey-Greenstein's phase function, of C22 or in space, at a scattering angle of
+/// known 1 - cos.
+inline double henyey_greenstein_slope(double g, double one_minus_cosine, int dimension = 2) {
   const double rest = 1 - g;
-  return 2 * (rest - one_minus_cosine) / (rest * rest + 2 * g * one_minus_cosine) -
+  return dimension * (rest - one_minus_cosine) / (rest * rest + 2 * g * one_minus_cosine) -
          2 * g / (rest * (1 + g));
 }
 

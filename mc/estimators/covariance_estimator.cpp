@@ -11,6 +11,8 @@ namespace {
 /// The field f of every channel (C14), for an accumulator.
 template <typename Scattering, bool reversed, bool phases>
 class PathFields {
+  using Direction = typename Scattering::Direction;
+
  public:
   PathFields(const Scene& scene, const Scattering& scattering, Accumulator& accumulator)
       : scattering_(scattering),
@@ -32,8 +34,8 @@ class PathFields {
     accumulator_.add(weight, field_);
   }
 
-  void multiple(const Path& path) {
-    ends_.find(path, [this](auto& ends, Vec2 x, Vec2 arrival, std::vector<Complex>& out) {
+  void multiple(const Path<Direction>& path) {
+    ends_.find(path, [this](auto& ends, Vec2 x, const Direction& arrival, auto& out) {
       ends.at(x, arrival, scattering_, out);
     });
     for (std::size_t c = 0; c < channels_.size(); ++c) {

@@ -51,7 +51,7 @@ std::vector<double> amplitude_slopes(const Scene& scene) {
     for (const auto channel : {entry.a, entry.b}) {
       const auto [i, v] = scene.request.channels[channel];
       const double turn = one_minus_cosine(-lights[i].towards, views[v].towards);
-      slopes.back() += henyey_greenstein_slope(scene.medium.g, turn) / 2;
+      slopes.back() += henyey_greenstein_slope(scene.medium.g, turn, scene.medium.dimension) / 2;
     }
   }
   return slopes;
@@ -63,7 +63,7 @@ struct GradientKind {
 
   std::size_t quantities() const { return 1 + parameters.size(); }
 
-  GradientTally tally(const Scene& scene) const { return {scene.medium.g}; }
+  GradientTally tally(const Scene& scene) const { return {scene.medium.g, scene.medium.dimension}; }
 
   template <bool reversed, bool phases, typename Scattering>
   auto scorer(const Scene& scene, const Scattering& scattering, Sums sums) const {
@@ -169,7 +169,8 @@ Plan gradient_plan(const Scene& scene, ReversedPaths reversed) {
   check_gradient(scene);
   Plan plan = make_plan(scene, reversed);
   plan.rank_k = false;
-  if (scene.scatterer.kind == Scatterer::Kind::hg) plan.phase = Plan::Phase::henyey_greenstein;
+  if (plan.phase == Plan::Phase::isotropic && scene.scatterer.kind == Scatterer::Kind::hg)
+    plan.phase = Plan::Phase::henyey_greenstein;
   return plan;
 }
 

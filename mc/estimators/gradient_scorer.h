@@ -13,6 +13,7 @@ namespace flatspeckle::mc {
 /// What the logarithm of a path's integrand mu_s^B prod exp(-mu_t r) prod p depends on.
 struct GradientTally {
   double g = 0;
+  int dimension = 2;
   int scatterers = 1;
   double length = 0;
   double phase_slope = 0;  ///< sum of d log p / d g over the inner scatterers
@@ -21,8 +22,9 @@ struct GradientTally {
     length += r;
     ++scatterers;
   }
-  void scattering(Vec2 from, Vec2 to) {
-    phase_slope += henyey_greenstein_slope(g, one_minus_cosine(from, to));
+  template <typename Direction>
+  void scattering(const Direction& from, const Direction& to) {
+    phase_slope += henyey_greenstein_slope(g, one_minus_cosine(from, to), dimension);
   }
 };
 
@@ -30,6 +32,8 @@ struct GradientTally {
 /// and R) carries half of the path's own logarithmic derivative, besides those of its end factors.
 template <typename Scattering, bool reversed, bool phases>
 class GradientScorer {
+  using Direction = typename Scattering::Direction;
+
  public:
   GradientScorer(const Scene& scene, const Scattering& scattering,
                  std::span<const BulkParameter> parameters, std::span<Complex> sums)
@@ -51,15 +55,15 @@ class GradientScorer {
     for (std::size_t c = 0; c < field_.size(); ++c) {
       const auto [i, v] = request_.channels[c];
       const Vec2 from = -lights.direction(i), to = views.direction(v);
-      GradientTally tally{medium_.g};
+      GradientTally tally{medium_.g, medium_.dimension};
       tally.scattering(from, to);
       add_term(c, half_slopes(tally), light, view, scattering_.amplitude(from, to));
     }
     accumulate(weight);
   }
 
-  void multiple(const TalliedPath<GradientTally>& path) {
-    ends_.find(path, [this](Ends& ends, Vec2 x, Vec2 arrival, EndValues& out) {
+  void multiple(const TalliedPath<Direction, GradientTally>& path) {
+    ends_.find(path, [this](Ends& ends, Vec2 x, const Direction& arrival, EndValues& out) {
       at(ends, x, arrival, out);
     });
     const Slopes half = half_slopes(path.tally);
@@ -91,14 +95,16 @@ class GradientScorer {
             parameters_[p] == BulkParameter::mu_t ? ends.log_attenuation(j) / medium_.mu_t : 0;
   }
 
-  void at(Ends& ends, Vec2 x, Vec2 arrival, EndValues& out) const {
+  void at(Ends& ends, Vec2 x, const Direction& arrival, EndValues& out) const {
     attenuate(ends, x, out);
     scattering_.towards(arrival, ends.directions(), out.value);
     for (std::size_t p = 0; p < parameters_.size(); ++p) {
       if (parameters_[p] != BulkParameter::g) continue;
       for (std::size_t j = 0; j < ends.size(); ++j)
-        out.slopes[j][p] =
-            henyey_greenstein_slope(medium_.g, one_minus_cosine(arrival, ends.direction(j))) / 2;
+        out.slopes[j][p] = henyey_greenstein_slope(
+                               medium_.g, one_minus_cosine(arrival, Direction(ends.direction(j))),
+                               medium_.dimension) /
+                           2;
     }
   }
 

@@ -27,8 +27,8 @@ struct PathEnds {
   /// at(ends, x, arrival, values): finds what light that reaches x along `arrival` is to the ends.
   /// Those of the first scatterer are kept as long as it stays; light_last and view_first only
   /// matter to reversed paths.
-  template <typename At>
-  void find(const Path& path, At at) {
+  template <typename Direction, typename At>
+  void find(const Path<Direction>& path, At at) {
     if (path.new_start) {
       at(lights, path.first, -path.start, light_first);
       if constexpr (reversed) at(views, path.first, -path.start, view_first);

@@ -89,8 +89,7 @@ Rows AzimuthalModes::fed(const SpacePair& pair, const Matrix& directions, const 
       const double sine = std::sin(angles[j]), cosine = side * std::cos(angles[j]);
       for (Eigen::Index i = 0; i < steps; ++i) {
         const Eigen::Vector3d to(sine * directions(i, 0), sine * directions(i, 1), cosine);
-        values(j, i) =
-            sine * law_.amplitude(pair.first.dot(to)) * law_.amplitude(pair.second.dot(to));
+        values(j, i) = sine * law_.pair(pair.first.dot(to), pair.second.dot(to));
       }
     }
     return product(values, azimuthal);

@@ -25,8 +25,9 @@ struct Resolution {
 Complex scattered_once(const SpaceSlab& slab, const SpaceChain& chain) {
   const double k = slab.k / slab.mu_t, depth = slab.optical_depth();
   const PairWave light = pair_wave(k, chain.lights), view = pair_wave(k, turned_round(chain.views));
-  return slab.albedo * depth * slab.law.amplitude(chain.lights.first.dot(chain.views.first)) *
-         slab.law.amplitude(chain.lights.second.dot(chain.views.second)) *
+  return slab.albedo * depth *
+         slab.law.pair(chain.lights.first.dot(chain.views.first),
+                       chain.lights.second.dot(chain.views.second)) *
          divided_difference(depth * (light.top + view.top), depth * (light.bottom + view.bottom));
 }
 

@@ -48,13 +48,16 @@ std::vector<double> significant_moments(const std::function<double(double)>& p) 
 
 }  // namespace
 
-SpaceLaw::SpaceLaw(std::function<double(double)> density)
-    : density_(std::move(density)),
-      moments_(significant_moments(density_)),
-      total_(moments_.front()) {
-  for (double& moment : moments_) moment /= total_;
+SpaceLaw::SpaceLaw(std::function<double(double)> density, double delay)
+    : density_(std::move(density)), total_(significant_moments(density_).front()), delay_(delay) {
+  moments_ = significant_moments(
+      [this](double cosine) { return decay(cosine) * density_(cosine) / total_; });
   constexpr double moments_per_width = 30;  // g^l of Henyey-Greenstein is then 1e-13
   width_ = std::min(pi, moments_per_width / static_cast<double>(moments_.size()));
+}
+
+double SpaceLaw::decay(double cosine) const {
+  return std::exp(-2 * delay_ * (1 - cosine));
 }
 
 double SpaceLaw::amplitude(double cosine) const {

@@ -1,50 +1,66 @@
 #include "mc/space/space_scene.h"
 
-#include <cmath>
 #include <tuple>
 
 #include "core/error.h"
-#include "grin/media/phase_function.h"
+#include "grin/media/hg_phase.h"
+#include "grin/media/rayleigh_phase.h"
+#include "grin/media/table_phase.h"
+#include "grin/media/two_term_phase.h"
 
 namespace flatspeckle::mc {
 
 namespace {
 
-using Density = std::function<double(double)>;
-
-Density density_in_space(const Scene& scene, const ScattererValues& values) {
-  using Hg = grin::HenyeyGreenstein<3>;
-  if (scene.scatterer.kind == Scatterer::Kind::hg)
-    return [hg = Hg{scene.scatterer.g}](double angle) { return hg.density(angle); };
-  if (values.scatterer == PhaseTable::word) return scene.medium.phase.density;  // in any unit
-  if (values.scatterer != TwoTermHg::word)
-    throw InputError("scatterer", values.scatterer,
-                     "with dimension = 3: hg (g = 0 is isotropic), two_term_hg or phase_table");
-  const auto& terms = std::get<TwoTermHg>(values.bulk);
-  return [first = Hg{*terms.g}, second = Hg{*terms.g_back},
-          share = *terms.forward_share](double angle) {
-    return share * first.density(angle) + (1 - share) * second.density(angle);
-  };
+/// As functions, with the mean cosine.
+template <typename Phase>
+void set_phase(BulkMedium& medium, const Phase& phase) {
+  medium.space_phase = {[phase](double cosine) { return phase.density(cosine); },
+                        [phase](RandomStream& random) { return phase.one_minus_cosine(random); }};
+  medium.g = phase.mean_cosine();
 }
 
-SpaceLaw law_of(const Density& density) {
-  return SpaceLaw([=](double cosine) { return density(std::acos(cosine)); });
+void set_phase(BulkMedium& medium, const Scatterer& scatterer, const ScattererValues& values) {
+  if (scatterer.kind == Scatterer::Kind::hg) return set_phase(medium, grin::HgPhase{scatterer.g});
+  if (values.scatterer == PhaseTable::word) {
+    const auto& path = std::get<PhaseTable>(values.bulk).phase_table;
+    return set_phase(medium, grin::TablePhase(AngleTable(PhaseTable::word, path)));
+  }
+  if (values.scatterer == Rayleigh::word) return set_phase(medium, grin::RayleighPhase());
+  if (values.scatterer != TwoTermHg::word)
+    throw InputError(
+        "scatterer", values.scatterer,
+        "with dimension = 3: hg (g = 0 is isotropic), two_term_hg, phase_table or rayleigh");
+  const auto& terms = std::get<TwoTermHg>(values.bulk);
+  set_phase(medium, grin::TwoTermPhase{{*terms.g}, {*terms.g_back}, *terms.forward_share});
 }
 
 }  // namespace
 
 Scene in_space(Scene slab, const ScattererValues& values) {
+  if (slab.domain.kind != Domain::Kind::slab)
+    throw InputError("dimension", 3, "needs domain = slab");
   BulkMedium& medium = slab.medium;
-  medium.phase.density = density_in_space(slab, values);
   medium.dimension = 3;
-  const auto moments = law_of(medium.phase.density).moments();
-  medium.g = medium.phase.g = moments.size() > 1 ? moments[1] : 0;
+  set_phase(medium, slab.scatterer, values);
   return slab;
 }
 
-SpaceSlab space_slab(const Scene& scene) {
+SpaceSlab space_slab(const Scene& scene, double delay) {
   return {scene.k, scene.medium.mu_t, scene.domain.depth, scene.medium.albedo,
-          law_of(scene.medium.phase.density)};
+          SpaceLaw(scene.medium.space_phase.density, delay)};
+}
+
+PathJob space_delay_job(const Scene& scene, bool reversed, const Refinement& refinement,
+                        const std::vector<double>& delays) {
+  const auto solve = [=] {
+    const SpaceRequest request = space_request(scene.request);
+    Refined all = space_covariance(space_slab(scene), request, reversed, refinement);
+    for (const double delay : delays)
+      all.append(space_covariance(space_slab(scene, delay), request, reversed, refinement));
+    return all;
+  };
+  return two_batch_job(scene.request.entries.size(), 1 + delays.size(), solve);
 }
 
 }  // namespace flatspeckle::mc

@@ -6,11 +6,16 @@
 namespace flatspeckle::mc {
 
 /// A slab that has the same keys in space: lights and views lie in the plane of incidence, the
-/// phase function is per steradian, and `dimension` of the medium says so. Throws InputError for
-/// scatterers of the plane: what may be in space is hg, two_term_hg and phase_table.
+/// medium has a phase function per steradian, and its `dimension` says so. Throws InputError for
+/// boxes, and for scatterers of the plane: what may be in space is hg, two_term_hg, phase_table and
+/// rayleigh.
 Scene in_space(Scene slab, const ScattererValues& values);
 
-/// Of a scene in space.
-SpaceSlab space_slab(const Scene& scene);
+/// Of a scene in space, whose second fields are recorded after a delay (SpaceLaw).
+SpaceSlab space_slab(const Scene& scene, double delay = 0);
+
+/// Quantities as those of delay_job(): the entries without delay, then with each.
+PathJob space_delay_job(const Scene& scene, bool reversed, const Refinement& refinement,
+                        const std::vector<double>& delays);
 
 }  // namespace flatspeckle::mc

@@ -14,10 +14,14 @@ double log_sinh(double a) {
 
 }  // namespace
 
+double extrapolation_length(const BulkMedium& medium) {
+  return (medium.dimension == 3 ? 0.7104 : 0.818) * medium.transport_mean_free_path();
+}
+
 double diffusion_field_correlation(const BulkMedium& medium, double thickness, double q) {
   const double transport_length = medium.transport_mean_free_path();
   const double source = std::min(transport_length, thickness),
-               extrapolation = (medium.dimension == 3 ? 0.7104 : 0.818) * transport_length;
+               extrapolation = extrapolation_length(medium);
   const double mu_a = medium.mu_t - medium.mu_s;
   const double kappa2 = medium.dimension * mu_a / transport_length;
   // f of C20; below the least Q it has its limit at 0 to rounding.

@@ -12,6 +12,9 @@ namespace flatspeckle::mc {
 /// mean free paths. A limit for thick slabs and small q, not a reference for thin ones.
 double diffusion_field_correlation(const BulkMedium& medium, double thickness, double q);
 
+/// By how much diffuse light extends beyond a face.
+double extrapolation_length(const BulkMedium& medium);
+
 /// |q| where C_I = C_E^2 of that falls to 1/2.
 double diffusion_range(const BulkMedium& medium, double thickness);
 

@@ -8,6 +8,7 @@
 #include "core/result/result_file.h"
 #include "core/run/runner.h"
 #include "flatland/request/request.h"
+#include "mc/estimators/path_job.h"
 
 namespace flatspeckle::mc {
 
@@ -37,6 +38,10 @@ std::vector<double> scales(const std::vector<Entry>& entries, std::span<const Co
 /// statistics of batches call the standard error of any function of them is its difference then.
 /// Solved when the first batch runs.
 BatchJob two_batches(std::size_t size, const std::function<Refined()>& solve);
+
+/// The same of several quantities, [quantity][entry], of which the first is the covariance.
+PathJob two_batch_job(std::size_t entries, std::size_t quantities,
+                      const std::function<Refined()>& solve);
 
 extern const DatasetTable numerical_table;
 /// Says of a result, or of a group of it, that its errors are such differences.

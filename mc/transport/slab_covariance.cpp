@@ -256,24 +256,6 @@ FieldJob slab_covariance_job(const Scene& slab, bool reversed, const Refinement&
   return job;
 }
 
-namespace {
-
-/// Quantities of which the first are the covariance.
-PathJob two_batch_job(const Scene& slab, std::size_t quantities,
-                      const std::function<Refined()>& solve) {
-  const std::size_t entries = slab.request.entries.size();
-  PathJob job;
-  job.entries = entries;
-  job.all = sample_mean;
-  job.field.covariance = [entries](double samples, std::span<const Complex> sums) {
-    return sample_mean(samples, sums.first(entries));
-  };
-  job.field.batches = two_batches(quantities * entries, solve);
-  return job;
-}
-
-}  // namespace
-
 PathJob slab_change_job(const Scene& slab, bool reversed, const Refinement& refinement,
                         const std::vector<FieldChange>& changes) {
   const auto solve = [=] {
@@ -282,7 +264,7 @@ PathJob slab_change_job(const Scene& slab, bool reversed, const Refinement& refi
       all.append(slab_covariance(slab, reversed, refinement, change));
     return all;
   };
-  return two_batch_job(slab, 1 + changes.size(), solve);
+  return two_batch_job(slab.request.entries.size(), 1 + changes.size(), solve);
 }
 
 GradientJob slab_gradient_job(const Scene& slab, bool reversed, const Refinement& refinement) {
@@ -298,7 +280,8 @@ GradientJob slab_gradient_job(const Scene& slab, bool reversed, const Refinement
     }
     return all;
   };
-  return gradient_job(two_batch_job(slab, 1 + parameters.size(), solve), parameters, slab);
+  return gradient_job(two_batch_job(slab.request.entries.size(), 1 + parameters.size(), solve),
+                      parameters, slab);
 }
 
 }  // namespace flatspeckle::mc

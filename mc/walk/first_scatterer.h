@@ -48,7 +48,8 @@ class FirstScatterer {
 
   /// Of the first scatterer and the direction in which it is left.
   template <typename Scattering>
-  double density(Vec2 x, Vec2 start, const Scattering& scattering) const {
+  double density(Vec2 x, const typename Scattering::Direction& start,
+                 const Scattering& scattering) const {
     double sum = 0;
     for (Vec2 w : plane_) sum += density(x, w) * scattering.density(w, start);
     if (has_near()) [[unlikely]]

@@ -5,8 +5,11 @@
 #include <limits>
 #include <numbers>
 #include <set>
+#include <type_traits>
 
 #include "grin/media/phase_function.h"
+#include "mc/ends/space_scattering.h"
+#include "mc/theory/diffusion.h"
 #include "mc/walk/representatives.h"
 
 namespace flatspeckle::mc {
@@ -16,16 +19,20 @@ namespace {
 using std::numbers::pi;
 
 /// Whether a rate lies below the smallest root of the dispersion relation
-///   h_0 = 2 s / (h_1 - s / (h_2 - s / ...)),  h_n = 1 - albedo g^n,  s = rate^2 / 4,
-/// the condition that the Fourier moments of the angle decay.
-bool below_root(double albedo, double g, double rate) {
-  const double s = rate * rate / 4;
+///   h_0 = c_1 r^2 / (h_1 - c_2 r^2 / (h_2 - c_3 r^2 / ...)),  h_n = 1 - albedo g^n,
+/// the condition that the moments of the angle decay: in flatland those of Fourier, c_n = 1/4 but
+/// c_1 = 1/2, in space those of Legendre, c_n = n^2 / (4 n^2 - 1).
+bool below_root(double albedo, double g, int dimension, double rate) {
+  const auto share = [&](int n) {
+    const double square = static_cast<double>(n) * n;
+    return rate * rate * (dimension == 3 ? square / (4 * square - 1) : n == 1 ? 0.5 : 0.25);
+  };
   double tail = 1;  // of high moments, which scattering does not feed
   for (int n = 1000; n >= 1; --n) {
-    tail = 1 - albedo * std::pow(g, n) - s / tail;
+    tail = 1 - albedo * std::pow(g, n) - share(n + 1) / tail;
     if (tail <= 0) return false;
   }
-  return 1 - albedo > 2 * s / tail;
+  return 1 - albedo > share(1) / tail;
 }
 
 constexpr int nodes = 512;  ///< of the table of importance
@@ -72,12 +79,12 @@ std::set<double> view_depths(const Scene& scene) {
 
 }  // namespace
 
-double diffusion_rate(double albedo, double g) {
+double diffusion_rate(double albedo, double g, int dimension) {
   if (albedo >= 1) return 0;
   double low = 0, high = 1;
   for (int step = 0; step < 60; ++step) {
     const double middle = (low + high) / 2;
-    (below_root(albedo, g, middle) ? low : high) = middle;
+    (below_root(albedo, g, dimension, middle) ? low : high) = middle;
   }
   return low;
 }
@@ -85,8 +92,8 @@ double diffusion_rate(double albedo, double g) {
 DepthImportance::DepthImportance(const Scene& scene) : step_(scene.domain.depth / nodes) {
   const double depth = scene.domain.depth;
   const auto& medium = scene.medium;
-  const double beyond = 0.818 * medium.transport_mean_free_path();
-  double rate = diffusion_rate(medium.albedo, medium.g) * medium.mu_t;
+  const double beyond = extrapolation_length(medium);
+  double rate = diffusion_rate(medium.albedo, medium.g, medium.dimension) * medium.mu_t;
   if (scene.domain.kind == Domain::Kind::box)  // what leaves by the sides is lost as well
     rate = std::hypot(rate, pi / (scene.domain.width + 2 * beyond));
   rate = std::max(rate, 1e-8 / depth);
@@ -111,13 +118,14 @@ DepthImportance::DepthImportance(const Scene& scene) : step_(scene.domain.depth 
     for (double log : logs) worth += std::exp(log - largest);
     log_worth_.push_back(largest + std::log(worth / static_cast<double>(logs.size())));
   }
-  // Green's function of the slab, its faces moved outwards; the diffusion constant is half the
-  // transport mean free path.
+  // Green's function of the slab, its faces moved outwards; the diffusion constant is the transport
+  // mean free path over the dimension.
   const auto log_scatterings = [&](double first, double z) {
     const double low = std::min(first, z), high = depth - std::max(first, z);
     return log_sinh(rate * (low + beyond)) + log_sinh(rate * (high + beyond)) -
            log_sinh(rate * (depth + 2 * beyond)) +
-           std::log(2 * medium.mu_s * step_ / (rate * medium.transport_mean_free_path()));
+           std::log(medium.dimension * medium.mu_s * step_ /
+                    (rate * medium.transport_mean_free_path()));
   };
   for (double first : firsts)
     for (int i = 0; i < nodes; ++i) {
@@ -174,19 +182,23 @@ ExpectedContribution::ExpectedContribution(const Scene& scene, const std::vector
   for (Vec2 w : chosen) towards_.push_back(-w);
 }
 
-double ExpectedContribution::operator()(Vec2 x, Vec2 arrival) const {
+template <typename Direction>
+double ExpectedContribution::operator()(Vec2 x, const Direction& arrival) const {
   if (always_) return 1;
-  const grin::HenyeyGreenstein<2> lobe{g_};
+  constexpr int dimension = std::is_same_v<Direction, Vec2> ? 2 : 3;
+  const grin::HenyeyGreenstein<dimension> lobe{g_};
   double largest = 0.01;  // what no representative sees must not wait for one in a million
   for (Vec2 w : towards_) {
     double value = about_exp(mu_t_ * domain_.distance_to_edge(x, w));
-    if (g_ != 0) {
-      const Vec2 step = w - arrival;
-      value *= 2 * pi * lobe.density_beside(dot(step, step) / 2);
-    }
+    if (g_ != 0)
+      value *= lobe.density_beside(one_minus_cosine(arrival, Direction(w))) /
+               grin::Isotropic<dimension>::value;
     largest = std::max(largest, value);
   }
   return largest;
 }
+
+template double ExpectedContribution::operator()(Vec2, const Vec2&) const;
+template double ExpectedContribution::operator()(Vec2, const SpaceDirection&) const;
 
 }  // namespace flatspeckle::mc

@@ -10,8 +10,8 @@ namespace flatspeckle::mc {
 
 /// How fast light of all directions dies out with depth deep inside a medium, per mean free path
 /// and as a factor: exp(-rate mu_t z). The smallest root of the transport equation's dispersion
-/// relation for Henyey-Greenstein scattering in flatland; 0 without absorption.
-double diffusion_rate(double albedo, double g);
+/// relation for Henyey-Greenstein scattering in flatland or in space; 0 without absorption.
+double diffusion_rate(double albedo, double g, int dimension = 2);
 
 /// What a walker at a depth is worth to the far views: the share of its light that leaves the
 /// medium on their sides, by diffusion theory, relative to a mean free path from where the light
@@ -51,8 +51,9 @@ class ExpectedContribution {
  public:
   ExpectedContribution(const Scene& scene, const std::vector<End>& ends);
 
-  /// About 1 where an end is near and scattering is isotropic.
-  double operator()(Vec2 x, Vec2 arrival) const;
+  /// About 1 where an end is near and scattering is isotropic. Direction: Vec2 or SpaceDirection.
+  template <typename Direction>
+  double operator()(Vec2 x, const Direction& arrival) const;
 
  private:
   Domain domain_;

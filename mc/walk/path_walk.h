@@ -19,9 +19,12 @@ namespace flatspeckle::mc {
 /// A path of B >= 2 scatterers as the walk found it. The mean of weight f_a conj(f_b) over walks is
 /// the covariance, with f = F, or F + R with reversed paths (conventions, C14), whose amplitudes
 /// are divided by sqrt(sigma_s).
+template <typename Direction>
 struct Path {
-  Vec2 first, start;   ///< the first scatterer and the direction to the second
-  Vec2 last, arrival;  ///< the last one and the direction in which it is reached
+  Vec2 first;  ///< the first scatterer
+  Direction start;
+  Vec2 last;
+  Direction arrival;  ///< at the last scatterer
   double weight = 0;
   bool new_start = false;  ///< the first such path from this first scatterer and start
 };
@@ -30,11 +33,12 @@ struct Path {
 /// scatterer): here nothing, at no cost.
 struct NoTally {
   void flight(double /*length*/) {}
-  void scattering(Vec2 /*from*/, Vec2 /*to*/) {}
+  template <typename Direction>
+  void scattering(const Direction& /*from*/, const Direction& /*to*/) {}
 };
 
-template <typename Tally>
-struct TalliedPath : Path {
+template <typename Direction, typename Tally>
+struct TalliedPath : Path<Direction> {
   [[no_unique_address]] Tally tally;
 };
 
@@ -49,6 +53,8 @@ struct TalliedPath : Path {
 /// round, and no |R|^2 can outgrow its weight.
 template <typename Scattering, bool reversed, bool weighted, typename Tally = NoTally>
 class PathWalk {
+  using Direction = typename Scattering::Direction;
+
  public:
   /// tally: what every path starts with.
   PathWalk(const Scene& scene, const Plan& plan, const Scattering& scattering, Tally tally = {})
@@ -66,7 +72,8 @@ class PathWalk {
 
   template <typename Scorer>
   void walk(RandomStream& random, Scorer& scorer) {
-    const auto [x, arrival] = first_.sample(random);
+    const auto [x, light] = first_.sample(random);
+    const Direction arrival = light;
     if (plan_.sampled_single) scorer.single(x, medium_.mu_s / first_.density(x));
     path_ = {{x, scattering_.sample(arrival, random), {}, {}, 0, true}, tally_};
     start_density_ = -1;
@@ -90,7 +97,8 @@ class PathWalk {
  private:
   /// Weights in units of mu_s^2 / mu_t, that of B = 2.
   struct Walker {
-    Vec2 x, arrival;
+    Vec2 x;
+    Direction arrival;
     double weight;
     std::uint32_t copies;
     [[no_unique_address]] Tally tally;
@@ -111,7 +119,7 @@ class PathWalk {
   bool step(Walker& walker, RandomStream& random) {
     constexpr std::uint64_t between_looks = 4096;
     if (++steps_ % between_looks == 0) stop_if_interrupted();
-    const Vec2 w = scattering_.sample(walker.arrival, random);
+    const Direction w = scattering_.sample(walker.arrival, random);
     const double flight = sample_flight(walker, w, random);
     if (flight >= domain_.distance_to_edge(walker.x, w)) return false;
     walker.tally.scattering(walker.arrival, w);
@@ -193,7 +201,7 @@ class PathWalk {
   }
 
   /// What a path that ends at x is likely to contribute, for a walker of usual weight there.
-  double expected(Vec2 x, Vec2 arrival) const {
+  double expected(Vec2 x, const Direction& arrival) const {
     const double value = expected_view_(x, arrival);
     if constexpr (weighted) return value * importance(x);
     return value;
@@ -214,7 +222,7 @@ class PathWalk {
   ExpectedContribution expected_view_;
   std::vector<Walker> waiting_;
   [[no_unique_address]] Tally tally_;
-  TalliedPath<Tally> path_;
+  TalliedPath<Direction, Tally> path_;
   double start_density_ = -1, log_worth_first_ = 0, expected_first_ = 0;
   double ticket_ = 0;  ///< a score at every whole number
   std::uint64_t steps_ = 0;

@@ -26,10 +26,10 @@ bool can_see_backscattering(const CovarianceRequest& request, const Domain& doma
 }
 
 /// Twice the mean square of the phase function over the square of its mean: measured to be about
-/// best (bench_efficiency), and flat around it.
-double score_level(double g) {
+/// best in the plane (bench_efficiency), and flat around it.
+double score_level(double g, int dimension) {
   const double square = std::min(g * g, 0.9);
-  return 2 * (1 + square) / (1 - square);
+  return 2 * (1 + square) / std::pow(1 - square, dimension - 1);
 }
 
 /// Whether a box is so narrow that little reaches the views without absorption either.
@@ -72,12 +72,12 @@ Plan make_plan(const Scene& scene, ReversedPaths reversed) {
   const auto& request = scene.request;
   Plan plan;
   plan.domain = scene.domain.kind;
-  plan.phase = phase_of(scene.scatterer);
+  plan.phase = scene.medium.dimension == 3 ? Plan::Phase::space : phase_of(scene.scatterer);
   plan.reversed = reversed == ReversedPaths::yes || (reversed == ReversedPaths::automatic &&
                                                      can_see_backscattering(request, scene.domain));
   plan.near = has_near_ends(request);
   plan.rank_k = request.kind == CovarianceRequest::Kind::full;
-  plan.score_level = score_level(scene.medium.g);
+  plan.score_level = score_level(scene.medium.g, scene.medium.dimension);
   plan.phases = plan.reversed || request.kind != CovarianceRequest::Kind::intensity;
   plan.weighted = scene.medium.albedo < 1 - 1e-12 || loses_by_the_sides(scene);
   constexpr std::size_t few = 20000;  // entries; a millisecond each at the most
@@ -98,6 +98,9 @@ std::string Plan::describe() const {
       break;
     case Phase::tabulated:
       text << "tabulated amplitude";
+      break;
+    case Phase::space:
+      text << "phase function in space";
       break;
   }
   text << "; " << (weighted ? "walkers split and play roulette" : "walkers of equal weight") << "; "

@@ -14,7 +14,7 @@ enum class ReversedPaths { automatic, yes, no };
 /// What a scene asks of the estimator, derived before the first batch. Each choice picks a kernel
 /// that has no code for what is left out.
 struct Plan {
-  enum class Phase { isotropic, henyey_greenstein, tabulated };
+  enum class Phase { isotropic, henyey_greenstein, tabulated, space };
   Domain::Kind domain = Domain::Kind::box;
   Phase phase = Phase::isotropic;
   bool phases = true;          ///< false: magnitudes alone, which is all that intensities need
@@ -31,7 +31,7 @@ struct Plan {
   std::string describe() const;
 };
 
-/// Which form of scattering a scatterer needs.
+/// Which form of scattering a scatterer of the plane needs.
 Plan::Phase phase_of(const Scatterer& scatterer);
 
 Plan make_plan(const Scene& scene, ReversedPaths reversed);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cassert>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -7,7 +8,7 @@
 #include <type_traits>
 
 #include "flatland/scene/scene.h"
-#include "mc/ends/scattering.h"
+#include "mc/ends/space_scattering.h"
 #include "mc/walk/path_walk.h"
 #include "mc/walk/plan.h"
 
@@ -25,7 +26,7 @@ void with_flag(bool flag, F f) {
     f(std::false_type{});
 }
 
-/// Calls f with a scene's scattering in one of its forms.
+/// Calls f with the scattering of a scene of the plane in one of its forms.
 template <typename F>
 void with_scattering(const Scene& scene, Plan::Phase phase, F f) {
   switch (phase) {
@@ -35,7 +36,16 @@ void with_scattering(const Scene& scene, Plan::Phase phase, F f) {
       return f(HenyeyGreensteinScattering{{scene.scatterer.g}});
     case Plan::Phase::tabulated:
       return f(TabulatedScattering(scene.medium, scene.k));
+    case Plan::Phase::space:
+      assert(false);
   }
+}
+
+/// The same of any scene.
+template <typename F>
+void with_any_scattering(const Scene& scene, Plan::Phase phase, F f) {
+  if (phase == Plan::Phase::space) return f(SpaceScattering(scene.medium.space_phase));
+  with_scattering(scene, phase, f);
 }
 
 /// What all batches of walks share.
@@ -84,7 +94,7 @@ auto walks(const Kind& kind, const Scene& scene, const Plan& plan, std::uint64_t
         kind, scene, plan, scattering);
     batches = [=](std::uint64_t number, Sums sums) { shared->batch(seed, number, sums); };
   };
-  with_scattering(scene, plan.phase, [&](const auto& scattering) {
+  with_any_scattering(scene, plan.phase, [&](const auto& scattering) {
     with_flag(plan.weighted, [&](auto weighted) {
       if (plan.reversed) return choose(scattering, weighted, std::true_type{}, std::true_type{});
       with_flag(plan.phases,

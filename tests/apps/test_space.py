@@ -1,4 +1,4 @@
-"""dimension = 3: slabs in space by transport, known numbers and what files say."""
+"""dimension = 3: slabs in space, known numbers and what files say."""
 
 import unittest
 
@@ -31,6 +31,42 @@ class Space(ProgramTest):
             self.assertAlmostEqual(mean_cosine, g, delta=1e-9)
             for one, other in zip(correlation, known):
                 self.assertAlmostEqual(one, other, delta=6e-5)
+
+    def test_monte_carlo_has_them_too(self):
+        self.call("covariance", **(SPACE | {"method": "mc", "scatterer": "hg", "g": 0}), seed=1,
+                  samples=40000, out="x.h5")
+        with h5py.File(self.folder / "x.h5") as file:
+            self.assertEqual(file.attrs["dimension"], 3)
+            self.assertNotIn("errors", file.attrs)
+            error = file["intensity_error"][0, 0]
+            self.assertAlmostEqual(file["intensity"][0, 0], 0.058862, delta=4 * error)
+            self.assertLess(error, 1e-3)
+
+    def test_validate(self):
+        keys = {key: value for key, value in SPACE.items() if key != "method"}
+        table = {"scatterer": "phase_table", "phase_table": "p.csv", "optical_depth": 3}
+        (self.folder / "p.csv").write_text("angle,value\n0,5\n1,1\n3.141592653589793,0.2\n")
+        for more in ({"scatterer": "hg", "g": 0.6}, table):
+            self.call("validate", **(keys | TILTS | more | {"tolerance": 1e-3}), seed=1, samples=20000,
+                      out="x.h5")
+            with h5py.File(self.folder / "x.h5") as file:
+                self.assertLess(max(file["deviation"][:]), 4)
+
+    def test_delays_by_both_methods(self):
+        delays = [0, 0.01, 0.1]
+        found = {}
+        for method, more in (("transport", {"tolerance": 1e-4}),
+                             ("mc", {"seed": 2, "samples": 20000})):
+            keys = SPACE | more | {"method": method, "scatterer": "rayleigh", "optical_depth": 2}
+            self.call("covariance", **keys, delays=delays, out="x.h5")
+            with h5py.File(self.folder / "x.h5") as file:
+                found[method] = (file["field_correlation"][:].ravel(),
+                                 file["field_correlation_error"][:].ravel())
+        self.assertAlmostEqual(found["transport"][0][0], 1, delta=1e-9)
+        for t in range(len(delays)):
+            self.assertAlmostEqual(found["mc"][0][t], found["transport"][0][t],
+                                   delta=4 * found["mc"][1][t] + 1e-4)
+            self.assertLess(found["mc"][1][t], 0.02)
 
     def test_a_table_is_per_solid_angle(self):
         (self.folder / "p.csv").write_text("angle,value\n0,1\n3.141592653589793,1\n")

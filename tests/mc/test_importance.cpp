@@ -61,6 +61,11 @@ TEST_CASE("the rate at which light dies out is that of the transport equation") 
     CHECK(diffusion_rate(1 - absorbed, g) ==
           doctest::Approx(std::sqrt(2 * absorbed * (1 - g))).epsilon(1e-3));
   }
+  for (const double albedo : {0.3, 0.8, 0.99}) {  // in space 1 = albedo atanh(rate) / rate
+    const double rate = diffusion_rate(albedo, 0, 3);
+    CHECK(albedo * std::atanh(rate) == doctest::Approx(rate).epsilon(1e-6));
+  }
+  CHECK(diffusion_rate(1 - 1e-6, 0.9, 3) == doctest::Approx(std::sqrt(3e-6 * 0.1)).epsilon(1e-3));
   CHECK(diffusion_rate(1, 0.9) == 0);
   CHECK(diffusion_rate(0.9, 0.9) > diffusion_rate(0.9, 0.95));
 }

@@ -43,6 +43,23 @@ TEST_CASE("a wide beam beside a slab is a plane wave of its width") {
     CHECK(std::abs(found.value[v] / (width * plane.value[v]) - 1.0) < 1e-5);
 }
 
+TEST_CASE("beams beside a thin slab: single scattering in closed form") {
+  constexpr double depth = 10, waist = 20, shift = 15, thickness = 1e-3;
+  const auto beam_at = [](double x) { return gaussian_beam(0, {x, 0}, waist); };
+  const std::vector<double> views = {0.2, 0.205};
+  const auto request = full_request({{beam_at(0), beam_at(shift)}}, far_views(views));
+  const auto found = slab_covariance(hg_slab(depth, {depth / thickness, 0, 1}, request), false, {});
+  const double once = thickness * waist * std::sqrt(pi / 2) / (2 * pi),
+               q = wavenumber * (std::sin(views[0]) - std::sin(views[1])),
+               along = wavenumber * (std::cos(views[0]) - std::cos(views[1])) * depth / 2,
+               apart = std::exp(-q * q * waist * waist / 8) * std::sin(along) / along,
+               moved = std::exp(-shift * shift / (2 * waist * waist));
+  // lower triangle of [light][view]; what is scattered twice is a percent
+  CHECK(std::abs(found.value[0] / once - 1.0) < 0.01);
+  CHECK(std::abs(std::abs(found.value[1]) / once - apart) < 0.01 * apart);
+  CHECK(std::abs(std::abs(found.value[3]) / once - moved) < 0.01 * moved);
+}
+
 TEST_CASE("beams beside a slab as in a wide box by Monte Carlo") {
   constexpr double depth = 20;
   const Light beam = gaussian_beam(0.2, {0, -30}, 8), moved = gaussian_beam(0.2, {4, -30}, 8);

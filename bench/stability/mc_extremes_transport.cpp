@@ -1,0 +1,79 @@
+// Slabs without chance, in the plane and in space, as thin, deep and peaked as they come.
+
+#include <cmath>
+#include <numbers>
+
+#include "bench/stability/extreme_rows.h"
+#include "bench/stability/mc_extremes.h"
+#include "grin/media/phase_function.h"
+#include "mc/estimators/flux_walk.h"
+#include "mc/space/space_flux.h"
+#include "mc/space/space_scene.h"
+#include "mc/transport/slab_covariance.h"
+#include "mc/transport/slab_flux.h"
+
+namespace flatspeckle::bench {
+
+namespace {
+
+using mc::ReversedPaths;
+constexpr double pi = std::numbers::pi;
+
+/// Without absorption.
+Finding lossless_in_plane(const Bulk& bulk) {
+  const Scene scene = hg_slab(bulk, intensity_request({0}, {far_view(0)}));
+  const auto shares = mc::slab_flux(scene, 0, {1e-6}).value;
+  const Complex left = shares[mc::reflected] + shares[mc::transmitted];
+  return {std::abs(left + std::expm1(-bulk.optical_depth)), 1e-9};
+}
+
+Finding lossless_in_space(const Bulk& bulk) {
+  const mc::SpaceSlab slab{2 * pi, bulk.optical_depth / bulk.depth, bulk.depth, bulk.albedo,
+                           mc::SpaceLaw([g = bulk.g](double cosine) {
+                             return grin::HenyeyGreenstein<3>{g}.density_at(cosine);
+                           })};
+  const auto flux = mc::space_flux(slab, 0, {1e-6});
+  return {std::abs(flux.reflected + flux.transmitted + std::expm1(-bulk.optical_depth)), 1e-9};
+}
+
+/// Intensities of Monte Carlo, in errors.
+Finding by_paths(const Bulk& bulk, double view, std::uint64_t paths) {
+  const Scene scene = hg_slab(bulk, intensity_request({0}, {far_view(view)}));
+  const auto exact = mc::slab_covariance(scene, false, {1e-4}).value;
+  const Estimate found = covariance(scene, ReversedPaths::no, paths);
+  return in_errors(found.value[0], found.error[0], exact[0], 0.1, 1e-4);
+}
+
+Finding by_paths_in_space(const Bulk& bulk, double view, std::uint64_t paths) {
+  SceneSpec spec;
+  spec.scatterer = "hg";
+  spec.g = bulk.g;
+  const Scene scene = mc::in_space(hg_slab(bulk, intensity_request({0}, {far_view(view)})), spec);
+  const auto request = mc::space_request(scene.request);
+  const auto exact = mc::space_covariance(mc::space_slab(scene), request, false, {1e-3}).value;
+  const Estimate found = covariance(scene, ReversedPaths::no, paths);
+  return in_errors(found.value[0], found.error[0], exact[0], 0.1, 1e-3);
+}
+
+}  // namespace
+
+std::vector<ExtremeCase> mc_transport_extremes() {
+  ExtremeRows rows("mc");
+  const std::string energy = "reflected + transmitted = scattered", errors = "paths, in errors";
+  for (const Bulk& bulk : {Bulk{1e-3}, Bulk{1e4}, Bulk{5, 0.99}}) {
+    const std::string name =
+        "OD " + short_number(bulk.optical_depth) + ", g " + short_number(bulk.g);
+    rows.add("transport, " + name, energy, [=] { return lossless_in_plane(bulk); });
+    rows.add("transport in space, " + name, energy, [=] { return lossless_in_space(bulk); });
+  }
+  for (const Bulk& bulk : {Bulk{1e-3, 0.5}, Bulk{30, 0, 0.8}}) {
+    const std::string name =
+        "OD " + short_number(bulk.optical_depth) + ", albedo " + short_number(bulk.albedo);
+    rows.add("transport, " + name, errors, [=] { return by_paths(bulk, 0.3, 20000); });
+    rows.add("transport in space, " + name, errors,
+             [=] { return by_paths_in_space(bulk, 0.3, 20000); });
+  }
+  return std::move(rows).rows();
+}
+
+}  // namespace flatspeckle::bench

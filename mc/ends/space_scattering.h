@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cmath>
+#include <utility>
+
+#include "flatland/media/medium.h"
+#include "grin/media/start_directions.h"
+#include "mc/ends/scattering.h"
+
+namespace flatspeckle::mc {
+
+/// A unit vector of space, y across the plane of incidence. Lights and views lie in that plane, so
+/// that of a place in a slab x and z are all that matters, and of a flight its part in the plane.
+struct SpaceDirection {
+  double x = 0, y = 0, z = 1;
+
+  SpaceDirection() = default;
+  SpaceDirection(double along, double across, double deep) : x(along), y(across), z(deep) {}
+  SpaceDirection(Vec2 in_plane) : x(in_plane.x), z(in_plane.z) {}
+  operator Vec2() const { return {x, z}; }
+};
+
+inline SpaceDirection operator-(const SpaceDirection& a) {
+  return {-a.x, -a.y, -a.z};
+}
+inline double dot(const SpaceDirection& a, const SpaceDirection& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+inline double one_minus_cosine(const SpaceDirection& from, const SpaceDirection& to) {
+  const SpaceDirection step(to.x - from.x, to.y - from.y, to.z - from.z);
+  return dot(step, step) / 2;
+}
+
+/// Scattering (scattering.h) of scalar waves in space (conventions, C41).
+class SpaceScattering {
+ public:
+  using Direction = SpaceDirection;
+
+  explicit SpaceScattering(SpacePhase phase) : phase_(std::move(phase)) {}
+
+  double density(const Direction& from, const Direction& to) const {
+    return phase_.density(dot(from, to));
+  }
+  double amplitude(const Direction& from, const Direction& to) const {
+    return std::sqrt(density(from, to));
+  }
+  void towards(const Direction& from, const Directions& to, std::span<Complex> out) const {
+    for (std::size_t j = 0; j < out.size(); ++j) out[j] *= amplitude(from, to[j]);
+  }
+  Direction sample(const Direction& from, RandomStream& random) const {
+    const double turn = phase_.one_minus_cosine(random);
+    const grin::Vec3 to = grin::random_turn({from.x, from.y, from.z}, turn, random);
+    return {to[0], to[1], to[2]};
+  }
+
+ private:
+  SpacePhase phase_;
+};
+
+}  // namespace flatspeckle::mc

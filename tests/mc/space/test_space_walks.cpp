@@ -1,0 +1,118 @@
+#include <array>
+
+#include <doctest/doctest.h>
+
+#include "mc/estimators/brownian.h"
+#include "mc/estimators/gradient.h"
+#include "tests/mc/space/scenes_in_space.h"
+
+namespace flatspeckle::mc {
+
+namespace {
+
+using tests::by_transport;
+using tests::check_agreement;
+using tests::hg_in_space;
+using tests::pi;
+using tests::tilted_pairs;
+
+constexpr double depth = 200;
+const std::vector<double> momenta = {0, 1 / depth, -3 / depth};
+
+}  // namespace
+
+TEST_CASE("slabs in space: Monte Carlo and transport agree") {
+  for (const auto& [g, optical_depth, albedo] :
+       {std::array{0.0, 0.1, 0.7}, {-0.5, 2.0, 1.0}, {0.6, 8.0, 0.9}})
+    for (const double view : {-0.3, 2.5})
+      check_agreement(tests::in_space(hg_in_space(depth, optical_depth, g, albedo),
+                                      tilted_pairs(0.4, view, momenta)),
+                      false, 60000, 0.05);
+  check_agreement(tests::in_space(hg_in_space(depth, 5, 0.9, 1), tilted_pairs(0.05, 0, momenta)),
+                  false, 60000, 0.05);
+}
+
+TEST_CASE("slabs in space: reversed paths of Monte Carlo and of transport agree") {
+  for (const double off : {0.0, 0.002, 0.02})
+    check_agreement(tests::in_space(hg_in_space(depth, 4, 0.5, 0.98),
+                                    tilted_pairs(0.1, pi + 0.1 + off, momenta)),
+                    true, 40000, 0.05);
+}
+
+TEST_CASE("slabs in space: Monte Carlo and transport agree on a wide tilt") {
+  check_agreement(tests::in_space(hg_in_space(20, 1, 0.8, 1), tilted_pairs(0, 0.5, {0, 0.5, -1.5})),
+                  false, 100000, 0.05);
+}
+
+TEST_CASE("slabs in space: two terms, one after the other") {
+  SceneSpec spec = hg_in_space(depth, 3, 0, 0.95);
+  spec.g = std::nullopt;
+  spec.scatterer = "two_term_hg";
+  auto& terms = std::get<TwoTermHg>(spec.bulk);
+  terms.g = 0.8;
+  terms.g_back = -0.4;
+  terms.forward_share = 0.7;
+  check_agreement(tests::in_space(spec, tilted_pairs(0.2, 0, momenta)), false, 40000, 0.05);
+}
+
+TEST_CASE("Rayleigh's phase function, in the plane and in space") {
+  SceneSpec spec = hg_in_space(depth, 3, 0, 0.9);
+  spec.g = std::nullopt;
+  spec.scatterer = "rayleigh";
+  const auto plane = make_scene(spec).medium.phase.density;
+  double whole = 0;
+  for (int i = 0; i < 8; ++i) whole += 2 * pi / 8 * plane(pi * (i + 0.5) / 8);
+  CHECK(whole == doctest::Approx(1).epsilon(1e-12));
+  CHECK(plane(pi / 2) == doctest::Approx(plane(0) / 2).epsilon(1e-12));
+  const Scene scene = tests::in_space(spec, tilted_pairs(0.2, 0, momenta));
+  check_agreement(scene, false, 40000, 0.05);
+  const auto moments = space_slab(scene).law.moments();  // 3/4 (1 + c^2) = 1 + P_2 / 2
+  REQUIRE(moments.size() == 3);
+  CHECK(moments[1] == doctest::Approx(0).epsilon(1e-12));
+  CHECK(moments[2] == doctest::Approx(0.1).epsilon(1e-12));
+}
+
+TEST_CASE("slabs in space: correlations after delays by both methods") {
+  const std::vector<double> delays = {0.003, 0.03, 0.3};
+  for (const double view : {0.3, pi + 0.1}) {
+    const bool reversed = view > 1;
+    const auto scene = tests::in_space(hg_in_space(depth, 4, 0.6, 0.95),
+                                       intensity_request({0.1}, {far_view(view)}));
+    const auto plan = make_plan(scene, reversed ? ReversedPaths::yes : ReversedPaths::no);
+    const auto job = delay_job(scene, plan, delays, 5);
+    const auto [value, error] = jackknife(tests::summed(job.field.batches, 60000), job.all);
+    for (std::size_t t = 0; t < delays.size(); ++t) {
+      const Complex expected = space_covariance(space_slab(scene, delays[t]),
+                                                space_request(scene.request), reversed, {1e-3})
+                                   .value[0];
+      CHECK_WITHIN_4_SIGMA(value[1 + t], error[1 + t], expected, 0);
+      CHECK(error[1 + t] < 0.05 * std::abs(expected));
+    }
+  }
+}
+
+TEST_CASE("slabs in space: derivatives of Monte Carlo are differences of transport") {
+  const auto at = [](double mu_t, double g, double albedo) {
+    return tests::in_space(hg_in_space(depth, mu_t * depth, g, albedo),
+                           intensity_request({0.1}, {far_view(-0.3)}));
+  };
+  constexpr double mu_t = 0.02, g = 0.6, albedo = 0.95, step = 1e-3;
+  const auto slope = [&](double by_mu_t, double by_g, double by_albedo) {
+    const auto moved = [&](double by) {
+      return by_transport(at(mu_t + by * by_mu_t, g + by * by_g, albedo + by * by_albedo), false,
+                          1e-6)
+          .value[0];
+    };
+    return (moved(step) - moved(-step)) / (2 * step);
+  };
+  const std::vector<Complex> expected = {slope(mu_t, 0, 0) / mu_t, slope(0, 1, 0), slope(0, 0, 1)};
+  const Scene scene = at(mu_t, g, albedo);
+  const auto job = gradient_job(scene, gradient_plan(scene, ReversedPaths::no), 3);
+  const auto [value, error] = jackknife(tests::summed(job.field.batches, 100000), job.gradient);
+  for (std::size_t p = 0; p < expected.size(); ++p) {
+    CHECK_WITHIN_4_SIGMA(value[p], error[p], expected[p], 0);
+    CHECK(error[p] < 0.1 * std::abs(expected[p]));
+  }
+}
+
+}  // namespace flatspeckle::mc
