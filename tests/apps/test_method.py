@@ -58,6 +58,25 @@ class Method(ProgramTest):
             mc, transport = (file[f"{name}/field_correlation"][:] for name in ("mc", "transport"))
             self.assertLess(np.max(np.abs(mc - transport)), 0.05)
 
+    def test_near_ends_beside_a_slab(self):
+        (self.folder / "sensors.csv").write_text("x,z\n0,105\n")
+        (self.folder / "inside.csv").write_text("x,z\n0,20\n")
+        beam, sensors = {"beam_waist": 10}, {"near_sensors": "sensors.csv"}
+        moved = {"covariance": "translation", "shifts": [0, 5]}
+        (self.folder / "before.csv").write_text("x,z\n0,-5\n")
+        for keys in (beam, beam | moved, sensors, {"near_sources": "before.csv"}):
+            with self.subTest(keys=keys):
+                self.assertIn("near ends", self.attributes("covariance", SLAB | keys)["plan"])
+        for keys, words in ((beam | {"samples": 400}, "of transport alone"),
+                            (beam | sensors, "far views"), (beam | {"gradient": True}, "gradient"),
+                            ({"near_sensors": "inside.csv"}, "outside of the slab"),
+                            ({"near_sources": "inside.csv"}, "z < 0"),
+                            (beam | {"dimension": 3}, "dimension")):
+            with self.subTest(keys=keys):
+                done = self.call("covariance", **SLAB | keys, out="y.h5", status=2)
+                self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
+                self.assertIn(words, done.stderr)
+
 
 if __name__ == "__main__":
     unittest.main()
