@@ -145,10 +145,7 @@ Estimation transport_estimation(const Scene& scene, mc::ReversedPaths reversed, 
   plan << "transport: pairs at one transverse frequency" << (space ? " in space" : "")
        << ", by doubling; " << (near ? "near ends as plane waves; " : "")
        << (with_reversed ? "reversed paths" : "no reversed paths") << "; tolerance " << tolerance;
-  if (space)
-    return {mc::space_covariance_job(mc::space_slab(scene), mc::space_request(scene.request),
-                                     with_reversed, {tolerance}),
-            plan.str()};
+  if (space) return {mc::space_covariance_job(scene, with_reversed, {tolerance}), plan.str()};
   return {mc::slab_covariance_job(scene, with_reversed, {tolerance}), plan.str()};
 }
 

@@ -126,7 +126,8 @@ def worst_error(sweep):
         known = sweep.rows[sweep.of(method, "range_censored")[sweep.rows] == 0]
         errors += list(sweep.of(method, "memory_effect_range_error")[known]
                        / sweep.of(method, "memory_effect_range")[known])
-    return f"standard errors up to {100 * max(errors):.2g} %" if errors else "bounds alone"
+    kind = "errors" if sweep.result.attribute("errors") else "standard errors"
+    return f"{kind} up to {100 * max(errors):.2g} %" if errors else "bounds alone"
 
 
 def entries(sweep, holes):

@@ -152,7 +152,8 @@ Scene without_bulk(const Keys& keys, const SceneSpec& spec) {
   check_structure(keys, spec, scene.scatterer);
   scene.request = make_request(keys, spec);
   check_reach(scene);
-  if (scene.domain.kind == Domain::Kind::slab) check_slab_request(scene.request, scene.domain.depth);
+  if (scene.domain.kind == Domain::Kind::slab)
+    check_slab_request(scene.request, scene.domain.depth);
   return scene;
 }
 

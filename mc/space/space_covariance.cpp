@@ -168,13 +168,4 @@ Refined space_covariance(const SpaceSlab& slab, const SpaceRequest& request, boo
   return all;
 }
 
-FieldJob space_covariance_job(const SpaceSlab& slab, const SpaceRequest& request, bool reversed,
-                              const Refinement& refinement) {
-  FieldJob job;
-  job.covariance = sample_mean;
-  job.batches = two_batches(request.entries.size(),
-                            [=] { return space_covariance(slab, request, reversed, refinement); });
-  return job;
-}
-
 }  // namespace flatspeckle::mc

@@ -1,6 +1,5 @@
 #pragma once
 
-#include "flatland/request/field_moments.h"
 #include "mc/space/space_chains.h"
 #include "mc/space/space_law.h"
 #include "mc/transport/refinement.h"
@@ -20,9 +19,5 @@ struct SpaceSlab {
 /// are refined until each alone changes nothing; the tolerance is relative to scales().
 Refined space_covariance(const SpaceSlab& slab, const SpaceRequest& request, bool reversed,
                          const Refinement& refinement);
-
-/// The same as a job (two_batches()).
-FieldJob space_covariance_job(const SpaceSlab& slab, const SpaceRequest& request, bool reversed,
-                              const Refinement& refinement);
 
 }  // namespace flatspeckle::mc

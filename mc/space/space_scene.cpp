@@ -7,6 +7,7 @@
 #include "grin/media/rayleigh_phase.h"
 #include "grin/media/table_phase.h"
 #include "grin/media/two_term_phase.h"
+#include "mc/transport/range_refinement.h"
 
 namespace flatspeckle::mc {
 
@@ -49,6 +50,19 @@ Scene in_space(Scene slab, const ScattererValues& values) {
 SpaceSlab space_slab(const Scene& scene, double delay) {
   return {scene.k, scene.medium.mu_t, scene.domain.depth, scene.medium.albedo,
           SpaceLaw(scene.medium.space_phase.density, delay)};
+}
+
+FieldJob space_covariance_job(const Scene& scene, bool reversed, const Refinement& refinement) {
+  FieldJob job;
+  job.covariance = sample_mean;
+  job.batches = two_batches(scene.request.entries.size(), [=] {
+    const SpaceSlab slab = space_slab(scene);
+    const SpaceRequest request = space_request(scene.request);
+    return refined_range(scene.request, refinement, [&](const Refinement& finer) {
+      return space_covariance(slab, request, reversed, finer);
+    });
+  });
+  return job;
 }
 
 PathJob space_delay_job(const Scene& scene, bool reversed, const Refinement& refinement,

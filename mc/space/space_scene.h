@@ -1,5 +1,6 @@
 #pragma once
 
+#include "flatland/request/field_moments.h"
 #include "flatland/scene/scene.h"
 #include "mc/space/space_covariance.h"
 
@@ -13,6 +14,9 @@ Scene in_space(Scene slab, const ScattererValues& values);
 
 /// Of a scene in space, whose second fields are recorded after a delay (SpaceLaw).
 SpaceSlab space_slab(const Scene& scene, double delay = 0);
+
+/// space_covariance() as a job (two_batches()); the tolerance holds for a range too.
+FieldJob space_covariance_job(const Scene& scene, bool reversed, const Refinement& refinement);
 
 /// Quantities as those of delay_job(): the entries without delay, then with each.
 PathJob space_delay_job(const Scene& scene, bool reversed, const Refinement& refinement,

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "mc/transport/pair_wave.h"
 #include "mc/transport/bulk_slope.h"
+#include "mc/transport/pair_wave.h"
 
 namespace flatspeckle::mc {
 

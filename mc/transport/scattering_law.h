@@ -4,8 +4,8 @@
 #include <functional>
 #include <vector>
 
-#include "flatland/scene/scene.h"
 #include "core/numbers/complex.h"
+#include "flatland/scene/scene.h"
 
 namespace flatspeckle::mc {
 

@@ -3,10 +3,10 @@
 #include <vector>
 
 #include "mc/transport/angular_grid.h"
+#include "mc/transport/bulk_slope.h"
 #include "mc/transport/double_scattering.h"
 #include "mc/transport/layer.h"
 #include "mc/transport/pair_wave.h"
-#include "mc/transport/bulk_slope.h"
 
 namespace flatspeckle::mc {
 
