@@ -174,7 +174,8 @@ REQUEST_CASES = [
     ("covariance", BOX, {"near_sensors": "no.csv"}, ["no.csv"]),
     ("covariance", BOX, {"near_sensors": "empty.csv"}, ["empty.csv"]),
     ("covariance", BOX, {"near_sensors": "header.csv"}, ["header.csv", "at least one"]),
-    ("covariance", SLAB, {"near_sensors": "out.csv"}, ["near_sensors", "far views only"]),
+    ("covariance", SLAB, {"near_sensors": "out.csv"}, ["near_sensors", "outside of the slab"]),
+    ("covariance", SLAB, {"near_sensors": "out.csv", "beam_waist": 9}, ["take far views"]),
     ("sweep", SWEEP, {"near_sensors": "out.csv"}, ["near_sensors", "far views"]),
 ]
 MAP = {"covariance": "tilt_shift", "tilts": [0, 0.01], "shifts": [0, 0.1]}
@@ -191,8 +192,8 @@ LIGHT_CASES = [
     ("covariance", BOX, {"beam_depth": 1}, ["beam_depth = 1", "beam_waist"]),
     ("covariance", BOX, {"beam_waist": 2, "beam_positions": ["nan"]}, ["beam_positions = nan"]),
     ("covariance", BOX, {"beam_waist": 2, "beam_positions": [40]}, ["40", "misses the medium"]),
-    ("covariance", SLAB, {"near_sources": "out.csv"}, ["near_sources", "plane waves only"]),
-    ("covariance", SLAB, {"beam_waist": 2}, ["beam_waist", "plane waves only"]),
+    ("covariance", SLAB, {"near_sources": "out.csv"}, ["near_sources", "z < 0"]),
+    ("covariance", SLAB, {"beam_waist": 2, "samples": 400}, ["beams", "of transport alone"]),
     ("covariance", {**BOX, **TILTS}, {"beam_waist": 2}, ["memory_effect", "tilt_shift"]),
     ("covariance", {**BOX, **PAIRS}, {"beam_waist": 2}, ["beam_waist", "pairs"]),
     ("covariance", {**BOX, **PAIRS}, {"near_sources": "out.csv"}, ["near_sources", "pairs"]),

@@ -42,7 +42,7 @@ CASES = [
     ("covariance", WIDE, {"light_angles": [2]}, ["light_angles = 2"]),
     ("covariance", WIDE, {"covariance": "full", "view_angles": [0, 0.1]},
      ["covariance", "slab"]),
-    ("covariance", WIDE, {"near_sensors": "points.csv"}, ["near_sensors", "far views only"]),
+    ("covariance", WIDE, {"near_sensors": "points.csv"}, ["near_sensors", "outside of the slab"]),
     ("covariance", WIDE, {"gradient": True, "delays": [0.1]}, ["gradient, delays"]),
     ("covariance", WIDE, {"method": "wave"}, ["domain = slab", "box"]),
     ("covariance", FLUID, {"samples": -1}, ["samples = -1"]),
