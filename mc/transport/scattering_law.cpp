@@ -90,7 +90,7 @@ void ScatteringLaw::tabulate(const Scene& scene) {
 
 /// From the table by Lagrange's cubic through the nearest nodes; A is even about both of its ends.
 Complex ScatteringLaw::amplitude(double angle) const {
-  const double theta = std::abs(std::remainder(angle, 2 * pi));
+  const double theta = std::abs(angle - 2 * pi * std::rint(angle / (2 * pi)));
   if (density_) return std::sqrt(density_(theta));
   const auto last = static_cast<std::ptrdiff_t>(table_.size()) - 1;
   const double position = theta / pi * static_cast<double>(last);
