@@ -117,19 +117,11 @@ Scene rounded_scene(const Keys& keys, const SceneSpec& spec) {
   return make_scene(rounded);
 }
 
-void require_far_ends(const Scene& scene) {
-  if (scene.domain.kind == Domain::Kind::slab && has_near_ends(scene.request))
-    throw InputError(
-        "method: beams, near sources and near sensors beside a slab are of transport "
-        "alone; or take a box");
-}
-
 Scene with_dimension(const MethodSettings& settings, const Scene& scene, const SceneSpec& spec) {
   return settings.dimension == 3 ? mc::in_space(scene, spec) : scene;
 }
 
 Estimation mc_estimation(const Scene& scene, mc::ReversedPaths reversed, std::uint64_t seed) {
-  require_far_ends(scene);
   const auto plan = mc::make_plan(scene, reversed);
   const auto& structure = scene.medium.structure;
   return {mc::covariance_job(scene, plan, seed),

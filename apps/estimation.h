@@ -67,9 +67,6 @@ void note(const Neglected& neglected);
 /// The scene with the rounded number in place of its density, so that both solvers have the same.
 Scene rounded_scene(const Keys& keys, const SceneSpec& spec);
 
-/// Monte Carlo knows near ends in boxes alone. Throws InputError.
-void require_far_ends(const Scene& scene);
-
 /// The scene of the plane, or with `dimension` = 3 the one of space that has the same keys. Throws
 /// InputError for what is no slab.
 Scene with_dimension(const MethodSettings& settings, const Scene& scene, const SceneSpec& spec);

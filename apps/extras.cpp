@@ -16,10 +16,6 @@ void require_plane_waves(const std::string& key, const CovarianceRequest& reques
     throw InputError(key + ": needs plane waves, and no tilt_shift");
 }
 
-void refuse_near_ends(const std::string& key, const CovarianceRequest& request) {
-  if (has_near_ends(request)) throw InputError(key + ": needs plane waves and far views");
-}
-
 ExtendedEstimation with_gradient(const Scene& scene, const mc::GradientJob& job,
                                  const std::string& plan) {
   std::string text = plan + "; derivatives by";
@@ -33,7 +29,6 @@ ExtendedEstimation with_gradient(const Scene& scene, const mc::GradientJob& job,
 
 ExtendedEstimation mc_gradient(const Scene& scene, mc::ReversedPaths reversed, std::uint64_t seed) {
   require_plane_waves("gradient", scene.request);
-  require_far_ends(scene);
   const auto plan = mc::gradient_plan(scene, reversed);
   return with_gradient(scene, mc::gradient_job(scene, plan, seed), "mc: " + plan.describe());
 }
@@ -49,7 +44,6 @@ ExtendedEstimation transport_gradient(const Scene& scene, mc::ReversedPaths reve
                                       double tolerance) {
   require_plane(scene, "gradient");
   mc::check_gradient(scene);
-  refuse_near_ends("gradient", scene.request);
   const bool with_reversed = mc::make_plan(scene, reversed).reversed;
   return with_gradient(scene, mc::slab_gradient_job(scene, with_reversed, {tolerance}),
                        transport_estimation(scene, reversed, tolerance).plan);
@@ -68,7 +62,6 @@ ExtendedEstimation with_delays(const Scene& scene, const mc::PathJob& job,
 ExtendedEstimation mc_delays(const Scene& scene, mc::ReversedPaths reversed,
                              const std::vector<double>& delays, std::uint64_t seed) {
   require_plane_waves("delays", scene.request);
-  require_far_ends(scene);
   const auto plan = mc::make_plan(scene, reversed);
   return with_delays(scene, mc::delay_job(scene, plan, delays, seed), delays,
                      "mc: " + plan.describe());
@@ -101,7 +94,6 @@ ExtendedEstimation transport_delays(const Scene& scene, mc::ReversedPaths revers
 
 ExtendedEstimation transport_frequency_shifts(const Scene& scene, mc::ReversedPaths reversed,
                                               const std::vector<double>& shifts, double tolerance) {
-  refuse_near_ends("frequency_shifts", scene.request);
   require_plane(scene, "frequency_shifts");
   mc::check_frequency_shifts(scene, shifts);
   require_intensity_or_tilts("frequency_shifts", scene.request);

@@ -8,7 +8,6 @@ from lib import page, style, sweep_file
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.colors import LogNorm
-from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 AXES = ("g", "optical_depth")
 LEAST_VALUES = 5  # along each axis, for lines between them
@@ -103,9 +102,7 @@ def draw(results, arguments):
         axis.set_title(sweep_file.text("albedo", albedo), fontsize=7.5, pad=3)
     page.outer_labels(axes, len(parts))
     bar = figure.colorbar(image, ax=list(axes.flat), aspect=25, pad=0.015, fraction=0.05)
-    bar.ax.yaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
-    bar.ax.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-    bar.ax.yaxis.set_minor_formatter(NullFormatter())
+    style.few_decades(bar.ax.yaxis)
     bar.set_label(r"range $qL$ at $C_I = 1/2$")
     page.legend_outside(figure, list(entries()), sweep.unfinished())
     return figure

@@ -7,9 +7,8 @@ from lib import page, style, sweep_file
 
 import matplotlib.pyplot as plt
 import numpy as np
-from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
-METHOD_AXES = ("optical_depth", "g")
+AXES = ("optical_depth", "g")
 MOST_CURVES = 8
 
 
@@ -20,17 +19,17 @@ def name_of(sweep):
 
 def ranges(sweep):
     """{(optical depth, g): (range, error)} of a sweep's points that are no bounds."""
-    for name in METHOD_AXES:
+    for name in AXES:
         if name not in sweep.columns:
             raise style.Unusable(f"{sweep.path}: has no axis {name}")
-    others = [name for name in sweep.varying() if name not in METHOD_AXES]
+    others = [name for name in sweep.varying() if name not in AXES]
     if others:
         raise style.Unusable(f"{sweep.path}: varies {others[0]} too; "
                              f"try --select {sweep.example(others[0], 1)}")
     method = next(iter(sweep.prefixes))
     value, error, censored = (sweep.of(method, name) for name in (
         "memory_effect_range", "memory_effect_range_error", "range_censored"))
-    keys = zip(*(np.round(sweep.columns[name], 9) for name in METHOD_AXES))
+    keys = zip(*(np.round(sweep.columns[name], 9) for name in AXES))
     return {key: (value[row], error[row]) for row, key in enumerate(keys)
             if row in sweep.rows and censored[row] == 0}
 
@@ -63,9 +62,7 @@ def draw(results, arguments):
         axis.errorbar(depths, ratio, yerr=error, **look)
         entries.append((plt.Line2D([], [], **look), sweep_file.text("g", g)))
     axis.set_xscale("log")
-    axis.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
-    axis.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-    axis.xaxis.set_minor_formatter(NullFormatter())
+    style.few_decades(axis.xaxis)
     axis.set_xlabel("optical depth")
     axis.set_ylabel(f"range at $C_I = 1/2$: {' over '.join(map(name_of, sweeps))}")
     page.legend_outside(figure, entries, sweeps[0].notes())

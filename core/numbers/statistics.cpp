@@ -17,6 +17,13 @@ std::size_t group_count(std::size_t size) {
                     most_groups);
 }
 
+/// For values whose squares are below all numbers: a power of two, so that they keep their digits.
+double lift(double size) {
+  constexpr double small = 1e-100;
+  constexpr int most = 1000;
+  return size > 0 && size < small ? std::ldexp(1.0, std::min(-std::ilogb(size), most)) : 1;
+}
+
 }  // namespace
 
 GroupedSums::GroupedSums(std::size_t size)
@@ -85,17 +92,6 @@ Estimate part(const Estimate& all, std::size_t first, std::size_t count) {
   return {{all.value.begin() + from, all.value.begin() + to},
           {all.error.begin() + from, all.error.begin() + to}};
 }
-
-namespace {
-
-/// For values whose squares are below all numbers: a power of two, so that they keep their digits.
-double lift(double size) {
-  constexpr double small = 1e-100;
-  constexpr int most = 1000;
-  return size > 0 && size < small ? std::ldexp(1.0, std::min(-std::ilogb(size), most)) : 1;
-}
-
-}  // namespace
 
 Estimate jackknife(const GroupedSums& sums, const Estimator& theta) {
   const double samples = sums.total_samples();

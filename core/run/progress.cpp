@@ -38,8 +38,12 @@ bool Progress::due(double wall_s) const {
   return !label_.empty() && wall_s >= next_;
 }
 
-void Progress::show(const Figures& figures) const {
+void Progress::begin_line() const {
   std::fprintf(stderr, "%s%s: ", terminal_ ? "\r\033[K" : "", label_.c_str());
+}
+
+void Progress::show(const Figures& figures) const {
+  begin_line();
   if (!figures.done.empty()) std::fprintf(stderr, "%s, ", figures.done.c_str());
   if (unit_.empty())
     std::fputs("solved", stderr);
@@ -51,8 +55,8 @@ void Progress::update(double wall_s, const Figures& figures) {
   if (!due(wall_s)) return;
   next_ = wall_s + (terminal_ ? 0.2 : std::clamp(0.02 * wall_s, 10.0, 600.0));
   if (unit_.empty()) {
-    std::fprintf(stderr, "%s%s: solving for %s%s", terminal_ ? "\r\033[K" : "", label_.c_str(),
-                 duration(wall_s).c_str(), terminal_ ? "" : "\n");
+    begin_line();
+    std::fprintf(stderr, "solving for %s%s", duration(wall_s).c_str(), terminal_ ? "" : "\n");
     return;
   }
   show(figures);

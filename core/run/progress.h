@@ -25,6 +25,7 @@ class Progress {
   void finish(double wall_s, const Figures& figures);
 
  private:
+  void begin_line() const;
   void show(const Figures& figures) const;
 
   std::string label_, unit_;

@@ -159,6 +159,8 @@ GradientJob gradient_job(const PathJob& paths, const std::vector<BulkParameter>&
 void check_gradient(const Scene& scene) {
   if (scene.medium.mu_s == 0)
     throw InputError("gradient: a medium that does not scatter has no derivatives");
+  if (scene.domain.kind == Domain::Kind::slab && has_near_ends(scene.request))
+    throw InputError("gradient: a slab needs plane waves and far views");
   constexpr std::size_t most = 20000;
   if (scene.request.entries.size() > most)
     throw InputError("gradient: " + std::to_string(scene.request.entries.size()) +

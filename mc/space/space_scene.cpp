@@ -53,16 +53,14 @@ SpaceSlab space_slab(const Scene& scene, double delay) {
 }
 
 FieldJob space_covariance_job(const Scene& scene, bool reversed, const Refinement& refinement) {
-  FieldJob job;
-  job.covariance = sample_mean;
-  job.batches = two_batches(scene.request.entries.size(), [=] {
+  const auto solve = [=] {
     const SpaceSlab slab = space_slab(scene);
     const SpaceRequest request = space_request(scene.request);
     return refined_range(scene.request, refinement, [&](const Refinement& finer) {
       return space_covariance(slab, request, reversed, finer);
     });
-  });
-  return job;
+  };
+  return two_batch_job(scene.request.entries.size(), 1, solve).field;
 }
 
 PathJob space_delay_job(const Scene& scene, bool reversed, const Refinement& refinement,

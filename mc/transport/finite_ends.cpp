@@ -62,7 +62,8 @@ class PlaneWaves {
   double axis_ = 0, waist_ = 0;
 };
 
-/// Nodes in the mean of two sines, and weights over k.
+/// Nodes in the mean of two sines, and weights over k; none where no directions of the two differ
+/// by so much.
 Quadrature mean_sines(const PlaneWaves& a, const PlaneWaves& b, double difference, int order) {
   const double horizon = 1 - std::abs(difference) / 2;
   double low = -horizon, high = horizon;
@@ -72,6 +73,7 @@ Quadrature mean_sines(const PlaneWaves& a, const PlaneWaves& b, double differenc
     low = std::max(low, middle - half);
     high = std::min(high, middle + half);
   }
+  if (low >= high) return {};
   // Even in an angle whose cosine vanishes at both horizons, where the integrand is steep.
   const double from = std::asin(low / horizon), to = std::asin(high / horizon);
   Quadrature nodes = gauss_legendre(order);

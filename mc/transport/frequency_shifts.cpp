@@ -10,6 +10,7 @@ namespace flatspeckle::mc {
 
 void check_frequency_shifts(const Scene& slab, const std::vector<double>& shifts) {
   const CovarianceRequest& request = slab.request;
+  if (has_near_ends(request)) throw InputError("frequency_shifts: needs plane waves and far views");
   for (const double shift : shifts) {
     if (!(std::abs(shift) <= 0.1))
       throw InputError("frequency_shifts", shift, "must be from -0.1 to 0.1");

@@ -246,14 +246,12 @@ Refined slab_slopes(const Scene& slab, bool reversed, const Refinement& refineme
 }
 
 FieldJob slab_covariance_job(const Scene& slab, bool reversed, const Refinement& refinement) {
-  FieldJob job;
-  job.covariance = sample_mean;
-  job.batches = two_batches(slab.request.entries.size(), [=] {
+  const auto solve = [=] {
     return refined_range(slab.request, refinement, [&](const Refinement& finer) {
       return slab_covariance(slab, reversed, finer);
     });
-  });
-  return job;
+  };
+  return two_batch_job(slab.request.entries.size(), 1, solve).field;
 }
 
 PathJob slab_change_job(const Scene& slab, bool reversed, const Refinement& refinement,

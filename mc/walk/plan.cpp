@@ -86,6 +86,13 @@ Plan make_plan(const Scene& scene, ReversedPaths reversed) {
   return plan;
 }
 
+void require_far_ends_of_slab(const Scene& scene) {
+  if (scene.domain.kind == Domain::Kind::slab && has_near_ends(scene.request))
+    throw InputError(
+        "method: beams, near sources and near sensors beside a slab are of transport "
+        "alone; or take a box");
+}
+
 std::string Plan::describe() const {
   std::ostringstream text;
   text << (domain == Domain::Kind::box ? "box" : "slab, transverse position integrated") << "; ";

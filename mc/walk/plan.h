@@ -36,4 +36,7 @@ Plan::Phase phase_of(const Scatterer& scatterer);
 
 Plan make_plan(const Scene& scene, ReversedPaths reversed);
 
+/// Walks know near ends in boxes alone. Throws InputError.
+void require_far_ends_of_slab(const Scene& scene);
+
 }  // namespace flatspeckle::mc

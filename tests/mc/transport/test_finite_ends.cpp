@@ -28,6 +28,20 @@ void check_against_box(double width, double depth, const tests::HgBulk& bulk,
 
 }  // namespace
 
+TEST_CASE("what no directions of a beam join is 0") {
+  const auto request = full_request({{gaussian_beam(0.2, {0, -3}, 8)}}, far_views({1.4, -1.4}));
+  const auto found = slab_covariance(hg_slab(20, {10, 0.3, 0.9}, request), false, {});
+  CHECK(found.value[0].real() > 0);
+  CHECK(found.value[1] == 0.0);
+  CHECK(found.value[2].real() > 0);
+}
+
+TEST_CASE("Monte Carlo does not take near ends beside a slab for plane waves") {
+  const Scene beside =
+      hg_slab(20, {10, 0.3, 0.9}, intensity_request({{point_source({0, -3})}}, far_views({0.1})));
+  CHECK_THROWS_AS(tests::run(beside, ReversedPaths::no, 800, 1), InputError);
+}
+
 TEST_CASE("a wide beam beside a slab is a plane wave of its width") {
   constexpr double depth = 20, waist = 3000;
   const tests::HgBulk bulk{10, 0.3, 0.9};
