@@ -58,6 +58,13 @@ int run(const Arguments& arguments) {
   return subcommand.run(arguments);
 }
 
+/// Of long texts the beginning and the end, between which a value is left out.
+std::string shortened(const std::string& what) {
+  constexpr std::size_t most = 400, end = 150;
+  if (what.size() <= most) return what;
+  return what.substr(0, most - end) + " ... " + what.substr(what.size() - end);
+}
+
 /// One line, whatever a file or flag that the message quotes may hold. Of processes that all find
 /// the same fault in what they were given, the first speaks for all.
 int fail(std::string what, int status) {
@@ -65,6 +72,7 @@ int fail(std::string what, int status) {
     std::this_thread::sleep_for(std::chrono::seconds(1));  // or it would be ended before it speaks
     return status;
   }
+  what = shortened(what);
   std::replace_if(
       what.begin(), what.end(), [](unsigned char c) { return std::iscntrl(c); }, '?');
   std::cerr << "flatspeckle: " << what << '\n';

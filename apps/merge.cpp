@@ -33,7 +33,8 @@ std::string without_keys(const std::string& config, const std::set<std::string>&
 std::set<std::string> configs_of(const std::vector<std::string>& folders) {
   std::set<std::string> configs;
   for (const std::string& folder : folders) {
-    if (!fs::is_directory(folder)) throw InputError("shards", folder, "is not a folder");
+    if (std::error_code none; !fs::is_directory(folder, none))
+      throw InputError("shards", folder, "is not a folder");
     for (const auto& entry : fs::directory_iterator(folder))
       if (is_shard(entry.path()))
         configs.insert(without_keys(

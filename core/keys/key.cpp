@@ -1,9 +1,11 @@
 #include "core/keys/key.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
-#include <filesystem>
+#include <cstring>
 #include <sstream>
+#include <unistd.h>
 
 #include "core/error.h"
 #include "core/keys/number_text.h"
@@ -190,7 +192,8 @@ void Key::check() const {
     for (const std::string& word : value())
       if (std::find(words_.begin(), words_.end(), word) == words_.end())
         throw InputError(name_, word, accepted());
-  if (file_ && !std::filesystem::exists(shown())) throw InputError(name_, shown(), "no such file");
+  if (file_ && access(shown().c_str(), R_OK) != 0)
+    throw InputError(name_, shown(), errno == ENOENT ? "no such file" : std::strerror(errno));
   const auto texts = value();
   if (exactly_ > 0 && texts.size() != exactly_) throw InputError(name_, shown(), accepted());
   if (each_ > 0 && texts.size() % each_ != 0) throw InputError(name_, shown(), accepted());

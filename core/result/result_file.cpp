@@ -3,11 +3,14 @@
 #include <algorithm>
 #include <atomic>
 #include <cassert>
+#include <cerrno>
 #include <cmath>
+#include <cstring>
 #include <functional>
 #include <numeric>
 #include <stdexcept>
 #include <type_traits>
+#include <unistd.h>
 #include <utility>
 
 #include <hdf5_hl.h>
@@ -372,6 +375,8 @@ void check_result_path(const std::filesystem::path& path) {
   check_writable(path);
   std::error_code none;
   if (const auto size = std::filesystem::file_size(path, none); none || size == 0) return;
+  if (access(path.c_str(), R_OK) != 0)
+    throw IoError("cannot read what stands at " + path.string() + ": " + std::strerror(errno));
   silence_hdf5();
   if (H5Fis_hdf5(path.c_str()) <= 0)
     throw InputError("cannot write " + path.string() +

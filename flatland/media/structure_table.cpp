@@ -88,25 +88,28 @@ StructureTable read_table(const std::string& path, const DiskSpacing& disks) {
                            "; must be none, hard_disks or a file that place --structure wrote");
   const auto measured = [&](const char* name) { return file.attribute<double>("/", name); };
   const double area = measured("width") * measured("depth");
-  const double density = static_cast<double>(file.attribute<std::uint64_t>("/", "count")) / area;
+  const auto count = static_cast<double>(file.attribute<std::uint64_t>("/", "count"));
+  const double density = count / area;
   // packing_fraction leaves the gap out
   const double diameter =
       std::sqrt(4 * measured("packing_fraction") / (std::numbers::pi * density));
   check_same(path, "density", density, disks.density);
   check_same(path, "contact distance", diameter + measured("min_gap"), disks.contact);
   auto q = file.dataset<double>("q"), values = file.dataset<double>("structure_factor");
-  const bool rising = std::adjacent_find(q.begin(), q.end(), std::greater_equal<>{}) == q.end();
-  const bool positive =
-      std::all_of(values.begin(), values.end(), [](double s) { return std::isfinite(s) && s > 0; });
-  if (q.size() != values.size() || q.empty() || !rising || !positive)
-    throw InputError("structure", path, "must hold positive values over rising q");
+  const bool rising = std::adjacent_find(q.begin(), q.end(), std::not_fn(std::less<>{})) == q.end();
+  const bool possible =
+      std::all_of(values.begin(), values.end(), [&](double s) { return s > 0 && s <= count; });
+  if (q.size() != values.size() || q.empty() || !rising || !(q.front() >= 0) ||
+      !std::isfinite(q.back()) || !possible)
+    throw InputError("structure", path,
+                     "must hold values above 0 and at most the count of disks, over rising q");
   return {"measured, " + path, std::move(q), std::move(values)};
 }
 
 }  // namespace
 
 StructureTable read_structure(const std::string& path, const DiskSpacing& disks) {
-  if (!std::filesystem::exists(path))
+  if (std::error_code none; !std::filesystem::exists(path, none))
     throw InputError("structure", path,
                      "must be none, hard_disks or a file that place --structure wrote");
   return guarded_read(path, [&] { return read_table(path, disks); });

@@ -83,6 +83,7 @@ double worst_relative_error(const FluxJob& job, const GroupedSums& sums) {
 }  // namespace
 
 FluxJob flux_job(const Scene& original, std::size_t angle_bins, std::uint64_t seed) {
+  require_walks(original, false);
   const auto scene = std::make_shared<const Scene>(original);
   const BulkMedium& medium = scene->medium;
   const double kappa = medium.mu_s > 0 ? medium.mu_t * diffusion_rate(medium.albedo, medium.g) : 0;

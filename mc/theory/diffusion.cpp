@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace flatspeckle::mc {
 
@@ -44,6 +45,17 @@ double diffusion_range(const BulkMedium& medium, double thickness) {
     (above(middle) ? low : high) = middle;
   }
   return (low + high) / 2;
+}
+
+double scatterings_of_slowest_mode(const BulkMedium& medium, const Domain& domain) {
+  const double beyond = 2 * extrapolation_length(medium),
+               diffusion = medium.transport_mean_free_path() / medium.dimension;
+  const auto leaving = [&](double extent) {  // per length of path
+    const double wavenumber = std::numbers::pi / (extent + beyond);
+    return diffusion * wavenumber * wavenumber;
+  };
+  const double sides = domain.kind == Domain::Kind::box ? leaving(domain.width) : 0;
+  return medium.mu_s / (medium.mu_t - medium.mu_s + leaving(domain.depth) + sides);
 }
 
 double single_scattering_correlation(double light, const std::vector<double>& views,

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "flatland/media/domain.h"
 #include "flatland/media/medium.h"
 
 namespace flatspeckle::mc {
@@ -17,6 +18,10 @@ double extrapolation_length(const BulkMedium& medium);
 
 /// |q| where C_I = C_E^2 of that falls to 1/2.
 double diffusion_range(const BulkMedium& medium, double thickness);
+
+/// How often light is scattered on the mean that stays longest: the slowest mode of diffusion
+/// between the edges of a box or the faces of a slab, which dies by leaving and by absorption.
+double scatterings_of_slowest_mode(const BulkMedium& medium, const Domain& domain);
 
 /// C_E by single scattering in a slab without attenuation (C21), tilt wavenumber q with matched
 /// views; the sum over equally bright views is taken before the modulus (C19).

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iomanip>
 #include <sstream>
 
 #include "core/error.h"
+#include "mc/theory/diffusion.h"
 #include "mc/walk/importance.h"
 
 namespace flatspeckle::mc {
@@ -39,24 +41,17 @@ bool loses_by_the_sides(const Scene& scene) {
   return importance.steep() && importance.dies_out();
 }
 
-/// Of a batch: tens of milliseconds.
+/// Scatterings of a batch, on the mean: tens of milliseconds.
 constexpr double most_scatterings = 1e6;
-
-/// Throws InputError for media in which a single path takes seconds.
-double scatterings_per_path(const Scene& scene) {
-  const double scatterings = DepthImportance(scene).scatterings();
-  if (scatterings < 100 * most_scatterings) return scatterings;
-  throw InputError("optical_depth", scene.medium.mu_t * scene.domain.depth,
-                   "a light path and what it splits into scatter more than 1e8 times; take a "
-                   "thinner medium, or a slab, whose transport needs no paths");
-}
+/// Scatterings of one path that is among the longest: seconds.
+constexpr double longest_path = 1e8;
 
 /// So many that the sums of a batch cost less to merge than to make; where walkers split into many,
 /// so few that a batch does not take long.
 std::uint64_t paths_per_batch(const Scene& scene, const Plan& plan) {
   const std::uint64_t most = plan.rank_k && scene.request.channels.size() > 100 ? 2000 : 400;
   if (!plan.weighted || scene.medium.mu_s == 0) return most;
-  const double paths = most_scatterings / scatterings_per_path(scene);
+  const double paths = most_scatterings / DepthImportance(scene).scatterings();
   return paths < static_cast<double>(most) ? std::max<std::uint64_t>(1, std::llround(paths)) : most;
 }
 
@@ -86,11 +81,24 @@ Plan make_plan(const Scene& scene, ReversedPaths reversed) {
   return plan;
 }
 
-void require_far_ends_of_slab(const Scene& scene) {
+void require_walks(const Scene& scene, bool weighted) {
   if (scene.domain.kind == Domain::Kind::slab && has_near_ends(scene.request))
     throw InputError(
         "method: beams, near sources and near sensors beside a slab are of transport "
         "alone; or take a box");
+  if (scene.medium.mu_s == 0) return;
+  const auto require = [&](double scatterings, double most, const std::string& what) {
+    if (scatterings < most) return;
+    std::ostringstream text;
+    text << what << " about " << std::setprecision(2) << scatterings << " times, at most " << most
+         << "; take a thinner medium, or a slab by method = transport, which needs no paths";
+    throw InputError("optical_depth", scene.medium.mu_t * scene.domain.depth, text.str());
+  };
+  require(scatterings_of_slowest_mode(scene.medium, scene.domain), longest_path,
+          "its longest light paths scatter");
+  if (weighted)
+    require(DepthImportance(scene).scatterings(), most_scatterings,
+            "light paths with all that they split into scatter");
 }
 
 std::string Plan::describe() const {

@@ -36,7 +36,8 @@ Plan::Phase phase_of(const Scatterer& scatterer);
 
 Plan make_plan(const Scene& scene, ReversedPaths reversed);
 
-/// Walks know near ends in boxes alone. Throws InputError.
-void require_far_ends_of_slab(const Scene& scene);
+/// Throws InputError where walks cannot be used: near ends beside a slab, and media in which a
+/// single path, or all that one splits into where walkers are weighted, takes seconds.
+void require_walks(const Scene& scene, bool weighted);
 
 }  // namespace flatspeckle::mc

@@ -86,7 +86,7 @@ class Walks {
 template <typename Kind>
 auto walks(const Kind& kind, const Scene& scene, const Plan& plan, std::uint64_t seed) {
   using Sums = typename Kind::Sums;
-  require_far_ends_of_slab(scene);
+  require_walks(scene, plan.weighted);
   std::function<void(std::uint64_t number, Sums)> batches = [](std::uint64_t, Sums) {};
   if (scene.medium.mu_s == 0) return batches;
   const auto choose = [&]<typename Scattering>(const Scattering& scattering, auto weighted,
