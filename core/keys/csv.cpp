@@ -26,6 +26,9 @@ std::vector<std::string_view> fields_of(std::string_view line) {
   return fields;
 }
 
+/// Products of a few numbers up to this stay numbers.
+constexpr double most = 1e50;
+
 class CsvReader {
  public:
   explicit CsvReader(const std::filesystem::path& path) : path_(path.string()), file_(path) {
@@ -77,8 +80,8 @@ class CsvReader {
 
   double number(std::string_view field, const std::string& name) const {
     const auto value = read_number(std::string(field));
-    if (!value || !std::isfinite(*value))
-      fail(name + " = \"" + std::string(field) + "\": must be a finite number");
+    if (!value || !(std::abs(*value) <= most))
+      fail(name + " = \"" + std::string(field) + "\": must be a number from -1e50 to 1e50");
     return *value;
   }
 

@@ -25,7 +25,7 @@ class Table {
   std::vector<std::vector<double>> columns_;
 };
 
-/// Reads a comma-separated file: one line of column names, then lines of finite numbers. Spaces
+/// Reads a comma-separated file: one line of column names, then lines of numbers from -1e50 to 1e50. Spaces
 /// around fields, blank lines, CRLF, lines that start with '#' and a UTF-8 byte order mark are
 /// allowed. Throws InputError naming file, line and what is wrong.
 Table read_csv(const std::filesystem::path& path);

@@ -14,7 +14,7 @@ namespace flatspeckle {
 
 namespace {
 
-/// Of what must be positive: products of a few of them stay numbers.
+/// Products of a few numbers up to this, and of the inverses of positive ones, stay numbers.
 constexpr double most = 1e50;
 
 std::string text_of(bool value) {
@@ -206,6 +206,7 @@ void Key::check(double value, const std::string& text) const {
   const bool positive = range_.low_open && range_.low == 0 && range_.high == infinity;
   if (positive && (value > most || value < 1 / most))
     throw InputError(name_, text, "must be from 1e-50 to 1e50");
+  if (std::abs(value) > most) throw InputError(name_, text, "must be from -1e50 to 1e50");
 }
 
 }  // namespace flatspeckle

@@ -99,7 +99,7 @@ TEST_CASE("what is wrong is told with file and line") {
   CHECK(complaint("x,,z\n") == ", line 1: a column has no name");
   for (const char* bad : {"nan", "inf", "-inf", "1e999", "one", "1.5m", "", "1 2", "+-1", "0x10"})
     CHECK(complaint("z,x\n1," + std::string(bad) + "\n") ==
-          ", line 2: x = \"" + std::string(bad) + "\": must be a finite number");
+          ", line 2: x = \"" + std::string(bad) + "\": must be a number from -1e50 to 1e50");
 }
 
 TEST_CASE("files that cannot be read are bad input") {
