@@ -7,7 +7,7 @@ import subprocess
 import h5py
 import numpy as np
 
-from program import BOX, CYLINDERS, PROGRAM, SLAB, TILTS
+from program import BOX, CYLINDERS, PROGRAM, SLAB, TILTS, flags
 
 STAGE = {"stage_box": [-1, -1, 0, 1, 1, 4], "beam_light": [0, 0, 0, 0, 0, 1, 0.3, 2],
          "mu_s": 0.4, "mu_a": 0.1}
@@ -23,7 +23,7 @@ VIEWS = {"light_angles": [0, 0.03], "view_angles": [0.1, 0.13, 3.1]}
 SCENES = [
     ("covariance", {**BOX, "samples": 4000}),
     ("covariance", {**CYLINDERS, "covariance": "full", **VIEWS, "samples": 3000}),
-    ("covariance", {**CYLINDERS, "structure": "structure.h5", "samples": 3000}),
+    ("covariance", {**CYLINDERS, "width": 12, "depth": 8, "structure": "structure.h5", "samples": 3000}),
     ("covariance", {**BOX, "near_sensors": "sensors.csv", "near_sources": "sources.csv",
                     "covariance": "full", "samples": 4000}),
     ("covariance", {**BOX, "beam_waist": 2, "beam_positions": [0, 1], "beam_depth": 5,
@@ -50,7 +50,7 @@ SCENES = [
     ("sweep", {**GRID, "method": "both", "samples": 2000, "tolerance": 1e-3}),
     ("sweep", {"domain": "box", "width": 10, "depth": 10, "scatterer": "point",
                "density": [0.2, 0.4], "tilts": [0, 0.1], "method": "wave", "samples": 20}),
-    ("merge", {"shards": "points.shards", "partial": True}),
+    ("merge", {"shards": "points.h5.shards", "partial": True}),
     ("trace", {**FIBRE, "connect": [0, 0, 0, 0.3, 0, 3], "max_length": 5, "trials": 100}),
     ("trace", {"field": "fisheye", "light": "fan", "origin": [0, 0, -0.5], "half_angle": 1,
                **PLANE, "path_points": 11}),
@@ -84,6 +84,9 @@ LONG = [
     ("solve", {"width": 60, "depth": 60, "count": 1200}),
     ("trace", {**FIBRE, "connect": [0, 0, 0, 0.3, 0, 3], "max_length": 5, "trials": 5000}),
 ]
+OLDER = {**BOX, "samples": 4000}
+STOPPED = {**OLDER, "target_error": 1e-9}
+POINTS = {**GRID, "samples": 2000}
 RESUMABLE = ("covariance", "flux", "validate", "sweep", "render")
 
 NUMBERS = ["0", "-0.0", "-1", "1", "2", "0.5", "0.001", "1000", "1e9", "-1e9", "1e-9", "1e150",
@@ -94,11 +97,12 @@ INTEGERS = ["0", "-1", "1", "2", "7", "1000", "2147483648", "9223372036854775807
 WORDS = ["", " ", "x", "1,5", "0x1p3", "1e", "--", "1 2", "\u00e4\u0661", "true", "1+1i", "-1i",
          "1.5+1e308i", "x" * 5000, "[1, 2]", "'", "%s%n", "-"]
 FILES = ["absent.csv", ".", "/dev/null", "older.h5", "sensors.csv", "rays.csv", "disks.csv",
-         "structure.h5", "grid.h5", "points.shards", "/proc/self/mem", "sensors.csv/x", "x" * 300]
+         "structure.h5", "grid.h5", "points.h5.shards", "/proc/self/mem", "sensors.csv/x", "x" * 300]
 
 
 def write_files(folder):
-    """What the scenes read: older.h5 is a finished result, points.shards one of a sweep's points."""
+    """What the scenes read: older.h5 is a finished result, stopped.h5 one that can be resumed,
+    points.h5.shards holds the points of a sweep."""
     (folder / "sensors.csv").write_text("x,z\n0,14\n1,14\n-3,-2\n")
     (folder / "sources.csv").write_text("x,z\n0,-5\n1,-5\n")
     (folder / "rays.csv").write_text("x,y,z,dx,dy,dz\n0,0,-0.5,0,0,1\n0.1,0,-0.5,0.1,0,1\n")
@@ -109,12 +113,16 @@ def write_files(folder):
             data = file.create_dataset(dataset, data=np.linspace(0, 0.1, 8 * 8 * 8).reshape(8, 8, 8))
             data.attrs["origin"] = np.array([-1.0, -1, -1])
             data.attrs["spacing"] = np.array([0.3, 0.3, 0.8])
-    for words in ("place --width 12 --depth 8 --radii 0.16 --count 20 --structure structure.h5 "
-                  "--realizations 10 --out placed.csv",
-                  "covariance --width 20 --depth 10 --count 31 --samples 4000 --out older.h5",
-                  "sweep --depth 100 --optical_depth 1 2 --g 0 0.5 --tilts 0 0.001 --samples 2000 "
-                  "--shard 0/1 --out points.h5"):
-        subprocess.run([PROGRAM, *words.split()], cwd=folder, check=True, capture_output=True)
+    for subcommand, out, status, keys in (
+            ("place", "placed.csv", 0, {"width": 12, "depth": 8, "radii": 0.16, "count": 20,
+                                        "structure": "structure.h5", "realizations": 10}),
+            ("covariance", "older.h5", 0, OLDER),
+            ("covariance", "stopped.h5", 3, STOPPED),
+            ("sweep", "points.h5", 0, {**POINTS, "shard": "0/1"})):
+        done = subprocess.run([PROGRAM, subcommand, *flags({**keys, "out": out})], cwd=folder,
+                              capture_output=True)
+        if done.returncode != status:
+            raise RuntimeError(f"{subcommand}: {done.stderr.decode()}")
 
 
 def rows_of_keys():
