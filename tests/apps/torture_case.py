@@ -9,9 +9,9 @@ import time
 
 import h5py
 
-from program import datasets, flags
+from program import flags
 from torture_checks import (FINISHED, check_end, check_new_files, check_old_files, check_refusal,
-                            check_result, check_same_data, snapshot)
+                            check_result, check_same_data, datasets, snapshot)
 from torture_run import Hindrance, run
 from torture_scenes import RESUMABLE, rows_of_keys, write_files
 
@@ -163,9 +163,10 @@ class Case:
         none_yet = subcommand == "sweep" and ended.status == 3 and not path.exists()
         if ended.status not in FINISHED or none_yet or "shard" in keys:
             return
-        yield from check_result(path)
-        if whole is not None and path.exists():
-            yield from check_same_data(path, whole)
+        complaints = list(check_result(path))
+        if not complaints and whole is not None:
+            complaints = check_same_data(path, whole)
+        yield from complaints
 
     def run_both(self, subcommand, keys, hindrances, delays):
         """Two processes with one --out, by different seeds."""
