@@ -114,11 +114,15 @@ class Case:
         return [subcommand, *flags(keys), *self.own_flags(subcommand)]
 
     def in_scene_file(self, subcommand, keys):
+        """But for a second file that it writes, whose name only a flag may give."""
+        by_flag = {"structure": keys.get("structure")} if subcommand == "place" else {}
         quote_numbers = self.random.random() < 0.3
-        text = scene_file(keys, lambda value: isinstance(value, str) and
+        in_file = {key: value for key, value in keys.items() if key not in by_flag}
+        text = scene_file(in_file, lambda value: isinstance(value, str) and
                           (quote_numbers or not is_number(value)))
         (self.folder / "scene.toml").write_text(text)
-        return [subcommand, "--config", "scene.toml", *self.own_flags(subcommand)]
+        return [subcommand, "--config", "scene.toml", *flags(by_flag),
+                *self.own_flags(subcommand)]
 
     def words(self, subcommand, keys):
         """Either way; too many words for a command line go in a file."""
