@@ -32,7 +32,7 @@ class Hindrance:
 
 @dataclasses.dataclass(frozen=True)
 class Ended:
-    status: int | None  # None: it did not
+    status: int | None  # None: it did not, and was killed
     stderr: str
     sent: tuple  # numbers of signals
     obeyed_s: float  # from the first signal to the end
@@ -40,7 +40,7 @@ class Ended:
 
     @property
     def was_killed(self):
-        return signal.SIGKILL in self.sent or self.status == -signal.SIGKILL
+        return signal.SIGKILL in self.sent or self.status in (None, -signal.SIGKILL)
 
     @property
     def was_cut(self):

@@ -143,15 +143,31 @@ def extreme_value(row, random):
     return random.choice(WORDS if random.random() < 0.15 else pool)
 
 
+def scaled(value, random):
+    """A number, or one of a list, times a power of ten; anything else as it is."""
+    if isinstance(value, list) and value:
+        at = random.randrange(len(value))
+        return [*value[:at], scaled(value[at], random), *value[at + 1:]]
+    if isinstance(value, (int, float)) and not isinstance(value, bool):
+        changed = value * 10.0 ** random.choice([-9, -3, -2, -1, 1, 2, 3, 9]) * random.choice([1, 1, 1, -1])
+        return round(changed) if isinstance(value, int) and random.random() < 0.8 else changed
+    return value
+
+
 def mutated(keys, rows, random):
-    """The keys with one to three of them made extreme, added or left out."""
+    """The keys with one to three of them scaled, made extreme, added or left out."""
     keys = dict(keys)
     rows = [row for row in rows if row["name"] not in ("out", "threads", "seed")]
     for row in random.choices(rows, k=random.choice([1, 1, 2, 3])):
         given = [other for other in rows if other["name"] in keys]
         if given and random.random() < 0.7:
             row = random.choice(given)
-        keys[row["name"]] = None if random.random() < 0.1 else extreme_value(row, random)
+        if random.random() < 0.1:
+            keys[row["name"]] = None
+        elif row in given and random.random() < 0.6:
+            keys[row["name"]] = scaled(keys[row["name"]], random)
+        else:
+            keys[row["name"]] = extreme_value(row, random)
     return keys
 
 
