@@ -14,6 +14,7 @@ from program import BOX, PROGRAM, SLAB, ProgramTest, flags
 
 SHORT = {**BOX, "samples": 4000}
 LONG = {**BOX, "seconds": 60, "threads": 1}
+INTERLEAVINGS = int(os.environ.get("FLATSPECKLE_INTERLEAVINGS", 12))
 WIDE = {"covariance": "full", "view_angles": [0.1 * i for i in range(15)]}  # 45 kB of result
 
 
@@ -67,7 +68,7 @@ class Owner(ProgramTest):
         moments = random.Random(3)
         self.call("covariance", **SHORT, seed=7, out="x.h5")
         finished = (self.folder / "x.h5").read_bytes()
-        for _ in range(12):
+        for _ in range(INTERLEAVINGS):
             processes = [self.start("covariance", **LONG, seed=seed, out="x.h5") for seed in (1, 2)]
             time.sleep(moments.uniform(0, 0.4))
             for process in moments.sample(processes, 2):

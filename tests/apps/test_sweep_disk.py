@@ -6,42 +6,15 @@ import pathlib
 import shutil
 import signal
 import subprocess
-import sys
 import tempfile
 import time
 import unittest
 
+from mounts import go_where_mounts_are_allowed, mounts_allowed
 from sweeps import MANY, SLOW, SWEEP, SweepTest
 
 # About a second of one thread.
 STEADY = {**MANY, "samples": 25_000}
-
-
-def mounts_allowed():
-    """Whether this process may mount; tells by an exit status of 0."""
-    try:
-        done = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=64k", "tmpfs", "/mnt"],
-                              capture_output=True, timeout=10)
-    except (OSError, subprocess.TimeoutExpired):
-        return False
-    if done.returncode == 0:
-        subprocess.run(["umount", "/mnt"], check=True)
-    return done.returncode == 0
-
-
-def go_where_mounts_are_allowed():
-    """Begins again in a mount namespace of its own, if the system grants one: its mounts end with
-    it, and no one else sees them."""
-    if os.environ.get("IN_OWN_NAMESPACE"):
-        return
-    for flags in (["--mount"], ["--map-root-user", "--mount"]):
-        try:
-            granted = subprocess.run(["unshare", *flags, "true"], capture_output=True).returncode
-        except OSError:
-            return
-        if granted == 0:
-            os.environ["IN_OWN_NAMESPACE"] = "1"
-            os.execvp("unshare", ["unshare", *flags, sys.executable, "-B", *sys.argv])
 
 
 class DiskTest(SweepTest):

@@ -1,0 +1,170 @@
+"""The kinds of runs of torture.py: each does one to a Case."""
+
+import os
+import signal
+
+from torture_run import SLOWNESS, Hindrance
+from torture_scenes import LONG, OLDER, POINTS, RESUMABLE, SCENES, STOPPED, damaged, mutated
+
+PATIENCE_S = 1.5 * SLOWNESS
+ENDS = (signal.SIGTERM, signal.SIGINT, signal.SIGKILL)
+
+
+def mutated_scene(case):
+    """Values out of all bounds; it may go on for ever, but ends when it is told to."""
+    subcommand, keys = case.random.choice(SCENES)
+    case.put_older_result(subcommand)
+    case.run(subcommand, mutated(keys, case.library.rows[subcommand], case.random),
+             Hindrance(patience_s=PATIENCE_S))
+
+
+def files_of(case, keys):
+    """Paths of what a scene reads."""
+    found = [case.folder / value for value in keys.values() if isinstance(value, str)]
+    folders = [path for path in found if path.is_dir()]
+    return [path for path in found if path.is_file()] + \
+        [inside for folder in folders for inside in sorted(folder.iterdir())]
+
+
+def damage(case, path):
+    path.write_bytes(damaged(path.read_bytes(), case.random))
+
+
+def damaged_input(case):
+    subcommand, keys = case.random.choice([scene for scene in SCENES if files_of(case, scene[1])])
+    case.put_older_result(subcommand)
+    damage(case, case.random.choice(files_of(case, keys)))
+    case.run(subcommand, keys)
+
+
+def damaged_scene_file(case):
+    """It may say another number by then, so that the run takes long."""
+    subcommand, keys = case.random.choice([scene for scene in SCENES if scene[0] != "place"])
+    case.put_older_result(subcommand)
+    words = case.in_scene_file(subcommand, keys)
+    damage(case, case.folder / "scene.toml")
+    case.run(subcommand, keys, Hindrance(patience_s=PATIENCE_S), words=words)
+
+
+def damaged_result(case):
+    """Of an older run at --out, which is to be resumed or replaced."""
+    source, keys = case.random.choice([("older.h5", OLDER), ("stopped.h5", STOPPED)])
+    (case.folder / source).rename(case.folder / "x.h5")
+    damage(case, case.folder / "x.h5")
+    case.run("covariance", {**keys, **case.random.choice([{}, {"resume": True}])})
+
+
+def damaged_points(case):
+    """Of a sweep that goes on: they are made again."""
+    points = case.folder / "x.h5.shards"
+    (case.folder / "points.h5.shards").rename(points)
+    for _ in range(case.random.choice([1, 2, 4])):
+        damage(case, case.random.choice(sorted(points.glob("*.h5"))))
+    case.run("sweep", {**POINTS, "resume": True}, statuses=(0,),
+             whole=case.library.whole("sweep", POINTS))
+
+
+def interrupting_signals(case, duration):
+    """One of the ends at a random moment, or SIGTERM twice."""
+    moment = case.random.uniform(0, 1.2 * duration)
+    if case.random.random() < 0.2:
+        between = case.random.choice([0, case.random.uniform(0, 0.05)])
+        return ((moment, signal.SIGTERM), (between, signal.SIGTERM))
+    return ((moment, case.random.choice(ENDS)),)
+
+
+def interrupted(case):
+    """One to four times at random, then to its end: as if nothing had been."""
+    subcommand, keys = case.random.choice(LONG)
+    case.put_older_result(subcommand)
+    whole = case.library.whole(subcommand, keys)
+    duration = case.library.duration(subcommand, keys)
+    for _ in range(case.random.choice([1, 1, 2, 4])):
+        case.run(subcommand, case.going_on(subcommand, keys),
+                 Hindrance(signals=interrupting_signals(case, duration)), whole=whole)
+    case.run(subcommand, case.going_on(subcommand, keys), statuses=(0,), whole=whole)
+
+
+def limited(case):
+    """In the size of files, in open files, in memory."""
+    subcommand, keys = case.random.choice(SCENES)
+    case.put_older_result(subcommand)
+    limit = case.random.choice(
+        [f"--fsize={case.random.choice([0, 1, 100, 4096, 10_000, 20_000, 40_000, 10**6])}"] * 6 +
+        [f"--nofile={case.random.choice([5, 6, 8, 12, 20])}"] * 4 +
+        [f"--as={case.random.choice([100, 150, 250, 400, 700, 1500, 3000])}000000"] *
+        (2 if SLOWNESS == 1 else 0))
+    case.run(subcommand, keys, Hindrance(limits=(limit,)), statuses=(0, 2, 4),
+             whole=case.library.whole(subcommand, keys))
+
+
+def short_of_time(case):
+    """A second of processor time, soft or hard."""
+    subcommand, keys = case.random.choice([scene for scene in LONG if "samples" in scene[1]])
+    case.put_older_result(subcommand)
+    case.run(subcommand, {**keys, "samples": 100 * keys["samples"]},
+             Hindrance(limits=(case.random.choice(["--cpu=1:1", "--cpu=1:5"]),)),
+             statuses=(-signal.SIGKILL, 75))
+
+
+def closed_folder(case):
+    """Nothing can be written there, but by the superuser."""
+    subcommand, keys = case.random.choice(SCENES)
+    words = case.as_flags(subcommand, keys)
+    case.folder.chmod(0o555)
+    case.run(subcommand, keys, statuses=(0,) if os.geteuid() == 0 else (4,), words=words)
+    case.folder.chmod(0o755)
+
+
+def bad_streams(case):
+    """Closed, full, or a pipe whose reader goes: the result is there nevertheless."""
+    subcommand, keys = case.random.choice(SCENES)
+    case.put_older_result(subcommand)
+    hindrance = Hindrance(redirections=case.random.choice(
+        ["<&-", ">&-", "2>&-", ">&- 2>&-", "<&- >&-", "<&- >&- 2>&-", ">/dev/full",
+         "2>/dev/full", ">/dev/full 2>/dev/full"]))
+    if case.random.random() < 0.3:
+        hindrance = Hindrance(reader_goes_s=case.random.uniform(0, 0.05))
+    case.run(subcommand, keys, hindrance, statuses=(0,), whole=case.library.whole(subcommand, keys))
+
+
+# Of the kernel of BLAS, on which last bits depend, and of sanitizers.
+KEPT = [f"{name}={value}" for name, value in os.environ.items()
+        if name.startswith(("OPENBLAS_CORETYPE", "ASAN_", "TSAN_", "UBSAN_", "LSAN_"))]
+ENVIRONMENTS = [
+    *((f"LC_ALL={name}",) for name in ("de_DE.UTF-8", "tr_TR.UTF-8", "C", "C.utf8", "\u00e4/../x",
+                                       "x" * 5000, "")),
+    ("TMPDIR=absent",), ("TMPDIR=/dev/null",), ("-u", "HOME"), ("HOME=",), ("-u", "PATH"), ("-i", *KEPT),
+    *((f"COLUMNS={value}",) for value in ("0", "-1", "1", "abc", "99999999999999999999")),
+    *((f"{name}={value}",) for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS")
+      for value in ("0", "-1", "1000", "abc", "", "1,2,3")),
+    ("OMP_STACKSIZE=1",), ("OMP_THREAD_LIMIT=1",), ("OMP_DYNAMIC=true", "OMP_PROC_BIND=spread"),
+    ("HDF5_USE_FILE_LOCKING=x",), ("TZ=:/absent",), ("TERM=",),
+    ("POSIXLY_CORRECT=1",), ("MALLOC_ARENA_MAX=1",), ("GOMP_CPU_AFFINITY=99",),
+]
+
+
+def odd_environment(case):
+    """Changes no bit."""
+    subcommand, keys = case.random.choice(SCENES + LONG)
+    case.put_older_result(subcommand)
+    case.run(subcommand, keys, Hindrance(environment=case.random.choice(ENVIRONMENTS)),
+             statuses=(0,), whole=case.library.whole(subcommand, keys))
+
+
+def two_owners(case):
+    """Of one --out, by different seeds; the second is refused, or comes after the first."""
+    subcommand, keys = case.random.choice([scene for scene in LONG if scene[0] in RESUMABLE])
+    case.put_older_result(subcommand)
+    duration = case.library.duration(subcommand, keys)
+
+    delays = [case.random.choice([0, case.random.uniform(0, duration)]) for _ in range(2)]
+    hindrances = [Hindrance(signals=interrupting_signals(case, duration)
+                            if case.random.random() < 0.5 else ()) for _ in range(2)]
+    case.run_both(subcommand, [{**keys, "seed": seed} for seed in (1, 2)], hindrances, delays)
+
+
+# How often each is drawn.
+KINDS = {mutated_scene: 35, damaged_input: 10, damaged_scene_file: 5, damaged_result: 4,
+         damaged_points: 2, interrupted: 12, limited: 8, short_of_time: 1, closed_folder: 1,
+         bad_streams: 7, odd_environment: 8, two_owners: 7}
