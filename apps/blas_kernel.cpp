@@ -2,6 +2,7 @@
 
 #include <cstdlib>
 #include <string_view>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include "core/numbers/blas.h"
@@ -23,15 +24,22 @@ const char* better_kernel() {
   return nullptr;
 }
 
+bool address_space_is_limited() {
+  rlimit limit{};
+  return getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY;
+}
+
+/// Whether it changed: not where the variable is set already, or to nullptr.
+bool set(const char* variable, const char* value) {
+  return value != nullptr && std::getenv(variable) == nullptr && ::setenv(variable, value, 0) == 0;
+}
+
 }  // namespace
 
-void use_fast_blas(char** argv) {
-  constexpr const char* variable = "OPENBLAS_CORETYPE";
-  if (std::getenv(variable) != nullptr) return;
-  const char* const kernel = better_kernel();
-  if (kernel == nullptr) return;
-  ::setenv(variable, kernel, 0);
-  ::execv("/proc/self/exe", argv);  // does not return, unless it fails
+void prepare_blas(char** argv) {
+  const bool kernel = set("OPENBLAS_CORETYPE", better_kernel());
+  const bool threads = set("OPENBLAS_NUM_THREADS", address_space_is_limited() ? "1" : nullptr);
+  if (kernel || threads) ::execv("/proc/self/exe", argv);  // does not return, unless it fails
 }
 
 }  // namespace flatspeckle::apps

@@ -82,7 +82,7 @@ int fail(std::string what, int status) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  use_fast_blas(argv);
+  prepare_blas(argv);
   set_signals();
   try {
     return run({argv, argv + argc});

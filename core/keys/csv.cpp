@@ -26,9 +26,6 @@ std::vector<std::string_view> fields_of(std::string_view line) {
   return fields;
 }
 
-/// Products of a few numbers up to this stay numbers.
-constexpr double most = 1e50;
-
 class CsvReader {
  public:
   explicit CsvReader(const std::filesystem::path& path) : path_(path.string()), file_(path) {
@@ -80,7 +77,7 @@ class CsvReader {
 
   double number(std::string_view field, const std::string& name) const {
     const auto value = read_number(std::string(field));
-    if (!value || !(std::abs(*value) <= most))
+    if (!value || !(std::abs(*value) <= most_input))
       fail(name + " = \"" + std::string(field) + "\": must be a number from -1e50 to 1e50");
     return *value;
   }

@@ -14,9 +14,6 @@ namespace flatspeckle {
 
 namespace {
 
-/// Products of a few numbers up to this, and of the inverses of positive ones, stay numbers.
-constexpr double most = 1e50;
-
 std::string text_of(bool value) {
   return value ? "true" : "false";
 }
@@ -204,9 +201,9 @@ void Key::check() const {
 void Key::check(double value, const std::string& text) const {
   if (!range_.has(value)) throw InputError(name_, exactly_ > 0 ? shown() : text, range());
   const bool positive = range_.low_open && range_.low == 0 && range_.high == infinity;
-  if (positive && (value > most || value < 1 / most))
+  if (positive && (value > most_input || value < 1 / most_input))
     throw InputError(name_, text, "must be from 1e-50 to 1e50");
-  if (std::abs(value) > most) throw InputError(name_, text, "must be from -1e50 to 1e50");
+  if (std::abs(value) > most_input) throw InputError(name_, text, "must be from -1e50 to 1e50");
 }
 
 }  // namespace flatspeckle

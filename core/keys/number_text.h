@@ -10,6 +10,9 @@
 
 namespace flatspeckle {
 
+/// Of numbers in keys and tables: products of a few, and of inverses of positive ones, stay numbers.
+constexpr double most_input = 1e50;
+
 // Numbers and lists as texts, in any locale.
 
 /// The shortest that reads back as the same number: 20.0 and 2e1 are "20".

@@ -14,11 +14,9 @@
 namespace flatspeckle {
 
 /// Parallelism is ours, over realizations, boxes, tilts or columns: threads inside BLAS would only
-/// compete with it. Call before any BLAS work.
-inline void blas_single_thread() {
-  static const bool done = (openblas_set_num_threads(1), true);
-  static_cast<void>(done);
-}
+/// compete with it. Call before any BLAS work. Throws InputError where the address space is too
+/// small for BLAS, which would wait for ever.
+void blas_single_thread();
 
 inline blasint blas_size(std::size_t n) {
   return static_cast<blasint>(n);
