@@ -13,10 +13,15 @@
 
 namespace flatspeckle {
 
+/// Throws InputError where the address space is too small for OpenBLAS, which would wait for ever.
+void require_address_space_of_blas();
+
 /// Parallelism is ours, over realizations, boxes, tilts or columns: threads inside BLAS would only
-/// compete with it. Call before any BLAS work. Throws InputError where the address space is too
-/// small for BLAS, which would wait for ever.
-void blas_single_thread();
+/// compete with it. Call before any BLAS work. Throws as above.
+inline void blas_single_thread() {
+  static const bool done = (openblas_set_num_threads(1), require_address_space_of_blas(), true);
+  static_cast<void>(done);
+}
 
 inline blasint blas_size(std::size_t n) {
   return static_cast<blasint>(n);
