@@ -77,8 +77,8 @@ class CsvReader {
 
   double number(std::string_view field, const std::string& name) const {
     const auto value = read_number(std::string(field));
-    if (!value || !(std::abs(*value) <= most_input))
-      fail(name + " = \"" + std::string(field) + "\": must be a number from -1e50 to 1e50");
+    if (!value || !std::isfinite(*value))
+      fail(name + " = \"" + std::string(field) + "\": must be a finite number");
     return *value;
   }
 
@@ -110,6 +110,19 @@ std::span<const double> Table::column(const std::string& name) const {
 
 Table read_csv(const std::filesystem::path& path) {
   return CsvReader(path).read();
+}
+
+Table read_csv(const std::filesystem::path& path, const std::vector<std::string>& columns) {
+  Table table = read_csv(path);
+  for (const std::string& name : table.names()) {
+    if (std::find(columns.begin(), columns.end(), name) == columns.end())
+      throw InputError(path.string() + ": column \"" + name + "\": must be one of " +
+                       joined(columns, ", "));
+    for (double value : table.column(name))
+      if (std::abs(value) > most_input)
+        throw InputError(path.string() + ", " + name, value, "must be from -1e50 to 1e50");
+  }
+  return table;
 }
 
 }  // namespace flatspeckle

@@ -25,9 +25,12 @@ class Table {
   std::vector<std::vector<double>> columns_;
 };
 
-/// Reads a comma-separated file: one line of column names, then lines of numbers from -1e50 to 1e50. Spaces
+/// Reads a comma-separated file: one line of column names, then lines of finite numbers. Spaces
 /// around fields, blank lines, CRLF, lines that start with '#' and a UTF-8 byte order mark are
 /// allowed. Throws InputError naming file, line and what is wrong.
 Table read_csv(const std::filesystem::path& path);
+/// The same of a table that holds no other columns than these, which nothing would read, and
+/// numbers from -1e50 to 1e50.
+Table read_csv(const std::filesystem::path& path, const std::vector<std::string>& columns);
 
 }  // namespace flatspeckle

@@ -131,7 +131,7 @@ void check_packing(const Domain& box, PlacementRule::Kind kind, double packing, 
 }
 
 Placement read_placement(const std::string& path, const Scatterer& scatterer) {
-  const Table table = read_csv(path);
+  const Table table = read_csv(path, {"x", "z", "radius", "index_re", "index_im"});
   for (const char* name : {"x", "z"})
     if (!table.has(name)) throw InputError(path + ": column " + name + " is missing");
   if (table.has("index_im") && !table.has("index_re"))

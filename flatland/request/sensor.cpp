@@ -6,7 +6,7 @@
 namespace flatspeckle {
 
 std::vector<Vec2> read_points(const std::string& path) {
-  const Table table = read_csv(path);
+  const Table table = read_csv(path, {"x", "z"});
   for (const char* name : {"x", "z"})
     if (!table.has(name)) throw InputError(path + ": column " + name + " is missing");
   if (table.rows() == 0) throw InputError(path + ": holds no point, must hold at least one");

@@ -21,7 +21,7 @@ void add_keys(Keys& keys, BlobsValues& values) {
 }
 
 GaussianBlobs make_field(const Keys& keys, const BlobsValues& values, const FieldUse& use) {
-  const Table table = read_csv(keys.required(values.blobs));
+  const Table table = read_csv(keys.required(values.blobs), {"x", "y", "z", "height", "width"});
   if (table.rows() == 0) throw InputError("blobs", values.blobs, "holds no blobs");
   const auto x = table.column("x"), y = table.column("y"), z = table.column("z");
   const auto height = table.column("height"), width = table.column("width");

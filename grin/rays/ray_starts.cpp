@@ -77,7 +77,7 @@ std::vector<std::string> words() {
 }
 
 std::vector<RayStart> read_rays(const std::string& path) {
-  const Table table = read_csv(path);
+  const Table table = read_csv(path, {"x", "y", "z", "dx", "dy", "dz"});
   if (table.rows() == 0) throw InputError("rays", path, "holds no rays");
   const auto x = table.column("x"), y = table.column("y"), z = table.column("z");
   const auto dx = table.column("dx"), dy = table.column("dy"), dz = table.column("dz");

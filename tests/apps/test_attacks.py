@@ -111,6 +111,34 @@ class Files(ProgramTest):
         self.assertEqual(list(self.folder.iterdir()), [])
 
 
+    def test_loops_of_links(self):
+        (self.folder / "a").symlink_to("b")
+        (self.folder / "b").symlink_to("a")
+        for keys in ({"structure": "a", "scatterer": "tm", "radius": 0.1, "index": 1.5},
+                     {"near_sensors": "a"}):
+            done = self.call("covariance", **BOX, **keys, out="x.h5", status=2)
+            self.assertNotIn("filesystem error", done.stderr)
+        self.call("trace", field="luneburg", rays="a", out="x.h5", status=2)
+
+    def test_long_values_are_shortened(self):
+        done = self.call("covariance", **{**BOX, "scatterer": "x" * 5000}, out="x.h5", status=2)
+        self.assertLess(len(done.stderr), 500)
+
+
+class Memory(ProgramTest):
+    def test_little_address_space(self):
+        """OpenBLAS waits for ever where it gets no memory."""
+        for megabytes in (200, 300):
+            for keys in ({**BOX, **WIDE, "samples": 4000}, {**BOX, "width": -1}):
+                command = [PROGRAM, "covariance", *flags({**keys, "out": "x.h5"})]
+                done = subprocess.run(
+                    command, cwd=self.folder, capture_output=True, text=True, timeout=60,
+                    env={**os.environ, "OMP_NUM_THREADS": "2"},
+                    preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS,
+                                                          (megabytes << 20, megabytes << 20)))
+                self.assertEqual(done.returncode, 2, done.stderr)
+
+
 class Streams(ProgramTest):
     def test_closed_ones_end_nothing(self):
         for closed in ("stdout", "stderr"):
@@ -145,13 +173,20 @@ class Signals(ProgramTest):
 
     def test_long_batches(self):
         """A path of a thick, narrow box takes seconds, and so does a slab's transport."""
-        for keys in ({"width": 4, "depth": 20, "scatterer": "hg", "optical_depth": 1e4},
-                     {"width": 100, "depth": 20, "scatterer": "hg", "optical_depth": 1e5},
+        for keys in ({"width": 4, "depth": 20, "scatterer": "hg", "optical_depth": 3000},
+                     {"width": 100, "depth": 20, "scatterer": "hg", "optical_depth": 1e4},
                      {**SLAB, "g": 0.9995, "optical_depth": 10}):
             with self.subTest(keys=keys):
                 process = self.start("covariance", **keys, view_angles=[0], threads=1, out="x.h5",
                                      **({} if "domain" in keys else {"samples": 10**7}))
                 self.check_ends(process, 75, 1)
+
+    def test_paths_without_end_are_refused(self):
+        for optical_depth in (1e5, 1e9, 1e30):
+            for subcommand in ("covariance", "flux"):
+                done = self.call(subcommand, width=100, depth=20, scatterer="hg", out="x.h5",
+                                 optical_depth=optical_depth, status=2)
+                self.assertIn("optical_depth", done.stderr)
 
     def test_seconds_are_kept(self):
         began = time.monotonic()

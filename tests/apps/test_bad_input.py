@@ -438,6 +438,7 @@ class Placements(RefusingTest):
         self.refused("x,z,radius,index_re,index_im\n1,2,0.1,0,0\n", ["disks.csv", "index"])
         self.refused("x,z,radius,index_re,index_im\n1,2,0.1,1.5,-1\n", ["disks.csv", "index"])
         self.refused("x,z,radius,index_im\n1,2,0.1,1\n", ["disks.csv", "index_re"])
+        self.refused("x,z,radius,index\n1,2,0.1,1.5\n", ["disks.csv", '"index"', "index_re"])
 
     def test_overlaps(self):
         for second in ("0.1,0", "0,0", "0.2,0"):

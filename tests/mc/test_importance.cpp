@@ -4,6 +4,8 @@
 
 #include "bench/oracles/slab_theory.h"
 #include "bench/oracles/textbook.h"
+#include "core/error.h"
+#include "mc/theory/diffusion.h"
 #include "mc/walk/importance.h"
 #include "tests/mc/estimates.h"
 
@@ -115,6 +117,33 @@ TEST_CASE("deep boxes: the company and order of lights and views change nothing"
   CHECK_WITHIN_4_SIGMA(both.value[5], std::hypot(both.error[5], alone.error[0]), alone.value[0],
                        0.0);
   CHECK(both.error[5] < 0.05 * both.value[5].real());
+}
+
+TEST_CASE("media whose longest paths take seconds are refused") {
+  const auto request = intensity_request({0}, {far_view(0.3)});
+  const auto box = [&](double width, double optical_depth, double albedo = 1) {
+    return tests::hg_box(width, 20, {20 / optical_depth, 0, albedo}, request);
+  };
+  CHECK_NOTHROW(require_walks(box(100, 1e4), false));
+  CHECK_NOTHROW(require_walks(box(100, 1e9, 0.9), false));  // absorption ends them
+  CHECK_NOTHROW(require_walks(box(4, 1e3), true));
+  for (const double optical_depth : {1e5, 1e9, 1e30})
+    CHECK_THROWS_WITH_AS(require_walks(box(100, optical_depth), false),
+                         doctest::Contains("longest light paths scatter"), InputError);
+  CHECK_THROWS_WITH_AS(require_walks(box(1, 2e4), true), doctest::Contains("all that they split"),
+                       InputError);
+}
+
+TEST_CASE("the slowest mode of diffusion") {
+  const auto request = intensity_request({0}, {far_view(0.3)});
+  const auto scatterings = [](const Scene& scene) {
+    return scatterings_of_slowest_mode(scene.medium, scene.domain);
+  };
+  const Scene lossless = tests::hg_slab(100, {1}, request);
+  const double extent = 100 + 2 * 0.818;
+  CHECK(scatterings(lossless) == doctest::Approx(2 * extent * extent / (pi * pi)));
+  const Scene absorbing = tests::hg_slab(1e6, {1, 0, 0.9}, request);
+  CHECK(scatterings(absorbing) == doctest::Approx(9).epsilon(1e-6));
 }
 
 TEST_CASE("narrow boxes lose by their sides what absorption takes elsewhere") {
