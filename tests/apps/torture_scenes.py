@@ -2,6 +2,7 @@
 are made extreme."""
 
 import json
+import re
 import subprocess
 
 import h5py
@@ -183,3 +184,42 @@ def damaged(data, random):
     if kind == "zero":
         return data[:at] + bytes(len(data[at:at + 50])) + data[at + 50:]
     return {"cut": data[:at], "empty": b"", "double": data + data}.get(kind, data + b"\x00x\n")
+
+
+def other_cell(text, random):
+    """One number of a table is another one, or a word."""
+    cells = re.split(r"([,\n])", text)
+    cells[2 * random.randrange(len(cells) // 2)] = random.choice(NUMBERS + WORDS)
+    return "".join(cells)
+
+
+def change_a_number(path, random):
+    """In a dataset or attribute of an HDF5 file, which stays well formed."""
+    with h5py.File(path, "r+") as file:
+        items = [file]
+        file.visititems(lambda _, item: items.append(item))
+        places = [(item.attrs, key) for item in items for key, value in item.attrs.items()
+                  if np.asarray(value).dtype.kind == "f"]
+        places += [(item.parent, item.name) for item in items
+                   if isinstance(item, h5py.Dataset) and item.dtype.kind == "f"]
+        holder, name = random.choice(places)
+        values = np.array(holder[name])
+        values.flat[random.randrange(values.size)] = float(random.choice(NUMBERS))
+        if isinstance(holder, h5py.AttributeManager):
+            holder.modify(name, values)
+        else:
+            holder[name][...] = values
+
+
+def damage_bytes(path, random):
+    path.write_bytes(damaged(path.read_bytes(), random))
+
+
+def damage(path, random):
+    """In its bytes, or in one number of it."""
+    if random.random() < 0.5:
+        damage_bytes(path, random)
+    elif path.suffix == ".csv":
+        path.write_text(other_cell(path.read_text(), random))
+    elif path.suffix == ".h5":
+        change_a_number(path, random)
