@@ -130,7 +130,8 @@ def main():
     if not mounts_allowed():
         sys.exit(SKIPPED)
     with tempfile.TemporaryDirectory() as disk, tempfile.TemporaryDirectory() as elsewhere:
-        subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={DISK_KIB}k", "tmpfs", disk], check=True)
+        subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={DISK_KIB}k", "tmpfs", disk],
+                       check=True)
         try:
             soak(seconds, pathlib.Path(disk), pathlib.Path(elsewhere))
         finally:

@@ -11,7 +11,8 @@ from unittest import mock
 import h5py
 
 from program import BOX, PROGRAM, ProgramTest
-from torture_case import Case, Library
+from torture_case import Case
+from torture_library import Library
 from torture_run import Hindrance
 from torture_scenes import OLDER
 

@@ -3,9 +3,9 @@
 import os
 import signal
 
+from torture_damage import damage, damage_bytes, mutated
 from torture_run import SLOWNESS, Hindrance
-from torture_scenes import (LONG, OLDER, POINTS, RESUMABLE, SCENES, STOPPED, damage, damage_bytes,
-                            mutated)
+from torture_scenes import LONG, OLDER, POINTS, RESUMABLE, SCENES, STOPPED
 
 PATIENCE_S = 1.5 * SLOWNESS
 ENDS = (signal.SIGTERM, signal.SIGINT, signal.SIGKILL)
@@ -131,7 +131,8 @@ KEPT = [f"{name}={value}" for name, value in os.environ.items()
 ENVIRONMENTS = [
     *((f"LC_ALL={name}",) for name in ("de_DE.UTF-8", "tr_TR.UTF-8", "C", "C.utf8", "\u00e4/../x",
                                        "x" * 5000, "")),
-    ("TMPDIR=absent",), ("TMPDIR=/dev/null",), ("-u", "HOME"), ("HOME=",), ("-u", "PATH"), ("-i", *KEPT),
+    ("TMPDIR=absent",), ("TMPDIR=/dev/null",), ("-u", "HOME"), ("HOME=",), ("-u", "PATH"),
+    ("-i", *KEPT),
     *((f"COLUMNS={value}",) for value in ("0", "-1", "1", "abc", "99999999999999999999")),
     *((f"{name}={value}",) for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS")
       for value in ("0", "-1", "1000", "abc", "", "1,2,3")),
