@@ -11,8 +11,9 @@ import sys
 import tempfile
 import time
 
-from torture_case import Case, Library
+from torture_case import Case
 from torture_kinds import KINDS
+from torture_library import Library
 
 
 def torture(library, folder, seed, number):

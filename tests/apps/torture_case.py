@@ -11,21 +11,12 @@ import h5py
 
 from program import flags
 from torture_checks import (FINISHED, check_end, check_new_files, check_old_files, check_refusal,
-                            check_result, check_same_data, datasets, snapshot)
+                            check_result, check_same_data, snapshot)
+from torture_library import out_of, own_keys
 from torture_run import Hindrance, run
-from torture_scenes import RESUMABLE, rows_of_keys, write_files
+from torture_scenes import RESUMABLE
 
 DOCUMENTED = (0, 2, 3, 4)
-
-
-def out_of(subcommand):
-    return "x.csv" if subcommand == "place" else "x.h5"
-
-
-def own_keys(subcommand, threads=1):
-    """Those that a scene is completed by."""
-    alone = subcommand in ("place", "merge")
-    return {"out": out_of(subcommand), **({} if alone else {"threads": threads})}
 
 
 def scene_file(keys, quoted):
@@ -50,39 +41,6 @@ def is_number(text):
 def is_finished(path):
     with h5py.File(path) as file:
         return bool(file.attrs.get("complete", file.attrs["converged"]))
-
-
-class Library:
-    """What all cases share: files to copy, keys, results of undisturbed runs."""
-
-    def __init__(self, folder):
-        self.folder = folder
-        self.files = folder / "files"
-        self.files.mkdir()
-        write_files(self.files)
-        self.rows = rows_of_keys()
-        self._undisturbed = {}
-
-    def whole(self, subcommand, keys):
-        """The datasets of a scene, of one thread."""
-        return self.undisturbed(subcommand, keys)[0]
-
-    def duration(self, subcommand, keys):
-        return self.undisturbed(subcommand, keys)[1]
-
-    def undisturbed(self, subcommand, keys):
-        name = f"{subcommand} {keys}"
-        if name not in self._undisturbed:
-            place = self.folder / "undisturbed"
-            shutil.copytree(self.files, place)
-            began = time.monotonic()
-            ended = run(place, [subcommand, *flags({**keys, **own_keys(subcommand)})])
-            if ended.status != 0:
-                raise RuntimeError(f"{ended.command}\n{ended.status}: {ended.stderr}")
-            data = {} if subcommand == "place" else datasets(place / "x.h5")
-            self._undisturbed[name] = data, time.monotonic() - began
-            shutil.rmtree(place)
-        return self._undisturbed[name]
 
 
 class Case:

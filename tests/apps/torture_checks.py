@@ -46,7 +46,8 @@ def check_result(path):
     else:
         try:
             with h5py.File(path) as file:
-                wrong = [name for name, values in values_of(file) if not np.all(np.isfinite(values))]
+                wrong = [name for name, values in values_of(file)
+                         if not np.all(np.isfinite(values))]
         except OSError as error:
             yield f"{path.name}: {error}"
         else:

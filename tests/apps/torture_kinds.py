@@ -3,8 +3,9 @@
 import os
 import signal
 
+from torture_damage import damage, damage_bytes, mutated
 from torture_run import SLOWNESS, Hindrance
-from torture_scenes import LONG, OLDER, POINTS, RESUMABLE, SCENES, STOPPED, damaged, mutated
+from torture_scenes import LONG, OLDER, POINTS, RESUMABLE, SCENES, STOPPED
 
 PATIENCE_S = 1.5 * SLOWNESS
 ENDS = (signal.SIGTERM, signal.SIGINT, signal.SIGKILL)
@@ -26,23 +27,19 @@ def files_of(case, keys):
         [inside for folder in folders for inside in sorted(folder.iterdir())]
 
 
-def damage(case, path):
-    path.write_bytes(damaged(path.read_bytes(), case.random))
-
-
 def damaged_input(case):
+    """It may be another scene by then, so that the run takes long."""
     subcommand, keys = case.random.choice([scene for scene in SCENES if files_of(case, scene[1])])
     case.put_older_result(subcommand)
-    damage(case, case.random.choice(files_of(case, keys)))
-    case.run(subcommand, keys)
+    damage(case.random.choice(files_of(case, keys)), case.random)
+    case.run(subcommand, keys, Hindrance(patience_s=PATIENCE_S))
 
 
 def damaged_scene_file(case):
-    """It may say another number by then, so that the run takes long."""
     subcommand, keys = case.random.choice([scene for scene in SCENES if scene[0] != "place"])
     case.put_older_result(subcommand)
     words = case.in_scene_file(subcommand, keys)
-    damage(case, case.folder / "scene.toml")
+    damage_bytes(case.folder / "scene.toml", case.random)
     case.run(subcommand, keys, Hindrance(patience_s=PATIENCE_S), words=words)
 
 
@@ -50,7 +47,7 @@ def damaged_result(case):
     """Of an older run at --out, which is to be resumed or replaced."""
     source, keys = case.random.choice([("older.h5", OLDER), ("stopped.h5", STOPPED)])
     (case.folder / source).rename(case.folder / "x.h5")
-    damage(case, case.folder / "x.h5")
+    damage(case.folder / "x.h5", case.random)
     case.run("covariance", {**keys, **case.random.choice([{}, {"resume": True}])})
 
 
@@ -59,7 +56,7 @@ def damaged_points(case):
     points = case.folder / "x.h5.shards"
     (case.folder / "points.h5.shards").rename(points)
     for _ in range(case.random.choice([1, 2, 4])):
-        damage(case, case.random.choice(sorted(points.glob("*.h5"))))
+        damage_bytes(case.random.choice(sorted(points.glob("*.h5"))), case.random)
     case.run("sweep", {**POINTS, "resume": True}, statuses=(0,),
              whole=case.library.whole("sweep", POINTS))
 
@@ -134,7 +131,8 @@ KEPT = [f"{name}={value}" for name, value in os.environ.items()
 ENVIRONMENTS = [
     *((f"LC_ALL={name}",) for name in ("de_DE.UTF-8", "tr_TR.UTF-8", "C", "C.utf8", "\u00e4/../x",
                                        "x" * 5000, "")),
-    ("TMPDIR=absent",), ("TMPDIR=/dev/null",), ("-u", "HOME"), ("HOME=",), ("-u", "PATH"), ("-i", *KEPT),
+    ("TMPDIR=absent",), ("TMPDIR=/dev/null",), ("-u", "HOME"), ("HOME=",), ("-u", "PATH"),
+    ("-i", *KEPT),
     *((f"COLUMNS={value}",) for value in ("0", "-1", "1", "abc", "99999999999999999999")),
     *((f"{name}={value}",) for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS")
       for value in ("0", "-1", "1000", "abc", "", "1,2,3")),

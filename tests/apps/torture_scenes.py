@@ -1,5 +1,4 @@
-"""Small scenes of every subcommand for torture.py, the files that they read, and how their values
-are made extreme."""
+"""Small scenes of every subcommand for torture.py, and the files that they read."""
 
 import json
 import subprocess
@@ -23,7 +22,8 @@ VIEWS = {"light_angles": [0, 0.03], "view_angles": [0.1, 0.13, 3.1]}
 SCENES = [
     ("covariance", {**BOX, "samples": 4000}),
     ("covariance", {**CYLINDERS, "covariance": "full", **VIEWS, "samples": 3000}),
-    ("covariance", {**CYLINDERS, "width": 12, "depth": 8, "structure": "structure.h5", "samples": 3000}),
+    ("covariance", {**CYLINDERS, "width": 12, "depth": 8, "structure": "structure.h5",
+                    "samples": 3000}),
     ("covariance", {**BOX, "near_sensors": "sensors.csv", "near_sources": "sources.csv",
                     "covariance": "full", "samples": 4000}),
     ("covariance", {**BOX, "beam_waist": 2, "beam_positions": [0, 1], "beam_depth": 5,
@@ -89,16 +89,6 @@ STOPPED = {**OLDER, "target_error": 1e-9}
 POINTS = {**GRID, "samples": 2000}
 RESUMABLE = ("covariance", "flux", "validate", "sweep", "render")
 
-NUMBERS = ["0", "-0.0", "-1", "1", "2", "0.5", "0.001", "1000", "1e9", "-1e9", "1e-9", "1e150",
-           "1e308", "-1e308", "1e-308", "5e-324", "0.9999999999999999", "1.0000000000000002",
-           "1.5707963267948966", "3.141592653589793", "nan", "inf", "-inf", "1e999"]
-INTEGERS = ["0", "-1", "1", "2", "7", "1000", "2147483648", "9223372036854775807",
-            "18446744073709551616", "1e3", "1.5", "nan"]
-WORDS = ["", " ", "x", "1,5", "0x1p3", "1e", "--", "1 2", "\u00e4\u0661", "true", "1+1i", "-1i",
-         "1.5+1e308i", "x" * 5000, "[1, 2]", "'", "%s%n", "-"]
-FILES = ["absent.csv", ".", "/dev/null", "older.h5", "sensors.csv", "rays.csv", "disks.csv",
-         "structure.h5", "grid.h5", "points.h5.shards", "/proc/self/mem", "sensors.csv/x", "x" * 300]
-
 
 def write_files(folder):
     """What the scenes read: older.h5 is a finished result, stopped.h5 one that can be resumed,
@@ -110,7 +100,8 @@ def write_files(folder):
     (folder / "disks.csv").write_text("x,z,radius\n0,0,0.3\n1,0,0.2\n0,1,0.4\n-2,3,0.1\n")
     for name, dataset in (("grid.h5", "excess"), ("density.h5", "density")):
         with h5py.File(folder / name, "w") as file:
-            data = file.create_dataset(dataset, data=np.linspace(0, 0.1, 8 * 8 * 8).reshape(8, 8, 8))
+            values = np.linspace(0, 0.1, 8 * 8 * 8).reshape(8, 8, 8)
+            data = file.create_dataset(dataset, data=values)
             data.attrs["origin"] = np.array([-1.0, -1, -1])
             data.attrs["spacing"] = np.array([0.3, 0.3, 0.8])
     for subcommand, out, status, keys in (
@@ -129,57 +120,3 @@ def rows_of_keys():
     """{subcommand: [row of a key]} as the program tells them."""
     told = subprocess.run([PROGRAM, "keys", "json"], check=True, capture_output=True)
     return json.loads(told.stdout)
-
-
-def extreme_value(row, random):
-    """A word or a list of words for a key."""
-    usual = {"number": NUMBERS, "integer": INTEGERS, "text": (row["words"] or []) + FILES}
-    pool = usual.get(row["type"], WORDS)
-    if row["list"]:
-        count = random.choice([0, 1, 2, 3, 6, 7, 8, 20_000 if random.random() < 0.1 else 4])
-        if random.random() < 0.5:
-            return [random.choice(pool)] * count
-        return [repr(0.001 * i) for i in range(count)]
-    return random.choice(WORDS if random.random() < 0.15 else pool)
-
-
-def scaled(value, random):
-    """A number, or one of a list, times a power of ten; anything else as it is."""
-    if isinstance(value, list) and value:
-        at = random.randrange(len(value))
-        return [*value[:at], scaled(value[at], random), *value[at + 1:]]
-    if isinstance(value, (int, float)) and not isinstance(value, bool):
-        changed = value * 10.0 ** random.choice([-9, -3, -2, -1, 1, 2, 3, 9]) * random.choice([1, 1, 1, -1])
-        return round(changed) if isinstance(value, int) and random.random() < 0.8 else changed
-    return value
-
-
-def mutated(keys, rows, random):
-    """The keys with one to three of them scaled, made extreme, added or left out."""
-    keys = dict(keys)
-    rows = [row for row in rows if row["name"] not in ("out", "threads", "seed")]
-    for row in random.choices(rows, k=random.choice([1, 1, 2, 3])):
-        given = [other for other in rows if other["name"] in keys]
-        if given and random.random() < 0.7:
-            row = random.choice(given)
-        if random.random() < 0.1:
-            keys[row["name"]] = None
-        elif row in given and random.random() < 0.6:
-            keys[row["name"]] = scaled(keys[row["name"]], random)
-        else:
-            keys[row["name"]] = extreme_value(row, random)
-    return keys
-
-
-def damaged(data, random):
-    """Bytes with some of them flipped, cut off, doubled or added."""
-    kind = random.choice(["flip", "flip", "cut", "empty", "double", "add", "zero"])
-    at = random.randrange(len(data)) if data else 0
-    if kind == "flip" and data:
-        changed = bytearray(data)
-        for _ in range(random.choice([1, 1, 5])):
-            changed[random.randrange(len(data))] ^= 1 << random.randrange(8)
-        return bytes(changed)
-    if kind == "zero":
-        return data[:at] + bytes(len(data[at:at + 50])) + data[at + 50:]
-    return {"cut": data[:at], "empty": b"", "double": data + data}.get(kind, data + b"\x00x\n")
