@@ -65,7 +65,11 @@ struct Comparison {
   Estimate reference, mc;
   double bias = 0;
 
-  double error(std::size_t e) const { return std::hypot(reference.error[e], mc.error[e]); }
+  /// Not below what rounding leaves.
+  double error(std::size_t e) const {
+    const double largest = std::max(std::abs(reference.value[e]), std::abs(mc.value[e]));
+    return std::hypot(reference.error[e], mc.error[e], 1e-13 * largest);
+  }
   double difference(std::size_t e) const { return std::abs(mc.value[e] - reference.value[e]); }
   double deviation(std::size_t e) const {
     return difference(e) == 0 ? 0 : difference(e) / error(e);

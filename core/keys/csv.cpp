@@ -114,14 +114,14 @@ Table read_csv(const std::filesystem::path& path) {
 
 Table read_csv(const std::filesystem::path& path, const std::vector<std::string>& columns) {
   Table table = read_csv(path);
-  for (const std::string& name : table.names()) {
+  for (const std::string& name : table.names())
     if (std::find(columns.begin(), columns.end(), name) == columns.end())
       throw InputError(path.string() + ": column \"" + name + "\": must be one of " +
                        joined(columns, ", "));
+  for (const std::string& name : table.names())
     for (double value : table.column(name))
       if (std::abs(value) > most_input)
         throw InputError(path.string() + ", " + name, value, "must be from -1e50 to 1e50");
-  }
   return table;
 }
 

@@ -91,6 +91,7 @@ void check_writable(const fs::path& given) {
 FileBeside::FileBeside(fs::path path)
     : path_(followed(std::move(path))),
       temporary_(temporary_beside(path_)),
+      removed_(temporary_.string()),
       descriptor_(create(temporary_)) {
   if (descriptor_ < 0) fail(errno);
 }

@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <span>
 
+#include "core/run/interrupt.h"
+
 namespace flatspeckle {
 
 /// Makes sure, before long work, that a file can be put at `path`; leaves nothing behind. Throws
@@ -39,6 +41,7 @@ class FileBeside {
   [[noreturn]] void fail(int error) const;
 
   std::filesystem::path path_, temporary_;
+  RemovedIfEnded removed_;
   int descriptor_;
 };
 

@@ -14,37 +14,49 @@ namespace {
 std::atomic<bool> signal_seen{false};
 static_assert(std::atomic<bool>::is_always_lock_free);
 
-std::array<char, 4096> doomed{};
+struct Doomed {
+  std::atomic<bool> taken{false};
+  std::atomic<bool> whole{false};  ///< the name, for a signal handler
+  std::array<char, 4096> name{};
+};
+std::array<Doomed, 4> doomed;  // a lock, a file being written, and to spare
 
 void end_at_once(int /*signal*/) {
-  if (doomed[0] != 0) ::unlink(doomed.data());
+  for (const Doomed& file : doomed)
+    if (file.whole) ::unlink(file.name.data());
   std::_Exit(130);
 }
 
 void on_signal(int signal) {
   signal_seen = true;
-  std::signal(signal, SIG_DFL);
+  if (signal != SIGXCPU) std::signal(signal, SIG_DFL);  // which comes every second from then on
 }
 
 }  // namespace
 
 void set_signals() {
-  for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, end_at_once);
+  for (const int signal : {SIGINT, SIGTERM, SIGXCPU}) std::signal(signal, end_at_once);
   for (const int signal : {SIGPIPE, SIGXFSZ}) std::signal(signal, SIG_IGN);
 }
 
 void catch_interrupts() {
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);
+  std::signal(SIGXCPU, on_signal);
   if (std::signal(SIGHUP, on_signal) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);  // nohup
 }
 
-void remove_if_ended(const std::string& path) {
-  doomed[0] = 0;  // first off, last on: a signal finds it whole or not at all
-  if (path.empty() || path.size() >= doomed.size()) return;
-  std::copy(path.begin() + 1, path.end(), doomed.begin() + 1);
-  doomed[path.size()] = 0;
-  doomed[0] = path[0];
+RemovedIfEnded::RemovedIfEnded(const std::string& path) : place_(0) {
+  while (place_ < doomed.size() && doomed[place_].taken.exchange(true)) ++place_;
+  if (place_ == doomed.size() || path.size() >= doomed[place_].name.size()) return;
+  std::copy_n(path.c_str(), path.size() + 1, doomed[place_].name.begin());
+  doomed[place_].whole = true;
+}
+
+RemovedIfEnded::~RemovedIfEnded() {
+  if (place_ == doomed.size()) return;
+  doomed[place_].whole = false;
+  doomed[place_].taken = false;
 }
 
 bool interrupted() {

@@ -1,19 +1,30 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 
 namespace flatspeckle {
 
-/// After this, SIGINT and SIGTERM end the program at once with exit status 130, and neither a
-/// closed pipe nor a limit on the size of files ends it: writing fails.
+/// After this, SIGINT, SIGTERM and SIGXCPU (processor time runs out) end the program at once with
+/// exit status 130, and neither a closed pipe nor a limit on the size of files ends it: writing
+/// fails.
 void set_signals();
 
-/// After this, SIGINT, SIGTERM and SIGHUP set a flag that ends runs after the batches in hand; a
-/// second signal ends the program at once.
+/// After this, SIGINT, SIGTERM, SIGHUP and SIGXCPU set a flag that ends runs after the batches in
+/// hand; a second signal ends the program at once, but SIGXCPU.
 void catch_interrupts();
 
-/// A file that is removed, too, where the program ends with 130; empty: none.
-void remove_if_ended(const std::string& path);
+/// A file that is removed, too, where the program ends with 130 while this lives.
+class RemovedIfEnded {
+ public:
+  explicit RemovedIfEnded(const std::string& path);
+  RemovedIfEnded(const RemovedIfEnded&) = delete;
+  RemovedIfEnded& operator=(const RemovedIfEnded&) = delete;
+  ~RemovedIfEnded();
+
+ private:
+  std::size_t place_;
+};
 
 /// Whether a signal has come since catch_interrupts().
 bool interrupted();

@@ -76,14 +76,13 @@ bool OutputLock::take(const std::filesystem::path& out) {
     ::close(std::exchange(descriptor_, -1));
     return false;
   }
-  remove_if_ended(path_.string());
+  removed_.emplace(path_.string());
   say_owner(path_);
   return true;
 }
 
 OutputLock::~OutputLock() {
   if (descriptor_ < 0) return;
-  remove_if_ended("");
   ::unlink(path_.c_str());
   ::close(descriptor_);
 }

@@ -1,6 +1,9 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
+
+#include "core/run/interrupt.h"
 
 namespace flatspeckle {
 
@@ -18,6 +21,7 @@ class OutputLock {
   bool take(const std::filesystem::path& out);
 
   std::filesystem::path path_;
+  std::optional<RemovedIfEnded> removed_;
   int descriptor_ = -1;
 };
 

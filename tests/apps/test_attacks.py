@@ -171,6 +171,13 @@ class Signals(ProgramTest):
                 self.check_ends(process, 130)
                 self.assertEqual(list(self.folder.iterdir()), [])
 
+    def test_a_limit_on_processor_time(self):
+        command = [PROGRAM, "covariance", *flags({**LONG, "out": "x.h5"})]
+        done = subprocess.run(command, cwd=self.folder, capture_output=True, text=True, timeout=60,
+                              preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (1, 20)))
+        self.assertEqual(done.returncode, 75, done.stderr)
+        self.assertEqual([path.name for path in self.folder.iterdir()], ["x.h5"])
+
     def test_long_batches(self):
         """A path of a thick, narrow box takes seconds, and so does a slab's transport."""
         for keys in ({"width": 4, "depth": 20, "scatterer": "hg", "optical_depth": 3000},

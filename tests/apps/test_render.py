@@ -346,7 +346,7 @@ class Refused(RenderTest):
         self.refuse("light is not given", beam_light=None)
         self.refuse("point_light", "4 numbers", point_light=[0, 0, 1])
         self.refuse("point_light, power = 0", point_light=[0, 0, 1, 0])
-        self.refuse("point_light, power = 1e+200", point_light=[0, 0, 1, 1e200])
+        self.refuse("point_light = 1e+200", point_light=[0, 0, 1, 1e200])
         self.refuse("point_light, position = 0.25 0 5", "inside the stage",
                     point_light=[0.25, 0, 5, 1])
         self.refuse("beam_light", "8 numbers", beam_light=[0, 0, 0, 0, 0, 1])

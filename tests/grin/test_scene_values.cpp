@@ -332,7 +332,7 @@ TEST_CASE("pictures that cannot be are refused by their keys") {
   refused([](auto& v) { v.lights = {}; }, "light is not given");
   refused([](auto& v) { v.lights.point_light = {0, 0, 1}; }, "must be 4 numbers for each");
   refused([](auto& v) { v.lights.point_light = {0, 0, 1, 0}; }, "point_light, power = 0");
-  refused([](auto& v) { v.lights.point_light = {0, 0, 1, 1e200}; }, "from 1e50");
+  refused([](auto& v) { v.lights.point_light = {0, 0, 1, 1e200}; }, "to 1e50");
   refused([](auto& v) { v.lights.beam_light[6] = 0; }, "beam_light, radius = 0");
   refused([](auto& v) { v.lights.face_light = {0, 0, 0, 0.1, -1}; }, "face_light, radiance = -1");
   refused([](auto& v) { v.lights.environment = 0; }, "environment = 0: must be positive");
