@@ -39,11 +39,13 @@ void add_wave_keys(Keys& keys, MethodSettings& settings) {
       .only_of("the exact solver");
 }
 
+constexpr double least_tolerance = 1e-13;  // some roundings
+
 void add_transport_keys(Keys& keys, MethodSettings& settings) {
   keys.group("Methods");
   keys.add("tolerance", settings.tolerance,
            "Of transport: relative difference from a solution with fewer ordinates")
-      .between(0, 1)
+      .from(least_tolerance, 0.5)
       .only_of("method = transport");
 }
 
@@ -75,7 +77,7 @@ void read_transport(const Keys& keys, MethodSettings& settings, const SceneSpec&
   if (spec.domain != "slab")
     throw InputError("method", "transport", "needs domain = slab; take another method");
   const double asked = keys.read(run.target_error).value_or(1);
-  settings.tolerance = std::min(keys.read(settings.tolerance), asked);
+  settings.tolerance = std::min(keys.read(settings.tolerance), std::max(asked, least_tolerance));
 }
 
 StopRule both_batches() {
