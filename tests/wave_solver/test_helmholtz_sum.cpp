@@ -6,6 +6,7 @@
 #include "core/numbers/bessel.h"
 #include "core/numbers/random.h"
 #include "reference.h"
+#include "wave_solver/sums/fourier.h"
 #include "wave_solver/sums/grid_sum.h"
 #include "wave_solver/sums/helmholtz_sum.h"
 
@@ -191,6 +192,22 @@ TEST_CASE("the sum does not depend on the number of threads") {
   for (std::size_t i = 0; i < 2; ++i) inside[i] = sum(charges);
   sums.insert(sums.end(), inside.begin(), inside.end());
   for (const auto& other : sums) CHECK(other == sums[0]);
+}
+
+TEST_CASE("sizes of transforms are the next even products of 2, 3 and 5") {
+  const auto smooth = [](std::size_t n) {
+    for (const std::size_t prime : {2, 3, 5})
+      while (n % prime == 0) n /= prime;
+    return n == 1;
+  };
+  for (std::size_t least = 1; least < 5000; ++least) {
+    std::size_t next = least + least % 2;
+    while (!smooth(next)) next += 2;
+    REQUIRE(transform_size(static_cast<double>(least)) == next);
+  }
+  for (const double least : {1e12, 1e17})  // at once
+    CHECK(static_cast<double>(transform_size(least)) < 1.01 * least);
+  CHECK(smooth(transform_size(1e50)));
 }
 
 }  // namespace flatspeckle::wave

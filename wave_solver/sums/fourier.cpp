@@ -1,7 +1,9 @@
 #include "wave_solver/sums/fourier.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <fftw3.h>
 #include <mutex>
 
@@ -61,14 +63,16 @@ void transform_even(std::vector<Complex>& values, std::size_t rows, std::size_t 
 }
 
 std::size_t transform_size(double least) {
-  const auto smooth = [](std::size_t n) {
-    for (const std::size_t prime : {2, 3, 5})
-      while (n % prime == 0) n /= prime;
-    return n == 1;
-  };
-  auto size = 2 * static_cast<std::size_t>(std::max(std::ceil(least / 2), 1.0));
-  while (!smooth(size)) size += 2;
-  return size;
+  constexpr double most = 1e18;  // far beyond what any memory holds
+  const auto needed = static_cast<std::uint64_t>(std::ceil(std::clamp(least, 2.0, most)));
+  std::uint64_t best = std::bit_ceil(needed);
+  for (std::uint64_t fives = 1; fives < best; fives *= 5)
+    for (std::uint64_t odd = fives; odd < best; odd *= 3) {
+      std::uint64_t size = 2 * odd;
+      while (size < needed) size *= 2;
+      best = std::min(best, size);
+    }
+  return best;
 }
 
 }  // namespace flatspeckle::wave
