@@ -6,6 +6,7 @@
 #include <iostream>
 
 #include "core/error.h"
+#include "core/numbers/address_space.h"
 #include "core/result/result_reader.h"
 #include "core/result/run_state_file.h"
 #include "core/result/sealed_file.h"
@@ -32,7 +33,7 @@ Session::Session(std::string command_line, const Keys& keys, const RunSettings& 
       seed_(keys.find("seed") ? seed_of(keys, settings) : 0),
       started_(utc_now()) {
   keys.read(settings.out);
-  threads();
+  require_address_space_of_threads(threads());
   if (keys.find("resume")) keys.read(settings.resume);
   if (only_prints) return;
   if (settings.out.empty())

@@ -130,13 +130,23 @@ class Memory(ProgramTest):
         """OpenBLAS waits for ever where it gets no memory."""
         for megabytes in (200, 300):
             for keys in ({**BOX, **WIDE, "samples": 4000}, {**BOX, "width": -1}):
-                command = [PROGRAM, "covariance", *flags({**keys, "out": "x.h5"})]
-                done = subprocess.run(
-                    command, cwd=self.folder, capture_output=True, text=True, timeout=60,
-                    env={**os.environ, "OMP_NUM_THREADS": "2"},
-                    preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS,
-                                                          (megabytes << 20, megabytes << 20)))
-                self.assertEqual(done.returncode, 2, done.stderr)
+                self.check_refused(keys, megabytes)
+
+    def test_little_address_space_of_threads(self):
+        """The runtime of OpenMP ends the program where it cannot start a thread."""
+        error = self.check_refused({**SHORT, "threads": 50}, 300)
+        self.assertIn("threads: ulimit -v", error)
+        self.assertEqual(list(self.folder.iterdir()), [])
+
+    def check_refused(self, keys, megabytes):
+        command = [PROGRAM, "covariance", *flags({**keys, "out": "x.h5"})]
+        done = subprocess.run(
+            command, cwd=self.folder, capture_output=True, text=True, timeout=60,
+            env={**os.environ, "OMP_NUM_THREADS": "2"},
+            preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS,
+                                                  (megabytes << 20, megabytes << 20)))
+        self.assertEqual(done.returncode, 2, done.stderr)
+        return done.stderr
 
 
 class Streams(ProgramTest):

@@ -89,7 +89,7 @@ def limited(case):
     limit = case.random.choice(
         [f"--fsize={case.random.choice([0, 1, 100, 4096, 10_000, 20_000, 40_000, 10**6])}"] * 6 +
         [f"--nofile={case.random.choice([5, 6, 8, 12, 20])}"] * 4 +
-        [f"--as={case.random.choice([100, 150, 250, 400, 700, 1500, 3000])}000000"] *
+        [f"--as={case.random.choice([120, 150, 250, 400, 700, 1500, 3000])}000000"] *
         (2 if SLOWNESS == 1 else 0))
     case.run(subcommand, keys, Hindrance(limits=(limit,)), statuses=(0, 2, 4),
              whole=case.library.whole(subcommand, keys))
