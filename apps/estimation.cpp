@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "core/error.h"
+#include "core/numbers/blas.h"
 #include "mc/estimators/covariance_estimator.h"
 #include "mc/space/space_scene.h"
 #include "mc/transport/slab_covariance.h"
@@ -133,6 +134,7 @@ Estimation mc_estimation(const Scene& scene, mc::ReversedPaths reversed, std::ui
 
 Estimation transport_estimation(const Scene& scene, mc::ReversedPaths reversed, double tolerance) {
   const bool with_reversed = mc::make_plan(scene, reversed).reversed;
+  blas_single_thread();  // says now what it lacks
   std::ostringstream plan;
   const bool space = scene.medium.dimension == 3, near = has_near_ends(scene.request);
   if (space && near) throw InputError("dimension", 3, "is of plane waves and far views");
@@ -144,6 +146,7 @@ Estimation transport_estimation(const Scene& scene, mc::ReversedPaths reversed, 
 }
 
 Estimation wave_estimation(const Scene& scene, double tolerance, std::uint64_t seed) {
+  blas_single_thread();  // says now what it lacks
   std::ostringstream plan;
   plan << "wave: dense T-matrix solutions of " << placement_word(scene.placement.kind)
        << " placements, tolerance " << tolerance << "; sample mean removed";

@@ -13,6 +13,7 @@
 #include "core/result/atomic_file.h"
 #include "core/result/result_group.h"
 #include "core/result/version.h"
+#include "core/run/interrupt.h"
 #include "core/session/session.h"
 #include "flatland/media/structure_factor.h"
 #include "flatland/placement/placement.h"
@@ -227,6 +228,12 @@ int save_structure(const PlaceKeys& values, const Drawing& drawing, const Sessio
   });
 }
 
+void put_placement(const std::string& path, const std::string& text, bool is_all) {
+  const EndsLater whole;
+  replace_file(path, std::as_bytes(std::span(text)));
+  if (is_all) result_is_there();
+}
+
 }  // namespace
 
 int place(const Arguments& arguments) {
@@ -243,7 +250,7 @@ int place(const Arguments& arguments) {
   if (!command.settle()) return ExitStatus::done;
   if (!values.structure.empty()) check_result_path(values.structure);
   const std::string text = csv_text(drawing, draw(drawing, session.seed(), 0), command.text());
-  replace_file(session.out(), std::as_bytes(std::span(text)));
+  put_placement(session.out(), text, values.structure.empty());
   std::printf("%zu scatterers, packing fraction %.3g\nwrote %s\n", drawing.count,
               drawing.packing(0), session.out().c_str());
   return values.structure.empty() ? ExitStatus::done : save_structure(values, drawing, session);

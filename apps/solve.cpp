@@ -4,8 +4,6 @@
 #include <numbers>
 #include <sstream>
 
-#include <omp.h>
-
 #include "apps/field_map_output.h"
 #include "apps/subcommands.h"
 #include "core/error.h"
@@ -155,7 +153,6 @@ int solve(const Arguments& arguments) {
   const Placement placement = scene ? drawn_placement(spec, *scene, session.seed())
                                     : placement_of_file(keys, spec, values.run);
   if (!command.settle()) return ExitStatus::done;
-  omp_set_num_threads(session.threads());
   const auto solution = solved(values, placement, grid, sensors.points);
   if (grid) catch_interrupts();  // which must not leave the file that a map is written to
   ResultFile result(session.out(), grid ? ResultFile::Storage::disk : ResultFile::Storage::memory);

@@ -6,6 +6,7 @@
 
 #include "core/error.h"
 #include "core/result/version.h"
+#include "mc/walk/plan.h"
 
 namespace flatspeckle::apps {
 
@@ -122,7 +123,10 @@ void SweepPlan::check_points() {
     command_.keys().join_reads(point.keys);
     check_scene(scene);
     if (method(run) == "wave") note_rounding(scene);
-    if (method(run) == "wave" || run == 0) estimation(run, scene);
+    if (method(run) == "wave" || point_of(run) == 0)
+      estimation(run, scene);
+    else if (method(run) == "mc")
+      mc::require_walks(scene, mc::make_plan(scene, reversed_).weighted);
     if (method(run) != "wave") neglected.add(scene);
   });
   note(neglected);

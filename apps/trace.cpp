@@ -3,8 +3,6 @@
 #include <iomanip>
 #include <sstream>
 
-#include <omp.h>
-
 #include "apps/subcommands.h"
 #include "core/session/session.h"
 #include "grin/rays/light_speed.h"
@@ -111,7 +109,6 @@ int trace(const Arguments& arguments) {
   const TraceScene scene = make_trace_scene(keys, values);
   if (!scene.curves) keys.disregard(run.seed);
   if (!command.settle()) return ExitStatus::done;
-  omp_set_num_threads(session.threads());
   return session.once(ResultFile(session.out()), [&](ResultFile& file) -> std::optional<Made> {
     return scene.curves ? trace_curves(scene, file, session.seed()) : trace_light(scene, file);
   });

@@ -89,7 +89,7 @@ void print_row(const CovarianceRequest& request, const Comparison& comparison, s
               shown_value(comparison.reference.value[e]).c_str(), comparison.reference.error[e],
               100 * comparison.difference(e) / scale, comparison.deviation(e),
               comparison.within_errors(e) ? ""
-              : comparison.within_bias(e) ? "  bias"
+              : comparison.within_bias(e) ? "  within"
                                           : "  *");
 }
 
@@ -108,7 +108,9 @@ void print_comparison(const Scene& scene, const Comparison& comparison) {
   }
   if (entries > most_rows) std::printf("... and %zu more\n", entries - most_rows);
   std::printf("%zu entries: %zu within 4 combined standard errors, ", entries, in_errors);
-  if (comparison.bias > 0)
+  if (comparison.name == "transport")
+    std::printf("%zu more within its tolerance, ", in_bias);
+  else if (comparison.bias > 0)
     std::printf(
         "%zu more within the %.1f %% that the\n"
         "method neglects at k mfp = %.1f, packing %.3f, k_shift / k = %.3f; ",
@@ -146,7 +148,7 @@ Refer by_transport(const Keys& keys, MethodSettings& methods, const SceneSpec& s
   read_transport(keys, methods, spec, run);
   return [reversed, tolerance = methods.tolerance](const Scene& scene) {
     return Reference{"transport", transport_estimation(scene, reversed, tolerance), both_batches(),
-                     0};
+                     tolerance};
   };
 }
 

@@ -17,6 +17,14 @@ std::size_t group_count(std::size_t size) {
                     most_groups);
 }
 
+constexpr double rounding = 1e-13;  ///< relative: deviations below it say nothing
+
+bool is_rare(double sum_dd, double sum_d4, std::size_t groups) {
+  constexpr double enough = 24, least_share = 1.0 / 9;
+  const double least = std::min(enough, least_share * static_cast<double>(groups));
+  return sum_dd * sum_dd < least * sum_d4;
+}
+
 /// For values whose squares are below all numbers: a power of two, so that they keep their digits.
 double lift(double size) {
   constexpr double small = 1e-100;
@@ -89,8 +97,16 @@ std::vector<double> real_parts(std::span<const Complex> values) {
 Estimate part(const Estimate& all, std::size_t first, std::size_t count) {
   const auto from = static_cast<std::ptrdiff_t>(first),
              to = from + static_cast<std::ptrdiff_t>(count);
-  return {{all.value.begin() + from, all.value.begin() + to},
-          {all.error.begin() + from, all.error.begin() + to}};
+  Estimate found{{all.value.begin() + from, all.value.begin() + to},
+                 {all.error.begin() + from, all.error.begin() + to}};
+  if (!all.rare.empty()) found.rare.assign(all.rare.begin() + from, all.rare.begin() + to);
+  return found;
+}
+
+void append(Estimate& all, const Estimate& more) {
+  all.value.insert(all.value.end(), more.value.begin(), more.value.end());
+  all.error.insert(all.error.end(), more.error.begin(), more.error.end());
+  all.rare.insert(all.rare.end(), more.rare.begin(), more.rare.end());
 }
 
 Estimate jackknife(const GroupedSums& sums, const Estimator& theta) {
@@ -106,7 +122,7 @@ Estimate jackknife(const GroupedSums& sums, const Estimator& theta) {
   // weigh 1/(h-1); sums of their deviations d from theta suffice.
   double sum_w = 0;
   std::vector<Complex> sum_d(size), sum_mean(size);
-  std::vector<double> sum_dd(size), lifted(size);
+  std::vector<double> sum_dd(size), sum_d4(size), lifted(size);
   for (std::size_t i = 0; i < size; ++i) lifted[i] = lift(std::abs(estimate.value[i]));
   std::vector<Complex> without(total.size());
   for (std::size_t group = 0; group < groups; ++group) {
@@ -118,16 +134,21 @@ Estimate jackknife(const GroupedSums& sums, const Estimator& theta) {
     for (std::size_t i = 0; i < size; ++i) {
       const Complex difference = lifted[i] * (estimate.value[i] - value[i]);
       sum_d[i] += difference;
-      sum_dd[i] += h_minus_1 * std::norm(difference);
+      const double dd = h_minus_1 * std::norm(difference);
+      sum_dd[i] += dd;
+      sum_d4[i] += dd * dd;
       sum_mean[i] += h_minus_1 / (h_minus_1 + 1) * difference;
     }
   }
   estimate.error.resize(size);
+  estimate.rare.resize(size);
   for (std::size_t i = 0; i < size; ++i) {
     const Complex mean = sum_mean[i];  // jackknife estimate minus theta
     const double spread =
         sum_dd[i] - 2 * (std::conj(mean) * sum_d[i]).real() + sum_w * std::norm(mean);
     estimate.error[i] = std::sqrt(std::max(0.0, spread) / static_cast<double>(groups)) / lifted[i];
+    const bool rounded = estimate.error[i] < rounding * std::abs(estimate.value[i]);
+    estimate.rare[i] = !rounded && is_rare(sum_dd[i], sum_d4[i], groups) ? 1 : 0;
   }
   return estimate;
 }

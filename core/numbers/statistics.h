@@ -53,11 +53,16 @@ class GroupedSums {
 struct Estimate {
   std::vector<Complex> value;
   std::vector<double> error;
+  /// 1 where a few of the batches carry the error, so that it is likely too small (jackknife).
+  /// Empty: nowhere.
+  std::vector<std::uint64_t> rare = {};
 };
 
 std::vector<double> real_parts(std::span<const Complex> values);
 /// Entries [first, first + count).
 Estimate part(const Estimate& all, std::size_t first, std::size_t count);
+/// Adds the entries of `more` at the end.
+void append(Estimate& all, const Estimate& more);
 
 /// What is estimated, as a function of summed samples: theta(samples, sums) -> values.
 using Estimator =
@@ -69,6 +74,10 @@ std::vector<Complex> sample_mean(double samples, std::span<const Complex> sums);
 /// Value of theta on all groups and its delete-one-group jackknife error for groups of unequal size
 /// (Busing, Meijer and van der Leeden 1999, eqs. 6-7). With fewer than two groups the error is
 /// infinite.
+///
+/// Rare: with d the deviations of the groups, (sum d^2)^2 / sum d^4 says how many of them make up
+/// the error. It is a third of the groups where they are normal, and 1 where one outweighs all
+/// others; rare is less than 24, and less than a ninth of the groups.
 Estimate jackknife(const GroupedSums& sums, const Estimator& theta);
 
 /// RMS error relative to the RMS magnitude; 0 where every value and error is 0.

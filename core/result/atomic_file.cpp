@@ -78,6 +78,7 @@ void check_writable(const fs::path& given) {
   if (fs::exists(path, unknown) && is_protected(path))
     throw IoError("cannot write " + path.string() + ": it is write-protected");
   const fs::path temporary = temporary_beside(path);
+  const EndsLater whole;
   const int descriptor = create(temporary);
   if (descriptor < 0) {
     const std::string message = "cannot write " + path.string() + ": " + reason();
@@ -126,6 +127,7 @@ void FileBeside::truncate(std::uintmax_t bytes) {
 
 void FileBeside::put_in_place(Durable durable) {
   const bool sync = durable == Durable::yes;
+  const EndsLater whole;
   if ((sync && ::fsync(descriptor_) != 0) || ::rename(temporary_.c_str(), path_.c_str()) != 0)
     fail(errno);
   // From here on it is no longer ours to remove.

@@ -76,6 +76,11 @@ class ResultFile {
   void write_block(const std::string& name, std::span<const Complex> values,
                    const std::vector<std::size_t>& start, const std::vector<std::size_t>& count);
 
+  /// Remembers estimates whose errors are likely too small, as "intensity: 2 of 8", to tell the
+  /// user.
+  void note_rare(const std::string& estimates) { rare_.push_back(estimates); }
+  const std::vector<std::string>& rare() const { return rare_; }
+
   /// Puts the file at its path, replacing what is there. Throws IoError. Nothing can be written
   /// afterwards.
   void commit();
@@ -90,6 +95,7 @@ class ResultFile {
   std::unique_ptr<FileBeside> beside_;  // outlives file_
   std::unique_ptr<Hdf5Handle> file_;
   std::map<std::string, std::vector<Axis>> roles_;
+  std::vector<std::string> rare_;
 };
 
 /// check_writable, and throws InputError where another kind of file is, which would be lost.

@@ -48,20 +48,27 @@ void ResultGroup::put(const std::string& path, const Values& values) const {
   write(row(path), values);
 }
 
-void ResultGroup::put(const std::string& path, const Values& values,
-                      std::span<const double> errors) const {
+void ResultGroup::put(const std::string& path, const Values& values, std::span<const double> errors,
+                      std::span<const std::uint64_t> rare) const {
   const DatasetRow& found = row(path);
   if (!has_error(found.data)) throw std::logic_error(path + ": its row has no standard errors");
   write(found, values);
   write({path + "_error", Data::real, found.axes, found.unit, "standard error: " + found.long_name},
         errors);
+  const auto few = std::count(rare.begin(), rare.end(), std::uint64_t{1});
+  if (few == 0) return;
+  write({path + "_rare", Data::count, found.axes, "1",
+         "1 where a few batches carry the standard error: " + found.long_name},
+        rare);
+  file_.note_rare(prefix_ + path + ": " + std::to_string(few) + " of " +
+                  std::to_string(rare.size()));
 }
 
 void ResultGroup::put(const std::string& path, const Estimate& estimate) const {
   if (row(path).data == Data::complex_estimate)
-    put(path, estimate.value, estimate.error);
+    put(path, estimate.value, estimate.error, estimate.rare);
   else
-    put(path, real_parts(estimate.value), estimate.error);
+    put(path, real_parts(estimate.value), estimate.error, estimate.rare);
 }
 
 void ResultGroup::number(const std::string& path, std::size_t count) const {

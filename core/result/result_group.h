@@ -26,7 +26,9 @@ class ResultGroup {
   void put(const std::string& path, std::uint64_t scalar) const {
     put(path, std::span(&scalar, 1));
   }
-  void put(const std::string& path, const Values& values, std::span<const double> errors) const;
+  /// rare: see Estimate; written, as path_rare, only where a value is.
+  void put(const std::string& path, const Values& values, std::span<const double> errors,
+           std::span<const std::uint64_t> rare = {}) const;
   void put(const std::string& path, double scalar, double error) const {
     put(path, std::span<const double>(&scalar, 1), std::span<const double>(&error, 1));
   }

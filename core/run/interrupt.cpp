@@ -21,7 +21,13 @@ struct Doomed {
 };
 std::array<Doomed, 4> doomed;  // a lock, a file being written, and to spare
 
+std::atomic<int> ending_later{0};
+std::atomic<bool> end_asked{false}, result_there{false};
+
 void end_at_once(int /*signal*/) {
+  if (result_there) return;
+  end_asked = true;
+  if (ending_later > 0) return;
   for (const Doomed& file : doomed)
     if (file.whole) ::unlink(file.name.data());
   std::_Exit(130);
@@ -57,6 +63,18 @@ RemovedIfEnded::~RemovedIfEnded() {
   if (place_ == doomed.size()) return;
   doomed[place_].whole = false;
   doomed[place_].taken = false;
+}
+
+EndsLater::EndsLater() {
+  ++ending_later;
+}
+
+EndsLater::~EndsLater() {
+  if (--ending_later == 0 && end_asked) end_at_once(SIGTERM);
+}
+
+void result_is_there() {
+  result_there = true;
 }
 
 bool interrupted() {

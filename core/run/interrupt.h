@@ -26,6 +26,19 @@ class RemovedIfEnded {
   std::size_t place_;
 };
 
+/// While one lives, the end at once waits: what is on the disk and what RemovedIfEnded knows of it
+/// change together.
+class EndsLater {
+ public:
+  EndsLater();
+  EndsLater(const EndsLater&) = delete;
+  EndsLater& operator=(const EndsLater&) = delete;
+  ~EndsLater();
+};
+
+/// After this no signal ends the program at once: its result is there, and the end near.
+void result_is_there();
+
 /// Whether a signal has come since catch_interrupts().
 bool interrupted();
 

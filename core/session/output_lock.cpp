@@ -61,6 +61,7 @@ OutputLock::OutputLock(const std::filesystem::path& out) : path_(lock_beside(out
 
 /// False where it is to be tried again.
 bool OutputLock::take(const std::filesystem::path& out) {
+  const EndsLater whole;
   descriptor_ = ::open(path_.c_str(), O_RDONLY | O_CREAT | O_CLOEXEC, 0666);
   if (descriptor_ < 0) return true;
   if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
@@ -83,6 +84,8 @@ bool OutputLock::take(const std::filesystem::path& out) {
 
 OutputLock::~OutputLock() {
   if (descriptor_ < 0) return;
+  const EndsLater whole;
+  removed_.reset();
   ::unlink(path_.c_str());
   ::close(descriptor_);
 }

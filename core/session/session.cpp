@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <iostream>
 
+#include <omp.h>
+
 #include "core/error.h"
 #include "core/numbers/address_space.h"
 #include "core/result/result_reader.h"
@@ -23,6 +25,23 @@ std::string state_group(const std::string& run) {
   return "state/" + (run.empty() ? "run" : run);
 }
 
+void tell_few_batches(const std::string& label, std::uint64_t batches) {
+  constexpr std::uint64_t enough = 10;  // of Student's t with 9 degrees 7.7 % lie beyond 2
+  if (batches < enough)
+    std::cerr << "note: " << label << " has only " << batches
+              << " batches to take errors from: 2 standard errors do not cover 95 %\n";
+}
+
+void tell_rare(const std::vector<std::string>& estimates) {
+  if (estimates.empty()) return;
+  constexpr std::size_t most = 5;
+  std::cerr << "note: a few strong paths carry errors, which are likely too small: ";
+  for (std::size_t i = 0; i < std::min(most, estimates.size()); ++i)
+    std::cerr << (i == 0 ? "" : ", ") << estimates[i];
+  if (estimates.size() > most) std::cerr << " and " << estimates.size() - most << " more";
+  std::cerr << "; more samples tell, NAME_rare marks them\n";
+}
+
 }  // namespace
 
 Session::Session(std::string command_line, const Keys& keys, const RunSettings& settings,
@@ -34,6 +53,7 @@ Session::Session(std::string command_line, const Keys& keys, const RunSettings& 
       started_(utc_now()) {
   keys.read(settings.out);
   require_address_space_of_threads(threads());
+  if (keys.find("threads")) omp_set_num_threads(threads());
   if (keys.find("resume")) keys.read(settings.resume);
   if (only_prints) return;
   if (settings.out.empty())
@@ -61,7 +81,9 @@ Provenance Session::provenance() const {
 
 void Session::commit(ResultFile& file, const Provenance& provenance) {
   write_provenance(file, provenance);
+  const EndsLater whole;
   file.commit();
+  result_is_there();
   std::cout << "wrote " << file.path().string() << '\n';
 }
 
@@ -138,6 +160,7 @@ void Session::run_one(const PlannedRun& run) {
                            [this](const RunState&) { save_resumable(); }};
   const StopReason reason = run_batches(run.job, options, state);
   interrupted_ = reason == StopReason::interrupted;
+  if (!interrupted_ && !run.job.one_by_one) tell_few_batches(run.label, state.sums.batches());
   const bool reached = !run.stop.target_error || reason == StopReason::target_error ||
                        state.trace.relative_error.back() <= *run.stop.target_error;
   converged_ = converged_ && reached && !interrupted_;
@@ -158,6 +181,7 @@ int Session::finish(const std::function<void(ResultFile&)>& contents) {
   if (!converged_) write_states(file);
   set_strangers_aside();
   file.commit_sealed(Durable::yes);
+  tell_rare(file.rare());
   std::error_code none;
   if (!older_aside_.empty()) std::filesystem::remove(older_aside_, none);
   std::cout << "wrote " << settings_.out << '\n';

@@ -68,11 +68,15 @@ Scatterer row_scatterer(const Table& table, std::size_t row, Scatterer scatterer
 
 }  // namespace
 
-Placement draw_placement(const Domain& box, const Scatterer& scatterer, const PlacementRule& rule,
-                         RandomStream& random) {
+void require_placeable(const PlacementRule& rule) {
   if (rule.mean_count > most_scatterers)
     throw InputError("count", rule.mean_count,
                      "too many to place, more than this machine can solve");
+}
+
+Placement draw_placement(const Domain& box, const Scatterer& scatterer, const PlacementRule& rule,
+                         RandomStream& random) {
+  require_placeable(rule);
   Placement placement;
   if (rule.kind != PlacementRule::Kind::poisson) {
     const std::vector<double> radii(static_cast<std::size_t>(std::llround(rule.mean_count)),

@@ -40,6 +40,9 @@ inline const std::string& placement_word(PlacementRule::Kind kind) {
 /// More is refused: no machine solves it.
 inline constexpr double most_scatterers = 1e7;
 
+/// Throws InputError for more than most_scatterers.
+void require_placeable(const PlacementRule& rule);
+
 /// Draws a realization in a box. Centres are uniform in the box; disks may reach past its edge, and
 /// their number is rounded to the nearest whole one.
 Placement draw_placement(const Domain& box, const Scatterer& scatterer, const PlacementRule& rule,

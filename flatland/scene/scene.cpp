@@ -97,6 +97,13 @@ void check_packing(const Scene& scene) {
                 2 * reach);
 }
 
+void check_extinction(const BulkMedium& medium) {
+  if (medium.mu_t > 0 && !std::isfinite(medium.mean_free_path()))
+    throw InputError("albedo", medium.albedo,
+                     "leaves an extinction of " + number_text(medium.mu_t) +
+                         ", so little that its mean free path is no number");
+}
+
 void check_structure(const Keys& keys, const SceneSpec& spec, const Scatterer& scatterer) {
   if (keys.read(spec.structure) == "none") return;
   if (!scatterer.is_disk())
@@ -164,6 +171,7 @@ Scene make_scene(const Keys& keys, const SceneSpec& spec) {
   keys.refuse_unread();
   if (!scene.scatterer.is_bulk())
     scene.medium = medium_of_scatterers(spec, scene.scatterer, scene.domain, scene.k);
+  check_extinction(scene.medium);
   scene.placement.mean_count = scene.medium.density * scene.domain.area();
   check_packing(scene);
   if (spec.structure != "none") scene.medium = correlated(spec.structure, scene);

@@ -110,6 +110,7 @@ FluxEstimates flux_estimates(const FluxJob& job, const GroupedSums& sums) {
     const double factor = number < flux_shares ? 1 : per_radian;
     estimate.value.push_back(factor * all.value[entry]);
     estimate.error.push_back(factor * all.error[entry]);
+    estimate.rare.push_back(all.rare[entry]);
   }
   return flux;
 }

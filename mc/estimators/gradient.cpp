@@ -126,11 +126,7 @@ Estimate each(const Estimate& all, std::size_t parameters,
               const std::function<Estimate(const Estimate&)>& f) {
   const std::size_t size = all.value.size() / parameters;
   Estimate made;
-  for (std::size_t p = 0; p < parameters; ++p) {
-    const Estimate one = f(part(all, p * size, size));
-    made.value.insert(made.value.end(), one.value.begin(), one.value.end());
-    made.error.insert(made.error.end(), one.error.begin(), one.error.end());
-  }
+  for (std::size_t p = 0; p < parameters; ++p) append(made, f(part(all, p * size, size)));
   return made;
 }
 
@@ -197,10 +193,9 @@ CorrelationGradient memory_effect_gradient(const CovarianceRequest& request,
   });
   CorrelationGradient gradient;
   const std::size_t tilts = request.tilts.size();
-  for (std::size_t i = 0; i < slopes.value.size(); ++i) {
-    Estimate& part = i % (tilts + 1) < tilts ? gradient.correlation : gradient.range;
-    part.value.push_back(slopes.value[i]);
-    part.error.push_back(slopes.error[i]);
+  for (std::size_t first = 0; first < slopes.value.size(); first += tilts + 1) {
+    append(gradient.correlation, part(slopes, first, tilts));
+    append(gradient.range, part(slopes, first + tilts, 1));
   }
   return gradient;
 }

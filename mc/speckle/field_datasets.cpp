@@ -98,11 +98,12 @@ void write_plan(const ResultGroup& root, const FieldPlan& plan) {
 }
 
 /// Counts, in bins [intensity_bin, intensity_bin + 1/4) of |u|^2 / <|u|^2>; the last one is open.
+/// Their errors are at least that of one count.
 void write_histogram(const ResultGroup& root, const FieldStatistics& statistics) {
   const double values = statistics.values();
   Estimate counts = statistics.histogram();
   for (Complex& count : counts.value) count *= values;
-  for (double& error : counts.error) error *= values;
+  for (double& error : counts.error) error = std::max(1.0, error * values);
   root.put("intensity_bin", steps(FieldStatistics::bins, FieldStatistics::bin_width));
   root.put("histogram", counts);
   root.put("histogram_expected", column(FieldStatistics::exponential_law(),

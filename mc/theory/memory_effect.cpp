@@ -124,8 +124,10 @@ Correlations correlations(const CovarianceRequest& request, const GroupedSums& s
     return correlation_and_ranges(request, covariance(samples, total));
   });
   Correlations found{part(all, 0, request.moves), {}};
-  for (const Range& range : ranges(request, found.moves.value))
-    found.ranges.push_back({range, all.error[request.moves + found.ranges.size()]});
+  for (const Range& range : ranges(request, found.moves.value)) {
+    const std::size_t entry = request.moves + found.ranges.size();
+    found.ranges.push_back({range, all.error[entry], all.rare[entry]});
+  }
   return found;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -39,6 +40,7 @@ bool few_steps(const std::vector<double>& steps, const Range& range);
 struct RangeEstimate {
   Range range;
   double error = 0;
+  std::uint64_t rare = 0;  ///< see Estimate
 };
 
 /// field_correlation of every move and half-widths, with jackknife errors. The only range of

@@ -85,11 +85,8 @@ void write_mean(const ResultGroup& out, const CovarianceRequest& request, const 
   if (mean.value.empty() || request.kind == Kind::pairs) return;
   if (!request.has_reference()) return out.put("mean_field", mean);
   Estimate reference;
-  for (std::size_t v = 0; v < request.reference_views; ++v) {
-    const auto channel = request.entries[request.reference_intensity(v)].a;
-    reference.value.push_back(mean.value[channel]);
-    reference.error.push_back(mean.error[channel]);
-  }
+  for (std::size_t v = 0; v < request.reference_views; ++v)
+    append(reference, part(mean, request.entries[request.reference_intensity(v)].a, 1));
   out.put("mean_field", reference);
 }
 
@@ -142,7 +139,7 @@ class MovesWriter {
   void range(const std::string& path, RangeEstimate estimate, double scale) {
     estimate.range.value *= scale;
     estimate.error *= scale;
-    out_.put(path, estimate.range.value, estimate.error);
+    out_.put(path, {{estimate.range.value}, {estimate.error}, {estimate.rare}});
     out_.attribute(path, "censored", static_cast<std::uint64_t>(estimate.range.censored));
     ranges_.push_back({out_.row(path).long_name, estimate});
   }
@@ -190,13 +187,15 @@ const DatasetTable& request_table(Kind kind) {
 
 Estimate unpack_full(const CovarianceRequest& request, const Estimate& triangle) {
   const std::size_t n = request.channels.size();
-  Estimate full{std::vector<Complex>(n * n), std::vector<double>(n * n)};
+  Estimate full{std::vector<Complex>(n * n), std::vector<double>(n * n),
+                std::vector<std::uint64_t>(triangle.rare.empty() ? 0 : n * n)};
   std::size_t entry = 0;
   for (std::size_t a = 0; a < n; ++a) {
     for (std::size_t b = 0; b <= a; ++b, ++entry) {
       full.value[b * n + a] = std::conj(triangle.value[entry]);
       full.value[a * n + b] = triangle.value[entry];
       full.error[a * n + b] = full.error[b * n + a] = triangle.error[entry];
+      if (!full.rare.empty()) full.rare[a * n + b] = full.rare[b * n + a] = triangle.rare[entry];
     }
   }
   return full;

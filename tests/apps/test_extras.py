@@ -69,7 +69,8 @@ class Extras(ProgramTest):
                 self.call("covariance", **SLAB, **keys, gradient=True, samples=40000, out="mc.h5")
                 with h5py.File(self.folder / "transport.h5") as found, \
                         h5py.File(self.folder / "mc.h5") as expected:
-                    self.assertEqual(set(found), set(expected))
+                    self.assertEqual(*({name for name in file if not name.endswith("_rare")}
+                                       for file in (found, expected)))
                     for name in expected:
                         if not name.endswith("gradient"):
                             continue

@@ -72,6 +72,8 @@ def expected_datasets():
             found[name.removesuffix(" ±"), kind, *both, long_name] = number
             if name.endswith(" ±"):
                 found[name[:-2] + "_error", "float64", *both, "standard error: " + long_name] = number
+                found[name[:-2] + "_rare", "uint64", both[0], "1",
+                      "1 where a few batches carry the standard error: " + long_name] = number
     return found
 
 

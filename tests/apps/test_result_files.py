@@ -195,6 +195,19 @@ class Covariance(ResultTest):
                 self.call("covariance", **BOX, **VIEWS, **keys, out="result.h5")
                 self.check_finite(self.open())
 
+    def test_errors_that_few_paths_carry_are_marked(self):
+        keys = {**SLAB, "optical_depth": 1, **VIEWS, "samples": 40_000}
+        for g, marked in ((0.995, True), (0.5, False)):
+            with self.subTest(g=g):
+                done = self.call("covariance", **{**keys, "g": g}, out="result.h5")
+                self.assertEqual("NAME_rare marks them" in done.stderr, marked)
+                with self.open() as file:
+                    self.assertEqual("intensity_rare" in file, marked)
+
+    def test_few_batches_are_told(self):
+        done = self.call("covariance", **BOX, **VIEWS, samples=1, out="result.h5")
+        self.assertIn("has only 2 batches", done.stderr)
+
     def test_nothing_scatters(self):
         for keys in ({"count": 0}, {"count": 0, "method": "wave"}, {"phase_shift": 0}):
             with self.subTest(keys=keys):

@@ -41,6 +41,34 @@ TEST_CASE("values whose squares are below all numbers have errors too") {
   }
 }
 
+TEST_CASE("errors that a few batches carry are marked, those of rounding are not") {
+  // normal, one batch in 100 with nearly all, equal but for rounding, exact
+  GroupedSums sums(4);
+  RandomStream random(1, 1, 0);
+  for (int i = 0; i < 400; ++i) {
+    const double normal = random.uniform() + random.uniform() + random.uniform();
+    const double strong = i % 100 == 17 ? 50 : 0;
+    const double rounded = i % 100 == 17 ? std::nextafter(1.0, 2.0) : 1;
+    const std::vector<Complex> values{normal, normal + strong, rounded, 1};
+    sums.add(1, values);
+  }
+  const Estimate estimate = jackknife(sums, sample_mean);
+  CHECK(estimate.rare == std::vector<std::uint64_t>{0, 1, 0, 0});
+  CHECK(part(estimate, 1, 2).rare == std::vector<std::uint64_t>{1, 0});
+}
+
+TEST_CASE("few batches are not called rare for their number") {
+  for (const int batches : {2, 3, 5, 10, 20}) {
+    GroupedSums sums(1);
+    RandomStream random(1, 1, 0);
+    for (int i = 0; i < batches; ++i) {
+      const Complex value = random.uniform();
+      sums.add(1, {&value, 1});
+    }
+    CHECK(jackknife(sums, sample_mean).rare[0] == 0);
+  }
+}
+
 TEST_CASE("with more batches than groups, and groups of unequal size, errors stay right") {
   // 300 batches in 256 groups: 44 groups hold two batches. The spread of many such estimates is
   // known: a uniform has variance 1/12.

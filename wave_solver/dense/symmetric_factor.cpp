@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/run/interrupt.h"
 #include "wave_solver/dense/blas.h"
 
 namespace flatspeckle::wave {
@@ -40,6 +41,7 @@ bool factor_block(Complex* a, std::size_t n, std::size_t ld) {
 
 bool factor_symmetric(Complex* a, std::size_t n, std::size_t ld) {
   for (std::size_t first = 0; first < n; first += block) {
+    stop_if_interrupted();
     const std::size_t size = std::min(block, n - first), rest = n - first - size;
     Complex* corner = a + first * (ld + 1);
     if (!factor_block(corner, size, ld)) return false;

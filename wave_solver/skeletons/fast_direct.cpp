@@ -9,6 +9,7 @@
 #include <omp.h>
 
 #include "core/error.h"
+#include "core/run/interrupt.h"
 #include "core/run/parallel.h"
 #include "core/run/stopwatch.h"
 #include "wave_solver/dense/blas.h"
@@ -153,6 +154,7 @@ class FastDirect::Builder {
   }
 
   SkeletonElimination eliminate(std::size_t box) {
+    stop_if_interrupted();
     const double start = thread_cpu_seconds();
     const ActiveBox active{tree_.boxes()[box].hull, active_[box]};
     const auto near = near_unknowns(box, skeletonization_.distance(active));

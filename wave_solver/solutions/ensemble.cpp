@@ -84,6 +84,7 @@ void require_solvable(const Scene& scene) {
 
 FieldJob wave_job(const Scene& scene, std::uint64_t seed, double tolerance) {
   require_solvable(scene);
+  require_placeable(scene.placement);
   const auto shared = std::make_shared<const Scene>(scene);
   const SolveOptions options = batch_options(scene, tolerance);
   const auto plan = std::make_shared<const FieldPlan>(field_plan(scene, tolerance));

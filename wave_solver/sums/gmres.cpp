@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/run/interrupt.h"
 #include "wave_solver/dense/blas.h"
 #include "wave_solver/sums/block_krylov.h"
 
@@ -83,6 +84,7 @@ class Block {
     HessenbergLeastSquares problem(std::move(g));
     std::size_t width = start.columns;
     while (width > 0 && steps_ < options_.products) {
+      stop_if_interrupted();
       width = extend(basis, problem, width, drop);
       ++steps_;
       const auto left = problem.residuals();
