@@ -37,10 +37,10 @@ def draw_all(bench, folder):
     return pictures
 
 
-def write_report(bench, folder):
+def write_report(bench, folder, coverage):
     folder.mkdir(parents=True, exist_ok=True)
     pictures = draw_all(bench, folder)
-    blocks = bench_document.blocks_of(bench, pictures)
+    blocks = bench_document.blocks_of(bench, pictures, coverage)
     (folder / "report.md").write_text(document.as_markdown(blocks))
     (folder / "report.html").write_text(
         document.as_html(blocks, pictures, f"flatspeckle: {bench_document.TITLE}"))
@@ -54,11 +54,14 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     for name in ("error", "stability", "plan"):
         parser.add_argument(name, metavar=f"{name.upper()}.h5", help=f"of flatspeckle bench {name}")
+    parser.add_argument("--coverage", metavar="FILE.json", type=pathlib.Path,
+                        help="of tests/apps/coverage.py")
     parser.add_argument("--out", metavar="FOLDER", required=True, type=pathlib.Path)
     arguments = parser.parse_args()
     try:
+        coverage = arguments.coverage and json.loads(arguments.coverage.read_text())
         write_report(read_bench(arguments.error, arguments.stability, arguments.plan),
-                     arguments.out)
+                     arguments.out, coverage)
     except style.Unusable as problem:
         print(problem, file=sys.stderr)
         sys.exit(2)

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # report.sh [FOLDER]: installs what is missing (Debian 12), builds the program, and makes the report:
-# what accuracy costs (bench error), where it breaks (bench stability) and what plans leave out
-# (bench plan). Result files, report.html, report.md with its pictures and numbers.json go to FOLDER,
+# what accuracy costs (bench error), where it breaks (bench stability), what plans leave out (bench
+# plan) and whether error bars hold (tests/apps/coverage.py). Result files, report.html, report.md with its pictures and numbers.json go to FOLDER,
 # by default results/report in the checkout. Exit status 5: a row failed; the report says which.
 set -euo pipefail
 report=${1:+$(realpath -m "$1")}
@@ -24,6 +24,8 @@ for kind in stability plan error; do
     failed=$status
   }
 done
-python3 plots/report.py "$report"/{error,stability,plan}.h5 --out "$report"
+printf '\n== coverage of error bars\n'
+FLATSPECKLE=build/release/bin/flatspeckle FLATSPECKLE_DATA=data python3 -B tests/apps/coverage.py --out "$report/coverage.json" || failed=5
+python3 plots/report.py "$report"/{error,stability,plan}.h5 --coverage "$report/coverage.json" --out "$report"
 echo "Done in $SECONDS s."
 exit "$failed"

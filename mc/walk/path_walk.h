@@ -68,7 +68,11 @@ class PathWalk {
         tally_(tally) {}
 
   /// To be called before a batch's first walk.
-  void begin(RandomStream& random) { ticket_ = random.uniform(); }
+  void begin(RandomStream& random) {
+    constexpr std::uint64_t steps_of_splitting = 5'000'000;  // five times what is planned
+    ticket_ = random.uniform();
+    last_splitting_ = steps_ + steps_of_splitting;
+  }
 
   template <typename Scorer>
   void walk(RandomStream& random, Scorer& scorer) {
@@ -152,7 +156,9 @@ class PathWalk {
     return 0;
   }
 
-  /// The weight window: false if the walker died, or waits as several.
+  /// The weight window: false if the walker died, or waits as several. Where depth promises more
+  /// than it gives, walkers would multiply for ever: splitting ends for the rest of the batch,
+  /// which depends on the past alone and so changes no mean.
   bool reweigh(Walker& walker, RandomStream& random) {
     walker.weight *= medium_.albedo;
     const double worth = walker.weight * importance(walker.x);
@@ -160,9 +166,11 @@ class PathWalk {
       walker.weight /= worth;
       return random.uniform() < worth;
     }
-    if (worth < 2) return true;
-    walker.weight /= worth;
-    walker.copies = static_cast<std::uint32_t>(worth + random.uniform());
+    if (worth < 2 || steps_ > last_splitting_) return true;
+    constexpr double most_copies = 1000;
+    const double copies = std::min(worth, most_copies);
+    walker.weight /= copies;
+    walker.copies = static_cast<std::uint32_t>(copies + random.uniform());
     waiting_.push_back(walker);
     return false;
   }
@@ -225,7 +233,7 @@ class PathWalk {
   TalliedPath<Direction, Tally> path_;
   double start_density_ = -1, log_worth_first_ = 0, expected_first_ = 0;
   double ticket_ = 0;  ///< a score at every whole number
-  std::uint64_t steps_ = 0;
+  std::uint64_t steps_ = 0, last_splitting_ = 0;
 };
 
 }  // namespace flatspeckle::mc

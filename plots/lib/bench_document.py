@@ -79,6 +79,22 @@ def accuracy(bench, pictures):
     yield from figure("slopes", pictures)
 
 
+def coverage(rows):
+    """rows: what tests/apps/coverage.py wrote, {scene: row}."""
+    yield Heading(2, "Whether error bars hold")
+    seeds = min(row["seeds"] for row in rows.values())
+    yield Paragraph(
+        f"The program itself, run by {seeds} seeds on each scene. Ratio: the scatter between seeds "
+        "over the error that they claim, median over all values of all estimates. Marked: values "
+        "whose error a few batches carry, by rare strong paths, which the file says beside them. "
+        "Beyond: of all others, those further than 2 claimed errors from the mean of the seeds; 5 % "
+        "of real and 2 % of complex numbers should be.")
+    percent = lambda share: f"{100 * share:.1f} %"
+    yield Table(["scene", "values", "ratio", "marked", "beyond"],
+                [[name, str(row["values"]), f"{row['ratio']:.2f}", percent(row["marked"]),
+                  percent(row["beyond"])] for name, row in rows.items()], "lrrrr")
+
+
 def costs(bench, pictures):
     if not bench.error.costs:
         return
@@ -146,7 +162,8 @@ def plan(bench):
                     bench_figures.room_name(room))
 
 
-def blocks_of(bench, pictures):
+def blocks_of(bench, pictures, coverage_rows=None):
     """pictures: names of the figures that there are."""
-    return [*making(bench), *accuracy(bench, pictures), *costs(bench, pictures),
+    return [*making(bench), *accuracy(bench, pictures),
+            *(coverage(coverage_rows) if coverage_rows else []), *costs(bench, pictures),
             *stability(bench, pictures), *plan(bench)]

@@ -1,0 +1,98 @@
+"""Whether error bars cover: scenes of every kind, each run by many seeds. Per scene, over all
+values of all its estimates:
+
+    ratio    median of the scatter between seeds over the error that they claim; 1 is right
+    marked   share of values whose error is marked as carried by a few batches
+    beyond   of the others, share beyond 2 claimed errors of the mean of the seeds
+
+    coverage.py [--seeds N] [--workers N] [--only SCENE ...] [--out FILE.json]
+
+Exit status 1 where a ratio is outside 0.9 to 1.15 or more than 8 % lie beyond."""
+
+import argparse
+import concurrent.futures
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+import h5py
+import numpy as np
+
+from coverage_scenes import SCENES
+from program import PROGRAM, flags
+
+RATIOS = 0.9, 1.15
+MOST_BEYOND = 0.08
+
+
+def estimates(path):
+    """(values, errors, marks) of all estimates in the order of their names."""
+    found = []
+
+    def visit(name, item):
+        if name + "_error" in file:
+            marks = file[name + "_rare"][...] if name + "_rare" in file else np.zeros(item.shape)
+            found.append((item[...].ravel(), file[name + "_error"][...].ravel(), marks.ravel()))
+
+    with h5py.File(path) as file:
+        file.visititems(visit)
+    return tuple(np.concatenate(each) for each in zip(*found))
+
+
+def run(scene, seed):
+    subcommand, keys = scene
+    with tempfile.TemporaryDirectory() as folder:
+        path = pathlib.Path(folder) / "x.h5"
+        command = [PROGRAM, subcommand, *flags(keys), "--seed", str(seed), "--threads", "1",
+                   "--out", str(path)]
+        done = subprocess.run(command, capture_output=True, text=True)
+        if done.returncode not in (0, 3):
+            raise RuntimeError(f"{' '.join(command)}\n{done.stderr}")
+        return estimates(path)
+
+
+def measured(runs):
+    """Values that are exact in all runs, as a correlation at tilt 0, have no error to look at."""
+    values, errors, marks = (np.array(each) for each in zip(*runs))
+    kept = (errors > 1e-13 * np.abs(values)).any(axis=0)
+    values, errors, marks = values[:, kept], errors[:, kept], marks[:, kept] > 0
+    seeds = len(runs)
+    off = np.abs(values - values.mean(axis=0)) * np.sqrt(seeds / (seeds - 1))
+    ratio = np.sqrt((off**2).mean(axis=0) / (errors**2).mean(axis=0))
+    beyond = off > 2 * errors
+    return {"seeds": seeds, "values": int(kept.sum()), "ratio": float(np.median(ratio)),
+            "marked": float(marks.mean()),
+            "beyond": float(beyond[~marks].mean()) if not marks.all() else 0.0}
+
+
+def is_good(row):
+    return RATIOS[0] <= row["ratio"] <= RATIOS[1] and row["beyond"] <= MOST_BEYOND
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--seeds", type=int, default=160)
+    parser.add_argument("--workers", type=int, default=os.cpu_count())
+    parser.add_argument("--only", nargs="+", default=list(SCENES), choices=list(SCENES))
+    parser.add_argument("--out", type=pathlib.Path)
+    asked = parser.parse_args()
+    rows = {}
+    print(f"{'scene':20} {'values':>6} {'ratio':>6} {'marked':>8} {'beyond':>8}")
+    with concurrent.futures.ThreadPoolExecutor(asked.workers) as pool:
+        for name in asked.only:
+            seeds = range(1, asked.seeds + 1)
+            row = measured(list(pool.map(lambda seed: run(SCENES[name], seed), seeds)))
+            rows[name] = row
+            print(f"{name:20} {row['values']:6} {row['ratio']:6.3f} {100 * row['marked']:6.1f} % "
+                  f"{100 * row['beyond']:6.1f} %{'' if is_good(row) else '  *'}", flush=True)
+    if asked.out:
+        asked.out.write_text(json.dumps(rows, indent=1) + "\n")
+    return 0 if all(map(is_good, rows.values())) else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
