@@ -15,9 +15,11 @@ PointResult point_result(const Scene& scene, const FieldJob& job, const RunState
   const double depth = scene.domain.depth;
   return {.correlation = std::move(effect.correlation),
           .correlation_error = std::move(effect.correlation_error),
-          .range = effect.range.value * depth,
-          .range_error = effect.range_error * depth,
-          .range_censored = static_cast<std::uint64_t>(effect.range.censored),
+          .correlation_rare = std::move(effect.correlation_rare),
+          .range = effect.range.range.value * depth,
+          .range_error = effect.range.error * depth,
+          .range_rare = effect.range.rare,
+          .range_censored = static_cast<std::uint64_t>(effect.range.range.censored),
           .relative_error = state.trace.relative_error.back(),
           .samples = state.sums.total_samples(),
           .cpu_s = state.cpu_s,
@@ -47,8 +49,8 @@ void write_point(ResultFile& file, const PointResult& point, const Scene& scene)
   write_axes(file, scene);
   file.bind("MOVES", {"tilt"});
   const ResultGroup root(file, mc::moves_table);
-  root.put("field_correlation", point.correlation, point.correlation_error);
-  root.put("memory_effect_range", point.range, point.range_error);
+  root.put("field_correlation", point.correlation, point.correlation_error, point.correlation_rare);
+  root.put("memory_effect_range", Estimate{{point.range}, {point.range_error}, {point.range_rare}});
   file.attribute("/", "range_censored", point.range_censored);
   file.attribute("/", "relative_error", point.relative_error);
   file.attribute("/", "reached", point.reached);
@@ -64,11 +66,20 @@ PointResult read_point(const ResultReader& file) {
     if (values.size() != 1) throw InputError(std::string(name) + " is not one number");
     return values.front();
   };
+  const auto rare = [&](const std::string& name) {
+    const auto values = file.dataset<double>(name);
+    if (!file.has(name + "_rare")) return std::vector<std::uint64_t>(values.size());
+    const auto marks = file.dataset<double>(name + "_rare");
+    if (marks.size() != values.size()) throw InputError(name + "_rare is not one per " + name);
+    return column(marks, [](double mark) { return std::uint64_t{mark != 0}; });
+  };
   const auto attribute = [&](const char* name) { return file.attribute<double>("/", name); };
   return {.correlation = file.dataset<double>("field_correlation"),
           .correlation_error = file.dataset<double>("field_correlation_error"),
+          .correlation_rare = rare("field_correlation"),
           .range = scalar("memory_effect_range"),
           .range_error = scalar("memory_effect_range_error"),
+          .range_rare = rare("memory_effect_range").front(),
           .range_censored = file.attribute<std::uint64_t>("/", "range_censored"),
           .relative_error = attribute("relative_error"),
           .samples = attribute("samples"),

@@ -15,7 +15,9 @@ namespace flatspeckle::apps {
 /// What one point of a sweep gives: its curve, the range read off it, and what it cost.
 struct PointResult {
   std::vector<double> correlation, correlation_error;  ///< C_E [tilt]
+  std::vector<std::uint64_t> correlation_rare;         ///< see Estimate
   double range = 0, range_error = 0;                   ///< q L at C_I = 1/2
+  std::uint64_t range_rare = 0;                        ///< see Estimate
   std::uint64_t range_censored = 0;                    ///< mc::Range::Censoring
   double relative_error = 0, samples = 0, cpu_s = 0, wall_s = 0;
   bool reached = true;  ///< the target error, if there was one

@@ -64,8 +64,9 @@ namespace {
 using Points = std::vector<std::reference_wrapper<const PointResult>>;
 
 /// The curves of all points, one after the other.
-std::vector<double> of_points(const Points& points, std::vector<double> PointResult::*curve) {
-  std::vector<double> values;
+template <typename Value>
+std::vector<Value> of_points(const Points& points, std::vector<Value> PointResult::*curve) {
+  std::vector<Value> values;
   for (const PointResult& point : points)
     values.insert(values.end(), (point.*curve).begin(), (point.*curve).end());
   return values;
@@ -139,9 +140,11 @@ class SweepWriter {
       return mc::steps_below(scene.request.tilt_q, range_in_q(scene, point));
     };
     out.put("field_correlation", of_points(points, &PointResult::correlation),
-            of_points(points, &PointResult::correlation_error));
+            of_points(points, &PointResult::correlation_error),
+            of_points(points, &PointResult::correlation_rare));
+    const auto rare = column(points, &PointResult::range_rare);
     out.put("memory_effect_range", column(points, &PointResult::range),
-            column(points, &PointResult::range_error));
+            column(points, &PointResult::range_error), rare);
     out.put("range_censored", column(points, &PointResult::range_censored));
     out.put("range_steps", column(points, steps));
     write_angles(out, points);
@@ -169,7 +172,7 @@ class SweepWriter {
       angles.push_back(std::abs(turned - light));
       errors.push_back(point.range_error * per_range / std::cos(turned));
     }
-    out.put("memory_effect_angle", angles, errors);
+    out.put("memory_effect_angle", angles, errors, column(points, &PointResult::range_rare));
   }
 
   void write_traces(const ResultGroup& out, const Points& points, const std::string& group) const {

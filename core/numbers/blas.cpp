@@ -15,7 +15,7 @@ void require_address_space_of_blas() {
   const int threads = omp_in_parallel() ? omp_get_num_threads() : omp_get_max_threads();
   if (!address_space_holds(static_cast<std::size_t>(threads) * buffer))
     throw InputError("BLAS needs 128 MiB of address space for each of " + std::to_string(threads) +
-                     " threads, which ulimit -v does not leave; fewer threads (OMP_NUM_THREADS) "
+                     " threads, which ulimit -v does not leave; fewer threads "
                      "need less");
 }
 

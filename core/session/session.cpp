@@ -84,6 +84,7 @@ void Session::commit(ResultFile& file, const Provenance& provenance) {
   const EndsLater whole;
   file.commit();
   result_is_there();
+  tell_rare(file.rare());
   std::cout << "wrote " << file.path().string() << '\n';
 }
 

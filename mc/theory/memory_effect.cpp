@@ -134,7 +134,7 @@ Correlations correlations(const CovarianceRequest& request, const GroupedSums& s
 MemoryEffect memory_effect(const CovarianceRequest& request, const GroupedSums& sums,
                            const Estimator& covariance) {
   const auto [moves, ranges] = correlations(request, sums, covariance);
-  return {real_parts(moves.value), moves.error, ranges.front().range, ranges.front().error};
+  return {real_parts(moves.value), moves.error, moves.rare, ranges.front()};
 }
 
 }  // namespace flatspeckle::mc

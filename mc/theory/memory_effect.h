@@ -60,8 +60,8 @@ std::vector<Complex> correlation_and_ranges(const CovarianceRequest& request,
 /// Of a memory_effect or translation request.
 struct MemoryEffect {
   std::vector<double> correlation, correlation_error;  ///< per tilt or shift
-  Range range;
-  double range_error = 0;
+  std::vector<std::uint64_t> correlation_rare;         ///< see Estimate
+  RangeEstimate range;
 };
 MemoryEffect memory_effect(const CovarianceRequest& request, const GroupedSums& sums,
                            const Estimator& covariance);

@@ -87,9 +87,9 @@ TEST_CASE("error bars of the memory effect and its range are honest") {
     const auto effect = memory_effect(request, result.sums, result.job.covariance);
     Estimate estimate{{effect.correlation.begin(), effect.correlation.end()},
                       effect.correlation_error};
-    estimate.value.emplace_back(effect.range.value);
-    estimate.error.push_back(effect.range_error);
-    CHECK(effect.range.censored == Range::Censoring::none);
+    estimate.value.emplace_back(effect.range.range.value);
+    estimate.error.push_back(effect.range.error);
+    CHECK(effect.range.range.censored == Range::Censoring::none);
     return estimate;
   });
   for (const double ratio : ratios) CHECK(ratio == doctest::Approx(1).epsilon(0.15));

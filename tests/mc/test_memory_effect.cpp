@@ -128,7 +128,7 @@ TEST_CASE("zero tilt correlates fully, with an error of zero") {
   CHECK(effect.correlation[0] == doctest::Approx(1).epsilon(1e-12));
   CHECK(effect.correlation_error[0] < 1e-12);
   CHECK(effect.correlation_error[1] > 0);
-  CHECK(std::isfinite(effect.range_error));
+  CHECK(std::isfinite(effect.range.error));
 }
 
 TEST_CASE("diffusion: 1 at q = 0 and the textbook curve for thick slabs") {

@@ -115,10 +115,10 @@ TEST_CASE("a translation decorrelates, and its range is found") {
   CHECK(effect.correlation[0] == doctest::Approx(1));
   CHECK(effect.correlation[1] > 0.9);
   CHECK(effect.correlation[7] < 0.4);
-  CHECK(effect.range.censored == Range::Censoring::none);
+  CHECK(effect.range.range.censored == Range::Censoring::none);
   // single scattering of a beam of this waist alone: exp(-s^2/4), 1/2 at 1.18
-  CHECK(effect.range.value == doctest::Approx(1.3).epsilon(0.3));
-  CHECK(effect.range_error < 0.1);
+  CHECK(effect.range.range.value == doctest::Approx(1.3).epsilon(0.3));
+  CHECK(effect.range.error < 0.1);
 }
 
 TEST_CASE("the error bars of sensors inside the medium are honest") {

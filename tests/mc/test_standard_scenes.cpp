@@ -53,8 +53,8 @@ FoundRange estimated_range(const KnownRange& known, std::uint64_t paths, std::ui
       tests::hg_slab(depth, {depth / known.optical_depth, known.g, known.albedo}, request);
   const auto result = tests::run(scene, ReversedPaths::automatic, paths, seed);
   const auto effect = memory_effect(request, result.sums, result.job.covariance);
-  CHECK(effect.range.censored == Range::Censoring::none);
-  return {effect.range.value * depth, effect.range_error * depth};
+  CHECK(effect.range.range.censored == Range::Censoring::none);
+  return {effect.range.range.value * depth, effect.range.error * depth};
 }
 
 Scene box_points(double albedo, int count, const CovarianceRequest& request) {

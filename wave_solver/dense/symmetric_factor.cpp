@@ -40,6 +40,7 @@ bool factor_block(Complex* a, std::size_t n, std::size_t ld) {
 }  // namespace
 
 bool factor_symmetric(Complex* a, std::size_t n, std::size_t ld) {
+  blas_single_thread();
   for (std::size_t first = 0; first < n; first += block) {
     stop_if_interrupted();
     const std::size_t size = std::min(block, n - first), rest = n - first - size;
