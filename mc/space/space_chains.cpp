@@ -73,7 +73,7 @@ Eigen::Vector2d transverse(const SpacePair& lights) {
 }
 
 PairWave pair_wave(double k, const SpacePair& pair) {
-  return pair_wave(k, pair.first.z(), pair.second.z());
+  return pair_wave<double>(k, pair.first.z(), pair.second.z(), {});
 }
 
 SpacePair turned_round(const SpacePair& pair) {
