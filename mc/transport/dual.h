@@ -73,10 +73,8 @@ inline Dual<Complex> exp(const Dual<Complex>& a) {
   return {value, value * a.slope};
 }
 
-inline double value_of(double a) {
-  return a;
-}
-inline Complex value_of(Complex a) {
+template <typename T>
+const T& value_of(const T& a) {
   return a;
 }
 template <typename T>
