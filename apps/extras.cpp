@@ -33,19 +33,12 @@ ExtendedEstimation mc_gradient(const Scene& scene, mc::ReversedPaths reversed, s
   return with_gradient(scene, mc::gradient_job(scene, plan, seed), "mc: " + plan.describe());
 }
 
-/// Of what transport has in the plane alone.
-void require_plane(const Scene& scene, const std::string& key) {
-  if (scene.medium.dimension == 3)
-    throw InputError(key + ": not by transport with dimension = 3" +
-                     (key == "gradient" ? "; take method = mc" : ""));
-}
-
 ExtendedEstimation transport_gradient(const Scene& scene, mc::ReversedPaths reversed,
                                       double tolerance) {
-  require_plane(scene, "gradient");
   mc::check_gradient(scene);
   const bool with_reversed = mc::make_plan(scene, reversed).reversed;
-  return with_gradient(scene, mc::slab_gradient_job(scene, with_reversed, {tolerance}),
+  const auto job = scene.medium.dimension == 3 ? mc::space_gradient_job : mc::slab_gradient_job;
+  return with_gradient(scene, job(scene, with_reversed, {tolerance}),
                        transport_estimation(scene, reversed, tolerance).plan);
 }
 
@@ -74,33 +67,30 @@ void require_intensity_or_tilts(const std::string& key, const CovarianceRequest&
     throw InputError(key + ": needs covariance = intensity or memory_effect");
 }
 
-mc::PathJob delay_job(const Scene& scene, mc::ReversedPaths reversed,
-                      const std::vector<double>& delays, double tolerance) {
+mc::PathJob change_job(const Scene& scene, mc::ReversedPaths reversed,
+                       const std::vector<mc::FieldChange>& changes, double tolerance) {
   const bool with_reversed = mc::make_plan(scene, reversed).reversed;
-  if (scene.medium.dimension == 3)
-    return mc::space_delay_job(scene, with_reversed, {tolerance}, delays);
-  std::vector<mc::FieldChange> changes;
-  for (const double delay : delays) changes.push_back({.delay = delay});
-  return mc::slab_change_job(scene, with_reversed, {tolerance}, changes);
+  const auto job = scene.medium.dimension == 3 ? mc::space_change_job : mc::slab_change_job;
+  return job(scene, with_reversed, {tolerance}, changes);
 }
 
 ExtendedEstimation transport_delays(const Scene& scene, mc::ReversedPaths reversed,
                                     const std::vector<double>& delays, double tolerance) {
   mc::check_delays(scene, delays);
   require_intensity_or_tilts("delays", scene.request);
-  return with_delays(scene, delay_job(scene, reversed, delays, tolerance), delays,
+  std::vector<mc::FieldChange> changes;
+  for (const double delay : delays) changes.push_back({.delay = delay});
+  return with_delays(scene, change_job(scene, reversed, changes, tolerance), delays,
                      transport_estimation(scene, reversed, tolerance).plan);
 }
 
 ExtendedEstimation transport_frequency_shifts(const Scene& scene, mc::ReversedPaths reversed,
                                               const std::vector<double>& shifts, double tolerance) {
-  require_plane(scene, "frequency_shifts");
   mc::check_frequency_shifts(scene, shifts);
   require_intensity_or_tilts("frequency_shifts", scene.request);
   std::vector<mc::FieldChange> changes;
   for (const double shift : shifts) changes.push_back({.shift = shift});
-  const auto job =
-      mc::slab_change_job(scene, mc::make_plan(scene, reversed).reversed, {tolerance}, changes);
+  const auto job = change_job(scene, reversed, changes, tolerance);
   return {{job.field, transport_estimation(scene, reversed, tolerance).plan + "; two frequencies"},
           [scene, job, shifts](ResultFile& file, const GroupedSums& sums) {
             const auto found = mc::change_estimates(scene.request, job, sums);

@@ -6,6 +6,7 @@
 #include "grin/geometry/vec3.h"
 #include "grin/media/hg_phase.h"
 #include "grin/media/isotropic_phase.h"
+#include "grin/media/mie_phase.h"
 #include "grin/media/rayleigh_phase.h"
 #include "grin/media/table_phase.h"
 #include "grin/media/two_term_phase.h"
@@ -13,8 +14,8 @@
 namespace flatspeckle::grin {
 
 /// All phase functions in space (space_phase.h); the one list of them.
-using SpacePhaseKinds =
-    std::tuple<IsotropicPhase, HgPhase, RayleighPhase, TwoTermPhaseValues, TablePhaseValues>;
+using SpacePhaseKinds = std::tuple<IsotropicPhase, HgPhase, RayleighPhase, TwoTermPhaseValues,
+                                   TablePhaseValues, MiePhaseValues>;
 
 template <class Kinds>
 struct PhasesOf;

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
+
+#include "mc/transport/bulk_slope.h"
 
 namespace flatspeckle::mc {
 
@@ -16,13 +19,20 @@ Complex turned(int m) {
   return powers[m % 4];
 }
 
+template <typename Number>
+void add(PairWavesOf<Number>& waves, const PairWaveOf<Number>& wave) {
+  waves.top.push_back(wave.top);
+  waves.bottom.push_back(wave.bottom);
+}
+
 }  // namespace
 
-AzimuthalModes::AzimuthalModes(const PolarMatrices& polar, const SpaceLaw& law, double albedo,
-                               int highest)
-    : polar_(polar), grid_(polar.grid()), law_(law), albedo_(albedo), highest_(highest) {}
+template <typename Number>
+AzimuthalModesOf<Number>::AzimuthalModesOf(const Polar& polar, const Slab& slab, int highest)
+    : polar_(polar), grid_(polar.grid()), slab_(slab), highest_(highest) {}
 
-std::vector<AzimuthalModes::Part> AzimuthalModes::parts(double q) const {
+template <typename Number>
+auto AzimuthalModesOf<Number>::parts(double q) const -> std::vector<Part> {
   std::vector<Part> list;
   if (q == 0) {
     for (int f = 0; f <= 2 * highest_; ++f) list.push_back({{f}, mode(f) % 2 == 0});
@@ -40,33 +50,46 @@ std::vector<AzimuthalModes::Part> AzimuthalModes::parts(double q) const {
   return list;
 }
 
-Matrix AzimuthalModes::block(double q, const Part& part, Matrix Scattering::*scattering) const {
+template <typename Number>
+MatrixOf<Number> AzimuthalModesOf<Number>::block(double q, const Part& part,
+                                                 MatrixOf<Real> Scattering::*scattering) const {
   const Eigen::Index n = grid_.size(), count = part.functions.size();
-  const Eigen::ArrayXd extinction = grid_.cosine().cwiseInverse(),
-                       across = q * grid_.angle().array().sin() * extinction;
-  Matrix all = Matrix::Zero(count * n, count * n);
+  const Eigen::ArrayXd loss = grid_.cosine().cwiseInverse(),
+                       momentum = q * grid_.angle().array().sin() * loss;
+  Matrix extinction = Matrix::Zero(count * n, count * n), across = extinction;
   for (Eigen::Index a = 0; a < count; ++a) {
     const int m = mode(part.functions[a]);
-    all.block(a * n, a * n, n, n) =
-        Matrix(extinction.matrix().asDiagonal()) - polar_.of_mode(m).*scattering;
+    extinction.block(a * n, a * n, n, n) = loss.matrix().asDiagonal();
     for (Eigen::Index b = 0; b < count; ++b) {
       const int other = mode(part.functions[b]);
       if (std::abs(other - m) != 1) continue;
       const double coupling = std::min(m, other) == 0 ? std::numbers::sqrt2 / 2 : 0.5;
-      all.block(a * n, b * n, n, n) = ((m - other) * coupling * across).matrix().asDiagonal();
+      across.block(a * n, b * n, n, n) = ((m - other) * coupling * momentum).matrix().asDiagonal();
     }
   }
-  return all;
+  const auto scattered = each_part<Real>([&](const auto& of) {
+    Matrix all = Matrix::Zero(count * n, count * n);
+    for (Eigen::Index a = 0; a < count; ++a)
+      all.block(a * n, a * n, n, n) = of(polar_.of_mode(mode(part.functions[a])).*scattering);
+    return all;
+  });
+  const Departure<Number>& departure = slab_.departure;
+  return times(departure.extinction(slab_.k_per_mu_t()), extinction) - scattered +
+         times(departure.length, across);
 }
 
-TransportOperator AzimuthalModes::transport(double q, const Part& part) const {
-  return {block(q, part, &Scattering::difference), block(q, part, &Scattering::sum),
-          part.even * grid_.size(),
-          (1 + std::abs(q)) / *std::min_element(grid_.cosine().begin(), grid_.cosine().end())};
+template <typename Number>
+TransportOperatorOf<Number> AzimuthalModesOf<Number>::transport(double q, const Part& part) const {
+  const double extinction = std::abs(value_of(slab_.departure.extinction(slab_.k_per_mu_t())));
+  return {
+      block(q, part, &Scattering::difference), block(q, part, &Scattering::sum),
+      part.even * grid_.size(),
+      (extinction + std::abs(q)) / *std::min_element(grid_.cosine().begin(), grid_.cosine().end())};
 }
 
 /// [azimuth][function]: normalised, times the step of the azimuth.
-Matrix AzimuthalModes::azimuthal_functions(int steps) const {
+template <typename Number>
+Matrix AzimuthalModesOf<Number>::azimuthal_functions(int steps) const {
   const double step = 2 * pi / steps;
   Matrix values(steps, 2 * highest_ + 1);
   for (int i = 0; i < steps; ++i) {
@@ -79,91 +102,98 @@ Matrix AzimuthalModes::azimuthal_functions(int steps) const {
   return values;
 }
 
-/// What a pair scatters into the directions of a side, a row for each function.
-Rows AzimuthalModes::fed(const SpacePair& pair, const Matrix& directions, const Matrix& azimuthal,
-                         double side) const {
+/// What pairs scatter into the directions of a side, a row each, function by function.
+template <typename Number>
+RowsOf<Number> AzimuthalModesOf<Number>::fed(const std::vector<SpacePair>& pairs,
+                                             const Matrix& directions, const Matrix& azimuthal,
+                                             double side) const {
   const auto steps = azimuthal.rows();
-  const auto projected = [&](const Eigen::VectorXd& angles) -> Matrix {
+  const auto projected = [&](const Eigen::VectorXd& angles, const SpacePair& pair,
+                             const auto& part) -> Matrix {
     Matrix values(angles.size(), steps);
     for (Eigen::Index j = 0; j < angles.size(); ++j) {
       const double sine = std::sin(angles[j]), cosine = side * std::cos(angles[j]);
       for (Eigen::Index i = 0; i < steps; ++i) {
         const Eigen::Vector3d to(sine * directions(i, 0), sine * directions(i, 1), cosine);
-        values(j, i) = sine * law_.pair(pair.first.dot(to), pair.second.dot(to));
+        values(j, i) = sine * part(slab_.law.pair(pair.first.dot(to), pair.second.dot(to)));
       }
     }
     return product(values, azimuthal);
   };
-  const Matrix integrals = albedo_ * polar_.root().cwiseInverse().asDiagonal() *
-                           grid_.integrals_of(azimuthal.cols(), projected);
-  Rows rows(1, integrals.size());
-  for (Eigen::Index f = 0; f < integrals.cols(); ++f)
-    rows.middleCols(f * grid_.size(), grid_.size()) =
-        turned(mode(static_cast<int>(f))) * integrals.col(f).transpose();
-  return rows;
+  const Eigen::Index n = grid_.size(), functions = azimuthal.cols();
+  return slab_.albedo * each_part<Number>([&](const auto& part) {
+           Rows rows(static_cast<Eigen::Index>(pairs.size()), functions * n);
+           for (Eigen::Index i = 0; i < rows.rows(); ++i) {
+             const Matrix integrals =
+                 polar_.root().cwiseInverse().asDiagonal() *
+                 grid_.integrals_of(functions, [&](const Eigen::VectorXd& angles) {
+                   return projected(angles, pairs[static_cast<std::size_t>(i)], part);
+                 });
+             for (Eigen::Index f = 0; f < functions; ++f)
+               rows.block(i, f * n, 1, n) =
+                   turned(mode(static_cast<int>(f))) * integrals.col(f).transpose();
+           }
+           return rows;
+         });
 }
 
-PairWaves AzimuthalModes::waves(const Eigen::Vector2d& x,
-                                const std::vector<SpacePair>& pairs) const {
+template <typename Number>
+auto AzimuthalModesOf<Number>::waves(const Eigen::Vector2d& x,
+                                     const std::vector<SpacePair>& pairs) const -> Waves {
   double sine = 0;
   for (const SpacePair& pair : pairs)
-    for (const auto& direction : {pair.first, pair.second})
+    for (const Eigen::Vector3d& direction : {pair.first, pair.second})
       sine = std::max(sine, direction.head<2>().norm());
   // Modes of p beyond l sin(theta) have died out at the angle of a light.
   const int steps =
-      2 * highest_ + 32 + static_cast<int>(1.2 * sine * static_cast<double>(law_.moments().size()));
+      2 * highest_ + 32 + static_cast<int>(1.2 * sine * (1 + degree(slab_.law.moments())));
   const Matrix azimuthal = azimuthal_functions(steps);
   Matrix directions(steps, 2);
   for (int i = 0; i < steps; ++i) {
     const double phi = 2 * pi * i / steps, c = std::cos(phi), s = std::sin(phi);
     directions.row(i) << c * x.x() - s * x.y(), c * x.y() + s * x.x();
   }
-  const auto count = static_cast<Eigen::Index>(pairs.size());
-  const Eigen::Index size = azimuthal.cols() * grid_.size();
-  PairWaves found{{}, {}, Rows(count, size), Rows(count, size)};
-  for (Eigen::Index i = 0; i < count; ++i) {
-    found.down.row(i) = fed(pairs[i], directions, azimuthal, 1);
-    found.up.row(i) = fed(pairs[i], directions, azimuthal, -1);
-  }
+  return {{}, {}, fed(pairs, directions, azimuthal, 1), fed(pairs, directions, azimuthal, -1)};
+}
+
+template <typename Number>
+auto AzimuthalModesOf<Number>::lights(const Eigen::Vector2d& x,
+                                      const std::vector<SpacePair>& pairs) const -> Waves {
+  Waves found = waves(x, pairs);
+  for (const SpacePair& pair : pairs)
+    add(found, pair_wave(slab_.k_per_mu_t(), pair, slab_.departure));
   return found;
 }
 
-PairWaves AzimuthalModes::lights(double k, const Eigen::Vector2d& x,
-                                 const std::vector<SpacePair>& pairs) const {
-  PairWaves found = waves(x, pairs);
-  for (const SpacePair& pair : pairs) {
-    const PairWave wave = pair_wave(k, pair);
-    found.top.push_back(wave.top);
-    found.bottom.push_back(wave.bottom);
-  }
+template <typename Number>
+auto AzimuthalModesOf<Number>::views(const Eigen::Vector2d& x,
+                                     const std::vector<SpacePair>& pairs) const -> Waves {
+  Waves found = waves(x, pairs);
+  std::swap(found.down, found.up);
+  for (const SpacePair& pair : pairs)
+    add(found, pair_wave(slab_.k_per_mu_t(), turned_round(pair), slab_.departure));
   return found;
 }
 
-PairWaves AzimuthalModes::views(double k, const Eigen::Vector2d& x,
-                                const std::vector<SpacePair>& pairs) const {
-  PairWaves found = waves(x, pairs);
-  found.down.swap(found.up);
-  for (const SpacePair& pair : pairs) {
-    const PairWave wave = pair_wave(k, turned_round(pair));
-    found.top.push_back(wave.top);
-    found.bottom.push_back(wave.bottom);
-  }
-  return found;
+template <typename Number>
+auto AzimuthalModesOf<Number>::part_of(const Waves& all, const Part& part) const -> Waves {
+  const Eigen::Index n = grid_.size(), count = part.functions.size();
+  const auto taken = [&](const Rows& rows) {
+    Rows found(rows.rows(), count * n);
+    for (Eigen::Index a = 0; a < count; ++a)
+      found.middleCols(a * n, n) = rows.middleCols(part.functions[a] * n, n);
+    return found;
+  };
+  return {all.top, all.bottom, linear(taken, all.down), linear(taken, all.up)};
 }
 
-PairWaves AzimuthalModes::part_of(const PairWaves& all, const Part& part) const {
-  const Eigen::Index n = grid_.size(), count = part.functions.size(), rows = all.down.rows();
-  PairWaves found{all.top, all.bottom, Rows(rows, count * n), Rows(rows, count * n)};
-  for (Eigen::Index a = 0; a < count; ++a) {
-    const Eigen::Index from = part.functions[a] * n;
-    found.down.middleCols(a * n, n) = all.down.middleCols(from, n);
-    found.up.middleCols(a * n, n) = all.up.middleCols(from, n);
-  }
-  return found;
-}
-
-Eigen::VectorXd AzimuthalModes::power() const {
+template <typename Number>
+Eigen::VectorXd AzimuthalModesOf<Number>::power() const {
   return std::sqrt(2 * pi) * polar_.root();
 }
+
+template class AzimuthalModesOf<double>;
+template class AzimuthalModesOf<Complex>;
+template class AzimuthalModesOf<Dual<double>>;
 
 }  // namespace flatspeckle::mc

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "mc/space/associated_legendre.h"
+#include "mc/transport/bulk_slope.h"
 
 namespace flatspeckle::mc {
 
@@ -11,7 +12,8 @@ namespace {
 
 /// sum over l = m + first, m + first + 2, .. of moments[l] v_l v_l^T
 Matrix moment_gram(const Matrix& integrals, const std::vector<double>& moments, int m, int first) {
-  const auto count = std::max<Eigen::Index>((integrals.cols() - first + 1) / 2, 0);
+  const auto rest = static_cast<Eigen::Index>(moments.size()) - m - first,
+             count = std::max<Eigen::Index>((rest + 1) / 2, 0);
   Matrix taken(integrals.rows(), count), weighted(integrals.rows(), count);
   for (Eigen::Index i = 0; i < count; ++i) {
     taken.col(i) = integrals.col(first + 2 * i);
@@ -20,17 +22,25 @@ Matrix moment_gram(const Matrix& integrals, const std::vector<double>& moments, 
   return product(weighted, taken.transpose());
 }
 
+Dual<Matrix> moment_gram(const Matrix& integrals, const Dual<std::vector<double>>& moments, int m,
+                         int first) {
+  return {moment_gram(integrals, moments.value, m, first),
+          moment_gram(integrals, moments.slope, m, first)};
+}
+
 }  // namespace
 
-PolarMatrices::PolarMatrices(const std::vector<Focus>& foci, int order, const SpaceLaw& law,
-                             double albedo)
+template <typename Real>
+PolarMatricesOf<Real>::PolarMatricesOf(const std::vector<Focus>& foci, int order, const Law& law,
+                                       Real albedo)
     : grid_(foci, order, law.width()), law_(law), albedo_(albedo) {
   const Eigen::VectorXd weight = grid_.integrals_of(
       1, [](const Eigen::VectorXd& angle) -> Matrix { return angle.array().sin(); });
   root_ = weight.cwiseProduct(grid_.cosine()).unaryExpr([](double w) { return std::sqrt(w); });
 }
 
-const PolarMatrices::Scattering& PolarMatrices::of_mode(int m) const {
+template <typename Real>
+auto PolarMatricesOf<Real>::of_mode(int m) const -> const Scattering& {
   const std::lock_guard lock(making_);
   while (static_cast<int>(of_mode_.size()) <= m)
     of_mode_.push_back(scattering(static_cast<int>(of_mode_.size())));
@@ -38,19 +48,25 @@ const PolarMatrices::Scattering& PolarMatrices::of_mode(int m) const {
 }
 
 /// Backwards, theta -> pi - theta, P_l^m has the sign (-1)^(l + m).
-PolarMatrices::Scattering PolarMatrices::scattering(int m) const {
-  const auto last = static_cast<int>(law_.moments().size()) - 1;
+template <typename Real>
+auto PolarMatricesOf<Real>::scattering(int m) const -> Scattering {
+  const int last = degree(law_.moments());
   const Matrix integrals =
       grid_.integrals_of(std::max(last - m + 1, 0), [&](const Eigen::VectorXd& angle) {
         const Eigen::VectorXd sine = angle.array().sin();
         return Matrix(sine.asDiagonal() * associated_legendre(angle, m, last));
       });
   const Eigen::VectorXd scale = root_.cwiseInverse();
-  const auto scaled = [&](int first) {
-    return Matrix(2 * albedo_ * scale.asDiagonal() *
-                  moment_gram(integrals, law_.moments(), m, first) * scale.asDiagonal());
+  const auto scaled = [&](const Matrix& a) -> Matrix {
+    return 2 * scale.asDiagonal() * a * scale.asDiagonal();
   };
-  return {scaled(1), scaled(0)};
+  const auto of_degrees = [&](int first) -> MatrixOf<Real> {
+    return albedo_ * linear(scaled, moment_gram(integrals, law_.moments(), m, first));
+  };
+  return {of_degrees(1), of_degrees(0)};
 }
+
+template class PolarMatricesOf<double>;
+template class PolarMatricesOf<Dual<double>>;
 
 }  // namespace flatspeckle::mc

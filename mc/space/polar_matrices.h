@@ -6,21 +6,25 @@
 #include <utility>
 #include <vector>
 
-#include "mc/space/space_law.h"
+#include "mc/space/space_slope.h"
 #include "mc/transport/angular_grid.h"
+#include "mc/transport/dual_dense.h"
 
 namespace flatspeckle::mc {
 
 /// Scattering between polar ordinates, in Galerkin's form, for each Fourier mode m of the azimuth:
 /// between the polynomials of two panels it is exact, so that it conserves energy and is reciprocal
 /// on any grid. Unknowns are radiance times sqrt(weight cos(theta)). Made for a mode when it is
-/// first asked for, by any thread.
-class PolarMatrices {
+/// first asked for, by any thread. Real: double, or Dual<double> for derivatives too.
+template <typename Real>
+class PolarMatricesOf {
  public:
-  PolarMatrices(const std::vector<Focus>& foci, int order, const SpaceLaw& law, double albedo);
+  using Law = SpaceLawOf<Real>;
+
+  PolarMatricesOf(const std::vector<Focus>& foci, int order, const Law& law, Real albedo);
 
   struct Scattering {
-    Matrix difference, sum;  ///< forward minus, plus backward, times the albedo
+    MatrixOf<Real> difference, sum;  ///< forward minus, plus backward, times the albedo
   };
   const Scattering& of_mode(int m) const;
   const AngularGrid& grid() const { return grid_; }
@@ -31,28 +35,29 @@ class PolarMatrices {
   Scattering scattering(int m) const;
 
   AngularGrid grid_;
-  const SpaceLaw& law_;
-  double albedo_;
+  const Law& law_;
+  Real albedo_;
   Eigen::VectorXd root_;
   mutable std::mutex making_;
   mutable std::deque<Scattering> of_mode_;
 };
 
 /// Those of a slab, by foci and order; each is made once.
-class PolarMatricesOf {
+template <typename Real>
+class PolarMatrixList {
  public:
-  PolarMatricesOf(const SpaceLaw& law, double albedo) : law_(law), albedo_(albedo) {}
+  PolarMatrixList(const SpaceLawOf<Real>& law, Real albedo) : law_(law), albedo_(albedo) {}
 
-  const PolarMatrices& at(const std::vector<Focus>& foci, int order) {
+  const PolarMatricesOf<Real>& at(const std::vector<Focus>& foci, int order) {
     const std::lock_guard lock(making_);
     return made_.try_emplace({foci, order}, foci, order, law_, albedo_).first->second;
   }
 
  private:
-  const SpaceLaw& law_;
-  double albedo_;
+  const SpaceLawOf<Real>& law_;
+  Real albedo_;
   std::mutex making_;
-  std::map<std::pair<std::vector<Focus>, int>, PolarMatrices> made_;
+  std::map<std::pair<std::vector<Focus>, int>, PolarMatricesOf<Real>> made_;
 };
 
 }  // namespace flatspeckle::mc

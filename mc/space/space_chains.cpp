@@ -9,14 +9,30 @@ namespace flatspeckle::mc {
 
 namespace {
 
+/// The second view, turned.
+Eigen::Vector3d matched(const SpacePair& lights, const SpacePair& views, double shift) {
+  if (shift == 0) return views.second;
+  const Eigen::Vector2d along =
+      (lights.second - (lights.first - views.first) / (1 + shift)).head<2>();
+  return {along.x(), along.y(),
+          std::copysign(std::sqrt(1 - along.squaredNorm()), views.second.z())};
+}
+
+/// Of pairs of lights in units of k.
+Eigen::Vector2d transverse(const SpacePair& lights, double shift) {
+  return (lights.first - (1 + shift) * lights.second).head<2>();
+}
+
 template <typename Ends>
-std::vector<SpaceChain> chains_of(const SpaceRequest& request, const Ends& ends) {
+std::vector<SpaceChain> chains_of(const SpaceRequest& request, double shift, const Ends& ends) {
   std::vector<SpaceChain> all;
   for (std::size_t e = 0; e < request.entries.size(); ++e) {
     const Channel a = request.channels[request.entries[e].a],
                   b = request.channels[request.entries[e].b];
-    all.push_back(ends(request.lights[a.light], request.views[a.view], request.lights[b.light],
-                       request.views[b.view]));
+    const SpacePair lights{request.lights[a.light], request.lights[b.light]};
+    SpacePair views{request.views[a.view], request.views[b.view]};
+    views.second = matched(lights, views, shift);
+    all.push_back(ends(lights, views));
     all.back().entry = e;
   }
   return all;
@@ -56,36 +72,28 @@ SpaceRequest space_request(const CovarianceRequest& plane) {
   return request;
 }
 
-std::vector<SpaceChain> ladders(const SpaceRequest& request) {
-  return chains_of(request, [](const auto& i1, const auto& v1, const auto& i2, const auto& v2) {
-    return SpaceChain{{i1, i2}, {v1, v2}, 0};
+std::vector<SpaceChain> ladders(const SpaceRequest& request, double shift) {
+  return chains_of(request, shift, [](const SpacePair& lights, const SpacePair& views) {
+    return SpaceChain{lights, views, 0};
   });
 }
 
-std::vector<SpaceChain> reversed_ladders(const SpaceRequest& request) {
-  return chains_of(request, [](const auto& i1, const auto& v1, const auto& i2, const auto& v2) {
-    return SpaceChain{{i1, -v2}, {v1, -i2}, 0};
+std::vector<SpaceChain> reversed_ladders(const SpaceRequest& request, double shift) {
+  return chains_of(request, shift, [](const SpacePair& lights, const SpacePair& views) {
+    return SpaceChain{{lights.first, -views.second}, {views.first, -lights.second}, 0};
   });
-}
-
-Eigen::Vector2d transverse(const SpacePair& lights) {
-  return (lights.first - lights.second).head<2>();
-}
-
-PairWave pair_wave(double k, const SpacePair& pair) {
-  return pair_wave(k, pair.first.z(), pair.second.z());
 }
 
 SpacePair turned_round(const SpacePair& pair) {
   return {-pair.first, -pair.second};
 }
 
-std::vector<SpaceGroup> grouped(const std::vector<SpaceChain>& chains, double width) {
+std::vector<SpaceGroup> grouped(const std::vector<SpaceChain>& chains, double width, double shift) {
   constexpr double same_momentum = 1e-12;
   std::map<std::tuple<double, double, std::vector<Focus>>, SpaceGroup> groups;
   for (const SpaceChain& chain : chains) {
     const Eigen::Vector2d momentum =
-        (transverse(chain.lights) / same_momentum).array().round() * same_momentum;
+        (transverse(chain.lights, shift) / same_momentum).array().round() * same_momentum;
     const auto foci = space_foci(chain.lights, width);
     SpaceGroup& group = groups[{momentum.x(), momentum.y(), foci}];
     group.momentum = momentum;

@@ -33,16 +33,19 @@ struct SpaceChain {
   std::size_t entry;
 };
 
-/// Ladders of all entries, and with `reversed` their reversed paths (C38).
-std::vector<SpaceChain> ladders(const SpaceRequest& request);
-std::vector<SpaceChain> reversed_ladders(const SpaceRequest& request);
+/// Ladders of all entries, and their reversed paths (C38). The wavenumber of the second field is
+/// larger by a share `shift`; second views are turned so that transverse momenta match, which must
+/// leave them above the horizon.
+std::vector<SpaceChain> ladders(const SpaceRequest& request, double shift);
+std::vector<SpaceChain> reversed_ladders(const SpaceRequest& request, double shift);
 
-/// Of pairs of lights in units of k: difference of their directions along the slab.
-Eigen::Vector2d transverse(const SpacePair& lights);
-
-/// Exponents of a pair along z; k: per extinction coefficient. Of views: that of turned_round().
-PairWave pair_wave(double k, const SpacePair& pair);
 SpacePair turned_round(const SpacePair& pair);
+
+/// Exponents of a pair along z; k: per mu_t. Of views: that of turned_round().
+template <typename Number>
+PairWaveOf<Number> pair_wave(double k, const SpacePair& pair, const Departure<Number>& departure) {
+  return pair_wave(k, pair.first.z(), pair.second.z(), departure);
+}
 
 /// Chains of one transverse momentum on one angular grid: pairs once, chains by their numbers.
 struct SpaceGroup {
@@ -56,7 +59,7 @@ struct SpaceGroup {
   std::vector<Link> links;
 };
 
-/// width: within which the phase function changes.
-std::vector<SpaceGroup> grouped(const std::vector<SpaceChain>& chains, double width);
+/// width: within which the phase function changes. shift: as of ladders().
+std::vector<SpaceGroup> grouped(const std::vector<SpaceChain>& chains, double width, double shift);
 
 }  // namespace flatspeckle::mc

@@ -22,43 +22,59 @@ struct Resolution {
   Resolution finer_modes() const { return {order, Refinement::next_order(modes)}; }
 };
 
-Complex scattered_once(const SpaceSlab& slab, const SpaceChain& chain) {
-  const double k = slab.k / slab.mu_t, depth = slab.optical_depth();
-  const PairWave light = pair_wave(k, chain.lights), view = pair_wave(k, turned_round(chain.views));
+template <typename Number>
+ComplexOf<Number> scattered_once(const SpaceSlabOf<Number>& slab, const SpaceChain& chain) {
+  using C = ComplexOf<Number>;
+  const double k = slab.k_per_mu_t();
+  const RealOf<Number> depth = slab.optical_depth();
+  const auto light = pair_wave(k, chain.lights, slab.departure),
+             view = pair_wave(k, turned_round(chain.views), slab.departure);
   return slab.albedo * depth *
          slab.law.pair(chain.lights.first.dot(chain.views.first),
                        chain.lights.second.dot(chain.views.second)) *
-         divided_difference(depth * (light.top + view.top), depth * (light.bottom + view.bottom));
+         divided_difference(C(depth * (light.top + view.top)),
+                            C(depth * (light.bottom + view.bottom)));
 }
 
-bool is_dark(const PairWaves& part, const PairWaves& all) {
+double norm(const Rows& rows) {
+  return rows.norm();
+}
+double norm(const Dual<Rows>& rows) {
+  return rows.value.norm() + rows.slope.norm();
+}
+
+template <typename Number>
+bool is_dark(const PairWavesOf<Number>& part, const PairWavesOf<Number>& all) {
   constexpr double rounding = 1e-13;
-  return part.down.norm() + part.up.norm() <= rounding * (all.down.norm() + all.up.norm());
+  return norm(part.down) + norm(part.up) <= rounding * (norm(all.down) + norm(all.up));
 }
 
-/// Paths of two scatterings and more, one value per link of a group.
+/// Paths of two scatterings and more: values per link of a group, then derivatives if there are.
 struct Solution {
   std::vector<Complex> value;
   int ordinates = 0;  ///< of both ways, times azimuthal functions that are coupled
 };
 
-Solution solve_group(const SpaceSlab& slab, const SpaceGroup& group, Resolution resolution,
-                     PolarMatricesOf& polar) {
-  const double k = slab.k / slab.mu_t, q = k * group.momentum.norm();
+template <typename Number>
+Solution solve_group(const SpaceSlabOf<Number>& slab, const SpaceGroup& group,
+                     Resolution resolution, PolarMatrixList<RealOf<Number>>& polar) {
+  const double q = slab.k_per_mu_t() * group.momentum.norm();
   const Eigen::Vector2d x = q == 0 ? Eigen::Vector2d(1, 0) : group.momentum.normalized();
-  const AzimuthalModes modes(polar.at(group.foci, resolution.order), slab.law, slab.albedo,
-                             resolution.modes);
-  const auto lights = modes.lights(k, x, group.lights), views = modes.views(k, x, group.views);
-  Solution found{std::vector<Complex>(group.links.size())};
+  const AzimuthalModesOf<Number> modes(polar.at(group.foci, resolution.order), slab,
+                                       resolution.modes);
+  const auto lights = modes.lights(x, group.lights), views = modes.views(x, group.views);
+  std::vector<ComplexOf<Number>> value(group.links.size());
+  int ordinates = 0;
   for (const auto& part : modes.parts(q)) {
     const auto fed = modes.part_of(lights, part), seen = modes.part_of(views, part);
     if (is_dark(fed, lights) || is_dark(seen, views)) continue;
-    const auto response = layer_response(modes.transport(q, part), slab.optical_depth(), fed, seen);
+    const auto medium = modes.transport(q, part);
+    ordinates = std::max(ordinates, static_cast<int>(2 * value_of(medium.x).cols()));
+    const auto response = layer_response(medium, slab.optical_depth(), fed, seen);
     for (std::size_t i = 0; i < group.links.size(); ++i)
-      found.value[i] += response.collected(group.links[i].view, group.links[i].light);
-    found.ordinates = std::max(found.ordinates, static_cast<int>(2 * response.up.cols()));
+      value[i] += entry(response.collected, group.links[i].view, group.links[i].light);
   }
-  return found;
+  return {flat(value), ordinates};
 }
 
 std::vector<Complex> operator-(std::vector<Complex> a, const std::vector<Complex>& b) {
@@ -79,10 +95,14 @@ double worst_of(const std::vector<Complex>& change, const std::vector<double>& s
 }
 
 /// A group, refined on its own.
+template <typename Number>
 class GroupRefiner {
  public:
-  GroupRefiner(const SpaceSlab& slab, const SpaceGroup& group, const Refinement& refinement,
-               PolarMatricesOf& polar)
+  using Slab = SpaceSlabOf<Number>;
+  using PolarList = PolarMatrixList<RealOf<Number>>;
+
+  GroupRefiner(const Slab& slab, const SpaceGroup& group, const Refinement& refinement,
+               PolarList& polar)
       : slab_(slab),
         group_(group),
         refinement_(refinement),
@@ -92,7 +112,7 @@ class GroupRefiner {
 
   const std::vector<Complex>& first() const { return coarse_.value; }
 
-  /// Values and differences; scale: per link.
+  /// Values and differences; scale: of each value.
   Refined refined(const std::vector<double>& scale) {
     const double tolerance = refinement_.tolerance / 2;
     for (bool near = false;;) {
@@ -119,53 +139,83 @@ class GroupRefiner {
     return solve_group(slab_, group_, resolution, polar_);
   }
 
-  const SpaceSlab& slab_;
+  const Slab& slab_;
   const SpaceGroup& group_;
   Refinement refinement_;
-  PolarMatricesOf& polar_;
+  PolarList& polar_;
   Resolution resolution_;
   Solution coarse_;
 };
 
-/// Adds values of a group to those of entries.
-void add_links(const SpaceGroup& group, const std::vector<Complex>& values,
-               std::vector<Complex>& entries) {
-  for (std::size_t i = 0; i < group.links.size(); ++i) entries[group.links[i].entry] += values[i];
+/// Of a group's value: values of links go to those of their entries, derivatives to derivatives.
+std::size_t entry_of(const SpaceGroup& group, std::size_t i, std::size_t entries) {
+  const std::size_t links = group.links.size();
+  return i / links * entries + group.links[i % links].entry;
 }
 
-}  // namespace
+void add_links(const SpaceGroup& group, const std::vector<Complex>& values, std::size_t size,
+               std::vector<Complex>& entries) {
+  for (std::size_t i = 0; i < values.size(); ++i) entries[entry_of(group, i, size)] += values[i];
+}
 
-Refined space_covariance(const SpaceSlab& slab, const SpaceRequest& request, bool reversed,
-                         const Refinement& refinement) {
+template <typename Number>
+Refined of_one_scattering(const SpaceSlabOf<Number>& slab, const std::vector<SpaceChain>& chains,
+                          std::size_t size) {
+  std::vector<ComplexOf<Number>> once(size);
+  for (const SpaceChain& chain : chains) once[chain.entry] += scattered_once(slab, chain);
+  Refined found{flat(once), {}, 0};
+  found.difference.resize(found.value.size());
+  return found;
+}
+
+template <typename Number>
+Refined refined_covariance(const SpaceSlabOf<Number>& slab, const SpaceRequest& request,
+                           bool reversed, const Refinement& refinement) {
   const std::size_t size = request.entries.size();
-  Refined all{std::vector<Complex>(size), std::vector<Complex>(size), 0};
-  if (slab.albedo == 0) return all;
+  const double shift = slab.departure.shift;
+  auto chains = ladders(request, shift);
+  Refined all = of_one_scattering(slab, chains, size);
+  if (value_of(slab.albedo) == 0) return all;
   blas_single_thread();
-  auto chains = ladders(request);
-  for (const SpaceChain& chain : chains) all.value[chain.entry] += scattered_once(slab, chain);
   if (reversed)
-    for (const SpaceChain& chain : reversed_ladders(request)) chains.push_back(chain);
-  const auto groups = grouped(chains, slab.law.width());
-  PolarMatricesOf polar(slab.law, slab.albedo);
-  std::vector<std::unique_ptr<GroupRefiner>> refiners(groups.size());
+    for (const SpaceChain& chain : reversed_ladders(request, shift)) chains.push_back(chain);
+  const auto groups = grouped(chains, slab.law.width(), shift);
+  PolarMatrixList<RealOf<Number>> polar(slab.law, slab.albedo);
+  std::vector<std::unique_ptr<GroupRefiner<Number>>> refiners(groups.size());
   parallel_for(groups.size(), [&](std::size_t g) {
-    refiners[g] = std::make_unique<GroupRefiner>(slab, groups[g], refinement, polar);
+    refiners[g] = std::make_unique<GroupRefiner<Number>>(slab, groups[g], refinement, polar);
   });
   auto first = all.value;
-  for (std::size_t g = 0; g < groups.size(); ++g) add_links(groups[g], refiners[g]->first(), first);
-  const auto scale = scales(request.entries, first);
+  for (std::size_t g = 0; g < groups.size(); ++g)
+    add_links(groups[g], refiners[g]->first(), size, first);
+  const auto scale = scales_with_slopes(request.entries, first);
   std::vector<Refined> refined(groups.size());
   parallel_for(groups.size(), [&](std::size_t g) {
     std::vector<double> of_links;
-    for (const auto& link : groups[g].links) of_links.push_back(scale[link.entry]);
+    for (std::size_t i = 0; i < refiners[g]->first().size(); ++i)
+      of_links.push_back(scale[entry_of(groups[g], i, size)]);
     refined[g] = refiners[g]->refined(of_links);
   });
   for (std::size_t g = 0; g < groups.size(); ++g) {
-    add_links(groups[g], refined[g].value, all.value);
-    add_links(groups[g], refined[g].difference, all.difference);
+    add_links(groups[g], refined[g].value, size, all.value);
+    add_links(groups[g], refined[g].difference, size, all.difference);
     all.ordinates = std::max(all.ordinates, refined[g].ordinates);
   }
   return all;
 }
+
+}  // namespace
+
+template <typename Number>
+Refined space_covariance(const SpaceSlabOf<Number>& slab, const SpaceRequest& request,
+                         bool reversed, const Refinement& refinement) {
+  return refined_covariance(slab, request, reversed, refinement);
+}
+
+template Refined space_covariance(const SpaceSlab&, const SpaceRequest&, bool, const Refinement&);
+template Refined space_covariance(const SpaceSlabOf<Complex>&, const SpaceRequest&, bool,
+                                  const Refinement&);
+template Refined space_covariance(const SpaceSlabOf<Dual<double>>&, const SpaceRequest&, bool,
+                                  const Refinement&);
 
 }  // namespace flatspeckle::mc

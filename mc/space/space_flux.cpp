@@ -13,14 +13,13 @@ namespace {
 
 /// {reflected, transmitted}: without momentum, of the mode m = 0 alone.
 std::pair<double, double> leaving(const SpaceSlab& slab, double angle, int order) {
-  const PolarMatrices polar({{angle, slab.law.width()}}, order, slab.law, slab.albedo);
-  const AzimuthalModes modes(polar, slab.law, slab.albedo, 0);
+  const PolarMatricesOf<double> polar({{angle, slab.law.width()}}, order, slab.law, slab.albedo);
+  const AzimuthalModesOf<double> modes(polar, slab, 0);
   const Eigen::Vector3d light(std::sin(angle), 0, std::cos(angle));
-  const double k = slab.k / slab.mu_t;
   const Eigen::Vector2d x(1, 0);
   const auto response =
       layer_response(modes.transport(0, modes.parts(0).front()), slab.optical_depth(),
-                     modes.lights(k, x, {{light, light}}), modes.views(k, x, {}));
+                     modes.lights(x, {{light, light}}), modes.views(x, {}));
   const auto share = [&](const Rows& rows) { return (rows.real() * modes.power())(0) / light.z(); };
   return {share(response.up), share(response.down)};
 }

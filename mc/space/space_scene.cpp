@@ -7,6 +7,7 @@
 #include "grin/media/rayleigh_phase.h"
 #include "grin/media/table_phase.h"
 #include "grin/media/two_term_phase.h"
+#include "mc/transport/bulk_slope.h"
 #include "mc/transport/range_refinement.h"
 
 namespace flatspeckle::mc {
@@ -52,27 +53,47 @@ SpaceSlab space_slab(const Scene& scene, double delay) {
           SpaceLaw(scene.medium.space_phase.density, delay)};
 }
 
+Refined space_covariance(const Scene& scene, bool reversed, const Refinement& refinement,
+                         const FieldChange& change) {
+  const SpaceSlab slab = space_slab(scene, change.delay);
+  const SpaceRequest request = space_request(scene.request);
+  if (change.shift == 0) return space_covariance(slab, request, reversed, refinement);
+  const SpaceSlabOf<Complex> shifted{slab.k,      slab.mu_t, slab.depth,
+                                     slab.albedo, slab.law,  {1, change.shift}};
+  return space_covariance(shifted, request, reversed, refinement);
+}
+
+Refined space_slopes(const Scene& scene, bool reversed, const Refinement& refinement,
+                     BulkParameter parameter) {
+  const SpaceSlab slab = space_slab(scene);
+  const auto slope = bulk_slope_of<SpaceSlope>(scene.medium, slab.law, parameter);
+  const SpaceSlabOf<Dual<double>> changing{slab.k,     slab.mu_t,
+                                           slab.depth, {slab.albedo, slope.albedo},
+                                           slope.law,  {{1, -slope.log_mu_t}}};
+  return by_parameter(
+      space_covariance(changing, space_request(scene.request), reversed, refinement), slope.unit);
+}
+
 FieldJob space_covariance_job(const Scene& scene, bool reversed, const Refinement& refinement) {
   const auto solve = [=] {
-    const SpaceSlab slab = space_slab(scene);
-    const SpaceRequest request = space_request(scene.request);
     return refined_range(scene.request, refinement, [&](const Refinement& finer) {
-      return space_covariance(slab, request, reversed, finer);
+      return space_covariance(scene, reversed, finer);
     });
   };
   return two_batch_job(scene.request.entries.size(), 1, solve).field;
 }
 
-PathJob space_delay_job(const Scene& scene, bool reversed, const Refinement& refinement,
-                        const std::vector<double>& delays) {
-  const auto solve = [=] {
-    const SpaceRequest request = space_request(scene.request);
-    Refined all = space_covariance(space_slab(scene), request, reversed, refinement);
-    for (const double delay : delays)
-      all.append(space_covariance(space_slab(scene, delay), request, reversed, refinement));
-    return all;
-  };
-  return two_batch_job(scene.request.entries.size(), 1 + delays.size(), solve);
+PathJob space_change_job(const Scene& scene, bool reversed, const Refinement& refinement,
+                         const std::vector<FieldChange>& changes) {
+  return change_job(scene.request.entries.size(), changes, [=](const FieldChange& change) {
+    return space_covariance(scene, reversed, refinement, change);
+  });
+}
+
+GradientJob space_gradient_job(const Scene& scene, bool reversed, const Refinement& refinement) {
+  return slope_job(scene, [=](BulkParameter parameter) {
+    return space_slopes(scene, reversed, refinement, parameter);
+  });
 }
 
 }  // namespace flatspeckle::mc

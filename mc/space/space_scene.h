@@ -3,6 +3,7 @@
 #include "flatland/request/field_moments.h"
 #include "flatland/scene/scene.h"
 #include "mc/space/space_covariance.h"
+#include "mc/transport/transport_jobs.h"
 
 namespace flatspeckle::mc {
 
@@ -15,11 +16,15 @@ Scene in_space(Scene slab, const ScattererValues& values);
 /// Of a scene in space, whose second fields are recorded after a delay (SpaceLaw).
 SpaceSlab space_slab(const Scene& scene, double delay = 0);
 
-/// space_covariance() as a job (two_batches()); the tolerance holds for a range too.
-FieldJob space_covariance_job(const Scene& scene, bool reversed, const Refinement& refinement);
+/// Of a scene in space, as slab_covariance() and slab_slopes() of the plane; so are the jobs.
+Refined space_covariance(const Scene& scene, bool reversed, const Refinement& refinement,
+                         const FieldChange& change = {});
+Refined space_slopes(const Scene& scene, bool reversed, const Refinement& refinement,
+                     BulkParameter parameter);
 
-/// Quantities as those of delay_job(): the entries without delay, then with each.
-PathJob space_delay_job(const Scene& scene, bool reversed, const Refinement& refinement,
-                        const std::vector<double>& delays);
+FieldJob space_covariance_job(const Scene& scene, bool reversed, const Refinement& refinement);
+PathJob space_change_job(const Scene& scene, bool reversed, const Refinement& refinement,
+                         const std::vector<FieldChange>& changes);
+GradientJob space_gradient_job(const Scene& scene, bool reversed, const Refinement& refinement);
 
 }  // namespace flatspeckle::mc

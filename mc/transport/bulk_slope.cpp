@@ -8,18 +8,23 @@
 
 namespace flatspeckle::mc {
 
+std::vector<double> power_slopes(double g, std::size_t count) {
+  std::vector<double> slopes(count);
+  for (std::size_t m = 1; m < count; ++m)
+    slopes[m] = static_cast<double>(m) * std::pow(g, static_cast<double>(m - 1));
+  return slopes;
+}
+
 ScatteringSlope::ScatteringSlope(const ScatteringLaw& law) : law_(law) {
   modes_.value = law.modes();
-  modes_.slope.assign(std::max<std::size_t>(law.modes().size(), 2), 0);
+  modes_.slope.assign(law.modes().size(), 0);
 }
 
 /// The modes are g^m.
-ScatteringSlope ScatteringSlope::by_g(const ScatteringLaw& law) {
+ScatteringSlope ScatteringSlope::by_g(const ScatteringLaw& law, double g) {
   ScatteringSlope slope(law);
   slope.by_g_ = true;
-  auto& modes = slope.modes_.slope;
-  for (std::size_t m = 1; m < modes.size(); ++m)
-    modes[m] = static_cast<double>(m) * std::pow(law.g(), static_cast<double>(m - 1));
+  slope.modes_.slope = power_slopes(g, law.modes().size() + 1);
   return slope;
 }
 
@@ -70,25 +75,15 @@ BulkSlope scatterer_slope(const Scene& scene, const ScatteringLaw& law, double u
 }  // namespace
 
 BulkSlope bulk_slope(const Scene& scene, const ScatteringLaw& law, BulkParameter parameter) {
-  const BulkMedium& medium = scene.medium;
-  switch (parameter) {
-    case BulkParameter::mu_t:
-      return {medium.mu_t, 1, 0, ScatteringSlope(law)};
-    case BulkParameter::albedo:
-      return {medium.albedo, 0, medium.albedo, ScatteringSlope(law)};
-    case BulkParameter::g:
-      return {1, 0, 0, ScatteringSlope::by_g(law)};
-    case BulkParameter::radius:
-      return scatterer_slope(
-          scene, law, scene.scatterer.radius,
-          [](Scatterer& scatterer, double factor) { scatterer.radius *= factor; });
-    case BulkParameter::index:
-      break;
-  }
-  const auto scaled = [](Scatterer& scatterer, double factor) {
+  const auto wider = [](Scatterer& scatterer, double factor) { scatterer.radius *= factor; };
+  const auto denser = [](Scatterer& scatterer, double factor) {
     scatterer.index.real(scatterer.index.real() * factor);
   };
-  return scatterer_slope(scene, law, scene.scatterer.index.real(), scaled);
+  if (parameter == BulkParameter::radius)
+    return scatterer_slope(scene, law, scene.scatterer.radius, wider);
+  if (parameter == BulkParameter::index)
+    return scatterer_slope(scene, law, scene.scatterer.index.real(), denser);
+  return bulk_slope_of<ScatteringSlope>(scene.medium, law, parameter);
 }
 
 std::vector<BulkParameter> slab_parameters(const Scene& scene) {

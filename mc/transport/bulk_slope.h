@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "mc/estimators/bulk_parameter.h"
@@ -7,6 +8,17 @@
 #include "mc/transport/scattering_law.h"
 
 namespace flatspeckle::mc {
+
+/// Of the modes or moments of a law: the last of them.
+inline int degree(const std::vector<double>& modes) {
+  return static_cast<int>(modes.size()) - 1;
+}
+inline int degree(const Dual<std::vector<double>>& modes) {
+  return std::max(degree(modes.value), degree(modes.slope));
+}
+
+/// Of g^m, m = 0 .. count - 1: derivatives by g.
+std::vector<double> power_slopes(double g, std::size_t count);
 
 /// A scattering law with its derivative by the logarithm of what its scatterers are, or by g.
 class ScatteringSlope {
@@ -20,7 +32,7 @@ class ScatteringSlope {
   /// Does not know of the parameter.
   explicit ScatteringSlope(const ScatteringLaw& law);
   /// Of Henyey-Greenstein's function by g.
-  static ScatteringSlope by_g(const ScatteringLaw& law);
+  static ScatteringSlope by_g(const ScatteringLaw& law, double g);
   ScatteringSlope(const ScatteringLaw& law, std::vector<Neighbour> neighbours);
 
   Dual<Complex> pair(double a, double b, double theta) const;
@@ -33,12 +45,23 @@ class ScatteringSlope {
   Dual<std::vector<double>> modes_;
 };
 
-/// What a change of one parameter does to a slab's medium. Derivatives are by parameter/unit: those
-/// by a logarithm are as large as the values.
-struct BulkSlope {
-  double unit = 1, log_mu_t = 0, albedo = 0;
-  ScatteringSlope law;
+/// What a change of one parameter does to a slab's medium, a scattering law with its derivative
+/// among it. Derivatives are by parameter/unit: those by a logarithm are as large as the values.
+template <typename Slope>
+struct BulkSlopeOf {
+  double unit, log_mu_t, albedo;
+  Slope law;
 };
+using BulkSlope = BulkSlopeOf<ScatteringSlope>;
+
+/// By what describes the scatterers as a bulk: mu_t, albedo, g.
+template <typename Slope, typename Law>
+BulkSlopeOf<Slope> bulk_slope_of(const BulkMedium& medium, const Law& law,
+                                 BulkParameter parameter) {
+  if (parameter == BulkParameter::mu_t) return {medium.mu_t, 1, 0, Slope(law)};
+  if (parameter == BulkParameter::albedo) return {medium.albedo, 0, medium.albedo, Slope(law)};
+  return {1, 0, 0, Slope::by_g(law, medium.g)};
+}
 
 /// law: the scene's, and outlives the slope. Radius and index: by differences of fourth order of
 /// the T-matrix, to 1e-10 or so.

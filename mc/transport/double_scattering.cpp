@@ -56,7 +56,7 @@ DoubleScatteringOf<Number>::DoubleScatteringOf(const Scene& scene, double q, Pai
                                                Pair views, const Departure<Number>& departure)
     : optical_depth_(scene.medium.mu_t * scene.domain.depth / departure.length),
       q_(q * departure.length),
-      extinction_(departure.extinction(scene)),
+      extinction_(departure.extinction(scene.k / scene.medium.mu_t)),
       lights_(lights),
       views_(views),
       light_(pair_wave(scene, lights, departure)),

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <complex>
+#include <type_traits>
 #include <vector>
 
 #include "core/numbers/complex.h"
@@ -72,15 +73,24 @@ inline Dual<Complex> exp(const Dual<Complex>& a) {
   return {value, value * a.slope};
 }
 
-inline double value_of(double a) {
-  return a;
-}
-inline Complex value_of(Complex a) {
+template <typename T>
+const T& value_of(const T& a) {
   return a;
 }
 template <typename T>
 const T& value_of(const Dual<T>& a) {
   return a.value;
+}
+
+/// What f(part) gives, where part(number) takes a number's value; for Dual<double> that and the
+/// same with its slope.
+template <typename Number, typename F>
+auto each_part(const F& f) {
+  const auto value = [](const auto& number) { return value_of(number); };
+  if constexpr (std::is_same_v<Number, Dual<double>>)
+    return Dual<decltype(f(value))>{f(value), f([](const auto& dual) { return dual.slope; })};
+  else
+    return f(value);
 }
 
 /// The complex numbers of calculations with a Number.

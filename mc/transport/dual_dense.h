@@ -43,6 +43,19 @@ Dual<T> linear(const F& f, const Dual<T>& a) {
   return {f(a.value), f(a.slope)};
 }
 
+inline Matrix times(double factor, const Matrix& a) {
+  return factor * a;
+}
+inline Rows times(Complex factor, const Matrix& a) {
+  Rows b(a.rows(), a.cols());
+  b.real() = factor.real() * a;
+  b.imag() = factor.imag() * a;
+  return b;
+}
+inline Dual<Matrix> times(const Dual<double>& factor, const Matrix& a) {
+  return {factor.value * a, factor.slope * a};
+}
+
 inline Complex entry(const Rows& rows, Eigen::Index i, Eigen::Index j) {
   return rows(i, j);
 }

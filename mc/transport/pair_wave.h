@@ -36,35 +36,33 @@ struct Departure {
   double shift = 0;
 
   /// Per mu_t: radiance of pairs turns its phase along its way by the difference in wavenumber
-  /// (C39).
-  Number extinction(const Scene& scene) const {
+  /// (C39). k: per mu_t.
+  Number extinction(double k) const {
     if constexpr (std::is_same_v<Number, Complex>)
-      return {1, shift * scene.k / scene.medium.mu_t};
+      return {1, shift * k};
     else
       return {1};
   }
 };
 
-template <typename Number = double>
-PairWaveOf<Number> pair_wave(const Scene& scene, Pair pair, const Departure<Number>& departure) {
-  const double first = std::cos(pair.first), second = std::cos(pair.second);
+/// Of two lights by the cosines of their directions; k: per mu_t.
+template <typename Number>
+PairWaveOf<Number> pair_wave(double k, double first, double second,
+                             const Departure<Number>& departure) {
   PairWaveOf<Number> wave;
   for (const double cosine : {first, second}) {
     auto& end = cosine > 0 ? wave.top : wave.bottom;
     end = end - 1 / (2 * std::abs(cosine));
   }
   const double along = first - (1 + departure.shift) * second;
-  wave.top += Complex(0, scene.k / scene.medium.mu_t * along) * departure.length;
+  wave.top += Complex(0, k * along) * departure.length;
   return wave;
 }
 
-/// Of two lights by the cosines of their directions; k: per extinction coefficient.
-inline PairWave pair_wave(double k, double first, double second) {
-  PairWave wave;
-  for (const double cosine : {first, second})
-    (cosine > 0 ? wave.top : wave.bottom) -= 1 / (2 * std::abs(cosine));
-  wave.top += Complex(0, k * (first - second));
-  return wave;
+template <typename Number>
+PairWaveOf<Number> pair_wave(const Scene& scene, Pair pair, const Departure<Number>& departure) {
+  return pair_wave(scene.k / scene.medium.mu_t, std::cos(pair.first), std::cos(pair.second),
+                   departure);
 }
 
 /// Transverse momentum of a pair (C35), per extinction coefficient. shift: Departure's.

@@ -37,6 +37,21 @@ std::vector<double> scales(const std::vector<Entry>& entries, std::span<const Co
   return scale;
 }
 
+std::vector<double> scales_with_slopes(const std::vector<Entry>& entries,
+                                       std::span<const Complex> values) {
+  auto scale = scales(entries, values.first(entries.size()));
+  if (values.size() == entries.size()) return scale;
+  const auto slope = scales(entries, values.last(entries.size()));
+  for (std::size_t e = 0; e < entries.size(); ++e) scale.push_back(std::max(scale[e], slope[e]));
+  return scale;
+}
+
+Refined by_parameter(Refined all, double unit) {
+  for (auto* list : {&all.value, &all.difference})
+    for (std::size_t i = list->size() / 2; i < list->size(); ++i) (*list)[i] /= unit;
+  return all;
+}
+
 BatchJob two_batches(std::size_t size, const std::function<Refined()>& solve) {
   struct Solution {
     std::once_flag once;

@@ -34,6 +34,14 @@ struct Refined {
 /// (or that which there is) where that is more.
 std::vector<double> scales(const std::vector<Entry>& entries, std::span<const Complex> values);
 
+/// The same of values per entry that may be followed by derivatives, which are as the entry or the
+/// derivative, whichever is more.
+std::vector<double> scales_with_slopes(const std::vector<Entry>& entries,
+                                       std::span<const Complex> values);
+
+/// Values, then derivatives by parameter/unit: those by the parameter.
+Refined by_parameter(Refined all, double unit);
+
 /// A solution as a job of two batches, the values plus and minus their difference: what the
 /// statistics of batches call the standard error of any function of them is its difference then.
 /// Solved when the first batch runs.

@@ -33,8 +33,6 @@ class ScatteringLaw {
   /// Of Henyey-Greenstein's function without delay: d log p / d g.
   double slope(double angle) const;
 
-  double g() const { return g_; }
-
   const std::vector<double>& modes() const { return modes_; }
   /// The angle within which p changes.
   double width() const { return width_; }

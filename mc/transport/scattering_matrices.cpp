@@ -28,14 +28,6 @@ Dual<Matrix> gram(const Matrix& integrals, const Dual<std::vector<double>>& mode
   return {gram(integrals, modes.value, first), gram(integrals, modes.slope, first)};
 }
 
-/// The last of them.
-int degree(const std::vector<double>& modes) {
-  return static_cast<int>(modes.size()) - 1;
-}
-int degree(const Dual<std::vector<double>>& modes) {
-  return std::max(degree(modes.value), degree(modes.slope));
-}
-
 /// [even, -across; across, odd]
 template <typename M>
 M both_parities(const M& even, const M& odd, const M& across) {
@@ -48,29 +40,6 @@ Dual<Matrix> both_parities(const Dual<Matrix>& even, const Dual<Matrix>& odd,
                            const Dual<Matrix>& across) {
   return {both_parities(even.value, odd.value, across.value),
           both_parities(even.slope, odd.slope, across.slope)};
-}
-
-Matrix times(double factor, const Matrix& a) {
-  return factor * a;
-}
-Rows times(Complex factor, const Matrix& a) {
-  Rows b(a.rows(), a.cols());
-  b.real() = factor.real() * a;
-  b.imag() = factor.imag() * a;
-  return b;
-}
-Dual<Matrix> times(const Dual<double>& factor, const Matrix& a) {
-  return {factor.value * a, factor.slope * a};
-}
-
-/// What f(number) gives of complex numbers.
-template <typename Number, typename F>
-auto each_part(const F& f) {
-  if constexpr (!std::is_same_v<Number, Dual<double>>)
-    return f([](Complex z) { return z; });
-  else
-    return Dual<Rows>{f([](const Dual<Complex>& z) { return z.value; }),
-                      f([](const Dual<Complex>& z) { return z.slope; })};
 }
 
 template <typename Number>

@@ -13,6 +13,7 @@
 #include "mc/transport/finite_ends.h"
 #include "mc/transport/range_refinement.h"
 #include "mc/transport/scattering_matrices.h"
+#include "mc/transport/transport_jobs.h"
 
 namespace flatspeckle::mc {
 
@@ -44,8 +45,9 @@ struct Discrete {
 
   Discrete(const std::vector<Focus>& foci, int order, const Slab<Number>& slab)
       : grid(foci, order, slab.resolved.width()),
-        matrices(grid, slab.law, slab.albedo, slab.departure.extinction(slab.scene),
-                 slab.departure) {}
+        matrices(grid, slab.law, slab.albedo,
+                 slab.departure.extinction(slab.scene.k / slab.scene.medium.mu_t), slab.departure) {
+  }
   Discrete(const Discrete&) = delete;
 };
 
@@ -80,17 +82,6 @@ std::vector<Complex> solved(const Slab<Number>& slab, const ChainGroup& group,
     }
   }
   return flat(values);
-}
-
-/// What the tolerance of each entry is relative to, and that of its derivative: that or the entry.
-std::vector<double> scales_with_slopes(const CovarianceRequest& request,
-                                       std::span<const Complex> values) {
-  const std::size_t entries = request.entries.size();
-  auto scale = scales(request.entries, values.first(entries));
-  if (values.size() == entries) return scale;
-  const auto slope = scales(request.entries, values.last(entries));
-  for (std::size_t e = 0; e < entries; ++e) scale.push_back(std::max(scale[e], slope[e]));
-  return scale;
 }
 
 /// Per entry or link: values, and for Dual<double> then derivatives.
@@ -148,7 +139,7 @@ class Refiner {
   /// Once how large the entries are is known.
   void add_double_scattering() {
     constexpr double part_of_tolerance = 0.01;
-    const auto scale = scales_with_slopes(request_, sum(&Part::value));
+    const auto scale = scales_with_slopes(request_.entries, sum(&Part::value));
     std::vector<std::vector<ComplexOf<Number>>> found(parts_.size());
     parallel_for(parts_.size(), [&](std::size_t p) {
       stop_if_interrupted();
@@ -174,7 +165,7 @@ class Refiner {
 
   /// Parts whose last two orders agree, or that would become too large, are done.
   void settle() {
-    const auto scale = scales_with_slopes(request_, sum(&Part::value));
+    const auto scale = scales_with_slopes(request_.entries, sum(&Part::value));
     for (Part& part : parts_) {
       double worst = 0;
       for (std::size_t i = 0; i < part.value.size(); ++i)
@@ -234,15 +225,12 @@ Refined slab_slopes(const Scene& slab, bool reversed, const Refinement& refineme
   blas_single_thread();
   const ScatteringLaw law(slab);
   const BulkSlope slope = bulk_slope(slab, law, parameter);
-  Refined all =
+  return by_parameter(
       Refiner<Dual<double>>(
           {slab, law, slope.law, {slab.medium.albedo, slope.albedo}, {{1, -slope.log_mu_t}}},
           reversed, refinement)
-          .refined();
-  for (auto* list : {&all.value, &all.difference})
-    for (std::size_t e = slab.request.entries.size(); e < list->size(); ++e)
-      (*list)[e] /= slope.unit;
-  return all;
+          .refined(),
+      slope.unit);
 }
 
 FieldJob slab_covariance_job(const Scene& slab, bool reversed, const Refinement& refinement) {
@@ -256,30 +244,15 @@ FieldJob slab_covariance_job(const Scene& slab, bool reversed, const Refinement&
 
 PathJob slab_change_job(const Scene& slab, bool reversed, const Refinement& refinement,
                         const std::vector<FieldChange>& changes) {
-  const auto solve = [=] {
-    Refined all = slab_covariance(slab, reversed, refinement);
-    for (const FieldChange& change : changes)
-      all.append(slab_covariance(slab, reversed, refinement, change));
-    return all;
-  };
-  return two_batch_job(slab.request.entries.size(), 1 + changes.size(), solve);
+  return change_job(slab.request.entries.size(), changes, [=](const FieldChange& change) {
+    return slab_covariance(slab, reversed, refinement, change);
+  });
 }
 
 GradientJob slab_gradient_job(const Scene& slab, bool reversed, const Refinement& refinement) {
-  const auto parameters = slab_parameters(slab);
-  const auto entries = static_cast<std::ptrdiff_t>(slab.request.entries.size());
-  const auto solve = [=] {
-    Refined all = slab_slopes(slab, reversed, refinement, parameters.front());
-    for (std::size_t p = 1; p < parameters.size(); ++p) {
-      Refined one = slab_slopes(slab, reversed, refinement, parameters[p]);
-      for (auto* list : {&one.value, &one.difference})
-        list->erase(list->begin(), list->begin() + entries);
-      all.append(one);
-    }
-    return all;
-  };
-  return gradient_job(two_batch_job(slab.request.entries.size(), 1 + parameters.size(), solve),
-                      parameters, slab);
+  return slope_job(slab, [=](BulkParameter parameter) {
+    return slab_slopes(slab, reversed, refinement, parameter);
+  });
 }
 
 }  // namespace flatspeckle::mc

@@ -4,17 +4,10 @@
 #include "flatland/scene/scene.h"
 #include "mc/estimators/gradient.h"
 #include "mc/estimators/path_job.h"
+#include "mc/transport/field_change.h"
 #include "mc/transport/refinement.h"
 
 namespace flatspeckle::mc {
-
-/// How a field differs from another besides its light and view.
-struct FieldChange {
-  double delay = 0;  ///< k^2 D tau: recorded later, as the scatterers diffuse (brownian.h)
-  /// Of its wavenumber, relative; its view is turned so that transverse momenta match. Attenuation
-  /// and scattering stay those of k.
-  double shift = 0;
-};
 
 /// The covariance of C14 and C18 on a slab, per entry of the request, as linear transport of pairs
 /// at one transverse frequency (conventions, C35 to C40): what covariance_job() estimates, single

@@ -68,6 +68,39 @@ class Space(ProgramTest):
                                    delta=4 * found["mc"][1][t] + 1e-4)
             self.assertLess(found["mc"][1][t], 0.02)
 
+    def test_gradient_by_both_methods(self):
+        found = {}
+        for method, more in (("transport", {"tolerance": 1e-4}),
+                             ("mc", {"seed": 3, "samples": 40000})):
+            keys = SPACE | more | {"method": method, "scatterer": "hg", "g": 0.5, "albedo": 0.9,
+                                   "optical_depth": 2}
+            self.call("covariance", **keys, gradient=True, out="x.h5")
+            with h5py.File(self.folder / "x.h5") as file:
+                self.assertEqual(list(file["parameter"].attrs["names"]),
+                                 ["mu_t", "g", "albedo", "optical_depth"])
+                found[method] = file["gradient"][:].ravel(), file["gradient_error"][:].ravel()
+        for p, exact in enumerate(found["transport"][0]):
+            error = found["mc"][1][p]
+            self.assertAlmostEqual(found["mc"][0][p], exact, delta=4 * error + 1e-4 * abs(exact))
+            self.assertLess(error, 0.1 * abs(exact))
+
+    def test_frequency_shifts(self):
+        shifts = [0, 1e-5, 1e-4]
+        keys = SPACE | {"scatterer": "hg", "g": 0.5, "optical_depth": 5, "tolerance": 1e-4,
+                        "frequency_shifts": shifts}
+        self.call("covariance", **keys, out="x.h5")
+        with h5py.File(self.folder / "x.h5") as file:
+            plain = abs(file["frequency_correlation"][:].ravel())
+        self.call("covariance", **(keys | TILTS), out="x.h5")
+        with h5py.File(self.folder / "x.h5") as file:
+            tilted = file["frequency_tilt_correlation"][:]
+            by_tilts = file["field_correlation"][:]
+        self.assertAlmostEqual(plain[0], 1, delta=1e-9)
+        self.assertTrue(plain[1] > 0.9 > plain[2] > 0.2)
+        for t, alone in enumerate(by_tilts):
+            self.assertAlmostEqual(tilted[0][t], alone, delta=1e-9)
+            self.assertTrue(tilted[0][t] > tilted[1][t] > tilted[2][t])
+
     def test_a_table_is_per_solid_angle(self):
         (self.folder / "p.csv").write_text("angle,value\n0,1\n3.141592653589793,1\n")
         found, _, mean_cosine = self.correlations(scatterer="phase_table", phase_table="p.csv")

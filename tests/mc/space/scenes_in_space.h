@@ -26,7 +26,7 @@ inline Scene in_space(const SceneSpec& spec, const CovarianceRequest& request) {
 }
 
 inline Refined by_transport(const Scene& scene, bool reversed, double tolerance) {
-  return space_covariance(space_slab(scene), space_request(scene.request), reversed, {tolerance});
+  return space_covariance(scene, reversed, {tolerance});
 }
 
 /// A light and a view against both moved by transverse momenta q; the intensity is that of q = 0.

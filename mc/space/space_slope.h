@@ -1,0 +1,33 @@
+#pragma once
+
+#include <type_traits>
+#include <vector>
+
+#include "mc/space/space_law.h"
+#include "mc/transport/dual.h"
+
+namespace flatspeckle::mc {
+
+/// A law in space with its derivative: by what it does not know of, or by g.
+class SpaceSlope {
+ public:
+  explicit SpaceSlope(const SpaceLaw& law);
+  /// Of Henyey-Greenstein's function without delay, by g.
+  static SpaceSlope by_g(const SpaceLaw& law, double g);
+
+  Dual<double> pair(double first, double second) const;
+  const Dual<std::vector<double>>& moments() const { return moments_; }
+  double width() const { return law_.width(); }
+
+ private:
+  SpaceLaw law_;
+  bool by_g_ = false;
+  double g_ = 0;
+  Dual<std::vector<double>> moments_;
+};
+
+/// A law in space of calculations with a Number.
+template <typename Number>
+using SpaceLawOf = std::conditional_t<std::is_same_v<Number, Dual<double>>, SpaceSlope, SpaceLaw>;
+
+}  // namespace flatspeckle::mc
