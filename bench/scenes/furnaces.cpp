@@ -60,7 +60,8 @@ std::vector<NamedRender> furnaces(const ScatteringMedium& medium) {
       {"guide", in(ParabolicGuide({.axis_excess = 0.5, .alpha = 0.6}), stage)},
       {"sound", in(StandingWave(0.3, 0.1, 0, 4.0, 3.0), stage)},
       {"blobs and spline", in(sum, stage)},
-      {"glass ball", in(Homogeneous{0.5}, with_ball)}};
+      {"glass ball", in(Homogeneous{0.5}, with_ball)},
+      {"clear ball", in(Homogeneous{}, with_ball)}};
   all[4].scene.random_phase = true;
   return all;
 }

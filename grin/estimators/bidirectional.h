@@ -143,7 +143,7 @@ class Bidirectional {
   }
 
   bool can_join(const PathVertex& y, const PathVertex& z) const {
-    return y.point.part == z.point.part && !(y.end && y.end->is_beam) &&
+    return space_.can_join(y.point, z.point) && !(y.end && y.end->is_beam) &&
            y.vertices + z.vertices - 2 <= transport_.max_scatterings;
   }
 
@@ -152,7 +152,7 @@ class Bidirectional {
     ++counts_.joins_weighed;
     const Vec3 way = z.point.x - y.point.x;
     const double length = way.norm();
-    const double depth = transport_.least_extinction(y.point.part) * length;
+    const double depth = space_.least_depth(y.point, z.point);
     const Vec3 direction = way / length;
     const JoiningCurve line{direction, direction, length * length, depth};
     const JoinedPath path =

@@ -21,7 +21,7 @@ inline double bounded_attenuation(double optical_depth) {
 }
 
 /// Which strategies are in use. A short path from an end stops where the rest can be joined to it
-/// or hits it: after the end itself, but for a beam, and for ways that cross a body.
+/// or hits it: after the end itself, but for a beam, and for ways that cannot be joined.
 struct Strategies {
   static constexpr int unlimited = std::numeric_limits<int>::max() / 2;
   bool short_light = false;   ///< path tracing
@@ -113,7 +113,7 @@ inline PathVertex arrived(const Strategies& strategies, const PathVertex& here,
                           double index) {
   const double turned = index / here.index * (index / here.index);
   // what weights take for |J| of a way that no strategy joins cancels
-  const double spreading = flight.crosses_body ? 1 : std::max(flight.spreading, 1e-60);
+  const double spreading = !flight.is_joinable ? 1 : std::max(flight.spreading, 1e-60);
   const double attenuation = bounded_attenuation(flight.optical_depth);
   PathVertex next;
   next.point = flight.point;
@@ -128,7 +128,7 @@ inline PathVertex arrived(const Strategies& strategies, const PathVertex& here,
   constexpr int others = 2;  // they made `here` and, where that counts, the next
   next.before = fewer_of_ours(here, 1 / heuristic(here.density),
                               heuristic(direction_density * here.back / here.density), others);
-  const bool can_be_joined = !flight.crosses_body && !(here.end && here.end->is_beam);
+  const bool can_be_joined = flight.is_joinable && !(here.end && here.end->is_beam);
   next.first_of_other = can_be_joined ? heuristic(choice) : 0;
   return next;
 }

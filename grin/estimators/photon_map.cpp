@@ -147,7 +147,7 @@ class PhotonMap {
 
   void join_to_pinhole(const EndPosition& y, const SensorEnd& sensor) {
     const EndPosition z = sensor.sample_position(space_, random_);
-    if (!z.is_point || y.point.part != z.point.part) return;
+    if (!z.is_point || !space_.can_join(y.point, z.point)) return;
     ++counts_.joins;
     const auto curve = space_.join(y.point, z.point, random_, counts_.connections);
     if (!curve) return;

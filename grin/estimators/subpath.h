@@ -8,10 +8,12 @@ namespace flatspeckle::grin {
 /// Of the throughput, below which a path ends by roulette or goes on with twice as much.
 inline constexpr double roulette_level = 0.25;
 
-/// Whether a short path (Strategies) goes on from here.
-inline bool short_path_goes_on(const Transport& transport, const PathVertex& here) {
-  if (!here.end) return transport.stage.body.has_value();
-  return here.end->is_beam || (here.end->is_point && transport.stage.body);
+/// Whether a short path (Strategies) goes on from here: the next way may be one that cannot be
+/// joined.
+template <Space S>
+bool short_path_goes_on(const S& space, const PathVertex& here) {
+  if (!here.end) return !space.joins_all();
+  return here.end->is_beam || (here.end->is_point && !space.joins_all());
 }
 
 /// Walks a path away from one of its ends, through collisions, until it leaves the stage, is long
@@ -27,7 +29,7 @@ void walk(const Transport& transport, const S& space, const Ends& ends, const Pa
   Vec3 direction = first.direction;
   double density = first.density;
   double throughput = 1;
-  while (here.weight > 0 && (!is_short || short_path_goes_on(transport, here))) {
+  while (here.weight > 0 && (!is_short || short_path_goes_on(space, here))) {
     const Flight flight = space.fly(here.point, direction, random);
     ++counts.flights;
     if (flight.end == Flight::End::lost) {

@@ -29,10 +29,6 @@ struct Transport {
   const ScatteringMedium& medium(Part part) const {
     return part == Part::body ? stage.body->medium : stage.medium;
   }
-  /// Known to be met everywhere in a part; a grid may be empty.
-  double least_extinction(Part part) const {
-    return medium(part).density ? 0 : medium(part).mu_t();
-  }
 };
 
 }  // namespace flatspeckle::grin

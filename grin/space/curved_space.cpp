@@ -12,6 +12,15 @@ std::unique_ptr<const RayField> make_ray_field(const AnyIndexField& field, const
   return in_file[field.index() % ray_field_files](field, end);
 }
 
+namespace {
+
+bool refracts_nowhere(const AnyIndexField& field, const Stage& stage) {
+  const auto* homogeneous = std::get_if<Homogeneous>(&field);
+  return homogeneous && stage.body && homogeneous->n_excess == stage.excess_around;
+}
+
+}  // namespace
+
 CurvedSpace::CurvedSpace(const AnyIndexField& field, const Stage& stage,
                          const CurvedSpaceOptions& options)
     : setup_(std::make_shared<const Setup>(
@@ -19,6 +28,7 @@ CurvedSpace::CurvedSpace(const AnyIndexField& field, const Stage& stage,
                 .excess_around = stage.excess_around,
                 .field_part = stage.body ? Part::body : Part::stage,
                 .is_straight = std::holds_alternative<Homogeneous>(field),
+                .is_clear = refracts_nowhere(field, stage),
                 .options = options,
                 .connection = {.step = options.step,
                                .max_length = options.max_length,
@@ -41,13 +51,14 @@ Flight CurvedSpace::fly(const PathPoint& from, const Vec3& direction, RandomStre
                             : setup_->stage.fly(flight, index(flight.point), random);
     if (!end) return flight;
     if (end == LegEnd::body) {
+      flight.is_joinable &= is_clear();
       setup_->stage.cross(flight, field_->excess(flight.point.x), setup_->excess_around, random);
       continue;
     }
     if (flight.arc_length > longest) return flight;
     flight.end = end == LegEnd::collision ? Flight::End::collision : Flight::End::boundary;
     if (!curved) flight.spreading = flight.arc_length * flight.arc_length;
-    if (flight.crosses_body) flight.spreading = 0;
+    if (!flight.is_joinable) flight.spreading = 0;
     return flight;
   }
   return flight;
@@ -58,7 +69,7 @@ std::optional<LegEnd> CurvedSpace::curved_leg(Flight& flight, RandomStream& rand
   RayState ray = start_ray(*field_, flight.point.x, flight.direction);
   const double n_start = ray.v.norm();
   const double longest = setup_->options.max_length - flight.arc_length;
-  const bool spreads = setup_->options.spreading && !flight.crosses_body;
+  const bool spreads = setup_->options.spreading && flight.is_joinable;
   RayTangent tangent;
   const LegStop stop =
       field_->fly(room(), longest, flight.weight, random, ray, spreads ? &tangent : nullptr);
@@ -78,6 +89,7 @@ std::optional<LegEnd> CurvedSpace::curved_leg(Flight& flight, RandomStream& rand
 
 std::optional<Join> CurvedSpace::join(const PathPoint& p, const PathPoint& q, RandomStream& random,
                                       ConnectionStatistics& statistics) const {
+  if (is_clear()) return setup_->stage.join_through(p, q, index(p), random);
   if (p.part != q.part) return std::nullopt;
   if (!is_curved(p)) return setup_->stage.join(p, q, index(p), random);
   static constexpr double inside = 1;

@@ -24,6 +24,15 @@ class CurvedSpace {
 
   double index(const PathPoint& p) const { return 1 + excess(p); }
   Flight fly(const PathPoint& from, const Vec3& direction, RandomStream& random) const;
+  /// All ways of light between two points.
+  bool joins_all() const { return setup_->field_part == Part::stage || is_clear(); }
+  /// Any, between points of these parts.
+  bool can_join(const PathPoint& p, const PathPoint& q) const {
+    return p.part == q.part || is_clear();
+  }
+  double least_depth(const PathPoint& p, const PathPoint& q) const {
+    return setup_->stage.least_depth(p, q);
+  }
   std::optional<Join> join(const PathPoint& p, const PathPoint& q, RandomStream& random,
                            ConnectionStatistics& statistics) const;
 
@@ -37,7 +46,7 @@ class CurvedSpace {
     StraightStage<RenderPlan{}> stage;
     double excess_around;
     Part field_part;
-    bool is_straight;
+    bool is_straight, is_clear;
     CurvedSpaceOptions options;
     ConnectionOptions connection;
   };
@@ -46,6 +55,8 @@ class CurvedSpace {
 
   bool in_field(const PathPoint& p) const { return p.part == setup_->field_part; }
   bool is_curved(const PathPoint& p) const { return in_field(p) && !setup_->is_straight; }
+  /// Nothing is refracted anywhere.
+  bool is_clear() const { return setup_->is_clear; }
   double excess(const PathPoint& p) const {
     return in_field(p) ? field_->excess(p.x) : setup_->excess_around;
   }

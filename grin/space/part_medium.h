@@ -24,6 +24,8 @@ class PartMedium {
   bool scatters() const { return scatters_; }
   double reference() const { return reference_; }
   double mu_t() const { return mu_t_; }
+  /// Known to be met everywhere; a grid may be empty.
+  double least_extinction() const { return grid_ ? 0 : mu_t_; }
   double majorant() const { return mu_t_ * largest_; }
   const DensityGrid* grid() const { return grid_.get(); }
 

@@ -29,13 +29,14 @@ struct Flight {
   Vec3 start_direction;  ///< unit
   Vec3 direction;        ///< unit tangent at the end
   double arc_length = 0, optical_path = 0;
-  double spreading = 0;       ///< |J| from start to end (C25); 0 where crosses_body
+  double spreading = 0;       ///< |J| from start to end (C25); 0 where no join finds it
   double optical_depth = 0;   ///< integral of the reference extinction along the way
   double weight = 1;          ///< exp(-mu_a s) in media that do not scatter, else 1
-  bool crosses_body = false;  ///< passes its surface or is reflected there: cannot be joined
+  bool crosses_body = false;  ///< passes its surface or is reflected there
+  bool is_joinable = true;    ///< a join of its ends finds the same way
 };
 
-/// A curve that joins two points of the same part within it.
+/// A curve that joins two points.
 struct Join {
   Vec3 start_direction, end_direction;  ///< unit tangents along the way from the first point
   double spreading;                     ///< |J_PQ|
@@ -57,6 +58,9 @@ concept Space = requires(const S& space, const PathPoint& p, const Vec3& v, Rand
                          ConnectionStatistics& statistics) {
   { space.index(p) } -> std::convertible_to<double>;
   { space.fly(p, v, random) } -> std::same_as<Flight>;
+  { space.joins_all() } -> std::same_as<bool>;
+  { space.can_join(p, p) } -> std::same_as<bool>;
+  { space.least_depth(p, p) } -> std::same_as<double>;
   { space.join(p, p, random, statistics) } -> std::same_as<std::optional<Join>>;
 };
 

@@ -30,17 +30,30 @@ class StraightSpace {
     return finished(flight, stage_.fly(flight, index(from), random));
   }
 
+  /// All ways of light between two points.
+  bool joins_all() const { return !plan.body || is_clear(); }
+  /// Any, between points of these parts.
+  bool can_join(const PathPoint& p, const PathPoint& q) const {
+    return p.part == q.part || is_clear();
+  }
+  double least_depth(const PathPoint& p, const PathPoint& q) const {
+    return stage_.least_depth(p, q);
+  }
   std::optional<Join> join(const PathPoint& p, const PathPoint& q, RandomStream& random,
                            ConnectionStatistics&) const {
+    if (is_clear()) return stage_.join_through(p, q, index(p), random);
     return stage_.join(p, q, index(p), random);
   }
 
  private:
   double excess(Part part) const { return excess_[plan.body && part == Part::body ? 1 : 0]; }
 
+  /// Nothing is refracted at the body's surface.
+  bool is_clear() const { return plan.body && excess_[0] == excess_[1]; }
+
   static Flight& finished(Flight& flight, LegEnd end) {
     flight.end = end == LegEnd::collision ? Flight::End::collision : Flight::End::boundary;
-    if (!flight.crosses_body) flight.spreading = flight.arc_length * flight.arc_length;
+    if (flight.is_joinable) flight.spreading = flight.arc_length * flight.arc_length;
     return flight;
   }
 

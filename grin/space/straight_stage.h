@@ -61,6 +61,7 @@ class StraightStage {
     const double from = leaves ? excess_body : excess_around;
     const double to = leaves ? excess_around : excess_body;
     if (from != to) {
+      flight.is_joinable = false;
       const Interface face((1 + from) * flight.direction, normal(*body_, flight.point.x), from, to);
       const bool reflected = face.is_total() || random.uniform() < face.reflectance();
       flight.direction = (reflected ? face.reflected() : *face.refracted()).normalized();
@@ -88,7 +89,63 @@ class StraightStage {
                 .multiplicity = 1};
   }
 
+  /// Through the body's surface as if there were none.
+  std::optional<Join> join_through(const PathPoint& p, const PathPoint& q, double index,
+                                   RandomStream& random) const {
+    const Vec3 chord = q.x - p.x;
+    const double square = chord.squaredNorm(), length = std::sqrt(square);
+    if (!(length > 0)) return std::nullopt;
+    const Vec3 d = chord / length;
+    Join join{.start_direction = d,
+              .end_direction = d,
+              .spreading = square,
+              .optical_path = index * length,
+              .optical_depth = 0,
+              .transmittance = 1,
+              .multiplicity = 1};
+    const bool arrives = for_each_part(p, d, length, [&](Part part, double from, double to) {
+      const auto path = [&](double s) -> Vec3 { return p.x + (from + s) * d; };
+      join.optical_depth += medium(part).reference() * (to - from);
+      join.transmittance *= medium(part).template transmitted<plan>(path, to - from, random);
+    });
+    return arrives ? std::optional(join) : std::nullopt;
+  }
+
+  /// Of the straight line between two points at the least, whether light goes it or not.
+  double least_depth(const PathPoint& p, const PathPoint& q) const {
+    const Vec3 chord = q.x - p.x;
+    const double length = chord.norm();
+    const bool in_one_part = p.part == q.part && (p.part == Part::body || !body_);
+    if (!plan.body || in_one_part) return medium(p.part).least_extinction() * length;
+    double depth = 0;
+    for_each_part(p, chord / length, length, [&](Part part, double from, double to) {
+      depth += medium(part).least_extinction() * (to - from);
+    });
+    return depth;
+  }
+
  private:
+  /// Calls use(part, from, to) for the stretches of a straight line. Returns whether it is within
+  /// the boundary.
+  template <class Use>
+  bool for_each_part(PathPoint at, const Vec3& d, double length, const Use& use) const {
+    const double shorter = (1 - 1e-9) * length;  // the end may be on a surface itself
+    const Vec3 start = at.x;
+    double from = 0;
+    for (int leg = 0; leg < most_legs; ++leg) {
+      const auto [way, end] = way_to_surface(at, d);
+      if (from + way >= shorter) {
+        use(at.part, from, length);
+        return true;
+      }
+      if (end == LegEnd::boundary) return false;
+      use(at.part, from, from + way);
+      from += way;
+      at = {start + from * d, at.part == Part::body ? Part::stage : Part::body};
+    }
+    return false;
+  }
+
   struct Way {
     double length;
     LegEnd end;

@@ -116,7 +116,7 @@ std::optional<double> weight_of(const Transport& transport, const WholePath& pat
                          allowed.most_sensor());
   }
   const Flight& edge = path.edges[s - 1].forth;
-  if (edge.crosses_body || (s == 1 && path.light.is_beam)) return {};
+  if (!edge.is_joinable || (s == 1 && path.light.is_beam)) return {};
   const PathVertex y = light_subpath(transport, path, s);
   const EndPosition chosen = path.chosen_sensor(transport);
   const PathVertex z = s == all - 1 ? end_vertex(transport.strategies, chosen)
@@ -144,7 +144,7 @@ double sum_of_weights(const Transport& transport, const WholePath& path, int& st
     ++strategies;
     if (is_short && count >= 1) break;
     // a surface that is hit is joined to as well, but not where a body is in the way
-    if (is_short && path.edges[s == 0 ? 0 : all - 2].forth.crosses_body) break;
+    if (is_short && !path.edges[s == 0 ? 0 : all - 2].forth.is_joinable) break;
   }
   return sum;
 }
@@ -251,14 +251,53 @@ std::optional<WholePath> walked_path(const Transport& transport, const CurvedSpa
     direction = transport.medium(flight.point.part).phase.sample(flight.direction, random);
   }
   ConnectionStatistics statistics;
-  if (path.points.back().part != path.sensor.point.part) return std::nullopt;
+  if (!space.can_join(path.points.back(), path.sensor.point)) return std::nullopt;
   const auto last = space.join(path.points.back(), path.sensor.point, random, statistics);
   if (!last) return std::nullopt;
   add(as_flight(*last, path.sensor.point));
   return path;
 }
 
+/// A path's edges that pass a body's surface and could be joined.
+int joined_through(const WholePath& path) {
+  int count = 0;
+  for (std::size_t i = 0; i < path.edges.size(); ++i)
+    count += path.points[i].part != path.points[i + 1].part && path.edges[i].forth.is_joinable;
+  return count;
+}
+
 }  // namespace
+
+TEST_CASE("weights sum to 1 on paths through a body that refracts nothing") {
+  Stage stage = foggy_ball();
+  stage.body = Body{Sphere{Vec3(0.1, 0, 0), 0.8}, {2.5, 0, {}}};
+  const auto space = make_curved_space(Homogeneous{}, stage, {0.02, 20});
+  RandomStream random(5, 91, 0);
+  int paths = 0, through = 0;
+  const Light point = PointLight{Vec3(0.3, -0.2, 1.1)};
+  const Sensor outside = Camera{Vec3(0, 0.1, -1), Vec3::UnitZ(), Vec3::UnitY(), 2.5, {3, 2}};
+  for (const Light& light : {point, lights[1]})
+    for (const Sensor& sensor : {outside, sensors[1]})
+      for (const Strategies& mask : {Strategies{}, soon_left, path_tracing, light_tracing}) {
+        const Transport transport = transport_of(*space, stage, light, sensor, mask);
+        for (int trial = 0; trial < 300; ++trial) {
+          const auto path = walked_path(transport, *space, trial % 7, random);
+          if (!path) continue;
+          if (!(transport.sensors[0]
+                    .towards(path->sensor, path->edges.back().back.start_direction)
+                    .strength > 0))
+            continue;
+          int strategies = 0;
+          const double sum = sum_of_weights(transport, *path, strategies);
+          REQUIRE(strategies > 0);
+          CHECK(sum == doctest::Approx(1).epsilon(1e-6));
+          ++paths;
+          through += joined_through(*path);
+        }
+      }
+  CHECK(paths > 300);
+  CHECK(through > 200);
+}
 
 TEST_CASE("weights sum to 1 on paths that cross a body, and of beams") {
   Stage stage = foggy_ball();
