@@ -6,6 +6,7 @@
 #include "apps/estimation.h"
 #include "apps/subcommands.h"
 #include "core/error.h"
+#include "core/numbers/blas.h"
 #include "core/numbers/memory.h"
 #include "core/run/interrupt.h"
 #include "core/session/session.h"
@@ -103,8 +104,9 @@ void check_memory(const Scene& scene, const mc::FieldDemand& demand) {
                      std::to_string(scene.request.channels.size()) + " channels need " +
                          std::to_string(bytes / 1e9) + " GB, this machine has " +
                          std::to_string(memory / 1e9));
-  if (demand.method == mc::FieldMethod::covariance)
-    full_request(scene.request.lights, scene.request.views);  // throws where that does not fit
+  if (demand.method != mc::FieldMethod::covariance) return;
+  full_request(scene.request.lights, scene.request.views);  // throws where that does not fit
+  blas_single_thread();                                     // as this does
 }
 
 /// How the statistics of all fields compare with those of a circular Gaussian field.

@@ -23,8 +23,10 @@ const DatasetTable validate_table{
              {"deviation", Data::real, "entry", "1",
               "|mc - reference| in combined standard errors, per entry in the order of the "
               "request"}},
-    .attributes = {{"", "bias_allowance", "float64",
-                    "relative size of what Monte Carlo neglects and the reference has"}}};
+    .attributes = {
+        {"", "bias_allowance", "float64",
+         "relative size of a difference without chance: what Monte Carlo neglects of exact "
+         "solutions, or the tolerance of transport"}}};
 
 namespace {
 
