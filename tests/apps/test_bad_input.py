@@ -34,8 +34,8 @@ BOX_CASES = [
     ("covariance", BOX, {"placement": "hard_disk"}, ["placement = hard_disk", "poisson"]),
     ("covariance", BOX, {"placement": "grid"}, ["placement = grid", "poisson hard_disk"]),
     ("covariance", BOX, {"min_gap": 0.1}, ["min_gap = 0.1", "disks"]),
-    ("covariance", BOX, {"radius": 0.1}, ["radius = 0.1", "soft, hard, tm and te"]),
-    ("covariance", BOX, {"index": "1.5"}, ["index = 1.5", "tm and te"]),
+    ("covariance", BOX, {"radius": 0.1}, ["radius = 0.1", "soft, hard, tm, te and mie"]),
+    ("covariance", BOX, {"index": "1.5"}, ["index = 1.5", "tm, te and mie"]),
     ("covariance", BOX, {"g": 0.5}, ["g = 0.5", "hg"]),
     ("covariance", BOX, {"albedo": 0}, ["albedo = 0", "(0, 1]"]),
     ("covariance", BOX, {"albedo": 1.5}, ["albedo = 1.5", "from 0 to 1"]),
@@ -103,7 +103,7 @@ BOX_CASES = [
 ]
 DISK_CASES = [
     ("covariance", CYLINDERS, {"radius": None}, ["radius", "not given", POSITIVE]),
-    ("covariance", CYLINDERS, {"scatterer": "soft", "index": "1.5"}, ["index = 1.5", "tm and te"]),
+    ("covariance", CYLINDERS, {"scatterer": "soft", "index": "1.5"}, ["index = 1.5", "tm, te and mie"]),
     ("covariance", CYLINDERS, {"index": "0"}, ["index = 0", "must not be 0"]),
     ("covariance", CYLINDERS, {"index": "1.5-0.1i"}, ["index = 1.5-0.1i", "amplify"]),
     ("covariance", CYLINDERS, {"index": "-1.5+0.1i"}, ["index = -1.5+0.1i", "negative"]),
@@ -145,7 +145,7 @@ BULK_CASES = [
      ["hg", "mean_free_path or optical_depth"]),
     ("covariance", SLAB, {"optical_depth": None, "density": 1},
      ["hg", "mean_free_path or optical_depth"]),
-    ("covariance", SLAB, {"radius": 0.1}, ["radius = 0.1", "soft, hard, tm and te"]),
+    ("covariance", SLAB, {"radius": 0.1}, ["radius = 0.1", "soft, hard, tm, te and mie"]),
     ("covariance", SLAB, {"placement": "hard_disk"}, ["placement = hard_disk", "poisson"]),
     ("covariance", SLAB, {"light_angles": [2]}, ["light_angles = 2", "pi/2"]),
     ("covariance", SLAB, {"covariance": "full", "view_angles": [0, 0.1]},
