@@ -317,9 +317,9 @@ class Refused(RenderTest):
         self.refuse("size_parameter is not given", phase="mie", sphere_index="1.33")
         self.refuse("size_parameter = 1e+05", "from 1e-06 to 10000", phase="mie", sphere_index="1.33",
                     size_parameter=1e5)
-        for index, why in (("1-1i", "amplify"), ("1", "does not scatter"), ("x", "sphere_index")):
+        for index, why in (("1-1i", "amplify"), ("1", "does not scatter"), ('"x"', "a number such as")):
             self.refuse(f"sphere_index = {index}", why, phase="mie", size_parameter=2,
-                        sphere_index=index)
+                        sphere_index=index.strip('"'))
         self.refuse("g = 1", "in (-1, 1)", phase="henyey_greenstein", g=1)
         self.refuse("g", "is a key of", g=0.5)
         self.refuse("phase", "is a key of", mu_s=None, mu_a=None, phase="rayleigh")
