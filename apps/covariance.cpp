@@ -49,7 +49,7 @@ int covariance(const Arguments& arguments) {
   add_mc_keys(keys, methods);
   add_wave_keys(keys, methods);
   add_transport_keys(keys, methods);
-  add_dimension_key(keys, methods);
+  add_dimension_key(keys, spec);
   add_run_keys(keys, run);
   if (!command.parse(arguments)) return ExitStatus::done;
 
@@ -59,9 +59,9 @@ int covariance(const Arguments& arguments) {
   const StopRule stop = stop_of(method, keys, run, methods);
   const auto reversed = method == "wave" ? mc::ReversedPaths::no : reversed_paths(keys, methods);
   if (method == "wave") keys.read(methods.wave_tolerance);
-  if (method != "wave") keys.read(methods.dimension);
+  if (method != "wave") keys.read(spec.dimension);
   if (method != "wave") read_extras(keys, extras, method == "transport");
-  const Scene scene = with_dimension(methods, make_scene(keys, spec), spec);
+  const Scene scene = with_dimension(make_scene(keys, spec), spec);
   const auto [estimation, write_extras] =
       method == "mc" ? extended_estimation(scene, reversed, extras, session.seed())
       : method == "wave"

@@ -57,14 +57,6 @@ void choose_method(const Keys& keys, std::string& method, const SceneSpec& spec,
   method = spec.domain == "slab" && !to_last ? "transport" : "mc";
 }
 
-void add_dimension_key(Keys& keys, MethodSettings& settings) {
-  keys.group("Methods");
-  keys.add("dimension", settings.dimension,
-           "Of space: 2, or 3 for scalar waves, lights and views in the plane of incidence")
-      .from(2, 3)
-      .only_of("slabs, by transport or Monte Carlo");
-}
-
 void disregard_unused(const Keys& keys, const SceneSpec& spec,
                       const std::vector<std::string>& methods) {
   const auto waves = std::ranges::count(methods, "wave");
@@ -120,8 +112,8 @@ Scene rounded_scene(const Keys& keys, const SceneSpec& spec) {
   return make_scene(rounded);
 }
 
-Scene with_dimension(const MethodSettings& settings, const Scene& scene, const SceneSpec& spec) {
-  return settings.dimension == 3 ? mc::in_space(scene, spec) : scene;
+Scene with_dimension(const Scene& scene, const SceneSpec& spec) {
+  return spec.dimension == 3 ? mc::in_space(scene, spec) : scene;
 }
 
 Estimation mc_estimation(const Scene& scene, mc::ReversedPaths reversed, std::uint64_t seed) {

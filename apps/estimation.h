@@ -19,13 +19,11 @@ struct MethodSettings {
   double wave_tolerance = 1e-6;
   std::optional<std::int64_t> wave_samples;
   double tolerance = 1e-6;
-  std::int64_t dimension = 2;
 };
 
 void add_mc_keys(Keys& keys, MethodSettings& settings);
 void add_wave_keys(Keys& keys, MethodSettings& settings);
 void add_transport_keys(Keys& keys, MethodSettings& settings);
-void add_dimension_key(Keys& keys, MethodSettings& settings);
 
 mc::ReversedPaths reversed_paths(const Keys& keys, const MethodSettings& settings);
 
@@ -69,7 +67,7 @@ Scene rounded_scene(const Keys& keys, const SceneSpec& spec);
 
 /// The scene of the plane, or with `dimension` = 3 the one of space that has the same keys. Throws
 /// InputError for what is no slab.
-Scene with_dimension(const MethodSettings& settings, const Scene& scene, const SceneSpec& spec);
+Scene with_dimension(const Scene& scene, const SceneSpec& spec);
 
 Estimation mc_estimation(const Scene& scene, mc::ReversedPaths reversed, std::uint64_t seed);
 /// Of a slab, of the plane or in space.

@@ -69,7 +69,7 @@ SweepPlan::SweepPlan()
   add_mc_keys(keys, methods);
   add_wave_keys(keys, methods);
   add_transport_keys(keys, methods);
-  add_dimension_key(keys, methods);
+  add_dimension_key(keys, base);
   add_run_keys(keys, settings);
   keys.add("shard", share_,
            "i/n: work on every nth point only, from number i = 0 .. n - 1 on; then merge")
@@ -109,7 +109,7 @@ void SweepPlan::check() {
   if (has("wave"))
     keys.read(methods.wave_tolerance);
   else
-    keys.read(methods.dimension);
+    keys.read(base.dimension);
   points = sweep_points(keys, lists_);
   check_points();
   disregard_unused(keys, base, method_words);
@@ -157,7 +157,7 @@ void SweepPlan::with_point(std::size_t run,
 Scene SweepPlan::scene_of(const Keyed<SceneSpec>& point) const {
   const Scene scene = method_words.size() > 1 ? rounded_scene(point.keys, point.values)
                                               : make_scene(point.keys, point.values);
-  return with_dimension(methods, scene, point.values);
+  return with_dimension(scene, point.values);
 }
 
 Scene SweepPlan::scene(std::size_t run) const {

@@ -169,7 +169,7 @@ int validate(const Arguments& arguments) {
   add_mc_keys(keys, methods);
   add_wave_keys(keys, methods);
   add_transport_keys(keys, methods);
-  add_dimension_key(keys, methods);
+  add_dimension_key(keys, spec);
   add_run_keys(keys, run);
   if (!command.parse(arguments)) return ExitStatus::done;
 
@@ -178,8 +178,8 @@ int validate(const Arguments& arguments) {
   const auto reversed = reversed_paths(keys, methods);
   const auto refer = spec.domain == "slab" ? by_transport(keys, methods, spec, run, reversed)
                                            : by_waves(keys, methods, run, session.seed());
-  if (spec.domain == "slab") keys.read(methods.dimension);
-  const Scene scene = with_dimension(methods, rounded_scene(keys, spec), spec);
+  if (spec.domain == "slab") keys.read(spec.dimension);
+  const Scene scene = with_dimension(rounded_scene(keys, spec), spec);
   if (scene.medium.mu_s == 0)
     throw InputError("scatterer", spec.scatterer,
                      "this scene does not scatter, there is nothing to compare");

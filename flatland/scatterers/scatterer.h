@@ -10,12 +10,12 @@
 namespace flatspeckle {
 
 /// One scatterer. hg and the other phase functions of the bulk (bulk_phases.h) have no T-matrix,
-/// and the wave solver refuses them.
+/// and the wave solver refuses them; so it does spheres (mie), which are of space alone.
 struct Scatterer {
-  enum class Kind { point, soft, hard, tm, te, hg, other_bulk };
+  enum class Kind { point, soft, hard, tm, te, hg, mie, other_bulk };
   Kind kind = Kind::point;
-  double radius = 0;                          ///< of soft, hard, tm, te
-  Complex index = 1.5;                        ///< of tm, te, relative to the surroundings
+  double radius = 0;                          ///< of soft, hard, tm, te, mie
+  Complex index = 1.5;                        ///< of tm, te, mie, relative to the surroundings
   double g = 0;                               ///< of hg
   double albedo = 1;                          ///< of the bulk and of resonant points (C8)
   double phase_shift = std::numbers::pi / 2;  ///< of lossless points; pi/2 is resonance
@@ -24,7 +24,7 @@ struct Scatterer {
   bool is_disk() const { return kind != Kind::point && !is_bulk(); }
   /// A cylinder that light enters.
   bool is_penetrable() const { return kind == Kind::tm || kind == Kind::te; }
-  bool is_bulk() const { return kind == Kind::hg || kind == Kind::other_bulk; }
+  bool is_bulk() const { return kind == Kind::hg || kind == Kind::mie || kind == Kind::other_bulk; }
 
   double disk_radius() const { return is_disk() ? radius : 0; }
 

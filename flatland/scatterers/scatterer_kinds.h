@@ -28,7 +28,7 @@ struct ScattererKind {
   /// T_n for n = 0 .. order at k radius = x; none of the bulk.
   std::vector<ScaledComplex> (*t_matrix)(const Scatterer& scatterer, double x, int order);
 };
-extern const ScattererKind point_kind, soft_kind, hard_kind, tm_kind, te_kind, hg_kind;
+extern const ScattererKind point_kind, soft_kind, hard_kind, tm_kind, te_kind, hg_kind, mie_kind;
 
 // What several kinds read.
 void read_radius(const Keys& keys, const ScattererValues& values, Scatterer& made);

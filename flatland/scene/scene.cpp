@@ -143,6 +143,8 @@ Scene without_bulk(const Keys& keys, const SceneSpec& spec) {
   Scene scene;
   scene.scatterer = make_scatterer(keys, spec);
   if (scene.scatterer.is_disk()) keys.required(spec.radius);
+  if (scene.scatterer.kind == Scatterer::Kind::mie && spec.dimension != 3)
+    throw InputError("scatterer", spec.scatterer, "spheres are of slabs in space: dimension = 3");
   scene.wavelength = spec.wavelength;
   scene.k = 2 * std::numbers::pi / spec.wavelength;
   scene.domain = make_domain(keys, spec);

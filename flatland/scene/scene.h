@@ -17,6 +17,7 @@ namespace flatspeckle {
 /// Scene keys as the user gives them; names and meanings as in the README. Lengths in any one unit,
 /// angles in radians.
 struct SceneSpec : ScattererValues {
+  std::int64_t dimension = 2;
   std::string domain = "box";
   std::optional<double> width, depth;
   std::optional<std::int64_t> count;
@@ -50,6 +51,8 @@ void add_scatterer_keys(Keys& keys, SceneSpec& spec);
 /// g, albedo and optical_depth.
 void add_bulk_keys(Keys& keys, SceneSpec& spec);
 void add_medium_keys(Keys& keys, SceneSpec& spec);
+/// Of methods that can be in space; not among those of add_keys.
+void add_dimension_key(Keys& keys, SceneSpec& spec);
 /// The structure factor that Monte Carlo takes positions to have.
 void add_structure_key(Keys& keys, SceneSpec& spec);
 void add_view_keys(Keys& keys, SceneSpec& spec);

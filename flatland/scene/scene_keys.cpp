@@ -9,17 +9,16 @@ void add_scatterer_keys(Keys& keys, SceneSpec& spec) {
       .positive();
   keys.add("scatterer", spec.scatterer,
            "Points; soft (field 0 at the rim), hard (normal derivative 0), tm and te cylinders (E "
-           "or "
-           "H along the axis); or a phase function of the bulk")
+           "or H along the axis); a phase function of the bulk; or in space mie, spheres")
       .one_of(scatterer_words());
-  keys.add("radius", spec.radius, "Radius of the cylinders")
+  keys.add("radius", spec.radius, "Radius of the cylinders or spheres")
       .positive()
       .unit("length")
-      .only_of("soft, hard, tm and te")
+      .only_of("soft, hard, tm, te and mie")
       .swept();
   keys.add("index", spec.index,
            "Relative index, as \"1.5+0.1i\" (which absorbs); neither part negative (default 1.5)")
-      .only_of("tm and te")
+      .only_of("tm, te and mie")
       .swept();
   keys.add("phase_shift", spec.phase_shift,
            "Scattering phase shift of a lossless point (default pi/2, resonance)")
@@ -62,6 +61,14 @@ void add_medium_keys(Keys& keys, SceneSpec& spec) {
       .not_negative()
       .unit("length")
       .only_of("disks");
+}
+
+void add_dimension_key(Keys& keys, SceneSpec& spec) {
+  keys.group("Methods");
+  keys.add("dimension", spec.dimension,
+           "Of space: 2, or 3 for scalar waves, lights and views in the plane of incidence")
+      .from(2, 3)
+      .only_of("slabs, by transport or Monte Carlo");
 }
 
 void add_structure_key(Keys& keys, SceneSpec& spec) {

@@ -76,6 +76,7 @@ MieSphere::MieSphere(double size, Complex index)
 ///   a_n = (((n + 1)/x (m - 1/m) + r_n) psi_n - m psi_{n+1}) / (the same of xi),
 ///   b_n = (m r_n psi_n - psi_{n+1}) / (the same of xi).
 std::vector<MieSphere::Coefficients> MieSphere::coefficients() const {
+  if (index_ == 1.0) return {};
   const int last = last_order(size_);
   const auto inside = psi_ratios(index_ * size_, last);
   const auto regular = psi(size_, last + 1);

@@ -4,6 +4,7 @@
 
 #include "core/error.h"
 #include "grin/media/hg_phase.h"
+#include "grin/media/mie_phase.h"
 #include "grin/media/rayleigh_phase.h"
 #include "grin/media/table_phase.h"
 #include "grin/media/two_term_phase.h"
@@ -22,6 +23,22 @@ void set_phase(BulkMedium& medium, const Phase& phase) {
   medium.g = phase.mean_cosine();
 }
 
+/// Albedo and phase function of spheres.
+void set_spheres(BulkMedium& medium, const Scatterer& scatterer, double k) {
+  const double size = k * scatterer.radius;
+  constexpr double largest = 500;  // SpaceLaw sees all moments of its phase function
+  if (!(size >= grin::MieSphere::smallest && size <= largest))
+    throw InputError("radius", scatterer.radius,
+                     "2 pi radius / wavelength of spheres must be from 1e-6 to 500");
+  const grin::MieSphere sphere(size, scatterer.index);
+  if (!(sphere.scattering() > 0))
+    throw InputError("index", scatterer.index.real(), "spheres of this index do not scatter");
+  const bool lossless = scatterer.index.imag() == 0;
+  medium.albedo = lossless ? 1 : sphere.scattering() / sphere.extinction();
+  medium.mu_s = medium.albedo * medium.mu_t;
+  set_phase(medium, grin::MiePhase(sphere));
+}
+
 void set_phase(BulkMedium& medium, const Scatterer& scatterer, const ScattererValues& values) {
   if (scatterer.kind == Scatterer::Kind::hg) return set_phase(medium, grin::HgPhase{scatterer.g});
   if (values.scatterer == PhaseTable::word) {
@@ -32,7 +49,7 @@ void set_phase(BulkMedium& medium, const Scatterer& scatterer, const ScattererVa
   if (values.scatterer != TwoTermHg::word)
     throw InputError(
         "scatterer", values.scatterer,
-        "with dimension = 3: hg (g = 0 is isotropic), two_term_hg, phase_table or rayleigh");
+        "with dimension = 3: hg (g = 0 is isotropic), two_term_hg, phase_table, rayleigh or mie");
   const auto& terms = std::get<TwoTermHg>(values.bulk);
   set_phase(medium, grin::TwoTermPhase{{*terms.g}, {*terms.g_back}, *terms.forward_share});
 }
@@ -44,7 +61,10 @@ Scene in_space(Scene slab, const ScattererValues& values) {
     throw InputError("dimension", 3, "needs domain = slab");
   BulkMedium& medium = slab.medium;
   medium.dimension = 3;
-  set_phase(medium, slab.scatterer, values);
+  if (slab.scatterer.kind == Scatterer::Kind::mie)
+    set_spheres(medium, slab.scatterer, slab.k);
+  else
+    set_phase(medium, slab.scatterer, values);
   return slab;
 }
 

@@ -313,7 +313,13 @@ class Refused(RenderTest):
         self.refuse("body_mu_s = -1", body_mu_s=-1, body_sphere=[0, 0, 2, 0.5])
         self.refuse("body_g = 2", body_mu_s=1, body_phase="henyey_greenstein", body_g=2,
                     body_sphere=[0, 0, 2, 0.5])
-        self.refuse("phase = mie", phase="mie")
+        self.refuse("phase = schlick", phase="schlick")
+        self.refuse("size_parameter is not given", phase="mie", sphere_index="1.33")
+        self.refuse("size_parameter = 1e+05", "from 1e-06 to 10000", phase="mie", sphere_index="1.33",
+                    size_parameter=1e5)
+        for index, why in (("1-1i", "amplify"), ("1", "does not scatter"), ('"x"', "a number such as")):
+            self.refuse(f"sphere_index = {index}", why, phase="mie", size_parameter=2,
+                        sphere_index=index.strip('"'))
         self.refuse("g = 1", "in (-1, 1)", phase="henyey_greenstein", g=1)
         self.refuse("g", "is a key of", g=0.5)
         self.refuse("phase", "is a key of", mu_s=None, mu_a=None, phase="rayleigh")

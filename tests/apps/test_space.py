@@ -101,6 +101,28 @@ class Space(ProgramTest):
             self.assertAlmostEqual(tilted[0][t], alone, delta=1e-9)
             self.assertTrue(tilted[0][t] > tilted[1][t] > tilted[2][t])
 
+    def test_spheres(self):
+        spheres = SPACE | {"scatterer": "mie", "radius": 0.5, "index": "1.33+0.01i", "tolerance": 1e-4}
+        self.call("covariance", **spheres, out="x.h5")
+        with h5py.File(self.folder / "x.h5") as file:
+            self.assertEqual(file.attrs["dimension"], 3)
+            albedo, g, found = file.attrs["albedo"], file.attrs["g"], file["intensity"][0, 0]
+        self.assertTrue(0.8 < albedo < 1 and 0.7 < g < 1)
+        # with the same g and albedo another phase function is near but not the same
+        self.call("covariance", **(SPACE | {"scatterer": "hg", "g": g, "albedo": albedo}), out="x.h5")
+        with h5py.File(self.folder / "x.h5") as file:
+            self.assertAlmostEqual(file["intensity"][0, 0] / found, 1, delta=0.3)
+            self.assertNotAlmostEqual(file["intensity"][0, 0] / found, 1, delta=1e-3)
+
+    def test_small_spheres_are_rayleigh_s(self):
+        found = []
+        for scatterer in ({"scatterer": "mie", "radius": 1e-4, "index": 1.5}, {"scatterer": "rayleigh"}):
+            self.call("covariance", **(SPACE | scatterer), view_angles=[0, 0.7], out="x.h5")
+            with h5py.File(self.folder / "x.h5") as file:
+                found.append(file["intensity"][:].ravel())
+        for one, other in zip(*found):
+            self.assertAlmostEqual(one / other, 1, delta=1e-5)
+
     def test_a_table_is_per_solid_angle(self):
         (self.folder / "p.csv").write_text("angle,value\n0,1\n3.141592653589793,1\n")
         found, _, mean_cosine = self.correlations(scatterer="phase_table", phase_table="p.csv")

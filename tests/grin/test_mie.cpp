@@ -143,6 +143,12 @@ TEST_CASE("small spheres are Rayleigh's, and faint ones those of Rayleigh and Ga
   }
 }
 
+TEST_CASE("no sphere") {
+  const MieSphere sphere(3, 1);
+  CHECK(sphere.extinction() == 0);
+  CHECK(sphere.scattering() == 0);
+}
+
 TEST_CASE("turns are drawn from the phase function of spheres") {
   for (const double x : {0.01, 3.0, 40.0}) {
     CAPTURE(x);

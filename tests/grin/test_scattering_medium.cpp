@@ -66,6 +66,8 @@ const SpacePhaseFunction phases[] = {
     {HgPhase{0.99}},
     {TwoTermPhase{{0.9}, {-0.4}, 0.8}},
     {TwoTermPhase{{0.7}, {0.1}, 0}},
+    {MiePhase(MieSphere(0.1, 1.5))},
+    {MiePhase(MieSphere(6, {1.33, 0.01}))},
     {table_phase("angle,value\n0,1\n3.14159,0\n")},
     {table_phase(coarse)},
     {table_phase(table_text(0.9, 300))},

@@ -1,0 +1,16 @@
+#include "flatland/scatterers/scatterer_kinds.h"
+
+namespace flatspeckle {
+
+namespace {
+
+void read_mie(const Keys& keys, const ScattererValues& values, Scatterer& made) {
+  keys.required(values.radius);
+  read_radius_and_index(keys, values, made);
+}
+
+}  // namespace
+
+const ScattererKind mie_kind{"mie", Scatterer::Kind::mie, read_mie, nullptr};
+
+}  // namespace flatspeckle
