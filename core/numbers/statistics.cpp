@@ -114,6 +114,7 @@ Estimate jackknife(const GroupedSums& sums, const Estimator& theta) {
   const std::vector<Complex> total = sums.total();
   Estimate estimate{theta(samples, total), {}};
   const std::size_t size = estimate.value.size(), groups = sums.groups();
+  estimate.rare.resize(size);
   if (groups < 2) {
     estimate.error.assign(size, std::numeric_limits<double>::infinity());
     return estimate;
@@ -141,7 +142,6 @@ Estimate jackknife(const GroupedSums& sums, const Estimator& theta) {
     }
   }
   estimate.error.resize(size);
-  estimate.rare.resize(size);
   for (std::size_t i = 0; i < size; ++i) {
     const Complex mean = sum_mean[i];  // jackknife estimate minus theta
     const double spread =

@@ -102,6 +102,7 @@ double RunMerger::cpu_s_left() const {
 
 void RunMerger::settle() {
   state_.wall_s = clock_.seconds();
+  if (state_.sums.batches() == 0) return;
   if (state_.trace.samples.empty() || state_.trace.samples.back() != samples_) record_error();
 }
 

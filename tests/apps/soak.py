@@ -112,9 +112,11 @@ def soak(seconds, disk, elsewhere):
     undisturbed = start(elsewhere, samples=soaked.samples)
     try:
         disturb(soaked, Neighbour(disk))
-        undisturbed.communicate(timeout=10 * seconds)
+        error = undisturbed.communicate(timeout=10 * seconds)[1]
     finally:
         undisturbed.kill()
+    if undisturbed.returncode != 0:
+        sys.exit(f"the undisturbed run ended with {undisturbed.returncode}: {error}")
     left = {path.name for path in disk.iterdir() if not
             (path.name.startswith(".x.h5.tmp-") and -signal.SIGKILL in soaked.statuses)}
     if left != {"x.h5"}:

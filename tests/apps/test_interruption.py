@@ -72,6 +72,12 @@ class Interruption(ProgramTest):
         for key in ("samples", "identity", "plan", "seed"):
             self.assertEqual(resumed[key], whole[key])
 
+    def test_before_the_second_batch(self):
+        lights = [1e-4 * i for i in range(6000)]
+        status = self.interrupt(signal.SIGTERM, 0.05, "flux", **BOX, light_angles=lights,
+                                threads=1, out="run.h5", samples=1_000_000)
+        self.assertIn((status, list(self.listing())), [(130, []), (75, ["run.h5"])])
+
     def test_an_older_result_is_kept(self):
         self.call("covariance", **SHORT, out="run.h5")
         older = (self.folder / "run.h5").read_bytes()

@@ -58,7 +58,7 @@ TEST_CASE("errors that a few batches carry are marked, those of rounding are not
 }
 
 TEST_CASE("few batches are not called rare for their number") {
-  for (const int batches : {2, 3, 5, 10, 20}) {
+  for (const int batches : {0, 1, 2, 3, 5, 10, 20}) {
     GroupedSums sums(1);
     RandomStream random(1, 1, 0);
     for (int i = 0; i < batches; ++i) {
