@@ -11,10 +11,9 @@ namespace flatspeckle {
 
 namespace {
 
-std::size_t group_count(std::size_t size) {
-  constexpr std::size_t most_groups = 256, fewest_groups = 16, most_bytes = std::size_t{1} << 28;
-  return std::clamp(most_bytes / (sizeof(Complex) * std::max<std::size_t>(size, 1)), fewest_groups,
-                    most_groups);
+std::size_t most_groups(std::size_t size) {
+  constexpr std::size_t most = 256, fewest = 16, most_bytes = std::size_t{1} << 28;
+  return std::clamp(most_bytes / (sizeof(Complex) * std::max<std::size_t>(size, 1)), fewest, most);
 }
 
 constexpr double rounding = 1e-13;  ///< relative: deviations below it say nothing
@@ -34,20 +33,23 @@ double lift(double size) {
 
 }  // namespace
 
-GroupedSums::GroupedSums(std::size_t size)
-    : size_(size), samples_(group_count(size)), sums_(samples_.size() * size) {}
+GroupedSums::GroupedSums(std::size_t size) : size_(size), most_groups_(most_groups(size)) {
+  sums_.reserve(most_groups_ * size);
+}
 
 void GroupedSums::add(double samples, std::span<const Complex> sums) {
   assert(sums.size() == size_);
-  const std::size_t group = batches_ % samples_.size();
-  samples_[group] += samples;
-  std::transform(sums.begin(), sums.end(), sums_.begin() + group * size_,
-                 sums_.begin() + group * size_, [](Complex x, Complex sum) { return sum + x; });
+  if (batches_ < most_groups_) {
+    samples_.push_back(samples);
+    sums_.insert(sums_.end(), sums.begin(), sums.end());
+  } else {
+    const std::size_t group = batches_ % most_groups_;
+    samples_[group] += samples;
+    const auto row = sums_.begin() + static_cast<std::ptrdiff_t>(group * size_);
+    std::transform(sums.begin(), sums.end(), row, row,
+                   [](Complex x, Complex sum) { return sum + x; });
+  }
   ++batches_;
-}
-
-std::size_t GroupedSums::groups() const {
-  return std::min<std::uint64_t>(batches_, samples_.size());
 }
 
 std::span<const Complex> GroupedSums::group_sums(std::size_t group) const {
@@ -70,16 +72,16 @@ std::vector<Complex> GroupedSums::total() const {
 }
 
 void GroupedSums::restore(State state) {
-  if (state.samples.size() != samples_.size() || state.sums.size() != sums_.size())
-    throw InputError("the checkpoint's sums have another shape than this scene's");
   constexpr std::uint64_t most_batches = std::uint64_t{1} << 53;  // numbers that a double counts
-  const std::size_t filled = std::min<std::uint64_t>(state.batches, state.samples.size());
-  for (std::size_t group = 0; group < state.samples.size(); ++group)
-    if (state.batches > most_batches || (state.samples[group] > 0) != (group < filled))
-      throw InputError("the checkpoint's samples are not those of its batches");
+  const std::size_t groups = std::min<std::uint64_t>(state.batches, most_groups_);
+  if (state.samples.size() != groups || state.sums.size() != groups * size_)
+    throw InputError("the checkpoint's sums have another shape than this scene's");
+  if (state.batches > most_batches ||
+      !std::ranges::all_of(state.samples, [](double samples) { return samples > 0; }))
+    throw InputError("the checkpoint's samples are not those of its batches");
   batches_ = state.batches;
   samples_ = std::move(state.samples);
-  sums_ = std::move(state.sums);
+  sums_.assign(state.sums.begin(), state.sums.end());
 }
 
 std::vector<Complex> sample_mean(double samples, std::span<const Complex> sums) {

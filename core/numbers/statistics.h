@@ -24,13 +24,13 @@ class GroupedSums {
   std::size_t size() const { return size_; }
   std::uint64_t batches() const { return batches_; }
   /// Groups that hold at least one batch.
-  std::size_t groups() const;
+  std::size_t groups() const { return samples_.size(); }
   double group_samples(std::size_t group) const { return samples_[group]; }
   std::span<const Complex> group_sums(std::size_t group) const;
   double total_samples() const;
   std::vector<Complex> total() const;
 
-  /// The whole state, for checkpoints: sums are [group][entry] over all groups, filled or not.
+  /// The whole state, for checkpoints: sums are [group][entry] over groups().
   struct State {
     std::uint64_t batches = 0;
     std::vector<double> samples;
@@ -42,7 +42,7 @@ class GroupedSums {
   void restore(State state);
 
  private:
-  std::size_t size_ = 0;
+  std::size_t size_ = 0, most_groups_ = 1;
   std::uint64_t batches_ = 0;
   std::vector<double> samples_;
   std::vector<Complex> sums_;

@@ -132,10 +132,18 @@ TEST_CASE("state goes out and in bit for bit; another shape is refused") {
   CHECK(other.total() == sums.total());
   CHECK(other.total_samples() == 10);
   GroupedSums narrow(1);
-  CHECK_THROWS_AS(narrow.restore(GroupedSums(3).state()), InputError);
+  CHECK_THROWS_AS(narrow.restore(sums.state()), InputError);
 }
 
-TEST_CASE("long rows get fewer groups, so that the sums fit in memory") {
-  CHECK(GroupedSums(10).state().samples.size() == 256);
-  CHECK(GroupedSums(1 << 20).state().samples.size() == 16);
+TEST_CASE("groups are held as they come; long rows get fewer, so that the sums fit in memory") {
+  GroupedSums narrow(1), wide(1 << 20);
+  const std::vector<Complex> row(wide.size(), 1.0);
+  for (std::size_t batch = 1; batch <= 300; ++batch) {
+    narrow.add(2, std::span(row).first(1));
+    CHECK(narrow.groups() == std::min<std::size_t>(batch, 256));
+  }
+  CHECK(narrow.total()[0] == 300.0);
+  CHECK(narrow.total_samples() == 600);
+  for (int batch = 0; batch < 17; ++batch) wide.add(1, row);
+  CHECK(wide.groups() == 16);
 }
