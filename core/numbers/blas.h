@@ -4,6 +4,7 @@
 
 #include <complex>
 #include <cstddef>
+#include <vector>
 
 #include <cblas.h>
 
@@ -13,22 +14,24 @@
 
 namespace flatspeckle {
 
-/// Throws InputError where the address space is too small for OpenBLAS, which would wait for ever.
-void require_address_space_of_blas();
+/// The threads that may call BLAS at once. Throws InputError where the address space is too small
+/// for their buffers, without which OpenBLAS would wait for ever.
+std::size_t threads_of_blas();
 
-/// OpenBLAS keeps the buffer that its first call maps.
-inline void map_blas_buffer() {
-  constexpr double triangle[] = {1, 0, 0, 1};
-  double columns[4] = {};
-  cblas_dtrsm(CblasColMajor, CblasLeft, CblasLower, CblasNoTrans, CblasUnit, 2, 2, 1, triangle, 2,
-              columns, 2);
+extern "C" void* blas_memory_alloc(int);
+extern "C" void blas_memory_free(void*);
+
+/// OpenBLAS keeps the buffers that it has mapped.
+inline void map_blas_buffers(std::size_t count) {
+  std::vector<void*> buffers(count);
+  for (void*& buffer : buffers) buffer = blas_memory_alloc(0);
+  for (void* buffer : buffers) blas_memory_free(buffer);
 }
 
 /// Parallelism is ours, over realizations, boxes, tilts or columns: threads inside BLAS would only
 /// compete with it. Call before any BLAS work. Throws as above.
 inline void blas_single_thread() {
-  static const bool done =
-      (openblas_set_num_threads(1), require_address_space_of_blas(), map_blas_buffer(), true);
+  static const bool done = (openblas_set_num_threads(1), map_blas_buffers(threads_of_blas()), true);
   static_cast<void>(done);
 }
 

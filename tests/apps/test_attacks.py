@@ -138,15 +138,26 @@ class Memory(ProgramTest):
         self.assertIn("threads: ulimit -v", error)
         self.assertEqual(list(self.folder.iterdir()), [])
 
+    def test_address_space_that_two_threads_fill(self):
+        """Each has its buffer of BLAS before another can take the room."""
+        for _ in range(12):
+            done = self.limited("validate", dict(
+                width=20, depth=10, count=31, covariance="memory_effect", tilts=[0, 0.04, 0.16],
+                view_angles=[0.1, 0.5], samples=4000, wave_samples=20, threads=2), 400)
+            self.assertEqual(done.returncode, 0, done.stderr)
+
     def check_refused(self, keys, megabytes):
-        command = [PROGRAM, "covariance", *flags({**keys, "out": "x.h5"})]
-        done = subprocess.run(
-            command, cwd=self.folder, capture_output=True, text=True, timeout=60,
+        done = self.limited("covariance", keys, megabytes)
+        self.assertEqual(done.returncode, 2, done.stderr)
+        return done.stderr
+
+    def limited(self, command, keys, megabytes):
+        return subprocess.run(
+            [PROGRAM, command, *flags({**keys, "out": "x.h5"})],
+            cwd=self.folder, capture_output=True, text=True, timeout=60,
             env={**os.environ, "OMP_NUM_THREADS": "2"},
             preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS,
                                                   (megabytes << 20, megabytes << 20)))
-        self.assertEqual(done.returncode, 2, done.stderr)
-        return done.stderr
 
 
 class Streams(ProgramTest):
