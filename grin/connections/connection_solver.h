@@ -9,15 +9,15 @@ namespace flatspeckle::grin {
 /// a power of the number of trials only, so that its variance is finite for every curve.
 inline constexpr double refind_survival = 0.25;
 
-/// Independent trials until `curve` is found again, failures counted: K of C26, unbiased for one
+/// Independent trials until a curve is found again, failures counted: K of C26, unbiased for one
 /// over the curve's chance. After roulette_after trials the search goes on by Russian roulette: K
 /// is the sum over j of [not found in j trials], and each term is divided by the chance to get
-/// there. draw() makes a trial.
-template <class Draw>
-double trials_to_refind(const Draw& draw, const Connection& curve, const ConnectionOptions& options,
-                        RandomStream& random, ConnectionStatistics& statistics) {
+/// there. refinds() makes a trial and says whether it found the curve.
+template <class Refinds>
+double trials_to_refind(const Refinds& refinds, std::uint64_t roulette_after, RandomStream& random,
+                        ConnectionStatistics& statistics) {
   double expected = 0, weight = 1;
-  std::uint64_t roulette_at = options.roulette_after;
+  std::uint64_t roulette_at = roulette_after;
   std::uint64_t tried = 0;
   for (bool again = false; !again; ++tried) {
     if (tried >= roulette_at) {
@@ -29,8 +29,7 @@ double trials_to_refind(const Draw& draw, const Connection& curve, const Connect
       roulette_at *= 2;
     }
     expected += weight;
-    const auto [outcome, found] = draw();
-    again = outcome == TrialOutcome::converged && same_curve(curve, found, options.same);
+    again = refinds();
   }
   statistics.record_refind(tried);
   return expected;
@@ -42,12 +41,20 @@ template <IndexField F, Region R, class Step, class Draw>
 ConnectionEstimate connect_by(const Draw& draw, const ConnectionTrial<F, R, Step>& trial,
                               RandomStream& random, ConnectionStatistics& statistics) {
   ++statistics.pairs;
-  const auto [outcome, curve] = draw();
-  if (outcome != TrialOutcome::converged) return {outcome, std::nullopt, 0};
+  const auto first = draw();
+  if (first.outcome != TrialOutcome::converged) return {first.outcome, std::nullopt, 0};
   ++statistics.found;
-  const double multiplicity = trials_to_refind(draw, curve, trial.options(), random, statistics);
-  return {outcome, trial.options().count_caustics ? trial.with_caustics(curve, statistics) : curve,
-          multiplicity};
+  const auto refinds = [&] {
+    const auto again = draw();
+    return again.outcome == TrialOutcome::converged &&
+           same_curve(first.curve, again.curve, trial.options().same);
+  };
+  const double multiplicity =
+      trials_to_refind(refinds, trial.options().roulette_after, random, statistics);
+  return {
+      first.outcome,
+      trial.options().count_caustics ? trial.with_caustics(first.curve, statistics) : first.curve,
+      multiplicity};
 }
 
 }  // namespace connection_parts

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <numbers>
+
 #include "grin/estimators/film.h"
 #include "grin/estimators/light_vertices.h"
 #include "grin/estimators/path_join.h"
@@ -38,6 +40,9 @@ class Bidirectional {
   }
 
  private:
+  /// The root of what a search for ways through the body's surface costs more than another join.
+  static constexpr double search_cost = plan.curved ? 1 : 10;
+
   template <class Use>
   void for_each_sensor(const Use& use) {
     for (at_ = 0; at_ < promised_.size(); ++at_) use();
@@ -161,30 +166,50 @@ class Bidirectional {
     return path.value * path.weight * std::exp(-depth);
   }
 
-  /// As leaving(); but where rays are curved an end may look along the curve and not along the
-  /// straight line, so that some of its other directions counts too.
+  /// As leaving(); but where rays are curved or refracted an end may look along the curve and not
+  /// along the straight line, so that some of its other directions counts too.
   template <class End>
   EndDirection facing(const End& ends, const PathVertex& vertex, const Vec3& direction) {
     constexpr double elsewhere = 0.1;
     EndDirection way = leaving(transport_, ends, vertex, direction);
-    if constexpr (plan.curved)
+    if (plan.curved || space_.joins_through()) {
       if (vertex.end)
         way.strength = std::max(way.strength,
                                 elsewhere * ends.sample_direction(*vertex.end, random_).strength);
+      else if (space_.joins_through())
+        way.strength = std::max(way.strength, elsewhere / (4 * std::numbers::pi));
+    }
     return way;
   }
 
   void join(const PathVertex& y, const PathVertex& z, double promised) {
     promised_[at_] += promised;
-    const double chance = std::min(1.0, promised / transport_.join_levels[at_]);
-    if (!(chance > 0) || random_.uniform() >= chance) return;
+    const double level = transport_.join_levels[at_];
+    if (const double chance = chance_to_join(promised, level); chance > 0)
+      add_joined(y, z, space_.join(y.point, z.point, random_, counts_.connections), chance);
+    if constexpr (plan.body) {
+      if (!space_.joins_through()) return;
+      if (const double chance = chance_to_join(promised, search_cost * level); chance > 0)
+        add_joined(y, z, space_.join_through(y.point, z.point, random_, counts_.connections),
+                   chance);
+    }
+  }
+
+  /// 0 where the join is left out.
+  double chance_to_join(double promised, double level) {
+    const double chance = std::min(1.0, promised / level);
+    if (!(chance > 0) || random_.uniform() >= chance) return 0;
     ++counts_.joins;
-    const auto curve = space_.join(y.point, z.point, random_, counts_.connections);
+    return chance;
+  }
+
+  void add_joined(const PathVertex& y, const PathVertex& z, const std::optional<Join>& curve,
+                  double chance) {
     if (!curve) return;
     const EndDirection from_y = leaving(transport_, transport_.lights, y, curve->start_direction);
     const EndDirection from_z = leaving(transport_, sensor(), z, -curve->end_direction);
     const JoiningCurve as_weighed{curve->start_direction, curve->end_direction, curve->spreading,
-                                  curve->optical_depth};
+                                  curve->optical_depth, curve->passes};
     const JoinedPath path = joined_path(transport_.strategies, y, from_y, z, from_z, as_weighed);
     add(z.end ? path.pixel : pixel_,
         path.value * path.weight * curve->transmittance * curve->multiplicity / chance,

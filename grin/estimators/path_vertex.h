@@ -8,6 +8,10 @@
 
 namespace flatspeckle::grin {
 
+/// What weights take for the density of ways found by search, over that of other joins: sums over
+/// such ways vary more than what else makes a path, where there is something else.
+inline constexpr double found_share = 0.03;
+
 /// What a ratio of densities counts in the weights of multiple importance sampling (power
 /// heuristic, Veach 1997, 9.2.4).
 inline double heuristic(double ratio) {
@@ -72,8 +76,9 @@ struct PathVertex {
   /// Of the strategies with fewer of our vertices than made the vertex before this: sum of their
   /// densities relative to that strategy's, per density of the vertex before as made from here.
   Rivals before;
-  /// Of the strategy in which this is the first vertex from the other end: 0 if there is none, 1 if
-  /// there is; where our end alone is left, what its choice counts (EndPosition).
+  /// Of the strategy in which this is the first vertex from the other end: 0 if there is none, 1
+  /// or less (found_share) if there is; where our end alone is left, what its choice counts
+  /// (EndPosition).
   double first_of_other = 0;
 
   double choice() const { return end ? end->choice : 1; }
@@ -129,7 +134,8 @@ inline PathVertex arrived(const Strategies& strategies, const PathVertex& here,
   next.before = fewer_of_ours(here, 1 / heuristic(here.density),
                               heuristic(direction_density * here.back / here.density), others);
   const bool can_be_joined = flight.is_joinable && !(here.end && here.end->is_beam);
-  next.first_of_other = can_be_joined ? heuristic(choice) : 0;
+  const double share = flight.passages > 0 ? found_share : 1;
+  next.first_of_other = can_be_joined ? heuristic(share * choice) : 0;
   return next;
 }
 

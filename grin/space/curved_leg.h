@@ -79,6 +79,22 @@ class CurvedLeg {
     return left;
   }
 
+  /// The same of so long an arc.
+  double ratio_tracked(RayState ray, double arc_length, RandomStream& random) const {
+    const double end = ray.arc_length + arc_length;
+    double left = 1, collision = next_collision(ray.arc_length, random);
+    while (left > 0 && collision < end) {
+      const RayState start = ray;
+      Sharma::step(field_, ray, step_);
+      if (!(ray.arc_length > start.arc_length)) return 0;
+      const StepCurve curve(start, ray, step_);
+      for (; collision < std::min(ray.arc_length, end);
+           collision = next_collision(collision, random))
+        left *= medium_.lacking(curve.x(curve.theta_at(collision)));
+    }
+    return left;
+  }
+
  private:
   static constexpr int most_steps = 1 << 20;
 

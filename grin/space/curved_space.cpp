@@ -3,6 +3,8 @@
 #include <cmath>
 
 #include "grin/connections/geometric_spreading.h"
+#include "grin/space/straight_legs.h"
+#include "grin/space/way_search.h"
 
 namespace flatspeckle::grin {
 
@@ -41,40 +43,60 @@ std::unique_ptr<const CurvedSpace> CurvedSpace::frozen(double phase) const {
   return std::unique_ptr<const CurvedSpace>(new CurvedSpace(setup_, field_->frozen(phase)));
 }
 
+/// How the rays beside a flight go.
+struct CurvedSpace::Neighbours {
+  bool wanted;
+  bool bent = false;  ///< by the field or at the body's surface
+  double n_start = 0;
+  RayTangent tangent = {};
+};
+
 Flight CurvedSpace::fly(const PathPoint& from, const Vec3& direction, RandomStream& random) const {
   Flight flight{.point = from, .start_direction = direction, .direction = direction};
+  Neighbours neighbours{setup_->options.spreading};
   const double longest =
       setup_->is_straight ? std::numeric_limits<double>::infinity() : setup_->options.max_length;
-  for (int leg = 0; leg < most_legs && flight.arc_length <= longest; ++leg) {
-    const bool curved = is_curved(flight.point);
-    const auto end = curved ? curved_leg(flight, random)
-                            : setup_->stage.fly(flight, index(flight.point), random);
+  for (int legs = 0; legs < most_legs && flight.arc_length <= longest; ++legs) {
+    const auto end = leg(flight, neighbours, random);
     if (!end) return flight;
     if (end == LegEnd::body) {
-      flight.is_joinable &= is_clear();
-      setup_->stage.cross(flight, field_->excess(flight.point.x), setup_->excess_around, random);
+      cross(flight, neighbours, random);
       continue;
     }
     if (flight.arc_length > longest) return flight;
     flight.end = end == LegEnd::collision ? Flight::End::collision : Flight::End::boundary;
-    if (!curved) flight.spreading = flight.arc_length * flight.arc_length;
-    if (!flight.is_joinable) flight.spreading = 0;
+    if (!flight.is_joinable) return flight;
+    if (!neighbours.bent)
+      flight.spreading = flight.arc_length * flight.arc_length;
+    else if (neighbours.wanted)
+      flight.spreading = std::abs(
+          signed_spreading(neighbours.tangent, neighbours.n_start, direction, flight.direction));
     return flight;
   }
   return flight;
 }
 
 /// Nothing: lost.
-std::optional<LegEnd> CurvedSpace::curved_leg(Flight& flight, RandomStream& random) const {
+std::optional<LegEnd> CurvedSpace::leg(Flight& flight, Neighbours& neighbours,
+                                       RandomStream& random) const {
+  if (is_curved(flight.point)) return curved_leg(flight, neighbours, random);
+  const double before = flight.arc_length, n = index(flight.point);
+  const LegEnd end = setup_->stage.fly(flight, n, random);
+  if (before == 0) neighbours.n_start = n;
+  if (neighbours.bent)
+    neighbours.tangent.dx += (flight.arc_length - before) / n * neighbours.tangent.dv;
+  return end;
+}
+
+std::optional<LegEnd> CurvedSpace::curved_leg(Flight& flight, Neighbours& neighbours,
+                                              RandomStream& random) const {
   RayState ray = start_ray(*field_, flight.point.x, flight.direction);
-  const double n_start = ray.v.norm();
+  if (flight.arc_length == 0) neighbours.n_start = ray.v.norm();
+  neighbours.bent = true;
   const double longest = setup_->options.max_length - flight.arc_length;
-  const bool spreads = setup_->options.spreading && flight.is_joinable;
-  RayTangent tangent;
-  const LegStop stop =
-      field_->fly(room(), longest, flight.weight, random, ray, spreads ? &tangent : nullptr);
-  if (spreads)
-    flight.spreading = std::abs(signed_spreading(tangent, n_start, flight.direction, ray.v));
+  const bool follows = neighbours.wanted && flight.is_joinable;
+  const LegStop stop = field_->fly(room(), longest, flight.weight, random, ray,
+                                   follows ? &neighbours.tangent : nullptr);
   if (stop == LegStop::lost) return std::nullopt;
   flight.point.x = ray.x;
   flight.direction = ray.v.normalized();
@@ -85,6 +107,115 @@ std::optional<LegEnd> CurvedSpace::curved_leg(Flight& flight, RandomStream& rand
     flight.weight *= transmittance(medium().mu_t(), ray.arc_length);
   if (stop == LegStop::collision) return LegEnd::collision;
   return setup_->field_part == Part::body ? LegEnd::body : LegEnd::boundary;
+}
+
+void CurvedSpace::cross(Flight& flight, Neighbours& neighbours, RandomStream& random) const {
+  if (is_clear()) return setup_->stage.pass(flight);
+  if (!neighbours.bent) {
+    neighbours.bent = true;
+    neighbours.tangent.dx.diagonal().fill(flight.arc_length / neighbours.n_start);
+  }
+  setup_->stage.cross(flight, field_->gradient(flight.point.x),
+                      {setup_->excess_around, Vec3::Zero()},
+                      neighbours.wanted ? &neighbours.tangent : nullptr, random);
+}
+
+/// Without collisions, for WaySearch (straight_legs.h): straight around the body.
+class CurvedSpace::Legs {
+ public:
+  explicit Legs(const CurvedSpace& space)
+      : space_(space),
+        excess_{space.setup_->excess_around,
+                space.setup_->is_straight ? space.field_->excess(Vec3::Zero()) : 0},
+        straight_(space.setup_->stage, excess_) {}
+  Legs(const Legs&) = delete;
+
+  const Surface& body() const { return straight_.body(); }
+  double index(const PathPoint& p) const { return space_.index(p); }
+  RayState start(const PathPoint& p, const Vec3& direction) const {
+    return {p.x, index(p) * direction};
+  }
+
+  bool to_body(Part part, RayState& ray, RayTangent* tangent, RandomStream& random) const {
+    if (!is_curved(part)) return straight_.to_body(part, ray, tangent, random);
+    static const PartMedium clear;
+    double all = 1;
+    const LegRoom room{body(), clear, step()};
+    return space_.field_->fly(room, longest(), all, random, ray, tangent) == LegStop::surface;
+  }
+  int steps(Part part, double sigma) const {
+    if (!is_curved(part)) return 1;
+    return static_cast<int>(std::clamp(std::ceil(sigma / step()), 1.0, 1e5));
+  }
+  void advance(Part part, double sigma, int steps, RayState& ray, RayTangent* tangent) const {
+    if (!is_curved(part)) return straight_.advance(part, sigma, steps, ray, tangent);
+    space_.field_->advance(sigma, steps, ray, tangent);
+  }
+  bool stays(Part part, const RayState& start, double sigma) const {
+    if (!is_curved(part)) return straight_.stays(part, start, sigma);
+    const int count = steps(part, sigma);
+    RayState ray = start;
+    for (int i = 1; i < count; ++i) {
+      space_.field_->advance(sigma / count, 1, ray, nullptr);
+      if (!(distance(body(), ray.x) <= 1e-9 * step())) return false;
+    }
+    return true;
+  }
+  template <class Offer>
+  void approach(Part part, RayState ray, const Vec3& x, const Offer& offer) const {
+    if (!is_curved(part)) return straight_.approach(part, ray, x, offer);
+    const double h = step();
+    double nearing = (x - ray.x).dot(ray.v);
+    for (int i = 0; ray.arc_length <= longest(); ++i) {
+      const RayState before = ray;
+      const double was_nearing = nearing;
+      space_.field_->advance(h, 1, ray, nullptr);
+      if (!(ray.arc_length > before.arc_length)) return;
+      nearing = (x - ray.x).dot(ray.v);
+      const bool is_out = distance(body(), ray.x) > 0;
+      if (was_nearing > 0 && nearing <= 0) {
+        const double part_of_step = was_nearing / (was_nearing - nearing);
+        const Vec3 closest = before.x + part_of_step * (ray.x - before.x);
+        offer((i + part_of_step) * h, (closest - x).squaredNorm());
+      } else if (is_out && nearing > 0) {
+        offer((i + 1) * h, (ray.x - x).squaredNorm());
+      }
+      if (is_out) return;
+    }
+  }
+  RayJump jump(Part from, const RayState& ray) const {
+    const IndexGradient around{space_.setup_->excess_around, Vec3::Zero()};
+    const IndexGradient in = space_.field_->gradient(ray.x);
+    return from == Part::body ? RayJump(body(), ray, in, around) : RayJump(body(), ray, around, in);
+  }
+
+  double extinction(Part part) const { return straight_.extinction(part); }
+  double reference(Part part) const { return straight_.reference(part); }
+  double transmitted(Part part, const RayState& start, double length, RandomStream& random) const {
+    if (!is_curved(part)) return straight_.transmitted(part, start, length, random);
+    const PartMedium& medium = space_.medium();
+    if (!medium.grid()) return transmittance(medium.mu_t(), length);
+    return space_.field_->ratio_tracked(space_.room(), start, length, random);
+  }
+
+ private:
+  bool is_curved(Part part) const { return part == Part::body && !space_.setup_->is_straight; }
+  double step() const { return space_.setup_->options.step; }
+  double longest() const { return space_.setup_->options.max_length; }
+
+  const CurvedSpace& space_;
+  double excess_[2];
+  StraightLegs<RenderPlan{}> straight_;
+};
+
+std::optional<Join> CurvedSpace::join_through(const PathPoint& p, const PathPoint& q,
+                                              RandomStream& random,
+                                              ConnectionStatistics& statistics) const {
+  if (!joins_through()) return std::nullopt;
+  ConnectionOptions options = setup_->connection;
+  options.max_iterations = 20;
+  if (setup_->is_straight) options.max_length = std::numeric_limits<double>::infinity();
+  return join_by_way(Legs(*this), p, q, options, random, statistics);
 }
 
 std::optional<Join> CurvedSpace::join(const PathPoint& p, const PathPoint& q, RandomStream& random,

@@ -28,13 +28,16 @@ class CurvedSpace {
   bool joins_all() const { return setup_->field_part == Part::stage || is_clear(); }
   /// Any, between points of these parts.
   bool can_join(const PathPoint& p, const PathPoint& q) const {
-    return p.part == q.part || is_clear();
+    return p.part == q.part || is_clear() || joins_through();
   }
   double least_depth(const PathPoint& p, const PathPoint& q) const {
     return setup_->stage.least_depth(p, q);
   }
   std::optional<Join> join(const PathPoint& p, const PathPoint& q, RandomStream& random,
                            ConnectionStatistics& statistics) const;
+  bool joins_through() const { return !joins_all() && setup_->stage.joins_through(); }
+  std::optional<Join> join_through(const PathPoint& p, const PathPoint& q, RandomStream& random,
+                                   ConnectionStatistics& statistics) const;
 
   /// The same space as light meets it at this phase of the sound, from 0 to 2 pi: S = cos(phase)
   /// of a standing wave (conventions, C28). Throws InputError for a field without sound.
@@ -64,8 +67,14 @@ class CurvedSpace {
   const PartMedium& medium() const { return setup_->stage.medium(setup_->field_part); }
   LegRoom room() const { return {container(), medium(), setup_->options.step}; }
 
+  class Legs;
+  struct Neighbours;
+
   bool goes_outside(const Vec3& x, const Vec3& direction) const;
-  std::optional<LegEnd> curved_leg(Flight& flight, RandomStream& random) const;
+  std::optional<LegEnd> leg(Flight& flight, Neighbours& neighbours, RandomStream& random) const;
+  std::optional<LegEnd> curved_leg(Flight& flight, Neighbours& neighbours,
+                                   RandomStream& random) const;
+  void cross(Flight& flight, Neighbours& neighbours, RandomStream& random) const;
   double transmitted(const PathPoint& p, const Connection& curve, RandomStream& random) const;
 
   std::shared_ptr<const Setup> setup_;

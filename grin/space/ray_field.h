@@ -37,8 +37,13 @@ class RayField {
   /// CurvedLeg::go(), with a tangent where there is one.
   virtual LegStop fly(const LegRoom& room, double longest, double& weight, RandomStream& random,
                       RayState& ray, RayTangent* tangent) const = 0;
+  /// Equal steps of Sharma, with a tangent where there is one.
+  virtual void advance(double sigma, int steps, RayState& ray, RayTangent* tangent) const = 0;
   /// CurvedLeg::ratio_tracked().
   virtual double ratio_tracked(const LegRoom& room, const RayState& ray, double sigma, int steps,
+                               RandomStream& random) const = 0;
+  /// The same of an arc, by the room's steps.
+  virtual double ratio_tracked(const LegRoom& room, const RayState& ray, double arc_length,
                                RandomStream& random) const = 0;
 
   /// connect_chord_first().

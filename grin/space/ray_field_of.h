@@ -34,6 +34,18 @@ class RayFieldOf final : public RayField {
     return tangent ? leg.go(longest, weight, random, ray, *tangent)
                    : leg.go(longest, weight, random, ray);
   }
+  void advance(double sigma, int steps, RayState& ray, RayTangent* tangent) const override {
+    for (int i = 0; i < steps; ++i) {
+      if (tangent)
+        Sharma::step(field_, ray, *tangent, sigma / steps);
+      else
+        Sharma::step(field_, ray, sigma / steps);
+    }
+  }
+  double ratio_tracked(const LegRoom& room, const RayState& ray, double arc_length,
+                       RandomStream& random) const override {
+    return CurvedLeg<F>(field_, room).ratio_tracked(ray, arc_length, random);
+  }
   double ratio_tracked(const LegRoom& room, const RayState& ray, double sigma, int steps,
                        RandomStream& random) const override {
     return CurvedLeg<F>(field_, room).ratio_tracked(ray, sigma, steps, random);

@@ -1,6 +1,7 @@
 #pragma once
 
-#include "grin/space/straight_stage.h"
+#include "grin/space/straight_legs.h"
+#include "grin/space/way_search.h"
 
 namespace flatspeckle::grin {
 
@@ -19,22 +20,18 @@ class StraightSpace {
 
   Flight fly(const PathPoint& from, const Vec3& direction, RandomStream& random) const {
     Flight flight{.point = from, .start_direction = direction, .direction = direction};
-    if constexpr (plan.body) {
-      for (int leg = 0; leg < most_legs; ++leg) {
-        const LegEnd end = stage_.fly(flight, index(flight.point), random);
-        if (end != LegEnd::body) return finished(flight, end);
-        stage_.cross(flight, excess(Part::body), excess(Part::stage), random);
-      }
-      return flight;  // lost
-    }
-    return finished(flight, stage_.fly(flight, index(from), random));
+    const LegEnd end = stage_.fly(flight, index(from), random);
+    if (plan.body && end == LegEnd::body)
+      return is_clear() ? go_on(flight, random) : refracted(flight, random);
+    flight.spreading = flight.arc_length * flight.arc_length;
+    return finished(flight, end);
   }
 
   /// All ways of light between two points.
   bool joins_all() const { return !plan.body || is_clear(); }
   /// Any, between points of these parts.
   bool can_join(const PathPoint& p, const PathPoint& q) const {
-    return p.part == q.part || is_clear();
+    return p.part == q.part || is_clear() || joins_through();
   }
   double least_depth(const PathPoint& p, const PathPoint& q) const {
     return stage_.least_depth(p, q);
@@ -44,6 +41,16 @@ class StraightSpace {
     if (is_clear()) return stage_.join_through(p, q, index(p), random);
     return stage_.join(p, q, index(p), random);
   }
+  bool joins_through() const { return !joins_all() && stage_.joins_through(); }
+  std::optional<Join> join_through(const PathPoint& p, const PathPoint& q, RandomStream& random,
+                                   ConnectionStatistics& statistics) const {
+    static const ConnectionOptions options{.step = 1,
+                                           .max_length = std::numeric_limits<double>::infinity(),
+                                           .start = {.chord_share = 0.3},
+                                           .max_iterations = 20};
+    if (!joins_through()) return std::nullopt;
+    return join_by_way(StraightLegs<plan>(stage_, excess_), p, q, options, random, statistics);
+  }
 
  private:
   double excess(Part part) const { return excess_[plan.body && part == Part::body ? 1 : 0]; }
@@ -51,9 +58,37 @@ class StraightSpace {
   /// Nothing is refracted at the body's surface.
   bool is_clear() const { return plan.body && excess_[0] == excess_[1]; }
 
+  /// At the body's surface.
+  Flight& go_on(Flight& flight, RandomStream& random) const {
+    for (int leg = 1; leg < most_legs; ++leg) {
+      stage_.pass(flight);
+      const LegEnd end = stage_.fly(flight, index(flight.point), random);
+      if (end == LegEnd::body) continue;
+      flight.spreading = flight.arc_length * flight.arc_length;
+      return finished(flight, end);
+    }
+    return flight;  // lost
+  }
+  Flight& refracted(Flight& flight, RandomStream& random) const {
+    const auto side = [&](Part part) { return IndexGradient{excess(part), Vec3::Zero()}; };
+    const double n_start = index(flight.point);
+    RayTangent tangent;
+    tangent.dx.diagonal().fill(flight.arc_length / n_start);
+    for (int leg = 1; leg < most_legs; ++leg) {
+      stage_.cross(flight, side(Part::body), side(Part::stage), &tangent, random);
+      const double before = flight.arc_length, n = index(flight.point);
+      const LegEnd end = stage_.fly(flight, n, random);
+      tangent.dx += (flight.arc_length - before) / n * tangent.dv;
+      if (end == LegEnd::body) continue;
+      if (flight.is_joinable)
+        flight.spreading =
+            std::abs(signed_spreading(tangent, n_start, flight.start_direction, flight.direction));
+      return finished(flight, end);
+    }
+    return flight;  // lost
+  }
   static Flight& finished(Flight& flight, LegEnd end) {
     flight.end = end == LegEnd::collision ? Flight::End::collision : Flight::End::boundary;
-    if (flight.is_joinable) flight.spreading = flight.arc_length * flight.arc_length;
     return flight;
   }
 

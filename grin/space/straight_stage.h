@@ -1,9 +1,9 @@
 #pragma once
 
+#include "grin/rays/ray_jump.h"
 #include "grin/space/part_medium.h"
 #include "grin/space/space.h"
 #include "grin/space/stage.h"
-#include "grin/surfaces/interface.h"
 #include "grin/surfaces/straight_way.h"
 
 namespace flatspeckle::grin {
@@ -54,21 +54,30 @@ class StraightStage {
     return end;
   }
 
-  /// At the body's surface: to the other side or back.
-  void cross(Flight& flight, double excess_body, double excess_around, RandomStream& random) const {
-    flight.crosses_body = true;
+  /// At the body's surface, where it refracts: to the other side or back. The tangent, if not
+  /// null, goes on too.
+  void cross(Flight& flight, const IndexGradient& body, const IndexGradient& around,
+             RayTangent* tangent, RandomStream& random) const {
     const bool leaves = flight.point.part == Part::body;
-    const double from = leaves ? excess_body : excess_around;
-    const double to = leaves ? excess_around : excess_body;
-    if (from != to) {
-      flight.is_joinable = false;
-      const Interface face((1 + from) * flight.direction, normal(*body_, flight.point.x), from, to);
-      const bool reflected = face.is_total() || random.uniform() < face.reflectance();
-      flight.direction = (reflected ? face.reflected() : *face.refracted()).normalized();
-      if (reflected) return;
-    }
-    flight.point.part = leaves ? Part::stage : Part::body;
+    const IndexGradient& from = leaves ? body : around;
+    RayState ray{flight.point.x, (1 + from.excess) * flight.direction};
+    const RayJump jump(*body_, ray, from, leaves ? around : body);
+    const double reflectance = jump.reflectance();
+    const bool reflected = jump.is_total() || random.uniform() < reflectance;
+    jump.pass(reflected, ray, tangent);
+    flight.crosses_body = true;
+    flight.is_joinable = ++flight.passages <= Passages::most && joins_through();
+    flight.optical_depth -= std::log(reflected ? reflectance : 1 - reflectance);
+    flight.direction = ray.v.normalized();
+    if (!reflected) flight.point.part = beyond(flight.point.part);
   }
+  /// The same where it does not.
+  void pass(Flight& flight) const {
+    flight.crosses_body = true;
+    flight.point.part = beyond(flight.point.part);
+  }
+  /// Whether ways can be found that the body's surface refracts.
+  bool joins_through() const { return plan.body && body_ && has_curvature(*body_); }
 
   std::optional<Join> join(const PathPoint& p, const PathPoint& q, double index,
                            RandomStream& random) const {
@@ -124,6 +133,23 @@ class StraightStage {
     return depth;
   }
 
+  /// From a point of a part or on its surface to where it ends.
+  struct WayOut {
+    double length;
+    LegEnd end;
+  };
+  WayOut way_to_surface(const PathPoint& p, const Vec3& d) const {
+    if (plan.body && p.part == Part::body) return {way_out(*body_, p.x, d), LegEnd::body};
+    const double out = way_out(boundary_, p.x, d);
+    if constexpr (plan.body) {
+      if (body_) {
+        const double in = way_in(*body_, p.x, d);
+        if (in < out) return {in, LegEnd::body};
+      }
+    }
+    return {out, LegEnd::boundary};
+  }
+
  private:
   /// Calls use(part, from, to) for the stretches of a straight line. Returns whether it is within
   /// the boundary.
@@ -141,26 +167,11 @@ class StraightStage {
       if (end == LegEnd::boundary) return false;
       use(at.part, from, from + way);
       from += way;
-      at = {start + from * d, at.part == Part::body ? Part::stage : Part::body};
+      at = {start + from * d, beyond(at.part)};
     }
     return false;
   }
 
-  struct Way {
-    double length;
-    LegEnd end;
-  };
-  Way way_to_surface(const PathPoint& p, const Vec3& d) const {
-    if (plan.body && p.part == Part::body) return {way_out(*body_, p.x, d), LegEnd::body};
-    const double out = way_out(boundary_, p.x, d);
-    if constexpr (plan.body) {
-      if (body_) {
-        const double in = way_in(*body_, p.x, d);
-        if (in < out) return {in, LegEnd::body};
-      }
-    }
-    return {out, LegEnd::boundary};
-  }
   bool is_blocked(const PathPoint& p, const Vec3& d, double length) const {
     // The end may be on the surface itself.
     const double shorter = (1 - 1e-9) * length;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include <Eigen/Geometry>
 #include <doctest/doctest.h>
@@ -83,6 +84,24 @@ PhotonSensor directional_sensor(const DirectionalDetector& detector) {
         pixel_of(detector.pixels, p.direction.dot(u), p.direction.dot(v), half, half);
     if (cosine <= 0 || !pixel) return {};
     return PhotonWorth{*pixel, cosine / pixel_area};
+  };
+}
+
+PhotonSensor lens_sensor(const Camera& camera) {
+  const Vec3 forward = camera.forward.normalized(), v = upright(camera.up, forward);
+  const Vec3 u = forward.cross(v);
+  const double half = std::tan(camera.field_of_view / 2);
+  const double half_v = half * camera.pixels.rows / camera.pixels.columns;
+  const double pixel_area = 4 * half * half_v / (camera.pixels.columns * camera.pixels.rows);
+  const double lens_area = std::numbers::pi * camera.lens_radius * camera.lens_radius;
+  return [=](const Photon& p) -> std::optional<PhotonWorth> {
+    const Vec3 from = p.x - camera.x;
+    const double cosine = -p.direction.dot(forward);
+    if (from.norm() > camera.lens_radius || cosine <= 0) return {};
+    const Vec3 focus = from / camera.focus_distance - p.direction / cosine;
+    const auto pixel = pixel_of(camera.pixels, focus.dot(u), focus.dot(v), half, half_v);
+    if (!pixel) return {};
+    return PhotonWorth{*pixel, 1 / (std::pow(cosine, 4) * pixel_area * lens_area)};
   };
 }
 

@@ -23,6 +23,8 @@ using PhotonSensor = std::function<std::optional<PhotonWorth>(const Photon&)>;
 PhotonSensor area_sensor(const AreaDetector& detector, const Vec3& outward,
                          double sphere_radius = 0);
 PhotonSensor directional_sensor(const DirectionalDetector& detector);
+/// With a lens, on a plane wall.
+PhotonSensor lens_sensor(const Camera& camera);
 
 /// A scene twice: for the estimators and for the oracle.
 struct TwoScenes {

@@ -5,6 +5,7 @@
 #include <doctest/doctest.h>
 
 #include "tests/grin/photon_comparison.h"
+#include "tests/grin/render_tests.h"
 
 // Estimators against analog photons, on detectors that photons hit.
 
@@ -181,4 +182,87 @@ TEST_CASE("a Luneburg ball in fog before a lit wall: as photons see it") {
 
 TEST_CASE("a guide in fog under a beam, in pulses: as photons see it") {
   check_methods(foggy_guide(), two_methods, 100000, 0.03, 30000);
+}
+
+namespace {
+
+const Camera small_lens{.x = {2, 0, 0},
+                        .forward = {-1, 0, 0},
+                        .up = {0, 1, 0},
+                        .field_of_view = 1.2,
+                        .pixels = {1, 1},
+                        .lens_radius = 0.15,
+                        .focus_distance = 2};
+
+/// A body in a clear room, seen from its side.
+TwoScenes body_from_outside(const AnyIndexField& field, const WalkScene& walk, const Light& light,
+                            const PhotonSource& source) {
+  return {.scene = {.field = field,
+                    .step = 0.1,
+                    .max_length = 100,
+                    .stage = {.boundary = Box{{-2, -2, -2}, {2, 2, 2}},
+                              .body = Body{Sphere{}, {.mu_s = 0.5, .mu_a = 0.5}}},
+                    .lights = {light},
+                    .sensors = {small_lens}},
+          .walk = walk,
+          .source = source,
+          .sensor = lens_sensor(small_lens)};
+}
+
+WalkScene ball_walk(double inside) {
+  return {.boundary = {{-2, -2, -2}, {2, 2, 2}},
+          .ball = WalkBall{Vec3::Zero(), 1, {.mu_s = 0.5, .mu_a = 0.5}},
+          .inside = inside};
+}
+
+/// The lens against photons; and the pinhole in its middle against the lens.
+void check_lens_and_pinhole(TwoScenes scenes, std::uint64_t photons, std::uint64_t samples,
+                            double precision = 0.03) {
+  const PhotonPicture picture = photon_picture(scenes, photons, 6);
+  check_against(picture, scenes, {}, samples, precision);
+  const auto mean = [&](RenderMethod method) {
+    const Estimate found =
+        pixel_mean(run_render(render_job(scenes.scene, {.method = method}, 12), samples));
+    return std::pair(found.value[0].real(), found.error[0]);
+  };
+  const auto [lens, lens_error] = mean(RenderMethod::light);
+  Camera pinhole = small_lens;
+  pinhole.x[0] -= 1e-3;
+  pinhole.lens_radius = 0;
+  scenes.scene.sensors = {pinhole};
+  for (const RenderMethod method : two_methods) {
+    const auto [value, error] = mean(method);
+    CAPTURE(value);
+    CAPTURE(error);
+    CAPTURE(lens);
+    CAPTURE(lens_error);
+    CHECK(std::abs(value - lens) < 4 * std::hypot(error, lens_error) + 0.005 * lens);
+    CHECK(error < 1.5 * precision * lens);
+  }
+}
+
+const Light point = PointLight{{0, 0, -1.5}};
+const Light beam = BeamLight{{0, 0, -1.9}, {0, 0, 1}, 0.8};
+
+}  // namespace
+
+TEST_CASE("a glass ball that scatters, seen from outside by a lens and a pinhole") {
+  for (const double index : {1.0, 1.4, 0.8})  // the last: faint ways that are seldom found
+    check_lens_and_pinhole(body_from_outside(Homogeneous{index - 1}, ball_walk(index), point,
+                                             point_source({0, 0, -1.5})),
+                           6000000, 400000, index < 1 ? 0.15 : 0.03);
+  check_lens_and_pinhole(body_from_outside(Homogeneous{0.4}, ball_walk(1.4), beam,
+                                           beam_source({0, 0, -1.9}, {0, 0, 1}, 0.8)),
+                         3000000, 200000);
+}
+
+TEST_CASE("a Luneburg ball that scatters, seen from outside by a lens and a pinhole") {
+  WalkScene walk = ball_walk(1);
+  const auto n = [](const Vec3& x) { return std::sqrt(2 - x.squaredNorm()); };
+  walk.curved = WalkIndex{n, [=](const Vec3& x) { return Vec3(-x / n(x)); }, 0.05};
+  check_lens_and_pinhole(body_from_outside(Luneburg({}), walk, point, point_source({0, 0, -1.5})),
+                         1500000, 100000);
+  check_lens_and_pinhole(
+      body_from_outside(Luneburg({}), walk, beam, beam_source({0, 0, -1.9}, {0, 0, 1}, 0.8)),
+      600000, 50000);
 }

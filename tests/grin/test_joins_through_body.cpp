@@ -1,9 +1,14 @@
 #include <cmath>
 #include <numbers>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include <doctest/doctest.h>
 
 #include "bench/scenes/random_fields.h"
+#include "grin/connections/geometric_spreading.h"
+#include "grin/ends/path_end.h"
 #include "grin/surfaces/straight_way.h"
 #include "tests/grin/furnace.h"
 #include "tests/grin/space_stages.h"
@@ -46,7 +51,7 @@ TEST_CASE("where nothing is refracted, joins go straight through a body's surfac
     RandomStream random(1, 97, 0);
     ConnectionStatistics statistics;
     int through = 0;
-    for (int i = 0; i < 1000; ++i) {
+    for (int i = 0; i < 500; ++i) {
       const PathPoint p = random_point_of(body, random), q = random_point_of(body, random);
       const double length = (q.x - p.x).norm(), inside = length_inside(body, p.x, q.x);
       through += p.part == Part::stage && q.part == Part::stage && inside > 0;
@@ -155,6 +160,181 @@ TEST_CASE("a pinhole sees all of a body that scatters light of a point, as a len
   CHECK(lens.error() < 0.01 * lens.value());
   CHECK(std::abs(lens.value() - pinhole.value()) <
         4 * std::hypot(lens.error(), pinhole.error()) + 0.002 * pinhole.value());
+}
+
+namespace {
+
+struct NamedSpace {
+  std::string name;
+  Stage stage;
+  AnyIndexField field;
+};
+
+/// Bodies that refract: denser and rarer, with a flat and with a curved surface, with straight and
+/// with curved rays in them.
+std::vector<NamedSpace> refracting() {
+  const ScatteringMedium thin{.mu_s = 0.2}, thick{.mu_s = 0.7, .mu_a = 0.3};
+  const auto with = [&](const Surface& body) { return Stage{room, thin, Body{body, thick}, 0.1}; };
+  return {{"glass ball", with(ball), Homogeneous{0.5}},
+          {"bubble", with(ball), Homogeneous{-0.2}},
+          {"glass block", with(block), Homogeneous{0.5}},
+          {"Luneburg ball", Stage{room, thin, Body{Sphere{}, thick}}, Luneburg({})},
+          {"fisheye ball", with(ball), Fisheye({.centre_excess = 0.6, .radius = 2})},
+          {"fisheye block", with(block), Fisheye({.centre_excess = 0.6, .radius = 2})}};
+}
+
+template <class Use>
+void with_space(const NamedSpace& named, const Use& use) {
+  if (const auto* homogeneous = std::get_if<Homogeneous>(&named.field))
+    use(StraightSpace<straight_plan>(named.stage, homogeneous->n_excess));
+  use(*make_curved_space(named.field, named.stage, {0.05, 40}));
+}
+
+bool alike(const Join& join, const Flight& flight) {
+  return (join.start_direction - flight.start_direction).norm() < 1e-4 &&
+         std::abs(join.optical_path - flight.optical_path) < 1e-4;
+}
+
+/// A join that is the way of a flight, among those between its ends.
+template <Space S>
+std::optional<Join> same_way(const S& space, const PathPoint& p, const Flight& flight,
+                             RandomStream& random) {
+  ConnectionStatistics statistics;
+  for (int i = 0; i < 500; ++i) {
+    const auto join = space.join_through(p, flight.point, random, statistics);
+    if (join && alike(*join, flight)) return join;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+TEST_CASE("a flight that a body refracts and the join of its ends are one way") {
+  for (const NamedSpace& named : refracting())
+    with_space(named, [&](const auto& space) {
+      CAPTURE(named.name);
+      RandomStream random(3, 97, 0);
+      int flights = 0, missed = 0;
+      for (int i = 0; i < 500; ++i) {
+        const PathPoint p = random_point_of(named.stage.body->surface, random);
+        const Flight flight = space.fly(p, bench::random_direction(random), random);
+        if (flight.passages == 0 || flight.passages > 3 || flight.end == Flight::End::lost)
+          continue;
+        ++flights;
+        const auto join = same_way(space, p, flight, random);
+        missed += !join;
+        if (!join) continue;
+        CHECK((join->end_direction - flight.direction).norm() < 1e-4);
+        CHECK(join->spreading == doctest::Approx(flight.spreading).epsilon(1e-4));
+        CHECK(join->optical_depth == doctest::Approx(flight.optical_depth).epsilon(1e-4));
+        Flight there;
+        there.start_direction = -flight.direction;
+        there.optical_path = flight.optical_path;
+        const auto back = same_way(space, flight.point, there, random);
+        if (!back) continue;
+        const double n_p = space.index(p), n_q = space.index(flight.point);
+        CHECK(n_q * n_q * join->spreading ==
+              doctest::Approx(n_p * n_p * back->spreading).epsilon(1e-4));
+      }
+      CHECK(flights > 25);
+      CHECK(missed < flights / 20);  // rare ways, of many trials
+    });
+}
+
+TEST_CASE("|J| of a refracted flight is that of the flights beside it") {
+  for (const NamedSpace& named : refracting())
+    with_space(named, [&](const auto& space) {
+      CAPTURE(named.name);
+      RandomStream random(4, 97, 0);
+      int compared = 0;
+      for (int i = 0; i < 2000; ++i) {
+        const PathPoint p = random_point_of(named.stage.body->surface, random);
+        const Vec3 d = bench::random_direction(random);
+        const Frame across = frame_across(d);
+        constexpr double turn = 1e-5;
+        const auto fly = [&](const Vec3& direction) {  // to the boundary, by the same choices
+          RandomStream same(5, 97, i);
+          return space.fly(p, direction.normalized(), same);
+        };
+        const Flight middle = fly(d);
+        if (middle.passages == 0 || middle.end != Flight::End::boundary) continue;
+        Eigen::Matrix<double, 3, 2> moved;
+        bool same = true;
+        for (int k = 0; k < 2; ++k) {
+          const Flight one = fly(d + turn * across.col(k)), two = fly(d - turn * across.col(k));
+          same &= one.end == Flight::End::boundary && two.end == Flight::End::boundary &&
+                  one.passages == middle.passages && two.passages == middle.passages;
+          // ends differ along the ray too, which the frame across it leaves out
+          moved.col(k) = (one.point.x - two.point.x) / (2 * turn);
+        }
+        if (!same) continue;
+        const double expected =
+            std::abs((frame_across(middle.direction).transpose() * moved).determinant());
+        if (expected > 1e3 || expected < 0.1) continue;  // next to grazing, or a caustic
+        ++compared;
+        CHECK(middle.spreading == doctest::Approx(expected).epsilon(2e-3));
+      }
+      CHECK(compared > 20);
+    });
+}
+
+namespace {
+
+struct Mean {
+  double sum = 0, squares = 0;
+  long count = 0;
+
+  void add(double value) {
+    sum += value;
+    squares += value * value;
+    ++count;
+  }
+  double mean() const { return sum / static_cast<double>(count); }
+  double error() const {
+    const double n = static_cast<double>(count);
+    return std::sqrt(std::max(0.0, squares / n - mean() * mean()) / (n - 1));
+  }
+};
+
+}  // namespace
+
+TEST_CASE("flights and joins agree on where light collides in and around a refracting body") {
+  for (const NamedSpace& named : refracting())
+    for (const Vec3& at : {Vec3(0.3, -0.4, -1.7), Vec3(0.2, 0.3, -0.4)}) {
+      const Surface& body = named.stage.body->surface;
+      const PathPoint p{at, part_at(body, at)};
+      CAPTURE(named.name);
+      CAPTURE(at);
+      const auto space = make_curved_space(named.field, named.stage, {0.05, 40});
+      RandomStream random(6, 97, 0);
+      ConnectionStatistics statistics;
+      Mean flown[2], joined[2];  // in the body, in the stage; of light that its surface has met
+      for (int i = 0; i < 30000; ++i) {
+        const Flight flight = space->fly(p, bench::random_direction(random), random);
+        const bool counts =
+            flight.end == Flight::End::collision && flight.is_joinable && flight.passages > 0;
+        for (const Part part : {Part::stage, Part::body})
+          flown[part == Part::stage].add(counts && flight.point.part == part);
+        const PathPoint q = random_point_of(body, random);
+        const auto join = space->join_through(p, q, random, statistics);
+        const ScatteringMedium& medium =
+            q.part == Part::body ? named.stage.body->medium : named.stage.medium;
+        const double value = join ? medium.mu_t() * join->transmittance * join->multiplicity /
+                                        (4 * pi * join->spreading) * std::pow(2 * 1.99, 3)
+                                  : 0;
+        for (const Part part : {Part::stage, Part::body})
+          joined[part == Part::stage].add(q.part == part ? value : 0);
+      }
+      for (int k = 0; k < 2; ++k) {
+        CAPTURE(k);
+        CAPTURE(flown[k].mean());
+        CAPTURE(joined[k].mean());
+        const double error = std::hypot(flown[k].error(), joined[k].error());
+        CAPTURE(error);
+        CHECK(std::abs(flown[k].mean() - joined[k].mean()) <= 4 * error + 1e-3 * flown[k].mean());
+        CHECK(error <= 0.3 * flown[k].mean() + 1e-3);
+      }
+    }
 }
 
 }  // namespace flatspeckle::grin::tests

@@ -1,0 +1,74 @@
+#pragma once
+
+#include "grin/rays/ray.h"
+#include "grin/rays/ray_jump.h"
+#include "grin/space/straight_stage.h"
+#include "grin/space/way.h"
+
+namespace flatspeckle::grin {
+
+/// What WaySearch asks of space, where light goes straight within a part: rays of RayState, with
+/// tangents where these are not null, from a point in a part or on its surface.
+template <RenderPlan plan>
+class StraightLegs {
+ public:
+  /// Refers to the stage. excess: of a part.
+  StraightLegs(const StraightStage<plan>& stage, const double (&excess)[2])
+      : stage_(stage), excess_(excess) {}
+
+  const Surface& body() const { return stage_.container(Part::body); }
+  double index(const PathPoint& p) const { return 1 + excess(p.part); }
+  RayState start(const PathPoint& p, const Vec3& direction) const {
+    return {p.x, index(p) * direction};
+  }
+
+  /// On to the body's surface; false where the leg does not end there.
+  bool to_body(Part part, RayState& ray, RayTangent* tangent, RandomStream&) const {
+    const double n = ray.v.norm();
+    const auto [way, end] = stage_.way_to_surface({ray.x, part}, ray.v / n);
+    if (end != LegEnd::body) return false;
+    advance(part, way / n, 1, ray, tangent);
+    return true;
+  }
+  int steps(Part, double) const { return 1; }
+  void advance(Part, double sigma, int, RayState& ray, RayTangent* tangent) const {
+    ray.x += sigma * ray.v;
+    const double square = ray.v.squaredNorm();
+    ray.arc_length += sigma * std::sqrt(square);
+    ray.optical_path += sigma * square;
+    if (tangent) tangent->dx += sigma * tangent->dv;
+  }
+  /// A last leg does not leave its part.
+  bool stays(Part part, const RayState& start, double sigma) const {
+    const double n = start.v.norm();
+    return stage_.way_to_surface({start.x, part}, start.v / n).length >= (1 - 1e-9) * sigma * n;
+  }
+  /// offer(sigma, squared distance) where a leg comes closest to x.
+  template <class Offer>
+  void approach(Part part, const RayState& ray, const Vec3& x, const Offer& offer) const {
+    const double n = ray.v.norm();
+    const double way = stage_.way_to_surface({ray.x, part}, ray.v / n).length;
+    const double sigma = std::min((x - ray.x).dot(ray.v) / (n * n), way / n);
+    if (sigma > 0) offer(sigma, (ray.x + sigma * ray.v - x).squaredNorm());
+  }
+  RayJump jump(Part from, const RayState& ray) const {
+    const auto side = [&](Part part) { return IndexGradient{excess(part), Vec3::Zero()}; };
+    return RayJump(body(), ray, side(from), side(beyond(from)));
+  }
+
+  double extinction(Part part) const { return stage_.medium(part).mu_t(); }
+  double reference(Part part) const { return stage_.medium(part).reference(); }
+  double transmitted(Part part, const RayState& start, double length, RandomStream& random) const {
+    const Vec3 d = start.v.normalized();
+    const auto path = [&](double s) -> Vec3 { return start.x + s * d; };
+    return stage_.medium(part).template transmitted<plan>(path, length, random);
+  }
+
+ private:
+  double excess(Part part) const { return excess_[part == Part::body ? 1 : 0]; }
+
+  const StraightStage<plan>& stage_;
+  const double (&excess_)[2];
+};
+
+}  // namespace flatspeckle::grin

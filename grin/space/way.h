@@ -1,0 +1,18 @@
+#pragma once
+
+#include "grin/space/space.h"
+
+namespace flatspeckle::grin {
+
+/// A way between two points that meets the body's surface.
+struct Way {
+  Vec3 start_direction, end_direction;  ///< unit tangents along the way
+  double spreading;                     ///< |J| from start to end
+  int orientation;                      ///< sign of the determinant in J
+  double arc_length, optical_path;
+  Passages passages;
+  double chance;  ///< Fresnel's, that light takes these passages
+  double sigma;   ///< of the last leg, ray parameter
+};
+
+}  // namespace flatspeckle::grin
