@@ -91,9 +91,10 @@ void work_remotely(Jobs& jobs) {
       reply = value_of<Reply>(ask(bytes_of(Request{})));
       continue;
     }
-    const auto job = jobs.get(reply.run);
-    std::vector<Complex> sums(job->size);
+    std::vector<Complex> sums;
     try {
+      const auto job = jobs.get(reply.run);
+      sums.resize(job->size);
       job->run(reply.number, sums);
     } catch (const Interrupted&) {
       reply = value_of<Reply>(ask(bytes_of(Request{Request::interrupted})));

@@ -72,8 +72,7 @@ class PhotonMap {
  private:
   Flight fly(const PathPoint& from, const Vec3& direction) {
     const Flight flight = space_.fly(from, direction, random_);
-    ++counts_.flights;
-    if (flight.end == Flight::End::lost) ++counts_.lost_flights;
+    counts_.add_flight(flight.end == Flight::End::lost);
     return flight;
   }
 

@@ -31,11 +31,8 @@ void walk(const Transport& transport, const S& space, const Ends& ends, const Pa
   double throughput = 1;
   while (here.weight > 0 && (!is_short || short_path_goes_on(space, here))) {
     const Flight flight = space.fly(here.point, direction, random);
-    ++counts.flights;
-    if (flight.end == Flight::End::lost) {
-      ++counts.lost_flights;
-      return;
-    }
+    counts.add_flight(flight.end == Flight::End::lost);
+    if (flight.end == Flight::End::lost) return;
     const double choice = here.end ? ends.choice(*here.end, flight.point.x) : 1;
     PathVertex next =
         arrived(transport.strategies, here, flight, density, choice, space.index(flight.point));

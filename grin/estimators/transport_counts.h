@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "core/run/interrupt.h"
 #include "grin/connections/connection.h"
 #include "grin/estimators/film.h"
 
@@ -15,6 +16,13 @@ struct TransportCounts {
   std::uint64_t joins_weighed = 0, joins = 0;  ///< considered; asked of space
   std::uint64_t lost_values = 0;               ///< not finite; left out
   ConnectionStatistics connections = {};
+
+  /// Of a flight that has ended. Throws Interrupted, now and then, once a signal has come.
+  void add_flight(bool is_lost) {
+    constexpr std::uint64_t between_looks = 256;
+    if (++flights % between_looks == 0) stop_if_interrupted();
+    lost_flights += is_lost;
+  }
 
   TransportCounts& operator+=(const TransportCounts& other) {
     flights += other.flights;

@@ -26,11 +26,8 @@ template <bool timed, Space S>
 void add_ray(const Transport& transport, const S& space, const EndPosition& start,
              RandomStream& random, Film& film, TransportCounts& counts) {
   const Flight flight = space.fly(start.point, start.inward, random);
-  ++counts.flights;
-  if (flight.end == Flight::End::lost) {
-    ++counts.lost_flights;
-    return;
-  }
+  counts.add_flight(flight.end == Flight::End::lost);
+  if (flight.end == Flight::End::lost) return;
   for (const SensorEnd& sensor : transport.sensors)
     sensor.hit(space, flight.point.x, flight.direction, [&](const EndHit& hit) {
       deposit<timed>(film, counts, hit.direction.pixel,
