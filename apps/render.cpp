@@ -25,15 +25,10 @@ void note_losses(const grin::TransportCounts& counts) {
 }
 
 /// A dark picture is more often a mistake than a result.
-void note_darkness(const grin::Stage& stage, std::size_t sensors) {
+void note_darkness(std::size_t sensors) {
   std::fputs(
       sensors > 1 ? "note: no light came to a sensor\n" : "note: no light came to the sensor\n",
       stderr);
-  if (stage.body)
-    std::fputs(
-        "note: points are not joined across the surface of a body: a pinhole does not see a point "
-        "or beam through it, a camera with a lens or an area sensor does\n",
-        stderr);
 }
 
 void print_row(const char* name, const Estimate& estimate, std::size_t entry,
@@ -67,13 +62,13 @@ void print_render(const grin::RenderScene& scene, const grin::RenderJob& job,
     std::printf("%-16s %-13s %-10s\n", name.c_str(), "value", "error");
     is_lit &= print_sensor(scene.sensors[i], result[i]);
   }
-  if (!is_lit) note_darkness(scene.stage, result.size());
+  if (!is_lit) note_darkness(result.size());
   if (job.counts) note_losses(*job.counts);
   if (!grin::has_trials(job)) return;
-  const auto& curves = job.counts->connections;
-  std::printf("curves: %llu pairs, %.3g %% of trials converged, %.3g further trials each\n",
-              static_cast<unsigned long long>(curves.pairs), 100 * curves.success_rate(),
-              curves.mean_refind());
+  const auto& joins = job.counts->connections;
+  std::printf("joins: %llu pairs, %.3g %% of trials converged, %.3g further trials each\n",
+              static_cast<unsigned long long>(joins.pairs), 100 * joins.success_rate(),
+              joins.mean_refind());
 }
 
 }  // namespace

@@ -146,9 +146,16 @@ class PhotonMap {
 
   void join_to_pinhole(const EndPosition& y, const SensorEnd& sensor) {
     const EndPosition z = sensor.sample_position(space_, random_);
-    if (!z.is_point || !space_.can_join(y.point, z.point)) return;
+    if (!z.is_point) return;
+    if (space_.can_join(y.point, z.point))
+      add_joined(y, sensor, z, space_.join(y.point, z.point, random_, counts_.connections));
+    if (space_.joins_through())
+      add_joined(y, sensor, z, space_.join_through(y.point, z.point, random_, counts_.connections));
+  }
+
+  void add_joined(const EndPosition& y, const SensorEnd& sensor, const EndPosition& z,
+                  const std::optional<Join>& curve) {
     ++counts_.joins;
-    const auto curve = space_.join(y.point, z.point, random_, counts_.connections);
     if (!curve) return;
     const EndDirection from_y = transport_.lights.towards(y, curve->start_direction);
     const EndDirection from_z = sensor.towards(z, -curve->end_direction);

@@ -77,24 +77,33 @@ class Scenes(RenderTest):
                     self.assertIn(method, attributes(self.folder / "render.h5")["plan"])
 
     def test_curves_are_counted(self):
-        """Where rays are curved, and there alone."""
+        """Where rays are curved or refracted, and there alone."""
         found = self.render(**BOX, **BEAM, **FOG, **AREA, **FIBRE)
         self.assertGreater(found["trials/found"], 0)
         self.assertLessEqual(found["trials/found"], found["trials/pairs"])
         self.assertLessEqual(found["trials/found"], found["trials/converged"])
-        self.assertIn("curves:", self.output)
+        self.assertIn("joins:", self.output)
         straight = self.render(**BOX, **BEAM, **FOG, **AREA)
         self.assertNotIn("trials/found", straight)
-        self.assertNotIn("curves:", self.output)
+        self.assertNotIn("joins:", self.output)
 
     def test_darkness_is_told(self):
-        """A beam beside the sensor, and nothing that scatters; a light behind a body."""
+        """A beam beside the sensor, and nothing that scatters."""
         dark = {**BOX, **CAMERA, "samples": 100, "out": "dark.h5"}
         note = "note: no light came to the sensor"
         self.assertEqual(self.call("render", **dark, **BEAM).stderr.count(note), 1)
         self.assertNotIn(note, self.call("render", **dark, **BEAM, **FOG).stderr)
-        body = {"body_sphere": [0, 0, 2, 0.5], "index": 1.5, "point_light": [0, 0, 1, 1]}
-        self.assertIn("across the surface of a body", self.call("render", **dark, **body).stderr)
+
+    def test_a_light_is_seen_through_a_body(self):
+        """By a pinhole, whatever the method."""
+        keys = {**BOX, **CAMERA, "body_sphere": [0, 0, 2, 0.5], "index": 1.5,
+                "point_light": [0, 0, 1, 1]}
+        expected = self.render(**keys, samples=20000)
+        self.assertLess(expected["mean_error"], 0.05 * expected["mean"])
+        for method in METHODS:
+            found = self.render(**keys, method=method)
+            self.assert_within(found["mean"], np.hypot(found["mean_error"], expected["mean_error"]),
+                               expected["mean"])
 
     def test_sound_on_and_off(self):
         """The guide brings more light to the middle of the far side."""
