@@ -130,10 +130,11 @@ class PhotonMap {
 
   void leave(const GatherGrid& grid, const Flight& photon, const SpacePhaseFunction& phase,
              double power, double optical_path) {
+    const double n = space_.index(photon.point);
     grid.near(photon.point.x, [&](const GatherPoint& z) {
       if (z.part == photon.point.part)
         add(z.pixel, z.value * power * phase.density(photon.direction.dot(z.onwards)),
-            z.optical_path + optical_path);
+            z.optical_path + optical_path + n * photon.direction.dot(z.x - photon.point.x));
     });
   }
 

@@ -244,6 +244,35 @@ TEST_CASE("the photon map converges to bidirectional tracing as its radius shrin
   }
 }
 
+TEST_CASE("the photon map's pulse arrives when it should as its radius shrinks") {
+  const RenderScene scene{
+      .field = Homogeneous{},
+      .step = 1,
+      .max_length = 1e3,
+      .stage = {.boundary = Box{{-1, -1, 0}, {1, 1, 2}}, .medium = {.mu_s = 2, .mu_a = 0.1}},
+      .lights = {BeamLight{{0, 0, 0}, {0, 0, 1}, 0.3}},
+      .sensors = {AreaDetector{{0, 0, 2}, {0, 1, 0}, 1.5, 1.5, {}, pi / 2}},
+      .bins = {1.9, 3.4, 16}};
+  const auto pulse = [&](const RenderRequest& request, double samples) {
+    const RenderJob job = render_job(scene, request, 4);
+    return rendered_picture(job, run_render(job, samples).sums).bins;
+  };
+  const Estimate exact = pulse({RenderMethod::light}, 600000);
+  const Estimate wide = pulse({RenderMethod::photon_map, 0, 0.1}, 600000);
+  const Estimate narrow = pulse({RenderMethod::photon_map, 0, 0.05}, 600000);
+  for (std::size_t bin = 0; bin < exact.value.size(); ++bin) {
+    CAPTURE(bin);
+    const double expected = exact.value[bin].real();
+    // the first bins, before the offset was counted: 0.09 beyond
+    CHECK(std::abs(wide.value[bin].real() - expected) <
+          0.04 * expected + 4 * std::hypot(wide.error[bin], exact.error[bin]));
+    // without what the walls blur, proportional to the radius
+    const double limit = 2 * narrow.value[bin].real() - wide.value[bin].real();
+    const double error = std::hypot(2 * narrow.error[bin], wide.error[bin]);
+    CHECK(std::abs(limit - expected) < 4 * std::hypot(error, exact.error[bin]));
+  }
+}
+
 TEST_CASE("the photon map agrees with light tracing in focused sound") {
   const RenderScene scene = beam_in_sound();
   const Rendered exact = rendered(scene, RenderMethod::light, 30000);
