@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/run/interrupt.h"
 #include "mc/transport/divided_difference.h"
 #include "mc/transport/gauss.h"
 
@@ -96,9 +97,10 @@ ComplexOf<Number> DoubleScatteringOf<Number>::integral(const Law& law, double fr
                                                        double tolerance, C estimate,
                                                        int depth) const {
   constexpr int deepest = 24;
+  stop_if_interrupted();
   const double middle = (from + to) / 2;
   const C left = gauss(law, from, middle), right = gauss(law, middle, to);
-  if (magnitude(left + right - estimate) <= tolerance || depth == deepest) return left + right;
+  if (!(magnitude(left + right - estimate) > tolerance) || depth == deepest) return left + right;
   return integral(law, from, middle, tolerance, left, depth + 1) +
          integral(law, middle, to, tolerance, right, depth + 1);
 }

@@ -140,14 +140,16 @@ class Refiner {
   void add_double_scattering() {
     constexpr double part_of_tolerance = 0.01;
     const auto scale = scales_with_slopes(request_.entries, sum(&Part::value));
+    const auto scattered_twice = slab_.albedo * slab_.albedo;
+    const double tolerance =
+        part_of_tolerance * refinement_.tolerance / std::abs(value_of(scattered_twice));
     std::vector<std::vector<ComplexOf<Number>>> found(parts_.size());
     parallel_for(parts_.size(), [&](std::size_t p) {
       stop_if_interrupted();
       for (const auto& link : parts_[p].group.links)
         found[p].push_back(
-            slab_.albedo * slab_.albedo *
-            slab_.twice(parts_[p].group, link)
-                .total(slab_.law, part_of_tolerance * refinement_.tolerance * scale[link.entry]));
+            scattered_twice *
+            slab_.twice(parts_[p].group, link).total(slab_.law, tolerance * scale[link.entry]));
     });
     for (std::size_t p = 0; p < parts_.size(); ++p) add(few_, parts_[p].group, flat(found[p]));
   }

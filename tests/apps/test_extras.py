@@ -131,6 +131,16 @@ class Extras(ProgramTest):
             np.testing.assert_allclose(file["frequency_tilt_correlation"][0],
                                        file["field_correlation"], rtol=1e-12)
 
+    def test_hardly_any_scattering(self):
+        """All that is left is in proportion to the albedo, and as soon found."""
+        found = []
+        for albedo in (1e-7, 1e-100):
+            self.call("covariance", **{**SLAB, **SMALL_TILTS}, albedo=albedo, method="transport",
+                      frequency_shifts=[0, 0.01], out="result.h5")
+            with h5py.File(self.folder / "result.h5") as file:
+                found.append(file["frequency_tilt_covariance"][()] / albedo)
+        np.testing.assert_allclose(found[1], found[0], rtol=1e-5)
+
     def test_resumed(self):
         """In the same numbers, and not with other extras."""
         for keys in ({"delays": [0.1, 1]}, {"gradient": True}):
