@@ -93,8 +93,8 @@ int render(const Arguments& arguments) {
   check(scene, request);
   if (!command.settle()) return ExitStatus::done;
   const grin::RenderJob job = render_job(scene, request, session.seed());
-  return session.run("render: " + request_values.method + ": " + job.plan,
-                     {{"", "render", job.batches, stop}}, inputs_text(keys), [&](ResultFile& file) {
+  return session.run("render: " + job.plan, {{"", "render", job.batches, stop}}, inputs_text(keys),
+                     [&](ResultFile& file) {
                        const grin::RenderResult result =
                            render_result(scene, job, session.sums(""));
                        print_render(scene, job, result);

@@ -6,6 +6,7 @@
 #include "bench/plan/plan_timing.h"
 #include "bench/scenes/render_scenes.h"
 #include "grin/estimators/path_kernels.h"
+#include "grin/estimators/tracer.h"
 
 namespace flatspeckle::bench {
 

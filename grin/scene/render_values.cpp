@@ -10,9 +10,12 @@ namespace flatspeckle::grin {
 
 namespace {
 
-/// In the order of RenderMethod.
-std::vector<std::string> method_words() {
-  return {"path", "light", "bidirectional", "photon_map"};
+constexpr const char* chosen = "auto";
+
+std::vector<std::string> words_for_methods() {
+  std::vector<std::string> words = method_words();
+  words.insert(words.begin(), chosen);
+  return words;
 }
 
 TimeBins time_bins(const Keys& keys, const RenderValues& values) {
@@ -97,8 +100,9 @@ void add_keys(Keys& keys, RenderValues& values) {
 void add_keys(Keys& keys, RenderRequestValues& values) {
   keys.group("Method");
   keys.add("method", values.method,
-           "Path tracing is from the sensor; light tracing is best for powers on large areas")
-      .one_of(method_words());
+           "Path tracing is from the sensor; light tracing is best for powers on large areas; "
+           "auto: chosen by a pilot")
+      .one_of(words_for_methods());
   keys.add("photon_radius", values.photon_radius,
            "Radius of the estimate (default: chosen from the scene)")
       .positive()
@@ -136,10 +140,11 @@ RenderScene make_render_scene(const RenderValues& values) {
 }
 
 RenderRequest make_render_request(const Keys& keys, const RenderRequestValues& values) {
+  RenderRequest request{.max_scatterings = keys.read(values.max_scatterings)};
   const auto words = method_words();
-  const auto word = std::find(words.begin(), words.end(), keys.read(values.method));
-  RenderRequest request{.method = static_cast<RenderMethod>(word - words.begin()),
-                        .max_scatterings = keys.read(values.max_scatterings)};
+  if (const auto& method = keys.read(values.method); method != chosen)
+    request.method =
+        static_cast<RenderMethod>(std::find(words.begin(), words.end(), method) - words.begin());
   if (request.method == RenderMethod::photon_map)
     request.photon_radius = keys.read(values.photon_radius).value_or(0);
   return request;

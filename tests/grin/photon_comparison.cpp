@@ -139,7 +139,7 @@ PhotonPicture photon_picture(const TwoScenes& scenes, std::uint64_t photons, std
 
 void check_against(const PhotonPicture& photons, const TwoScenes& scenes,
                    const RenderRequest& request, std::uint64_t samples, double precision) {
-  const std::string method = name(request.method);
+  const std::string method = request.method ? name(*request.method) : "auto";
   CAPTURE(method);
   const RenderJob job = render_job(scenes.scene, request, 11);
   const RunState state = run_render(job, static_cast<double>(samples));

@@ -12,8 +12,7 @@
 namespace flatspeckle::grin::tests {
 
 inline std::string name(RenderMethod method) {
-  constexpr const char* names[] = {"path", "light", "bidirectional", "photon_map"};
-  return names[static_cast<int>(method)];
+  return method_word(method);
 }
 
 /// A picture and what it cost.

@@ -216,10 +216,10 @@ WalkScene ball_walk(double inside) {
 }
 
 /// The lens against photons; and the pinhole in its middle against the lens.
-void check_lens_and_pinhole(TwoScenes scenes, std::uint64_t photons, std::uint64_t samples,
+void check_lens_and_pinhole(TwoScenes scenes, std::uint64_t photons, unsigned samples,
                             double precision = 0.03) {
   const PhotonPicture picture = photon_picture(scenes, photons, 6);
-  check_against(picture, scenes, {}, samples, precision);
+  check_against(picture, scenes, {RenderMethod::bidirectional}, samples, precision);
   const auto mean = [&](RenderMethod method) {
     const Estimate found =
         pixel_mean(run_render(render_job(scenes.scene, {.method = method}, 12), samples));

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "grin/ends/light.h"
+#include "grin/ends/sensor.h"
+#include "grin/estimators/film.h"
+#include "grin/fields/any_index_field.h"
+#include "grin/space/stage.h"
+
+namespace flatspeckle::grin {
+
+/// Everything that light meets.
+struct RenderScene {
+  AnyIndexField field;
+  double step;        ///< of rays in sigma (length at index 1); no use in a homogeneous field
+  double max_length;  ///< arc length of one flight or join; longer ones are lost
+  bool random_phase = false;  ///< of a StandingWave: each path meets its own (C28)
+  Stage stage;
+  std::vector<Light> lights;
+  std::vector<Sensor> sensors;
+  std::vector<std::string> sensor_names = {};  ///< of several
+  TimeBins bins = {};
+  std::optional<double> length_unit = {};  ///< metres in a unit of length, for times
+};
+
+/// Of a scene with several sensors; a number where it has no names.
+std::string sensor_name(const RenderScene& scene, std::size_t sensor);
+
+enum class RenderMethod { path, light, bidirectional, photon_map };
+/// In their order.
+std::vector<std::string> method_words();
+std::string method_word(RenderMethod method);
+
+struct RenderRequest {
+  std::optional<RenderMethod> method = {};  ///< that which suits the scene if there is none
+  std::int64_t max_scatterings = 0;         ///< 0: no limit
+  double photon_radius = 0;                 ///< of photon_map; 0: chosen from the scene
+};
+
+}  // namespace flatspeckle::grin

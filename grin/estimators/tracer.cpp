@@ -1,0 +1,122 @@
+#include "grin/estimators/tracer.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "grin/estimators/photon_map.h"
+#include "grin/estimators/render_pilot.h"
+#include "grin/estimators/unscattered_beams.h"
+
+namespace flatspeckle::grin {
+
+namespace {
+
+Strategies strategies(RenderMethod method) {
+  return {.short_light = method == RenderMethod::path,
+          .short_sensor = method == RenderMethod::light};
+}
+
+int path_limit(const RenderRequest& request) {
+  constexpr int unlimited = std::numeric_limits<int>::max();
+  if (request.max_scatterings <= 0) return unlimited;
+  return static_cast<int>(std::min<std::int64_t>(request.max_scatterings, unlimited));
+}
+
+double photon_radius(const RenderScene& scene, const RenderRequest& request) {
+  return request.photon_radius > 0 ? request.photon_radius : default_photon_radius(scene.stage);
+}
+
+bool sums_beams_apart(const Transport& transport) {
+  return transport.lights.beam_power() > 0 &&
+         std::any_of(transport.sensors.begin(), transport.sensors.end(),
+                     [](const SensorEnd& sensor) { return sensor.can_be_hit(); });
+}
+
+double index_at(const RenderScene& scene, const PathPoint& p) {
+  if (scene.stage.body && p.part == Part::stage) return 1 + scene.stage.excess_around;
+  return std::visit([&](const auto& field) { return index(field, p.x); }, scene.field);
+}
+
+}  // namespace
+
+RenderPlan render_plan(const RenderScene& scene) {
+  RenderPlan plan;
+  plan.curved = !std::holds_alternative<Homogeneous>(scene.field);
+  plan.body = scene.stage.body.has_value();
+  plan.timed = scene.bins.count > 1;
+  plan.scatters = plan.absorbs = plan.gridded = false;
+  const auto add = [&](const ScatteringMedium& medium) {
+    plan.scatters |= medium.mu_s > 0;
+    plan.absorbs |= medium.mu_a > 0;
+    plan.gridded |= medium.density && medium.mu_t() > 0;
+  };
+  add(scene.stage.medium);
+  if (scene.stage.body) add(scene.stage.body->medium);
+  return plan;
+}
+
+std::shared_ptr<Transport> transport_of(const RenderScene& scene, const RenderRequest& request,
+                                        RenderMethod method) {
+  const auto index = [&](const PathPoint& p) { return index_at(scene, p); };
+  return std::make_shared<Transport>(Transport{
+      .stage = scene.stage,
+      .lights = Lights(scene.lights, scene.stage, index),
+      .sensors = sensor_ends(scene.sensors, scene.stage),
+      .strategies = strategies(method),
+      .max_scatterings = path_limit(request),
+  });
+}
+
+void Tracer::add(int paths, RandomStream& random, Film& film, TransportCounts& counts) const {
+  kernel(paths, random, film, counts, nullptr);
+  if (unscattered_beams) unscattered_beams(paths, random, film, counts, nullptr);
+}
+
+Tracers::Tracers(const RenderScene& scene, const RenderRequest& request)
+    : scene_(scene), request_(request), plan_(render_plan(scene)) {
+  if (plan_.curved)
+    space_ = make_curved_space(
+        scene.field, scene.stage,
+        {scene.step, scene.max_length, request.method != RenderMethod::photon_map});
+}
+
+Tracer Tracers::make(RenderMethod method) const {
+  // of a join; less than what it costs, as a level too low only costs time
+  const double flights_per_join = plan_.curved ? 4 : 0.1;
+  Tracer tracer = plan_.curved ? curved(method) : straight(method);
+  tracer.flights_per_pair =
+      method == RenderMethod::photon_map
+          ? flights_per_pair(*tracer.transport, tracer.kernel, scene_.bins)
+          : tune_joins(*tracer.transport, tracer.kernel, scene_.bins, flights_per_join);
+  return tracer;
+}
+
+Tracer Tracers::straight(RenderMethod method) const {
+  const double excess = std::get<Homogeneous>(scene_.field).n_excess;
+  const auto transport = transport_of(scene_, request_, method);
+  if (method == RenderMethod::photon_map)
+    return {method, transport,
+            photon_kernel(plan_.timed, transport, excess, photon_radius(scene_, request_))};
+  Tracer tracer{method, transport, straight_kernel(plan_, transport, excess)};
+  if (sums_beams_apart(*transport))
+    tracer.unscattered_beams = beams_kernel(plan_.timed, transport, excess);
+  return tracer;
+}
+
+Tracer Tracers::curved(RenderMethod method) const {
+  const auto transport = transport_of(scene_, request_, method);
+  if (method == RenderMethod::photon_map)
+    return {method, transport,
+            photon_kernel(plan_.timed, transport, space_, scene_.random_phase,
+                          photon_radius(scene_, request_))};
+  Tracer tracer{method, transport, curved_kernel(plan_, transport, space_, scene_.random_phase)};
+  if (sums_beams_apart(*transport))
+    tracer.unscattered_beams =
+        beams_kernel(plan_.timed, transport,
+                     make_curved_space(scene_.field, without_scattering(scene_.stage),
+                                       {scene_.step, scene_.max_length, false}),
+                     scene_.random_phase);
+  return tracer;
+}
+
+}  // namespace flatspeckle::grin

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "grin/estimators/path_kernels.h"
+#include "grin/estimators/render_scene.h"
+
+namespace flatspeckle::grin {
+
+/// The least plan that a scene allows.
+RenderPlan render_plan(const RenderScene& scene);
+
+/// Lights and sensors for a method; throws InputError where they do not fit the stage.
+std::shared_ptr<Transport> transport_of(const RenderScene& scene, const RenderRequest& request,
+                                        RenderMethod method);
+
+/// What draws light by one method.
+struct Tracer {
+  RenderMethod method;
+  std::shared_ptr<Transport> transport;
+  PathKernel kernel;
+  PathKernel unscattered_beams = {};  ///< where the kernel leaves that out and there is some
+  /// Of a light path and its sensor paths; infinity where they were too long to be walked.
+  double flights_per_pair = 1;
+
+  void add(int paths, RandomStream& random, Film& film, TransportCounts& counts) const;
+};
+
+/// Makes the tracers of a scene, which share its space. Refers to scene and request.
+class Tracers {
+ public:
+  Tracers(const RenderScene& scene, const RenderRequest& request);
+
+  /// Walks a few paths to tune it.
+  Tracer make(RenderMethod method) const;
+
+  const RenderScene& scene() const { return scene_; }
+  const RenderPlan& plan() const { return plan_; }
+
+ private:
+  Tracer straight(RenderMethod method) const;
+  Tracer curved(RenderMethod method) const;
+
+  const RenderScene& scene_;
+  const RenderRequest& request_;
+  RenderPlan plan_;
+  std::shared_ptr<const CurvedSpace> space_;  ///< where rays are curved
+};
+
+}  // namespace flatspeckle::grin

@@ -1,0 +1,97 @@
+#include <doctest/doctest.h>
+
+#include "bench/scenes/render_scenes.h"
+#include "grin/estimators/method_choice.h"
+#include "tests/grin/furnace.h"
+#include "tests/grin/render_tests.h"
+
+namespace flatspeckle::grin::tests {
+
+using bench::NamedRender;
+
+namespace {
+
+/// A box with a light and a sensor on its two ends.
+RenderScene box(double mu_s, const AnyIndexField& field, const Light& light, const Sensor& sensor) {
+  return {.field = field,
+          .step = 0.2,
+          .max_length = 1e3,
+          .stage = {.boundary = Box{{-1, -1, 0}, {1, 1, 8}}, .medium = {.mu_s = mu_s}},
+          .lights = {light},
+          .sensors = {sensor}};
+}
+
+const Light beam = BeamLight{{0, 0, 0}, Vec3::UnitZ(), 0.3};
+const Light lamp = FaceLight{Vec3(0, 0, 0), 0.2, 1};
+const Sensor far_side = AreaDetector{{0, 0, 8}, Vec3::UnitY(), 2, 2, {}, std::numbers::pi / 2};
+const Sensor far_pixels = AreaDetector{{0, 0, 8}, Vec3::UnitY(), 2, 2, {24, 24}, 0.5};
+const Sensor pinhole = Camera{{0.9, 0, 7}, -Vec3::UnitX(), Vec3::UnitY(), 1.0, {4, 4}};
+
+RenderMethod chosen(const RenderScene& scene) {
+  return best_tracer(Tracers(scene, {})).method;
+}
+
+/// The shipped slab, in part.
+RenderScene tissue() {
+  RenderScene scene =
+      box(10, Homogeneous{}, BeamLight{{0, 0, 0}, Vec3::UnitZ(), 1},
+          AreaDetector{{0, 0, 10}, Vec3::UnitY(), 100, 100, {}, std::numbers::pi / 2});
+  scene.stage.boundary = Box{{-50, -50, 0}, {50, 50, 10}};
+  scene.stage.medium.phase = {HgPhase{0.9}};
+  return scene;
+}
+
+/// Variance by pixel times processor seconds.
+double cost(const RenderScene& scene, RenderMethod method) {
+  const double samples = scene.stage.medium.mu_s > 1 ? 5000 : 30000;
+  const RenderJob job = render_job(scene, {method}, 3);
+  const RunState state = run_render(job, samples, 1);
+  const Estimate picture = rendered_picture(job, state.sums).steady;
+  double variance = 0;
+  for (const double error : picture.error) variance += error * error;
+  return variance * state.cpu_s;
+}
+
+}  // namespace
+
+TEST_CASE("the method that is chosen is nearly as cheap as any, by the clock too") {
+  const ParabolicGuide guide({.axis_excess = 0.6, .alpha = 0.5});
+  const NamedRender rows[] = {{"tissue", tissue()},
+                              {"fog, lamp", box(0.5, Homogeneous{}, lamp, far_pixels)},
+                              {"guide without scattering", box(0, guide, lamp, far_pixels)},
+                              {"fog, pinhole", box(0.3, Homogeneous{}, beam, pinhole)}};
+  for (const auto& row : rows) {
+    CAPTURE(row.name);
+    const RenderMethod best = chosen(row.scene);
+    CAPTURE(method_word(best));
+    for (const RenderMethod other :
+         {RenderMethod::path, RenderMethod::light, RenderMethod::bidirectional}) {
+      CAPTURE(method_word(other));
+      if (other == best || !has_finite_variance(row.scene, other)) continue;
+      CHECK(cost(row.scene, best) < 1.4 * cost(row.scene, other));
+    }
+  }
+  CHECK(chosen(rows[0].scene) == RenderMethod::light);
+}
+
+TEST_CASE("methods without finite variance are not chosen, and say so") {
+  const RenderScene scene = box(0.3, Homogeneous{}, beam, pinhole);
+  CHECK(!has_finite_variance(scene, RenderMethod::path));
+  CHECK(!has_finite_variance(scene, RenderMethod::light));
+  CHECK(has_finite_variance(scene, RenderMethod::bidirectional));
+  CHECK(has_finite_variance(box(0, Homogeneous{}, beam, pinhole), RenderMethod::light));
+  CHECK(has_finite_variance(box(0.3, Homogeneous{}, lamp, far_side), RenderMethod::path));
+  const auto plan = [&](const RenderRequest& request) {
+    return render_job(scene, request, 1).plan;
+  };
+  CHECK(plan({RenderMethod::path}).find("no finite variance") != std::string::npos);
+  CHECK(plan({RenderMethod::bidirectional}).find("no finite variance") == std::string::npos);
+  CHECK(plan({}).starts_with("bidirectional (chosen by a pilot)"));
+}
+
+TEST_CASE("in the dark nothing is preferred") {
+  const Light aside = BeamLight{{0, 0, 1}, Vec3::UnitX(), 0.01};
+  CHECK(chosen(box(0, Homogeneous{}, aside, pinhole)) == RenderMethod::bidirectional);
+}
+
+}  // namespace flatspeckle::grin::tests
