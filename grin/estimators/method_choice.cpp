@@ -21,29 +21,14 @@ struct Trial {
   double work = 0;
 };
 
-/// What a flight costs at the most, against one of twenty steps, or of none in uniform media: long
-/// curved ones, and those through grids with many tentative collisions.
-double cost_of_flight(const Tracers& tracers) {
-  const RenderScene& scene = tracers.scene();
-  const Box box = bounds(scene.stage.boundary);
-  const double diagonal = (box.high - box.low).norm();
-  double tentative = 0;
-  const auto add = [&](const ScatteringMedium& medium) {
-    if (medium.density) tentative += medium.mu_t() * medium.density->largest() * diagonal;
-  };
-  add(scene.stage.medium);
-  if (scene.stage.body) add(scene.stage.body->medium);
-  const double steps = tracers.plan().curved ? diagonal / scene.step : 0;
-  return std::max(1.0, steps / 20) + tentative / 5;
-}
-
 /// What costs time, in flights of cost 1.
 double work(const TransportCounts& counts, const Tracers& tracers) {
   const bool curved = tracers.plan().curved;
   const double per_promise = curved ? 0.03 : 0.3, per_iteration = curved ? 2 : 1;
   const double steps = static_cast<double>(counts.flights) +
                        per_iteration * static_cast<double>(counts.connections.iterations);
-  return cost_of_flight(tracers) * steps + per_promise * static_cast<double>(counts.joins_weighed) +
+  return tracers.cost_of_flight() * steps +
+         per_promise * static_cast<double>(counts.joins_weighed) +
          0.1 * static_cast<double>(counts.joins);
 }
 
@@ -92,7 +77,7 @@ std::optional<Trial> tried(const Tracers& tracers, const Tracer& tracer, int pai
 /// A few pairs of paths, then as many as the work allows.
 std::optional<Trial> tried(const Tracers& tracers, const Tracer& tracer) {
   const double enough = tracers.plan().curved ? 1 << 15 : 1 << 17;
-  if (!(tracer.flights_per_pair * cost_of_flight(tracers) * groups < enough)) return std::nullopt;
+  if (!(tracer.flights_per_pair * tracers.cost_of_flight() * groups < enough)) return std::nullopt;
   const auto few = tried(tracers, tracer, 1, enough);
   if (!few) return few;
   const auto pairs = static_cast<int>(enough / few->work);

@@ -1,6 +1,7 @@
 #include "grin/estimators/render_datasets.h"
 
 #include "core/result/result_group.h"
+#include "grin/estimators/picture_errors.h"
 #include "grin/rays/light_speed.h"
 
 namespace flatspeckle::grin {
@@ -21,34 +22,44 @@ const DatasetTable render_table{
 
 namespace {
 
-/// The pixels of one sensor among all.
+/// The pixels of one sensor among all, and its bins.
 struct Pixels {
-  std::size_t first, count;
+  PixelGrid grid;
+  std::size_t first, bins;
+  std::size_t count() const { return static_cast<std::size_t>(grid.count()); }
 };
 
-/// Mean over the pixels of each bin, times `factor`; one bin is all.
-Estimate pixel_mean(const GroupedSums& sums, const Pixels& pixels, std::size_t per_pixel,
-                    std::size_t bins, double factor) {
-  return jackknife(sums, [=](double samples, std::span<const Complex> all) {
-    std::vector<Complex> means(bins);
-    const auto own = all.subspan(pixels.first * per_pixel, pixels.count * per_pixel);
-    for (std::size_t i = 0; i < own.size(); ++i) means[i % bins] += own[i];
-    for (Complex& mean : means) mean *= factor / (samples * static_cast<double>(pixels.count));
-    return means;
-  });
+/// Of as many entries per pixel.
+Estimate own_part(const Estimate& all, const Pixels& pixels, std::size_t per_pixel) {
+  Estimate own = part(all, pixels.first * per_pixel, pixels.count() * per_pixel);
+  bound_errors(own, pixels.grid);
+  return own;
 }
 
-SensorResult sensor_result(const Sensor& sensor, const Pixels& pixels, std::size_t bins,
-                           const RenderedPicture& all, const GroupedSums& sums) {
+/// Mean over the pixels, times `factor`, in so many bins: one, or those of the pixels.
+Estimate pixel_mean(const GroupedSums& sums, const Pixels& pixels, std::size_t bins,
+                    double factor) {
+  Estimate mean = jackknife(sums, [=](double samples, std::span<const Complex> all) {
+    std::vector<Complex> means(bins);
+    const auto own = all.subspan(pixels.first * pixels.bins, pixels.count() * pixels.bins);
+    for (std::size_t i = 0; i < own.size(); ++i) means[i % bins] += own[i];
+    for (Complex& mean : means) mean *= factor / (samples * static_cast<double>(pixels.count()));
+    return means;
+  });
+  bound_errors(mean, {1, 1});
+  return mean;
+}
+
+SensorResult sensor_result(const Sensor& sensor, const Pixels& pixels, const RenderedPicture& all,
+                           const GroupedSums& sums) {
   const double area = picture_of(sensor).area();
   const bool is_area = std::holds_alternative<AreaDetector>(sensor);
-  SensorResult result{{part(all.bins, pixels.first * bins, pixels.count * bins),
-                       part(all.steady, pixels.first, pixels.count)},
-                      pixel_mean(sums, pixels, bins, 1, 1),
+  SensorResult result{{own_part(all.bins, pixels, pixels.bins), own_part(all.steady, pixels, 1)},
+                      pixel_mean(sums, pixels, 1, 1),
                       {},
                       {}};
-  if (is_area) result.total = pixel_mean(sums, pixels, bins, 1, area);
-  if (bins > 1) result.pulse = pixel_mean(sums, pixels, bins, bins, is_area ? area : 1);
+  if (is_area) result.total = pixel_mean(sums, pixels, 1, area);
+  if (pixels.bins > 1) result.pulse = pixel_mean(sums, pixels, pixels.bins, is_area ? area : 1);
   return result;
 }
 
@@ -91,13 +102,13 @@ void write_counts(ResultFile& file, const RenderJob& job) {
 RenderResult render_result(const RenderScene& scene, const RenderJob& job,
                            const GroupedSums& sums) {
   const RenderedPicture all = rendered_picture(job, sums);
+  const auto bins = static_cast<std::size_t>(job.bins.count);
   RenderResult result;
   std::size_t first = 0;
   for (const Sensor& sensor : scene.sensors) {
-    const auto count = static_cast<std::size_t>(picture_of(sensor).grid().count());
-    result.push_back(
-        sensor_result(sensor, {first, count}, static_cast<std::size_t>(job.bins.count), all, sums));
-    first += count;
+    const Pixels pixels{picture_of(sensor).grid(), first, bins};
+    result.push_back(sensor_result(sensor, pixels, all, sums));
+    first += pixels.count();
   }
   return result;
 }

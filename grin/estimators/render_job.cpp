@@ -10,20 +10,24 @@
 #include "core/numbers/random.h"
 #include "grin/estimators/method_choice.h"
 #include "grin/estimators/photon_map.h"
+#include "grin/estimators/picture_errors.h"
 
 namespace flatspeckle::grin {
 
 namespace {
 
-/// Of a picture's size, and so few that a batch ends soon where paths are long. A power of two: no
-/// rounding of the flights changes it.
-int paths_per_batch(const Tracer& tracer, std::size_t sums) {
+/// So many that adding up the picture takes little of the time, and so few that a batch ends soon.
+/// A power of two: no rounding of the flights changes it.
+int paths_per_batch(const Tracer& tracer, double cost_of_flight, std::size_t sums) {
+  constexpr double fewest = 32, most = 16384;
   const bool is_map = tracer.method == RenderMethod::photon_map;
   const double most_flights = is_map ? 1 << 20 : 1 << 17;
-  const std::size_t paths =
-      is_map ? photon_paths_per_batch : std::clamp<std::size_t>(sums / 8, 32, 16384);
-  const auto short_enough = static_cast<std::size_t>(most_flights / tracer.flights_per_pair);
-  return static_cast<int>(std::min(paths, std::bit_floor(std::max<std::size_t>(short_enough, 1))));
+  const double paths =
+      is_map ? photon_paths_per_batch
+             : std::clamp(static_cast<double>(sums) / (64 * cost_of_flight), fewest, most);
+  const auto short_enough =
+      static_cast<std::size_t>(std::min(paths, most_flights / tracer.flights_per_pair));
+  return static_cast<int>(std::bit_floor(std::max<std::size_t>(short_enough, 1)));
 }
 
 std::string described(const RenderScene& scene, const RenderRequest& request, RenderMethod method) {
@@ -64,7 +68,9 @@ double largest_error(const std::vector<SensorEnd>& sensors, const Estimate& pict
   std::size_t first = 0;
   for (const SensorEnd& sensor : sensors) {
     const auto count = static_cast<std::size_t>(sensor.pixels().count());
-    largest = std::max(largest, relative_error(part(picture, first, count)));
+    Estimate own = part(picture, first, count);
+    bound_errors(own, sensor.pixels());
+    largest = std::max(largest, relative_error(own));
     first += count;
   }
   return largest;
@@ -103,7 +109,7 @@ RenderJob render_job(const RenderScene& scene, const RenderRequest& request, std
   job.plan = described(scene, request, tracer.method) + tracers.plan().describe() +
              described_sensors(scene);
   job.batches.size = static_cast<std::size_t>(pixels) * scene.bins.count;
-  const int paths = paths_per_batch(tracer, job.batches.size);
+  const int paths = paths_per_batch(tracer, tracers.cost_of_flight(), job.batches.size);
   job.batches.samples_per_batch = paths;
   const auto counts = std::make_shared<TransportCounts>();
   job.counts = counts;

@@ -91,6 +91,19 @@ Tracer Tracers::make(RenderMethod method) const {
   return tracer;
 }
 
+double Tracers::cost_of_flight() const {
+  const Box box = bounds(scene_.stage.boundary);
+  const double diagonal = (box.high - box.low).norm();
+  double tentative = 0;
+  const auto add = [&](const ScatteringMedium& medium) {
+    if (medium.density) tentative += medium.mu_t() * medium.density->largest() * diagonal;
+  };
+  add(scene_.stage.medium);
+  if (scene_.stage.body) add(scene_.stage.body->medium);
+  const double steps = plan_.curved ? diagonal / scene_.step : 0;
+  return std::max(1.0, steps / 20) + tentative / 5;
+}
+
 Tracer Tracers::straight(RenderMethod method) const {
   const double excess = std::get<Homogeneous>(scene_.field).n_excess;
   const auto transport = transport_of(scene_, request_, method);

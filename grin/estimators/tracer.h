@@ -35,6 +35,10 @@ class Tracers {
   /// Walks a few paths to tune it.
   Tracer make(RenderMethod method) const;
 
+  /// At the most, against a flight of twenty steps, or of none in uniform media: long curved ones
+  /// cost more, and those through grids with many tentative collisions.
+  double cost_of_flight() const;
+
   const RenderScene& scene() const { return scene_; }
   const RenderPlan& plan() const { return plan_; }
 
