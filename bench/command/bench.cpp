@@ -46,6 +46,10 @@ std::vector<std::size_t> in_order(std::size_t count) {
 }
 
 std::string line_of(const bench::ErrorCurve& curve, bool good) {
+  if (!curve.has_slope())
+    return text("%-24s %-22s error %.1e in %.2g s, %.1e in %.2g s", curve.scene.c_str(),
+                curve.method.c_str(), curve.points.front().error, curve.points.front().cpu_s,
+                curve.points.back().error, curve.points.back().cpu_s);
   return text("%-24s %-22s slope %6.3f +- %5.3f, efficiency %9.3g /s%s", curve.scene.c_str(),
               curve.method.c_str(), curve.slope, curve.slope_error, curve.efficiency,
               good ? "" : "  FAILED");

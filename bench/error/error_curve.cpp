@@ -1,13 +1,15 @@
 #include "bench/error/error_curve.h"
 
-#include "bench/error/error_flatland.h"
+#include "bench/error/error_boxes.h"
 #include "bench/error/error_render.h"
+#include "bench/error/error_slabs.h"
 
 namespace flatspeckle::bench {
 
 std::vector<ErrorRun> error_runs() {
-  std::vector<ErrorRun> runs = flatland_error_runs();
-  for (ErrorRun& run : render_error_runs()) runs.push_back(std::move(run));
+  std::vector<ErrorRun> runs = box_error_runs();
+  for (const auto& more : {slab_error_runs(), render_error_runs()})
+    runs.insert(runs.end(), more.begin(), more.end());
   return runs;
 }
 

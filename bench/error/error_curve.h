@@ -9,8 +9,8 @@ namespace flatspeckle::bench {
 /// What independent runs of a method are off by after so much time, RMS over the runs and over the
 /// entries, relative to the RMS of the reference; what the reference itself is off by is taken off.
 struct ErrorPoint {
-  double cpu_s;  ///< of one run on one thread, set-up not counted
-  double samples;
+  double cpu_s;    ///< of one run on one thread, set-up not counted
+  double samples;  ///< 0 of a solution without chance
   double error;
   double error_error;  ///< standard error of `error`, from the spread of the runs
 };
@@ -26,6 +26,8 @@ struct ErrorCurve {
   double efficiency = 0;   ///< 1 / (error^2 cpu_s)
   /// Unbiased and of finite variance, so that the slope must be -1/2.
   bool is_monte_carlo = true;
+  /// A solution without chance has a point per tolerance, and no slope.
+  bool has_slope() const { return points.front().samples > 0; }
 };
 
 struct ErrorRun {

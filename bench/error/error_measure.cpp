@@ -156,6 +156,10 @@ void fit(const Spread& spread, ErrorCurve& curve) {
 
 }  // namespace
 
+double relative_distance(const std::vector<Complex>& values, const ErrorReference& reference) {
+  return std::sqrt(relative_square(values, reference));
+}
+
 ErrorCurve measure_error(const Method& method, const ErrorReference& reference,
                          double cpu_seconds) {
   omp_set_num_threads(1);

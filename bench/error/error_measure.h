@@ -32,6 +32,9 @@ struct ErrorReference {
   std::string how;            ///< it is known, in words
 };
 
+/// RMS over the entries of what `values` are off by, relative to the RMS of the reference.
+double relative_distance(const std::vector<Complex>& values, const ErrorReference& reference);
+
 /// Runs of many seeds, each to the same number of batches, with a point whenever a run's batches
 /// have doubled. All points see the same number of runs, so that a method without finite variance
 /// is seen: its error falls more slowly. Slope by least squares, weighted by the points' own

@@ -10,6 +10,7 @@ namespace flatspeckle::bench {
 
 // The cases of plan_cases(), by room.
 std::vector<PlanCase> mc_plan_cases();
+std::vector<PlanCase> transport_plan_cases();
 std::vector<PlanCase> field_plan_cases();
 std::vector<PlanCase> wave_plan_cases();
 std::vector<PlanCase> ray_plan_cases();

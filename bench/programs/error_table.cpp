@@ -8,7 +8,7 @@
 
 #include <omp.h>
 
-#include "bench/error/error_flatland.h"
+#include "bench/error/error_boxes.h"
 #include "bench/error/error_render.h"
 
 using namespace flatspeckle;
@@ -48,7 +48,7 @@ int main(int argc, char** argv) {
   omp_set_num_threads(1);  // the runner has threads enough
   const double cpu_seconds = argc > 1 ? std::atof(argv[1]) : 600;
   std::printf("# by bench_error_table %g: what error curves are compared with\n", cpu_seconds);
-  for (const auto& runs : {flatland_long_runs(), render_long_runs()})
+  for (const auto& runs : {box_long_runs(), render_long_runs()})
     for (const LongRun& run : runs)
       if (is_wanted(run.name, argc, argv)) print(run, cpu_seconds);
 }

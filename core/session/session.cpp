@@ -35,7 +35,7 @@ void tell_few_batches(const std::string& label, std::uint64_t batches) {
 void tell_rare(const std::vector<std::string>& estimates) {
   if (estimates.empty()) return;
   constexpr std::size_t most = 5;
-  std::cerr << "note: a few strong paths carry errors, which are likely too small: ";
+  std::cerr << "note: a few strong paths carry errors, which are not to be relied on: ";
   for (std::size_t i = 0; i < std::min(most, estimates.size()); ++i)
     std::cerr << (i == 0 ? "" : ", ") << estimates[i];
   if (estimates.size() > most) std::cerr << " and " << estimates.size() - most << " more";

@@ -1,7 +1,7 @@
 """What the benchmark report says."""
 
 from lib import bench_figures, number_text
-from lib.bench_numbers import TARGET, time_to_target
+from lib.bench_numbers import TARGET, has_slope, seconds_to_target, time_to_target
 from lib.document import Figure, Heading, Paragraph, Table
 
 TITLE = "What accuracy costs, where it breaks, what was left out"
@@ -43,6 +43,11 @@ def curve_rows(error, scene):
     curves = error.of_scene(scene)
     ours = next(curve for curve in curves if curve["method"] in ("ours", "bidirectional"))
     for curve in curves:
+        if not has_slope(curve):
+            seconds = seconds_to_target(curve)
+            yield [curve["method"], "", "", number_text.seconds(seconds),
+                   number_text.factor(seconds / time_to_target(ours["efficiency"]))]
+            continue
         row = [curve["method"], number_text.with_error(curve["slope"], curve["slope_error"])]
         if not curve["is_monte_carlo"]:  # no law to go by
             yield [*row, "", "", ""]
@@ -61,7 +66,8 @@ def accuracy(bench, pictures):
         "another way, against processor time. Independent samples bring a slope of "
         "\u22121/2. Efficiency is 1/(error\u00b2 \u00d7 CPU seconds); the last "
         "column says how many times as long a method takes as ours to the same error. What is biased "
-        "or has no finite variance has neither.")
+        "or has no finite variance has neither. Transport draws nothing: its points are tolerances, "
+        "its time is that of the first within the target.")
     for name in ("error_flatland", "error_other", "error_render"):
         yield from figure(name, pictures)
     for scene in error.scenes():

@@ -13,6 +13,7 @@ OURS = {"color": "black", "marker": "o", "linestyle": "-", "linewidth": 1.3}
 LOOKS = {  # the same method looks the same everywhere
     "ours": OURS, "bidirectional": OURS, "exact dense": style.look(0), "exact fast": style.look(4),
     "textbook Monte Carlo": style.look(1), "fields": style.look(3), "path tracing": style.look(1),
+    "transport": style.look(2),
     "light tracing": style.look(2), "photon map": style.look(3)}
 GUIDE = {"color": "0.6", "linewidth": 0.7, "zorder": 0}
 TITLES = {"box_points": "31 points in a box, OD 1", "box_cylinders": "67 cylinders in a box, OD 1",

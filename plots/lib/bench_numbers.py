@@ -22,9 +22,22 @@ def time_to_target(efficiency):
     return 1 / (efficiency * TARGET**2)
 
 
+def has_slope(curve):
+    return curve["samples"][0] > 0
+
+
+def seconds_to_target(curve):
+    """Of a solution without chance, whose points are tolerances."""
+    return curve["cpu_s"][np.argmax(curve["relative_error"] <= TARGET)]
+
+
 def of_curves(error):
     for curve in error.curves:
         key = f"{slug(curve['scene'])}.{slug(curve['method'])}"
+        if not has_slope(curve):
+            seconds = seconds_to_target(curve)
+            yield f"time.{key}", number(seconds, text=number_text.seconds(seconds))
+            continue
         yield f"slope.{key}", number(curve["slope"], curve["slope_error"])
         if not curve["is_monte_carlo"]:
             continue
