@@ -7,6 +7,7 @@
 #include "core/result/run_state_file.h"
 #include "flatland/media/structure_factor.h"
 #include "flatland/scene/scene_datasets.h"
+#include "grin/estimators/energy_datasets.h"
 #include "grin/estimators/render_datasets.h"
 #include "grin/scene/trace_datasets.h"
 #include "mc/estimators/brownian.h"
@@ -52,7 +53,8 @@ std::vector<const DatasetTable*> all_tables() {
                                              &grin::camera_table,
                                              &grin::area_table,
                                              &grin::directional_table,
-                                             &grin::render_table};
+                                             &grin::render_table,
+                                             &grin::energy_table};
 #ifdef FLATSPECKLE_BENCH
   for (const DatasetTable* table : bench_tables()) tables.push_back(table);
 #endif

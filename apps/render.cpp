@@ -4,6 +4,7 @@
 #include "apps/subcommands.h"
 #include "core/session/identity.h"
 #include "core/session/session.h"
+#include "grin/estimators/energy_datasets.h"
 #include "grin/estimators/render_datasets.h"
 #include "grin/scene/render_values.h"
 
@@ -99,6 +100,8 @@ int render(const Arguments& arguments) {
                            render_result(scene, job, session.sums(""));
                        print_render(scene, job, result);
                        write_render(file, scene, job, result, scene.length_unit);
+                       if (const auto energy = energy_result(job, session.sums("")))
+                         write_energy(file, scene, request, *energy);
                      });
 }
 

@@ -27,7 +27,10 @@ std::vector<RenderScenePointer> shared(const std::vector<NamedRender>& all) {
 Method method_of(const RenderScenePointer& named, const std::string& name, RenderMethod method) {
   return {.scene = named.name, .name = name, .trial = [scene = named.scene, method](auto seed) {
             const grin::RenderJob job = render_job(*scene, {method}, seed);
-            return Trial{job.batches, sample_mean};
+            return Trial{job.batches,
+                         [pixels = job.pictures](double samples, std::span<const Complex> sums) {
+                           return sample_mean(samples, sums.first(pixels));
+                         }};
           }};
 }
 
@@ -67,7 +70,7 @@ std::vector<ErrorRun> all_methods(const RenderScenePointer& named) {
 std::vector<ErrorRun> closed_form(const RenderScenePointer& named) {
   std::vector<ErrorRun> runs;
   const auto reference = [scene = named.scene] {
-    return even_light(render_job(*scene, {RenderMethod::light}, 0).batches.size);
+    return even_light(render_job(*scene, {RenderMethod::light}, 0).pictures);
   };
   for (const Method& method :
        {method_of(named, "light tracing", RenderMethod::light),

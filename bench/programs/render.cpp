@@ -50,8 +50,7 @@ Reference reference_of(const RenderScene& scene, double cpu_seconds) {
   return reference;
 }
 
-double relative_error(const Reference& reference, const std::vector<Complex>& sums,
-                      double samples) {
+double relative_error(const Reference& reference, std::span<const Complex> sums, double samples) {
   double square = 0;
   for (std::size_t i = 0; i < sums.size(); ++i) {
     const double off = sums[i].real() / samples - reference.value[i];
@@ -77,7 +76,7 @@ void trace(const std::string& scene_name, const RenderScene& scene, const Contes
     const double samples = static_cast<double>(number + 1) * job.batches.samples_per_batch;
     std::printf("%s,%s,%.4g,%llu,%.4g,%.0f,%.5g\n", scene_name.c_str(), contestant.method.c_str(),
                 contestant.request.photon_radius, static_cast<unsigned long long>(seed), spent,
-                samples, relative_error(reference, sums, samples));
+                samples, relative_error(reference, std::span(sums).first(job.pictures), samples));
     std::fflush(stdout);
   }
 }

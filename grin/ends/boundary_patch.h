@@ -22,6 +22,7 @@ class FlatDisk {
   FlatDisk(const Vec3& centre, const Vec3& normal, double radius)
       : centre_(centre), normal_(normal), radius_(radius), across_(frame_across(normal)) {}
 
+  const Vec3& centre() const { return centre_; }
   const Vec3& normal() const { return normal_; }
   Vec3 rim(double azimuth) const {
     return at(std::cos(azimuth) * radius_, std::sin(azimuth) * radius_);

@@ -87,13 +87,22 @@ EndPosition Lights::position(int light, const BoundaryPoint& at) const {
       source_[light].end);
 }
 
-EndPosition Lights::beam_position(double stratum, double u, double v) const {
+std::size_t Lights::beam_number(double stratum) const {
   double power = stratum * beam_power_;
   std::size_t i = 0;
   while (i + 1 < beams_.size() && power >= source_[beams_[i]].power)
     power -= source_[beams_[i++]].power;
-  const FlatDisk& disk = std::get<BeamLightEnd>(source_[beams_[i]].end).disk();
-  return position(beams_[i], {disk.from_square(u, v), disk.normal()});
+  return i;
+}
+
+Lights::Beam Lights::beam_at(std::size_t number) const {
+  const auto& end = std::get<BeamLightEnd>(source_[beams_[number]].end);
+  return {number, end.disk(), beam_power_ / end.area()};
+}
+
+EndPosition Lights::beam_position(double stratum, double u, double v) const {
+  const Beam from = beam(stratum);
+  return position(beams_[from.number], {from.disk.from_square(u, v), from.disk.normal()});
 }
 
 EndPosition Lights::draw_position(RandomStream& random) const {

@@ -50,6 +50,15 @@ class Lights {
   /// A place on one of the beams: which, by their power, says `stratum` in (0, 1); where, (u, v) in
   /// the unit square. Its direction is `inward`.
   EndPosition beam_position(double stratum, double u, double v) const;
+  /// One of the beams, as a stratum says: its disk, and the power of all beams over its area.
+  struct Beam {
+    std::size_t number;
+    const FlatDisk& disk;
+    double irradiance;
+  };
+  Beam beam(double stratum) const { return beam_at(beam_number(stratum)); }
+  Beam beam_at(std::size_t number) const;
+  std::size_t beams() const { return beams_.size(); }
 
   /// A path arrives on the boundary at x along `direction`: calls use(EndHit) for each light there.
   template <class S, class Use>
@@ -74,6 +83,7 @@ class Lights {
     double position_density = 1;
   };
   void settle_chances();
+  std::size_t beam_number(double stratum) const;
   EndPosition draw_position(RandomStream& random) const;
   EndPosition position(int light, const BoundaryPoint& at) const;
 

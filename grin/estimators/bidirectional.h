@@ -68,8 +68,10 @@ class Bidirectional {
       for_each_sensor([&] { join_to_sensor(vertex); });
       if (vertex.vertices < last_kept) vertices_.offer(vertex, random_);
     };
+    LightTally tally(film_.energy);
     walk<plan>(transport_, space_, transport_.lights, start, first,
-               transport_.strategies.short_light, random_, counts_, collided, left);
+               transport_.strategies.short_light, random_, counts_, tally, collided, left);
+    tally.end_path();
   }
 
   void walk_from_sensor(double stratum) {
@@ -86,8 +88,9 @@ class Bidirectional {
       join_to_light(vertex);
       if (vertex.vertices < last_kept) join_to_light_path(vertex);
     };
+    const NoTally tally;
     walk<plan>(transport_, space_, sensor(), start, first, transport_.strategies.short_sensor,
-               random_, counts_, collided, left);
+               random_, counts_, tally, collided, left);
   }
 
   /// A number of vertices; those that have fewer are kept for joins to the other path.

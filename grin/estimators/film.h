@@ -3,6 +3,7 @@
 #include <span>
 
 #include "core/numbers/complex.h"
+#include "grin/estimators/energy_balance.h"
 
 namespace flatspeckle::grin {
 
@@ -37,6 +38,8 @@ class Film {
   }
   /// Steady state.
   void add(int pixel, double value) { sums_[static_cast<std::size_t>(pixel) * count_] += value; }
+
+  EnergyBalance energy;  ///< of light paths that are walked to their ends
 
  private:
   std::span<Complex> sums_;

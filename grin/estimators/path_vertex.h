@@ -134,7 +134,7 @@ inline PathVertex arrived(const Strategies& strategies, const PathVertex& here,
   next.before = fewer_of_ours(here, 1 / heuristic(here.density),
                               heuristic(direction_density * here.back / here.density), others);
   const bool can_be_joined = flight.is_joinable && !(here.end && here.end->is_beam);
-  const double share = flight.passages > 0 ? found_share : 1;
+  const double share = flight.passages.count > 0 ? found_share : 1;
   next.first_of_other = can_be_joined ? heuristic(share * choice) : 0;
   return next;
 }

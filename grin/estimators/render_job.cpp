@@ -46,9 +46,9 @@ std::vector<Complex> steady_mean(double samples, std::span<const Complex> sums, 
   return steady;
 }
 
-Estimate steady_picture(const GroupedSums& sums, int bins) {
-  return jackknife(sums, [bins](double samples, std::span<const Complex> total) {
-    return steady_mean(samples, total, bins);
+Estimate steady_picture(const GroupedSums& sums, std::size_t pictures, int bins) {
+  return jackknife(sums, [=](double samples, std::span<const Complex> total) {
+    return steady_mean(samples, total.first(pictures), bins);
   });
 }
 
@@ -60,6 +60,11 @@ std::string described_sensors(const RenderScene& scene) {
       text += (i == 0 ? "; sensors " : ", ") + sensor_name(scene, i) + " (" +
               table_of(scene.sensors[i]).name + ')';
   return text;
+}
+
+/// To their ends, booking where their power went.
+bool walks_light(RenderMethod method) {
+  return method == RenderMethod::light || method == RenderMethod::bidirectional;
 }
 
 /// That of the sensor where it is largest: units of sensors differ.
@@ -108,28 +113,36 @@ RenderJob render_job(const RenderScene& scene, const RenderRequest& request, std
   job.bins = scene.bins;
   job.plan = described(scene, request, tracer.method) + tracers.plan().describe() +
              described_sensors(scene);
-  job.batches.size = static_cast<std::size_t>(pixels) * scene.bins.count;
+  job.pictures = static_cast<std::size_t>(pixels) * scene.bins.count;
+  job.has_energy = walks_light(tracer.method);
+  job.batches.size = job.pictures + (job.has_energy ? EnergyBalance::size : 0);
   const int paths = paths_per_batch(tracer, tracers.cost_of_flight(), job.batches.size);
   job.batches.samples_per_batch = paths;
   const auto counts = std::make_shared<TransportCounts>();
   job.counts = counts;
   const auto counting = std::make_shared<std::mutex>();
-  job.batches.run = [=, bins = scene.bins](std::uint64_t number, std::span<Complex> sums) {
-    Film film(pixels, bins, sums);
+  job.batches.run = [=, bins = scene.bins, pictures = job.pictures, has_energy = job.has_energy](
+                        std::uint64_t number, std::span<Complex> sums) {
+    Film film(pixels, bins, sums.first(pictures));
     RandomStream random(seed, static_cast<std::uint64_t>(Stream::render), number);
     TransportCounts of_batch;
     tracer.add(paths, random, film, of_batch);
+    if (has_energy) film.energy.add_to(sums.subspan(pictures, EnergyBalance::size));
     const std::lock_guard lock(*counting);
     *counts += of_batch;
   };
-  job.batches.relative_error = [=, bins = scene.bins.count](const GroupedSums& sums) {
-    return largest_error(tracer.transport->sensors, steady_picture(sums, bins));
+  job.batches.relative_error = [=, pictures = job.pictures,
+                                bins = scene.bins.count](const GroupedSums& sums) {
+    return largest_error(tracer.transport->sensors, steady_picture(sums, pictures, bins));
   };
   return job;
 }
 
 RenderedPicture rendered_picture(const RenderJob& job, const GroupedSums& sums) {
-  return {jackknife(sums, sample_mean), steady_picture(sums, job.bins.count)};
+  const auto means = [&](double samples, std::span<const Complex> all) {
+    return sample_mean(samples, all.first(job.pictures));
+  };
+  return {jackknife(sums, means), steady_picture(sums, job.pictures, job.bins.count)};
 }
 
 }  // namespace flatspeckle::grin

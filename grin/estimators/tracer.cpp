@@ -26,12 +26,6 @@ double photon_radius(const RenderScene& scene, const RenderRequest& request) {
   return request.photon_radius > 0 ? request.photon_radius : default_photon_radius(scene.stage);
 }
 
-bool sums_beams_apart(const Transport& transport) {
-  return transport.lights.beam_power() > 0 &&
-         std::any_of(transport.sensors.begin(), transport.sensors.end(),
-                     [](const SensorEnd& sensor) { return sensor.can_be_hit(); });
-}
-
 double index_at(const RenderScene& scene, const PathPoint& p) {
   if (scene.stage.body && p.part == Part::stage) return 1 + scene.stage.excess_around;
   return std::visit([&](const auto& field) { return index(field, p.x); }, scene.field);
@@ -111,7 +105,7 @@ Tracer Tracers::straight(RenderMethod method) const {
     return {method, transport,
             photon_kernel(plan_.timed, transport, excess, photon_radius(scene_, request_))};
   Tracer tracer{method, transport, straight_kernel(plan_, transport, excess)};
-  if (sums_beams_apart(*transport))
+  if (transport->lights.beam_power() > 0)
     tracer.unscattered_beams = beams_kernel(plan_.timed, transport, excess);
   return tracer;
 }
@@ -123,7 +117,7 @@ Tracer Tracers::curved(RenderMethod method) const {
             photon_kernel(plan_.timed, transport, space_, scene_.random_phase,
                           photon_radius(scene_, request_))};
   Tracer tracer{method, transport, curved_kernel(plan_, transport, space_, scene_.random_phase)};
-  if (sums_beams_apart(*transport))
+  if (transport->lights.beam_power() > 0)
     tracer.unscattered_beams =
         beams_kernel(plan_.timed, transport,
                      make_curved_space(scene_.field, without_scattering(scene_.stage),

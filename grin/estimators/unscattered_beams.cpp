@@ -1,6 +1,8 @@
 #include "grin/estimators/unscattered_beams.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "grin/space/straight_space.h"
@@ -8,6 +10,14 @@
 namespace flatspeckle::grin {
 
 namespace {
+
+/// A way costs as much as some tens of rays.
+constexpr double ways_per_ray = 1.0 / 32;
+
+constexpr double golden = 0.61803398874989484820;
+double fraction(double x) {
+  return x - std::floor(x);
+}
 
 class EvenSquare {
  public:
@@ -18,45 +28,194 @@ class EvenSquare {
 
  private:
   static constexpr double plastic = 1.32471795724474602596;  // x^3 = x + 1
-  static double fraction(double x) { return x - std::floor(x); }
   double u_, v_;
 };
 
-template <bool timed, Space S>
-void add_ray(const Transport& transport, const S& space, const EndPosition& start,
-             RandomStream& random, Film& film, TransportCounts& counts) {
-  const Flight flight = space.fly(start.point, start.inward, random);
-  counts.add_flight(flight.end == Flight::End::lost);
-  if (flight.end == Flight::End::lost) return;
-  for (const SensorEnd& sensor : transport.sensors)
-    sensor.hit(space, flight.point.x, flight.direction, [&](const EndHit& hit) {
-      deposit<timed>(film, counts, hit.direction.pixel,
-                     transport.lights.beam_power() * flight.weight * hit.value,
-                     flight.optical_path);
-    });
+ParallelLight parallel_light(const Lights::Beam& beam) {
+  return {beam.disk.centre(), beam.disk.normal()};
 }
+
+/// Rays do not say all of what this sensor sees of beams.
+template <Space S>
+bool needs_ways(const S& space, const SensorEnd& sensor) {
+  return !sensor.can_be_hit() || space.joins_through();
+}
+
+/// Where searches for ways from a sensor to a beam begin, of each sensor and beam.
+using BeamSeeds = std::vector<std::vector<BeamSeed>>;
+
+bool is_among(std::span<const BeamWay> ways, const BeamWay& one) {
+  constexpr double same = 1e-4;  // rad
+  return std::any_of(ways.begin(), ways.end(), [&](const BeamWay& way) {
+    return way.passages == one.passages &&
+           (way.start_direction - one.start_direction).norm() < same;
+  });
+}
+
+/// Of the ways that random trials find from a few places of the sensor, those that bring most
+/// light, each once. Decided by the scene alone.
+template <Space S>
+std::vector<BeamSeed> seeds_of(const S& space, const SensorEnd& sensor, const Lights::Beam& beam,
+                               int trials) {
+  constexpr std::size_t most = 24;
+  const int places = sensor.can_be_hit() ? 4 : 1;
+  constexpr auto no_batch = std::numeric_limits<std::uint64_t>::max() - 1;
+  RandomStream random(0, static_cast<std::uint64_t>(Stream::render), no_batch);
+  ConnectionStatistics statistics;
+  const ParallelLight light = parallel_light(beam);
+  std::vector<BeamSeed> seeds;
+  std::vector<std::pair<double, BeamSeed>> found;  // light
+  for (int place = 0; place < places; ++place) {
+    const EndPosition z = sensor.sample_position(space, random);
+    std::vector<BeamWay> known = space.ways_to_beam(z.point, light, seeds, random, statistics);
+    std::erase_if(known, [](const BeamWay& way) { return way.multiplicity != 1; });  // by chance
+    for (int i = 0; i < trials / places; ++i) {
+      const auto way = space.some_way_to_beam(z.point, light, random, statistics);
+      if (!way || is_among(known, *way)) continue;
+      known.push_back(*way);
+      const double strength = sensor.towards(z, way->start_direction).strength;
+      if (!beam.disk.reaches(way->place) || !(strength > 0)) continue;
+      seeds.push_back({way->start_direction, way->passages, way->first_met});
+      found.emplace_back(strength * way->transmittance / way->thinning, seeds.back());
+    }
+  }
+  if (seeds.size() <= most) return seeds;
+  std::sort(found.begin(), found.end(),
+            [](const auto& a, const auto& b) { return a.first > b.first; });
+  for (std::size_t i = 0; i < most; ++i) seeds[i] = found[i].second;
+  seeds.resize(most);
+  return seeds;
+}
+
+template <Space S>
+BeamSeeds all_seeds(const Transport& transport, const S& space, int trials) {
+  trials /= static_cast<int>(std::min<std::size_t>(transport.lights.beams(), 8));
+  BeamSeeds seeds;
+  for (const SensorEnd& sensor : transport.sensors)
+    for (std::size_t beam = 0; beam < transport.lights.beams(); ++beam)
+      seeds.push_back(needs_ways(space, sensor)
+                          ? seeds_of(space, sensor, transport.lights.beam_at(beam), trials)
+                          : std::vector<BeamSeed>());
+  return seeds;
+}
+
+/// Light of beams that meets no collision: rays from the beams that hit sensors, and ways from
+/// places of the sensors back to the beams, `ways_per_ray` of them. A way that the body's surface
+/// refracts or reflects can be found by both, and is shared by multiple importance sampling; of
+/// sensors that can be hit the others are the rays' alone.
+template <bool timed, Space S>
+class UnscatteredBeams {
+ public:
+  UnscatteredBeams(const Transport& transport, const BeamSeeds& seeds, const S& space,
+                   RandomStream& random, Film& film, TransportCounts& counts)
+      : transport_(transport),
+        seeds_(seeds),
+        space_(space),
+        random_(random),
+        film_(film),
+        counts_(counts) {}
+
+  void add_ray(const EndPosition& start, double stratum) {
+    const Flight flight = space_.fly(start.point, start.inward, random_);
+    counts_.add_flight(flight.end == Flight::End::lost);
+    if (flight.end == Flight::End::lost) return;
+    for (const SensorEnd& sensor : transport_.sensors)
+      sensor.hit(space_, flight.point.x, flight.direction, [&](const EndHit& hit) {
+        add(hit.direction.pixel,
+            transport_.lights.beam_power() * flight.weight * hit.value *
+                weight_of_ray(flight, hit, transport_.lights.beam(stratum)),
+            flight.optical_path);
+      });
+  }
+
+  /// From each sensor that needs them to the beam that the stratum says; they stand for so many
+  /// rays.
+  void add_ways(double stratum) {
+    const Lights::Beam beam = transport_.lights.beam(stratum);
+    for (std::size_t i = 0; i < transport_.sensors.size(); ++i)
+      if (needs_ways(space_, transport_.sensors[i]))
+        add_ways(transport_.sensors[i], beam, seeds_[i * transport_.lights.beams() + beam.number]);
+  }
+
+ private:
+  void add_ways(const SensorEnd& sensor, const Lights::Beam& beam,
+                std::span<const BeamSeed> seeds) {
+    const EndPosition z = sensor.sample_position(space_, random_);
+    const auto ways =
+        space_.ways_to_beam(z.point, parallel_light(beam), seeds, random_, counts_.connections);
+    ++counts_.joins;
+    for (const BeamWay& way : ways)
+      if (beam.disk.reaches(way.place)) add_way(sensor, z, beam, way);
+  }
+  void add_way(const SensorEnd& sensor, const EndPosition& z, const Lights::Beam& beam,
+               const BeamWay& way) {
+    const EndDirection to = sensor.towards(z, way.start_direction);
+    const double value = beam.irradiance * to.strength * way.transmittance /
+                         (z.position_density * z.index * z.index * way.thinning);
+    double weight = 1;
+    if (sensor.can_be_hit()) {
+      if (way.passages.count == 0) return;
+      weight = 1 / (1 + 1 / heuristic(ways_over_rays(z, way, beam)));
+    }
+    add(to.pixel, value * weight * way.multiplicity / ways_per_ray, way.optical_path);
+  }
+
+  double weight_of_ray(const Flight& flight, const EndHit& hit, const Lights::Beam& beam) const {
+    if (flight.passages.count == 0 || !flight.is_joinable) return 1;
+    const auto way = space_.beam_way(hit.position.point, parallel_light(beam), -flight.direction,
+                                     flight.passages.reversed(), random_);
+    return way ? 1 / (1 + heuristic(ways_over_rays(hit.position, *way, beam))) : 1;
+  }
+
+  /// Of the densities with which both find a way, per area of the beam.
+  double ways_over_rays(const EndPosition& z, const BeamWay& way, const Lights::Beam& beam) const {
+    const double by_rays = beam.irradiance / transport_.lights.beam_power();
+    const double by_ways = z.position_density * way.thinning / z.inward.dot(way.start_direction);
+    return ways_per_ray * by_ways / by_rays;
+  }
+  void add(int pixel, double value, double optical_path) {
+    deposit<timed>(film_, counts_, pixel, value, optical_path);
+  }
+
+  const Transport& transport_;
+  const BeamSeeds& seeds_;
+  const S& space_;
+  RandomStream& random_;
+  Film& film_;
+  TransportCounts& counts_;
+};
 
 /// with_space(use): calls use(space), the same or another for each ray.
 template <bool timed, class WithSpace>
-PathKernel kernel(std::shared_ptr<const Transport> transport, const WithSpace& with_space) {
+PathKernel kernel(std::shared_ptr<const Transport> transport, const BeamSeeds& seeds,
+                  const WithSpace& with_space) {
   return [=](int rays, RandomStream& random, Film& film, TransportCounts& counts,
              std::vector<double>*) {
     const EvenSquare even(random);
-    const double beam = random.uniform();
+    const double beam = random.uniform(), beam_of_way = random.uniform();
+    const double first_way = random.uniform();
+    const auto ways_before = [=](int ray) { return std::floor(ray * ways_per_ray + first_way); };
+    const bool has_area = std::any_of(transport->sensors.begin(), transport->sensors.end(),
+                                      [](const SensorEnd& sensor) { return sensor.can_be_hit(); });
     for (int ray = 0; ray < rays; ++ray) {
-      const EndPosition start =
-          transport->lights.beam_position((ray + beam) / rays, even.u(ray), even.v(ray));
+      const double stratum = (ray + beam) / rays;
+      const EndPosition start = transport->lights.beam_position(stratum, even.u(ray), even.v(ray));
       with_space(random, [&](const auto& space) {
-        add_ray<timed>(*transport, space, start, random, film, counts);
+        UnscatteredBeams<timed, std::decay_t<decltype(space)>> light(*transport, seeds, space,
+                                                                     random, film, counts);
+        if (has_area) light.add_ray(start, stratum);
+        if (const double way = ways_before(ray); ways_before(ray + 1) > way)
+          light.add_ways(fraction(beam_of_way + way * golden));
       });
     }
   };
 }
 
 template <class WithSpace>
-PathKernel kernel(bool timed, std::shared_ptr<const Transport> transport,
+PathKernel kernel(bool timed, std::shared_ptr<const Transport> transport, const BeamSeeds& seeds,
                   const WithSpace& with_space) {
-  return timed ? kernel<true>(transport, with_space) : kernel<false>(transport, with_space);
+  return timed ? kernel<true>(transport, seeds, with_space)
+               : kernel<false>(transport, seeds, with_space);
 }
 
 }  // namespace
@@ -64,12 +223,14 @@ PathKernel kernel(bool timed, std::shared_ptr<const Transport> transport,
 PathKernel beams_kernel(bool timed, std::shared_ptr<const Transport> transport, double excess) {
   using Straight = StraightSpace<RenderPlan{.curved = false, .scatters = false}>;
   const Straight space(without_scattering(transport->stage), excess);
-  return kernel(timed, transport, [=](RandomStream&, const auto& use) { use(space); });
+  return kernel(timed, transport, all_seeds(*transport, space, 32768),
+                [=](RandomStream&, const auto& use) { use(space); });
 }
 
 PathKernel beams_kernel(bool timed, std::shared_ptr<const Transport> transport,
                         std::shared_ptr<const CurvedSpace> space, bool random_phase) {
-  return kernel(timed, transport, [=](RandomStream& random, const auto& use) {
+  const auto seeds = all_seeds(*transport, *space, 512);
+  return kernel(timed, transport, seeds, [=](RandomStream& random, const auto& use) {
     if (random_phase)
       use(*space->frozen(2 * std::numbers::pi * random.uniform()));
     else

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "grin/connections/geometric_spreading.h"
+#include "grin/space/beam_search.h"
 #include "grin/space/straight_legs.h"
 #include "grin/space/way_search.h"
 
@@ -95,16 +96,18 @@ std::optional<LegEnd> CurvedSpace::curved_leg(Flight& flight, Neighbours& neighb
   neighbours.bent = true;
   const double longest = setup_->options.max_length - flight.arc_length;
   const bool follows = neighbours.wanted && flight.is_joinable;
-  const LegStop stop = field_->fly(room(), longest, flight.weight, random, ray,
-                                   follows ? &neighbours.tangent : nullptr);
+  double weight = flight.weight;
+  const LegStop stop =
+      field_->fly(room(), longest, weight, random, ray, follows ? &neighbours.tangent : nullptr);
   if (stop == LegStop::lost) return std::nullopt;
+  if (!medium().scatters() && !medium().grid())
+    weight *= transmittance(medium().mu_t(), ray.arc_length);
+  attenuate(flight, weight);
   flight.point.x = ray.x;
   flight.direction = ray.v.normalized();
   flight.arc_length += ray.arc_length;
   flight.optical_path += ray.optical_path;
   flight.optical_depth += medium().reference() * ray.arc_length;
-  if (!medium().scatters() && !medium().grid())
-    flight.weight *= transmittance(medium().mu_t(), ray.arc_length);
   if (stop == LegStop::collision) return LegEnd::collision;
   return setup_->field_part == Part::body ? LegEnd::body : LegEnd::boundary;
 }
@@ -120,7 +123,7 @@ void CurvedSpace::cross(Flight& flight, Neighbours& neighbours, RandomStream& ra
                       neighbours.wanted ? &neighbours.tangent : nullptr, random);
 }
 
-/// Without collisions, for WaySearch (straight_legs.h): straight around the body.
+/// Without collisions, for searches (straight_legs.h): straight around the body.
 class CurvedSpace::Legs {
  public:
   explicit Legs(const CurvedSpace& space)
@@ -130,6 +133,7 @@ class CurvedSpace::Legs {
         straight_(space.setup_->stage, excess_) {}
   Legs(const Legs&) = delete;
 
+  bool has_body() const { return straight_.has_body(); }
   const Surface& body() const { return straight_.body(); }
   double index(const PathPoint& p) const { return space_.index(p); }
   RayState start(const PathPoint& p, const Vec3& direction) const {
@@ -138,6 +142,7 @@ class CurvedSpace::Legs {
 
   bool to_body(Part part, RayState& ray, RayTangent* tangent, RandomStream& random) const {
     if (!is_curved(part)) return straight_.to_body(part, ray, tangent, random);
+    if (!has_body()) return false;
     static const PartMedium clear;
     double all = 1;
     const LegRoom room{body(), clear, step()};
@@ -157,7 +162,7 @@ class CurvedSpace::Legs {
     RayState ray = start;
     for (int i = 1; i < count; ++i) {
       space_.field_->advance(sigma / count, 1, ray, nullptr);
-      if (!(distance(body(), ray.x) <= 1e-9 * step())) return false;
+      if (!(distance(space_.container(), ray.x) <= 1e-9 * step())) return false;
     }
     return true;
   }
@@ -183,6 +188,27 @@ class CurvedSpace::Legs {
       if (is_out) return;
     }
   }
+  PlaneCrossing to_plane(Part part, const ParallelLight& light, RayState& ray,
+                         RayTangent* tangent) const {
+    if (!is_curved(part)) return straight_.to_plane(part, light, ray, tangent);
+    const auto ahead = [&](const RayState& at) { return (at.x - light.x).dot(light.direction); };
+    for (int i = 0; ray.arc_length <= longest(); ++i) {
+      const RayState before = ray;
+      const RayTangent was = tangent ? *tangent : RayTangent();
+      space_.field_->advance(step(), 1, ray, tangent);
+      if (!(ray.arc_length > before.arc_length)) return {};
+      if (ahead(before) > 0 && ahead(ray) <= 0) {
+        if (tangent) *tangent = was;
+        const double sigma = last_step(light, before, ray);
+        ray = before;
+        space_.field_->advance(sigma, 1, ray, tangent);
+        if (tangent) meet(light, ray, *tangent);
+        return {distance(space_.container(), ray.x) <= 1e-6 * step(), i * step() + sigma};
+      }
+      if (distance(space_.container(), ray.x) > 0) return {};
+    }
+    return {};
+  }
   RayJump jump(Part from, const RayState& ray) const {
     const IndexGradient around{space_.setup_->excess_around, Vec3::Zero()};
     const IndexGradient in = space_.field_->gradient(ray.x);
@@ -199,7 +225,31 @@ class CurvedSpace::Legs {
   }
 
  private:
-  bool is_curved(Part part) const { return part == Part::body && !space_.setup_->is_straight; }
+  bool is_curved(Part part) const {
+    return part == space_.setup_->field_part && !space_.setup_->is_straight;
+  }
+  /// From a state to the plane of a light, no further than another: secants.
+  double last_step(const ParallelLight& light, const RayState& from, const RayState& to) const {
+    const auto ahead = [&](const Vec3& x) { return (x - light.x).dot(light.direction); };
+    double low = 0, high = step(), at_low = ahead(from.x), at_high = ahead(to.x);
+    for (int i = 0; i < 8; ++i) {
+      const double sigma = low + (high - low) * at_low / (at_low - at_high);
+      RayState ray = from;
+      space_.field_->advance(sigma, 1, ray, nullptr);
+      const double at = ahead(ray.x);
+      if (std::abs(at) <= 1e-12 * step()) return sigma;
+      (at > 0 ? low : high) = sigma;
+      (at > 0 ? at_low : at_high) = at;
+    }
+    return high;
+  }
+  /// Neighbours as they meet the plane.
+  void meet(const ParallelLight& light, const RayState& ray, RayTangent& tangent) const {
+    const Eigen::RowVector3d sooner =
+        -(light.direction.transpose() * tangent.dx) / light.direction.dot(ray.v);
+    tangent.dx += ray.v * sooner;
+    tangent.dv += ray_force(space_.field_->gradient(ray.x)) * sooner;
+  }
   double step() const { return space_.setup_->options.step; }
   double longest() const { return space_.setup_->options.max_length; }
 
@@ -212,10 +262,45 @@ std::optional<Join> CurvedSpace::join_through(const PathPoint& p, const PathPoin
                                               RandomStream& random,
                                               ConnectionStatistics& statistics) const {
   if (!joins_through()) return std::nullopt;
+  return join_by_way(Legs(*this), p, q, search(), random, statistics);
+}
+
+/// Of ways through the body's surface, or to a beam.
+ConnectionOptions CurvedSpace::search() const {
   ConnectionOptions options = setup_->connection;
   options.max_iterations = 20;
   if (setup_->is_straight) options.max_length = std::numeric_limits<double>::infinity();
-  return join_by_way(Legs(*this), p, q, options, random, statistics);
+  return options;
+}
+
+std::vector<BeamWay> CurvedSpace::ways_to_beam(const PathPoint& p, const ParallelLight& light,
+                                               std::span<const BeamSeed> seeds,
+                                               RandomStream& random,
+                                               ConnectionStatistics& statistics) const {
+  if (searches_for_beams()) {
+    const Legs legs(*this);
+    const ConnectionOptions options = search();
+    return BeamSearch(legs, p, light, options).find(seeds, random, statistics);
+  }
+  if (is_curved(p)) return {};
+  return setup_->stage.ways_to_beam(p, light, index(p), is_clear(), random);
+}
+
+std::optional<BeamWay> CurvedSpace::some_way_to_beam(const PathPoint& p, const ParallelLight& light,
+                                                     RandomStream& random,
+                                                     ConnectionStatistics& statistics) const {
+  if (!searches_for_beams()) return std::nullopt;
+  const Legs legs(*this);
+  const ConnectionOptions options = search();
+  return BeamSearch(legs, p, light, options).find_one(random, statistics);
+}
+
+std::optional<BeamWay> CurvedSpace::beam_way(const PathPoint& p, const ParallelLight& light,
+                                             const Vec3& direction, const Passages& passages,
+                                             RandomStream& random) const {
+  const Legs legs(*this);
+  const ConnectionOptions options = search();
+  return BeamSearch(legs, p, light, options).along(direction, passages, random);
 }
 
 std::optional<Join> CurvedSpace::join(const PathPoint& p, const PathPoint& q, RandomStream& random,

@@ -39,6 +39,16 @@ class CurvedSpace {
   std::optional<Join> join_through(const PathPoint& p, const PathPoint& q, RandomStream& random,
                                    ConnectionStatistics& statistics) const;
 
+  std::vector<BeamWay> ways_to_beam(const PathPoint& p, const ParallelLight& light,
+                                    std::span<const BeamSeed> seeds, RandomStream& random,
+                                    ConnectionStatistics& statistics) const;
+  std::optional<BeamWay> some_way_to_beam(const PathPoint& p, const ParallelLight& light,
+                                          RandomStream& random,
+                                          ConnectionStatistics& statistics) const;
+  std::optional<BeamWay> beam_way(const PathPoint& p, const ParallelLight& light,
+                                  const Vec3& direction, const Passages& passages,
+                                  RandomStream& random) const;
+
   /// The same space as light meets it at this phase of the sound, from 0 to 2 pi: S = cos(phase)
   /// of a standing wave (conventions, C28). Throws InputError for a field without sound.
   std::unique_ptr<const CurvedSpace> frozen(double phase) const;
@@ -70,6 +80,10 @@ class CurvedSpace {
   class Legs;
   struct Neighbours;
 
+  ConnectionOptions search() const;
+  bool searches_for_beams() const {
+    return joins_through() || (setup_->field_part == Part::stage && !setup_->is_straight);
+  }
   bool goes_outside(const Vec3& x, const Vec3& direction) const;
   std::optional<LegEnd> leg(Flight& flight, Neighbours& neighbours, RandomStream& random) const;
   std::optional<LegEnd> curved_leg(Flight& flight, Neighbours& neighbours,

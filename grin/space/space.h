@@ -2,6 +2,8 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "core/numbers/random.h"
 #include "grin/connections/connection.h"
@@ -31,6 +33,11 @@ struct Passages {
   static constexpr int most = 16;
 
   bool reflects(int i) const { return (reflected >> i) & 1; }
+  Passages reversed() const {
+    Passages back;
+    for (int i = count; i-- > 0;) back.add(reflects(i));
+    return back;
+  }
   void add(bool reflects) {
     reflected |= static_cast<std::uint32_t>(reflects) << count;
     ++count;
@@ -51,12 +58,13 @@ struct Flight {
   Vec3 start_direction;  ///< unit
   Vec3 direction;        ///< unit tangent at the end
   double arc_length = 0, optical_path = 0;
-  double spreading = 0;       ///< |J| from start to end (C25); 0 where no join finds it
-  double optical_depth = 0;   ///< reference depth, see below
-  double weight = 1;          ///< exp(-mu_a s) in media that do not scatter, else 1
-  bool crosses_body = false;  ///< passes its surface or is reflected there
-  int passages = 0;           ///< there, where it refracts
-  bool is_joinable = true;    ///< a join of its ends finds the same way
+  double spreading = 0;         ///< |J| from start to end (C25); 0 where no join finds it
+  double optical_depth = 0;     ///< reference depth, see below
+  double weight = 1;            ///< exp(-mu_a s) in media that do not scatter, else 1
+  double absorbed_in_body = 0;  ///< of 1 - weight
+  bool crosses_body = false;    ///< passes its surface or is reflected there
+  Passages passages = {};       ///< there, where it refracts; of a way that joins can find
+  bool is_joinable = true;      ///< a join of its ends finds the same way
 };
 
 /// A curve that joins two points.
@@ -71,6 +79,32 @@ struct Join {
   bool passes = false;   ///< the body's surface, found by search
 };
 
+/// Light of one direction, at the plane across it through x.
+struct ParallelLight {
+  Vec3 x, direction;  ///< unit
+};
+
+/// A way from a point to where parallel light comes from.
+struct BeamWay {
+  Vec3 start_direction;           ///< unit tangent, against the light
+  Vec3 place;                     ///< on the plane
+  Vec3 first_met = Vec3::Zero();  ///< where it meets the body's surface first, if it does
+  double thinning;                ///< area across the light at the point per area at the plane
+  int orientation;                ///< sign of the determinant in it
+  double arc_length, optical_path;
+  Passages passages = {};
+  double transmittance;     ///< or an unbiased estimate; Fresnel's alone where not stated
+  double multiplicity = 1;  ///< as in Join
+};
+
+/// Where a search for ways to parallel light begins: along a direction, or from outside of a body
+/// towards the place where it first meets its surface.
+struct BeamSeed {
+  Vec3 start_direction;
+  Passages passages = {};
+  Vec3 first_met = Vec3::Zero();
+};
+
 // The reference depth of a way is the integral of the reference extinction along it, and -ln of the
 // chance of its refractions and reflections. The reference extinction of a part that scatters:
 // mu_t, or mu_t times the mean in it of the relative density where that is a grid; of a part that
@@ -78,12 +112,15 @@ struct Join {
 // the true one, which leaves them weights and needs no second estimate.
 
 /// What the estimators ask of space. join() finds ways that the body's surface leaves alone,
-/// join_through() one of those that are refracted or reflected there. StraightSpace<plan> answers
-/// inline; CurvedSpace (abstract) by one virtual call per flight, behind which the field's type is
-/// known to every step.
+/// join_through() one of those that are refracted or reflected there; ways_to_beam() those of
+/// parallel light, backwards, some_way_to_beam() what one random trial finds of them, and
+/// beam_way() that which starts so. StraightSpace<plan>
+/// answers inline; CurvedSpace (abstract) by one virtual call per flight, behind which the field's
+/// type is known to every step.
 template <class S>
 concept Space = requires(const S& space, const PathPoint& p, const Vec3& v, RandomStream& random,
-                         ConnectionStatistics& statistics) {
+                         ConnectionStatistics& statistics, const ParallelLight& light,
+                         std::span<const BeamSeed> seeds, const Passages& passages) {
   { space.index(p) } -> std::convertible_to<double>;
   { space.fly(p, v, random) } -> std::same_as<Flight>;
   { space.joins_all() } -> std::same_as<bool>;
@@ -92,6 +129,9 @@ concept Space = requires(const S& space, const PathPoint& p, const Vec3& v, Rand
   { space.join(p, p, random, statistics) } -> std::same_as<std::optional<Join>>;
   { space.joins_through() } -> std::same_as<bool>;
   { space.join_through(p, p, random, statistics) } -> std::same_as<std::optional<Join>>;
+  { space.ways_to_beam(p, light, seeds, random, statistics) } -> std::same_as<std::vector<BeamWay>>;
+  { space.some_way_to_beam(p, light, random, statistics) } -> std::same_as<std::optional<BeamWay>>;
+  { space.beam_way(p, light, v, passages, random) } -> std::same_as<std::optional<BeamWay>>;
 };
 
 }  // namespace flatspeckle::grin

@@ -16,6 +16,7 @@ class StraightLegs {
   StraightLegs(const StraightStage<plan>& stage, const double (&excess)[2])
       : stage_(stage), excess_(excess) {}
 
+  bool has_body() const { return stage_.has_body(); }
   const Surface& body() const { return stage_.container(Part::body); }
   double index(const PathPoint& p) const { return 1 + excess(p.part); }
   RayState start(const PathPoint& p, const Vec3& direction) const {
@@ -50,6 +51,15 @@ class StraightLegs {
     const double way = stage_.way_to_surface({ray.x, part}, ray.v / n).length;
     const double sigma = std::min((x - ray.x).dot(ray.v) / (n * n), way / n);
     if (sigma > 0) offer(sigma, (ray.x + sigma * ray.v - x).squaredNorm());
+  }
+  /// Of neighbours too, by the tangent: on to the plane of parallel light, or back to it where the
+  /// ray goes away from it.
+  PlaneCrossing to_plane(Part part, const ParallelLight& light, RayState& ray,
+                         RayTangent* tangent) const {
+    const double sigma = (light.x - ray.x).dot(light.direction) / ray.v.dot(light.direction);
+    if (!std::isfinite(sigma)) return {};
+    advance(part, sigma, 1, ray, tangent);
+    return {sigma > 0, sigma};
   }
   RayJump jump(Part from, const RayState& ray) const {
     const auto side = [&](Part part) { return IndexGradient{excess(part), Vec3::Zero()}; };

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "grin/space/beam_search.h"
 #include "grin/space/straight_legs.h"
 #include "grin/space/way_search.h"
 
@@ -44,15 +45,36 @@ class StraightSpace {
   bool joins_through() const { return !joins_all() && stage_.joins_through(); }
   std::optional<Join> join_through(const PathPoint& p, const PathPoint& q, RandomStream& random,
                                    ConnectionStatistics& statistics) const {
-    static const ConnectionOptions options{.step = 1,
-                                           .max_length = std::numeric_limits<double>::infinity(),
-                                           .start = {.chord_share = 0.3},
-                                           .max_iterations = 20};
     if (!joins_through()) return std::nullopt;
-    return join_by_way(StraightLegs<plan>(stage_, excess_), p, q, options, random, statistics);
+    return join_by_way(legs(), p, q, search, random, statistics);
+  }
+
+  std::vector<BeamWay> ways_to_beam(const PathPoint& p, const ParallelLight& light,
+                                    std::span<const BeamSeed> seeds, RandomStream& random,
+                                    ConnectionStatistics& statistics) const {
+    if (joins_through())
+      return BeamSearch(legs(), p, light, search).find(seeds, random, statistics);
+    return stage_.ways_to_beam(p, light, index(p), is_clear(), random);
+  }
+  std::optional<BeamWay> some_way_to_beam(const PathPoint& p, const ParallelLight& light,
+                                          RandomStream& random,
+                                          ConnectionStatistics& statistics) const {
+    if (!joins_through()) return std::nullopt;
+    return BeamSearch(legs(), p, light, search).find_one(random, statistics);
+  }
+  std::optional<BeamWay> beam_way(const PathPoint& p, const ParallelLight& light,
+                                  const Vec3& direction, const Passages& passages,
+                                  RandomStream& random) const {
+    return BeamSearch(legs(), p, light, search).along(direction, passages, random);
   }
 
  private:
+  static inline const ConnectionOptions search{
+      .step = 1,
+      .max_length = std::numeric_limits<double>::infinity(),
+      .start = {.chord_share = 0.3},
+      .max_iterations = 20};
+  StraightLegs<plan> legs() const { return {stage_, excess_}; }
   double excess(Part part) const { return excess_[plan.body && part == Part::body ? 1 : 0]; }
 
   /// Nothing is refracted at the body's surface.

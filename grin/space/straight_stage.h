@@ -14,6 +14,12 @@ enum class LegEnd { collision, boundary, body };
 /// Through the body's surface so often at most: what total reflection traps is lost.
 inline constexpr int most_legs = 1000;
 
+/// A leg within one part, which absorbs and does not scatter, leaves as much of the light.
+inline void attenuate(Flight& flight, double weight) {
+  if (flight.point.part == Part::body) flight.absorbed_in_body += flight.weight - weight;
+  flight.weight = weight;
+}
+
 /// A stage for light that goes straight within a part.
 template <RenderPlan plan>
 class StraightStage {
@@ -34,6 +40,8 @@ class StraightStage {
     return plan.body && part == Part::body ? *body_ : boundary_;
   }
 
+  bool has_body() const { return plan.body && body_; }
+
   /// To the next collision or to the end of the part.
   LegEnd fly(Flight& flight, double index, RandomStream& random) const {
     const Vec3 x = flight.point.x, d = flight.direction;
@@ -50,7 +58,8 @@ class StraightStage {
     flight.optical_path += index * way;
     if constexpr (plan.scatters) flight.optical_depth += in.reference() * way;
     if constexpr (plan.absorbs)
-      if (!in.scatters()) flight.weight *= in.template transmitted<plan>(path, way, random);
+      if (!in.scatters())
+        attenuate(flight, flight.weight * in.template transmitted<plan>(path, way, random));
     return end;
   }
 
@@ -66,7 +75,8 @@ class StraightStage {
     const bool reflected = jump.is_total() || random.uniform() < reflectance;
     jump.pass(reflected, ray, tangent);
     flight.crosses_body = true;
-    flight.is_joinable = ++flight.passages <= Passages::most && joins_through();
+    flight.is_joinable = flight.passages.count < Passages::most && joins_through();
+    if (flight.is_joinable) flight.passages.add(reflected);
     flight.optical_depth -= std::log(reflected ? reflectance : 1 - reflectance);
     flight.direction = ray.v.normalized();
     if (!reflected) flight.point.part = beyond(flight.point.part);
@@ -118,6 +128,24 @@ class StraightStage {
       join.transmittance *= medium(part).template transmitted<plan>(path, to - from, random);
     });
     return arrives ? std::optional(join) : std::nullopt;
+  }
+
+  /// The straight way of parallel light to a point, through the body's surface where that is clear.
+  std::vector<BeamWay> ways_to_beam(const PathPoint& p, const ParallelLight& light, double index,
+                                    bool is_clear, RandomStream& random) const {
+    const double length = (p.x - light.x).dot(light.direction);
+    if (!(length > 0)) return {};
+    const PathPoint from{p.x - length * light.direction, p.part};
+    const auto join =
+        is_clear ? join_through(p, from, index, random) : this->join(p, from, index, random);
+    if (!join) return {};
+    return {BeamWay{.start_direction = join->start_direction,
+                    .place = from.x,
+                    .thinning = 1,
+                    .orientation = 1,
+                    .arc_length = length,
+                    .optical_path = join->optical_path,
+                    .transmittance = join->transmittance}};
   }
 
   /// Of the straight line between two points at the least, whether light goes it or not.

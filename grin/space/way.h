@@ -15,4 +15,9 @@ struct Way {
   double sigma;   ///< of the last leg, ray parameter
 };
 
+/// Where a leg crosses the plane of parallel light.
+struct PlaneCrossing {
+  bool is_reached = false;  ///< on the way of the ray
+  double sigma = 0;         ///< of the leg, ray parameter
+};
 }  // namespace flatspeckle::grin

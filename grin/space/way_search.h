@@ -5,8 +5,7 @@
 #include <optional>
 
 #include "grin/connections/connection_solver.h"
-#include "grin/rays/ray_jump.h"
-#include "grin/space/stage.h"
+#include "grin/space/passage_walk.h"
 #include "grin/space/way.h"
 
 namespace flatspeckle::grin {
@@ -31,14 +30,13 @@ class WaySearch {
   WaySearch(const Legs& legs, const PathPoint& from, const PathPoint& to,
             const ConnectionOptions& options)
       : legs_(legs),
+        walk_(legs, from, Seek::strongest),
         from_(from),
         to_(to),
         options_(options),
         n_from_(legs.index(from)),
         gap_((to.x - from.x).norm()),
-        rounding_(1e-14 * std::max(from.x.norm(), to.x.norm())) {
-    aim_at_body();
-  }
+        rounding_(1e-14 * std::max(from.x.norm(), to.x.norm())) {}
 
   /// One random way with its multiplicity. A trial starts along the chord with a chance that
   /// depends on the two points alone; where that leads is computed once.
@@ -60,27 +58,16 @@ class WaySearch {
     return {first.way, trials_to_refind(refinds, options_.roulette_after, random, statistics)};
   }
 
-  /// Calls use(part, start, arc length) for the legs of a way that was found.
+  /// As PassageWalk.
   template <class Use>
   void for_each_leg(const Way& way, RandomStream& random, const Use& use) const {
-    RayState ray = legs_.start(from_, way.start_direction);
-    Part part = from_.part;
-    for (int i = 0; i < way.passages.count; ++i) {
-      const RayState start = ray;
-      if (!legs_.to_body(part, ray, nullptr, random)) return;
-      use(part, start, ray.arc_length - start.arc_length);
-      const bool reflects = way.passages.reflects(i);
-      legs_.jump(part, ray).pass(reflects, ray);
-      if (!reflects) part = beyond(part);
-    }
-    use(part, ray, way.arc_length - ray.arc_length);
+    walk_.for_each_leg(way.start_direction, way.passages, way.arc_length, random, use);
   }
 
  private:
   static constexpr double near = 1e-2;         // of the end, in units of the gap
   static constexpr double longest_turn = 0.7;  // rad, of one Gauss-Newton step
   static constexpr double on_caustic = 1e-6;   // narrower than this against its length
-  static constexpr int free_passages = 3;      // then ways lose at roulette by extinction
 
   struct Aim {
     Vec3 direction;  // unit
@@ -110,106 +97,55 @@ class WaySearch {
            std::abs(a.arc_length - b.arc_length) <= options_.same * length;
   }
 
-  /// The cone of directions in which the body may lie.
-  void aim_at_body() {
-    const auto [low, high] = bounds(legs_.body());
-    const Sphere* sphere = std::get_if<Sphere>(&legs_.body());
-    const double radius = sphere ? sphere->radius : (high - low).norm() / 2;
-    const Vec3 to_centre = (low + high) / 2 - from_.x;
-    const double distance = to_centre.norm();
-    is_outside_ = from_.part == Part::stage && distance > radius;
-    if (!is_outside_) return;
-    axis_ = to_centre / distance;
-    one_minus_cosine_ = 1 - std::sqrt(1 - radius / distance * (radius / distance));
-  }
-  Vec3 start_direction(RandomStream& random) const {
-    if (is_outside_) return random_turn(axis_, one_minus_cosine_ * random.uniform(), random);
-    return options_.start.sample((to_.x - from_.x) / gap_, random);
-  }
-
   /// Rays are refracted wherever they can be; the closest approach.
   Trial along_chord(RandomStream& random, ConnectionStatistics& statistics) const {
     Aim aim{(to_.x - from_.x) / gap_};
     double closest = std::numeric_limits<double>::infinity();
-    const auto reflects = [](const RayJump& jump) { return jump.is_total(); };
-    const auto goes_on = [](int, Part, double) { return true; };
-    walk(aim.direction, reflects, goes_on, random,
-         [&](const Passages& met, double sigma, double square) {
-           if (!(square < closest)) return;
-           closest = square;
-           aim.passages = met;
-           aim.sigma = sigma;
-         });
+    walk_.refracted(aim.direction, random,
+                    approaches([&](const Passages& met, double sigma, double square) {
+                      if (!(square < closest)) return;
+                      closest = square;
+                      aim.passages = met;
+                      aim.sigma = sigma;
+                    }));
     return counted(refined(aim, random, statistics), statistics);
   }
 
   Trial at_random(RandomStream& random, ConnectionStatistics& statistics) const {
-    Aim aim{start_direction(random)};
+    Aim aim{walk_.start_direction((to_.x - from_.x) / gap_, options_.start, random)};
     double total = 0;
-    const auto reflects = [&](const RayJump& jump) {
-      return random.uniform() < chance_to_reflect(jump.reflectance());
-    };
-    const auto goes_on = [&](int passages, Part part, double length) {
-      return passages < free_passages ||
-             random.uniform() < std::exp(-legs_.extinction(part) * length);
-    };
-    walk(aim.direction, reflects, goes_on, random,
-         [&](const Passages& met, double sigma, double square) {
-           const double weight = 1 / (square + 1e-4 * gap_ * gap_);
-           total += weight;
-           if (random.uniform() * total > weight) return;
-           aim.passages = met;
-           aim.sigma = sigma;
-         });
+    walk_.at_random(aim.direction, random,
+                    approaches([&](const Passages& met, double sigma, double square) {
+                      const double weight = 1 / (square + 1e-4 * gap_ * gap_);
+                      total += weight;
+                      if (random.uniform() * total > weight) return;
+                      aim.passages = met;
+                      aim.sigma = sigma;
+                    }));
     return counted(refined(aim, random, statistics), statistics);
+  }
+  /// offer(passages, sigma of the last leg, squared distance there) where a ray comes closest.
+  template <class Offer>
+  auto approaches(const Offer& offer) const {
+    return [this, offer](const Passages& met, Part part, const RayState& ray) {
+      if (met.count == 0 || part != to_.part) return;
+      legs_.approach(part, ray, to_.x,
+                     [&](double sigma, double square) { offer(met, sigma, square); });
+    };
   }
   static Trial counted(const Trial& trial, ConnectionStatistics& statistics) {
     ++statistics.outcomes[static_cast<int>(trial.outcome)];
     return trial;
   }
-  /// Faint reflections are worth a look; none where the index hardly jumps.
-  static double chance_to_reflect(double reflectance) {
-    return reflectance < 1e-6 || reflectance >= 1 ? reflectance : std::clamp(reflectance, 0.1, 0.9);
-  }
-
-  /// offer(passages, sigma of the last leg, squared distance there) where a ray comes closest.
-  template <class Reflects, class GoesOn, class Offer>
-  void walk(const Vec3& direction, const Reflects& reflects, const GoesOn& goes_on,
-            RandomStream& random, const Offer& offer) const {
-    RayState ray = legs_.start(from_, direction);
-    Part part = from_.part;
-    Passages met;
-    for (;;) {
-      if (met.count > 0 && part == to_.part)
-        legs_.approach(part, ray, to_.x,
-                       [&](double sigma, double square) { offer(met, sigma, square); });
-      if (met.count == Passages::most) return;
-      const double before = ray.arc_length;
-      if (!legs_.to_body(part, ray, nullptr, random)) return;
-      if (!goes_on(met.count, part, ray.arc_length - before)) return;
-      const RayJump jump = legs_.jump(part, ray);
-      met.add(jump.is_total() || reflects(jump));
-      jump.pass(met.reflects(met.count - 1), ray);
-      if (!met.reflects(met.count - 1)) part = beyond(part);
-    }
-  }
-
   Shot shoot(const Aim& aim, RandomStream& random, ConnectionStatistics& statistics) const {
-    Shot shot{.part = from_.part};
-    RayState& ray = shot.end = legs_.start(from_, aim.direction);
-    for (int i = 0; i < aim.passages.count; ++i) {
-      if (!legs_.to_body(shot.part, ray, &shot.tangent, random)) return shot;
-      const RayJump jump = legs_.jump(shot.part, ray);
-      const bool reflects = aim.passages.reflects(i);
-      const double reflectance = jump.reflectance();
-      shot.chance *= reflects ? reflectance : 1 - reflectance;
-      if (!(shot.chance > 0)) return shot;
-      jump.pass(reflects, ray, &shot.tangent);
-      if (!reflects) shot.part = beyond(shot.part);
-    }
+    Shot shot;
+    const auto head = walk_.follow(aim.direction, aim.passages, &shot.tangent, random);
+    if (!head) return shot;
     shot.is_ray = true;
-    shot.last = ray;
-    legs_.advance(shot.part, aim.sigma, aim.steps, ray, &shot.tangent);
+    shot.part = head->part;
+    shot.chance = head->chance;
+    shot.last = shot.end = head->ray;
+    legs_.advance(shot.part, aim.sigma, aim.steps, shot.end, &shot.tangent);
     statistics.tangent_steps += aim.steps;
     settle(shot);
     return shot;
@@ -292,13 +228,11 @@ class WaySearch {
   }
 
   const Legs& legs_;
+  PassageWalk<Legs> walk_;
   PathPoint from_, to_;
   const ConnectionOptions& options_;
   double n_from_, gap_;
   double rounding_;  ///< of the end points' coordinates
-  bool is_outside_ = false;
-  Vec3 axis_;
-  double one_minus_cosine_ = 2;
 };
 
 /// One random way between two points as a join: backwards if that leads into the denser part, where

@@ -91,6 +91,8 @@ RUNS = {
     "directional": ("render", {**STAGE, "sensor": "directional"}),
     "sensors": ("render", {**STAGE, "sensor": ["area", "directional"], "sensor_at": [0, 0, 4],
                            "sensor_size": [1, 1], "sensor_name": ["through", "far"]}),
+    "ball_power": ("render", {**STAGE, "field": None, "alpha": None, "index": None, "sensor": "directional",
+                              "body_sphere": [0, 0, 2, 0.5], "index_around": 1.3, "max_scatterings": 9}),
     **{f"bench_{kind}": (f"bench {kind}", {"quick": True})
        for kind in ("error", "stability", "plan")},
 }

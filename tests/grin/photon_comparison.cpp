@@ -148,7 +148,7 @@ void check_against(const PhotonPicture& photons, const TwoScenes& scenes,
   if (scenes.scene.bins.count > 1)
     check_all(picture.steady.value, picture.steady.error, photons.steady_value,
               photons.steady_error);
-  const Estimate mean = pixel_mean(state);
+  const Estimate mean = pixel_mean(job, state);
   double error = 0;
   for (double e : photons.steady_error) error = std::hypot(error, e);
   const auto entries = static_cast<double>(photons.value.size());

@@ -36,7 +36,7 @@ struct Mean {
 inline Mean mean_of(const RenderScene& scene, RenderMethod method, double samples,
                     std::uint64_t seed) {
   const RenderJob job = render_job(scene, {.method = method}, seed);
-  const Estimate mean = pixel_mean(run_render(job, samples));
+  const Estimate mean = pixel_mean(job, run_render(job, samples));
   return {mean.value[0].real(), mean.error[0]};
 }
 

@@ -48,11 +48,11 @@ inline Rendered rendered(const RenderScene& scene, RenderMethod method, double s
 
 /// Mean over the pixels with its error, as one number to compare: pixels of a picture are made from
 /// the same light paths, so the error comes from batches too.
-inline Estimate pixel_mean(const RunState& state) {
-  return jackknife(state.sums, [](double samples, std::span<const Complex> sums) {
+inline Estimate pixel_mean(const RenderJob& job, const RunState& state) {
+  return jackknife(state.sums, [&](double samples, std::span<const Complex> sums) {
     Complex total = 0;
-    for (const Complex& sum : sums) total += sum;
-    return std::vector<Complex>{total / (samples * static_cast<double>(sums.size()))};
+    for (const Complex& sum : sums.first(job.pictures)) total += sum;
+    return std::vector<Complex>{total / (samples * static_cast<double>(job.pictures))};
   });
 }
 

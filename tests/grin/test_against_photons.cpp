@@ -221,8 +221,8 @@ void check_lens_and_pinhole(TwoScenes scenes, std::uint64_t photons, unsigned sa
   const PhotonPicture picture = photon_picture(scenes, photons, 6);
   check_against(picture, scenes, {RenderMethod::bidirectional}, samples, precision);
   const auto mean = [&](RenderMethod method) {
-    const Estimate found =
-        pixel_mean(run_render(render_job(scenes.scene, {.method = method}, 12), samples));
+    const RenderJob job = render_job(scenes.scene, {.method = method}, 12);
+    const Estimate found = pixel_mean(job, run_render(job, samples));
     return std::pair(found.value[0].real(), found.error[0]);
   };
   const auto [lens, lens_error] = mean(RenderMethod::light);

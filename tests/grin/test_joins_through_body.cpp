@@ -218,7 +218,8 @@ TEST_CASE("a flight that a body refracts and the join of its ends are one way") 
       for (int i = 0; i < 500; ++i) {
         const PathPoint p = random_point_of(named.stage.body->surface, random);
         const Flight flight = space.fly(p, bench::random_direction(random), random);
-        if (flight.passages == 0 || flight.passages > 3 || flight.end == Flight::End::lost)
+        if (flight.passages.count == 0 || flight.passages.count > 3 ||
+            flight.end == Flight::End::lost)
           continue;
         ++flights;
         const auto join = same_way(space, p, flight, random);
@@ -257,7 +258,7 @@ TEST_CASE("|J| of a refracted flight is that of the flights beside it") {
           return space.fly(p, direction.normalized(), same);
         };
         const Flight middle = fly(d);
-        if (middle.passages == 0 || middle.end != Flight::End::boundary) continue;
+        if (middle.passages.count == 0 || middle.end != Flight::End::boundary) continue;
         Eigen::Matrix<double, 3, 2> moved;
         bool same = true;
         for (int k = 0; k < 2; ++k) {
@@ -312,7 +313,7 @@ TEST_CASE("flights and joins agree on where light collides in and around a refra
       for (int i = 0; i < 30000; ++i) {
         const Flight flight = space->fly(p, bench::random_direction(random), random);
         const bool counts =
-            flight.end == Flight::End::collision && flight.is_joinable && flight.passages > 0;
+            flight.end == Flight::End::collision && flight.is_joinable && flight.passages.count > 0;
         for (const Part part : {Part::stage, Part::body})
           flown[part == Part::stage].add(counts && flight.point.part == part);
         const PathPoint q = random_point_of(body, random);

@@ -40,7 +40,7 @@ Flight as_flight(const Join& join, const PathPoint& to) {
   flight.direction = join.end_direction;
   flight.spreading = join.spreading;
   flight.optical_depth = join.optical_depth;
-  flight.passages = join.passes;
+  if (join.passes) flight.passages.add(false);
   return flight;
 }
 
@@ -123,7 +123,7 @@ std::optional<double> weight_of(const Transport& transport, const WholePath& pat
   const PathVertex z = s == all - 1 ? end_vertex(transport.strategies, chosen)
                                     : sensor_subpath(transport, path, all - s);
   const JoiningCurve curve{edge.start_direction, edge.direction, edge.spreading, edge.optical_depth,
-                           edge.passages > 0};
+                           edge.passages.count > 0};
   return joined_path(allowed, y, leaving(transport, transport.lights, y, curve.start_direction), z,
                      leaving(transport, transport.sensors[0], z, -curve.end_direction), curve)
       .weight;

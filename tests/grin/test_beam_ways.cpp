@@ -1,0 +1,304 @@
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include "bench/scenes/furnaces.h"
+#include "bench/scenes/random_fields.h"
+#include "grin/geometry/frame.h"
+#include "tests/grin/render_tests.h"
+#include "tests/grin/space_stages.h"
+
+namespace flatspeckle::grin::tests {
+
+namespace {
+
+using bench::scene_in;
+using std::numbers::pi;
+
+const Box room{Vec3::Constant(-2), Vec3::Constant(2)};
+
+struct BentSpace {
+  std::string name;
+  Stage stage;
+  AnyIndexField field;
+};
+
+std::vector<BentSpace> bent_spaces() {
+  const Surface ball = Sphere{Vec3(0.1, 0, 0), 1};
+  const Surface block = Box{{-0.9, -0.8, -1}, {0.7, 1, 0.9}};
+  const auto with = [&](const Surface& body) { return Stage{room, {}, Body{body, {}}, 0.1}; };
+  RandomStream random(5, 98, 0);
+  return {{"glass ball", with(ball), Homogeneous{0.5}},
+          {"bubble", with(ball), Homogeneous{-0.2}},
+          {"glass block", with(block), Homogeneous{0.5}},
+          {"Luneburg ball", Stage{room, {}, Body{Sphere{}, {}}}, Luneburg({})},
+          {"fisheye block", with(block), Fisheye({.centre_excess = 0.6, .radius = 2})},
+          {"parabolic stage", Stage{room, {}}, ParabolicGuide({.axis_excess = 0.5, .alpha = 0.3})},
+          {"blobs in the stage", Stage{room, {}}, bench::random_blobs(random, 0.2)}};
+}
+
+template <class Use>
+void with_space(const BentSpace& bent, const Use& use) {
+  if (const auto* homogeneous = std::get_if<Homogeneous>(&bent.field))
+    use(StraightSpace<straight_plan>(bent.stage, homogeneous->n_excess));
+  use(*make_curved_space(bent.field, bent.stage, {0.02, 40}));
+}
+
+/// A flight with the same passages as another, at the body's surface drawn at random.
+template <Space S>
+std::optional<Flight> alike(const S& space, const PathPoint& from, const Vec3& direction,
+                            const Flight& other, RandomStream& random) {
+  for (int i = 0; i < 2000; ++i) {
+    const Flight flight = space.fly(from, direction, random);
+    if (flight.end == other.end && flight.passages == other.passages) return flight;
+  }
+  return std::nullopt;
+}
+
+/// Area across the light where a flight ends per area where it starts, by flights beside it.
+template <Space S>
+std::optional<double> thinning_by_differences(const S& space, const PathPoint& from,
+                                              const Flight& flight, RandomStream& random) {
+  constexpr double apart = 1e-5;
+  const Frame start = frame_across(flight.start_direction), end = frame_across(flight.direction);
+  Mat2 map;
+  for (int axis = 0; axis < 2; ++axis) {
+    const auto beside = [&](double by) {
+      return alike(space, {from.x + by * start.col(axis), from.part}, flight.start_direction,
+                   flight, random);
+    };
+    const auto one = beside(apart), other = beside(-apart);
+    if (!one || !other) return std::nullopt;
+    map.col(axis) = end.transpose() * (one->point.x - other->point.x) / (2 * apart);
+  }
+  return std::abs(map.determinant());
+}
+
+}  // namespace
+
+TEST_CASE("a ray of parallel light and the way back to it are one, and so is what it thins") {
+  for (const BentSpace& bent : bent_spaces())
+    with_space(bent, [&](const auto& space) {
+      CAPTURE(bent.name);
+      RandomStream random(3, 98, 0);
+      int compared = 0;
+      for (int i = 0; i < 60; ++i) {
+        const ParallelLight light{Vec3(-1.7, 0.1, 0),
+                                  Vec3(1, 0.1 * (random.uniform() - 0.5), 0.05).normalized()};
+        const Frame across = frame_across(light.direction);
+        const PathPoint from{light.x + 0.9 * (2 * random.uniform() - 1) * across.col(0) +
+                             0.9 * (2 * random.uniform() - 1) * across.col(1)};
+        const Flight flight = space.fly(from, light.direction, random);
+        if (flight.end != Flight::End::boundary || flight.passages.count > 3) continue;
+        const auto thinning = thinning_by_differences(space, from, flight, random);
+        if (!thinning || *thinning < 1e-3) continue;
+        const auto way = space.beam_way(flight.point, light, -flight.direction,
+                                        flight.passages.reversed(), random);
+        REQUIRE(way);
+        ++compared;
+        CHECK((way->place - from.x).norm() < 1e-4);
+        CHECK(way->optical_path == doctest::Approx(flight.optical_path).epsilon(1e-5));
+        CHECK(way->transmittance == doctest::Approx(std::exp(-flight.optical_depth)).epsilon(1e-4));
+        CHECK(way->thinning == doctest::Approx(*thinning).epsilon(2e-3));
+      }
+      CHECK(compared > 15);
+    });
+}
+
+namespace {
+
+/// A way of light along +z through a glass ball of radius 1 about the origin, or off it (-1 inner
+/// reflections), in the plane of its axis, by the angles of incidence and refraction alone: how far
+/// beside a point (rho, z) of this plane it passes, and how far ahead the point is where it leaves.
+struct Pass {
+  double beside, ahead;
+  double rho_direction, z_direction;
+};
+Pass pass_ball(double impact, double index, int inner_reflections, double rho, double z) {
+  const double incidence = std::asin(impact), refraction = std::asin(impact / index);
+  // of the point where it leaves, from -z; to its normal the ray leaves as it came
+  const double angle = incidence + (inner_reflections + 1) * (pi - 2 * refraction);
+  const double x_rho = std::sin(angle), x_z = -std::cos(angle);
+  const double d_rho = std::cos(incidence) * x_rho + std::sin(incidence) * std::cos(angle);
+  const double d_z = std::cos(incidence) * x_z + std::sin(incidence) * std::sin(angle);
+  return {(rho - x_rho) * d_z - (z - x_z) * d_rho, (rho - x_rho) * d_rho + (z - x_z) * d_z, d_rho,
+          d_z};
+}
+
+double reflected(double impact, double index) {
+  const double incidence = std::asin(impact), refraction = std::asin(impact / index);
+  const double c1 = std::cos(incidence), c2 = std::cos(refraction);
+  const double s = (c1 - index * c2) / (c1 + index * c2), p = (index * c1 - c2) / (index * c1 + c2);
+  return (s * s + p * p) / 2;
+}
+
+/// Calls use(irradiance across the way of a beam of irradiance 1, its direction) for the ways to a
+/// point that meet the ball; signs of rho as in the point's.
+void for_each_glint(double index, double rho, double z,
+                    const std::function<void(double, double, double)>& use) {
+  constexpr int nodes = 20000;
+  for (int k = -1; k <= 6; ++k)
+    for (const double side : {1.0, -1.0}) {
+      const auto at = [&](double b) { return pass_ball(b, index, k, side * rho, z); };
+      for (int i = 0; i + 1 < nodes; ++i) {
+        double low = (i + 0.5) / nodes, high = (i + 1.5) / nodes;
+        if ((at(low).beside > 0) == (at(high).beside > 0)) continue;
+        for (int step = 0; step < 40; ++step) {
+          const double middle = (low + high) / 2;
+          ((at(middle).beside > 0) == (at(low).beside > 0) ? low : high) = middle;
+        }
+        if (!(at(low).ahead > 0)) continue;
+        constexpr double apart = 1e-6;
+        const double slope = (at(low + apart).beside - at(low - apart).beside) / (2 * apart);
+        const double r = reflected(low, index);
+        const double light = k < 0 ? r : (1 - r) * (1 - r) * std::pow(r, k);
+        use(light * low / (rho * std::abs(slope)), side * at(low).rho_direction,
+            at(low).z_direction);
+      }
+    }
+}
+
+constexpr double glass = 1.5;
+RenderScene glints(const Vec3& camera_at, double lens_radius) {
+  const Stage stage{room, {}, Body{Sphere{}, {}}};
+  Camera camera{camera_at, -Vec3::UnitX(), Vec3::UnitY(), 2.0, {1, 1}, lens_radius, 2};
+  return scene_in(Homogeneous{glass - 1}, stage,
+                  BeamLight{Vec3(0, 0, -1.9), Vec3::UnitZ(), 1.1, pi * 1.1 * 1.1}, camera);
+}
+
+/// What a camera at x = 2 reads that looks along -x, from the angles of the ball.
+double expected_picture(const Vec3& x) {
+  const double half = std::tan(1.0), rho = std::hypot(x[0], x[1]);
+  double sum = 0;
+  for_each_glint(glass, rho, x[2], [&](double irradiance, double d_rho, double d_z) {
+    const Vec3 seen = -Vec3(d_rho * x[0] / rho, d_rho * x[1] / rho, d_z);
+    const double cosine = -seen[0];
+    if (!(cosine > 0) || std::abs(seen[1]) > half * cosine || std::abs(seen[2]) > half * cosine)
+      return;
+    sum += irradiance / (cosine * cosine * cosine);
+  });
+  return sum / (4 * half * half);
+}
+
+}  // namespace
+
+TEST_CASE("the ways of a beam to a point behind a glass ball, by impact parameters") {
+  const Stage stage{room, {}, Body{Sphere{}, {}}};
+  const auto check = [&](const auto& space, std::span<const BeamSeed> seeds) {
+    RandomStream random(7, 98, 0);
+    ConnectionStatistics statistics;
+    for (const Vec3& x : {Vec3(1.9, 0.3, 0.5), Vec3(1.2, 0, 1.8), Vec3(-0.3, 0.2, 1.9)}) {
+      double expected = 0;
+      const double rho = std::hypot(x[0], x[1]);
+      for_each_glint(glass, rho, x[2], [&](double light, double, double) { expected += light; });
+      constexpr int draws = 20000;
+      double sum = 0, squares = 0;
+      for (int i = 0; i < draws; ++i) {
+        double value = 0;
+        for (const BeamWay& way :
+             space.ways_to_beam({x}, {Vec3(0, 0, -1.9), Vec3::UnitZ()}, seeds, random, statistics))
+          if (way.passages.count > 0) value += way.transmittance / way.thinning * way.multiplicity;
+        sum += value;
+        squares += value * value;
+      }
+      const double mean = sum / draws;
+      const double error = std::sqrt((squares / draws - mean * mean) / draws);
+      CAPTURE(x.transpose());
+      CAPTURE(expected);
+      CAPTURE(mean);
+      CAPTURE(seeds.size());
+      CHECK(std::abs(mean - expected) < 4 * error);
+      CHECK(error < 0.15 * expected);
+    }
+  };
+  Passages through;
+  through.add(false);
+  through.add(false);
+  Passages off;
+  off.add(true);
+  const BeamSeed seeds[] = {{-Vec3::UnitX(), off, Vec3::UnitX()},
+                            {-Vec3::UnitX(), through, Vec3::UnitX()},
+                            {-Vec3::UnitZ(), through, Vec3::UnitZ()}};
+  for (const std::span<const BeamSeed> some :
+       {std::span<const BeamSeed>(), std::span<const BeamSeed>(seeds)}) {
+    check(StraightSpace<straight_plan>(stage, glass - 1), some);
+    check(*make_curved_space(Homogeneous{glass - 1}, stage, {0.1, 40}), some);
+  }
+}
+
+namespace {
+
+const Vec3 lens_at(2, 0.3, 0.4);
+
+void check_glints(double lens_radius, double expected, double expected_error) {
+  const Vec3 at = lens_radius > 0 ? lens_at : Vec3(lens_at - 1e-9 * Vec3::UnitX());
+  const Rendered result = rendered(glints(at, lens_radius), RenderMethod::bidirectional, 4e5);
+  CAPTURE(lens_radius);
+  CHECK(std::abs(result.value() - expected) <
+        4 * std::hypot(result.error(), expected_error) + 1e-5 * expected);
+  CHECK(result.error() < 0.03 * expected);
+}
+
+}  // namespace
+
+TEST_CASE(
+    "a pinhole and a small lens see the glints of a beam in a glass ball, by impact parameters") {
+  check_glints(0, expected_picture(lens_at), 0);
+  constexpr double radius = 0.02;
+  double sum = 0;
+  constexpr int spokes = 6;
+  for (int i = 0; i < spokes; ++i) {  // exact for what is quadratic over the lens
+    const double t = 2 * pi * i / spokes;
+    sum += expected_picture(lens_at + radius * std::sqrt(0.5) * Vec3(0, std::cos(t), std::sin(t)));
+  }
+  check_glints(radius, sum / spokes, 0);
+}
+
+TEST_CASE("a wide lens sees the glints of a beam in a glass ball as rays say") {
+  const RenderScene scene = glints(lens_at, 1.2);
+  const StraightSpace<straight_plan> space(scene.stage, glass - 1);
+  const Lights lights(scene.lights, scene.stage, [](const PathPoint&) { return 1.0; });
+  const SensorEnd lens(scene.sensors[0], scene.stage);
+  RandomStream random(9, 98, 0);
+  constexpr int rays = 1000000;
+  double sum = 0, squares = 0;
+  for (int i = 0; i < rays; ++i) {
+    const EndPosition from = lights.beam_position(0.5, random.uniform(), random.uniform());
+    const Flight flight = space.fly(from.point, from.inward, random);
+    if (flight.end == Flight::End::lost) continue;
+    lens.hit(space, flight.point.x, flight.direction, [&](const EndHit& hit) {
+      const double value = hit.value * lights.beam_power();
+      sum += value;
+      squares += value * value;
+    });
+  }
+  check_glints(1.2, sum / rays, std::sqrt(squares) / rays);
+}
+
+TEST_CASE("a pinhole sees a beam that shines into it, thinned by what absorbs on the way") {
+  const ScatteringMedium fog{.mu_s = 0.1, .mu_a = 0.2};
+  const Vec3 at(0.3, 0.2, 0.5);
+  const auto check = [&](const AnyIndexField& field, const Stage& stage, double index) {
+    RenderScene scene =
+        scene_in(field, stage, BeamLight{Vec3(0, 0, -1.5), Vec3::UnitZ(), 1, 2 * pi},
+                 Camera{at, -Vec3::UnitZ(), Vec3::UnitY(), 1.0, {1, 1}});
+    const Rendered result = rendered(scene, {.method = RenderMethod::bidirectional}, 5e4);
+    const double film = 4 * std::tan(0.5) * std::tan(0.5) * index * index;
+    RenderScene without = scene;
+    without.stage.medium = {};
+    if (without.stage.body) without.stage.body->medium = {};
+    const Rendered clear = rendered(without, RenderMethod::bidirectional, 5e4);
+    CHECK(clear.value() == doctest::Approx(2 / film).epsilon(1e-9));
+    const double unscattered = 2 * std::exp(-0.3 * 2) / film;
+    CHECK(result.value() > unscattered);
+    CHECK(result.value() < 1.5 * unscattered);
+  };
+  check(Homogeneous{}, {room, fog}, 1);
+  check(Homogeneous{0.2}, {room, fog, Body{Sphere{Vec3(0, 0, -0.5), 0.6}, fog}, 0.2}, 1.2);
+}
+
+}  // namespace flatspeckle::grin::tests
