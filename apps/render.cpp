@@ -72,6 +72,19 @@ void print_render(const grin::RenderScene& scene, const grin::RenderJob& job,
               joins.mean_refind());
 }
 
+/// Where the power went, as shares of it.
+void print_energy(const Estimate& energy) {
+  const double emitted = energy.value[0].real();
+  const char* before = "power of light: ";
+  for (std::size_t fate = 1; fate < energy.value.size(); ++fate) {
+    const double share = energy.value[fate].real() / emitted;
+    if (!(share > 1e-12)) continue;  // rounding
+    std::printf("%s%.4g %% %s", before, 100 * share, grin::fate_words[fate]);
+    before = ", ";
+  }
+  std::puts("");
+}
+
 }  // namespace
 
 int render(const Arguments& arguments) {
@@ -100,8 +113,10 @@ int render(const Arguments& arguments) {
                            render_result(scene, job, session.sums(""));
                        print_render(scene, job, result);
                        write_render(file, scene, job, result, scene.length_unit);
-                       if (const auto energy = energy_result(job, session.sums("")))
+                       if (const auto energy = energy_result(job, session.sums(""))) {
+                         print_energy(*energy);
                          write_energy(file, scene, request, *energy);
+                       }
                      });
 }
 

@@ -19,6 +19,14 @@ enum class Fate {
   cut           ///< of paths that reached max_scatterings
 };
 inline constexpr std::size_t fates = 8;
+inline constexpr std::array<const char*, fates> fate_words{"emitted",
+                                                           "absorbed",
+                                                           "absorbed in the body",
+                                                           "unscattered",
+                                                           "reflected by the body",
+                                                           "scattered",
+                                                           "lost",
+                                                           "cut"};
 
 /// Power by Fate, summed over light paths. A path keeps its own until it has ended, so that sums
 /// round little.

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+
 #include "grin/estimators/energy_balance.h"
 #include "grin/estimators/path_vertex.h"
 
@@ -55,7 +57,8 @@ class LightTally {
   }
   void fly(double power, const Flight& flight) {
     path_.add(Fate::absorbed_body, power * flight.absorbed_in_body);
-    path_.add(Fate::absorbed_stage, power * (1 - flight.weight - flight.absorbed_in_body));
+    const double around = 1 - flight.weight - flight.absorbed_in_body;
+    path_.add(Fate::absorbed_stage, power * std::max(0.0, around));
   }
 
   EnergyBalance& all_;

@@ -175,6 +175,71 @@ class ClosedForms(RenderTest):
         self.assertGreater(found["random"], 1.1 * found["low"])
 
 
+class Energy(RenderTest):
+    """What becomes of the light adds up to it, and to what formulas say."""
+    BALL = {"stage_box": [-2, -2, -2, 2, 2, 2], "body_sphere": [0, 0, 0, 1], "sensor": "directional"}
+    SMOKE = {"body_mu_s": 1, "body_mu_a": 0.3, "body_phase": "isotropic"}
+    POINT = {"point_light": [0, 0, -1.5, 3]}
+    POINT_INSIDE = {"point_light": [0, 0, 1, 3]}
+
+    def fates(self, **keys):
+        found = self.render(**keys)
+        power = {name.removeprefix("energy/"): value for name, value in found.items()
+                 if name.startswith("energy/")}
+        ends = [value for name, value in power.items()
+                if name != "emitted" and not name.endswith("_error")]
+        self.assertGreater(power["emitted"], 0)
+        np.testing.assert_allclose(sum(ends), power["emitted"], rtol=1e-12)
+        self.assertGreaterEqual(min(ends), 0)
+        return power
+
+    def test_of_scenes(self):
+        for name in NAMES:
+            for method in ("light", "bidirectional"):
+                with self.subTest(name, method=method):
+                    self.fates(config=SCENES / f"render_{name}.toml", method=method, samples=500)
+
+    def test_of_media(self):
+        write_density(self.folder / "density.h5", np.arange(80.0).reshape(4, 4, 5))
+        around = {"method": "light", "index_around": 1.4, **self.BALL, **self.POINT}
+        for name, keys in {
+                "body": {**around, **self.SMOKE},
+                "both": {**around, **self.SMOKE, **FOG, "phase": "henyey_greenstein", "g": 0.9},
+                "absorbs": {**around, "body_mu_a": 2, "mu_a": 0.1},
+                "curved": {**around, **self.SMOKE, "field": "parabolic", "alpha": 0.5},
+                "no loss": {**around, "body_mu_s": 3, "body_phase": "isotropic"},
+                "cut": {**around, **self.SMOKE, "max_scatterings": 2},
+                "grid": {**BOX, **BEAM, **AREA, "mu_s": 0.1, "mu_a": 0.02, "density": "density.h5"},
+                "even": {**BOX, **FOG, "method": "light", "sensor": "directional", "environment": 1}}.items():
+            with self.subTest(name):
+                power = self.fates(**keys)
+                self.assertEqual("cut" in power, name == "cut")
+                self.assertEqual("specular" in power, "body_sphere" in keys)
+
+    def assert_fates(self, power, **expected):
+        for name, value in expected.items():
+            self.assert_within(power[name], power[f"{name}_error"], value)
+
+    def test_absorbing_box(self):
+        through = np.exp(-4 * 0.5)
+        power = self.fates(**BOX, **BEAM, **AREA, mu_a=0.5, method="light")
+        self.assert_fates(power, emitted=2, unscattered=2 * through,
+                          absorbed_stage=2 * (1 - through), scattered=0, lost=0)
+
+    def test_reflections_of_an_absorbing_ball(self):
+        """A beam through the middle: a geometric series of reflections."""
+        reflected, kept = (0.5 / 2.5) ** 2, np.exp(-2 * 0.4)
+        power = self.fates(**self.BALL, index=1.5, body_mu_a=0.4, method="light", samples=40000,
+                           beam_light=[0, 0, -2, 0, 0, 1, 1e-5, 1])
+        self.assert_fates(power, emitted=1, specular=reflected, scattered=0, absorbed_stage=0,
+                          absorbed_body=(1 - reflected) * (1 - kept) / (1 - reflected * kept))
+
+    def test_only_of_methods_that_end_light(self):
+        for method in ("path", "photon_map"):
+            found = self.render(**BOX, **self.POINT_INSIDE, **FOG, **AREA, method=method)
+            self.assertFalse([name for name in found if name.startswith("energy")])
+
+
 class Axes(RenderTest):
     """Unscattered light is where row and column say."""
 
