@@ -8,6 +8,7 @@
 #include "flatland/media/structure_factor.h"
 #include "flatland/scene/scene_datasets.h"
 #include "grin/estimators/energy_datasets.h"
+#include "grin/estimators/map_datasets.h"
 #include "grin/estimators/render_datasets.h"
 #include "grin/scene/trace_datasets.h"
 #include "mc/estimators/brownian.h"
@@ -54,7 +55,9 @@ std::vector<const DatasetTable*> all_tables() {
                                              &grin::area_table,
                                              &grin::directional_table,
                                              &grin::render_table,
-                                             &grin::energy_table};
+                                             &grin::energy_table,
+                                             &grin::box_map_table,
+                                             &grin::ring_map_table};
 #ifdef FLATSPECKLE_BENCH
   for (const DatasetTable* table : bench_tables()) tables.push_back(table);
 #endif

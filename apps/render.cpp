@@ -5,6 +5,7 @@
 #include "core/session/identity.h"
 #include "core/session/session.h"
 #include "grin/estimators/energy_datasets.h"
+#include "grin/estimators/map_datasets.h"
 #include "grin/estimators/render_datasets.h"
 #include "grin/scene/render_values.h"
 
@@ -117,6 +118,8 @@ int render(const Arguments& arguments) {
                          print_energy(*energy);
                          write_energy(file, scene, request, *energy);
                        }
+                       if (scene.map)
+                         write_map(file, *scene.map, map_result(job, *scene.map, session.sums("")));
                      });
 }
 

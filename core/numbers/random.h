@@ -43,6 +43,12 @@ class RandomStream {
 };
 
 /// Streams of one seed; each use of randomness has its own.
-enum class Stream : std::uint64_t { placement = 1, light_paths = 2, fields = 3, render = 4 };
+enum class Stream : std::uint64_t {
+  placement = 1,
+  light_paths = 2,
+  fields = 3,
+  render = 4,
+  light_map = 5
+};
 
 }  // namespace flatspeckle

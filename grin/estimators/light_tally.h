@@ -4,27 +4,43 @@
 
 #include "grin/estimators/energy_balance.h"
 #include "grin/estimators/path_vertex.h"
+#include "grin/space/space.h"
 
 namespace flatspeckle::grin {
 
-/// Books the power of a light path that is walked to its end. `from`: the vertex that a flight
-/// began at, whose weight is the power before the flight.
-class LightTally {
+/// Of a path whose power is nobody's concern. `from`: the vertex that a flight began at, whose
+/// weight is the power before the flight.
+struct NoTally {
+  template <Space S>
+  Flight fly(const S& space, const PathVertex& from, const Vec3& direction,
+             RandomStream& random) const {
+    return space.fly(from.point, direction, random);
+  }
+  void emitted(const PathVertex&) const {}
+  void left(const PathVertex&, const Flight&) const {}
+  void lost(const PathVertex&, const Flight&) const {}
+  void cut(const PathVertex&, const Flight&) const {}
+  void absorbed(const PathVertex&, const Flight&, double) const {}
+  void ended(const PathVertex&, const Flight&, double) const {}
+};
+
+/// Books the power of a light path that is walked to its end.
+class LightTally : public NoTally {
  public:
   explicit LightTally(EnergyBalance& all) : all_(all) {}
 
   void emitted(const PathVertex& start) { path_.add(Fate::emitted, start.weight); }
 
   void left(const PathVertex& from, const Flight& flight) {
-    fly(from.weight, flight);
+    spend(from.weight, flight);
     path_.add(fate(from, flight), from.weight * flight.weight);
   }
   void lost(const PathVertex& from, const Flight& flight) {
-    fly(from.weight, flight);
+    spend(from.weight, flight);
     path_.add(Fate::lost, from.weight * flight.weight);
   }
   void cut(const PathVertex& from, const Flight& flight) {
-    fly(from.weight, flight);
+    spend(from.weight, flight);
     path_.add(Fate::cut, from.weight * flight.weight);
   }
   /// A share of the power, in the flight and in the collision at its end.
@@ -52,10 +68,10 @@ class LightTally {
     return stayed_out ? Fate::specular : Fate::unscattered;
   }
   void absorb(double power, const Flight& flight, double albedo) {
-    fly(power, flight);
+    spend(power, flight);
     path_.add(absorbed_in(flight.point.part), power * flight.weight * (1 - albedo));
   }
-  void fly(double power, const Flight& flight) {
+  void spend(double power, const Flight& flight) {
     path_.add(Fate::absorbed_body, power * flight.absorbed_in_body);
     const double around = 1 - flight.weight - flight.absorbed_in_body;
     path_.add(Fate::absorbed_stage, power * std::max(0.0, around));
@@ -63,16 +79,6 @@ class LightTally {
 
   EnergyBalance& all_;
   EnergyBalance path_;
-};
-
-/// Of a path whose power is nobody's concern.
-struct NoTally {
-  void emitted(const PathVertex&) const {}
-  void left(const PathVertex&, const Flight&) const {}
-  void lost(const PathVertex&, const Flight&) const {}
-  void cut(const PathVertex&, const Flight&) const {}
-  void absorbed(const PathVertex&, const Flight&, double) const {}
-  void ended(const PathVertex&, const Flight&, double) const {}
 };
 
 }  // namespace flatspeckle::grin

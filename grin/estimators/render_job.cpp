@@ -115,19 +115,25 @@ RenderJob render_job(const RenderScene& scene, const RenderRequest& request, std
              described_sensors(scene);
   job.pictures = static_cast<std::size_t>(pixels) * scene.bins.count;
   job.has_energy = walks_light(tracer.method);
-  job.batches.size = job.pictures + (job.has_energy ? EnergyBalance::size : 0);
+  const MapKernel map = tracers.map_kernel();
+  job.batches.size = job.first_of_map() + (map ? sums_per_cell * cells(*scene.map) : 0);
   const int paths = paths_per_batch(tracer, tracers.cost_of_flight(), job.batches.size);
   job.batches.samples_per_batch = paths;
   const auto counts = std::make_shared<TransportCounts>();
   job.counts = counts;
   const auto counting = std::make_shared<std::mutex>();
-  job.batches.run = [=, bins = scene.bins, pictures = job.pictures, has_energy = job.has_energy](
-                        std::uint64_t number, std::span<Complex> sums) {
+  job.batches.run = [=, bins = scene.bins, pictures = job.pictures, has_energy = job.has_energy,
+                     first_of_map = job.first_of_map()](std::uint64_t number,
+                                                        std::span<Complex> sums) {
     Film film(pixels, bins, sums.first(pictures));
     RandomStream random(seed, static_cast<std::uint64_t>(Stream::render), number);
     TransportCounts of_batch;
     tracer.add(paths, random, film, of_batch);
     if (has_energy) film.energy.add_to(sums.subspan(pictures, EnergyBalance::size));
+    if (map) {
+      RandomStream own(seed, static_cast<std::uint64_t>(Stream::light_map), number);
+      map(paths, own, sums.subspan(first_of_map), of_batch);
+    }
     const std::lock_guard lock(*counting);
     *counts += of_batch;
   };

@@ -8,6 +8,7 @@
 #include "grin/ends/light.h"
 #include "grin/ends/sensor.h"
 #include "grin/estimators/film.h"
+#include "grin/estimators/light_map.h"
 #include "grin/fields/any_index_field.h"
 #include "grin/space/stage.h"
 
@@ -24,6 +25,7 @@ struct RenderScene {
   std::vector<Sensor> sensors;
   std::vector<std::string> sensor_names = {};  ///< of several
   TimeBins bins = {};
+  std::optional<LightMap> map = {};
   std::optional<double> length_unit = {};  ///< metres in a unit of length, for times
 };
 

@@ -33,7 +33,7 @@ void walk(const Transport& transport, const S& space, const Ends& ends, const Pa
   double density = first.density;
   double throughput = 1;
   while (here.weight > 0 && (!is_short || short_path_goes_on(space, here))) {
-    const Flight flight = space.fly(here.point, direction, random);
+    const Flight flight = tally.fly(space, here, direction, random);
     counts.add_flight(flight.end == Flight::End::lost);
     if (flight.end == Flight::End::lost) return tally.lost(here, flight);
     const double choice = here.end ? ends.choice(*here.end, flight.point.x) : 1;

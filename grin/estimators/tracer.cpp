@@ -85,6 +85,16 @@ Tracer Tracers::make(RenderMethod method) const {
   return tracer;
 }
 
+MapKernel Tracers::map_kernel() const {
+  if (!scene_.map) return {};
+  const auto transport = transport_of(scene_, request_, RenderMethod::bidirectional);
+  if (const auto* homogeneous = std::get_if<Homogeneous>(&scene_.field))
+    return grin::map_kernel(*scene_.map, transport, homogeneous->n_excess);
+  const std::shared_ptr<const CurvedSpace> space =
+      make_curved_space(scene_.field, scene_.stage, {scene_.step, scene_.max_length, false});
+  return grin::map_kernel(*scene_.map, transport, space, scene_.random_phase);
+}
+
 double Tracers::cost_of_flight() const {
   const Box box = bounds(scene_.stage.boundary);
   const double diagonal = (box.high - box.low).norm();

@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 
+#include "grin/estimators/map_kernel.h"
 #include "grin/estimators/path_kernels.h"
 #include "grin/estimators/render_scene.h"
 
@@ -34,6 +35,9 @@ class Tracers {
 
   /// Walks a few paths to tune it.
   Tracer make(RenderMethod method) const;
+
+  /// Nothing where the scene asks for no map.
+  MapKernel map_kernel() const;
 
   /// At the most, against a flight of twenty steps, or of none in uniform media: long curved ones
   /// cost more, and those through grids with many tentative collisions.

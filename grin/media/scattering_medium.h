@@ -17,6 +17,7 @@ struct ScatteringMedium {
 
   double mu_t() const { return mu_s + mu_a; }
   double albedo() const { return mu_s > 0 ? mu_s / mu_t() : 0; }
+  double absorption(const Vec3& x) const { return density ? mu_a * (*density)(x) : mu_a; }
 };
 
 /// A medium as keys have it; without mu_s and mu_a there is none.

@@ -31,12 +31,51 @@ TimeBins time_bins(const Keys& keys, const RenderValues& values) {
   return {bins[0], bins[1], static_cast<int>(bins[2])};
 }
 
+constexpr double most_sums = 1 << 23;  // of which 16 groups are 2 GiB
+
 void check_size(const std::vector<Sensor>& sensors, const TimeBins& bins) {
-  constexpr double most = 1 << 23;  // of which 16 groups of sums are 2 GiB
   double size = 0;
   for (const Sensor& sensor : sensors)
     size += static_cast<double>(picture_of(sensor).grid().count()) * bins.count;
-  if (size > most) throw InputError("pixels x path_bins", size, "must be at most 8388608");
+  if (size > most_sums) throw InputError("pixels x path_bins", size, "must be at most 8388608");
+}
+
+/// Checked, as many as the axes of the map.
+template <std::size_t axes>
+std::array<int, axes> map_counts(const std::vector<std::int64_t>& cells, const std::string& names) {
+  double product = 1;
+  for (const auto count : cells) product *= static_cast<double>(count);
+  if (cells.size() != axes)
+    throw InputError("map_cells", number_text(std::vector<double>(cells.begin(), cells.end())),
+                     "must be counts along " + names);
+  if (product > most_sums / 4)
+    throw InputError("map_cells", product, "must be at most 2097152 cells");
+  std::array<int, axes> counts{};
+  std::transform(cells.begin(), cells.end(), counts.begin(),
+                 [](std::int64_t count) { return static_cast<int>(count); });
+  return counts;
+}
+
+BoxCells box_cells(const Keys& keys, const RenderValues& values) {
+  const Box box = boxes_of(keys, values.map_box).front();
+  return {box, map_counts<3>(keys.read(values.map_cells), "x, y and z")};
+}
+
+RingCells ring_cells(const Keys& keys, const RenderValues& values) {
+  const auto& given = keys.read(values.map_cylinder);
+  const Vec3 from(given[0], given[1], given[2]), to(given[3], given[4], given[5]);
+  if (!(given[6] > 0 && (to - from).norm() > 0))
+    throw InputError("map_cylinder", number_text(given),
+                     "must have two ends apart and a positive radius");
+  return {from, to, given[6], map_counts<2>(keys.read(values.map_cells), "radius and axis")};
+}
+
+std::optional<LightMap> light_map(const Keys& keys, const RenderValues& values) {
+  const bool has_box = !values.map_box.empty(), has_cylinder = !values.map_cylinder.empty();
+  if (has_box && has_cylinder) throw InputError("map_box, map_cylinder: give one");
+  if (has_box) return box_cells(keys, values);
+  if (has_cylinder) return ring_cells(keys, values);
+  return std::nullopt;
 }
 
 /// Sound of amplitude 0 bends no rays.
@@ -68,6 +107,21 @@ double max_length_of(const Keys& keys, const RenderValues& values, double scale,
   return scale > 0 ? keys.read(values.max_length).value_or(usual) : usual;
 }
 
+void add_map_keys(Keys& keys, RenderValues& values) {
+  keys.group("Map of the fluence rate and of absorbed power");
+  keys.add("map_box", values.map_box, "x y z x y z of two corners: cells of this box")
+      .exactly(6, "two opposite corners, the low one first")
+      .unit("length");
+  keys.add("map_cylinder", values.map_cylinder,
+           "x y z x y z radius: rings about the axis from the first point to the second")
+      .exactly(7, "two points and a radius")
+      .unit("length");
+  keys.add("map_cells", values.map_cells,
+           "Counts: along x, y and z of a box; along the radius and the axis of a cylinder")
+      .from(1, 1 << 21)
+      .only_of("a map (map_box, map_cylinder)");
+}
+
 }  // namespace
 
 void add_keys(Keys& keys, RenderValues& values) {
@@ -95,6 +149,7 @@ void add_keys(Keys& keys, RenderValues& values) {
   keys.add("length_unit", values.length_unit,
            "Metres in a unit of length, for the times of path_bins")
       .positive();
+  add_map_keys(keys, values);
 }
 
 void add_keys(Keys& keys, RenderRequestValues& values) {
@@ -128,6 +183,7 @@ RenderScene make_render_scene(const Keys& keys, const RenderValues& values) {
                     .sensors = make_sensors(keys, values.sensors),
                     .sensor_names = make_sensor_names(keys, values.sensors),
                     .bins = time_bins(keys, values),
+                    .map = light_map(keys, values),
                     .length_unit = keys.read(values.length_unit)};
   check_size(scene.sensors, scene.bins);
   return scene;

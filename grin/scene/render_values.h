@@ -17,6 +17,8 @@ struct RenderValues {
   LightValues lights{};
   SensorValues sensors{};
   std::vector<double> path_bins{};
+  std::vector<double> map_box{}, map_cylinder{};
+  std::vector<std::int64_t> map_cells{};
   std::optional<double> length_unit = {}, step = {}, max_length = {};
   bool random_phase = false;
 };

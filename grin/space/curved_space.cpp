@@ -52,14 +52,20 @@ struct CurvedSpace::Neighbours {
   RayTangent tangent = {};
 };
 
-Flight CurvedSpace::fly(const PathPoint& from, const Vec3& direction, RandomStream& random) const {
+Flight CurvedSpace::fly(const PathPoint& from, const Vec3& direction, RandomStream& random,
+                        FlightLog* log) const {
   Flight flight{.point = from, .start_direction = direction, .direction = direction};
   Neighbours neighbours{setup_->options.spreading};
   const double longest =
       setup_->is_straight ? std::numeric_limits<double>::infinity() : setup_->options.max_length;
   for (int legs = 0; legs < most_legs && flight.arc_length <= longest; ++legs) {
+    FlightLeg now{flight.point, flight.direction, flight.arc_length, flight.weight};
     const auto end = leg(flight, neighbours, random);
     if (!end) return flight;
+    if (log) {
+      now.length = flight.arc_length - now.length;
+      log->push_back(now);
+    }
     if (end == LegEnd::body) {
       cross(flight, neighbours, random);
       continue;

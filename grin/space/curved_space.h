@@ -2,6 +2,8 @@
 
 #include <memory>
 
+#include "grin/rays/step_curve.h"
+#include "grin/space/flight_log.h"
 #include "grin/space/ray_field.h"
 #include "grin/space/space.h"
 #include "grin/space/stage.h"
@@ -23,7 +25,12 @@ class CurvedSpace {
   CurvedSpace(const AnyIndexField& field, const Stage& stage, const CurvedSpaceOptions& options);
 
   double index(const PathPoint& p) const { return 1 + excess(p); }
-  Flight fly(const PathPoint& from, const Vec3& direction, RandomStream& random) const;
+  /// log: its legs are added to that.
+  Flight fly(const PathPoint& from, const Vec3& direction, RandomStream& random,
+             FlightLog* log = nullptr) const;
+  /// Of a leg of a flight (flight_log.h).
+  template <class Use>
+  void for_points(const FlightLeg& leg, double apart, RandomStream& random, const Use& use) const;
   /// All ways of light between two points.
   bool joins_all() const { return setup_->field_part == Part::stage || is_clear(); }
   /// Any, between points of these parts.
@@ -79,6 +86,7 @@ class CurvedSpace {
 
   class Legs;
   struct Neighbours;
+  class Curve;
 
   ConnectionOptions search() const;
   bool searches_for_beams() const {
@@ -95,6 +103,41 @@ class CurvedSpace {
   std::shared_ptr<const RayField> field_;
 };
 static_assert(Space<CurvedSpace>);
+
+/// Points of a leg, one after the other.
+class CurvedSpace::Curve {
+ public:
+  Curve(const CurvedSpace& space, const FlightLeg& leg)
+      : field_(*space.field_),
+        step_(space.setup_->options.step),
+        now_(start_ray(field_, leg.start.x, leg.direction)),
+        before_(now_) {}
+
+  /// Increasing arc lengths.
+  Vec3 operator()(double s) {
+    while (now_.arc_length < s) {
+      before_ = now_;
+      field_.advance(step_, 1, now_, nullptr);
+      if (!(now_.arc_length > before_.arc_length)) return before_.x;
+    }
+    const StepCurve curve(before_, now_, step_);
+    return curve.x(curve.theta_at(s));
+  }
+
+ private:
+  const RayField& field_;
+  double step_;
+  RayState now_, before_;
+};
+
+template <class Use>
+void CurvedSpace::for_points(const FlightLeg& leg, double apart, RandomStream& random,
+                             const Use& use) const {
+  const PartMedium& in = setup_->stage.medium(leg.start.part);
+  if (is_curved(leg.start)) return grin::for_points(leg, in, apart, random, Curve(*this, leg), use);
+  const auto x_at = [&](double s) -> Vec3 { return leg.start.x + s * leg.direction; };
+  grin::for_points(leg, in, apart, random, x_at, use);
+}
 
 /// The field fills the body if there is one, else the stage. Throws InputError for a bad stage.
 std::unique_ptr<const CurvedSpace> make_curved_space(const AnyIndexField& field, const Stage& stage,

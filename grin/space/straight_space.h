@@ -1,6 +1,7 @@
 #pragma once
 
 #include "grin/space/beam_search.h"
+#include "grin/space/flight_log.h"
 #include "grin/space/straight_legs.h"
 #include "grin/space/way_search.h"
 
@@ -19,13 +20,22 @@ class StraightSpace {
 
   double index(const PathPoint& p) const { return 1 + excess(p.part); }
 
-  Flight fly(const PathPoint& from, const Vec3& direction, RandomStream& random) const {
+  /// log: its legs are added to that.
+  Flight fly(const PathPoint& from, const Vec3& direction, RandomStream& random,
+             FlightLog* log = nullptr) const {
     Flight flight{.point = from, .start_direction = direction, .direction = direction};
-    const LegEnd end = stage_.fly(flight, index(from), random);
+    const LegEnd end = leg(flight, random, log);
     if (plan.body && end == LegEnd::body)
-      return is_clear() ? go_on(flight, random) : refracted(flight, random);
+      return is_clear() ? go_on(flight, random, log) : refracted(flight, random, log);
     flight.spreading = flight.arc_length * flight.arc_length;
     return finished(flight, end);
+  }
+
+  /// Of a leg of a flight (flight_log.h).
+  template <class Use>
+  void for_points(const FlightLeg& leg, double apart, RandomStream& random, const Use& use) const {
+    const auto x_at = [&](double s) -> Vec3 { return leg.start.x + s * leg.direction; };
+    grin::for_points(leg, stage_.medium(leg.start.part), apart, random, x_at, use);
   }
 
   /// All ways of light between two points.
@@ -80,26 +90,35 @@ class StraightSpace {
   /// Nothing is refracted at the body's surface.
   bool is_clear() const { return plan.body && excess_[0] == excess_[1]; }
 
+  LegEnd leg(Flight& flight, RandomStream& random, FlightLog* log) const {
+    FlightLeg now{flight.point, flight.direction, flight.arc_length, flight.weight};
+    const LegEnd end = stage_.fly(flight, index(flight.point), random);
+    if (log) {
+      now.length = flight.arc_length - now.length;
+      log->push_back(now);
+    }
+    return end;
+  }
   /// At the body's surface.
-  Flight& go_on(Flight& flight, RandomStream& random) const {
-    for (int leg = 1; leg < most_legs; ++leg) {
+  Flight& go_on(Flight& flight, RandomStream& random, FlightLog* log) const {
+    for (int legs = 1; legs < most_legs; ++legs) {
       stage_.pass(flight);
-      const LegEnd end = stage_.fly(flight, index(flight.point), random);
+      const LegEnd end = leg(flight, random, log);
       if (end == LegEnd::body) continue;
       flight.spreading = flight.arc_length * flight.arc_length;
       return finished(flight, end);
     }
     return flight;  // lost
   }
-  Flight& refracted(Flight& flight, RandomStream& random) const {
+  Flight& refracted(Flight& flight, RandomStream& random, FlightLog* log) const {
     const auto side = [&](Part part) { return IndexGradient{excess(part), Vec3::Zero()}; };
     const double n_start = index(flight.point);
     RayTangent tangent;
     tangent.dx.diagonal().fill(flight.arc_length / n_start);
-    for (int leg = 1; leg < most_legs; ++leg) {
+    for (int legs = 1; legs < most_legs; ++legs) {
       stage_.cross(flight, side(Part::body), side(Part::stage), &tangent, random);
       const double before = flight.arc_length, n = index(flight.point);
-      const LegEnd end = stage_.fly(flight, n, random);
+      const LegEnd end = leg(flight, random, log);
       tangent.dx += (flight.arc_length - before) / n * tangent.dv;
       if (end == LegEnd::body) continue;
       if (flight.is_joinable)

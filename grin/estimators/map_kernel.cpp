@@ -1,0 +1,105 @@
+#include "grin/estimators/map_kernel.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "grin/estimators/subpath.h"
+#include "grin/space/straight_space.h"
+
+namespace flatspeckle::grin {
+
+namespace {
+
+/// Of a light path, whose stretches are added to a map.
+template <class Cells>
+class MapTally : public NoTally {
+ public:
+  MapTally(const Cells& cells, const Transport& transport, std::span<Complex> sums,
+           TransportCounts& counts)
+      : cells_(cells), transport_(transport), sums_(sums), counts_(counts) {}
+
+  template <Space S>
+  Flight fly(const S& space, const PathVertex& from, const Vec3& direction, RandomStream& random) {
+    log_.clear();
+    const Flight flight = space.fly(from.point, direction, random, &log_);
+    for (const FlightLeg& leg : log_) {
+      const ScatteringMedium& medium = transport_.medium(leg.start.part);
+      const double apart = std::max(cells_.spacing(), leg.length / most_points);
+      space.for_points(leg, apart, random,
+                       [&](const Vec3& x, double length) { add(x, from.weight * length, medium); });
+    }
+    return flight;
+  }
+
+ private:
+  static constexpr double most_points = 256;
+
+  void add(const Vec3& x, double power_length, const ScatteringMedium& medium) {
+    const int cell = cells_.cell_at(x);
+    if (cell < 0) return;
+    const double fluence = power_length / cells_.volume(cell);
+    if (!std::isfinite(fluence)) {
+      ++counts_.lost_values;
+      return;
+    }
+    Complex* const sums = &sums_[sums_per_cell * static_cast<std::size_t>(cell)];
+    sums[0] += fluence;
+    sums[1] += fluence * medium.absorption(x);
+  }
+
+  const Cells& cells_;
+  const Transport& transport_;
+  std::span<Complex> sums_;
+  TransportCounts& counts_;
+  FlightLog log_;
+};
+
+template <RenderPlan plan, Space S, class Tally>
+void walk_light(const Transport& transport, const S& space, RandomStream& random, Tally& tally,
+                TransportCounts& counts) {
+  const EndPosition end = transport.lights.sample_position(space, random);
+  const PathVertex start = end_vertex(transport.strategies, end);
+  const EndDirection first = transport.lights.sample_direction(end, random);
+  walk<plan>(
+      transport, space, transport.lights, start, first, false, random, counts, tally,
+      [](const PathVertex&) {}, [](const PathVertex&, const PathVertex&) {});
+}
+
+/// with_space(random, use): calls use(space), the same or another for each path.
+template <RenderPlan plan, class WithSpace>
+MapKernel map_kernel_of(const LightMap& map, std::shared_ptr<const Transport> transport,
+                        const WithSpace& with_space) {
+  return [=](int paths, RandomStream& random, std::span<Complex> sums, TransportCounts& counts) {
+    std::visit(
+        [&](const auto& cells) {
+          MapTally tally(cells, *transport, sums, counts);
+          for (int path = 0; path < paths; ++path)
+            with_space(random, [&](const auto& space) {
+              walk_light<plan>(*transport, space, random, tally, counts);
+            });
+        },
+        map);
+  };
+}
+
+}  // namespace
+
+MapKernel map_kernel(const LightMap& map, std::shared_ptr<const Transport> transport,
+                     double excess) {
+  constexpr RenderPlan plan{.curved = false, .timed = false};
+  const StraightSpace<plan> space(transport->stage, excess);
+  return map_kernel_of<plan>(map, transport, [=](RandomStream&, const auto& use) { use(space); });
+}
+
+MapKernel map_kernel(const LightMap& map, std::shared_ptr<const Transport> transport,
+                     std::shared_ptr<const CurvedSpace> space, bool random_phase) {
+  constexpr RenderPlan plan{.timed = false};
+  return map_kernel_of<plan>(map, transport, [=](RandomStream& random, const auto& use) {
+    if (random_phase)
+      use(*space->frozen(2 * std::numbers::pi * random.uniform()));
+    else
+      use(*space);
+  });
+}
+
+}  // namespace flatspeckle::grin

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+
+#include "core/numbers/complex.h"
+#include "grin/estimators/light_map.h"
+#include "grin/estimators/transport.h"
+#include "grin/space/curved_space.h"
+
+namespace flatspeckle::grin {
+
+/// Adds so many light paths to the sums of a map: [cell][fluence rate, absorbed power density].
+/// Each stretch of a path counts by its length in a cell (track-length estimator), which points
+/// along it find.
+using MapKernel = std::function<void(int paths, RandomStream& random, std::span<Complex> sums,
+                                     TransportCounts& counts)>;
+inline constexpr std::size_t sums_per_cell = 2;
+
+/// Index 1 + excess everywhere, or in the body.
+MapKernel map_kernel(const LightMap& map, std::shared_ptr<const Transport> transport,
+                     double excess);
+
+/// random_phase: each light path meets its own phase of the sound.
+MapKernel map_kernel(const LightMap& map, std::shared_ptr<const Transport> transport,
+                     std::shared_ptr<const CurvedSpace> space, bool random_phase);
+
+}  // namespace flatspeckle::grin
