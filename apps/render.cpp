@@ -28,9 +28,10 @@ void note_losses(const grin::TransportCounts& counts) {
 
 /// A dark picture is more often a mistake than a result.
 void note_darkness(std::size_t sensors) {
-  std::fputs(
-      sensors > 1 ? "note: no light came to a sensor\n" : "note: no light came to the sensor\n",
-      stderr);
+  const char* const notes[] = {"note: no light came to the map\n",
+                               "note: no light came to the sensor\n",
+                               "note: no light came to a sensor\n"};
+  std::fputs(notes[std::min<std::size_t>(sensors, 2)], stderr);
 }
 
 void print_row(const char* name, const Estimate& estimate, std::size_t entry,
@@ -39,31 +40,44 @@ void print_row(const char* name, const Estimate& estimate, std::size_t entry,
               estimate.error[entry], units.c_str());
 }
 
+std::size_t largest_of(const Estimate& estimate) {
+  const auto largest =
+      std::max_element(estimate.value.begin(), estimate.value.end(),
+                       [](const Complex& a, const Complex& b) { return a.real() < b.real(); });
+  return static_cast<std::size_t>(largest - estimate.value.begin());
+}
+
 /// Total, mean and brightest pixel. Returns whether there is light.
 bool print_sensor(const grin::Sensor& sensor, const grin::SensorResult& result) {
   const std::string& units = row_of(grin::table_of(sensor), "image").unit;
   const auto& image = result.picture.steady;
-  const auto brightest =
-      std::max_element(image.value.begin(), image.value.end(),
-                       [](const Complex& a, const Complex& b) { return a.real() < b.real(); });
+  const std::size_t brightest = largest_of(image);
   if (result.total) print_row("total power", *result.total, 0, "");
   print_row("mean of pixels", result.mean, 0, units);
-  print_row("brightest pixel", image, static_cast<std::size_t>(brightest - image.value.begin()),
-            units);
-  const bool is_lit = brightest->real() > 0;
+  print_row("brightest pixel", image, brightest, units);
+  const bool is_lit = image.value[brightest].real() > 0;
   if (is_lit) std::printf("pixels: relative error %.2g %%\n", 100 * relative_error(image));
   return is_lit;
 }
 
-/// What each sensor has found, and what the search for curves cost.
+/// The brightest cell. Returns whether there is light.
+bool print_map(const grin::LightMap& map, const grin::RenderJob& job, const GroupedSums& sums) {
+  const Estimate fluence = grin::fluence(sums, job.first_of_map(), map);
+  const std::size_t brightest = largest_of(fluence);
+  print_row("largest fluence", fluence, brightest, "1/length^2");
+  return fluence.value[brightest].real() > 0;
+}
+
+/// What each sensor and the map have found, and what the search for curves cost.
 void print_render(const grin::RenderScene& scene, const grin::RenderJob& job,
-                  const grin::RenderResult& result) {
+                  const GroupedSums& sums, const grin::RenderResult& result) {
   bool is_lit = true;
   for (std::size_t i = 0; i < result.size(); ++i) {
     const std::string name = result.size() > 1 ? sensor_name(scene, i) : "";
     std::printf("%-16s %-13s %-10s\n", name.c_str(), "value", "error");
     is_lit &= print_sensor(scene.sensors[i], result[i]);
   }
+  if (scene.map) is_lit &= print_map(*scene.map, job, sums);
   if (!is_lit) note_darkness(result.size());
   if (job.counts) note_losses(*job.counts);
   if (!grin::has_trials(job)) return;
@@ -112,14 +126,13 @@ int render(const Arguments& arguments) {
                      [&](ResultFile& file) {
                        const grin::RenderResult result =
                            render_result(scene, job, session.sums(""));
-                       print_render(scene, job, result);
+                       print_render(scene, job, session.sums(""), result);
                        write_render(file, scene, job, result, scene.length_unit);
                        if (const auto energy = energy_result(job, session.sums(""))) {
                          print_energy(*energy);
                          write_energy(file, scene, request, *energy);
                        }
-                       if (scene.map)
-                         write_map(file, *scene.map, map_result(job, *scene.map, session.sums("")));
+                       if (scene.map) write_map(file, scene, job, session.sums(""));
                      });
 }
 

@@ -3,7 +3,9 @@
 #include <memory>
 #include <numbers>
 
+#include "bench/oracles/lamp_map.h"
 #include "bench/scenes/render_scenes.h"
+#include "grin/estimators/map_datasets.h"
 
 namespace flatspeckle::bench {
 
@@ -79,6 +81,24 @@ std::vector<ErrorRun> closed_form(const RenderScenePointer& named) {
   return runs;
 }
 
+/// Fluence in absorbing fog around a lamp.
+ErrorRun map_run() {
+  constexpr double albedo = 0.9;
+  const auto scene = std::make_shared<const RenderScene>(oracles::lamp_map(albedo));
+  const Method method{
+      .scene = "lamp_in_fog", .name = "map of the fluence rate", .trial = [scene](auto seed) {
+        const grin::RenderJob job = render_job(*scene, {}, seed);
+        const std::size_t first = job.first_of_map(), cells = oracles::lamp_fluence(albedo).size();
+        return Trial{job.batches, [=](double samples, std::span<const Complex> sums) {
+                       return grin::map_means(samples, sums.subspan(first), cells);
+                     }};
+      }};
+  return run_of(method, [] {
+    const auto exact = oracles::lamp_fluence(albedo);
+    return ErrorReference{{exact.begin(), exact.end()}, 0, "transport theory"};
+  });
+}
+
 /// Joins by 1/r^2 without another strategy beside.
 std::vector<ErrorRun> without_variance(const RenderScenePointer& named) {
   Method method = method_of(named, "path tracing, no finite variance", RenderMethod::path);
@@ -101,6 +121,7 @@ std::vector<ErrorRun> render_error_runs() {
          closed_form({"luneburg_even", std::make_shared<const RenderScene>(even_luneburg())}));
   append(runs, without_variance(
                    {"glass_ball_beam", std::make_shared<const RenderScene>(beam_on_glass_ball())}));
+  runs.push_back(map_run());
   return runs;
 }
 

@@ -2,9 +2,11 @@
 #include <memory>
 #include <utility>
 
+#include "bench/oracles/lamp_map.h"
 #include "bench/plan/plan_rooms.h"
 #include "bench/plan/plan_timing.h"
 #include "bench/scenes/render_scenes.h"
+#include "grin/estimators/map_datasets.h"
 #include "grin/estimators/path_kernels.h"
 #include "grin/estimators/tracer.h"
 
@@ -79,6 +81,27 @@ PlanCase flag(const std::string& left_out, const std::string& name, const Render
   });
 }
 
+SampledKernel map_of(const RenderScene& scene) {
+  const RenderJob job = render_job(scene, {RenderMethod::light}, 1);
+  const auto count = static_cast<std::size_t>(cells(*scene.map));
+  return {job.batches.size, static_cast<double>(job.batches.samples_per_batch), job.batches.run,
+          [=, first = job.first_of_map()](double samples, std::span<const Complex> sums) {
+            return map_means(samples, sums.subspan(first), count);
+          }};
+}
+
+/// A map beside a picture, and by itself.
+PlanCase map_alone() {
+  return named("render", "pictures", "map of the fluence around a lamp", [](double cpu_seconds) {
+    PlanRow row{.per = "path"};
+    const RenderScene alone = oracles::lamp_map(0.9);
+    RenderScene both = alone;
+    both.sensors = {Camera{Vec3(0, 0, 5), -Vec3::UnitZ(), Vec3::UnitY(), 1, {8, 8}}};
+    compare_sampled(row, map_of(both), map_of(alone), Numbers::same, Measure::sample, cpu_seconds);
+    return row;
+  });
+}
+
 }  // namespace
 
 std::vector<PlanCase> render_plan_cases() {
@@ -99,10 +122,12 @@ std::vector<PlanCase> render_plan_cases() {
       flag("density grid", box, alone, same, [](RenderPlan& p) { p.gridded = p.absorbs = true; }),
       flag("body", box, alone, same, [](RenderPlan& p) { p.body = true; }),
       flag("time bins", box, alone, same, [](RenderPlan& p) { p.timed = true; }),
-      flag("all but curves", box, alone, same, [](RenderPlan& p) {
-        p = RenderPlan{};
-        p.curved = false;
-      })};
+      flag("all but curves", box, alone, same,
+           [](RenderPlan& p) {
+             p = RenderPlan{};
+             p.curved = false;
+           }),
+      map_alone()};
 }
 
 }  // namespace flatspeckle::bench

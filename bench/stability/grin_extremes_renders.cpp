@@ -4,9 +4,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "bench/oracles/lamp_map.h"
 #include "bench/oracles/peierls_slab.h"
 #include "bench/scenes/furnaces.h"
 #include "bench/stability/extreme_rows.h"
+#include "grin/estimators/map_datasets.h"
 
 namespace flatspeckle::bench {
 
@@ -20,14 +22,17 @@ struct Picture {
   Estimate pixels;
   TransportCounts counts;
 };
-Picture rendered(const RenderScene& scene, RenderMethod method, std::uint64_t samples) {
-  const RenderJob job = render_job(scene, {method}, 1);
+RunState run_state(const RenderJob& job, std::uint64_t samples) {
   RunOptions options;
   options.stop.samples = samples;
   options.threads = 1;
   RunState state;
   run_batches(job.batches, options, state);
-  return {rendered_picture(job, state.sums).steady, *job.counts};
+  return state;
+}
+Picture rendered(const RenderScene& scene, RenderMethod method, std::uint64_t samples) {
+  const RenderJob job = render_job(scene, {method}, 1);
+  return {rendered_picture(job, run_state(job, samples).sums).steady, *job.counts};
 }
 
 /// The mean of n^2 over the face at z = 1, and a camera that reads 1 (C24).
@@ -174,12 +179,40 @@ void add_slabs(ExtremeRows& rows) {
   });
 }
 
+/// The fluence rate of a scene's map alone.
+Finding map_row(RenderScene scene, const std::vector<double>& expected, std::uint64_t samples) {
+  scene.sensors.clear();
+  const RenderJob job = render_job(scene, {}, 1);
+  const Estimate found = fluence(run_state(job, samples).sums, job.first_of_map(), *scene.map);
+  Finding worst{0, 4};
+  for (std::size_t i = 0; i < expected.size(); ++i)
+    worst = worse(worst, in_errors(found.value[i], found.error[i], expected[i], 0.1));
+  return worst;
+}
+
+void add_maps(ExtremeRows& rows) {
+  for (const double albedo : {0.1, 0.95})
+    rows.add_slow("fluence 1 to 5 mean free paths off a lamp, albedo " + short_number(albedo),
+                  "transport theory, in errors", [=] {
+                    return map_row(oracles::lamp_map(albedo), oracles::lamp_fluence(albedo),
+                                   albedo < 0.5 ? 3'000'000 : 200'000);
+                  });
+  rows.add("fluence in and around a ball of index 3", "4 pi n^2 in the white furnace, in errors",
+           [] {
+             RenderScene scene = in_box(Homogeneous{2}, fog(1, 0, 0));
+             scene.stage.body = Body{Sphere{Vec3::Zero(), 0.9}, fog(1, 0, 0)};
+             scene.map = BoxCells({Vec3::Constant(-0.5), Vec3::Constant(0.5)}, {1, 1, 1});
+             return map_row(scene, {36 * pi}, 100'000);
+           });
+}
+
 }  // namespace
 
 std::vector<ExtremeCase> render_extremes() {
   ExtremeRows rows("grin");
   add_furnaces(rows);
   add_slabs(rows);
+  add_maps(rows);
   return std::move(rows).rows();
 }
 

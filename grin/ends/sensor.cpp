@@ -6,6 +6,18 @@
 
 namespace flatspeckle::grin {
 
+namespace {
+
+constexpr const char* no_sensor = "none";
+
+std::vector<std::string> words_for_sensors(const SensorKinds& kinds) {
+  std::vector<std::string> words = kind_words(kinds);
+  words.emplace_back(no_sensor);
+  return words;
+}
+
+}  // namespace
+
 const DatasetTable& table_of(const Sensor& sensor) {
   return std::visit([](const auto& kind) -> const DatasetTable& { return table_of(kind); }, sensor);
 }
@@ -67,8 +79,8 @@ void add_keys(Keys& keys, SensorValues& values) {
   keys.add("sensor", values.sensor,
            "Reads L/n^2 (camera), irradiance on the boundary (area), or power per solid angle that "
            "leaves the stage (directional); or several, and the keys of sensors have one value for "
-           "all or one for each")
-      .one_of(kind_words(values.kinds));
+           "all or one for each; none: a map alone")
+      .one_of(words_for_sensors(values.kinds));
   keys.add("sensor_name", values.sensor_name, "Of each: its results are in the group sensors/NAME")
       .only_of("several sensors");
   add_vectors(keys, "sensor_up", values.sensor_up, "Upwards in the picture");
@@ -82,7 +94,9 @@ void add_keys(Keys& keys, SensorValues& values) {
 std::vector<Sensor> make_sensors(const Keys& keys, const SensorValues& values) {
   const auto& words = keys.required(values.sensor);
   std::vector<Sensor> sensors;
+  if (words == std::vector<std::string>{no_sensor}) return sensors;
   for (const std::string& word : words) {
+    if (word == no_sensor) throw InputError("sensor", word, "must stand alone");
     const OneSensor of(keys, sensors.size(), words.size());
     const auto pixels = of.part(values.pixels, 2);
     const Picture picture{of.vector(values.sensor_up),

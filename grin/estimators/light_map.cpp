@@ -42,6 +42,12 @@ RingCells::RingCells(const Vec3& from, const Vec3& to, double radius,
       width_(radius / counts[0]),
       height_((to - from).norm() / counts[1]) {}
 
+Box RingCells::bounds() const {
+  const Vec3 to = from_ + height_ * counts_[1] * axis_;
+  const Vec3 reach = Vec3::Constant(width_ * counts_[0]);
+  return {from_.cwiseMin(to) - reach, from_.cwiseMax(to) + reach};
+}
+
 double RingCells::volume(int cell) const {
   const int ring = cell / counts_[1];
   return std::numbers::pi * (2 * ring + 1) * width_ * width_ * height_;

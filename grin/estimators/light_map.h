@@ -15,6 +15,7 @@ class BoxCells {
   BoxCells(const Box& box, const std::array<int, 3>& counts);
 
   const std::array<int, 3>& counts() const { return counts_; }
+  const Box& bounds() const { return box_; }
   double volume(int) const { return sides_.prod(); }
   /// The shortest side of a cell.
   double spacing() const { return sides_.minCoeff(); }
@@ -36,6 +37,8 @@ class RingCells {
   RingCells(const Vec3& from, const Vec3& to, double radius, const std::array<int, 2>& counts);
 
   const std::array<int, 2>& counts() const { return counts_; }
+  /// All of the cylinder, and perhaps a little more.
+  Box bounds() const;
   double volume(int cell) const;
   double spacing() const { return std::min(width_, height_); }
   /// -1 outside.

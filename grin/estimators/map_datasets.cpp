@@ -3,8 +3,15 @@
 #include "core/result/result_group.h"
 #include "grin/estimators/map_kernel.h"
 #include "grin/estimators/picture_errors.h"
+#include "grin/estimators/tracer.h"
 
 namespace flatspeckle::grin {
+
+std::vector<Complex> map_means(double samples, std::span<const Complex> sums, std::size_t cells) {
+  std::vector<Complex> means;
+  for (std::size_t i = 0; i < cells; ++i) means.push_back(sums[sums_per_cell * i] / samples);
+  return means;
+}
 
 namespace {
 
@@ -20,19 +27,19 @@ std::vector<DatasetRow> operator+(std::vector<DatasetRow> rows,
   return rows;
 }
 
-Estimate every_second(const GroupedSums& sums, std::size_t first, std::size_t count) {
-  return jackknife(sums, [=](double samples, std::span<const Complex> all) {
-    std::vector<Complex> means;
-    for (std::size_t i = 0; i < count; ++i)
-      means.push_back(all[first + sums_per_cell * i] / samples);
-    return means;
-  });
-}
-
 /// As the rows of a picture: cells next to each other along the last axis.
 PixelGrid rows_of(const LightMap& map) {
   const int columns = std::visit([](const auto& of) { return of.counts().back(); }, map);
   return {columns, cells(map) / columns};
+}
+
+Estimate every_second(const GroupedSums& sums, std::size_t first, const LightMap& map) {
+  const auto count = static_cast<std::size_t>(cells(map));
+  Estimate found = jackknife(sums, [=](double samples, std::span<const Complex> all) {
+    return map_means(samples, all.subspan(first), count);
+  });
+  bound_errors(found, rows_of(map));
+  return found;
 }
 
 void write_axes(const ResultGroup& root, const BoxCells& of) {
@@ -61,19 +68,22 @@ const DatasetTable ring_map_table{
         {"map/depth", Data::scale, "", "length", "middle of the ring along the axis"}} +
         rows_of_values("map/radius map/depth")};
 
-MapResult map_result(const RenderJob& job, const LightMap& map, const GroupedSums& sums) {
-  const std::size_t first = job.first_of_map(), count = static_cast<std::size_t>(cells(map));
-  MapResult result{every_second(sums, first, count), every_second(sums, first + 1, count)};
-  bound_errors(result.fluence, rows_of(map));
-  return result;
+Estimate fluence(const GroupedSums& sums, std::size_t first, const LightMap& map) {
+  return every_second(sums, first, map);
 }
 
-void write_map(ResultFile& file, const LightMap& map, const MapResult& result) {
+Estimate absorbed(const GroupedSums& sums, std::size_t first, const LightMap& map) {
+  return every_second(sums, first + 1, map);
+}
+
+void write_map(ResultFile& file, const RenderScene& scene, const RenderJob& job,
+               const GroupedSums& sums) {
+  const LightMap& map = *scene.map;
   const bool is_box = std::holds_alternative<BoxCells>(map);
   const ResultGroup root(file, is_box ? box_map_table : ring_map_table);
   std::visit([&](const auto& of) { write_axes(root, of); }, map);
-  root.put("map/fluence", result.fluence);
-  root.put("map/absorbed", result.absorbed);
+  root.put("map/fluence", fluence(sums, job.first_of_map(), map));
+  if (render_plan(scene).absorbs) root.put("map/absorbed", absorbed(sums, job.first_of_map(), map));
 }
 
 }  // namespace flatspeckle::grin

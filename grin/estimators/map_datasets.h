@@ -8,12 +8,15 @@ namespace flatspeckle::grin {
 
 extern const DatasetTable box_map_table, ring_map_table;
 
-/// Of a job with a map: [cell] each.
-struct MapResult {
-  Estimate fluence, absorbed;
-};
-MapResult map_result(const RenderJob& job, const LightMap& map, const GroupedSums& sums);
+/// Means of the first value of each cell.
+std::vector<Complex> map_means(double samples, std::span<const Complex> sums, std::size_t cells);
 
-void write_map(ResultFile& file, const LightMap& map, const MapResult& result);
+/// [cell], of sums of which those of a map begin at `first`.
+Estimate fluence(const GroupedSums& sums, std::size_t first, const LightMap& map);
+Estimate absorbed(const GroupedSums& sums, std::size_t first, const LightMap& map);
+
+/// Of a scene with a map; absorbed power where something absorbs.
+void write_map(ResultFile& file, const RenderScene& scene, const RenderJob& job,
+               const GroupedSums& sums);
 
 }  // namespace flatspeckle::grin

@@ -12,11 +12,11 @@ namespace {
 
 /// Of a light path, whose stretches are added to a map.
 template <class Cells>
-class MapTally : public NoTally {
+class MapTally : public LightTally {
  public:
   MapTally(const Cells& cells, const Transport& transport, std::span<Complex> sums,
-           TransportCounts& counts)
-      : cells_(cells), transport_(transport), sums_(sums), counts_(counts) {}
+           EnergyBalance& energy, TransportCounts& counts)
+      : LightTally(energy), cells_(cells), transport_(transport), sums_(sums), counts_(counts) {}
 
   template <Space S>
   Flight fly(const S& space, const PathVertex& from, const Vec3& direction, RandomStream& random) {
@@ -63,16 +63,18 @@ void walk_light(const Transport& transport, const S& space, RandomStream& random
   walk<plan>(
       transport, space, transport.lights, start, first, false, random, counts, tally,
       [](const PathVertex&) {}, [](const PathVertex&, const PathVertex&) {});
+  tally.end_path();
 }
 
 /// with_space(random, use): calls use(space), the same or another for each path.
 template <RenderPlan plan, class WithSpace>
 MapKernel map_kernel_of(const LightMap& map, std::shared_ptr<const Transport> transport,
                         const WithSpace& with_space) {
-  return [=](int paths, RandomStream& random, std::span<Complex> sums, TransportCounts& counts) {
+  return [=](int paths, RandomStream& random, std::span<Complex> sums, EnergyBalance& energy,
+             TransportCounts& counts) {
     std::visit(
         [&](const auto& cells) {
-          MapTally tally(cells, *transport, sums, counts);
+          MapTally tally(cells, *transport, sums, energy, counts);
           for (int path = 0; path < paths; ++path)
             with_space(random, [&](const auto& space) {
               walk_light<plan>(*transport, space, random, tally, counts);

@@ -10,11 +10,11 @@
 
 namespace flatspeckle::grin {
 
-/// Adds so many light paths to the sums of a map: [cell][fluence rate, absorbed power density].
-/// Each stretch of a path counts by its length in a cell (track-length estimator), which points
-/// along it find.
+/// Adds so many light paths to the sums of a map: [cell][fluence rate, absorbed power density], and
+/// what became of their power. Each stretch of a path counts by its length in a cell (track-length
+/// estimator), which points along it find.
 using MapKernel = std::function<void(int paths, RandomStream& random, std::span<Complex> sums,
-                                     TransportCounts& counts)>;
+                                     EnergyBalance& energy, TransportCounts& counts)>;
 inline constexpr std::size_t sums_per_cell = 2;
 
 /// Index 1 + excess everywhere, or in the body.

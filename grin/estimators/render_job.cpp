@@ -8,6 +8,7 @@
 #include <string>
 
 #include "core/numbers/random.h"
+#include "grin/estimators/map_datasets.h"
 #include "grin/estimators/method_choice.h"
 #include "grin/estimators/photon_map.h"
 #include "grin/estimators/picture_errors.h"
@@ -32,7 +33,7 @@ int paths_per_batch(const Tracer& tracer, double cost_of_flight, std::size_t sum
 
 std::string described(const RenderScene& scene, const RenderRequest& request, RenderMethod method) {
   std::string text = method_word(method);
-  if (!request.method) text += " (chosen by a pilot)";
+  if (!request.method && !scene.sensors.empty()) text += " (chosen by a pilot)";
   if (!has_finite_variance(scene, method))
     text += " (no finite variance with " +
             std::string(method == RenderMethod::path ? "point lights or beams" : "a pinhole") +
@@ -62,9 +63,19 @@ std::string described_sensors(const RenderScene& scene) {
   return text;
 }
 
+std::string described_map(const RenderScene& scene) {
+  return scene.map ? "; a map of " + std::to_string(cells(*scene.map)) + " cells" : "";
+}
+
 /// To their ends, booking where their power went.
 bool walks_light(RenderMethod method) {
   return method == RenderMethod::light || method == RenderMethod::bidirectional;
+}
+
+/// A map alone asks for no picture.
+Tracer tracer_of(const Tracers& tracers, const RenderScene& scene, const RenderRequest& request) {
+  if (scene.sensors.empty()) return tracers.make(RenderMethod::light);
+  return request.method ? tracers.make(*request.method) : best_tracer(tracers);
 }
 
 /// That of the sensor where it is largest: units of sensors differ.
@@ -97,6 +108,9 @@ std::vector<std::string> method_words() {
 
 void check(const RenderScene& scene, const RenderRequest& request) {
   check(scene.stage);
+  if (scene.sensors.empty() && request.method.value_or(RenderMethod::light) != RenderMethod::light)
+    throw InputError("method", method_word(*request.method),
+                     "must be light or auto for a map without a sensor");
   const auto transport =
       transport_of(scene, request, request.method.value_or(RenderMethod::bidirectional));
   check_path_lengths(scene.stage, transport->max_scatterings);
@@ -106,16 +120,17 @@ void check(const RenderScene& scene, const RenderRequest& request) {
 RenderJob render_job(const RenderScene& scene, const RenderRequest& request, std::uint64_t seed) {
   check(scene, request);
   const Tracers tracers(scene, request);
-  const Tracer tracer = request.method ? tracers.make(*request.method) : best_tracer(tracers);
+  const Tracer tracer = tracer_of(tracers, scene, request);
+  const MapKernel map = tracers.map_kernel();
 
   RenderJob job;
   const int pixels = tracer.transport->pixels();
   job.bins = scene.bins;
   job.plan = described(scene, request, tracer.method) + tracers.plan().describe() +
-             described_sensors(scene);
+             described_sensors(scene) + described_map(scene);
   job.pictures = static_cast<std::size_t>(pixels) * scene.bins.count;
-  job.has_energy = walks_light(tracer.method);
-  const MapKernel map = tracers.map_kernel();
+  const bool books = walks_light(tracer.method) && pixels > 0;
+  job.has_energy = books || map;
   job.batches.size = job.first_of_map() + (map ? sums_per_cell * cells(*scene.map) : 0);
   const int paths = paths_per_batch(tracer, tracers.cost_of_flight(), job.batches.size);
   job.batches.samples_per_batch = paths;
@@ -128,18 +143,24 @@ RenderJob render_job(const RenderScene& scene, const RenderRequest& request, std
     Film film(pixels, bins, sums.first(pictures));
     RandomStream random(seed, static_cast<std::uint64_t>(Stream::render), number);
     TransportCounts of_batch;
-    tracer.add(paths, random, film, of_batch);
-    if (has_energy) film.energy.add_to(sums.subspan(pictures, EnergyBalance::size));
+    EnergyBalance of_map;
+    if (pixels > 0) tracer.add(paths, random, film, of_batch);
     if (map) {
       RandomStream own(seed, static_cast<std::uint64_t>(Stream::light_map), number);
-      map(paths, own, sums.subspan(first_of_map), of_batch);
+      map(paths, own, sums.subspan(first_of_map), of_map, of_batch);
     }
+    if (has_energy)
+      (books ? film.energy : of_map).add_to(sums.subspan(pictures, EnergyBalance::size));
     const std::lock_guard lock(*counting);
     *counts += of_batch;
   };
-  job.batches.relative_error = [=, pictures = job.pictures,
-                                bins = scene.bins.count](const GroupedSums& sums) {
-    return largest_error(tracer.transport->sensors, steady_picture(sums, pictures, bins));
+  job.batches.relative_error = [=, cells = scene.map, pictures = job.pictures,
+                                bins = scene.bins.count,
+                                first_of_map = job.first_of_map()](const GroupedSums& sums) {
+    const double of_pictures =
+        largest_error(tracer.transport->sensors, steady_picture(sums, pictures, bins));
+    return cells ? std::max(of_pictures, relative_error(fluence(sums, first_of_map, *cells)))
+                 : of_pictures;
   };
   return job;
 }

@@ -41,4 +41,9 @@ struct Box {
   }
 };
 
+/// Boxes that share no volume.
+inline bool are_apart(const Box& a, const Box& b) {
+  return (a.low.array() >= b.high.array()).any() || (b.low.array() >= a.high.array()).any();
+}
+
 }  // namespace flatspeckle::grin

@@ -58,7 +58,7 @@ std::array<int, axes> map_counts(const std::vector<std::int64_t>& cells, const s
 
 BoxCells box_cells(const Keys& keys, const RenderValues& values) {
   const Box box = boxes_of(keys, values.map_box).front();
-  return {box, map_counts<3>(keys.read(values.map_cells), "x, y and z")};
+  return {box, map_counts<3>(keys.required(values.map_cells), "x, y and z")};
 }
 
 RingCells ring_cells(const Keys& keys, const RenderValues& values) {
@@ -67,14 +67,24 @@ RingCells ring_cells(const Keys& keys, const RenderValues& values) {
   if (!(given[6] > 0 && (to - from).norm() > 0))
     throw InputError("map_cylinder", number_text(given),
                      "must have two ends apart and a positive radius");
-  return {from, to, given[6], map_counts<2>(keys.read(values.map_cells), "radius and axis")};
+  return {from, to, given[6], map_counts<2>(keys.required(values.map_cells), "radius and axis")};
 }
 
-std::optional<LightMap> light_map(const Keys& keys, const RenderValues& values) {
+/// Throws InputError for a map that no light of the stage reaches.
+template <class Cells>
+Cells within(const Cells& cells, const Box& stage, const std::string& key) {
+  const Box box = cells.bounds();
+  if (are_apart(box, stage))
+    throw InputError(key + ": the map, from " + listed(box.low) + " to " + listed(box.high) +
+                     ", is outside of the stage");
+  return cells;
+}
+
+std::optional<LightMap> light_map(const Keys& keys, const RenderValues& values, const Box& stage) {
   const bool has_box = !values.map_box.empty(), has_cylinder = !values.map_cylinder.empty();
   if (has_box && has_cylinder) throw InputError("map_box, map_cylinder: give one");
-  if (has_box) return box_cells(keys, values);
-  if (has_cylinder) return ring_cells(keys, values);
+  if (has_box) return within(box_cells(keys, values), stage, "map_box");
+  if (has_cylinder) return within(ring_cells(keys, values), stage, "map_cylinder");
   return std::nullopt;
 }
 
@@ -183,9 +193,11 @@ RenderScene make_render_scene(const Keys& keys, const RenderValues& values) {
                     .sensors = make_sensors(keys, values.sensors),
                     .sensor_names = make_sensor_names(keys, values.sensors),
                     .bins = time_bins(keys, values),
-                    .map = light_map(keys, values),
+                    .map = light_map(keys, values, box),
                     .length_unit = keys.read(values.length_unit)};
   check_size(scene.sensors, scene.bins);
+  if (scene.sensors.empty() && !scene.map)
+    throw InputError("sensor", "none", "wants a map (map_box, map_cylinder)");
   return scene;
 }
 

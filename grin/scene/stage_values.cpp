@@ -47,10 +47,9 @@ void check_index(const SceneField& field, const Surface& region, const std::stri
 void check_overlap(const ScatteringMedium& medium, const Surface& region, const std::string& key,
                    const std::string& name) {
   if (!medium.density) return;
-  const Vec3 low = medium.density->grid().origin, high = medium.density->grid().end();
-  const Box box = bounds(region);
-  if ((low.array() >= box.high.array()).any() || (high.array() <= box.low.array()).any())
-    throw InputError(key + ": the grid, from " + listed(low) + " to " + listed(high) +
+  const Box grid{medium.density->grid().origin, medium.density->grid().end()};
+  if (are_apart(grid, bounds(region)))
+    throw InputError(key + ": the grid, from " + listed(grid.low) + " to " + listed(grid.high) +
                      ", is outside of the " + name);
 }
 

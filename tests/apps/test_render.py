@@ -43,6 +43,34 @@ class RenderTest(ProgramTest):
         np.testing.assert_array_less(np.abs(value - expected), count * error + 1e-12)
 
 
+class Maps(RenderTest):
+    RINGS = {"map_cylinder": [0, 0, 0, 0, 0, 4, 1], "map_cells": [3, 5]}
+    LAMP = {**BOX, **FOG, "point_light": [0, 0, 1, 1]}
+
+    def test_alone_and_beside_a_picture(self):
+        """Its light paths are its own: whatever else is asked for, its numbers are the same."""
+        alone = self.render(**self.LAMP, **self.RINGS, sensor="none")
+        self.assertIn("largest fluence", self.output)
+        self.assertNotIn("image", alone)
+        for method in METHODS:
+            if method != "photon_map":  # of larger batches
+                beside = self.render(**self.LAMP, **self.RINGS, **CAMERA, method=method)
+                for name in ("map/fluence", "map/absorbed"):
+                    self.assert_within(beside[name], beside[name + "_error"] +
+                                       alone[name + "_error"], alone[name])
+        np.testing.assert_allclose(alone["map/absorbed"], FOG["mu_a"] * alone["map/fluence"])
+
+    def test_target(self):
+        """A target is of the fluence."""
+        keys = {**self.LAMP, **self.RINGS, "sensor": "none"}
+        target = 0.003
+        self.call("render", **keys, samples=10**7, target_error=target, out="aimed.h5")
+        found = datasets(self.folder / "aimed.h5")
+        self.assertLess(attributes(self.folder / "aimed.h5")["samples"], 10**6)
+        relative = np.sqrt(np.mean(found["map/fluence_error"] ** 2) / np.mean(found["map/fluence"] ** 2))
+        self.assertLess(relative, target)
+
+
 class Scenes(RenderTest):
     def check_sums(self, found, config):
         """Totals and pulses are those of the pixels; nothing is lost beyond the bins."""
@@ -465,6 +493,27 @@ class Refused(RenderTest):
         self.refuse("sensor_at", "boundary", **camera, lens_radius=0.1, focus_distance=2)
         self.refuse("half_angle = 0", **directional, half_angle=0)
         self.refuse("sensor_at", "is a key of", **{**directional, "sensor_at": [0, 0, 4]})
+
+    def test_maps(self):
+        box = {"map_box": [-1, -1, 0, 1, 1, 4]}
+        rings = {"map_cylinder": [0, 0, 0, 0, 0, 4, 1]}
+        self.refuse("map_cells is not given", **box)
+        self.refuse("map_cells", "x, y and z", **box, map_cells=[2, 3])
+        self.refuse("map_cells", "radius and axis", **rings, map_cells=[2, 3, 4])
+        self.refuse("map_cells = 0", **box, map_cells=[2, 3, 0])
+        self.refuse("map_cells = 2.5e+06", **box, map_cells=[1000, 500, 5])
+        self.refuse("map_cells", "is a key of", map_cells=[2, 3, 4])
+        self.refuse("map_box, map_cylinder", **box, **rings, map_cells=[2, 3])
+        self.refuse("map_box", "low corner first", map_box=[1, 1, 4, -1, -1, 0], map_cells=[2, 3, 4])
+        self.refuse("map_box", "outside of the stage", map_box=[1, 1, 4, 2, 2, 5], map_cells=[2, 3, 4])
+        self.refuse("map_cylinder", "radius", map_cylinder=[0, 0, 0, 0, 0, 0, 1], map_cells=[2, 3])
+        self.refuse("map_cylinder", "outside of the stage", map_cylinder=[0, 0, 9, 0, 0, 8, 1],
+                    map_cells=[2, 3])
+        none = {"sensor": "none", "sensor_at": None, "sensor_size": None, "pixels": None}
+        self.refuse("sensor = none", "map_box", **none)
+        self.refuse("sensor = none", "alone", sensor=["none", "area"])
+        self.refuse("method = path", "map", **none, **rings, map_cells=[2, 3], method="path")
+        self.refuse("pixels", **{**none, "pixels": [2, 2]}, **rings, map_cells=[2, 3])
 
     def test_bins_and_methods(self):
         self.refuse("path_bins = 1 2", path_bins=[1, 2])
