@@ -12,6 +12,7 @@
 #include "core/numbers/scaled_bessel.h"
 #include "wave_solver/equations/neighbours.h"
 #include "wave_solver/equations/pair_response.h"
+#include "wave_solver/equations/rim_waves.h"
 
 namespace flatspeckle::wave {
 
@@ -24,7 +25,7 @@ constexpr int first_orders = 16;
 
 // And up to which pairs are solved: the images in hard disks add up, so that their bound is sharp.
 int most_paired(const Scatterer& disk) {
-  return disk.kind == Scatterer::Kind::hard ? 64 : 256;
+  return disk.kind == Scatterer::Kind::hard ? 64 : 512;
 }
 
 // For what the nearest neighbour does not tell, all the others: measured on pairs and clusters.
@@ -43,6 +44,10 @@ constexpr double near_safety = 5;
 double bound_safety(const Scatterer& disk, double k) {
   const double x = disk.kind == Scatterer::Kind::hard ? k * disk.radius : 0;
   return 200 * (1 + x * x);
+}
+
+bool is_on_rim(const Scatterer& disk, double distance) {
+  return distance <= disk.radius * (1 + 1e-9);
 }
 
 // log2 |H_n(k distance)|, n = 0 .. order; -infinity for nowhere.
@@ -73,6 +78,14 @@ struct Species {
       sum += (log_t.size() == 1 ? 1 : 2) * std::norm(static_cast<ExtendedComplex>(t_n));
     }
     field = static_cast<double>(std::sqrt(sum));
+  }
+
+  // log2 of the field inside, on the rim, of each order.
+  std::vector<double> log_rim(int order) const {
+    std::vector<double> logs;
+    for (const RimWave& wave : rim_waves(scatterer, k, order))
+      logs.push_back(static_cast<double>(std::log2(std::abs(wave.field))));
+    return logs;
   }
 
   std::vector<ScaledComplex> up_to(int order) {
@@ -214,13 +227,16 @@ class BasisOrders {
     own.extend(size);
     if (own.field == 0) return 0;
     const auto receiver = log_hankel(size, k_, sensor);
+    const bool inside = own.scatterer.is_penetrable() && is_on_rim(own.scatterer, sensor);
+    const auto rim = inside ? own.log_rim(size) : std::vector<double>(size + 1, -nowhere);
     const double most = tolerance_ * own.field;
     double rest = 0;
     int order = size + 1;
     while (order > 0 && rest <= most) {
       --order;
       const double near = strength[order] + own.log_t[order] / 2 + receiver[order];
-      rest += safety_factor * std::exp2(2 * strength[order]) + near_safety * std::exp2(near);
+      rest += safety_factor * std::exp2(2 * strength[order]) + near_safety * std::exp2(near) +
+              near_safety * own.field * std::exp2(strength[order] + rim[order]);
     }
     if (order > own.oscillating + 3 * (size - own.oscillating) / 4) return std::nullopt;
     return order;

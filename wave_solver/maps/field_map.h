@@ -19,9 +19,8 @@ class RingField;
 ///
 /// A tile is summed over all scatterers for each pixel or, where that is faster, by a RingField.
 ///
-/// With the basis orders that map_sensors asks for, u is accurate to the solution's tolerance
-/// outside the disks. Inside, what orders n beyond the basis order miss is larger by J_n / (T_n
-/// H_n): on the rim some hundred times the tolerance; towards the centre it falls as (r / a)^n.
+/// With the basis orders that map_sensors asks for, u is accurate to the solution's tolerance,
+/// outside the disks and inside.
 class FieldMap {
  public:
   static constexpr double on_a_point = 1e-8;

@@ -97,7 +97,8 @@ double residual_on(const WaveSolution& solution, const Rim& rim) {
   const auto& [position, scatterer] = system.placement()[rim.disk];
   const bool penetrable = scatterer.is_penetrable();
   if (penetrable && is_transparent(system, rim.disk)) return 0;
-  const auto inside_waves = penetrable ? rim_waves(system, rim.disk) : std::vector<RimWave>{};
+  const auto inside_waves = penetrable ? rim_waves(scatterer, system.k(), system.order(rim.disk))
+                                       : std::vector<RimWave>{};
   const int count = 2 * std::min(system.order(rim.disk), 24) + 8;
   std::vector<double> angles;
   std::vector<Vec2> normals, points;

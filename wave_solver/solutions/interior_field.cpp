@@ -46,28 +46,6 @@ std::vector<Complex> turns(int order, Vec2 d, double r) {
 
 }  // namespace
 
-std::vector<RimWave> rim_waves(const TMatrixSystem& system, std::size_t disk) {
-  const Scatterer& cylinder = system.placement()[disk].scatterer;
-  const int order = system.order(disk);
-  const double x = system.k() * cylinder.radius;
-  const ExtendedComplex m(cylinder.index), mx = m * static_cast<long double>(x);
-  const ExtendedComplex q = cylinder.kind == Scatterer::Kind::tm ? m : 1.0L / m;
-  const auto t = scaled_t_matrix(cylinder, system.k(), order);
-  const auto h = scaled_hankel(order + 1, x);
-  const auto ratios = bessel_ratios(order, mx);
-  const ScaledComplex wronskian(ExtendedComplex(0, -2 / (std::numbers::pi_v<long double> * x)));
-  std::vector<RimWave> waves(order + 1);
-  for (int n = 0; n <= order; ++n) {
-    if (t[n].value() == 0.0L) continue;
-    const ExtendedComplex slope = q * (static_cast<long double>(n) / mx - ratios[n]);
-    const ScaledComplex denominator = slope * h[n] - cylinder_derivative(h, n, x);
-    waves[n].field =
-        static_cast<ExtendedComplex>(sqrt(abs(t[n])) / t[n] * (wronskian / denominator));
-    waves[n].slope = slope * waves[n].field;
-  }
-  return waves;
-}
-
 bool is_transparent(const TMatrixSystem& system, std::size_t scatterer) {
   const auto t = system.t_matrix(scatterer);
   return std::all_of(t.begin(), t.end(), [](const ExtendedComplex& t_n) { return t_n == 0.0L; });
@@ -80,7 +58,7 @@ void field_inside(const TMatrixSystem& system, std::size_t disk, std::span<const
   const ExtendedComplex mk = interior_wavenumber(system, disk);
   const ExtendedComplex rim = mk * static_cast<long double>(cylinder.radius);
   const auto at_rim = scaled_bessel(modes.order, rim);
-  auto waves = rim_waves(system, disk);
+  auto waves = rim_waves(cylinder, system.k(), modes.order);
   for (int n = 0; n <= modes.order; ++n) waves[n].field /= at_rim[n];
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Vec2 d = points[i] - centre;

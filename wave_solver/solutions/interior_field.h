@@ -4,19 +4,10 @@
 #include <vector>
 
 #include "core/numbers/complex.h"
+#include "wave_solver/equations/rim_waves.h"
 #include "wave_solver/equations/t_matrix_system.h"
 
 namespace flatspeckle::wave {
-
-/// What one order of a penetrable disk adds, for a unit unknown and but for its angle, at the rim.
-struct RimWave {
-  ExtendedComplex field;  ///< u
-  ExtendedComplex slope;  ///< du/dr / k that the outside must have: q / m of that inside (C7)
-};
-
-/// Of n = 0 .. order of a disk of kind tm or te. The wave inside follows from continuity of u and
-/// the slope: with D = J_n'(mx) / J_n(mx), sigma / T_n times -(2i / pi x) / (q D H_n(x) - H_n'(x)).
-std::vector<RimWave> rim_waves(const TMatrixSystem& system, std::size_t disk);
 
 /// Whether a scatterer is not there at all: every T_n is 0 (index 1).
 bool is_transparent(const TMatrixSystem& system, std::size_t scatterer);

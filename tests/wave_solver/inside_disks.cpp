@@ -1,0 +1,133 @@
+#include "inside_disks.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/numbers/random.h"
+#include "multipole_oracle.h"
+#include "wave_solver/maps/field_map.h"
+#include "wave_solver/solutions/interior_field.h"
+
+namespace flatspeckle::wave {
+
+namespace {
+
+constexpr double light = 0.3;
+
+double between(RandomStream& random, double low, double high) {
+  return low * std::pow(high / low, random.uniform());
+}
+
+/// Within a factor 2 of a size.
+Scatterer random_disk(double size, RandomStream& random) {
+  using Kind = Scatterer::Kind;
+  constexpr Kind kinds[] = {Kind::tm, Kind::tm, Kind::te, Kind::te, Kind::soft, Kind::hard};
+  Scatterer disk;
+  disk.kind = kinds[static_cast<int>(6 * random.uniform())];
+  disk.radius = between(random, size / 2, 2 * size);
+  if (disk.is_penetrable()) disk.index = between(random, 1.05, 8);
+  return disk;
+}
+
+/// Of the smaller radius. Beside soft and hard disks that nearly touch them, disks take thousands
+/// of orders each to be resolved up to their rims.
+double least_gap(const Scatterer& a, const Scatterer& b) {
+  return a.is_penetrable() && b.is_penetrable() ? 1e-4 : 0.03;
+}
+
+/// Each disk is close to one before it, up to the smaller radius.
+Placement random_cluster(int number, int most_disks) {
+  RandomStream random(11, 95, number);
+  const auto count = 2 + static_cast<std::size_t>((most_disks - 1) * random.uniform());
+  const double size = between(random, 0.01, 0.2);
+  Placement placement{{{0.1, -0.2}, random_disk(size, random)}};
+  while (placement.size() < count) {
+    const Scatterer disk = random_disk(size, random);
+    const auto& by = placement[static_cast<std::size_t>(random.uniform() *
+                                                        static_cast<double>(placement.size()))];
+    const double smaller = std::min(disk.radius, by.scatterer.radius);
+    const double away = disk.radius + by.scatterer.radius +
+                        between(random, least_gap(disk, by.scatterer), 1) * smaller;
+    const Vec2 at = by.position + away * direction(two_pi * random.uniform());
+    const bool is_free = std::all_of(placement.begin(), placement.end(), [&](const auto& other) {
+      const double gap = length(at - other.position) - disk.radius - other.scatterer.radius;
+      return gap > 0.99 * least_gap(disk, other.scatterer) *
+                       std::min(disk.radius, other.scatterer.radius);
+    });
+    if (is_free) placement.push_back({at, disk});
+  }
+  return placement;
+}
+
+WaveSolution solved(const Placement& placement, double tolerance) {
+  SolveOptions options{.tolerance = tolerance, .sensors = {}, .diagnose = false};
+  options.sensors = map_sensors({{-50, -50}, {50, 50}, 1, 1}, placement);
+  return solve(placement, two_pi, {light}, options);
+}
+
+Complex inside(const WaveSolution& solution, std::size_t disk, Vec2 point) {
+  const ModeSet modes = solution.system().modes(disk);
+  std::vector<Complex> waves(modes.modes.size());
+  field_inside(solution.system(), disk, {&point, 1}, {waves.data(), 1});
+  const auto beta = solution.coefficients(0).subspan(solution.system().first(disk));
+  Complex sum = 0;
+  for (std::size_t n = 0; n < waves.size(); ++n) sum += beta[n] * waves[n];
+  return sum;
+}
+
+Complex outside(const WaveSolution& solution, Vec2 point) {
+  return solution.near_field(point, 0) + std::polar(1.0, two_pi * dot(direction(light), point));
+}
+
+/// On the rim, a little inside and outside of it.
+struct RimPoint {
+  std::size_t disk;
+  Vec2 within, beyond;
+};
+std::vector<RimPoint> rim_points(const Placement& placement) {
+  constexpr int count = 24;
+  constexpr double little = 1e-9;
+  std::vector<RimPoint> points;
+  for (std::size_t disk = 0; disk < placement.size(); ++disk)
+    for (int i = 0; i < count; ++i) {
+      const auto& [centre, scatterer] = placement[disk];
+      const Vec2 to = scatterer.radius * direction(two_pi * i / count);
+      points.push_back({disk, centre + (1 - little) * to, centre + (1 + little) * to});
+    }
+  return points;
+}
+
+/// Relative to the largest field on any rim.
+WorstError error_of(const WaveSolution& solution, const MultipoleOracle& oracle,
+                    const std::vector<RimPoint>& points) {
+  double largest = 1;
+  WorstError off;
+  for (const auto& [disk, within, beyond] : points) {
+    const Complex exact = oracle.outside(beyond);
+    largest = std::max(largest, std::abs(exact));
+    off.outside = std::max(off.outside, std::abs(outside(solution, beyond) - exact));
+    if (solution.system().placement()[disk].scatterer.is_penetrable())
+      off.inside = std::max(off.inside,
+                            std::abs(inside(solution, disk, within) - oracle.inside(disk, within)));
+  }
+  return {off.inside / largest, off.outside / largest};
+}
+
+}  // namespace
+
+std::vector<WorstError> worst_errors(int first, int clusters, int most_disks,
+                                     const std::vector<double>& tolerances) {
+  std::vector<WorstError> worst(tolerances.size());
+  for (int number = first; number < first + clusters; ++number) {
+    const Placement placement = random_cluster(number, most_disks);
+    std::vector<int> orders = solved(placement, 1e-12).basis_order();
+    for (int& order : orders) order += order / 4 + 4;
+    const MultipoleOracle oracle(placement, two_pi, light, orders);
+    const auto points = rim_points(placement);
+    for (std::size_t i = 0; i < tolerances.size(); ++i)
+      worst[i].add(error_of(solved(placement, tolerances[i]), oracle, points), tolerances[i]);
+  }
+  return worst;
+}
+
+}  // namespace flatspeckle::wave

@@ -1,0 +1,17 @@
+#include <doctest/doctest.h>
+
+#include "inside_disks.h"
+
+namespace flatspeckle::wave {
+
+TEST_CASE("Fields are within the tolerance on both sides of the rims: small clusters") {
+  const std::vector<double> tolerances{1e-3, 1e-6, 1e-9};
+  const auto worst = worst_errors(0, 8, 3, tolerances);
+  for (std::size_t i = 0; i < worst.size(); ++i) {
+    CAPTURE(tolerances[i]);
+    CHECK(worst[i].inside < 1);
+    CHECK(worst[i].outside < 1);
+  }
+}
+
+}  // namespace flatspeckle::wave
