@@ -30,6 +30,7 @@ from program import PROGRAM, flags
 RATIOS = 0.9, 1.15
 MOST_SEEDS_OF_PICTURES = 40
 MOST_BEYOND, MOST_BEYOND_OF_PICTURES = 0.08, 0.1
+SELDOM = ("energy/lost",)  # 0 in most runs
 EACH_OF_MANY = ("image", "transient", "map/fluence", "map/absorbed")
 ALL = {**SCENES, **{name: ("render", keys) for name, keys in PICTURES.items()}}
 
@@ -39,7 +40,7 @@ def estimates(path):
     found = {}
 
     def visit(name, item):
-        if name + "_error" in file:
+        if name + "_error" in file and name not in SELDOM:
             marks = file[name + "_rare"][...] if name + "_rare" in file else np.zeros(item.shape)
             found.setdefault("pixels" if name in EACH_OF_MANY else "", []).append(
                 (item[...].ravel(), file[name + "_error"][...].ravel(), marks.ravel()))

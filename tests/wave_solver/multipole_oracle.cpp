@@ -3,46 +3,67 @@
 #include <cmath>
 #include <stdexcept>
 
-#include <boost/math/special_functions/bessel.hpp>
-
 #include "core/numbers/blas.h"
+#include "core/numbers/scaled_bessel.h"
 
 namespace flatspeckle::wave {
 
 namespace {
 
-using Real = long double;
-using Wide = std::complex<Real>;
+/// Z_n(x) for n = -order .. order, and Z_n' of one less.
+template <class Number>
+class Cylinder {
+ public:
+  explicit Cylinder(std::vector<Number> z) : z_(std::move(z)) {}
 
-// Z_n and Z_n' of the four kinds that are needed, for all n.
-Real sign(int n) {
-  return n < 0 && n % 2 != 0 ? -1 : 1;
-}
-Real j(int n, Real x) {
-  return sign(n) * boost::math::cyl_bessel_j(std::abs(n), x);
-}
-Wide h(int n, Real x) {
-  return {j(n, x), sign(n) * boost::math::cyl_neumann(std::abs(n), x)};
-}
-Real j_slope(int n, Real x) {
-  return (j(n - 1, x) - j(n + 1, x)) / 2;
-}
-Wide h_slope(int n, Real x) {
-  return (h(n - 1, x) - h(n + 1, x)) / 2.0L;
-}
+  Number operator()(int n) const {
+    const Number& value = z_[static_cast<std::size_t>(std::abs(n))];
+    return n < 0 && n % 2 != 0 ? -value : value;
+  }
+  Number slope(int n) const { return 0.5L * ((*this)(n - 1) + -(*this)(n + 1)); }
 
-Wide t_matrix(const Scatterer& disk, Real x, int n) {
-  if (disk.kind == Scatterer::Kind::soft) return -j(n, x) / h(n, x);
-  if (disk.kind == Scatterer::Kind::hard) return -j_slope(n, x) / h_slope(n, x);
-  const Real m = disk.index.real(), q = disk.kind == Scatterer::Kind::tm ? m : 1 / m;
-  const Real inside = j(n, m * x), slope = q * j_slope(n, m * x);
-  return -(slope * j(n, x) - inside * j_slope(n, x)) / (slope * h(n, x) - inside * h_slope(n, x));
+ private:
+  std::vector<Number> z_;
+};
+Cylinder<ScaledReal> bessel(int order, double x) {
+  return Cylinder(scaled_bessel_j(order + 1, x));
+}
+Cylinder<ScaledComplex> hankel(int order, double x) {
+  return Cylinder(scaled_hankel(order + 1, x));
 }
 
-// e^{i n phi} with the angle of d measured as in C2.
+/// e^{i n phi} with the angle of d measured as in C2.
 Complex turn(int n, Vec2 d) {
   return std::polar(1.0, n * std::atan2(d.x, d.z));
 }
+
+/// 1/T_n of a disk with k a = x, times J_n / H_n.
+class InverseT {
+ public:
+  InverseT(const Scatterer& disk, double x, int order)
+      : kind_(disk.kind),
+        q_(kind_ == Scatterer::Kind::tm ? disk.index.real() : 1 / disk.index.real()),
+        j_(bessel(order, x)),
+        h_(hankel(order, x)),
+        inside_(bessel(order, disk.is_penetrable() ? disk.index.real() * x : x)) {}
+
+  ScaledComplex operator()(int n) const {
+    const ScaledComplex j_over_h = j_(n) / h_(n);
+    if (kind_ == Scatterer::Kind::soft) return -(h_(n) / j_(n)) * j_over_h;
+    if (kind_ == Scatterer::Kind::hard) return -(h_.slope(n) / j_.slope(n)) * j_over_h;
+    const ScaledReal slope = q_ * inside_.slope(n);
+    return -((slope * h_(n) + -(inside_(n) * h_.slope(n))) /
+             (slope * j_(n) + -(inside_(n) * j_.slope(n)))) *
+           j_over_h;
+  }
+
+ private:
+  Scatterer::Kind kind_;
+  long double q_;
+  Cylinder<ScaledReal> j_;
+  Cylinder<ScaledComplex> h_;
+  Cylinder<ScaledReal> inside_;
+};
 
 /// right becomes the solution.
 void solve(std::vector<Complex>& matrix, std::vector<Complex>& right) {
@@ -58,7 +79,11 @@ void solve(std::vector<Complex>& matrix, std::vector<Complex>& right) {
 MultipoleOracle::MultipoleOracle(const Placement& placement, double k, double light,
                                  std::vector<int> orders)
     : placement_(placement), k_(k), light_(light), orders_(std::move(orders)) {
-  const std::size_t size = first(placement.size());
+  std::size_t size = 0;
+  for (const int order : orders_) {
+    first_.push_back(size);
+    size += 2 * static_cast<std::size_t>(order) + 1;
+  }
   std::vector<Complex> matrix(size * size);  // column by column
   on_rim_.resize(size);
   for (std::size_t to = 0; to < placement.size(); ++to)
@@ -70,47 +95,42 @@ MultipoleOracle::MultipoleOracle(const Placement& placement, double k, double li
 /// And the right side.
 void MultipoleOracle::own_block(std::size_t disk, std::vector<Complex>& matrix) {
   const auto& [centre, scatterer] = placement_[disk];
-  const Real x = k_ * scatterer.radius;
+  const double x = k_ * scatterer.radius;
   const Complex phase = std::polar(1.0, k_ * dot(direction(light_), centre));
+  const auto own = bessel(orders_[disk], x);
+  const InverseT inverse_t(scatterer, x, orders_[disk]);
   for (int n = -orders_[disk]; n <= orders_[disk]; ++n) {
     const std::size_t row = place(disk, n);
-    const Real own = j(n, x);
-    on_rim_[row] = static_cast<double>(own) * phase * std::polar(1.0, n * (two_pi / 4 - light_));
-    matrix[row + on_rim_.size() * row] = Complex(own / (t_matrix(scatterer, x, n) * h(n, x)));
+    on_rim_[row] = static_cast<double>(own(n)) * phase * std::polar(1.0, n * (two_pi / 4 - light_));
+    matrix[row + on_rim_.size() * row] = Complex(static_cast<ExtendedComplex>(inverse_t(n)));
   }
 }
 
 void MultipoleOracle::block(std::size_t to, std::size_t from, std::vector<Complex>& matrix) const {
   const Vec2 d = placement_[to].position - placement_[from].position;
-  const Real x_to = k_ * placement_[to].scatterer.radius,
-             x_from = k_ * placement_[from].scatterer.radius;
-  const int p_last = orders_[to], n_last = orders_[from], last = p_last + n_last;
-  std::vector<Wide> between, sent;
-  for (int n = -last; n <= last; ++n) between.push_back(h(n, k_ * length(d)) * Wide(turn(n, d)));
-  for (int n = -n_last; n <= n_last; ++n) sent.push_back(h(n, x_from));
-  for (int p = -p_last; p <= p_last; ++p) {
-    const Real received = j(p, x_to);
-    for (int n = -n_last; n <= n_last; ++n)
+  const auto received = bessel(orders_[to], k_ * placement_[to].scatterer.radius);
+  const auto sent = hankel(orders_[from], k_ * placement_[from].scatterer.radius);
+  const auto between = hankel(orders_[to] + orders_[from], k_ * length(d));
+  for (int p = -orders_[to]; p <= orders_[to]; ++p)
+    for (int n = -orders_[from]; n <= orders_[from]; ++n) {
+      const ScaledComplex entry = -(received(p) * (between(n - p) / sent(n)));
       matrix[place(to, p) + on_rim_.size() * place(from, n)] =
-          Complex(-received * between[n - p + last] / sent[n + n_last]);
-  }
-}
-
-std::size_t MultipoleOracle::first(std::size_t disk) const {
-  std::size_t unknowns = 0;
-  for (std::size_t i = 0; i < disk; ++i) unknowns += 2 * static_cast<std::size_t>(orders_[i]) + 1;
-  return unknowns;
+          Complex(static_cast<ExtendedComplex>(entry)) * turn(n - p, d);
+    }
 }
 
 Complex MultipoleOracle::inside(std::size_t disk, Vec2 point) const {
   const auto& [centre, scatterer] = placement_[disk];
-  const Real x = k_ * scatterer.radius, m = scatterer.index.real();
+  const double x = k_ * scatterer.radius, m = scatterer.index.real();
   const Vec2 d = point - centre;
+  const int order = orders_[disk];
+  const InverseT inverse_t(scatterer, x, order);
+  const auto here = bessel(order, m * k_ * length(d)), at_rim = bessel(order, m * x);
   Complex sum = 0;
-  for (int n = -orders_[disk]; n <= orders_[disk]; ++n) {
+  for (int n = -order; n <= order; ++n) {
     // on the rim b H (1 + J / (T H)): scattered and incident
-    const Wide rim = 1.0L + j(n, x) / (t_matrix(scatterer, x, n) * h(n, x));
-    const Real radial = j(n, m * k_ * length(d)) / j(n, m * x);
+    const ExtendedComplex rim = 1.0L + static_cast<ExtendedComplex>(inverse_t(n));
+    const auto radial = static_cast<long double>(here(n) / at_rim(n));
     sum += on_rim_[place(disk, n)] * Complex(rim * radial) * turn(n, d);
   }
   return sum;
@@ -120,10 +140,11 @@ Complex MultipoleOracle::outside(Vec2 point) const {
   Complex sum = std::polar(1.0, k_ * dot(direction(light_), point));
   for (std::size_t disk = 0; disk < placement_.size(); ++disk) {
     const Vec2 d = point - placement_[disk].position;
-    for (int n = -orders_[disk]; n <= orders_[disk]; ++n) {
-      const Real x = k_ * placement_[disk].scatterer.radius;
-      sum += on_rim_[place(disk, n)] * Complex(h(n, k_ * length(d)) / h(n, x)) * turn(n, d);
-    }
+    const auto here = hankel(orders_[disk], k_ * length(d));
+    const auto at_rim = hankel(orders_[disk], k_ * placement_[disk].scatterer.radius);
+    for (int n = -orders_[disk]; n <= orders_[disk]; ++n)
+      sum += on_rim_[place(disk, n)] * Complex(static_cast<ExtendedComplex>(here(n) / at_rim(n))) *
+             turn(n, d);
   }
   return sum;
 }

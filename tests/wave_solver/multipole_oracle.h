@@ -6,10 +6,9 @@
 
 namespace flatspeckle::wave {
 
-/// Disks in a plane wave by multipoles (C6, C7, C10), dense and plain: T_n, Hankel functions and
-/// translations from Boost in extended precision. Unknown are b_n H_n(k a), what a disk scatters on
-/// its own rim, for n = -order .. order; the equation of order n is multiplied by J_n(k a). Real
-/// indices.
+/// Disks in a plane wave by multipoles (C6, C7, C10), dense and plain, of orders that are given.
+/// Unknown are b_n H_n(k a), what a disk scatters on its own rim, for n = -order .. order; the
+/// equation of order n is multiplied by J_n(k a). Real indices.
 class MultipoleOracle {
  public:
   MultipoleOracle(const Placement& placement, double k, double light, std::vector<int> orders);
@@ -19,9 +18,8 @@ class MultipoleOracle {
   Complex outside(Vec2 point) const;
 
  private:
-  std::size_t first(std::size_t disk) const;
   std::size_t place(std::size_t disk, int n) const {
-    return first(disk) + static_cast<std::size_t>(n + orders_[disk]);
+    return first_[disk] + static_cast<std::size_t>(n + orders_[disk]);
   }
   void own_block(std::size_t disk, std::vector<Complex>& matrix);
   void block(std::size_t to, std::size_t from, std::vector<Complex>& matrix) const;
@@ -29,6 +27,7 @@ class MultipoleOracle {
   Placement placement_;
   double k_, light_;
   std::vector<int> orders_;
+  std::vector<std::size_t> first_;
   std::vector<Complex> on_rim_;
 };
 
