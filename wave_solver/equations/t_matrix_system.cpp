@@ -11,6 +11,7 @@
 #include "core/numbers/memory.h"
 #include "core/numbers/phasor.h"
 #include "core/run/parallel.h"
+#include "wave_solver/dense/blas.h"
 #include "wave_solver/equations/basis_order.h"
 #include "wave_solver/equations/tiles.h"
 
@@ -30,12 +31,6 @@ void require_memory(std::size_t unknowns) {
                        " bytes, this machine has " +
                        std::to_string(static_cast<long long>(physical)) +
                        "; take fewer scatterers, wider gaps or a larger tolerance");
-}
-
-Complex product_sum(std::span<const Complex> a, std::span<const Complex> b) {
-  Complex sum = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) sum += product(a[i], b[i]);
-  return sum;
 }
 
 }  // namespace
@@ -165,21 +160,35 @@ std::vector<Complex> TMatrixSystem::matrix() const {
   return matrix;
 }
 
-// M is symmetric: the columns of a scatterer, transposed, make its rows of the product.
+// Scatterers one after the other whose columns make a block for BLAS; one at the least. Ends of
+// them, the first 0.
+std::vector<std::size_t> TMatrixSystem::column_blocks() const {
+  constexpr std::size_t most_columns = 64;
+  std::vector<std::size_t> ends{0};
+  for (std::size_t j = 1; j < first_.size(); ++j)
+    if (j + 1 == first_.size() || first_[j + 1] - first_[ends.back()] > most_columns)
+      ends.push_back(j);
+  return ends;
+}
+
+// M is symmetric: the columns of some scatterers, transposed, make their rows of the product.
 std::vector<Complex> TMatrixSystem::apply(std::span<const Complex> x) const {
   const std::size_t size = unknowns();
+  if (size == 0) return {};
   std::vector<Complex> y(x.size());
+  const std::size_t columns = x.size() / size;
   const auto all = all_modes();
-  parallel_for(all.size(), [&](std::size_t j) {
-    const std::size_t width = all[j].modes.size();
+  const auto ends = column_blocks();
+  parallel_for(ends.size() - 1, [&](std::size_t part) {
+    const std::size_t begin = first_[ends[part]], width = first_[ends[part + 1]] - begin;
     std::vector<Complex> block(size * width);
-    translate(k_, all, all[j], {block.data(), size});
-    for (std::size_t start = 0; start < x.size(); start += size)
-      for (std::size_t i = 0; i < width; ++i) {
-        const std::size_t row = first_[j] + i;
-        y[start + row] = diagonal_[row] * x[start + row] +
-                         product_sum({&block[size * i], size}, x.subspan(start, size));
-      }
+    for (std::size_t j = ends[part]; j < ends[part + 1]; ++j)
+      translate(k_, all, all[j], {&block[size * (first_[j] - begin)], size});
+    multiply(CblasTrans, CblasNoTrans, width, columns, size, 1, block.data(), size, x.data(), size,
+             0, &y[begin], size);
+    for (std::size_t column = 0; column < columns; ++column)
+      for (std::size_t row = begin; row < begin + width; ++row)
+        y[column * size + row] += diagonal_[row] * x[column * size + row];
   });
   return y;
 }

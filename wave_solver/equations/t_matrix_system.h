@@ -65,6 +65,7 @@ class TMatrixSystem {
  private:
   struct Listed;
   std::vector<ModeSet> all_modes() const;
+  std::vector<std::size_t> column_blocks() const;
   // The lower triangle and diagonal of M.
   void point_columns(Complex* matrix) const;
   void multipole_columns(Complex* matrix) const;
