@@ -79,6 +79,7 @@ inline StandingWave at_phase(const StandingWave& field, double phase) {
 
 inline FieldFacts facts(const StandingWave& field) {
   return {.scale = 1 / field.wavenumber(),
+          .strength = std::abs(field.amplitude()),
           .symmetry = field.order() == 0 ? Symmetry::round_guide : Symmetry::guide};
 }
 
