@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <mutex>
+#include <sstream>
 #include <string>
 
 #include "core/numbers/random.h"
@@ -51,6 +52,12 @@ Estimate steady_picture(const GroupedSums& sums, std::size_t pictures, int bins)
   return jackknife(sums, [=](double samples, std::span<const Complex> total) {
     return steady_mean(samples, total.first(pictures), bins);
   });
+}
+
+std::string described_steps(const RenderScene& scene, const RenderPlan& plan) {
+  std::ostringstream text;
+  if (plan.curved) text << "; steps of " << scene.step;
+  return text.str();
 }
 
 /// Nothing of a single one.
@@ -127,7 +134,8 @@ RenderJob render_job(const RenderScene& scene, const RenderRequest& request, std
   const int pixels = tracer.transport->pixels();
   job.bins = scene.bins;
   job.plan = described(scene, request, tracer.method) + tracers.plan().describe() +
-             described_sensors(scene) + described_map(scene);
+             described_steps(scene, tracers.plan()) + described_sensors(scene) +
+             described_map(scene);
   job.pictures = static_cast<std::size_t>(pixels) * scene.bins.count;
   const bool books = walks_light(tracer.method) && pixels > 0;
   job.has_energy = books || map;

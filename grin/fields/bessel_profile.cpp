@@ -50,21 +50,6 @@ BesselProfile::Cell BesselProfile::fit(int order, double cell) {
   return result;
 }
 
-/// Where x is past the first bend, from Bessel's equation 4 u g'' = -4 (m + 1) g' - g; it would
-/// cancel before, where the table's polynomials converge fastest.
-double BesselProfile::bend(double u) const {
-  const double cell = std::floor(std::sqrt(u) * cells_per_unit);
-  if (u > 4 * (order_ + 1) || !(cell < cells_)) {
-    const Jet at = jet(u);
-    return -((order_ + 1) * at.slope + at.value / 4) / u;
-  }
-  const double t = u - centre(cell);
-  double sum = 0;
-  for (int k = degree; k >= 2; --k)
-    sum = sum * t + k * (k - 1) * table_[static_cast<std::size_t>(cell)].c[k];
-  return sum;
-}
-
 BesselProfile::Jet BesselProfile::far_jet(double u) const {
   const double x = std::sqrt(u);
   if (!std::isfinite(x)) return {u, u};

@@ -31,8 +31,19 @@ class BesselProfile {
     const double delta = u - centre(cell);
     return polynomial(table_[static_cast<std::size_t>(cell)], delta);
   }
-  /// Second derivative by u.
-  double bend(double u) const;
+  /// And the second: where x is past the first bend from Bessel's equation, 4 u g'' = -4 (m + 1)
+  /// g' - g; it would cancel before, where the table's polynomials converge fastest.
+  struct BentJet : Jet {
+    double bend;
+  };
+  BentJet bent_jet(double u) const {
+    const double cell = std::floor(std::sqrt(u) * cells_per_unit);
+    if (!(cell < cells_)) return bent(far_jet(u), u);
+    const Cell& in = table_[static_cast<std::size_t>(cell)];
+    const double t = u - centre(cell);
+    const Jet at = polynomial(in, t);
+    return u > 4 * (order_ + 1) ? bent(at, u) : BentJet{at, bend(in, t)};
+  }
 
  private:
   static constexpr int degree = 7;
@@ -54,6 +65,15 @@ class BesselProfile {
     const double slope = ((c[1] + 2 * c[2] * t) + (3 * c[3] + 4 * c[4] * t) * t2) +
                          ((5 * c[5] + 6 * c[6] * t) + 7 * c[7] * t2) * t4;
     return {value, slope};
+  }
+  static double bend(const Cell& cell, double t) {
+    const double* c = cell.c;
+    const double t2 = t * t;
+    return ((2 * c[2] + 6 * c[3] * t) + (12 * c[4] + 20 * c[5] * t) * t2) +
+           (30 * c[6] + 42 * c[7] * t) * t2 * t2;
+  }
+  BentJet bent(const Jet& at, double u) const {
+    return {at, -((order_ + 1) * at.slope + at.value / 4) / u};
   }
   static Cell fit(int order, double cell);
   Jet far_jet(double u) const;

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <limits>
 #include <optional>
+#include <vector>
 
 #include "core/keys/keys.h"
 #include "grin/fields/index_field.h"
@@ -18,6 +20,9 @@ enum class Symmetry { none, sphere, guide, round_guide, stratified };
 /// What the use of a field must know of it.
 struct FieldFacts {
   double scale = 0;  ///< over which the index varies; 0: nowhere
+  /// By how much it does; its gradient is nowhere more than this by the scale.
+  double strength = std::numeric_limits<double>::infinity();
+  std::vector<Vec3> places = {};  ///< where it does, if that may be in a small part of space
   Symmetry symmetry = Symmetry::none;
   Vec3 centre = Vec3::Zero(), axis = Vec3::UnitZ();
   std::optional<Sphere> rim = {};  ///< of a ball, where the gradient jumps: the field is inside

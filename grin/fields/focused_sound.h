@@ -29,6 +29,8 @@ class FocusedSound {
 
   double background() const { return background_; }
   double amplitude() const { return amplitude_; }
+  /// At the focus.
+  double largest() const { return amplitude_ * static_cast<double>(waves_.size()); }
   double wavenumber() const { return k_; }
 
   double excess(const Vec3& x) const {
@@ -83,7 +85,7 @@ inline FocusedSound at_phase(const FocusedSound& field, double phase) {
 }
 
 inline FieldFacts facts(const FocusedSound& field) {
-  return {.scale = 1 / field.wavenumber()};
+  return {.scale = 1 / field.wavenumber(), .strength = std::abs(field.largest())};
 }
 
 struct FocusedSoundValues : SoundValues {

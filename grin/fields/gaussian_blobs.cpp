@@ -8,9 +8,21 @@
 namespace flatspeckle::grin {
 
 FieldFacts facts(const GaussianBlobs& field) {
-  double scale = std::numeric_limits<double>::infinity();
-  for (const GaussianBlob& blob : field.blobs()) scale = std::min(scale, blob.width);
-  return {.scale = scale};
+  constexpr std::size_t most_places = 16;
+  double scale = std::numeric_limits<double>::infinity(), strength = 0;
+  for (const GaussianBlob& blob : field.blobs()) {
+    scale = std::min(scale, blob.width);
+    strength += std::abs(blob.height);
+  }
+  std::vector<GaussianBlob> steepest = field.blobs();
+  const auto bend = [](const GaussianBlob& b) { return std::abs(b.height) / (b.width * b.width); };
+  std::sort(steepest.begin(), steepest.end(),
+            [&](const GaussianBlob& a, const GaussianBlob& b) { return bend(a) > bend(b); });
+  steepest.resize(std::min(steepest.size(), most_places));
+  FieldFacts found{.scale = scale, .strength = strength};
+  for (const GaussianBlob& blob : steepest)
+    found.places.push_back(blob.centre + blob.width * Vec3::Ones().normalized());
+  return found;
 }
 
 void add_keys(Keys& keys, BlobsValues& values) {

@@ -5,7 +5,7 @@
 namespace flatspeckle::grin {
 
 inline FieldFacts facts(const Homogeneous&) {
-  return {};
+  return {.strength = 0};
 }
 
 struct HomogeneousValues {

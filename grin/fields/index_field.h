@@ -17,8 +17,15 @@ struct IndexHessian {
   Mat3 hessian;  ///< 1/length^2, symmetric
 };
 
+/// n grad n, which bends rays, and its derivative; of a field where that is diagonal.
+struct DiagonalForce {
+  double excess;
+  Vec3 force;       ///< 1/length
+  Vec3 derivative;  ///< 1/length^2
+};
+
 /// A refractive index n(x) > 0 in space, twice differentiable but for surfaces that the field
-/// names.
+/// names. Where n^2 is a sum of squares, field.force(x) may tell a DiagonalForce.
 template <class F>
 concept IndexField = requires(const F& field, const Vec3& x) {
   { field.excess(x) } -> std::same_as<double>;

@@ -27,6 +27,11 @@ struct LuneburgProfile {
     const double n = std::sqrt(2 - q);
     return {(1 - q) / (1 + n), -1 / (2 * area * n), -1 / (4 * area * area * n * n * n)};
   }
+  RadialSquare square(double u) const {
+    const double area = radius * radius, q = u / area;
+    if (!is_inside(q)) return {0, 0};
+    return {(1 - q) / (1 + std::sqrt(2 - q)), -1 / area};
+  }
 
  private:
   bool is_inside(double q) const { return q <= (1 + beyond) * (1 + beyond); }

@@ -19,6 +19,10 @@ struct ParabolicProfile {
     const double above = above_one(u), n = std::sqrt(1 + above), a2 = alpha * alpha;
     return {above / (1 + n), -a2 / (2 * n), -a2 * a2 / (4 * n * n * n)};
   }
+  RadialSquare square(double u) const {
+    const double above = above_one(u), n = std::sqrt(1 + above);
+    return {above / (1 + n), n >= 0 ? -alpha * alpha : n};
+  }
 
  private:
   double above_one(double u) const {  // n^2 - 1

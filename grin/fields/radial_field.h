@@ -11,8 +11,14 @@ struct RadialJet {
   double excess, first, second;
 };
 
+/// And that of n^2 by u, where it is the same everywhere.
+struct RadialSquare {
+  double excess, slope;
+};
+
 /// n = 1 + profile(r^2) about a centre (Dimension 3) or about the line through it along z
-/// (Dimension 2). Profile: excess(u), and jet(u) with derivatives.
+/// (Dimension 2). Profile: excess(u), jet(u) with derivatives, and maybe
+/// square(u).
 template <class Profile, int Dimension>
 class RadialField {
   static_assert(Dimension == 2 || Dimension == 3);
@@ -36,6 +42,14 @@ class RadialField {
     Mat3 hessian = 4 * jet.second * r * r.transpose();
     for (int i = 0; i < Dimension; ++i) hessian(i, i) += 2 * jet.first;
     return {jet.excess, 2 * jet.first * r, hessian};
+  }
+  DiagonalForce force(const Vec3& x) const requires requires(const Profile& profile) {
+    profile.square(0.0);
+  }
+  {
+    const Vec3 r = radius_vector(x);
+    const auto [excess, slope] = profile_.square(r.squaredNorm());
+    return {excess, slope * r, {slope, slope, Dimension == 3 ? slope : 0}};
   }
 
  private:

@@ -38,6 +38,8 @@ class Adder {
     const FieldFacts known = facts(field);
     if (known.scale > 0)
       scene_.scale = scene_.scale > 0 ? std::min(scene_.scale, known.scale) : known.scale;
+    scene_.strength += known.strength;
+    scene_.places.insert(scene_.places.end(), known.places.begin(), known.places.end());
     if (known.rim) scene_.rim = known.rim;
     if (known.grid) scene_.grid = known.grid;
     if (!known.rim) outside_.add(field);
@@ -50,7 +52,7 @@ class Adder {
   }
 
  private:
-  SceneField scene_;
+  SceneField scene_{{.strength = 0}, {}, {}};
   AnySum sum_, outside_;
 };
 

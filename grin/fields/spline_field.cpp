@@ -135,13 +135,21 @@ IndexHessian SplineField::hessian(const Vec3& x) const {
   return sum;
 }
 
+/// A spline is a mean of its coefficients.
+double SplineField::range() const {
+  const auto [least, most] = std::minmax_element(coefficients_.begin(), coefficients_.end());
+  return *most - *least;
+}
+
 SplineField read_spline_field(const std::filesystem::path& path) {
   return read_grid<SplineField>(path, "excess");
 }
 
 FieldFacts facts(const SplineField& field) {
   const FieldGrid& grid = field.grid();
-  return {.scale = 2 * grid.spacing.minCoeff(), .grid = Box{grid.origin, grid.end()}};
+  return {.scale = 2 * grid.spacing.minCoeff(),
+          .strength = 4 * field.range(),
+          .grid = Box{grid.origin, grid.end()}};
 }
 
 void add_keys(Keys& keys, GridValues& values) {

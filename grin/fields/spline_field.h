@@ -25,6 +25,9 @@ class SplineField {
   IndexGradient gradient(const Vec3& x) const;
   IndexHessian hessian(const Vec3& x) const;
 
+  /// No two places have indices farther apart.
+  double range() const;
+
  private:
   /// Cell and weights of the four splines there, and of their derivatives by x.
   struct Axis {

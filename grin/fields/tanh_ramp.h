@@ -38,7 +38,11 @@ struct TanhRamp {
 };
 
 inline FieldFacts facts(const TanhRamp& field) {
-  return {.scale = field.width / 2, .symmetry = Symmetry::stratified, .axis = field.axis};
+  return {.scale = field.width / 2,
+          .strength = std::abs(field.high - field.low),
+          .places = {field.centre},
+          .symmetry = Symmetry::stratified,
+          .axis = field.axis};
 }
 
 struct TanhValues {

@@ -13,12 +13,12 @@ StandingWave::StandingWave(double background, double amplitude, int m, double kr
 
 /// Of g(u) Re z^m: 2 g' (delta_ij h + x_i h_j + h_i x_j) + 4 g'' x_i x_j h + g h_ij, where u =
 /// |z|^2, h = Re z^m is harmonic, and Bessel's equation gives 4 u g'' = -4 (m + 1) g' - g.
-IndexHessian StandingWave::hessian(const Vec3& x) const {
+IndexHessian StandingWave::angular_hessian(const Vec3& x) const {
   const double a = kr_ * x[0], b = kr_ * x[1], u = a * a + b * b;
-  const auto [value, slope] = profile_->jet(u);
-  const double bend = profile_->bend(u);
+  const auto at = profile_->bent_jet(u);
+  const double value = at.value, slope = at.slope, bend = at.bend;
   const std::complex<double> h = power(x, m_);
-  const std::complex<double> h1 = m_ > 0 ? double(m_) * power(x, m_ - 1) : 0;
+  const std::complex<double> h1 = double(m_) * power(x, m_ - 1);
   const std::complex<double> h2 = m_ > 1 ? double(m_ * (m_ - 1)) * power(x, m_ - 2) : 0;
   const double hx = h1.real(), hy = -h1.imag();
   const double scale = amplitude_ * kr_ * kr_, diagonal = 2 * slope * h.real();

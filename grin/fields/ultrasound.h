@@ -48,9 +48,26 @@ class StandingWave {
                  0)};
   }
 
-  IndexHessian hessian(const Vec3& x) const;
+  IndexHessian hessian(const Vec3& x) const {
+    return m_ == 0 ? round_hessian(x) : angular_hessian(x);
+  }
 
  private:
+  /// Of g(u): 2 g' delta_ij + 4 g'' x_i x_j.
+  IndexHessian round_hessian(const Vec3& x) const {
+    const double a = kr_ * x[0], b = kr_ * x[1];
+    const auto at = profile_->bent_jet(a * a + b * b);
+    const double scale = amplitude_ * kr_ * kr_, slope = 2 * scale * at.slope;
+    const double bend = 4 * scale * at.bend;
+    IndexHessian found{
+        background_ + amplitude_ * at.value, {slope * x[0], slope * x[1], 0}, Mat3::Zero()};
+    found.hessian(0, 0) = slope + bend * a * a;
+    found.hessian(1, 1) = slope + bend * b * b;
+    found.hessian(0, 1) = found.hessian(1, 0) = bend * a * b;
+    return found;
+  }
+  IndexHessian angular_hessian(const Vec3& x) const;
+
   /// (kr (x + i y))^exponent, by squaring.
   std::complex<double> power(const Vec3& x, int exponent) const {
     double re = 1, im = 0, a = kr_ * x[0], b = kr_ * x[1];
@@ -79,6 +96,7 @@ inline StandingWave at_phase(const StandingWave& field, double phase) {
 
 inline FieldFacts facts(const StandingWave& field) {
   return {.scale = 1 / field.wavenumber(),
+          .strength = std::abs(field.amplitude()),
           .symmetry = field.order() == 0 ? Symmetry::round_guide : Symmetry::guide};
 }
 

@@ -44,6 +44,37 @@ inline Mat3 ray_force_derivative(const IndexHessian& at) {
   return at.gradient * at.gradient.transpose() + (1 + at.excess) * at.hessian;
 }
 
+/// The same at x, of a field that tells it directly or by its gradient.
+struct RayForce {
+  double excess;
+  Vec3 force;
+};
+template <IndexField F>
+RayForce ray_force(const F& field, const Vec3& x) {
+  if constexpr (requires { field.force(x); }) {
+    const DiagonalForce at = field.force(x);
+    return {at.excess, at.force};
+  } else {
+    const IndexGradient at = field.gradient(x);
+    return {at.excess, ray_force(at)};
+  }
+}
+template <class Derivative>
+struct RayForceJet : RayForce {
+  Derivative derivative;
+};
+template <IndexField F>
+auto ray_force_jet(const F& field, const Vec3& x) {
+  if constexpr (requires { field.force(x); }) {
+    const DiagonalForce at = field.force(x);
+    return RayForceJet<Eigen::DiagonalMatrix<double, 3>>{
+        {at.excess, at.force}, Eigen::DiagonalMatrix<double, 3>(at.derivative)};
+  } else {
+    const IndexHessian at = field.hessian(x);
+    return RayForceJet<Mat3>{{at.excess, ray_force(at)}, ray_force_derivative(at)};
+  }
+}
+
 struct Leapfrog {
   static constexpr const char* word = "leapfrog";
   static constexpr int order = 2;
@@ -52,9 +83,9 @@ struct Leapfrog {
   static void step(const F& field, Ray& ray, double h) {
     if constexpr (HomogeneousField<F>) return straight_step(field, ray, h);
     ray.x += h / 2 * ray.v;
-    const IndexGradient at = field.gradient(ray.x);
+    const RayForce at = ray_force(field, ray.x);
     ray.accumulate(ray.x, 1 + at.excess, h);
-    ray.v += h * ray_force(at);
+    ray.v += h * at.force;
     ray.x += h / 2 * ray.v;
   }
 
@@ -63,11 +94,11 @@ struct Leapfrog {
     if constexpr (HomogeneousField<F>) return straight_step(field, ray, tangent, h);
     tangent.dx += h / 2 * tangent.dv;
     ray.x += h / 2 * ray.v;
-    const IndexHessian at = field.hessian(ray.x);
+    const auto at = ray_force_jet(field, ray.x);
     ray.accumulate(ray.x, 1 + at.excess, h);
-    ray.v += h * ray_force(at);
+    ray.v += h * at.force;
     ray.x += h / 2 * ray.v;
-    tangent.dv += h * ray_force_derivative(at) * tangent.dx;
+    tangent.dv += h * (at.derivative * tangent.dx);
     tangent.dx += h / 2 * tangent.dv;
   }
 };
@@ -98,30 +129,30 @@ struct Sharma {
   template <IndexField F, class Ray>
   static void step(const F& field, Ray& ray, double h) {
     if constexpr (HomogeneousField<F>) return straight_step(field, ray, h);
-    const IndexGradient a = field.gradient(ray.x);
-    const Vec3 middle = ray.x + h / 2 * ray.v + h * h / 8 * ray_force(a);
-    const IndexGradient b = field.gradient(middle);
-    const Vec3 end = ray.x + h * ray.v + h * h / 2 * ray_force(b);
-    const IndexGradient c = field.gradient(end);
+    const RayForce a = ray_force(field, ray.x);
+    const Vec3 middle = ray.x + h / 2 * ray.v + h * h / 8 * a.force;
+    const RayForce b = ray_force(field, middle);
+    const Vec3 end = ray.x + h * ray.v + h * h / 2 * b.force;
+    const RayForce c = ray_force(field, end);
     accumulate(ray, {ray.x, middle, end}, {a.excess, b.excess, c.excess}, h);
-    ray.x += h * ray.v + h * h / 6 * (ray_force(a) + 2 * ray_force(b));
-    ray.v += h / 6 * (ray_force(a) + 4 * ray_force(b) + ray_force(c));
+    ray.x += h * ray.v + h * h / 6 * (a.force + 2 * b.force);
+    ray.v += h / 6 * (a.force + 4 * b.force + c.force);
   }
 
   template <IndexField F, class Ray>
   [[gnu::flatten]] static void step(const F& field, Ray& ray, RayTangent& tangent, double h) {
     if constexpr (HomogeneousField<F>) return straight_step(field, ray, tangent, h);
-    const IndexHessian a = field.hessian(ray.x);
-    const Mat3 da = ray_force_derivative(a) * tangent.dx;
-    const Vec3 middle = ray.x + h / 2 * ray.v + h * h / 8 * ray_force(a);
-    const IndexHessian b = field.hessian(middle);
-    const Mat3 db = ray_force_derivative(b) * (tangent.dx + h / 2 * tangent.dv + h * h / 8 * da);
-    const Vec3 end = ray.x + h * ray.v + h * h / 2 * ray_force(b);
-    const IndexHessian c = field.hessian(end);
-    const Mat3 dc = ray_force_derivative(c) * (tangent.dx + h * tangent.dv + h * h / 2 * db);
+    const auto a = ray_force_jet(field, ray.x);
+    const Mat3 da = a.derivative * tangent.dx;
+    const Vec3 middle = ray.x + h / 2 * ray.v + h * h / 8 * a.force;
+    const auto b = ray_force_jet(field, middle);
+    const Mat3 db = b.derivative * (tangent.dx + h / 2 * tangent.dv + h * h / 8 * da);
+    const Vec3 end = ray.x + h * ray.v + h * h / 2 * b.force;
+    const auto c = ray_force_jet(field, end);
+    const Mat3 dc = c.derivative * (tangent.dx + h * tangent.dv + h * h / 2 * db);
     accumulate(ray, {ray.x, middle, end}, {a.excess, b.excess, c.excess}, h);
-    ray.x += h * ray.v + h * h / 6 * (ray_force(a) + 2 * ray_force(b));
-    ray.v += h / 6 * (ray_force(a) + 4 * ray_force(b) + ray_force(c));
+    ray.x += h * ray.v + h * h / 6 * (a.force + 2 * b.force);
+    ray.v += h / 6 * (a.force + 4 * b.force + c.force);
     tangent.dx += h * tangent.dv + h * h / 6 * (da + 2 * db);
     tangent.dv += h / 6 * (da + 4 * db + dc);
   }

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/keys/number_text.h"
+#include "grin/scene/step_choice.h"
 
 namespace flatspeckle::grin {
 
@@ -88,27 +89,33 @@ std::optional<LightMap> light_map(const Keys& keys, const RenderValues& values, 
   return std::nullopt;
 }
 
-/// Sound of amplitude 0 bends no rays.
-AnyIndexField without_silence(const AnyIndexField& field) {
+/// Sound so faint that it bends no rays is none.
+AnyIndexField without_silence(const SceneField& field, const Stage& stage) {
+  if (!bends_nothing(field, stage)) return field.field;
   return std::visit(
       [](const auto& of) -> AnyIndexField {
         if constexpr (requires { of.amplitude(); })
-          if (of.amplitude() == 0) return Homogeneous{of.background()};
-        return of;
+          return Homogeneous{of.background()};
+        else
+          return of;
       },
-      field);
+      field.field);
 }
 
-double step_of(const Keys& keys, const RenderValues& values, double scale, double size) {
-  constexpr double parts = 10;  // a fourth-order step then errs by about 1e-6
+double step_of(const Keys& keys, const RenderValues& values, const SceneField& field,
+               const Stage& stage, double size) {
   constexpr double most_steps = 1e5;
-  const double usual = scale > 0 ? std::min(scale / parts, size) : size;
-  const double step = scale > 0 ? keys.read(values.step).value_or(usual) : usual;
+  if (!(field.scale > 0)) return size;
+  const auto& given = keys.read(values.step);
+  const double longest = longest_step(field, stage);
+  if (given && *given > longest)
+    throw InputError("step", *given,
+                     "must be at most " + number_text(longest) + ": the field varies over " +
+                         number_text(field.scale));
+  const double step = given ? *given : chosen_step(field, stage, keys.read(values.random_phase));
   if (!(step * most_steps >= size))
     throw InputError("step", step,
                      "must be at least 1e-5 of the stage's size: " + number_text(size));
-  if (scale > 0 && step > scale)
-    throw InputError("step", step, "must be at most the field's scale: " + number_text(scale));
   return step;
 }
 
@@ -140,7 +147,7 @@ void add_keys(Keys& keys, RenderValues& values) {
   keys.add("random_phase", values.random_phase, "Each path meets the sound at a phase of its own")
       .only_of("ultrasound, focused_sound");
   keys.add("step", values.step,
-           "Equal steps of rays, length at index 1 (default: a tenth of the field's scale)")
+           "Equal steps of rays, length at index 1 (default: chosen by a pilot)")
       .positive()
       .unit("length");
   keys.add("max_length", values.max_length,
@@ -183,9 +190,9 @@ RenderScene make_render_scene(const Keys& keys, const RenderValues& values) {
   const auto [stage, field] = make_stage(keys, values.stage, values.field, any_phase);
   const Box box = bounds(stage.boundary);
   const double size = (box.high - box.low).norm();
-  const AnyIndexField heard = without_silence(field.field);
+  const AnyIndexField heard = without_silence(field, stage);
   RenderScene scene{.field = heard,
-                    .step = step_of(keys, values, field.scale, size),
+                    .step = step_of(keys, values, field, stage, size),
                     .max_length = max_length_of(keys, values, field.scale, size),
                     .random_phase = any_phase && heard.index() == field.field.index(),
                     .stage = stage,

@@ -6,6 +6,7 @@
 #include "grin/space/beam_search.h"
 #include "grin/space/straight_legs.h"
 #include "grin/space/way_search.h"
+#include "grin/surfaces/first_crossing.h"
 
 namespace flatspeckle::grin {
 
@@ -164,13 +165,7 @@ class CurvedSpace::Legs {
   }
   bool stays(Part part, const RayState& start, double sigma) const {
     if (!is_curved(part)) return straight_.stays(part, start, sigma);
-    const int count = steps(part, sigma);
-    RayState ray = start;
-    for (int i = 1; i < count; ++i) {
-      space_.field_->advance(sigma / count, 1, ray, nullptr);
-      if (!(distance(space_.container(), ray.x) <= 1e-9 * step())) return false;
-    }
-    return true;
+    return space_.stays_inside(start, sigma, steps(part, sigma));
   }
   template <class Offer>
   void approach(Part part, RayState ray, const Vec3& x, const Offer& offer) const {
@@ -319,7 +314,8 @@ std::optional<Join> CurvedSpace::join(const PathPoint& p, const PathPoint& q, Ra
   const ConnectionEstimate estimate = field_->connect(ends, setup_->connection, random, statistics);
   if (!estimate.curve) return std::nullopt;
   const Connection& curve = *estimate.curve;
-  if (goes_outside(p.x, curve.start_direction) || goes_outside(q.x, -curve.end_direction))
+  if (goes_outside(p.x, curve.start_direction) || goes_outside(q.x, -curve.end_direction) ||
+      !stays_inside(start_ray(*field_, p.x, curve.start_direction), curve.sigma, curve.steps))
     return std::nullopt;
   return Join{.start_direction = curve.start_direction,
               .end_direction = curve.end_direction,
@@ -330,7 +326,21 @@ std::optional<Join> CurvedSpace::join(const PathPoint& p, const PathPoint& q, Ra
               .multiplicity = estimate.multiplicity};
 }
 
-/// From a point on the surface; the solver asks about the ends of its steps only.
+/// On so many steps and between their ends, which are all that searches ask about.
+bool CurvedSpace::stays_inside(RayState ray, double sigma, int steps) const {
+  const double h = sigma / steps, slack = 1e-7 * (sigma + h);  // ends may be on the surface
+  for (int i = 0; i < steps; ++i) {
+    const RayState before = ray;
+    field_->advance(h, 1, ray, nullptr);
+    const StepCurve curve(before, ray, h);
+    const auto depth = [&](double theta) { return slack - distance(container(), curve.x(theta)); };
+    const double arc = 1.1 * (ray.arc_length - before.arc_length);
+    if (first_change(depth, {0, 1, depth(0), depth(1)}, arc)) return false;
+  }
+  return true;
+}
+
+/// From a point on the surface.
 bool CurvedSpace::goes_outside(const Vec3& x, const Vec3& direction) const {
   const double on_surface = 1e-9 * setup_->options.step;
   return distance(container(), x) >= -on_surface && direction.dot(normal(container(), x)) > 0;

@@ -92,6 +92,7 @@ class CurvedSpace {
   bool searches_for_beams() const {
     return joins_through() || (setup_->field_part == Part::stage && !setup_->is_straight);
   }
+  bool stays_inside(RayState ray, double sigma, int steps) const;
   bool goes_outside(const Vec3& x, const Vec3& direction) const;
   std::optional<LegEnd> leg(Flight& flight, Neighbours& neighbours, RandomStream& random) const;
   std::optional<LegEnd> curved_leg(Flight& flight, Neighbours& neighbours,

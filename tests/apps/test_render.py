@@ -382,7 +382,7 @@ class Refused(RenderTest):
         self.refuse("max_length", "is a key of", max_length=9)
         self.refuse("step = -1", step=-1, **FIBRE)
         self.refuse("step = 1e-09", "at least", step=1e-9, **FIBRE)
-        self.refuse("step = 3", "at most the field's scale: 2", step=3, **FIBRE)
+        self.refuse("step = 7", "the field varies over 2", step=7, **FIBRE)
         self.refuse("step", "is a key of", step=0.1)
         self.refuse("length_unit = 0", length_unit=0)
 

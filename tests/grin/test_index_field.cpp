@@ -35,6 +35,23 @@ TEST_CASE("Derivatives of lenses, guides, ramps and blobs") {
   }
 }
 
+TEST_CASE("Forces that lenses and guides tell are those of their index") {
+  const auto check = [](const auto& field, const Vec3& x) {
+    const auto force = field.force(x);
+    const auto at = field.hessian(x);
+    const Mat3 derivative = at.gradient * at.gradient.transpose() + (1 + at.excess) * at.hessian;
+    CHECK(force.excess == at.excess);
+    CHECK((force.force - (1 + at.excess) * at.gradient).norm() < 1e-14);
+    CHECK((Mat3(force.derivative.asDiagonal()) - derivative).norm() < 1e-14);
+  };
+  for (const Vec3& x : points) {
+    check(Luneburg(LuneburgProfile{1.5}, {0.1, 0.2, 0.3}), x);
+    check(ParabolicGuide(ParabolicProfile{0.5, 0.7}, {0.1, 0, 0}), x);
+  }
+  check(Luneburg(LuneburgProfile{0.5}), {1, 0, 0});
+  CHECK(std::isnan(ParabolicGuide(ParabolicProfile{0.5, 0.7}).force({9, 0, 0}).force[0]));
+}
+
 TEST_CASE("Fields are weak without losing digits, and steep without overflowing") {
   const double weak = 1e-6;
   for (const Vec3& x : points) {

@@ -211,6 +211,21 @@ TEST_CASE("no curve begins or ends outside the boundary, however short") {
   }
 }
 
+TEST_CASE("no curve runs outside the boundary between the ends of its steps") {
+  // one step; it bulges by alpha^2 rho z^2 / (8 beta^2) at the most
+  const Stage stage{.boundary = Box{{-0.9, -0.9, 0}, {0.9, 0.9, 4}}};
+  const auto space = make_curved_space(ParabolicGuide({0.6, 0.5}), stage, {2, 40});
+  ConnectionStatistics statistics;
+  RandomStream random(8, 97, 0);
+  const auto joins = [&](double rho) {
+    return space->join({Vec3(rho, 0, 1)}, {Vec3(rho, 0, 2)}, random, statistics).has_value();
+  };
+  for (int i = 0; i < 20; ++i) {
+    CHECK(joins(0.87));
+    CHECK(!joins(0.895));
+  }
+}
+
 TEST_CASE("a homogeneous field runs no solver") {
   const Stage stage{.boundary = ball, .medium = {.mu_s = 1}};
   const auto space = make_curved_space(Homogeneous{0.4}, stage, {0.1, 1e-3});

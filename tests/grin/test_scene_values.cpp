@@ -285,7 +285,7 @@ TEST_CASE("stages of values: bodies, silence and steps") {
   REQUIRE(ball.stage.body);
   CHECK(ball.stage.body->medium.mu_s == 3);
   CHECK(ball.stage.excess_around == doctest::Approx(0.2));
-  CHECK(ball.step == doctest::Approx(0.05));
+  CHECK(ball.step == doctest::Approx(0.14));  // chosen
   values = render_values();
   UltrasoundValues sound;
   sound.index = 1.33;

@@ -1,0 +1,165 @@
+#include "grin/scene/step_choice.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "grin/connections/geometric_spreading.h"
+#include "grin/media/start_directions.h"
+#include "grin/space/ray_field.h"
+
+namespace flatspeckle::grin {
+
+namespace {
+
+constexpr std::size_t spread = 32, steep = 16, places = 16;  // rays of the pilot
+constexpr double longest_ray = 1000;                         // in steps of the field's scale
+
+const Surface& filled(const Stage& stage) {
+  return stage.body ? stage.body->surface : stage.boundary;
+}
+double size(const Stage& stage) {
+  const Box box = bounds(filled(stage));
+  return (box.high - box.low).norm();
+}
+
+/// As light meets it: as it is, or at phases of the sound.
+std::vector<std::unique_ptr<const RayField>> fields_met(const SceneField& field, const Stage& stage,
+                                                        bool any_phase) {
+  std::vector<std::unique_ptr<const RayField>> met;
+  met.push_back(make_ray_field(field.field, &filled(stage)));
+  if (any_phase)
+    for (const double phase : {std::numbers::pi / 2, std::numbers::pi})
+      met.push_back(met.front()->frozen(phase));
+  return met;
+}
+
+/// Where rays of the pilot start: anywhere, where the index is steepest, and where the field says
+/// that it may be.
+class PilotStarts {
+ public:
+  PilotStarts(const RayField& field, const SceneField& facts, const Surface& region)
+      : region_(region), box_(bounds(region)) {
+    constexpr std::size_t looks = 512;
+    while (points_.size() < looks) points_.push_back(anywhere());
+    const auto slope = [&](const Vec3& x) { return field.gradient(x).gradient.squaredNorm(); };
+    std::partial_sort(points_.begin() + spread, points_.begin() + spread + steep, points_.end(),
+                      [&](const Vec3& a, const Vec3& b) { return slope(a) > slope(b); });
+    points_.resize(spread + steep);
+    for (const Vec3& place : facts.places) add(place);
+    if (facts.symmetry == Symmetry::stratified)
+      for (std::size_t i = 0; i < places && !facts.places.empty(); ++i) {
+        const Vec3 x = anywhere();
+        add(x - facts.axis * facts.axis.dot(x - facts.places.front()));
+      }
+  }
+  const std::vector<Vec3>& points() const { return points_; }
+
+  Vec3 direction() { return random_turn(Vec3::UnitZ(), 2 * random_.uniform(), random_); }
+
+ private:
+  Vec3 anywhere() {
+    for (;;) {
+      const Vec3 share(random_.uniform(), random_.uniform(), random_.uniform());
+      const Vec3 x = box_.low + share.cwiseProduct(box_.high - box_.low);
+      if (distance(region_, x) < 0) return x;
+    }
+  }
+  void add(const Vec3& x) {
+    if (points_.size() < spread + steep + places && distance(region_, x) < 0) points_.push_back(x);
+  }
+
+  const Surface& region_;
+  Box box_;
+  RandomStream random_{0, static_cast<std::uint64_t>(Stream::render), 0};
+  std::vector<Vec3> points_;
+};
+
+/// A ray of a pilot, of so long a way in sigma.
+class PilotRay {
+ public:
+  PilotRay(const RayField& field, const Surface& region, const RayState& start, double longest,
+           double stride)
+      : field_(field), start_(start) {
+    for (RayState ray = start_;; sigma_ += stride) {
+      field.advance(stride, 1, ray, nullptr);
+      if (!(ray.arc_length < longest && distance(region, ray.x) <= 0)) return;
+    }
+  }
+
+  /// What halving such steps changes, by how much a ray's end moves where its start is turned; NaN
+  /// where there is no ray.
+  double change_by_halving(double step) const {
+    const int steps = static_cast<int>(std::max(1.0, std::ceil(sigma_ / step)));
+    const auto [coarse, coarse_tangent] = end(steps);
+    const auto [fine, fine_tangent] = end(2 * steps);
+    const Frame from = frame_across(start_.v), to = frame_across(fine.v);
+    const double n = start_.v.norm(), length = fine.arc_length;
+    const Mat2 map = transverse_map(fine_tangent, n, from, to);
+    const Mat2 moved = transverse_map(coarse_tangent, n, from, to) - map;
+    const double reach = std::max(length, map.norm());
+    return std::max({(coarse.x - fine.x).norm() / reach, moved.norm() / reach,
+                     (coarse.v.normalized() - fine.v.normalized()).norm() * length / reach,
+                     std::abs(coarse.optical_path - fine.optical_path) / fine.optical_path});
+  }
+
+ private:
+  std::pair<RayState, RayTangent> end(int steps) const {
+    std::pair<RayState, RayTangent> ray{start_, {}};
+    field_.advance(sigma_, steps, ray.first, &ray.second);
+    return ray;
+  }
+
+  const RayField& field_;
+  RayState start_;
+  double sigma_ = 0;
+};
+
+std::vector<PilotRay> pilot_rays(const std::vector<std::unique_ptr<const RayField>>& met,
+                                 const SceneField& facts, const Stage& stage) {
+  const double longest = std::min(size(stage), longest_ray * facts.scale);
+  const double stride = std::min(size(stage), facts.scale) / 16;
+  PilotStarts starts(*met.front(), facts, filled(stage));
+  std::vector<PilotRay> rays;
+  for (const Vec3& x : starts.points()) {
+    const Vec3 direction = starts.direction();
+    for (const auto& field : met)
+      rays.emplace_back(*field, filled(stage), start_ray(*field, x, direction), longest, stride);
+  }
+  return rays;
+}
+
+double two_digits(double x) {
+  const double parts = std::pow(10, 1 - std::floor(std::log10(x)));
+  return std::floor(x * parts * (1 + 1e-9)) / parts;
+}
+
+}  // namespace
+
+bool bends_nothing(const SceneField& field, const Stage& stage) {
+  const double scales = size(stage) / field.scale;
+  return !(field.scale > 0) || field.strength * scales * scales < step_tolerance / 10;
+}
+
+double longest_step(const SceneField& field, const Stage& stage) {
+  if (bends_nothing(field, stage)) return size(stage);
+  return std::min(size(stage), (field.places.empty() ? 3 : 1) * field.scale);
+}
+
+double chosen_step(const SceneField& field, const Stage& stage, bool any_phase) {
+  constexpr int halvings = 8;
+  double step = longest_step(field, stage);
+  if (bends_nothing(field, stage)) return step;
+  const auto met = fields_met(field, stage, any_phase);
+  const auto rays = pilot_rays(met, field, stage);
+  for (int i = 0; i < halvings; ++i, step /= 2) {
+    double worst = 0;
+    for (const PilotRay& ray : rays)
+      worst = std::max(worst, ray.change_by_halving(step));  // NaN is not kept
+    const double finer = std::pow(step_tolerance / worst, 1.0 / Sharma::order);
+    if (finer >= 0.5) return two_digits(step * std::min(finer, 1.0));
+  }
+  return two_digits(step);
+}
+
+}  // namespace flatspeckle::grin

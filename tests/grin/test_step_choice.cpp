@@ -1,0 +1,142 @@
+#include <cmath>
+
+#include <doctest/doctest.h>
+
+#include "grin/media/start_directions.h"
+#include "grin/scene/step_choice.h"
+#include "grin/space/ray_field.h"
+
+using namespace flatspeckle;
+using namespace flatspeckle::grin;
+
+namespace {
+
+template <IndexField F>
+SceneField scene_of(const F& field) {
+  return {facts(field), field};
+}
+
+struct Errors {
+  double worst = 0, mean = 0;
+};
+
+/// Of where rays end, by the length of their way, beside what `exact` says: end(start, sigma).
+template <IndexField F, class Exact>
+Errors end_errors(const F& field, const Surface& region, double step, double sigma,
+                  const Exact& exact) {
+  constexpr int rays = 400;
+  const auto steps = make_ray_field(field, &region);
+  const Box box = bounds(region);
+  RandomStream random(5, 0, 0);
+  Errors errors;
+  for (int i = 0; i < rays;) {
+    const Vec3 share(random.uniform(), random.uniform(), random.uniform());
+    const Vec3 x = box.low + share.cwiseProduct(box.high - box.low);
+    const Vec3 direction = random_turn(Vec3::UnitZ(), 2 * random.uniform(), random);
+    if (distance(region, x) > 0) continue;
+    const RayState start = start_ray(*steps, x, direction);
+    const Vec3 end = exact(start, sigma);
+    if (!end.allFinite() || distance(region, end) > 0) continue;
+    RayState ray = start;
+    steps->advance(sigma, static_cast<int>(std::ceil(sigma / step)), ray, nullptr);
+    const double error = (ray.x - end).norm() / ray.arc_length;
+    errors.worst = std::max(errors.worst, error);
+    errors.mean += error / rays;
+    ++i;
+  }
+  return errors;
+}
+
+/// At the chosen step; three times the step is too coarse.
+template <class Measure>
+void check_tolerance(const Measure& errors, double step) {
+  const Errors at = errors(step), coarse = errors(3 * step);
+  CHECK(at.worst < 2 * step_tolerance);
+  CHECK(at.mean < step_tolerance / 3);
+  CHECK(coarse.worst > 2 * step_tolerance);
+}
+
+/// By steps far below those that are chosen.
+template <IndexField F>
+auto fine(const F& field, double step) {
+  return [&field, step](RayState ray, double sigma) {
+    const int steps = static_cast<int>(std::ceil(sigma / step));
+    for (int i = 0; i < steps; ++i) Sharma::step(field, ray, sigma / steps);
+    return ray.x;
+  };
+}
+
+}  // namespace
+
+TEST_CASE("a chosen step holds rays to its tolerance: closed forms") {
+  const Sphere ball{Vec3::Zero(), 1};
+  const Luneburg luneburg({1, LuneburgProfile::for_stops});
+  const auto ellipse = [](const RayState& ray, double sigma) -> Vec3 {
+    return std::cos(sigma) * ray.x + std::sin(sigma) * ray.v;
+  };
+  check_tolerance([&](double step) { return end_errors(luneburg, ball, step, 1, ellipse); },
+                  chosen_step(scene_of(luneburg), {.boundary = ball}, false));
+
+  const Box fibre{{-0.9, -0.9, 0}, {0.9, 0.9, 50}};
+  const double alpha = 0.5;
+  const ParabolicGuide guide({0.6, alpha});
+  const auto sinusoid = [&](const RayState& ray, double sigma) -> Vec3 {
+    const double c = std::cos(alpha * sigma), s = std::sin(alpha * sigma) / alpha;
+    return {c * ray.x[0] + s * ray.v[0], c * ray.x[1] + s * ray.v[1], ray.x[2] + sigma * ray.v[2]};
+  };
+  check_tolerance([&](double step) { return end_errors(guide, fibre, step, 20, sinusoid); },
+                  chosen_step(scene_of(guide), {.boundary = fibre}, false));
+}
+
+TEST_CASE("a chosen step holds rays to its tolerance: sound and narrow ramps") {
+  const Box tank{{-5, -5, 0}, {5, 5, 10}};
+  const StandingWave strong(0.33, 0.02, 0, 8.4, 10);
+  check_tolerance(
+      [&](double step) { return end_errors(strong, tank, step, 5, fine(strong, 0.01)); },
+      chosen_step(scene_of(strong), {.boundary = tank}, false));
+
+  const Box cube{{-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}};
+  const TanhRamp ramp{0, 0.33, 0.01, Vec3::UnitZ(), {7, 0, 0.1}};
+  const double step = chosen_step(scene_of(ramp), {.boundary = cube}, false);
+  const Errors at = end_errors(ramp, cube, step, 0.3, fine(ramp, 1e-4));
+  CHECK(at.worst < 2 * step_tolerance);
+  CHECK(at.mean < step_tolerance / 3);
+}
+
+TEST_CASE("steps follow how strong a field is, not its scale alone") {
+  const Box tank{{-5, -5, 0}, {5, 5, 10}};
+  const auto step = [&](double amplitude, bool any_phase = false) {
+    return chosen_step(scene_of(StandingWave(0.33, amplitude, 0, 8.4, 10)), {.boundary = tank},
+                       any_phase);
+  };
+  const double scale = 1 / 8.4, size = std::sqrt(300.);
+  CHECK(step(1e-12) == doctest::Approx(size));
+  CHECK(step(1e-3) == doctest::Approx(3 * scale).epsilon(0.05));
+  CHECK(step(1e-2) < 2 * scale);
+  CHECK(step(0.1) < step(1e-2));
+  CHECK(step(0.1) > scale / 10);
+  CHECK(step(0.02, true) <= step(0.02));
+  CHECK(step(1e-2) == step(1e-2));
+}
+
+TEST_CASE("steps are of the scene, in whatever unit of length") {
+  const auto step = [](double unit) {
+    const Sphere ball{Vec3::Zero(), unit};
+    return chosen_step(scene_of(Fisheye({1.6, unit})), {.boundary = ball}, false) / unit;
+  };
+  CHECK(step(1e-6) == doctest::Approx(step(1)).epsilon(0.03));
+  CHECK(step(1e6) == doctest::Approx(step(1)).epsilon(0.03));
+}
+
+TEST_CASE("a narrow blob in a wide stage is not jumped over") {
+  const Box wide{{-50, -50, -50}, {50, 50, 50}};
+  const GaussianBlobs blobs({{{3, -7, 11}, 0.2, 0.3}});
+  const double step = chosen_step(scene_of(blobs), {.boundary = wide}, false);
+  RayState ray = start_ray(blobs, {2.7, -7, 0}, Vec3::UnitZ()), exact = ray;
+  const double sigma = 30;
+  for (int i = 0; i < std::ceil(sigma / step); ++i)
+    Sharma::step(blobs, ray, sigma / std::ceil(sigma / step));
+  for (int i = 0; i < 30000; ++i) Sharma::step(blobs, exact, sigma / 30000);
+  CHECK(exact.v[0] > 0.05);
+  CHECK((ray.x - exact.x).norm() < 2 * step_tolerance * ray.arc_length);
+}
