@@ -294,9 +294,9 @@ class SameNumbers(RenderTest):
 
     def test_resume(self):
         for keys in self.kinds():
-            self.render("parts.h5", **keys, target_error=NEVER, samples=17_000)
-            self.render("parts.h5", **keys, target_error=NEVER, samples=34_000, resume=True)
-            self.render("whole.h5", **keys, target_error=NEVER, samples=34_000)
+            self.render("parts.h5", **keys, samples=17_000)
+            self.render("parts.h5", **keys, samples=34_000, resume=True)
+            self.render("whole.h5", **keys, samples=34_000)
             self.assert_same("parts.h5", "whole.h5")
 
     def test_another_scene_may_not_resume(self):
