@@ -108,7 +108,7 @@ bool has_finite_variance(const RenderScene& scene, RenderMethod method) {
   if (!render_plan(scene).scatters) return true;
   if (method == RenderMethod::path)
     return std::none_of(scene.lights.begin(), scene.lights.end(), [](const Light& light) {
-      return std::holds_alternative<PointLight>(light) || std::holds_alternative<BeamLight>(light);
+      return !std::holds_alternative<FaceLight>(light);
     });
   return method != RenderMethod::light ||
          std::none_of(scene.sensors.begin(), scene.sensors.end(), is_pinhole);

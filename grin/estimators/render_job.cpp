@@ -35,7 +35,7 @@ std::string described(const RenderScene& scene, const RenderRequest& request, Re
   if (!request.method) text += " (chosen by a pilot)";
   if (!has_finite_variance(scene, method))
     text += " (no finite variance with " +
-            std::string(method == RenderMethod::path ? "point lights or beams" : "a pinhole") +
+            std::string(method == RenderMethod::path ? "points, beams or fibres" : "a pinhole") +
             ": errors are not to be trusted)";
   return text + ": ";
 }

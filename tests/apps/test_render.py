@@ -1,5 +1,6 @@
 """Pictures of scattering media against closed forms, what the file holds, what is refused."""
 
+import math
 import unittest
 
 import h5py
@@ -222,9 +223,10 @@ class Energy(RenderTest):
 
     def test_absorbing_box(self):
         through = np.exp(-4 * 0.5)
-        power = self.fates(**BOX, **BEAM, **AREA, mu_a=0.5, method="light")
-        self.assert_fates(power, emitted=2, unscattered=2 * through,
-                          absorbed_stage=2 * (1 - through), scattered=0, lost=0)
+        for beam in (BEAM, {"gaussian_beam": [0, 0, 0, 0, 0, 1, 0.3, 2]}):
+            power = self.fates(**BOX, **beam, **AREA, mu_a=0.5, method="light")
+            self.assert_fates(power, emitted=2, unscattered=2 * through,
+                              absorbed_stage=2 * (1 - through), scattered=0, lost=0)
 
     def test_reflections_of_an_absorbing_ball(self):
         """A beam through the middle: a geometric series of reflections."""
@@ -269,6 +271,35 @@ class Axes(RenderTest):
         """Columns along sensor_direction x sensor_up, here x."""
         self.check(0.5 / 2.9, 0.3 / 2.9, **{**CAMERA, "sensor_at": [0, 0, 3.9], "pixels": [19, 15]},
                    point_light=[0.5, 0.3, 1, 1])
+
+
+class Profiles(RenderTest):
+    """Unscattered light of a Gaussian beam and of fibres, through absorption."""
+
+    def test_gaussian_beam(self):
+        """Irradiance: products of differences of error functions over the pixels. Many rays, so that
+        the darkest pixel has some tens."""
+        found = self.render(**BOX, sensor="area", sensor_at=[0, 0, 4], sensor_size=[1.6, 1.2],
+                            pixels=[8, 6], mu_a=0.5, samples=400_000,
+                            gaussian_beam=[0.1, 0, 0, 0, 0, 1, 0.3, 2])
+
+        def shares(edges):
+            """Columns are along -x."""
+            return np.diff([math.erf(math.sqrt(2) * edge / 0.3) for edge in edges]) / 2
+
+        columns, rows = shares(np.linspace(-0.8, 0.8, 9) + 0.1), shares(np.linspace(-0.6, 0.6, 7))
+        expected = 2 * np.exp(-2) * np.outer(rows, columns) / 0.2**2
+        self.assert_within(found["image"], found["image_error"] + 1e-5, expected)
+
+    def test_fibres(self):
+        """What arrives within an angle, at index 1.5: the square of the ratio of sines."""
+        for name, share in (("fibre_light", lambda ratio: ratio**2),
+                            ("gaussian_fibre", lambda ratio: -math.expm1(-2 * ratio**2))):
+            found = self.render(**BOX, index=1.5, sensor="area", sensor_at=[0, 0, 4],
+                                sensor_size=[2, 2], acceptance=0.1, pixels=[1, 1], samples=40_000,
+                                **{name: [0, 0, 1.5, 0, 0, 1, 0.2, 0.3, 2]})
+            self.assert_within(found["total"], found["total_error"],
+                               2 * share(1.5 * math.sin(0.1) / 0.3))
 
 
 class SameNumbers(RenderTest):
@@ -435,6 +466,14 @@ class Refused(RenderTest):
                     beam_light=[0, 0, 0, 0, 0, 1, 1.1, 1])
         self.refuse("beam_light", "into the stage", beam_light=[0, 0, 0, 0, 0, -1, 0.1, 1])
         self.refuse("beam_light, radius = 0", beam_light=[0, 0, 0, 0, 0, 1, 0, 1])
+        self.refuse("gaussian_beam, radius = 0.4: its disk of radius 1.2", "inside the stage",
+                    gaussian_beam=[0, 0, 0, 0, 0, 1, 0.4, 1])
+        self.refuse("fibre_light", "9 numbers", fibre_light=[0, 0, 0, 0, 0, 1, 0.1, 1])
+        self.refuse("fibre_light, aperture = 1.1", "at most the index",
+                    fibre_light=[0, 0, 0, 0, 0, 1, 0.1, 1.1, 1])
+        self.refuse("fibre_light, aperture = 0", fibre_light=[0, 0, 0, 0, 0, 1, 0.1, 0, 1])
+        self.refuse("gaussian_fibre, direction = 0 0 -1", "into the stage",
+                    gaussian_fibre=[0, 0, 0, 0, 0, -1, 0.1, 0.1, 1])
         self.refuse("face_light", face_light=[0, 0, 1, 0.1, 1])
         self.refuse("face_light, radiance = -1", face_light=[0, 0, 0, 0.1, -1])
         self.refuse("environment = 0", environment=0)
