@@ -62,6 +62,8 @@ class BoundaryPatch {
 
   double area() const { return area_; }
   BoundaryPoint sample(RandomStream& random) const;
+  /// At this distance from the centre, of a patch that has one.
+  BoundaryPoint polar(double r, double azimuth) const;
   /// Of points on the surface.
   bool contains(const Vec3& x) const;
   Vec3 inward(const Vec3& x) const;

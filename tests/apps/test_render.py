@@ -46,15 +46,17 @@ class RenderTest(ProgramTest):
 
 class Scenes(RenderTest):
     def check_sums(self, found, config):
-        """Totals and pulses are those of the pixels; nothing is lost beyond the bins."""
+        """Totals and pulses are those of the pixels; what is beyond the bins stands beside them."""
         image = found["image"]
         self.assertGreater(image.max(), 0)
         np.testing.assert_allclose(found["mean"], image.mean(), rtol=1e-12)
         if "transient" in found:
-            np.testing.assert_allclose(found["transient"].sum(axis=2), image,
+            beyond = found["transient_before"] + found["transient_after"]
+            np.testing.assert_allclose(found["transient"].sum(axis=2) + beyond, image,
                                        atol=1e-12 * image.max())
             whole = found["total"] if "total" in found else found["mean"]
-            np.testing.assert_allclose(found["pulse"].sum(), whole, rtol=1e-12)
+            beyond = found["pulse_before"] + found["pulse_after"]
+            np.testing.assert_allclose(found["pulse"].sum() + beyond, whole, rtol=1e-12)
             np.testing.assert_allclose(found["time"], found["optical_path"] * 1e-3 / LIGHT_SPEED)
 
     def test_each_runs(self):
@@ -302,6 +304,41 @@ class Profiles(RenderTest):
                                2 * share(1.5 * math.sin(0.1) / 0.3))
 
 
+class Paths(RenderTest):
+    KEYS = {**BOX, **BEAM, **AREA, "mu_a": 0.1, "index": 1.5}
+
+    def test_moments_of_unscattered_light(self):
+        """Each path is 4 long, at index 1.5; some pixels are dark."""
+        found = self.render(**self.KEYS, path_moments=True)
+        lit = found["image"] > 0
+        for name, value in (("path", 6), ("path_square", 36)):
+            np.testing.assert_allclose(found[f"mean_{name}"], value, rtol=1e-12)
+            np.testing.assert_allclose(found[f"image_{name}"], value * lit, rtol=1e-12)
+        self.assertNotIn("transient", found)
+
+    def test_beyond_the_bins(self):
+        for bins, name in (([1, 5, 4], "after"), ([7, 9, 4], "before"), ([4, 8, 4], None)):
+            found = self.render(**self.KEYS, path_bins=bins)
+            for beyond in ("before", "after"):
+                whole = found["total"] if beyond == name else 0
+                np.testing.assert_allclose(found[f"pulse_{beyond}"], whole, rtol=1e-12)
+            np.testing.assert_allclose(found["pulse"].sum(), 0 if name else found["total"], rtol=1e-12)
+
+    def test_rings_are_what_areas_are(self):
+        """Power on a disk and by angle, as fates of light say."""
+        scene = {**BOX, **FOG, "point_light": [0, 0, 3, 1], "samples": 40_000, "method": "light"}
+        whole = self.render(**scene, sensor="polar", rings=5, largest_angle=math.pi)
+        fates = ("unscattered", "scattered")
+        error = whole["total_error"] + sum(whole[f"energy/{fate}_error"] for fate in fates)
+        self.assert_within(whole["total"], error, sum(whole[f"energy/{fate}"] for fate in fates))
+        disk = self.render(**scene, sensor="radial", sensor_at=[0, 0, 4], sensor_radius=0.9, rings=3)
+        areas = np.pi * 0.3**2 * (2 * np.arange(3) + 1)
+        np.testing.assert_allclose(disk["image"] @ areas, disk["total"], rtol=1e-12)
+        np.testing.assert_allclose(disk["radius"], [0.15, 0.45, 0.75])
+        face = self.render(**scene, sensor="area", sensor_at=[0, 0, 4], sensor_size=[2, 2], pixels=[1, 1])
+        self.assertLess(disk["total"], face["total"])
+
+
 class SameNumbers(RenderTest):
     KEYS = {**BOX, **BEAM, **FOG, **AREA, "path_bins": [3, 9, 6]}
 
@@ -491,6 +528,12 @@ class Refused(RenderTest):
         self.refuse("sensor_size is not given", sensor_size=None)
         self.refuse("sensor_up", sensor_up=[0, 0, 1])
         self.refuse("acceptance = 2", acceptance=2)
+        radial = {**{key: None for key in AREA}, "sensor": "radial", "sensor_at": [0, 0, 4]}
+        self.refuse("rings is not given", **radial, sensor_radius=0.5)
+        self.refuse("rings = 0", **radial, sensor_radius=0.5, rings=0)
+        self.refuse("sensor_radius = 1.1", "within one face", **radial, sensor_radius=1.1, rings=2)
+        self.refuse("pixels", **{**radial, "pixels": [2, 2]}, sensor_radius=0.5, rings=2)
+        self.refuse("rings", "is a key of", rings=3)
         self.refuse("pixels = 0", pixels=[0, 3])
         self.refuse("pixels = 4", "columns rows", pixels=[4])
         self.refuse("field_of_view", "is a key of", field_of_view=1)

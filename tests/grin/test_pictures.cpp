@@ -180,6 +180,8 @@ TEST_CASE("under a uniform environment: cameras read L/n^2, detectors pi n^2 sin
     const auto irradiance = [&](int) { return pi * n * n * sine * sine; };
     check_in_environment(test_box, area_on_box(acceptance), true, irradiance, 4);
     check_in_environment(test_sphere, area_on_sphere(acceptance), true, irradiance, 5);
+    check_in_environment(test_box, radial_on_box(acceptance), true, irradiance, 7);
+    check_in_environment(test_sphere, radial_on_sphere(acceptance), true, irradiance, 8);
     AreaDetector whole_face{Vec3(0.5, -0.5, 3), Vec3(0, 1, 0), 3, 3, {2, 3}, acceptance};
     check_in_environment(test_box, whole_face, true, irradiance, 6);
   }
@@ -237,9 +239,11 @@ TEST_CASE("form factors: a disk over a rectangle, and any two parts of a sphere"
 
 TEST_CASE("a point's light by direction is its power over 4 pi, by hits and by joins") {
   const auto expected = [](int) { return 3 / (4 * pi); };
-  const Pair pair{test_box, PointLight{Vec3(0.7, -1, 1.1), 3}, directional(0.7)};
-  thrown_by_light(pair, 1).check(expected);
-  joined(pair, 2).check(expected);
+  for (const Sensor& sensor : {Sensor{directional(0.7)}, Sensor{polar(pi)}}) {
+    const Pair pair{test_box, PointLight{Vec3(0.7, -1, 1.1), 3}, sensor};
+    thrown_by_light(pair, 1).check(expected);
+    joined(pair, 2).check(expected);
+  }
 }
 
 TEST_CASE("a beam falls on the pixels in front of it with its power over its area") {
