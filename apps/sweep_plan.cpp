@@ -71,6 +71,7 @@ SweepPlan::SweepPlan()
   add_transport_keys(keys, methods);
   add_dimension_key(keys, base);
   add_run_keys(keys, settings);
+  keys.remove("keep_state");  // of one run
   keys.add("shard", share_,
            "i/n: work on every nth point only, from number i = 0 .. n - 1 on; then merge")
       .no_file();

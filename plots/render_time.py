@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Film strip of `flatspeckle render` with path_bins, each frame the light of a share of the optical
 path, all in one scale; beneath it the pulse with its standard errors and the frames' shares, or
-the pulse alone of a single pixel. The first and last bin hold what is before and beyond."""
+the pulse alone of a single pixel or of rings. Apart at the sides: what is shorter and longer than
+all bins."""
 
 from lib import style
 from lib import pictures
@@ -48,13 +49,26 @@ def draw_pulse(axis, result, parts):
     axis.stairs(np.where(lit, pulse, np.nan), cuts, color=style.COLOURS[0], baseline=None)
     axis.errorbar(path[lit], pulse[lit], np.minimum(error, 0.999 * pulse)[lit], fmt="none",
                   color=style.COLOURS[0], elinewidth=0.6)
-    axis.set(yscale="log", xlim=cuts[[0, -1]], ylim=(0.3 * pulse[lit].min(), None), xlabel=f"optical path ({pictures.length_name(result)})",
+    draw_beyond(axis, result, cuts)
+    axis.set(yscale="log", ylim=(0.3 * pulse[lit].min(), None), xlabel=f"optical path ({pictures.length_name(result)})",
              ylabel=pulse_name(result))
     if result.has("time"):
         rate = result.values("time")[-1] / path[-1] / PICOSECOND
         above = axis.secondary_xaxis("top", functions=(lambda x: x * rate, lambda t: t / rate))
         above.set_xlabel("time (ps)")
         axis.tick_params(top=False)
+
+
+def draw_beyond(axis, result, cuts):
+    """Beside the bins, behind lines, where there is any."""
+    room = 0.06 * (cuts[-1] - cuts[0])
+    for name, edge, side in (("before", cuts[0], -1), ("after", cuts[-1], 1)):
+        light, error = result.values(f"pulse_{name}"), result.values(f"pulse_{name}_error")
+        axis.axvline(edge, color="0.6", linewidth=0.6)
+        if light > 0:
+            axis.errorbar(edge + side * room / 2, light, min(error, 0.999 * light), fmt="_",
+                          color=style.COLOURS[1], label="shorter or longer")
+    axis.set_xlim(cuts[0] - room, cuts[-1] + room)
 
 
 def pulse_name(result):
@@ -69,7 +83,7 @@ def draw(results, arguments):
     if arguments.frames < 1:
         raise Unusable("--frames must be positive")
     transient = result.values("transient")
-    if transient[:, :, 0].size == 1:
+    if transient.ndim < 3 or transient[:, :, 0].size == 1:
         figure, axis = plt.subplots(figsize=(style.PAGE, 2.1))
         draw_pulse(axis, result, [])
         return figure

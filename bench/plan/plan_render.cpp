@@ -64,7 +64,7 @@ SampledKernel kernel_of(const RenderPlan& plan, const RenderScene& scene) {
     paths(paths_per_batch, random, film, counts, nullptr);
   };
   const auto count = static_cast<std::size_t>(pixels);
-  return {count * static_cast<std::size_t>(bins.count), paths_per_batch, run, steady(count)};
+  return {count * static_cast<std::size_t>(bins.sums()), paths_per_batch, run, steady(count)};
 }
 
 /// The kernel that a scene would have against the one that `generalise` makes of its plan.

@@ -91,7 +91,7 @@ Finding slab_energy(const ScatteringMedium& medium, std::uint64_t samples) {
   RenderScene scene = slab(medium, 1, true);
   scene.sensors.push_back(slab(medium, 1, false).sensors[0]);
   const Estimate found = rendered(scene, RenderMethod::light, samples).pixels;
-  const double area = picture_of(scene.sensors[0]).area();
+  const double area = pixels_of(scene.sensors[0]).area;
   return in_errors(area * (found.value[0] + found.value[1]),
                    area * std::hypot(found.error[0], found.error[1]), 1, 0.05);
 }

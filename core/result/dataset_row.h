@@ -48,6 +48,7 @@ struct DatasetTable {
   std::vector<Role> roles = {};
 };
 
+bool has_row(const DatasetTable& table, const std::string& path);
 /// Throws std::logic_error where there is none.
 const DatasetRow& row_of(const DatasetTable& table, const std::string& path);
 

@@ -32,6 +32,10 @@ bool has_error(Data data) {
   return data == Data::estimate || data == Data::complex_estimate;
 }
 
+bool has_row(const DatasetTable& table, const std::string& path) {
+  return std::ranges::any_of(table.rows, [&](const DatasetRow& row) { return row.path == path; });
+}
+
 const DatasetRow& row_of(const DatasetTable& table, const std::string& path) {
   const auto found = std::find_if(table.rows.begin(), table.rows.end(),
                                   [&](const DatasetRow& row) { return row.path == path; });

@@ -31,6 +31,17 @@ std::uint64_t batch_limit(const StopRule& stop, double samples_per_batch) {
 
 }  // namespace
 
+bool asks_more(const StopRule& stop, const BatchJob& job, const Trace& trace) {
+  if (trace.samples.empty()) return true;
+  const double batches = std::round(trace.samples.back() / job.samples_per_batch);
+  const bool enough_samples =
+      stop.samples && batches >= static_cast<double>(batch_limit(stop, job.samples_per_batch));
+  const bool exact_enough = stop.target_error && batches >= trusted_batches &&
+                            trace.relative_error.back() <= *stop.target_error;
+  return !enough_samples && !exact_enough &&
+         !(stop.seconds && trace.wall_s.back() >= *stop.seconds);
+}
+
 RunMerger::RunMerger(const BatchJob& job, const StopRule& stop, RunState& state)
     : job_(job),
       stop_(stop),

@@ -48,6 +48,9 @@ class RunMerger {
   std::optional<StopReason> ended_;
 };
 
+/// Whether a run that ended with this trace would not have by this rule.
+bool asks_more(const StopRule& stop, const BatchJob& job, const Trace& trace);
+
 /// A run of one batch alone would say nothing about its error.
 constexpr std::uint64_t fewest_batches = 2;
 

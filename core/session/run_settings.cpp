@@ -35,7 +35,14 @@ void add_run_keys(Keys& keys, RunSettings& run) {
       .between(0, 1)
       .effort();
   add_thread_key(keys, run);
-  keys.add("resume", run.resume, "Go on from the run that --out holds, if there is one").effort();
+  keys.add("resume", run.resume,
+           "Go on from the run that --out holds, if there is one; a finished one is extended to "
+           "what is asked for now")
+      .effort();
+  keys.add("keep_state", run.keep_state,
+           "Keep the sums that a finished run is extended from, however large; up to 16 MB they "
+           "always are")
+      .effort();
 }
 
 int threads_of(const Keys& keys, const RunSettings& run) {

@@ -16,7 +16,7 @@ struct RunSettings {
   std::optional<std::int64_t> samples;
   std::optional<double> seconds, target_error;
   std::int64_t threads = 0;
-  bool resume = false;
+  bool resume = false, keep_state = false;
 };
 
 void add_output_key(Keys& keys, RunSettings& run, const std::string& what = "Result file (HDF5)");

@@ -14,12 +14,15 @@
 #include "core/result/sealed_file.h"
 #include "core/result/version.h"
 #include "core/run/interrupt.h"
+#include "core/run/run_merger.h"
 #include "core/session/aside.h"
 #include "core/session/identity.h"
 
 namespace flatspeckle {
 
 namespace {
+
+constexpr std::size_t small_state = 16'000'000;  // bytes; kept whether it is asked for or not
 
 std::string state_group(const std::string& run) {
   return "state/" + (run.empty() ? "run" : run);
@@ -55,6 +58,7 @@ Session::Session(std::string command_line, const Keys& keys, const RunSettings& 
   require_address_space_of_threads(threads());
   if (keys.find("threads")) omp_set_num_threads(threads());
   if (keys.find("resume")) keys.read(settings.resume);
+  if (keys.find("keep_state")) keys.read(settings.keep_state);
   if (only_prints) return;
   if (settings.out.empty())
     throw InputError("out is not given: name the " +
@@ -116,10 +120,23 @@ void Session::resume() {
     throw InputError("resume: " + path + " holds another run (" +
                      first_difference(found, identity_) +
                      "); scene, sensors, seed and program version must be the same");
-  already_complete_ = file.attribute<bool>("/", "converged");
+  const bool ended = file.attribute<bool>("/", "converged");
+  already_complete_ = ended && !extends(file);
+  if (already_complete_) return;
   for (const auto& [name, label, job, stop] : runs_)
     if (const std::string group = state_group(name); file.has(group))
       states_[name] = read_state(file, group, job.size);
+  has_older_ = ended && !file.has("state");
+  if (has_older_)
+    std::cerr << "note: " << path << " has not kept what it could be extended from (keep_state); "
+              << "all is done afresh\n";
+}
+
+/// Whether this call asks for more than the file holds, whose runs have ended.
+bool Session::extends(const ResultReader& file) const {
+  return std::ranges::any_of(runs_, [&](const PlannedRun& run) {
+    return asks_more(run.stop, run.job, read_trace(file, run.name));
+  });
 }
 
 int Session::run(std::string plan, std::vector<PlannedRun> runs, const std::string& inputs,
@@ -134,8 +151,7 @@ int Session::run(std::string plan, std::vector<PlannedRun> runs, const std::stri
   has_older_ = exists && !settings_.resume;
   if (exists && settings_.resume) resume();
   if (already_complete_) {
-    std::cout << settings_.out << " is complete; nothing to resume (for more samples run it "
-              << "afresh, without --resume)\n";
+    std::cout << settings_.out << " is complete, and no more is asked for\n";
     return ExitStatus::done;
   }
   std::cout << plan_ << '\n' << std::flush;
@@ -179,13 +195,18 @@ int Session::finish(const std::function<void(ResultFile&)>& contents) {
   write_common(file, converged_);
   for (const auto& [name, state] : states_) write_trace(file, name, state.trace);
   contents(file);
-  if (!converged_) write_states(file);
+  const bool keeps_state = !converged_ || settings_.keep_state || state_bytes() <= small_state;
+  if (keeps_state) write_states(file);
   set_strangers_aside();
   file.commit_sealed(Durable::yes);
   tell_rare(file.rare());
   std::error_code none;
   if (!older_aside_.empty()) std::filesystem::remove(older_aside_, none);
-  std::cout << "wrote " << settings_.out << '\n';
+  std::cout << "wrote " << settings_.out;
+  if (!keeps_state)
+    std::cout << " without the " << std::ceil(1e-6 * static_cast<double>(state_bytes()))
+              << " MB of sums that extend it (--keep_state)";
+  std::cout << '\n';
   if (converged_) return ExitStatus::done;
   std::cout << "stopped before the target error was reached; --resume goes on\n";
   return ExitStatus::error_not_reached;
@@ -232,6 +253,12 @@ void Session::set_strangers_aside() {
 void Session::write_states(ResultFile& file) const {
   for (const auto& [name, state] : states_)
     if (state.sums.batches() > 0) write_state(file, state_group(name), state);
+}
+
+std::size_t Session::state_bytes() const {
+  std::size_t sums = 0;
+  for (const auto& [name, state] : states_) sums += state.sums.groups() * state.sums.size();
+  return sums * sizeof(Complex);
 }
 
 }  // namespace flatspeckle

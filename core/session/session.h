@@ -19,6 +19,8 @@
 
 namespace flatspeckle {
 
+class ResultReader;
+
 /// One of the runs of a session. A run without a name has its trace in the root of the result.
 struct PlannedRun {
   std::string name, label;
@@ -55,11 +57,12 @@ class Session {
   int once(ResultFile file, const std::function<std::optional<Made>(ResultFile&)>& make) const;
 
   /// Runs all to their end, or until an interruption, or goes on with those that the file there
-  /// holds. While they run, the file holds what could be resumed; at the end, the result. Each
-  /// state of it replaces the one before as a whole; what was there before the runs stays beside it
-  /// (NAME.aside-1) until the result is there. inputs: what the scene takes from other files, as
-  /// text; a resumed run must have the same. contents: everything but provenance, traces and
-  /// states. Returns the exit status.
+  /// holds; runs that have ended there are extended where this call asks for more. While they run,
+  /// the file holds what could be resumed; at the end, the result. Each state of it replaces the
+  /// one before as a whole; what was there before the runs stays beside it (NAME.aside-1) until the
+  /// result is there. inputs: what the scene takes from other files, as text; a resumed run must
+  /// have the same. contents: everything but provenance, traces and states. Returns the exit
+  /// status.
   int run(std::string plan, std::vector<PlannedRun> runs, const std::string& inputs,
           const std::function<void(ResultFile&)>& contents);
 
@@ -73,6 +76,7 @@ class Session {
 
  private:
   void resume();
+  bool extends(const ResultReader& file) const;
   static void note_rounding(const PlannedRun& run);
   void run_one(const PlannedRun& run);
   int finish(const std::function<void(ResultFile&)>& contents);
@@ -81,6 +85,7 @@ class Session {
   void set_older_aside();
   void set_strangers_aside();
   void write_states(ResultFile& file) const;
+  std::size_t state_bytes() const;
 
   std::string command_line_;
   const Keys& keys_;

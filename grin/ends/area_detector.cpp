@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "core/keys/number_text.h"
-#include "grin/media/start_directions.h"
+#include "grin/ends/sensor_table.h"
 
 namespace flatspeckle::grin {
 
@@ -23,23 +23,17 @@ BoundaryPoint centre_on(const Surface& boundary, const Vec3& centre) {
   return *at;
 }
 
-double sine_squared(double angle) {
-  const double sine = std::sin(angle);
-  return sine * sine;
-}
-
 }  // namespace
 
-const DatasetTable area_table{
-    "area",
-    {{"row", Data::scale, "", "length", "height on the detector, along sensor_up"},
-     {"column", Data::scale, "", "length", "position to the right, as light that arrives sees it"},
-     {"image", Data::estimate, "row column", "1/length^2", "irradiance averaged over the pixel"},
-     {"mean", Data::estimate, "", "1/length^2", "mean over the pixels"},
-     {"total", Data::estimate, "", "1", "power on the detector"},
-     {"transient", Data::estimate, "row column optical_path", "1/length^2",
-      "irradiance averaged over the pixel, in the bin"},
-     {"pulse", Data::estimate, "optical_path", "1", "power on the detector, in the bin"}}};
+const DatasetTable area_table = sensor_table(
+    {.name = "area",
+     .axes = {{"row", Data::scale, "", "length", "height on the detector, along sensor_up"},
+              {"column", Data::scale, "", "length",
+               "position to the right, as light that arrives sees it"}},
+     .unit = "1/length^2",
+     .pixel = "irradiance averaged over the pixel",
+     .mean = "mean over the pixels",
+     .total = "power on the detector"});
 
 PixelRectangle picture_of(const AreaDetector& detector) {
   return {detector.pixels, detector.width / 2, detector.height / 2};
@@ -50,8 +44,7 @@ AreaDetectorEnd::AreaDetectorEnd(const AreaDetector& detector, const Stage& stag
       boundary_(stage.boundary),
       centre_(centre_on(stage.boundary, detector.centre).x),
       view_("sensor_at", -centre_on(stage.boundary, detector.centre).inward, detector.up),
-      sine_squared_(sine_squared(detector.acceptance)),
-      tangent_(std::sqrt(sine_squared_ / (1 - sine_squared_))),
+      acceptance_(detector.acceptance),
       body_(body_surface(stage)) {
   require_in_stage(stage, centre_);
   const auto* sphere = std::get_if<Sphere>(&boundary_);
@@ -100,7 +93,7 @@ Window AreaDetectorEnd::accepting_from(const Vec3& x) const {
   const Vec3 from_centre = x - centre_;
   const double before = std::max(0.0, -from_centre.dot(view_.forward));
   return face_.near(from_centre.dot(view_.right), from_centre.dot(view_.up),
-                    room_for_curves * tangent_ * before);
+                    room_for_curves * acceptance_.tangent() * before);
 }
 
 double AreaDetectorEnd::choice_of(double u, double v, const Window& accepting) const {
@@ -134,18 +127,11 @@ std::optional<EndPosition> AreaDetectorEnd::position_at(const Vec3& x) const {
 
 EndDirection AreaDetectorEnd::sample_direction(const EndPosition& at, double,
                                                RandomStream& random) const {
-  const double squared = sine_squared_ * random.uniform();
-  return towards(at, random_turn(at.inward, squared / (1 + std::sqrt(1 - squared)), random));
+  return acceptance_.sample(at, reading(at), random);
 }
 
 EndDirection AreaDetectorEnd::towards(const EndPosition& at, const Vec3& direction) const {
-  EndDirection to{.direction = direction};
-  const double cosine = direction.dot(at.inward);
-  if (!(cosine > 0 && 1 - cosine * cosine <= sine_squared_)) return to;
-  to.density = cosine / (pi * sine_squared_);
-  to.pixel = at.pixel;
-  to.strength = at.index * at.index * cosine * at.position_density * pixels().count();
-  return to;
+  return acceptance_.towards(at, direction, reading(at));
 }
 
 void add_keys(Keys& keys, AreaValues& values) {

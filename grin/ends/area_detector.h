@@ -3,6 +3,7 @@
 #include <numbers>
 #include <optional>
 
+#include "grin/ends/acceptance.h"
 #include "grin/ends/boundary_patch.h"
 #include "grin/ends/sensor_kind.h"
 
@@ -45,6 +46,7 @@ class AreaDetectorEnd {
   std::optional<EndPosition> position_at(const Vec3& x) const;
 
  private:
+  double reading(const EndPosition& at) const { return at.position_density * pixels().count(); }
   EndPosition on_face(const Vec3& x, int pixel) const;
   EndPosition at(double u, double v, int pixel) const;
   Window accepting_from(const Vec3& x) const;
@@ -54,9 +56,8 @@ class AreaDetectorEnd {
   PixelRectangle face_;
   Surface boundary_;
   Vec3 centre_;
-  Orientation view_;     ///< forward is the outward normal at the centre
-  double sine_squared_;  ///< of the acceptance
-  double tangent_;       ///< the same; infinite for all directions
+  Orientation view_;  ///< forward is the outward normal at the centre
+  Acceptance acceptance_;
   std::optional<Surface> body_;
 };
 

@@ -1,17 +1,20 @@
 #pragma once
 
+#include "grin/ends/light_disk.h"
 #include "grin/ends/light_kind.h"
 
 namespace flatspeckle::grin {
 
 class BeamLightEnd;
 
-/// Parallel rays, uniform over a disk inside the stage or on its boundary.
+/// Parallel rays from a disk inside the stage or on its boundary: an even one, or with a Gaussian
+/// irradiance of this 1/e^2 radius (RadialProfile).
 struct BeamLight {
   using End = BeamLightEnd;
   Vec3 centre, direction;
   double radius;
   double power = 1;
+  Spread spread = Spread::even;
 };
 
 class BeamLightEnd {
@@ -22,11 +25,9 @@ class BeamLightEnd {
   BeamLightEnd(const BeamLight& light, const Stage& stage, const IndexAt&);
 
   double power() const { return power_; }
-  double area() const { return area_; }
-  const FlatDisk& disk() const { return disk_; }
-  BoundaryPoint sample(RandomStream& random) const {
-    return {disk_.sample(random), disk_.normal()};
-  }
+  const LightDisk& disk() const { return disk_; }
+  double density(const Vec3& x) const { return disk_.density(x); }
+  BoundaryPoint sample(RandomStream& random) const { return disk_.sample(random); }
   EndDirection sample_direction(const EndPosition& at, RandomStream&) const {
     return {.direction = at.inward, .density = 1, .strength = power_ * at.position_density};
   }
@@ -36,13 +37,13 @@ class BeamLightEnd {
   }
 
  private:
-  FlatDisk disk_;
-  double power_, area_;
+  LightDisk disk_;
+  double power_;
 };
 
 struct BeamLightValues {
   using Light = BeamLight;
-  std::vector<double> beam_light{};
+  std::vector<double> beam_light{}, gaussian_beam{};
 };
 
 void add_keys(Keys& keys, BeamLightValues& values);

@@ -116,6 +116,15 @@ BoundaryPoint BoundaryPatch::sample(RandomStream& random) const {
   return std::visit([&](const auto& shape) { return sample(shape, random); }, shape_);
 }
 
+BoundaryPoint BoundaryPatch::polar(double r, double azimuth) const {
+  if (const auto* disk = std::get_if<FlatDisk>(&shape_))
+    return {disk->polar(r, azimuth), disk->normal()};
+  const Cap& cap = std::get<Cap>(shape_);
+  const double ratio = r / cap.sphere.radius;
+  const Vec3 outward = direction_about(cap.axis, 1 - ratio * ratio / 2, azimuth);
+  return {cap.sphere.centre + cap.sphere.radius * outward, -outward};
+}
+
 bool BoundaryPatch::contains(const Vec3& x) const {
   if (const auto* cap = std::get_if<Cap>(&shape_))
     return cap->chord >= 2 * cap->sphere.radius || (x - cap->centre).norm() <= cap->chord;

@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <optional>
 #include <variant>
 
@@ -24,8 +23,8 @@ class FlatDisk {
 
   const Vec3& centre() const { return centre_; }
   const Vec3& normal() const { return normal_; }
-  Vec3 rim(double azimuth) const {
-    return at(std::cos(azimuth) * radius_, std::sin(azimuth) * radius_);
+  Vec3 polar(double r, double azimuth) const {
+    return at(r * std::cos(azimuth), r * std::sin(azimuth));
   }
   Vec3 sample(RandomStream& random) const {
     double a, b;
@@ -34,11 +33,6 @@ class FlatDisk {
       b = 2 * random.uniform() - 1;
     } while (a * a + b * b > 1);
     return at(a * radius_, b * radius_);
-  }
-  /// Of the unit square; keeps ratios of areas.
-  Vec3 from_square(double u, double v) const {
-    const double r = radius_ * std::sqrt(u), azimuth = 2 * std::numbers::pi * v;
-    return at(r * std::cos(azimuth), r * std::sin(azimuth));
   }
   bool reaches(const Vec3& x) const { return (x - centre_).norm() <= radius_; }
 
@@ -68,6 +62,8 @@ class BoundaryPatch {
 
   double area() const { return area_; }
   BoundaryPoint sample(RandomStream& random) const;
+  /// At this distance from the centre, of a patch that has one.
+  BoundaryPoint polar(double r, double azimuth) const;
   /// Of points on the surface.
   bool contains(const Vec3& x) const;
   Vec3 inward(const Vec3& x) const;

@@ -3,18 +3,17 @@
 #include <cmath>
 #include <numbers>
 
+#include "grin/ends/sensor_table.h"
+
 namespace flatspeckle::grin {
 
-const DatasetTable camera_table{
-    "camera",
-    {{"row", Data::scale, "", "1", "tangent of the angle above the line of sight"},
-     {"column", Data::scale, "", "1", "tangent of the angle to the right of it"},
-     {"image", Data::estimate, "row column", "1/(length^2 sr)", "L/n^2 averaged over the pixel"},
-     {"mean", Data::estimate, "", "1/(length^2 sr)", "mean over the pixels"},
-     {"transient", Data::estimate, "row column optical_path", "1/(length^2 sr)",
-      "L/n^2 averaged over the pixel, in the bin"},
-     {"pulse", Data::estimate, "optical_path", "1/(length^2 sr)",
-      "mean over the pixels, in the bin"}}};
+const DatasetTable camera_table = sensor_table(
+    {.name = "camera",
+     .axes = {{"row", Data::scale, "", "1", "tangent of the angle above the line of sight"},
+              {"column", Data::scale, "", "1", "tangent of the angle to the right of it"}},
+     .unit = "1/(length^2 sr)",
+     .pixel = "L/n^2 averaged over the pixel",
+     .mean = "mean over the pixels"});
 
 PixelRectangle picture_of(const Camera& camera) {
   const double half_width = std::tan(camera.field_of_view / 2);

@@ -3,19 +3,18 @@
 #include <cmath>
 #include <numbers>
 
+#include "grin/ends/sensor_table.h"
+
 namespace flatspeckle::grin {
 
-const DatasetTable directional_table{
-    "directional",
-    {{"row", Data::scale, "", "1", "component of the direction along sensor_up"},
-     {"column", Data::scale, "", "1",
-      "component of the direction along sensor_direction x sensor_up"},
-     {"image", Data::estimate, "row column", "1/sr",
-      "power per solid angle averaged over the pixel"},
-     {"mean", Data::estimate, "", "1/sr", "mean over the pixels"},
-     {"transient", Data::estimate, "row column optical_path", "1/sr",
-      "power per solid angle averaged over the pixel, in the bin"},
-     {"pulse", Data::estimate, "optical_path", "1/sr", "mean over the pixels, in the bin"}}};
+const DatasetTable directional_table = sensor_table(
+    {.name = "directional",
+     .axes = {{"row", Data::scale, "", "1", "component of the direction along sensor_up"},
+              {"column", Data::scale, "", "1",
+               "component of the direction along sensor_direction x sensor_up"}},
+     .unit = "1/sr",
+     .pixel = "power per solid angle averaged over the pixel",
+     .mean = "mean over the pixels"});
 
 PixelRectangle picture_of(const DirectionalDetector& detector) {
   const double sine = std::sin(detector.half_angle);

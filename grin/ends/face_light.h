@@ -23,7 +23,7 @@ class FaceLightEnd {
   FaceLightEnd(const FaceLight& light, const Stage& stage, const IndexAt& index);
 
   double power() const { return power_; }
-  double area() const { return patch_.area(); }
+  double density(const Vec3&) const { return 1 / patch_.area(); }
   BoundaryPoint sample(RandomStream& random) const { return patch_.sample(random); }
   EndDirection sample_direction(const EndPosition& at, RandomStream& random) const;
   EndDirection towards(const EndPosition& at, const Vec3& direction) const;

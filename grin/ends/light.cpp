@@ -42,8 +42,8 @@ Lights::Lights(const std::vector<Light>& lights, const Stage& stage, const Index
     : body_(body_surface(stage)) {
   if (lights.empty())
     throw InputError(
-        "light is not given: a scene needs one or more of point_light, beam_light, face_light, "
-        "environment");
+        "light is not given: a scene needs one or more of point_light, beam_light, gaussian_beam, "
+        "fibre_light, gaussian_fibre, face_light, environment");
   for (const Light& light : lights) {
     const auto number = static_cast<int>(source_.size());
     auto end = end_of(light, stage, index);
@@ -61,12 +61,15 @@ Lights::Lights(const std::vector<Light>& lights, const Stage& stage, const Index
 }
 
 void Lights::settle_chances() {
+  const auto some_density = [](const auto& end) {
+    RandomStream random(0, 0, 0);
+    return end.density(end.sample(random).x);
+  };
   double so_far = 0;
   for (Source& s : source_) {
     s.chance = s.power / power_;
-    s.position_density = std::visit([](const auto& end) { return 1 / end.area(); }, s.end);
-    s.position_density *= s.chance;
-    if (!(s.position_density > 0 && std::isfinite(s.position_density)))
+    const double density = s.chance * std::visit(some_density, s.end);
+    if (!(density > 0 && std::isfinite(density)))
       throw InputError("light", &s - source_.data() + 1,
                        "has a size or a share of the power too small or too large for numbers");
     so_far += s.chance;
@@ -79,7 +82,7 @@ EndPosition Lights::position(int light, const BoundaryPoint& at) const {
       [&](const auto& end) -> EndPosition {
         return {.point = {at.x, part_at(body_, at.x)},
                 .inward = at.inward,
-                .position_density = source_[light].position_density,
+                .position_density = source_[light].chance * end.density(at.x),
                 .light = light,
                 .is_point = end.is_point,
                 .is_beam = end.is_beam};
@@ -96,13 +99,12 @@ std::size_t Lights::beam_number(double stratum) const {
 }
 
 Lights::Beam Lights::beam_at(std::size_t number) const {
-  const auto& end = std::get<BeamLightEnd>(source_[beams_[number]].end);
-  return {number, end.disk(), beam_power_ / end.area()};
+  return {number, std::get<BeamLightEnd>(source_[beams_[number]].end).disk(), beam_power_};
 }
 
 EndPosition Lights::beam_position(double stratum, double u, double v) const {
   const Beam from = beam(stratum);
-  return position(beams_[from.number], {from.disk.from_square(u, v), from.disk.normal()});
+  return position(beams_[from.number], from.disk.from_square(u, v));
 }
 
 EndPosition Lights::draw_position(RandomStream& random) const {

@@ -6,6 +6,7 @@
 #include "core/numbers/random.h"
 #include "grin/ends/beam_light.h"
 #include "grin/ends/face_light.h"
+#include "grin/ends/fibre_light.h"
 #include "grin/ends/point_light.h"
 
 namespace flatspeckle::grin {
@@ -17,7 +18,8 @@ struct LightKinds : Kind... {
 };
 
 /// The lights of a stage as keys have them, of all kinds (light_kind.h); the one list of them.
-using LightValues = LightKinds<PointLightValues, BeamLightValues, FaceLightValues>;
+using LightValues =
+    LightKinds<PointLightValues, BeamLightValues, FibreLightValues, FaceLightValues>;
 using Light = LightValues::Light;
 
 void add_keys(Keys& keys, LightValues& values);
@@ -50,11 +52,13 @@ class Lights {
   /// A place on one of the beams: which, by their power, says `stratum` in (0, 1); where, (u, v) in
   /// the unit square. Its direction is `inward`.
   EndPosition beam_position(double stratum, double u, double v) const;
-  /// One of the beams, as a stratum says: its disk, and the power of all beams over its area.
+  /// One of the beams, as a stratum says.
   struct Beam {
     std::size_t number;
-    const FlatDisk& disk;
-    double irradiance;
+    const LightDisk& disk;
+    double power;  ///< of all beams
+    /// At a place of the disk, if all power were in this beam.
+    double irradiance(const Vec3& x) const { return power * disk.density(x); }
   };
   Beam beam(double stratum) const { return beam_at(beam_number(stratum)); }
   Beam beam_at(std::size_t number) const;
@@ -80,7 +84,6 @@ class Lights {
     double power;
     double chance = 0;         ///< to be drawn
     double chance_so_far = 0;  ///< this and all before
-    double position_density = 1;
   };
   void settle_chances();
   std::size_t beam_number(double stratum) const;

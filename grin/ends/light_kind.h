@@ -13,9 +13,9 @@ namespace flatspeckle::grin {
 // throws InputError where it does not fit the stage; its values, add_keys(keys, values) and
 // make_lights(keys, values). It is listed in light.h.
 //
-// The end tells power() and area() (1 of a point), draws sample(random) uniformly over its area,
-// and has sample_direction(at, random) and towards(at, direction) as EndDirections; what can be
-// hit has contains(x) and inward(x) of points on the boundary.
+// The end tells power(), draws sample(random) and tells density(x) of what it draws (per area; 1 of
+// a point), and has sample_direction(at, random) and towards(at, direction) as EndDirections; what
+// can be hit has contains(x) and inward(x) of points on the boundary.
 
 /// Of refraction, for the power of what shines with a given L/n^2.
 using IndexAt = std::function<double(const PathPoint&)>;

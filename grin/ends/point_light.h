@@ -26,7 +26,7 @@ class PointLightEnd {
   }
 
   double power() const { return light_.power; }
-  double area() const { return 1; }
+  double density(const Vec3&) const { return 1; }
   BoundaryPoint sample(RandomStream&) const { return {light_.x, Vec3::Zero()}; }
   EndDirection sample_direction(const EndPosition& at, RandomStream& random) const {
     return towards(at, random_turn(Vec3::UnitZ(), 2 * random.uniform(), random));

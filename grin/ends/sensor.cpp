@@ -16,14 +16,29 @@ std::vector<std::string> words_for_sensors(const SensorKinds& kinds) {
   return words;
 }
 
+SensorPixels pixels_of(const PixelRectangle& pixels) {
+  return {pixels.grid(),
+          pixels.area(),
+          {{"row", pixels.row_centres()}, {"column", pixels.column_centres()}}};
+}
+
+SensorPixels pixels_of(const PixelRings& rings) {
+  return {rings.grid(), rings.area(), {{rings.axis(), rings.centres()}}, rings.shares()};
+}
+
+Picture make_picture(const OneSensor& of, const SensorValues& values) {
+  const auto pixels = of.part(values.pixels, 2);
+  return {of.vector(values.sensor_up), {static_cast<int>(pixels[0]), static_cast<int>(pixels[1])}};
+}
+
 }  // namespace
 
 const DatasetTable& table_of(const Sensor& sensor) {
   return std::visit([](const auto& kind) -> const DatasetTable& { return table_of(kind); }, sensor);
 }
 
-PixelRectangle picture_of(const Sensor& sensor) {
-  return std::visit([](const auto& kind) { return picture_of(kind); }, sensor);
+SensorPixels pixels_of(const Sensor& sensor) {
+  return std::visit([](const auto& kind) { return pixels_of(picture_of(kind)); }, sensor);
 }
 
 SensorEnd::SensorEnd(const Sensor& sensor, const Stage& stage, int first_pixel)
@@ -76,10 +91,12 @@ EndDirection SensorEnd::towards(const EndPosition& at, const Vec3& direction) co
 
 void add_keys(Keys& keys, SensorValues& values) {
   keys.group("Sensor");
-  keys.add("sensor", values.sensor,
-           "Reads L/n^2 (camera), irradiance on the boundary (area), or power per solid angle that "
-           "leaves the stage (directional); or several, and the keys of sensors have one value for "
-           "all or one for each; none: a map alone")
+  keys.add(
+          "sensor", values.sensor,
+          "Reads L/n^2 (camera), irradiance on the boundary (area; radial: by rings of a disk), or "
+          "power per solid angle that leaves the stage (directional; polar: by polar angle); or "
+          "several, and the keys of sensors have one value for "
+          "all or one for each; none: a map alone")
       .one_of(words_for_sensors(values.kinds));
   keys.add("sensor_name", values.sensor_name, "Of each: its results are in the group sensors/NAME")
       .only_of("several sensors");
@@ -98,11 +115,12 @@ std::vector<Sensor> make_sensors(const Keys& keys, const SensorValues& values) {
   for (const std::string& word : words) {
     if (word == no_sensor) throw InputError("sensor", word, "must stand alone");
     const OneSensor of(keys, sensors.size(), words.size());
-    const auto pixels = of.part(values.pixels, 2);
-    const Picture picture{of.vector(values.sensor_up),
-                          {static_cast<int>(pixels[0]), static_cast<int>(pixels[1])}};
-    with_kind(values.kinds, word,
-              [&](const auto& kind) { sensors.emplace_back(make_sensor(of, kind, picture)); });
+    with_kind(values.kinds, word, [&](const auto& kind) {
+      if constexpr (requires { make_sensor(of, kind); })
+        sensors.emplace_back(make_sensor(of, kind));
+      else
+        sensors.emplace_back(make_sensor(of, kind, make_picture(of, values)));
+    });
   }
   return sensors;
 }

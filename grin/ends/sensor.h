@@ -9,11 +9,14 @@
 #include "grin/ends/area_detector.h"
 #include "grin/ends/camera.h"
 #include "grin/ends/directional_detector.h"
+#include "grin/ends/polar_detector.h"
+#include "grin/ends/radial_detector.h"
 
 namespace flatspeckle::grin {
 
 /// All kinds of sensors (sensor_kind.h); the one list of them.
-using SensorKinds = std::tuple<CameraValues, AreaValues, DirectionalValues>;
+using SensorKinds =
+    std::tuple<CameraValues, AreaValues, RadialValues, DirectionalValues, PolarValues>;
 
 template <class Kinds>
 struct SensorsOf;
@@ -45,8 +48,7 @@ std::vector<std::string> make_sensor_names(const Keys& keys, const SensorValues&
 
 /// What the file of a sensor has.
 const DatasetTable& table_of(const Sensor& sensor);
-/// Its pixels.
-PixelRectangle picture_of(const Sensor& sensor);
+SensorPixels pixels_of(const Sensor& sensor);
 
 /// A sensor of a scene as an end of paths; same interface as Lights. Its pixels are numbered from
 /// first_pixel on.

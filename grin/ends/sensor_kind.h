@@ -11,18 +11,30 @@
 namespace flatspeckle::grin {
 
 // A kind of sensor is a file with: the sensor; table_of(sensor), what its result file has, and its
-// picture_of(sensor); its End, an end of paths made
+// picture_of(sensor), its pixels; its End, an end of paths made
 // of (sensor, stage), which throws InputError naming the key where it does not fit the stage; its
 // values, with the word of the key `sensor` for it; add_keys(keys, values) and
-// make_sensor(of, values, picture), where `of` reads what the values have for it. It is listed in
-// sensor.h.
+// make_sensor(of, values, picture), without the picture where its pixels are rings; `of` reads what
+// the values have for it. It is listed in sensor.h.
 //
 // The end tells pixels(), has sample_position(stratum, random), sample_direction(at, stratum,
 // random) and towards(at, direction), and position_at(x) of a point on the boundary, if it can be
 // hit there. Where it may, it has choose_position(x, random) and choice(position, x) for joins from
 // x, and can_be_hit().
 
-/// What all kinds have.
+/// The pixels of a sensor, as its file has them.
+struct SensorPixels {
+  struct Axis {
+    const char* name;
+    std::vector<double> middles;
+  };
+  PixelGrid grid;
+  double area;  ///< of all, in the plane or solid angle that they divide
+  std::vector<Axis> axes;
+  std::vector<double> shares = {};  ///< of each in the area; none: all have the same
+};
+
+/// What all kinds with a rectangle have.
 struct Picture {
   Vec3 up;
   PixelGrid pixels;

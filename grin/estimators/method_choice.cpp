@@ -58,14 +58,14 @@ std::optional<Trial> tried(const Tracers& tracers, const Tracer& tracer, int pai
   TransportCounts counts;
   std::vector<double> sums(pixels), squares(pixels);
   for (int group = 0; group < groups; ++group) {
-    std::vector<Complex> values(pixels * static_cast<std::size_t>(bins.count));
+    std::vector<Complex> values(pixels * static_cast<std::size_t>(bins.sums()));
     Film film(static_cast<int>(pixels), bins, values);
     tracer.add(pairs_per_group, random, film, counts);
     if (work(counts, tracers) > most_work) return std::nullopt;
     for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
       double value = 0;
-      for (int bin = 0; bin < bins.count; ++bin)
-        value += values[pixel * static_cast<std::size_t>(bins.count) + bin].real();
+      for (int part = 0; part < bins.parts(); ++part)
+        value += values[pixel * static_cast<std::size_t>(bins.sums()) + part].real();
       value /= pairs_per_group;
       sums[pixel] += value;
       squares[pixel] += value * value;
@@ -108,7 +108,7 @@ bool has_finite_variance(const RenderScene& scene, RenderMethod method) {
   if (!render_plan(scene).scatters) return true;
   if (method == RenderMethod::path)
     return std::none_of(scene.lights.begin(), scene.lights.end(), [](const Light& light) {
-      return std::holds_alternative<PointLight>(light) || std::holds_alternative<BeamLight>(light);
+      return !std::holds_alternative<FaceLight>(light);
     });
   return method != RenderMethod::light ||
          std::none_of(scene.sensors.begin(), scene.sensors.end(), is_pinhole);

@@ -1,5 +1,8 @@
 #include "grin/estimators/render_datasets.h"
 
+#include <array>
+#include <numeric>
+
 #include "core/result/result_group.h"
 #include "grin/estimators/picture_errors.h"
 #include "grin/rays/light_speed.h"
@@ -22,44 +25,100 @@ const DatasetTable render_table{
 
 namespace {
 
-/// The pixels of one sensor among all, and its bins.
+/// The pixels of one sensor among all, and what is kept of each.
 struct Pixels {
-  PixelGrid grid;
-  std::size_t first, bins;
-  std::size_t count() const { return static_cast<std::size_t>(grid.count()); }
+  SensorPixels of;
+  std::size_t first;
+  TimeBins bins;
+
+  std::size_t count() const { return static_cast<std::size_t>(of.grid.count()); }
+  std::size_t sums() const { return static_cast<std::size_t>(bins.sums()); }
+  std::size_t parts() const { return static_cast<std::size_t>(bins.parts()); }
+  double share(std::size_t pixel) const {
+    return of.shares.empty() ? 1 / static_cast<double>(count()) : of.shares[pixel];
+  }
 };
+
+Complex sum(std::span<const Complex> values) {
+  return std::accumulate(values.begin(), values.end(), Complex());
+}
 
 /// Of as many entries per pixel.
 Estimate own_part(const Estimate& all, const Pixels& pixels, std::size_t per_pixel) {
+  if (all.value.empty()) return {};
   Estimate own = part(all, pixels.first * per_pixel, pixels.count() * per_pixel);
-  bound_errors(own, pixels.grid);
+  bound_errors(own, pixels.of.grid);
   return own;
 }
 
-/// Mean over the pixels, times `factor`, in so many bins: one, or those of the pixels.
-Estimate pixel_mean(const GroupedSums& sums, const Pixels& pixels, std::size_t bins,
-                    double factor) {
-  Estimate mean = jackknife(sums, [=](double samples, std::span<const Complex> all) {
-    std::vector<Complex> means(bins);
-    const auto own = all.subspan(pixels.first * pixels.bins, pixels.count() * pixels.bins);
-    for (std::size_t i = 0; i < own.size(); ++i) means[i % bins] += own[i];
-    for (Complex& mean : means) mean *= factor / (samples * static_cast<double>(pixels.count()));
-    return means;
+/// theta(samples, sums of all pixels, each by its share of the area).
+Estimate of_all_pixels(const GroupedSums& sums, const Pixels& pixels, const Estimator& theta) {
+  return jackknife(sums, [&](double samples, std::span<const Complex> all) {
+    std::vector<Complex> means(pixels.sums());
+    const auto own = all.subspan(pixels.first * pixels.sums(), pixels.count() * pixels.sums());
+    for (std::size_t i = 0; i < own.size(); ++i)
+      means[i % pixels.sums()] += pixels.share(i / pixels.sums()) * own[i];
+    return theta(samples, means);
   });
-  bound_errors(mean, {1, 1});
-  return mean;
 }
 
-SensorResult sensor_result(const Sensor& sensor, const Pixels& pixels, const RenderedPicture& all,
-                           const GroupedSums& sums) {
-  const double area = picture_of(sensor).area();
-  const bool is_area = std::holds_alternative<AreaDetector>(sensor);
-  SensorResult result{{own_part(all.bins, pixels, pixels.bins), own_part(all.steady, pixels, 1)},
-                      pixel_mean(sums, pixels, 1, 1),
-                      {},
-                      {}};
-  if (is_area) result.total = pixel_mean(sums, pixels, 1, area);
-  if (pixels.bins > 1) result.pulse = pixel_mean(sums, pixels, pixels.bins, is_area ? area : 1);
+Estimate bounded(Estimate whole) {
+  bound_errors(whole, {1, 1});
+  return whole;
+}
+
+Estimate steady_mean(const GroupedSums& sums, const Pixels& pixels, double factor) {
+  const auto mean = [&](double samples, std::span<const Complex> all) {
+    return std::vector{factor / samples * sum(all.first(pixels.parts()))};
+  };
+  return bounded(of_all_pixels(sums, pixels, mean));
+}
+
+void add_pulses(SensorResult& result, const GroupedSums& sums, const Pixels& pixels,
+                double factor) {
+  const auto means = [&](double samples, std::span<const Complex> all) {
+    return sample_mean(samples / factor, all.first(pixels.parts()));
+  };
+  const Estimate parts = of_all_pixels(sums, pixels, means);
+  const std::size_t bins = pixels.parts() - 2;
+  result.pulse_before = bounded(part(parts, 0, 1));
+  result.pulse = bounded(part(parts, 1, bins));
+  result.pulse_after = bounded(part(parts, 1 + bins, 1));
+}
+
+/// Of sums that end in the moments; 0 without light.
+std::array<Complex, 2> path_means(const Pixels& pixels, std::span<const Complex> sums) {
+  const Complex light = sum(sums.first(pixels.parts()));
+  if (light == 0.0) return {};
+  return {sums[pixels.parts()] / light, sums[pixels.parts() + 1] / light};
+}
+
+void add_paths(SensorResult& result, const GroupedSums& sums, const Pixels& pixels) {
+  result.paths = of_all_pixels(sums, pixels, [&](double, std::span<const Complex> all) {
+    const auto [mean, square] = path_means(pixels, all);
+    return std::vector{mean, square};
+  });
+  result.pixel_paths = jackknife(sums, [&](double, std::span<const Complex> all) {
+    std::vector<Complex> means;
+    for (std::size_t i = pixels.first; i < pixels.first + pixels.count(); ++i) {
+      const auto own = path_means(pixels, all.subspan(i * pixels.sums(), pixels.sums()));
+      means.insert(means.end(), own.begin(), own.end());
+    }
+    return means;
+  });
+}
+
+SensorResult sensor_result(const DatasetTable& table, const Pixels& pixels,
+                           const RenderedPicture& all, const GroupedSums& sums) {
+  SensorResult result{.picture = {.bins = own_part(all.bins, pixels, pixels.bins.count),
+                                  .steady = own_part(all.steady, pixels, 1),
+                                  .before = own_part(all.before, pixels, 1),
+                                  .after = own_part(all.after, pixels, 1)},
+                      .mean = steady_mean(sums, pixels, 1)};
+  const bool has_total = has_row(table, "total");
+  if (has_total) result.total = steady_mean(sums, pixels, pixels.of.area);
+  if (pixels.bins.count > 1) add_pulses(result, sums, pixels, has_total ? pixels.of.area : 1);
+  if (pixels.bins.moments) add_paths(result, sums, pixels);
   return result;
 }
 
@@ -73,16 +132,32 @@ void write_bins(const ResultGroup& root, const TimeBins& bins,
     root.put("time", column(paths, [&](double path) { return path * *length_unit / light_speed; }));
 }
 
-void write_sensor(const ResultGroup& group, const PixelRectangle& pixels,
+/// Of pairs: every first, and every second.
+void put_paths(const ResultGroup& group, const std::string& name, const Estimate& pairs) {
+  for (const bool square : {false, true}) {
+    Estimate one;
+    for (std::size_t i = square; i < pairs.value.size(); i += 2) append(one, part(pairs, i, 1));
+    group.put(name + (square ? "_path_square" : "_path"), one);
+  }
+}
+
+void write_sensor(const ResultGroup& group, const SensorPixels& pixels,
                   const SensorResult& result) {
-  group.put("row", pixels.row_centres());
-  group.put("column", pixels.column_centres());
+  for (const auto& [name, middles] : pixels.axes) group.put(name, middles);
   group.put("image", result.picture.steady);
   group.put("mean", result.mean);
   if (result.total) group.put("total", *result.total);
-  if (result.pulse.value.empty()) return;
-  group.put("transient", result.picture.bins);
-  group.put("pulse", result.pulse);
+  if (!result.pulse.value.empty()) {
+    group.put("transient", result.picture.bins);
+    group.put("transient_before", result.picture.before);
+    group.put("transient_after", result.picture.after);
+    group.put("pulse", result.pulse);
+    group.put("pulse_before", result.pulse_before);
+    group.put("pulse_after", result.pulse_after);
+  }
+  if (result.paths.value.empty()) return;
+  put_paths(group, "image", result.pixel_paths);
+  put_paths(group, "mean", result.paths);
 }
 
 void write_counts(ResultFile& file, const RenderJob& job) {
@@ -102,12 +177,11 @@ void write_counts(ResultFile& file, const RenderJob& job) {
 RenderResult render_result(const RenderScene& scene, const RenderJob& job,
                            const GroupedSums& sums) {
   const RenderedPicture all = rendered_picture(job, sums);
-  const auto bins = static_cast<std::size_t>(job.bins.count);
   RenderResult result;
   std::size_t first = 0;
   for (const Sensor& sensor : scene.sensors) {
-    const Pixels pixels{picture_of(sensor).grid(), first, bins};
-    result.push_back(sensor_result(sensor, pixels, all, sums));
+    const Pixels pixels{pixels_of(sensor), first, job.bins};
+    result.push_back(sensor_result(table_of(sensor), pixels, all, sums));
     first += pixels.count();
   }
   return result;
@@ -121,7 +195,7 @@ void write_render(ResultFile& file, const RenderScene& scene, const RenderJob& j
   for (std::size_t i = 0; i < result.size(); ++i)
     write_sensor({file, table_of(scene.sensors[i]),
                   result.size() > 1 ? "sensors/" + sensor_name(scene, i) : ""},
-                 picture_of(scene.sensors[i]), result[i]);
+                 pixels_of(scene.sensors[i]), result[i]);
   write_counts(file, job);
 }
 

@@ -9,12 +9,15 @@ namespace flatspeckle::grin {
 
 extern const DatasetTable render_table;
 
-/// What a sensor has found.
+/// What a sensor has found. Empty: was not asked for.
 struct SensorResult {
   RenderedPicture picture;
-  Estimate mean;                  ///< over the pixels
-  std::optional<Estimate> total;  ///< power on an area detector
-  Estimate pulse;                 ///< mean or total by bin; empty in a steady state
+  Estimate mean;                       ///< over the pixels
+  std::optional<Estimate> total = {};  ///< a power, where the kind of sensor has it
+  /// Mean or total by bin and beyond the bins.
+  Estimate pulse = {}, pulse_before = {}, pulse_after = {};
+  /// Mean optical path and mean of its square, [pixel][2], and of all pixels.
+  Estimate pixel_paths = {}, paths = {};
 };
 /// Of all sensors.
 using RenderResult = std::vector<SensorResult>;

@@ -37,21 +37,41 @@ std::string described(const RenderScene& scene, const RenderRequest& request, Re
   if (!request.method && !scene.sensors.empty()) text += " (chosen by a pilot)";
   if (!has_finite_variance(scene, method))
     text += " (no finite variance with " +
-            std::string(method == RenderMethod::path ? "point lights or beams" : "a pinhole") +
+            std::string(method == RenderMethod::path ? "points, beams or fibres" : "a pinhole") +
             ": errors are not to be trusted)";
   return text + ": ";
 }
 
-std::vector<Complex> steady_mean(double samples, std::span<const Complex> sums, int bins) {
-  std::vector<Complex> steady(sums.size() / bins);
-  for (std::size_t i = 0; i < sums.size(); ++i) steady[i / bins] += sums[i] / samples;
-  return steady;
+/// From [pixel][sum] `count` values for each pixel: use(sums of the pixel, its values).
+template <class Use>
+Estimate for_each_pixel(const GroupedSums& sums, std::size_t pictures, const TimeBins& bins,
+                        std::size_t count, const Use& use) {
+  const auto per_pixel = static_cast<std::size_t>(bins.sums());
+  return jackknife(sums, [=](double samples, std::span<const Complex> total) {
+    std::vector<Complex> values(pictures / per_pixel * count);
+    for (std::size_t pixel = 0; pixel < pictures / per_pixel; ++pixel)
+      use(samples, total.subspan(pixel * per_pixel, per_pixel),
+          std::span(values).subspan(pixel * count, count));
+    return values;
+  });
 }
 
-Estimate steady_picture(const GroupedSums& sums, std::size_t pictures, int bins) {
-  return jackknife(sums, [=](double samples, std::span<const Complex> total) {
-    return steady_mean(samples, total.first(pictures), bins);
-  });
+Estimate steady_picture(const GroupedSums& sums, std::size_t pictures, const TimeBins& bins) {
+  return for_each_pixel(sums, pictures, bins, 1,
+                        [parts = static_cast<std::size_t>(bins.parts())](
+                            double samples, std::span<const Complex> own, std::span<Complex> to) {
+                          for (const Complex part : own.first(parts)) to[0] += part / samples;
+                        });
+}
+
+/// `count` of the sums of each pixel.
+Estimate some_sums(const RenderJob& job, const GroupedSums& sums, int first, int count) {
+  return for_each_pixel(
+      sums, job.pictures, job.bins, static_cast<std::size_t>(count),
+      [first](double samples, std::span<const Complex> own, std::span<Complex> to) {
+        for (std::size_t i = 0; i < to.size(); ++i)
+          to[i] = own[static_cast<std::size_t>(first) + i] / samples;
+      });
 }
 
 std::string described_steps(const RenderScene& scene, const RenderPlan& plan) {
@@ -136,7 +156,7 @@ RenderJob render_job(const RenderScene& scene, const RenderRequest& request, std
   job.plan = described(scene, request, tracer.method) + tracers.plan().describe() +
              described_steps(scene, tracers.plan()) + described_sensors(scene) +
              described_map(scene);
-  job.pictures = static_cast<std::size_t>(pixels) * scene.bins.count;
+  job.pictures = static_cast<std::size_t>(pixels) * scene.bins.sums();
   const bool books = walks_light(tracer.method) && pixels > 0;
   job.has_energy = books || map;
   job.batches.size = job.first_of_map() + (map ? sums_per_cell * cells(*scene.map) : 0);
@@ -162,8 +182,7 @@ RenderJob render_job(const RenderScene& scene, const RenderRequest& request, std
     const std::lock_guard lock(*counting);
     *counts += of_batch;
   };
-  job.batches.relative_error = [=, cells = scene.map, pictures = job.pictures,
-                                bins = scene.bins.count,
+  job.batches.relative_error = [=, cells = scene.map, pictures = job.pictures, bins = scene.bins,
                                 first_of_map = job.first_of_map()](const GroupedSums& sums) {
     const double of_pictures =
         largest_error(tracer.transport->sensors, steady_picture(sums, pictures, bins));
@@ -174,10 +193,13 @@ RenderJob render_job(const RenderScene& scene, const RenderRequest& request, std
 }
 
 RenderedPicture rendered_picture(const RenderJob& job, const GroupedSums& sums) {
-  const auto means = [&](double samples, std::span<const Complex> all) {
-    return sample_mean(samples, all.first(job.pictures));
-  };
-  return {jackknife(sums, means), steady_picture(sums, job.pictures, job.bins.count)};
+  const TimeBins& bins = job.bins;
+  RenderedPicture picture{.bins = some_sums(job, sums, bins.count > 1 ? 1 : 0, bins.count),
+                          .steady = steady_picture(sums, job.pictures, bins)};
+  if (bins.count == 1) return picture;
+  picture.before = some_sums(job, sums, 0, 1);
+  picture.after = some_sums(job, sums, bins.count + 1, 1);
+  return picture;
 }
 
 }  // namespace flatspeckle::grin

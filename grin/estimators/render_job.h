@@ -12,8 +12,8 @@
 namespace flatspeckle::grin {
 
 /// samples: light paths and as many paths of each sensor. Sums of a batch, imaginary part 0:
-/// [pixel][bin] with the pixels of one sensor after the other; then [fate], where light paths are
-/// walked to their ends; then those of a map (MapKernel).
+/// [pixel][TimeBins::sums] with the pixels of one sensor after the other; then [fate], where light
+/// paths are walked to their ends; then those of a map (MapKernel).
 struct RenderJob {
   BatchJob batches;
   TimeBins bins;
@@ -32,9 +32,10 @@ void check(const RenderScene& scene, const RenderRequest& request);
 /// Checks the same, then walks a few paths to plan. Throws InputError.
 RenderJob render_job(const RenderScene& scene, const RenderRequest& request, std::uint64_t seed);
 
-/// Value and standard error of [pixel][bin], and of the sum over the bins; of all sensors.
+/// Value and standard error of [pixel][bin], of what is before and after all bins where there are
+/// several, and of the sum of all; of all sensors.
 struct RenderedPicture {
-  Estimate bins, steady;
+  Estimate bins, steady, before = {}, after = {};
 };
 RenderedPicture rendered_picture(const RenderJob& job, const GroupedSums& sums);
 

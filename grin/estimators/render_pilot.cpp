@@ -28,7 +28,7 @@ struct Pilot {
 Pilot pilot(Transport& transport, const PathKernel& kernel, const TimeBins& bins) {
   constexpr auto no_batch = std::numeric_limits<std::uint64_t>::max();
   const int pixels = transport.pixels();
-  std::vector<Complex> sums(static_cast<std::size_t>(pixels) * bins.count);
+  std::vector<Complex> sums(static_cast<std::size_t>(pixels) * bins.sums());
   Film film(pixels, bins, sums);
   RandomStream random(0, static_cast<std::uint64_t>(Stream::render), no_batch);
   const int limit = transport.max_scatterings;

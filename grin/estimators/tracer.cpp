@@ -37,7 +37,7 @@ RenderPlan render_plan(const RenderScene& scene) {
   RenderPlan plan;
   plan.curved = !std::holds_alternative<Homogeneous>(scene.field);
   plan.body = scene.stage.body.has_value();
-  plan.timed = scene.bins.count > 1;
+  plan.timed = scene.bins.keeps_paths();
   plan.scatters = plan.absorbs = plan.gridded = false;
   const auto add = [&](const ScatteringMedium& medium) {
     plan.scatters |= medium.mu_s > 0;

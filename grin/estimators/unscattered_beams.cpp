@@ -32,7 +32,7 @@ class EvenSquare {
 };
 
 ParallelLight parallel_light(const Lights::Beam& beam) {
-  return {beam.disk.centre(), beam.disk.normal()};
+  return {beam.disk.centre(), beam.disk.axis()};
 }
 
 /// Rays do not say all of what this sensor sees of beams.
@@ -74,7 +74,7 @@ std::vector<BeamSeed> seeds_of(const S& space, const SensorEnd& sensor, const Li
       if (!way || is_among(known, *way)) continue;
       known.push_back(*way);
       const double strength = sensor.towards(z, way->start_direction).strength;
-      if (!beam.disk.reaches(way->place) || !(strength > 0)) continue;
+      if (!beam.disk.contains(way->place) || !(strength > 0)) continue;
       seeds.push_back({way->start_direction, way->passages, way->first_met});
       found.emplace_back(strength * way->transmittance / way->thinning, seeds.back());
     }
@@ -145,12 +145,12 @@ class UnscatteredBeams {
         space_.ways_to_beam(z.point, parallel_light(beam), seeds, random_, counts_.connections);
     ++counts_.joins;
     for (const BeamWay& way : ways)
-      if (beam.disk.reaches(way.place)) add_way(sensor, z, beam, way);
+      if (beam.disk.contains(way.place)) add_way(sensor, z, beam, way);
   }
   void add_way(const SensorEnd& sensor, const EndPosition& z, const Lights::Beam& beam,
                const BeamWay& way) {
     const EndDirection to = sensor.towards(z, way.start_direction);
-    const double value = beam.irradiance * to.strength * way.transmittance /
+    const double value = beam.irradiance(way.place) * to.strength * way.transmittance /
                          (z.position_density * z.index * z.index * way.thinning);
     double weight = 1;
     if (sensor.can_be_hit()) {
@@ -169,7 +169,7 @@ class UnscatteredBeams {
 
   /// Of the densities with which both find a way, per area of the beam.
   double ways_over_rays(const EndPosition& z, const BeamWay& way, const Lights::Beam& beam) const {
-    const double by_rays = beam.irradiance / transport_.lights.beam_power();
+    const double by_rays = beam.disk.density(way.place);
     const double by_ways = z.position_density * way.thinning / z.inward.dot(way.start_direction);
     return ways_per_ray * by_ways / by_rays;
   }

@@ -22,14 +22,15 @@ std::vector<std::string> words_for_methods() {
 TimeBins time_bins(const Keys& keys, const RenderValues& values) {
   constexpr double most = 100'000;
   const auto& bins = keys.read(values.path_bins);
-  if (bins.empty()) return {};
+  const bool moments = keys.read(values.path_moments);
+  if (bins.empty()) return {.moments = moments};
   const auto refuse = [&](const std::string& accepted) {
     throw InputError("path_bins", number_text(bins), accepted);
   };
   if (!(bins[0] >= 0 && bins[1] > bins[0])) refuse("must go from a length to a larger one");
   if (!(bins[2] >= 2 && bins[2] <= most && bins[2] == std::floor(bins[2])))
     refuse("must have a whole count from 2 to 100000");
-  return {bins[0], bins[1], static_cast<int>(bins[2])};
+  return {bins[0], bins[1], static_cast<int>(bins[2]), moments};
 }
 
 constexpr double most_sums = 1 << 23;  // of which 16 groups are 2 GiB
@@ -37,7 +38,7 @@ constexpr double most_sums = 1 << 23;  // of which 16 groups are 2 GiB
 void check_size(const std::vector<Sensor>& sensors, const TimeBins& bins) {
   double size = 0;
   for (const Sensor& sensor : sensors)
-    size += static_cast<double>(picture_of(sensor).grid().count()) * bins.count;
+    size += static_cast<double>(pixels_of(sensor).grid.count()) * bins.sums();
   if (size > most_sums) throw InputError("pixels x path_bins", size, "must be at most 8388608");
 }
 
@@ -163,6 +164,8 @@ void add_keys(Keys& keys, RenderValues& values) {
            "first last count: also pictures by optical path, in equal bins of it, shared between "
            "the two nearest middles")
       .exactly(3, "three numbers: first last count");
+  keys.add("path_moments", values.path_moments,
+           "Also the mean optical path of the light in each pixel, and the mean of its square");
   keys.add("length_unit", values.length_unit,
            "Metres in a unit of length, for the times of path_bins")
       .positive();

@@ -11,7 +11,7 @@ std::string RenderPlan::describe() const {
        << (absorbs ? "absorption" : "no absorption") << "; "
        << (gridded ? "density grid" : "uniform media") << "; "
        << (body ? "a body in the stage" : "a single medium") << "; "
-       << (timed ? "time bins" : "steady state");
+       << (timed ? "optical paths" : "steady state");
   return text.str();
 }
 

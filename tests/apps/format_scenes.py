@@ -21,7 +21,8 @@ GRID = {"depth": 100, "optical_depth": [1, 2], "albedo": [1, 0.9], "g": [0, 0.5]
         "tilts": [0, 0.001, 0.002, 0.003]}
 RAYS = {"ray_count": 3, "max_length": 5, "path_points": 5}
 STAGE = {"field": "parabolic", "index": 1.5, "alpha": 0.5, "stage_box": [-1, -1, 0, 1, 1, 4],
-         "mu_s": 0.5, "point_light": [0, 0, 1, 1], "path_bins": [1, 9, 4], "pixels": [30, 20]}
+         "mu_s": 0.5, "point_light": [0, 0, 1, 1], "path_bins": [1, 9, 4], "path_moments": True,
+         "pixels": [30, 20]}
 
 FILES = {
     "sensors.csv": "x,z\n0,13\n3,15\n",
@@ -92,6 +93,9 @@ RUNS = {
                                "mu_a": 0.1, "map_cylinder": [0, 0, 0, 0, 0, 4, 1], "map_cells": [3, 4]}),
     "sensors": ("render", {**STAGE, "sensor": ["area", "directional"], "sensor_at": [0, 0, 4],
                            "sensor_size": [1, 1], "sensor_name": ["through", "far"]}),
+    "radial": ("render", {**STAGE, "pixels": None, "sensor": "radial", "sensor_at": [0, 0, 4],
+                          "sensor_radius": 1, "rings": 4}),
+    "polar": ("render", {**STAGE, "pixels": None, "sensor": "polar", "rings": 4}),
     "ball_power": ("render", {**STAGE, "field": None, "alpha": None, "index": None, "sensor": "directional",
                               "body_sphere": [0, 0, 2, 0.5], "index_around": 1.3, "max_scatterings": 9}),
     **{f"bench_{kind}": (f"bench {kind}", {"quick": True})

@@ -221,6 +221,68 @@ class Target(ProgramTest):
                   out="run.h5", status=3)
 
 
+WIDE = {**BOX, "covariance": "full", "light_angles": [1e-2 * i for i in range(14)],
+        "view_angles": [1e-2 * i for i in range(1, 15)], "threads": 2}  # of 19306 sums
+
+
+class Extension(ProgramTest):
+    """What has ended goes on where more is asked for, and ends as if that had been asked at once."""
+    SLAB = {"domain": "slab", "depth": 100, "scatterer": "hg", "optical_depth": 2, "g": 0.5}
+    RUNS = {"covariance": ({**SHORT}, {"samples": 61_000}),
+            "flux": ({**SLAB, "samples": 20_000}, {"samples": 60_000}),
+            "validate": ({**SHORT, "wave_samples": 20}, {"wave_samples": 50})}
+
+    def check_same(self, first, second):
+        self.assert_same_data(first, second)
+        for key in ("samples", "converged", "identity", "plan"):
+            self.assertEqual(attributes(self.folder / first)[key],
+                             attributes(self.folder / second)[key])
+
+    def test_by_samples(self):
+        for subcommand, (keys, more) in self.RUNS.items():
+            with self.subTest(run=subcommand):
+                self.call(subcommand, **keys, out="run.h5")
+                done = self.call(subcommand, "--resume", **{**keys, **more}, out="run.h5")
+                self.assertIn("wrote", done.stdout)
+                self.call(subcommand, **{**keys, **more}, out="whole.h5")
+                self.check_same("run.h5", "whole.h5")
+
+    def test_by_target_error(self):
+        keys = {**SHORT, "samples": None, "out": "run.h5"}
+        for target in (0.05, 0.04, 0.02):
+            self.call("covariance", "--resume", **keys, target_error=target)
+        self.call("covariance", **{**keys, "out": "whole.h5"}, target_error=0.02)
+        self.check_same("run.h5", "whole.h5")
+
+    def test_by_seconds(self):
+        keys = {**SHORT, "samples": None, "out": "run.h5"}
+        samples = []
+        for seconds in (0.2, 0.5):
+            self.call("covariance", "--resume", **keys, seconds=seconds)
+            samples.append(attributes(self.folder / "run.h5")["samples"])
+        self.assertLess(samples[0], samples[1])
+
+    def test_large_sums_are_kept_on_demand(self):
+        for keeps in (False, True):
+            with self.subTest(keeps=keeps):
+                keys = {**WIDE, "keep_state": keeps}
+                done = self.call("covariance", **keys, samples=120_000, out="run.h5")
+                self.assertEqual("--keep_state" in done.stdout, not keeps)
+                done = self.call("covariance", **keys, samples=180_000, out="run.h5", resume=True)
+                self.assertEqual("afresh" in done.stderr, not keeps)
+                self.call("covariance", **keys, samples=180_000, out="whole.h5")
+                self.check_same("run.h5", "whole.h5")
+
+    def test_interrupted_afresh_keeps_the_finished_one(self):
+        self.call("covariance", **WIDE, samples=120_000, out="run.h5")
+        before = (self.folder / "run.h5").read_bytes()
+        process = self.start("covariance", "--resume", **WIDE, samples=50_000_000, out="run.h5")
+        time.sleep(0.5)
+        process.send_signal(signal.SIGINT)
+        self.assertEqual(process.wait(timeout=60), 75)
+        self.assertEqual((self.folder / "run.h5.aside-1").read_bytes(), before)
+
+
 class Resume(ProgramTest):
     def test_other_sensors_in_the_same_file_may_not(self):
         keys = {**BOX, "samples": 3000, "target_error": NEVER, "near_sensors": "s.csv"}
@@ -248,8 +310,9 @@ class Resume(ProgramTest):
         self.call("covariance", **SHORT, out="run.h5")
         before = self.listing()
         done = self.call("covariance", "--resume", **SHORT, out="run.h5")
-        for word in ("complete", "more samples", "without --resume"):
-            self.assertIn(word, done.stdout)
+        self.assertIn("complete, and no more is asked for", done.stdout)
+        self.call("covariance", "--resume", **{**SHORT, "samples": 2000}, out="run.h5")
+        self.call("covariance", "--resume", **SHORT, seconds=1e-3, out="run.h5")
         self.assertEqual(self.listing(), before)
 
     def test_of_nothing_starts_afresh(self):

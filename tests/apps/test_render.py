@@ -1,5 +1,6 @@
 """Pictures of scattering media against closed forms, what the file holds, what is refused."""
 
+import math
 import unittest
 
 import h5py
@@ -73,15 +74,17 @@ class Maps(RenderTest):
 
 class Scenes(RenderTest):
     def check_sums(self, found, config):
-        """Totals and pulses are those of the pixels; nothing is lost beyond the bins."""
+        """Totals and pulses are those of the pixels; what is beyond the bins stands beside them."""
         image = found["image"]
         self.assertGreater(image.max(), 0)
         np.testing.assert_allclose(found["mean"], image.mean(), rtol=1e-12)
         if "transient" in found:
-            np.testing.assert_allclose(found["transient"].sum(axis=2), image,
+            beyond = found["transient_before"] + found["transient_after"]
+            np.testing.assert_allclose(found["transient"].sum(axis=2) + beyond, image,
                                        atol=1e-12 * image.max())
             whole = found["total"] if "total" in found else found["mean"]
-            np.testing.assert_allclose(found["pulse"].sum(), whole, rtol=1e-12)
+            beyond = found["pulse_before"] + found["pulse_after"]
+            np.testing.assert_allclose(found["pulse"].sum() + beyond, whole, rtol=1e-12)
             np.testing.assert_allclose(found["time"], found["optical_path"] * 1e-3 / LIGHT_SPEED)
 
     def test_each_runs(self):
@@ -250,9 +253,10 @@ class Energy(RenderTest):
 
     def test_absorbing_box(self):
         through = np.exp(-4 * 0.5)
-        power = self.fates(**BOX, **BEAM, **AREA, mu_a=0.5, method="light")
-        self.assert_fates(power, emitted=2, unscattered=2 * through,
-                          absorbed_stage=2 * (1 - through), scattered=0, lost=0)
+        for beam in (BEAM, {"gaussian_beam": [0, 0, 0, 0, 0, 1, 0.3, 2]}):
+            power = self.fates(**BOX, **beam, **AREA, mu_a=0.5, method="light")
+            self.assert_fates(power, emitted=2, unscattered=2 * through,
+                              absorbed_stage=2 * (1 - through), scattered=0, lost=0)
 
     def test_reflections_of_an_absorbing_ball(self):
         """A beam through the middle: a geometric series of reflections."""
@@ -299,6 +303,70 @@ class Axes(RenderTest):
                    point_light=[0.5, 0.3, 1, 1])
 
 
+class Profiles(RenderTest):
+    """Unscattered light of a Gaussian beam and of fibres, through absorption."""
+
+    def test_gaussian_beam(self):
+        """Irradiance: products of differences of error functions over the pixels. Many rays, so that
+        the darkest pixel has some tens."""
+        found = self.render(**BOX, sensor="area", sensor_at=[0, 0, 4], sensor_size=[1.6, 1.2],
+                            pixels=[8, 6], mu_a=0.5, samples=400_000,
+                            gaussian_beam=[0.1, 0, 0, 0, 0, 1, 0.3, 2])
+
+        def shares(edges):
+            """Columns are along -x."""
+            return np.diff([math.erf(math.sqrt(2) * edge / 0.3) for edge in edges]) / 2
+
+        columns, rows = shares(np.linspace(-0.8, 0.8, 9) + 0.1), shares(np.linspace(-0.6, 0.6, 7))
+        expected = 2 * np.exp(-2) * np.outer(rows, columns) / 0.2**2
+        self.assert_within(found["image"], found["image_error"] + 1e-5, expected)
+
+    def test_fibres(self):
+        """What arrives within an angle, at index 1.5: the square of the ratio of sines."""
+        for name, share in (("fibre_light", lambda ratio: ratio**2),
+                            ("gaussian_fibre", lambda ratio: -math.expm1(-2 * ratio**2))):
+            found = self.render(**BOX, index=1.5, sensor="area", sensor_at=[0, 0, 4],
+                                sensor_size=[2, 2], acceptance=0.1, pixels=[1, 1], samples=40_000,
+                                **{name: [0, 0, 1.5, 0, 0, 1, 0.2, 0.3, 2]})
+            self.assert_within(found["total"], found["total_error"],
+                               2 * share(1.5 * math.sin(0.1) / 0.3))
+
+
+class Paths(RenderTest):
+    KEYS = {**BOX, **BEAM, **AREA, "mu_a": 0.1, "index": 1.5}
+
+    def test_moments_of_unscattered_light(self):
+        """Each path is 4 long, at index 1.5; some pixels are dark."""
+        found = self.render(**self.KEYS, path_moments=True)
+        lit = found["image"] > 0
+        for name, value in (("path", 6), ("path_square", 36)):
+            np.testing.assert_allclose(found[f"mean_{name}"], value, rtol=1e-12)
+            np.testing.assert_allclose(found[f"image_{name}"], value * lit, rtol=1e-12)
+        self.assertNotIn("transient", found)
+
+    def test_beyond_the_bins(self):
+        for bins, name in (([1, 5, 4], "after"), ([7, 9, 4], "before"), ([4, 8, 4], None)):
+            found = self.render(**self.KEYS, path_bins=bins)
+            for beyond in ("before", "after"):
+                whole = found["total"] if beyond == name else 0
+                np.testing.assert_allclose(found[f"pulse_{beyond}"], whole, rtol=1e-12)
+            np.testing.assert_allclose(found["pulse"].sum(), 0 if name else found["total"], rtol=1e-12)
+
+    def test_rings_are_what_areas_are(self):
+        """Power on a disk and by angle, as fates of light say."""
+        scene = {**BOX, **FOG, "point_light": [0, 0, 3, 1], "samples": 40_000, "method": "light"}
+        whole = self.render(**scene, sensor="polar", rings=5, largest_angle=math.pi)
+        fates = ("unscattered", "scattered")
+        error = whole["total_error"] + sum(whole[f"energy/{fate}_error"] for fate in fates)
+        self.assert_within(whole["total"], error, sum(whole[f"energy/{fate}"] for fate in fates))
+        disk = self.render(**scene, sensor="radial", sensor_at=[0, 0, 4], sensor_radius=0.9, rings=3)
+        areas = np.pi * 0.3**2 * (2 * np.arange(3) + 1)
+        np.testing.assert_allclose(disk["image"] @ areas, disk["total"], rtol=1e-12)
+        np.testing.assert_allclose(disk["radius"], [0.15, 0.45, 0.75])
+        face = self.render(**scene, sensor="area", sensor_at=[0, 0, 4], sensor_size=[2, 2], pixels=[1, 1])
+        self.assertLess(disk["total"], face["total"])
+
+
 class SameNumbers(RenderTest):
     KEYS = {**BOX, **BEAM, **FOG, **AREA, "path_bins": [3, 9, 6]}
 
@@ -322,9 +390,9 @@ class SameNumbers(RenderTest):
 
     def test_resume(self):
         for keys in self.kinds():
-            self.render("parts.h5", **keys, target_error=NEVER, samples=17_000)
-            self.render("parts.h5", **keys, target_error=NEVER, samples=34_000, resume=True)
-            self.render("whole.h5", **keys, target_error=NEVER, samples=34_000)
+            self.render("parts.h5", **keys, samples=17_000)
+            self.render("parts.h5", **keys, samples=34_000, resume=True)
+            self.render("whole.h5", **keys, samples=34_000)
             self.assert_same("parts.h5", "whole.h5")
 
     def test_another_scene_may_not_resume(self):
@@ -463,6 +531,14 @@ class Refused(RenderTest):
                     beam_light=[0, 0, 0, 0, 0, 1, 1.1, 1])
         self.refuse("beam_light", "into the stage", beam_light=[0, 0, 0, 0, 0, -1, 0.1, 1])
         self.refuse("beam_light, radius = 0", beam_light=[0, 0, 0, 0, 0, 1, 0, 1])
+        self.refuse("gaussian_beam, radius = 0.4: its disk of radius 1.2", "inside the stage",
+                    gaussian_beam=[0, 0, 0, 0, 0, 1, 0.4, 1])
+        self.refuse("fibre_light", "9 numbers", fibre_light=[0, 0, 0, 0, 0, 1, 0.1, 1])
+        self.refuse("fibre_light, aperture = 1.1", "at most the index",
+                    fibre_light=[0, 0, 0, 0, 0, 1, 0.1, 1.1, 1])
+        self.refuse("fibre_light, aperture = 0", fibre_light=[0, 0, 0, 0, 0, 1, 0.1, 0, 1])
+        self.refuse("gaussian_fibre, direction = 0 0 -1", "into the stage",
+                    gaussian_fibre=[0, 0, 0, 0, 0, -1, 0.1, 0.1, 1])
         self.refuse("face_light", face_light=[0, 0, 1, 0.1, 1])
         self.refuse("face_light, radiance = -1", face_light=[0, 0, 0, 0.1, -1])
         self.refuse("environment = 0", environment=0)
@@ -480,6 +556,12 @@ class Refused(RenderTest):
         self.refuse("sensor_size is not given", sensor_size=None)
         self.refuse("sensor_up", sensor_up=[0, 0, 1])
         self.refuse("acceptance = 2", acceptance=2)
+        radial = {**{key: None for key in AREA}, "sensor": "radial", "sensor_at": [0, 0, 4]}
+        self.refuse("rings is not given", **radial, sensor_radius=0.5)
+        self.refuse("rings = 0", **radial, sensor_radius=0.5, rings=0)
+        self.refuse("sensor_radius = 1.1", "within one face", **radial, sensor_radius=1.1, rings=2)
+        self.refuse("pixels", **{**radial, "pixels": [2, 2]}, sensor_radius=0.5, rings=2)
+        self.refuse("rings", "is a key of", rings=3)
         self.refuse("pixels = 0", pixels=[0, 3])
         self.refuse("pixels = 4", "columns rows", pixels=[4])
         self.refuse("field_of_view", "is a key of", field_of_view=1)

@@ -129,7 +129,7 @@ class Covariance(ResultTest):
         self.check_trace(file)
         self.check_finite(file)
         self.assertGreaterEqual(file.attrs["samples"], samples)
-        self.assertNotIn("state", file)
+        self.assertIn("state/run", file)
         self.check_again("covariance")
         return file
 

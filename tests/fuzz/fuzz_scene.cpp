@@ -63,12 +63,12 @@ int trace_scene(const Arguments& arguments) {
 bool is_small(const grin::RenderScene& scene, const grin::RenderRequest& request) {
   constexpr double most_values = 64, most_steps = 40;
   int count = 0;
-  for (const grin::Sensor& sensor : scene.sensors) count += grin::picture_of(sensor).grid().count();
+  for (const grin::Sensor& sensor : scene.sensors) count += grin::pixels_of(sensor).grid.count();
   const grin::Box box = bounds(scene.stage.boundary);
   const double size = (box.high - box.low).norm();
   return request.max_scatterings >= 1 && request.max_scatterings <= 3 &&
          request.method != grin::RenderMethod::photon_map &&
-         count * static_cast<double>(scene.bins.count) <= most_values &&
+         count * static_cast<double>(scene.bins.sums()) <= most_values &&
          size <= most_steps * scene.step && scene.max_length <= 3 * most_steps * scene.step;
 }
 
@@ -108,9 +108,8 @@ int render_scene(const Arguments& arguments) {
   const grin::Lights lights(scene.lights, scene.stage, [](const auto&) { return 1.0; });
   fuzz::require_finite(lights.power());
   for (const grin::Sensor& sensor : scene.sensors) {
-    const grin::PixelRectangle picture = grin::picture_of(sensor);
-    for (const auto& centres : {picture.row_centres(), picture.column_centres()})
-      for (double centre : centres) fuzz::require_finite(centre);
+    for (const auto& [name, middles] : grin::pixels_of(sensor).axes)
+      for (double middle : middles) fuzz::require_finite(middle);
   }
   if (arguments[1] == "picture" && is_small(scene, request))
     make_small_picture(scene, request, length_unit);

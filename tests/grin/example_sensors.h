@@ -41,6 +41,15 @@ inline AreaDetector area_on_sphere(double acceptance = std::numbers::pi / 2) {
           {4, 3},
           acceptance};
 }
+inline RadialDetector radial_on_box(double acceptance = std::numbers::pi / 2) {
+  return {Vec3(0.6, -0.4, 3), 1.2, 5, acceptance};
+}
+inline RadialDetector radial_on_sphere(double acceptance = std::numbers::pi / 2) {
+  return {area_on_sphere().centre, 1.6, 4, acceptance};
+}
+inline PolarDetector polar(double half_angle) {
+  return {Vec3(0.2, -0.4, 1), half_angle, 6};
+}
 inline DirectionalDetector directional(double half_angle) {
   return {Vec3(0.2, -0.4, 1), Vec3(0, 1, 0.3), half_angle, {4, 5}};
 }

@@ -73,6 +73,29 @@ PhotonSensor area_sensor(const AreaDetector& detector, const Vec3& outward, doub
   };
 }
 
+PhotonSensor radial_sensor(const RadialDetector& detector, const Vec3& outward) {
+  return [=](const Photon& p) -> std::optional<PhotonWorth> {
+    const Vec3 from = p.x - detector.centre;
+    if (std::abs(from.dot(outward)) > 1e-6 || from.norm() >= detector.radius) return {};
+    if (p.direction.dot(outward) < std::cos(detector.acceptance)) return {};
+    const double width = detector.radius / detector.rings;
+    const int ring = static_cast<int>(from.norm() / width);
+    return PhotonWorth{ring, 1 / (std::numbers::pi * width * width * (2 * ring + 1))};
+  };
+}
+
+PhotonSensor polar_sensor(const PolarDetector& detector) {
+  const Vec3 axis = detector.axis.normalized();
+  return [=](const Photon& p) -> std::optional<PhotonWorth> {
+    const double width = detector.half_angle / detector.rings;
+    const int ring = static_cast<int>(std::acos(p.direction.dot(axis)) / width);
+    if (ring >= detector.rings) return {};
+    const double solid_angle =
+        2 * std::numbers::pi * (std::cos(ring * width) - std::cos((ring + 1) * width));
+    return PhotonWorth{ring, 1 / solid_angle};
+  };
+}
+
 PhotonSensor directional_sensor(const DirectionalDetector& detector) {
   const Vec3 forward = detector.forward.normalized(), v = upright(detector.up, forward);
   const Vec3 u = forward.cross(v);
@@ -106,8 +129,7 @@ PhotonSensor lens_sensor(const Camera& camera) {
 }
 
 PhotonPicture photon_picture(const TwoScenes& scenes, std::uint64_t photons, std::uint64_t seed) {
-  const PixelGrid grid =
-      std::visit([](const auto& s) { return s.pixels; }, scenes.scene.sensors[0]);
+  const PixelGrid grid = pixels_of(scenes.scene.sensors[0]).grid;
   const TimeBins& bins = scenes.scene.bins;
   const std::size_t pixels = static_cast<std::size_t>(grid.columns) * grid.rows;
   PhotonTally tally(pixels * bins.count, photons), steady(pixels, photons);
@@ -117,6 +139,7 @@ PhotonPicture photon_picture(const TwoScenes& scenes, std::uint64_t photons, std
     const std::size_t pixel = seen->pixel;
     steady.add(pixel, seen->worth);
     if (bins.count == 1) return tally.add(pixel, seen->worth);
+    if (p.optical_path < bins.first || p.optical_path > bins.last) return;
     // shared between the bins whose centres are next to it
     const double width = (bins.last - bins.first) / bins.count;
     const double at =
@@ -151,7 +174,7 @@ void check_against(const PhotonPicture& photons, const TwoScenes& scenes,
   const Estimate mean = pixel_mean(job, state);
   double error = 0;
   for (double e : photons.steady_error) error = std::hypot(error, e);
-  const auto entries = static_cast<double>(photons.value.size());
+  const auto entries = static_cast<double>(job.pictures);
   const Compared c{mean.value[0].real() * entries, mean.error[0] * entries,
                    total_of(photons.steady_value), error};
   CAPTURE(c.a);

@@ -22,6 +22,8 @@ using PhotonSensor = std::function<std::optional<PhotonWorth>(const Photon&)>;
 /// Sensors of scenes, written once more from their definitions.
 PhotonSensor area_sensor(const AreaDetector& detector, const Vec3& outward,
                          double sphere_radius = 0);
+PhotonSensor radial_sensor(const RadialDetector& detector, const Vec3& outward);
+PhotonSensor polar_sensor(const PolarDetector& detector);
 PhotonSensor directional_sensor(const DirectionalDetector& detector);
 /// With a lens, on a plane wall.
 PhotonSensor lens_sensor(const Camera& camera);

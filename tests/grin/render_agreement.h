@@ -26,7 +26,11 @@ inline std::vector<NamedRender> beam_scenes() {
   return {{"beam, detector, Luneburg ball", scene_in(ball, luneburg, beam, far_detector)},
           {"beam, directions, Luneburg ball",
            scene_in(ball, luneburg, beam,
-                    DirectionalDetector{Vec3::UnitZ(), Vec3::UnitY(), 0.7, {2, 1}})}};
+                    DirectionalDetector{Vec3::UnitZ(), Vec3::UnitY(), 0.7, {2, 1}})},
+          {"Gaussian beam, detector, glass ball",
+           scene_in(Homogeneous{0.5}, ball_in_fog(fog(1, 0, 0), fog(2, 0.1, 0)),
+                    BeamLight{Vec3(0.2, 0, -0.99), Vec3::UnitZ(), 0.2, 1, Spread::gaussian},
+                    far_detector)}};
 }
 
 struct Mean {

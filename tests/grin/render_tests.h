@@ -50,8 +50,11 @@ inline Rendered rendered(const RenderScene& scene, RenderMethod method, double s
 /// the same light paths, so the error comes from batches too.
 inline Estimate pixel_mean(const RenderJob& job, const RunState& state) {
   return jackknife(state.sums, [&](double samples, std::span<const Complex> sums) {
+    const auto per_pixel = static_cast<std::size_t>(job.bins.sums());
+    const auto parts = static_cast<std::size_t>(job.bins.parts());
     Complex total = 0;
-    for (const Complex& sum : sums.first(job.pictures)) total += sum;
+    for (std::size_t i = 0; i < job.pictures; ++i)
+      if (i % per_pixel < parts) total += sums[i];
     return std::vector<Complex>{total / (samples * static_cast<double>(job.pictures))};
   });
 }

@@ -4,6 +4,7 @@
 
 #include <doctest/doctest.h>
 
+#include "grin/estimators/render_datasets.h"
 #include "tests/grin/photon_comparison.h"
 #include "tests/grin/render_tests.h"
 
@@ -135,6 +136,25 @@ TwoScenes foggy_guide() {
           .sensor = area_sensor(end, {0, 0, 1})};
 }
 
+/// A thick slab of tissue under a narrow beam; diffuse reflectance by radius or by angle.
+TwoScenes tissue(const Sensor& sensor, const PhotonSensor& seen) {
+  return {.scene = {.field = Homogeneous{},
+                    .step = 1,
+                    .max_length = 1e6,
+                    .stage = {.boundary = Box{{-30, -30, 0}, {30, 30, 10}},
+                              .medium = {.mu_s = 5, .mu_a = 0.05, .phase = {HgPhase{0.8}}}},
+                    .lights = {BeamLight{{0, 0, 0}, {0, 0, 1}, 0.1}},
+                    .sensors = {sensor},
+                    .bins = {.moments = true}},
+          .walk = {.boundary = {{-30, -30, 0}, {30, 30, 10}},
+                   .medium = {.mu_s = 5,
+                              .mu_a = 0.05,
+                              .law = WalkMedium::Law::henyey_greenstein,
+                              .g = 0.8}},
+          .source = beam_source({0, 0, 0}, {0, 0, 1}, 0.1),
+          .sensor = seen};
+}
+
 /// The beam's place taken by a disk that shines on the wall at z.
 TwoScenes with_face_light(TwoScenes scenes, double z, double index) {
   const double radius = 0.9;
@@ -182,6 +202,46 @@ TEST_CASE("a Luneburg ball in fog before a lit wall: as photons see it") {
 
 TEST_CASE("a guide in fog under a beam, in pulses: as photons see it") {
   check_methods(foggy_guide(), two_methods, 100000, 0.03, 30000);
+}
+
+TEST_CASE("diffuse reflectance by radius, within an angle, and its paths: as photons see it") {
+  const RadialDetector rings{{0, 0, 0}, 5, 5, 1};
+  const TwoScenes scenes = tissue(rings, radial_sensor(rings, {0, 0, -1}));
+  constexpr int photons = 200000;
+  check_methods(scenes, two_methods, photons, 0.03, 60000);
+
+  // mean optical path and mean of its square of each ring
+  PhotonTally light(rings.rings, photons), first(rings.rings, photons),
+      second(rings.rings, photons);
+  walk_photons(scenes.walk, scenes.source, photons, 6, [&](const Photon& p) {
+    const auto seen = scenes.sensor(p);
+    if (!seen) return;
+    light.add(seen->pixel, seen->worth);
+    first.add(seen->pixel, seen->worth * p.optical_path);
+    second.add(seen->pixel, seen->worth * p.optical_path * p.optical_path);
+  });
+  const RenderJob job = render_job(scenes.scene, {.method = RenderMethod::light}, 3);
+  const SensorResult found = render_result(scenes.scene, job, run_render(job, 200000).sums).front();
+  for (int ring = 0; ring < rings.rings; ++ring) {
+    const auto check = [&](const PhotonTally& moment, std::size_t entry) {
+      const double mean = moment.mean(ring) / light.mean(ring);
+      // of independent errors: more than that of the ratio
+      const double error = mean * std::hypot(moment.error(ring) / moment.mean(ring),
+                                             light.error(ring) / light.mean(ring));
+      CAPTURE(ring);
+      CAPTURE(mean);
+      const double value = found.pixel_paths.value[entry].real();
+      CHECK(std::abs(value - mean) < 4 * std::hypot(error, found.pixel_paths.error[entry]));
+      CHECK(error < 0.1 * mean);
+    };
+    check(first, 2 * ring);
+    check(second, 2 * ring + 1);
+  }
+}
+
+TEST_CASE("diffuse reflectance by polar angle: as photons see it") {
+  const PolarDetector rings{{0, 0, -1}, pi / 2, 6};
+  check_methods(tissue(rings, polar_sensor(rings)), two_methods, 200000, 0.02, 60000);
 }
 
 namespace {

@@ -282,23 +282,29 @@ TEST_CASE("a wide lens sees the glints of a beam in a glass ball as rays say") {
 TEST_CASE("a pinhole sees a beam that shines into it, thinned by what absorbs on the way") {
   const ScatteringMedium fog{.mu_s = 0.1, .mu_a = 0.2};
   const Vec3 at(0.3, 0.2, 0.5);
-  const auto check = [&](const AnyIndexField& field, const Stage& stage, double index) {
+  const auto check = [&](const AnyIndexField& field, const Stage& stage, double index,
+                         const BeamLight& beam, double irradiance) {
     RenderScene scene =
-        scene_in(field, stage, BeamLight{Vec3(0, 0, -1.5), Vec3::UnitZ(), 1, 2 * pi},
-                 Camera{at, -Vec3::UnitZ(), Vec3::UnitY(), 1.0, {1, 1}});
+        scene_in(field, stage, beam, Camera{at, -Vec3::UnitZ(), Vec3::UnitY(), 1.0, {1, 1}});
     const Rendered result = rendered(scene, {.method = RenderMethod::bidirectional}, 5e4);
     const double film = 4 * std::tan(0.5) * std::tan(0.5) * index * index;
     RenderScene without = scene;
     without.stage.medium = {};
     if (without.stage.body) without.stage.body->medium = {};
     const Rendered clear = rendered(without, RenderMethod::bidirectional, 5e4);
-    CHECK(clear.value() == doctest::Approx(2 / film).epsilon(1e-9));
-    const double unscattered = 2 * std::exp(-0.3 * 2) / film;
+    CHECK(clear.value() == doctest::Approx(irradiance / film).epsilon(1e-7));
+    const double unscattered = irradiance * std::exp(-0.3 * 2) / film;
     CHECK(result.value() > unscattered);
     CHECK(result.value() < 1.5 * unscattered);
   };
-  check(Homogeneous{}, {room, fog}, 1);
-  check(Homogeneous{0.2}, {room, fog, Body{Sphere{Vec3(0, 0, -0.5), 0.6}, fog}, 0.2}, 1.2);
+  const BeamLight even{Vec3(0, 0, -1.5), Vec3::UnitZ(), 1, 2 * pi};
+  const BeamLight gaussian{Vec3(0, 0, -1.5), Vec3::UnitZ(), 0.5, 2 * pi, Spread::gaussian};
+  const double there = 4 / 0.25 * std::exp(-2 * (0.3 * 0.3 + 0.2 * 0.2) / 0.25);
+  const Stage ball{room, fog, Body{Sphere{Vec3(0, 0, -0.5), 0.6}, fog}, 0.2};
+  check(Homogeneous{}, {room, fog}, 1, even, 2);
+  check(Homogeneous{0.2}, ball, 1.2, even, 2);
+  check(Homogeneous{}, {room, fog}, 1, gaussian, there);
+  check(Homogeneous{0.2}, ball, 1.2, gaussian, there);
 }
 
 }  // namespace flatspeckle::grin::tests

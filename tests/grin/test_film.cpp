@@ -14,10 +14,11 @@ struct Pictures {
   TimeBins bins;
   std::vector<Complex> timed, steady;
 
-  double of_bin(int pixel, int bin) const { return timed[pixel * bins.count + bin].real(); }
+  double of_bin(int pixel, int bin) const { return of_part(pixel, bin + 1); }
+  double of_part(int pixel, int part) const { return timed[pixel * bins.sums() + part].real(); }
   double sum(int pixel) const {
     double result = 0;
-    for (int bin = 0; bin < bins.count; ++bin) result += of_bin(pixel, bin);
+    for (int part = 0; part < bins.parts(); ++part) result += of_part(pixel, part);
     return result;
   }
   /// Of value times the bin's centre.
@@ -31,7 +32,7 @@ struct Pictures {
 };
 
 Pictures one(const TimeBins& bins, double optical_path) {
-  Pictures pictures{bins, std::vector<Complex>(bins.count), std::vector<Complex>(1)};
+  Pictures pictures{bins, std::vector<Complex>(bins.sums()), std::vector<Complex>(1)};
   Film(1, bins, pictures.timed).add(0, 1, optical_path);
   return pictures;
 }
@@ -42,7 +43,8 @@ TEST_CASE("film: the sum over the bins is the steady picture, wherever the light
   constexpr int pixels = 3;
   for (const int count : {1, 2, 7}) {
     const TimeBins bins{2, 5, count};
-    Pictures pictures{bins, std::vector<Complex>(pixels * count), std::vector<Complex>(pixels)};
+    Pictures pictures{bins, std::vector<Complex>(pixels * bins.sums()),
+                      std::vector<Complex>(pixels)};
     Film timed(pixels, bins, pictures.timed), steady(pixels, {}, pictures.steady);
     RandomStream random(1, 90, count);
     for (int i = 0; i < 10000; ++i) {
@@ -70,12 +72,24 @@ TEST_CASE("film: a contribution keeps its optical path between the first and las
   CHECK(shared.of_bin(0, 2) == doctest::Approx(0.7).epsilon(1e-12));
 }
 
-TEST_CASE("film: what comes before or after stays in the first or last bin") {
+TEST_CASE("film: what comes before or after all bins stands apart") {
   const TimeBins bins{-1, 3, 8};
-  for (const double path : {-1e300, -5.0, -1.0, -0.8, std::nan("")})
-    CHECK(one(bins, path).of_bin(0, 0) == 1);
-  for (const double path : {2.8, 3.0, 40.0, 1e300, double{INFINITY}})
-    CHECK(one(bins, path).of_bin(0, 7) == 1);
+  for (const double path : {-1e300, -5.0, -1.0001, std::nan("")})
+    CHECK(one(bins, path).of_part(0, 0) == 1);
+  for (const double path : {-1.0, -0.8}) CHECK(one(bins, path).of_bin(0, 0) == 1);
+  for (const double path : {2.8, 3.0}) CHECK(one(bins, path).of_bin(0, 7) == 1);
+  for (const double path : {3.0001, 40.0, 1e300, double{INFINITY}})
+    CHECK(one(bins, path).of_part(0, 9) == 1);
+}
+
+TEST_CASE("film: moments of the optical path, with bins and without") {
+  for (const int count : {1, 8}) {
+    const TimeBins bins{-1, 3, count, true};
+    const Pictures pictures = one(bins, 7);
+    CHECK(pictures.sum(0) == 1);
+    CHECK(pictures.of_part(0, bins.parts()) == 7);
+    CHECK(pictures.of_part(0, bins.parts() + 1) == 49);
+  }
 }
 
 }  // namespace flatspeckle::grin

@@ -29,6 +29,14 @@ FaceLight environment(double radiance = 1) {
   return {Vec3::Zero(), infinity, radiance};
 }
 
+/// On the lower face of the box, and tilted within it.
+FibreLight fibre(double aperture, Spread spread = Spread::even) {
+  return {Vec3(0.3, -0.4, 0.5), Vec3(0, 0, 1), 0.3, aperture, 2, spread};
+}
+FibreLight tilted_fibre(Spread spread) {
+  return {Vec3(0.3, -0.4, 1.7), Vec3(1, -2, 1).normalized(), 0.3, 0.9, 2, spread};
+}
+
 /// Mean of strength / density over what is sampled: the power.
 template <class Space>
 Average sampled_power(const Lights& lights, const Space& space, std::uint64_t seed) {
@@ -79,6 +87,10 @@ TEST_CASE("lights sample directions by their density") {
   check(lights_in(test_box, {PointLight{Vec3(0, 0, 1)}}, TiltedSpace{}), 1);
   check(lights_in(test_box, {disk_light()}, TiltedSpace{}), 2);
   check(lights_in(test_sphere, {cap_light()}, TiltedSpace{}), 3);
+  for (const Spread spread : {Spread::even, Spread::gaussian}) {
+    check(lights_in(test_box, {tilted_fibre(spread)}, TiltedSpace{}), 9);
+    check(lights_in(test_box, {fibre(0.4, spread)}, TiltedSpace{}), 10);
+  }
 }
 
 TEST_CASE("lights sample positions uniformly by area") {
@@ -135,6 +147,35 @@ TEST_CASE("lights sample positions uniformly by area") {
   const Vec3 along = Vec3(1, 1, 0.5).normalized();
   check_positions(lights_in(test_box, {BeamLight{Vec3(0, 0, 1.5), along, 0.4}}, UniformSpace{}),
                   part_of_disk(Vec3(0, 0, 1.5), along, 0.4), equal, 8);
+  check_positions(lights_in(test_box, {fibre(0.2)}, UniformSpace{}),
+                  part_of_disk(fibre(0.2).centre, Vec3::UnitZ(), 0.3), equal, 9);
+}
+
+TEST_CASE("Gaussian beams and fibres sample positions by their density, which is a Gaussian") {
+  constexpr double radius = 0.25;
+  const Vec3 centre(0.2, -0.3, 1.5), along = Vec3(1, 1, 0.5).normalized();
+  // of rings between equal steps of r: exp(-2 r^2 / radius^2), cut at 3 radii
+  constexpr int rings = 24;
+  const auto beyond = [&](double r) { return std::exp(-2 * r * r / (radius * radius)); };
+  std::vector<double> shares(rings);
+  for (int i = 0; i < rings; ++i)
+    shares[i] = beyond(3 * radius * i / rings) - beyond(3 * radius * (i + 1) / rings);
+  for (double& share : shares) share /= 1 - beyond(3 * radius);
+  const auto ring = [&](const Vec3& x) {
+    CHECK(std::abs((x - centre).dot(along)) < 1e-12);
+    return of((x - centre).norm() / (3 * radius), rings);
+  };
+  for (const Light& light : {Light{BeamLight{centre, along, radius, 2, Spread::gaussian}},
+                             Light{FibreLight{centre, along, radius, 0.2, 2, Spread::gaussian}}}) {
+    const Lights lights = lights_in(test_box, {light}, UniformSpace{});
+    check_positions(lights, ring, shares, 10);
+    RandomStream random(1, 86, 0);
+    for (int i = 0; i < 100; ++i) {
+      const EndPosition at = lights.sample_position(UniformSpace{}, random);
+      const double expected = 2 / (pi * radius * radius) * beyond((at.point.x - centre).norm());
+      CHECK(at.position_density == doctest::Approx(expected).epsilon(1e-7));
+    }
+  }
 }
 
 TEST_CASE("strength integrated over positions and directions is the power") {
@@ -149,6 +190,11 @@ TEST_CASE("strength integrated over positions and directions is the power") {
   };
   check(in_box(PointLight{Vec3(0, 0, 1), 3}), 3, 1);
   check(in_box(BeamLight{Vec3(0, 0, 0.5), Vec3(0, 0, 5), 0.4, 3}), 3, 2);
+  check(in_box(BeamLight{Vec3(0, 0, 1.5), Vec3(0, 0, 1), 0.2, 3, Spread::gaussian}), 3, 8);
+  for (const Spread spread : {Spread::even, Spread::gaussian}) {
+    check(in_box(fibre(0.4, spread)), 2, 9);
+    check(in_box(tilted_fibre(spread)), 2, 10);
+  }
   check(in_box(disk_light()), pi * n * n * 2.5 * pi * 0.9 * 0.9, 3);
   check(in_box(environment(0.7)), pi * n * n * 0.7 * box_area, 4);
   check(in_sphere(cap_light()), pi * n * n * 0.8 * pi * 1.9 * 1.9, 5);
@@ -215,6 +261,20 @@ TEST_CASE("a face's value is its L/n^2 at any index and angle, and nothing is hi
   CHECK(value(Vec3(0.4, 0.59, 0.5), Vec3(0, 0, -1)) > 0);
 }
 
+TEST_CASE("what a fibre's sampling says is what it is towards a direction") {
+  RandomStream random(1, 87, 0);
+  for (const Spread spread : {Spread::even, Spread::gaussian}) {
+    const Lights lights = lights_in(test_box, {tilted_fibre(spread)}, TiltedSpace{});
+    for (int i = 0; i < 1000; ++i) {
+      const EndPosition at = lights.sample_position(TiltedSpace{}, random);
+      const EndDirection to = lights.sample_direction(at, random);
+      check_same(to, lights.towards(at, to.direction));
+      CHECK((to.strength > 0 && to.direction.dot(at.inward) > 0));
+      CHECK(at.is_point);
+    }
+  }
+}
+
 TEST_CASE("points and beams are not hit, beams not joined; a light may be in the body") {
   Stage stage = empty_stage(test_box);
   stage.body = Body{Sphere{Vec3(0, 0, 1.5), 0.5}};
@@ -253,6 +313,13 @@ TEST_CASE("lights that cannot be are refused by name") {
   refused(test_box, BeamLight{Vec3(0, 0, 0.5), Vec3(0, 0, -1), 0.5}, "must point into the stage");
   refused(test_box, BeamLight{Vec3(0, 0, 0.5), Vec3(0, 0, 1), 1.1}, "beam_light, radius = 1.1");
   refused(test_box, BeamLight{Vec3(0, 0, 0.5), Vec3(0, 1, 1), 0.5}, "must be inside the stage");
+  refused(test_box, BeamLight{Vec3(0, 0, 0.5), Vec3(0, 0, 1), 0.5, 1, Spread::gaussian},
+          "gaussian_beam, radius = 0.5: its disk of radius 1.5 must be inside the stage");
+  refused(test_box, FibreLight{Vec3(0, 0, 0.5), Vec3(0, 0, 1), 1.1, 0.2}, "fibre_light, radius");
+  refused(test_box, FibreLight{Vec3(0, 0, 0.5), Vec3(0, 0, -1), 0.1, 0.2},
+          "fibre_light, direction");
+  refused(test_box, FibreLight{Vec3(0, 0, 0.5), Vec3(0, 0, 1), 0.1, 1.2, 1, Spread::gaussian},
+          "gaussian_fibre, aperture = 1.2: must be at most the index there");
   refused(test_box, FaceLight{Vec3(0, 0, 0.5), 1.01}, "within one face of the boundary");
   refused(test_box, FaceLight{Vec3(0, 0, 0.6), 0.1}, "must be on the boundary");
   refused(test_box, FaceLight{Vec3(0, nan, 0.5), 0.1}, "face_light, position");

@@ -305,10 +305,11 @@ TEST_CASE("weights sum to 1 on paths that cross a body, and of beams") {
   stage.body = Body{Sphere{Vec3(0.1, 0, 0), 0.8}, {2.5, 0, {}}};
   const auto space =
       make_curved_space(Fisheye({.centre_excess = 0.7, .radius = 1.5}), stage, {0.02, 20});
-  const Light beam = BeamLight{Vec3(0, 0, -1.4), Vec3::UnitZ(), 0.2};
+  const Light beam = BeamLight{Vec3(0, 0, -1.4), Vec3::UnitZ(), 0.07, 1, Spread::gaussian};
+  const Light fibre = FibreLight{Vec3(0, 0, -1.4), Vec3::UnitZ(), 0.1, 0.8};
   RandomStream random(4, 91, 0);
   int paths = 0, crossing = 0;
-  for (const Light& light : {lights[1], beam})
+  for (const Light& light : {lights[1], beam, fibre})
     for (const Sensor& sensor : {sensors[1], sensors[2]})
       for (const Strategies& mask : {Strategies{}, soon_left, path_tracing, light_tracing}) {
         const Transport transport = transport_of(*space, stage, light, sensor, mask);

@@ -180,6 +180,8 @@ TEST_CASE("under a uniform environment: cameras read L/n^2, detectors pi n^2 sin
     const auto irradiance = [&](int) { return pi * n * n * sine * sine; };
     check_in_environment(test_box, area_on_box(acceptance), true, irradiance, 4);
     check_in_environment(test_sphere, area_on_sphere(acceptance), true, irradiance, 5);
+    check_in_environment(test_box, radial_on_box(acceptance), true, irradiance, 7);
+    check_in_environment(test_sphere, radial_on_sphere(acceptance), true, irradiance, 8);
     AreaDetector whole_face{Vec3(0.5, -0.5, 3), Vec3(0, 1, 0), 3, 3, {2, 3}, acceptance};
     check_in_environment(test_box, whole_face, true, irradiance, 6);
   }
@@ -237,15 +239,71 @@ TEST_CASE("form factors: a disk over a rectangle, and any two parts of a sphere"
 
 TEST_CASE("a point's light by direction is its power over 4 pi, by hits and by joins") {
   const auto expected = [](int) { return 3 / (4 * pi); };
-  const Pair pair{test_box, PointLight{Vec3(0.7, -1, 1.1), 3}, directional(0.7)};
-  thrown_by_light(pair, 1).check(expected);
-  joined(pair, 2).check(expected);
+  for (const Sensor& sensor : {Sensor{directional(0.7)}, Sensor{polar(pi)}}) {
+    const Pair pair{test_box, PointLight{Vec3(0.7, -1, 1.1), 3}, sensor};
+    thrown_by_light(pair, 1).check(expected);
+    joined(pair, 2).check(expected);
+  }
 }
 
 TEST_CASE("a beam falls on the pixels in front of it with its power over its area") {
   AreaDetector detector = area_on_box(0.1);
   const Pair pair{test_box, BeamLight{Vec3(0.6, -0.4, 1), Vec3(0, 0, 2), 1.05, 7}, detector};
   thrown_by_light(pair, 1).check([](int) { return 7 / (pi * 1.05 * 1.05); });
+}
+
+TEST_CASE("a Gaussian beam's irradiance on pixels in front of it") {
+  constexpr double radius = 0.49;
+  const AreaDetector detector = area_on_box(0.1);
+  const Vec3 right = Vec3(0, 0, 1).cross(detector.up.normalized()).normalized();
+  const Vec3 up = right.cross(Vec3(0, 0, 1)), off(-0.1, -0.1, 0);
+  const auto within = [](double low, double high) {
+    return (std::erf(std::sqrt(2) * high / radius) - std::erf(std::sqrt(2) * low / radius)) / 2;
+  };
+  const Pair pair{test_box,
+                  BeamLight{Vec3(0.6, -0.4, 1) + off, Vec3(0, 0, 1), radius, 7, Spread::gaussian},
+                  detector};
+  thrown_by_light(pair, 1).check([&](int pixel) {
+    const double u = 0.4 * (pixel % 4) - 0.8 - off.dot(right),
+                 v = 0.6 - 0.4 * (pixel / 4) - off.dot(up);
+    return 7 / (0.4 * 0.4) * within(u, u + 0.4) * within(v - 0.4, v);
+  });
+}
+
+TEST_CASE("a fibre's far pattern, and what an aperture accepts of it") {
+  constexpr double n = 1.3, aperture = 0.5, radius = 0.05;
+  const Vec3 axis = directional(0.5).forward.normalized();
+  for (const Spread spread : {Spread::even, Spread::gaussian}) {
+    CAPTURE(static_cast<int>(spread));
+    const FibreLight fibre{Vec3(0.4, -0.5, 1.7), axis, radius, aperture, 3, spread};
+    const double sine = aperture / n;
+    const double share = spread == Spread::even ? 1 : -std::expm1(-2 / (sine * sine));
+    const auto per_sines = [&](double u, double v) {  // over the plane of sines
+      const double squared = u * u + v * v;
+      if (!(squared < 1)) return 0.0;
+      if (spread == Spread::even) return squared < sine * sine ? 1 / (pi * sine * sine) : 0;
+      return 2 / (pi * sine * sine * share) * std::exp(-2 * squared / (sine * sine));
+    };
+    const Pair far{test_box, fibre, directional(0.25), n};
+    const double half = std::sin(0.25);
+    const auto pattern = [&](int pixel) {
+      return pixel_mean({4, 5}, pixel, half, half, [&](double u, double v) {
+        return 3 * std::sqrt(std::max(0.0, 1 - u * u - v * v)) * per_sines(u, v);
+      });
+    };
+    thrown_by_light(far, 1).check(pattern);
+    joined(far, 2).check(pattern);
+
+    const double accepted = 0.2;  // rad
+    const FibreLight up{Vec3(0.6, -0.4, 2.4), Vec3::UnitZ(), radius, aperture, 3, spread};
+    const Pair near{test_box, up,
+                    AreaDetector{Vec3(0.6, -0.4, 3), Vec3::UnitY(), 1, 1, {}, accepted}, n};
+    const double ratio = std::sin(accepted) / sine;
+    const double caught =
+        3 * (spread == Spread::even ? ratio * ratio : -std::expm1(-2 * ratio * ratio) / share);
+    thrown_by_light(near, 3).check([&](int) { return caught; });
+    joined(near, 4).check([&](int) { return caught; });
+  }
 }
 
 TEST_CASE("lenses: by sensor, by light and by joins the same picture") {

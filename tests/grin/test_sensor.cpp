@@ -45,6 +45,10 @@ TEST_CASE("sensors sample directions by their density") {
   check(test_box, area_on_box(0.6), askew, 6);
   check(test_sphere, area_on_sphere(), askew, 7);
   check(test_box, directional(0.7), askew, 8);
+  check(test_box, radial_on_box(0.6), askew, 9);
+  check(test_sphere, radial_on_sphere(), askew, 10);
+  check(test_box, polar(0.7), askew, 11);
+  check(test_sphere, polar(pi), polar(pi).axis, 12);
 }
 
 TEST_CASE("a directional detector up to the horizon samples by its density what it sees") {
@@ -95,6 +99,8 @@ TEST_CASE("sensors sample points of the boundary by their density") {
   check(test_sphere, lens, 2);
   check(test_box, area_on_box(), 3);
   check(test_sphere, area_on_sphere(), 4);
+  check(test_box, radial_on_box(), 5);
+  check(test_sphere, radial_on_sphere(), 6);
 }
 
 TEST_CASE("a sensor that is hit is the sensor that is sampled") {
@@ -109,6 +115,10 @@ TEST_CASE("a sensor that is hit is the sensor that is sampled") {
   check(test_sphere, area_on_sphere(), 5);
   check(test_box, directional(0.7), 6);
   check(test_sphere, directional(0.5), 7);
+  check(test_box, radial_on_box(0.4), 8);
+  check(test_sphere, radial_on_sphere(), 9);
+  check(test_box, polar(0.7), 10);
+  check(test_sphere, polar(1.4), 11);
 }
 
 TEST_CASE("rays to a point in the plane of focus are one pixel's, from anywhere on the lens") {
