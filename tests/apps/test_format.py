@@ -114,8 +114,9 @@ class Format(ResultsTest):
     def test_datasets(self):
         self.met, self.seen = set(), set()
         self.on_each_file(self.check_datasets)
-        for number, row in enumerate(CELLS["dataset"]):
-            self.assertIn(number, self.met, row)
+        met = [CELLS["dataset"][number] for number in self.met]
+        for row in CELLS["dataset"]:  # sensors share some
+            self.assertIn(row, met)
         axes = set(" ".join(self.seen).split())
         for word, choices in ROLES.items():
             for name in " ".join(choices).split():
