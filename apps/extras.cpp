@@ -105,7 +105,7 @@ void add_extra_keys(Keys& keys, Extras& extras) {
   keys.group("Methods");
   keys.add("gradient", extras.gradient,
            "Also derivatives of the covariance by mu_t, g, albedo and optical depth; by transport "
-           "of cylinders by radius and index too")
+           "of cylinders and spheres by radius and index too")
       .only_of("method = mc or transport");
   keys.add("delays", extras.delays,
            "Also the field's correlation after delays, as the scatterers diffuse: k^2 D tau")

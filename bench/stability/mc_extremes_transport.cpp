@@ -55,6 +55,36 @@ Finding by_paths_in_space(const Bulk& bulk, double view, std::uint64_t paths) {
   return in_errors(found.value[0], found.error[0], exact[0], 0.1, 1e-3);
 }
 
+/// Spheres, without absorption.
+Finding lossless_spheres(double optical_depth, double radius) {
+  SceneSpec spec;
+  spec.domain = "slab";
+  spec.dimension = 3;
+  spec.depth = 1000;
+  spec.optical_depth = optical_depth;
+  spec.scatterer = "mie";
+  spec.radius = radius;
+  spec.index = "1.33";
+  const auto flux = mc::space_flux(mc::space_slab(mc::in_space(make_scene(spec), spec)), 0, {1e-6});
+  return {std::abs(flux.reflected + flux.transmitted + std::expm1(-optical_depth)), 1e-9};
+}
+
+/// Frequencies that differ by nothing to speak of, over the intensity; values are complex then.
+Finding same_frequencies(const Bulk& bulk, int dimension) {
+  Scene scene = hg_slab(bulk, intensity_request({0}, {far_view(0)}));
+  SceneSpec spec;
+  spec.scatterer = "hg";
+  spec.g = bulk.g;
+  if (dimension == 3) scene = mc::in_space(scene, spec);
+  const auto solve = [&](double shift) {
+    const mc::FieldChange change{.shift = shift};
+    return dimension == 3 ? mc::space_covariance(scene, false, {1e-6}, change).value[0]
+                          : mc::slab_covariance(scene, false, {1e-6}, change).value[0];
+  };
+  const Complex intensity = solve(0);
+  return {std::abs(solve(1e-18) / intensity - 1.0), 1e-5};
+}
+
 }  // namespace
 
 std::vector<ExtremeCase> mc_transport_extremes() {
@@ -73,6 +103,16 @@ std::vector<ExtremeCase> mc_transport_extremes() {
     rows.add("transport in space, " + name, errors,
              [=] { return by_paths_in_space(bulk, 0.3, 20000); });
   }
+  for (const double optical_depth : {1e-3, 1e4})
+    for (const double radius : {1e-3, 1.0})
+      rows.add("transport, spheres, OD " + short_number(optical_depth) + ", radius " +
+                   short_number(radius),
+               energy, [=] { return lossless_spheres(optical_depth, radius); });
+  for (const Bulk& bulk : {Bulk{1e-3}, Bulk{1e4}, Bulk{300, 0, 0.9}})
+    for (const int dimension : {2, 3})
+      rows.add("transport, two frequencies, OD " + short_number(bulk.optical_depth) + ", albedo " +
+                   short_number(bulk.albedo) + (dimension == 3 ? ", in space" : ""),
+               "shift 1e-18 = none", [=] { return same_frequencies(bulk, dimension); });
   return std::move(rows).rows();
 }
 

@@ -3,7 +3,7 @@
 namespace flatspeckle::mc {
 
 /// What a scene's bulk can be differentiated by, all others held fixed: radius and (real part of
-/// the) index of cylinders at fixed density.
+/// the) index of cylinders at fixed density, of spheres at fixed extinction.
 enum class BulkParameter { mu_t, g, albedo, radius, index };
 
 /// d log p / dg of Henyey-Greenstein's phase function, of C22 or in space, at a scattering angle of

@@ -157,21 +157,14 @@ auto AzimuthalModesOf<Number>::waves(const Eigen::Vector2d& x,
 }
 
 template <typename Number>
-auto AzimuthalModesOf<Number>::lights(const Eigen::Vector2d& x,
-                                      const std::vector<SpacePair>& pairs) const -> Waves {
-  Waves found = waves(x, pairs);
-  for (const SpacePair& pair : pairs)
-    add(found, pair_wave(slab_.k_per_mu_t(), pair, slab_.departure));
-  return found;
-}
-
-template <typename Number>
-auto AzimuthalModesOf<Number>::views(const Eigen::Vector2d& x,
-                                     const std::vector<SpacePair>& pairs) const -> Waves {
-  Waves found = waves(x, pairs);
-  std::swap(found.down, found.up);
-  for (const SpacePair& pair : pairs)
-    add(found, pair_wave(slab_.k_per_mu_t(), turned_round(pair), slab_.departure));
+auto AzimuthalModesOf<Number>::ends(const Eigen::Vector2d& x, const std::vector<SpacePair>& lights,
+                                    const std::vector<SpacePair>& views) const -> Ends {
+  const Waves fed = waves(x, lights), seen = views == lights ? fed : waves(x, views);
+  Ends found{fed, {{}, {}, seen.up, seen.down}};
+  const double k = slab_.k_per_mu_t();
+  for (const SpacePair& pair : lights) add(found.lights, pair_wave(k, pair, slab_.departure));
+  for (const SpacePair& pair : views)
+    add(found.views, pair_wave(k, turned_round(pair), slab_.departure));
   return found;
 }
 

@@ -19,6 +19,7 @@ class AzimuthalModesOf {
   using Slab = SpaceSlabOf<Number>;
   using Polar = PolarMatricesOf<RealOf<Number>>;
   using Waves = PairWavesOf<Number>;
+  using Ends = EndWavesOf<Number>;
 
   /// Modes m = 0 .. highest.
   AzimuthalModesOf(const Polar& polar, const Slab& slab, int highest);
@@ -36,8 +37,8 @@ class AzimuthalModesOf {
 
   /// Of all functions: what pairs feed, and what views collect; shares of mu_t. x: unit vector
   /// along the momentum.
-  Waves lights(const Eigen::Vector2d& x, const std::vector<SpacePair>& pairs) const;
-  Waves views(const Eigen::Vector2d& x, const std::vector<SpacePair>& pairs) const;
+  Ends ends(const Eigen::Vector2d& x, const std::vector<SpacePair>& lights,
+            const std::vector<SpacePair>& views) const;
   Waves part_of(const Waves& all, const Part& part) const;
 
   /// Power through a face per unknown of m = 0, of radiance in units of light per area across it.

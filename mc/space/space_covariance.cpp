@@ -62,7 +62,7 @@ Solution solve_group(const SpaceSlabOf<Number>& slab, const SpaceGroup& group,
   const Eigen::Vector2d x = q == 0 ? Eigen::Vector2d(1, 0) : group.momentum.normalized();
   const AzimuthalModesOf<Number> modes(polar.at(group.foci, resolution.order), slab,
                                        resolution.modes);
-  const auto lights = modes.lights(x, group.lights), views = modes.views(x, group.views);
+  const auto [lights, views] = modes.ends(x, group.lights, group.views);
   std::vector<ComplexOf<Number>> value(group.links.size());
   int ordinates = 0;
   for (const auto& part : modes.parts(q)) {
@@ -107,7 +107,7 @@ class GroupRefiner {
         group_(group),
         refinement_(refinement),
         polar_(polar),
-        resolution_{refinement.first_order, 2},
+        resolution_{refinement.first_order(), 2},
         coarse_(solved(resolution_)) {}
 
   const std::vector<Complex>& first() const { return coarse_.value; }

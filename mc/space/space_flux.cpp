@@ -16,10 +16,9 @@ std::pair<double, double> leaving(const SpaceSlab& slab, double angle, int order
   const PolarMatricesOf<double> polar({{angle, slab.law.width()}}, order, slab.law, slab.albedo);
   const AzimuthalModesOf<double> modes(polar, slab, 0);
   const Eigen::Vector3d light(std::sin(angle), 0, std::cos(angle));
-  const Eigen::Vector2d x(1, 0);
-  const auto response =
-      layer_response(modes.transport(0, modes.parts(0).front()), slab.optical_depth(),
-                     modes.lights(x, {{light, light}}), modes.views(x, {}));
+  const auto [lights, views] = modes.ends({1, 0}, {{light, light}}, {});
+  const auto response = layer_response(modes.transport(0, modes.parts(0).front()),
+                                       slab.optical_depth(), lights, views);
   const auto share = [&](const Rows& rows) { return (rows.real() * modes.power())(0) / light.z(); };
   return {share(response.up), share(response.down)};
 }
@@ -28,7 +27,7 @@ std::pair<double, double> leaving(const SpaceSlab& slab, double angle, int order
 
 SpaceFlux space_flux(const SpaceSlab& slab, double angle, const Refinement& refinement) {
   blas_single_thread();
-  int order = refinement.first_order;
+  int order = refinement.first_order();
   for (auto before = leaving(slab, angle, order);;) {
     order = Refinement::next_order(order);
     const auto [up, down] = leaving(slab, angle, order);

@@ -1,6 +1,7 @@
 #include "mc/space/space_scene.h"
 
 #include <tuple>
+#include <utility>
 
 #include "core/error.h"
 #include "grin/media/hg_phase.h"
@@ -54,6 +55,18 @@ void set_phase(BulkMedium& medium, const Scatterer& scatterer, const ScattererVa
   set_phase(medium, grin::TwoTermPhase{{*terms.g}, {*terms.g_back}, *terms.forward_share});
 }
 
+/// Of spheres at fixed extinction.
+BulkSlopeOf<SpaceSlope> space_slope(const Scene& scene, const SpaceLaw& law,
+                                    BulkParameter parameter) {
+  if (parameter != BulkParameter::radius && parameter != BulkParameter::index)
+    return bulk_slope_of<SpaceSlope>(scene.medium, law, parameter);
+  return scatterer_slope<SpaceSlope>(scene, law, parameter, [&](const Scatterer& scatterer) {
+    BulkMedium medium = scene.medium;
+    set_spheres(medium, scatterer, scene.k);
+    return std::pair(medium, SpaceLaw(medium.space_phase.density));
+  });
+}
+
 }  // namespace
 
 Scene in_space(Scene slab, const ScattererValues& values) {
@@ -86,7 +99,7 @@ Refined space_covariance(const Scene& scene, bool reversed, const Refinement& re
 Refined space_slopes(const Scene& scene, bool reversed, const Refinement& refinement,
                      BulkParameter parameter) {
   const SpaceSlab slab = space_slab(scene);
-  const auto slope = bulk_slope_of<SpaceSlope>(scene.medium, slab.law, parameter);
+  const auto slope = space_slope(scene, slab.law, parameter);
   const SpaceSlabOf<Dual<double>> changing{slab.k,     slab.mu_t,
                                            slab.depth, {slab.albedo, slope.albedo},
                                            slope.law,  {{1, -slope.log_mu_t}}};

@@ -8,10 +8,18 @@
 
 namespace flatspeckle::mc {
 
-/// A law in space with its derivative: by what it does not know of, or by g.
+/// A law in space with its derivative: by what it does not know of, by g, or by the logarithm of
+/// what its scatterers are.
 class SpaceSlope {
  public:
+  /// A law next to it, and its weight in a difference.
+  struct Neighbour {
+    double weight;
+    SpaceLaw law;
+  };
+
   explicit SpaceSlope(const SpaceLaw& law);
+  SpaceSlope(const SpaceLaw& law, std::vector<Neighbour> neighbours);
   /// Of Henyey-Greenstein's function without delay, by g.
   static SpaceSlope by_g(const SpaceLaw& law, double g);
 
@@ -23,6 +31,7 @@ class SpaceSlope {
   SpaceLaw law_;
   bool by_g_ = false;
   double g_ = 0;
+  std::vector<Neighbour> neighbours_;
   Dual<std::vector<double>> moments_;
 };
 

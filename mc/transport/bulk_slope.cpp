@@ -45,52 +45,36 @@ Dual<Complex> ScatteringSlope::pair(double a, double b, double theta) const {
   return pair;
 }
 
-namespace {
-
-/// By the logarithm of what `scaled` multiplies in a scatterer.
-template <typename Scaled>
-BulkSlope scatterer_slope(const Scene& scene, const ScatteringLaw& law, double unit,
-                          const Scaled& scaled) {
-  const Scatterer& scatterer = scene.scatterer;
-  const double size = scene.k * scatterer.radius * std::abs(scatterer.index),
-               step = 1e-3 / std::max(1.0, size);
-  double log_mu_t = 0, albedo = 0;
-  std::vector<ScatteringSlope::Neighbour> neighbours;
-  const auto add = [&](double steps, double factor) {
-    const double weight = factor / (12 * step);
-    Scene other = scene;
-    scaled(other.scatterer, 1 + steps * step);
-    other.medium = bulk_medium(other.scatterer, scene.k, scene.medium.density);
-    log_mu_t += weight * other.medium.mu_t / scene.medium.mu_t;
-    albedo += weight * other.medium.albedo;
-    neighbours.push_back({weight, ScatteringLaw(other)});
-  };
-  add(1, 8);
-  add(-1, -8);
-  add(2, -1);
-  add(-2, 1);
-  return {unit, log_mu_t, albedo, ScatteringSlope(law, std::move(neighbours))};
+double scatterer_unit(const Scatterer& scatterer, BulkParameter parameter) {
+  return parameter == BulkParameter::radius ? scatterer.radius : scatterer.index.real();
 }
 
-}  // namespace
+Scatterer scaled(Scatterer scatterer, BulkParameter parameter, double factor) {
+  if (parameter == BulkParameter::radius)
+    scatterer.radius *= factor;
+  else
+    scatterer.index.real(scatterer.index.real() * factor);
+  return scatterer;
+}
 
 BulkSlope bulk_slope(const Scene& scene, const ScatteringLaw& law, BulkParameter parameter) {
-  const auto wider = [](Scatterer& scatterer, double factor) { scatterer.radius *= factor; };
-  const auto denser = [](Scatterer& scatterer, double factor) {
-    scatterer.index.real(scatterer.index.real() * factor);
-  };
-  if (parameter == BulkParameter::radius)
-    return scatterer_slope(scene, law, scene.scatterer.radius, wider);
-  if (parameter == BulkParameter::index)
-    return scatterer_slope(scene, law, scene.scatterer.index.real(), denser);
-  return bulk_slope_of<ScatteringSlope>(scene.medium, law, parameter);
+  if (parameter != BulkParameter::radius && parameter != BulkParameter::index)
+    return bulk_slope_of<ScatteringSlope>(scene.medium, law, parameter);
+  return scatterer_slope<ScatteringSlope>(scene, law, parameter, [&](const Scatterer& scatterer) {
+    Scene other = scene;
+    other.scatterer = scatterer;
+    other.medium = bulk_medium(scatterer, scene.k, scene.medium.density);
+    return std::pair(other.medium, ScatteringLaw(other));
+  });
 }
 
 std::vector<BulkParameter> slab_parameters(const Scene& scene) {
   auto parameters = bulk_parameters(scene);
-  if (!scene.scatterer.is_disk() || !scene.medium.structure.independent()) return parameters;
+  const bool spheres = scene.scatterer.kind == Scatterer::Kind::mie;
+  if (!spheres && !(scene.scatterer.is_disk() && scene.medium.structure.independent()))
+    return parameters;
   parameters.push_back(BulkParameter::radius);
-  if (scene.scatterer.is_penetrable()) parameters.push_back(BulkParameter::index);
+  if (spheres || scene.scatterer.is_penetrable()) parameters.push_back(BulkParameter::index);
   return parameters;
 }
 

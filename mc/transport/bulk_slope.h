@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 #include "mc/estimators/bulk_parameter.h"
@@ -63,12 +64,36 @@ BulkSlopeOf<Slope> bulk_slope_of(const BulkMedium& medium, const Law& law,
   return {1, 0, 0, Slope::by_g(law, medium.g)};
 }
 
-/// law: the scene's, and outlives the slope. Radius and index: by differences of fourth order of
-/// the T-matrix, to 1e-10 or so.
+/// The radius, or the real part of the index, by which a scatterer is differentiated.
+double scatterer_unit(const Scatterer& scatterer, BulkParameter parameter);
+Scatterer scaled(Scatterer scatterer, BulkParameter parameter, double factor);
+
+/// By the logarithm of a scatterer's radius or index, by differences of fourth order, to 1e-10 or
+/// so. at(scatterer): a pair of its medium and law.
+template <typename Slope, typename Law, typename At>
+BulkSlopeOf<Slope> scatterer_slope(const Scene& scene, const Law& law, BulkParameter parameter,
+                                   const At& at) {
+  const Scatterer& scatterer = scene.scatterer;
+  const double size = scene.k * scatterer.radius * std::abs(scatterer.index),
+               step = 1e-3 / std::max(1.0, size);
+  double log_mu_t = 0, albedo = 0;
+  std::vector<typename Slope::Neighbour> neighbours;
+  for (const auto& [steps, factor] : {std::pair(1, 8), {-1, -8}, {2, -1}, {-2, 1}}) {
+    const double weight = factor / (12 * step);
+    auto [medium, near] = at(scaled(scatterer, parameter, 1 + steps * step));
+    log_mu_t += weight * medium.mu_t / scene.medium.mu_t;
+    albedo += weight * medium.albedo;
+    neighbours.push_back({weight, std::move(near)});
+  }
+  return {scatterer_unit(scatterer, parameter), log_mu_t, albedo,
+          Slope(law, std::move(neighbours))};
+}
+
+/// law: the scene's, and outlives the slope.
 BulkSlope bulk_slope(const Scene& scene, const ScatteringLaw& law, BulkParameter parameter);
 
-/// By what transport differentiates: bulk_parameters(), and of cylinders at independent positions
-/// the radius and, where light enters them, the index.
+/// By what transport differentiates: bulk_parameters(), and of spheres, or of cylinders at
+/// independent positions, the radius and, where light enters them, the index.
 std::vector<BulkParameter> slab_parameters(const Scene& scene);
 
 template <typename Number>

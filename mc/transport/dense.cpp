@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "core/numbers/blas.h"
@@ -63,22 +64,72 @@ Rows scaled(std::span<const std::complex<double>> factor, Rows rows) {
   return rows;
 }
 
-Matrix inverse(Matrix a) {
+namespace {
+
+constexpr auto columns_first = LAPACK_COL_MAJOR;
+
+int factor(Matrix& a, int* pivots) {
   const auto n = static_cast<lapack_int>(a.rows());
-  std::vector<lapack_int> pivots(static_cast<std::size_t>(n));
-  if (LAPACKE_dgetrf(LAPACK_COL_MAJOR, n, n, a.data(), n, pivots.data()) != 0 ||
-      LAPACKE_dgetri(LAPACK_COL_MAJOR, n, a.data(), n, pivots.data()) != 0)
-    throw std::runtime_error(singular);
-  return a;
+  return LAPACKE_dgetrf(columns_first, n, n, a.data(), n, pivots);
+}
+int factor(Rows& a, int* pivots) {
+  const auto n = static_cast<lapack_int>(a.rows());
+  return LAPACKE_zgetrf(columns_first, n, n, a.data(), n, pivots);
 }
 
-Rows inverse(Rows a) {
-  const auto n = static_cast<lapack_int>(a.rows());
-  std::vector<lapack_int> pivots(static_cast<std::size_t>(n));
-  if (LAPACKE_zgetrf(LAPACK_COL_MAJOR, n, n, a.data(), n, pivots.data()) != 0 ||
-      LAPACKE_zgetri(LAPACK_COL_MAJOR, n, a.data(), n, pivots.data()) != 0)
-    throw std::runtime_error(singular);
-  return a;
+void solve(const Matrix& factors, const int* pivots, Matrix& b) {
+  const auto n = static_cast<lapack_int>(factors.rows());
+  LAPACKE_dgetrs_work(columns_first, 'N', n, static_cast<lapack_int>(b.cols()), factors.data(), n,
+                      pivots, b.data(), n);
 }
+void solve(const Rows& factors, const int* pivots, Rows& b) {
+  const auto n = static_cast<lapack_int>(factors.rows());
+  LAPACKE_zgetrs_work(columns_first, 'N', n, static_cast<lapack_int>(b.cols()), factors.data(), n,
+                      pivots, b.data(), n);
+}
+
+/// rows U^-1 L^-1
+void solve_triangles(Rows& rows, const Matrix& factors) {
+  const auto m = static_cast<blasint>(2 * rows.rows()), n = static_cast<blasint>(factors.rows());
+  auto* const data = reinterpret_cast<double*>(rows.data());
+  for (const auto& [part, diagonal] :
+       {std::pair(CblasUpper, CblasNonUnit), {CblasLower, CblasUnit}})
+    cblas_dtrsm(CblasColMajor, CblasRight, part, CblasNoTrans, diagonal, m, n, 1, factors.data(), n,
+                data, std::max<blasint>(m, 1));
+}
+void solve_triangles(Rows& rows, const Rows& factors) {
+  const std::complex<double> one = 1;
+  const auto m = static_cast<blasint>(rows.rows()), n = static_cast<blasint>(factors.rows());
+  for (const auto& [part, diagonal] :
+       {std::pair(CblasUpper, CblasNonUnit), {CblasLower, CblasUnit}})
+    cblas_ztrsm(CblasColMajor, CblasRight, part, CblasNoTrans, diagonal, m, n, &one, factors.data(),
+                n, rows.data(), std::max<blasint>(m, 1));
+}
+
+}  // namespace
+
+template <typename M>
+FactorsOf<M>::FactorsOf(M a)
+    : factors_(std::move(a)), pivots_(static_cast<std::size_t>(factors_.rows())) {
+  if (factor(factors_, pivots_.data()) != 0) throw std::runtime_error(singular);
+}
+
+template <typename M>
+M FactorsOf<M>::before(M b) const {
+  solve(factors_, pivots_.data(), b);
+  return b;
+}
+
+template <typename M>
+Rows FactorsOf<M>::after(Rows rows) const {
+  solve_triangles(rows, factors_);
+  for (auto j = static_cast<Eigen::Index>(pivots_.size()); j-- > 0;)
+    if (const auto with = pivots_[static_cast<std::size_t>(j)] - 1; with != j)
+      rows.col(j).swap(rows.col(with));
+  return rows;
+}
+
+template class FactorsOf<Matrix>;
+template class FactorsOf<Rows>;
 
 }  // namespace flatspeckle::mc

@@ -2,6 +2,7 @@
 
 #include <complex>
 #include <span>
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -24,8 +25,20 @@ Rows product(const Rows& a, const Rows& b);
 Rows product_transposed(const Rows& a, const Rows& b);
 /// Each row times its factor.
 Rows scaled(std::span<const std::complex<double>> factor, Rows rows);
-/// Throws std::runtime_error for a singular matrix.
-Matrix inverse(Matrix a);
-Rows inverse(Rows a);
+
+/// LU factors of a square matrix a. Throws std::runtime_error for a singular one.
+template <typename M>
+class FactorsOf {
+ public:
+  explicit FactorsOf(M a);
+  /// a^-1 b
+  M before(M b) const;
+  /// rows a^-1
+  Rows after(Rows rows) const;
+
+ private:
+  M factors_;
+  std::vector<int> pivots_;
+};
 
 }  // namespace flatspeckle::mc

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "mc/transport/dense.h"
@@ -81,15 +82,29 @@ inline Dual<Rows> product_transposed(const Dual<Rows>& a, const Dual<Rows>& b) {
   return {product_transposed(a.value, b.value),
           product_transposed(a.slope, b.value) + product_transposed(a.value, b.slope)};
 }
-inline Dual<Matrix> inverse(const Dual<Matrix>& a) {
-  const Matrix value = inverse(a.value);
-  return {value, -product(product(value, a.slope), value)};
-}
 inline Dual<Rows> scaled(const std::vector<Dual<Complex>>& factor, const Dual<Rows>& rows) {
   const auto parts = flat(factor);
   const auto value = std::span(parts).first(factor.size()),
              slope = std::span(parts).last(factor.size());
   return {scaled(value, rows.value), scaled(slope, rows.value) + scaled(value, rows.slope)};
 }
+
+template <>
+class FactorsOf<Dual<Matrix>> {
+ public:
+  explicit FactorsOf(Dual<Matrix> a) : of_value_(std::move(a.value)), slope_(std::move(a.slope)) {}
+  Dual<Matrix> before(const Dual<Matrix>& b) const {
+    const Matrix value = of_value_.before(b.value);
+    return {value, of_value_.before(b.slope - product(slope_, value))};
+  }
+  Dual<Rows> after(const Dual<Rows>& rows) const {
+    const Rows value = of_value_.after(rows.value);
+    return {value, of_value_.after(rows.slope - product(value, slope_))};
+  }
+
+ private:
+  FactorsOf<Matrix> of_value_;
+  Matrix slope_;
+};
 
 }  // namespace flatspeckle::mc

@@ -15,14 +15,14 @@ namespace {
 template <typename M>
 M tanh_ratio(const M& k) {
   const M one = identity_like(k), k2 = product(k, k), k3 = product(k2, k);
-  return product(inverse(M(135135.0 * one + 62370.0 * k + 3150.0 * k2 + 28.0 * k3)),
-                 M(135135.0 * one + 17325.0 * k + 378.0 * k2 + k3));
+  return FactorsOf<M>(M(135135.0 * one + 62370.0 * k + 3150.0 * k2 + 28.0 * k3))
+      .before(M(135135.0 * one + 17325.0 * k + 378.0 * k2 + k3));
 }
 
 /// (1 + a)^-1 a
 template <typename M>
 M share(const M& a) {
-  return product(inverse(M(identity_like(a) + a)), a);
+  return FactorsOf<M>(M(identity_like(a) + a)).before(a);
 }
 
 template <typename T>
@@ -55,17 +55,21 @@ void multiply(Dual<Rows>& rows, Eigen::Index i, Eigen::Index j, const Dual<Compl
 template <typename R>
 struct BothWays {
   R down, up;
-
-  BothWays& operator+=(const BothWays& other) {
-    down += other.down;
-    up += other.up;
-    return *this;
-  }
 };
+
+/// The same as S and D.
+template <typename R>
+struct Mirrored {
+  R sum, difference;
+
+  BothWays<R> both_ways() const { return {0.5 * (sum + difference), 0.5 * (sum - difference)}; }
+};
+
+using mc::scaled;  // of one way's rows
 
 template <typename C, typename R>
 BothWays<R> scaled(const std::vector<C>& factor, const BothWays<R>& rows) {
-  return {flatspeckle::mc::scaled(factor, rows.down), flatspeckle::mc::scaled(factor, rows.up)};
+  return {scaled(factor, rows.down), scaled(factor, rows.up)};
 }
 
 template <typename Number, typename C>
@@ -82,21 +86,26 @@ std::vector<C> damping(std::vector<C> rates, const Number& depth) {
   return rates;
 }
 
-/// int_0^1 exp(rate u) u^power du by its series.
+/// int_0^1 exp(rate u) u^power du of powers 1 .. count: the last by its series, then downwards.
 template <typename C>
-C moment(const C& rate, std::size_t power) {
+std::vector<C> moments(const C& rate, int count) {
+  std::vector<C> moment(static_cast<std::size_t>(count));
   constexpr int terms = 30;
-  C sum{}, term = exp(C{});
+  const C start = exp(C{}), end = exp(rate);
+  C term = start;
   for (int i = 0; i < terms; ++i) {
-    sum += term / static_cast<double>(static_cast<std::size_t>(i) + power + 1);
-    term = term * rate / static_cast<double>(i + 1);
+    moment.back() += term / (i + count + 1.0);
+    term = term * rate / (i + 1.0);
   }
-  return sum;
+  for (std::size_t p = moment.size() - 1; p > 0; --p)
+    moment[p - 1] = (end - rate * moment[p]) / (static_cast<double>(p) + 1);
+  return moment;
 }
 
-/// A layer by what leaves it, the same from above and below: `reflected` and `lost` = 1 -
-/// transmitted radiance (of a thin layer small, so that albedo 1 balances to rounding of it), and
-/// what leaves of the lights and, turned round, of the views.
+/// A layer by what leaves it. Of equal radiance from above and below 1 - `equal` comes back, of
+/// opposite radiance `opposite` - 1: both small for a thin layer, so that albedo 1 balances to
+/// rounding of it; `transmitted` follows from them, and in the deep, where it is small, from
+/// itself. And what leaves of the lights and, turned round, of the views.
 template <typename Number>
 class Layer {
  public:
@@ -115,9 +124,12 @@ class Layer {
 
  private:
   void start_radiance(const Operator& medium);
+  M reflected() const { return 0.5 * (opposite_ - equal_); }
+  M rest() const { return identity_like(equal_) - 0.5 * (opposite_ + equal_); }
   void start_pairs(const Operator& medium);
-  R collected_in_series(const std::vector<BothWays<R>>& series) const;
+  R collected_in_series(const std::vector<Mirrored<R>>& series) const;
   R contracted(const R& views, const R& lights) const;
+  R turned(const R& rows) const;
   std::vector<C> rates() const;
   R of_lights(const R& rows) const {
     return linear([this](const Rows& r) -> Rows { return r.topRows(lights_); }, rows);
@@ -129,7 +141,7 @@ class Layer {
   RealOf<Number> depth_;
   Eigen::Index lights_, even_;
   Waves waves_;
-  M reflected_, lost_, transmitted_;
+  M equal_, opposite_, transmitted_;
   BothWays<R> leaves_;
   R collected_;
 };
@@ -146,18 +158,15 @@ Layer<Number>::Layer(const Operator& medium, RealOf<Number> depth, const Waves& 
   start_pairs(medium);
 }
 
-/// Mirrors in its middle make two problems of a layer: D = m S and S = n D at the top for equal and
-/// for opposite radiance from both sides, m = (d/2) y tanh_ratio(x y d^2/4).
+/// With D = m S at the top for equal and S = n D for opposite radiance from both sides,
+/// m = (d/2) y f, n = (d/2) f x, f = tanh_ratio(x y d^2/4).
 template <typename Number>
 void Layer<Number>::start_radiance(const Operator& medium) {
   const RealOf<Number> half = depth_ / 2.0;
-  const auto loss = [&](const M& inner, const M& outer) {
-    return share(M(half * product(outer, tanh_ratio(M(half * half * product(inner, outer))))));
-  };
-  const M equal = loss(medium.x, medium.y), opposite = loss(medium.y, medium.x);
-  reflected_ = opposite - equal;
-  lost_ = opposite + equal;
-  transmitted_ = identity_like(lost_) - lost_;
+  const M ratio = half * tanh_ratio(M(half * half * product(medium.x, medium.y)));
+  equal_ = 2.0 * share(product(medium.y, ratio));
+  opposite_ = 2.0 * share(product(ratio, medium.x));
+  transmitted_ = rest();
 }
 
 /// Power series in z of what lights feed into a layer that no radiance enters at the top; then
@@ -165,48 +174,58 @@ void Layer<Number>::start_radiance(const Operator& medium) {
 template <typename Number>
 void Layer<Number>::start_pairs(const Operator& medium) {
   constexpr int terms = 30;
-  const M a = 0.5 * (medium.x + medium.y), b = 0.5 * (medium.x - medium.y);
-  auto fed = scaled(damping(waves_.bottom, depth_), BothWays<R>{waves_.down, -waves_.up});
-  std::vector<BothWays<R>> series;
-  BothWays<R> sum{0.0 * fed.down, 0.0 * fed.up}, term = sum;
+  const auto start = damping(waves_.bottom, depth_);
+  Mirrored<R> fed{scaled(start, R(waves_.down - waves_.up)),
+                  scaled(start, R(waves_.down + waves_.up))},
+      sum{0.0 * fed.sum, 0.0 * fed.sum}, term = sum;
+  std::vector<Mirrored<R>> series;
   for (int j = 0; j < terms; ++j) {
     const RealOf<Number> step = depth_ / (j + 1.0);
-    term = {step * (product(term.up, b) - product(term.down, a) + fed.down),
-            step * (product(term.up, a) - product(term.down, b) + fed.up)};
-    fed = scaled(times(step, rates()), fed);
-    sum += term;
-    series.push_back({of_lights(term.down), of_lights(term.up)});
+    const auto next = times(step, rates());
+    term = {step * (fed.sum - product(term.difference, medium.x)),
+            step * (fed.difference - product(term.sum, medium.y))};
+    fed = {scaled(next, fed.sum), scaled(next, fed.difference)};
+    sum.sum += term.sum;
+    sum.difference += term.difference;
+    series.push_back({of_lights(term.sum), of_lights(term.difference)});
   }
-  leaves_ = {sum.down - product(sum.up, reflected_), -product(sum.up, transmitted_)};
-  collected_ = collected_in_series(series) - contracted(of_views(leaves_.down), of_lights(sum.up));
+  const auto [down, up] = sum.both_ways();
+  leaves_ = {down - product(up, reflected()), -product(up, transmitted_)};
+  collected_ = collected_in_series(series) - contracted(of_views(leaves_.down), of_lights(up));
 }
 
 /// What views collect of the radiance sum_j series[j] (z / depth)^(j+1).
 template <typename Number>
-RowsOf<Number> Layer<Number>::collected_in_series(const std::vector<BothWays<R>>& series) const {
-  const R from_up = of_views(waves_.down), from_down = of_views(waves_.up);
+RowsOf<Number> Layer<Number>::collected_in_series(const std::vector<Mirrored<R>>& series) const {
+  const R sums = turned(0.5 * of_views(waves_.up + waves_.down)),
+          differences = turned(0.5 * of_views(waves_.up - waves_.down));
   const auto rate = times(depth_, rates()), start = damping(waves_.bottom, depth_);
-  R collected = linear(
-      [this](const Rows& views) -> Rows { return Rows::Zero(views.rows(), lights_); }, from_up);
-  for (std::size_t j = 0; j < series.size(); ++j) {
-    std::vector<C> factor;
-    for (auto v = static_cast<std::size_t>(lights_); v < rate.size(); ++v)
-      factor.push_back(depth_ * (start[v] * moment(rate[v], j + 1)));
-    collected += flatspeckle::mc::scaled(
-        factor, R(contracted(from_down, series[j].down) + contracted(from_up, series[j].up)));
+  std::vector<std::vector<C>> factors(series.size());
+  for (auto v = static_cast<std::size_t>(lights_); v < rate.size(); ++v) {
+    const auto moment = moments(rate[v], static_cast<int>(series.size()));
+    for (std::size_t j = 0; j < series.size(); ++j)
+      factors[j].push_back(depth_ * (start[v] * moment[j]));
   }
+  R collected = 0.0 * product_transposed(sums, series.front().sum);
+  for (std::size_t j = 0; j < series.size(); ++j)
+    collected += scaled(factors[j], R(product_transposed(sums, series[j].sum) +
+                                      product_transposed(differences, series[j].difference)));
   return collected;
 }
 
 /// [view][light]; of the signs that rows have, one is turned back.
 template <typename Number>
 RowsOf<Number> Layer<Number>::contracted(const R& views, const R& lights) const {
-  const auto turned = [this](Rows rows) {
-    for (Eigen::Index j = even_; j < rows.cols(); ++j)
-      for (Eigen::Index i = 0; i < rows.rows(); ++i) rows(i, j) = -rows(i, j);
-    return rows;
+  return product_transposed(turned(views), lights);
+}
+
+template <typename Number>
+RowsOf<Number> Layer<Number>::turned(const R& rows) const {
+  const auto turn = [this](Rows r) {
+    r.rightCols(r.cols() - even_) = -r.rightCols(r.cols() - even_);
+    return r;
   };
-  return product_transposed(views, linear(turned, lights));
+  return linear(turn, rows);
 }
 
 /// Of waves along z from the bottom to the top.
@@ -218,27 +237,31 @@ std::vector<ComplexOf<Number>> Layer<Number>::rates() const {
   return list;
 }
 
-/// Of radiance between the halves: down = r lights' + reflected up, up likewise; (1 - r^2)^-1 sums
-/// it.
+/// Of radiance between the halves: down = r lights' + reflected up, up likewise, so that their sum
+/// is (1 - r)^-1 times that of the lights, and their difference (1 + r)^-1 times.
 template <typename Number>
 void Layer<Number>::double_depth() {
-  const M one = identity_like(lost_), sums = inverse(M(one - product(reflected_, reflected_))),
-          down = product(sums, transmitted_), up = product(reflected_, down);
+  const M reflects = reflected(), one = identity_like(reflects);
+  const FactorsOf<M> of_sums(M(one - reflects)), of_differences(M(one + reflects));
   const auto upper = damping(waves_.bottom, depth_), lower = damping(waves_.top, depth_);
   const BothWays<R> above = scaled(upper, leaves_), below = scaled(lower, leaves_);
-  const R meets_down = above.down + product(below.up, reflected_),
-          meets_up = below.up + product(above.down, reflected_);
+  const Mirrored<R> between{of_sums.after(above.down + below.up),
+                            of_differences.after(above.down - below.up)};
+  const auto [down, up] = between.both_ways();
   const auto lights = static_cast<std::size_t>(lights_);
   for (std::size_t l = 0; l < lights; ++l)
     for (std::size_t v = lights; v < upper.size(); ++v)
       multiply(collected_, static_cast<Eigen::Index>(v - lights), static_cast<Eigen::Index>(l),
                upper[v] * upper[l] + lower[v] * lower[l]);
-  collected_ += contracted(of_views(above.down), product(of_lights(meets_up), sums)) +
-                contracted(of_views(below.up), product(of_lights(meets_down), sums));
-  leaves_ = {below.down + product(meets_down, down), above.up + product(meets_up, down)};
-  lost_ = 2.0 * lost_ - product(lost_, lost_) - product(transmitted_, product(reflected_, up));
-  reflected_ += product(transmitted_, up);
-  transmitted_ = one - lost_;
+  collected_ += contracted(of_views(above.down), of_lights(up)) +
+                contracted(of_views(below.up), of_lights(down));
+  leaves_ = {below.down + product(down, transmitted_), above.up + product(up, transmitted_)};
+  const M by_sums = of_sums.before(transmitted_),
+          by_differences = of_differences.before(transmitted_);
+  equal_ += product(equal_, by_sums);
+  opposite_ += product(opposite_, by_differences);
+  const bool deep = value_of(depth_) > 1;
+  transmitted_ = deep ? M(0.5 * product(transmitted_, M(by_sums + by_differences))) : rest();
   depth_ = 2.0 * depth_;
 }
 

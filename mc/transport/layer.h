@@ -29,6 +29,12 @@ struct PairWavesOf {
 };
 using PairWaves = PairWavesOf<double>;
 
+/// Of both ends of a slab's paths.
+template <typename Number>
+struct EndWavesOf {
+  PairWavesOf<Number> lights, views;
+};
+
 /// What leaves the slab through its faces, a row for each light, and what views collect of it,
 /// [view][light]. Signs as above.
 template <typename Number>

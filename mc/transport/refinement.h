@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <string>
 #include <vector>
@@ -16,9 +17,11 @@ namespace flatspeckle::mc {
 /// ordinates to a relative tolerance.
 struct Refinement {
   double tolerance = 1e-6;
-  int first_order = 5;        ///< nodes of a panel
+  int least_order = 5;        ///< nodes of a panel
   int most_ordinates = 1500;  ///< of both ways together; past it the error tells what is missing
 
+  /// Where small tolerances are asked for, fewer nodes have never been enough.
+  int first_order() const { return std::max(least_order, tolerance > 1e-5 ? 5 : 7); }
   static int next_order(int order) { return (4 * order + 2) / 3; }
 };
 

@@ -136,21 +136,14 @@ PairWavesOf<Number> ScatteringMatricesOf<Number>::waves(const std::vector<Pair>&
 }
 
 template <typename Number>
-PairWavesOf<Number> ScatteringMatricesOf<Number>::lights(const Scene& scene,
-                                                         const std::vector<Pair>& pairs,
-                                                         Parity parity) const {
-  Waves found = waves(pairs, parity);
-  for (const Pair& pair : pairs) add(found, pair_wave(scene, pair, departure_));
-  return found;
-}
-
-template <typename Number>
-PairWavesOf<Number> ScatteringMatricesOf<Number>::views(const Scene& scene,
-                                                        const std::vector<Pair>& pairs,
-                                                        Parity parity) const {
-  Waves found = waves(pairs, parity);
-  std::swap(found.down, found.up);
-  for (const Pair& pair : pairs) add(found, pair_wave(scene, turned_round(pair), departure_));
+EndWavesOf<Number> ScatteringMatricesOf<Number>::ends(const Scene& scene,
+                                                      const std::vector<Pair>& lights,
+                                                      const std::vector<Pair>& views,
+                                                      Parity parity) const {
+  const Waves fed = waves(lights, parity), seen = views == lights ? fed : waves(views, parity);
+  Ends found{fed, {{}, {}, seen.up, seen.down}};
+  for (const Pair& pair : lights) add(found.lights, pair_wave(scene, pair, departure_));
+  for (const Pair& pair : views) add(found.views, pair_wave(scene, turned_round(pair), departure_));
   return found;
 }
 

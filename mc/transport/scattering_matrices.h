@@ -25,6 +25,7 @@ class ScatteringMatricesOf {
   using M = MatrixOf<Number>;
   using Law = LawOf<Number>;
   using Waves = PairWavesOf<Number>;
+  using Ends = EndWavesOf<Number>;
   using Parity = flatspeckle::mc::Parity;
 
   /// extinction: over mu_t, with C39's difference in wavenumber.
@@ -36,8 +37,8 @@ class ScatteringMatricesOf {
 
   /// What pairs feed, and what views collect: waves of lights and of views turned round; shares of
   /// mu_t.
-  Waves lights(const Scene& scene, const std::vector<Pair>& pairs, Parity parity) const;
-  Waves views(const Scene& scene, const std::vector<Pair>& pairs, Parity parity) const;
+  Ends ends(const Scene& scene, const std::vector<Pair>& lights, const std::vector<Pair>& views,
+            Parity parity) const;
 
   /// What these ordinates make of paths of two scatterings, of one light and one view by number.
   C double_scattering(const DoubleScatteringOf<Number>& paths, const Waves& lights,

@@ -70,8 +70,7 @@ std::vector<Complex> solved(const Slab<Number>& slab, const ChainGroup& group,
                             const ScatteringMatricesOf<Number>& matrices) {
   std::vector<ComplexOf<Number>> values(group.links.size());
   for (const auto parity : matrices.parities(group.q)) {
-    const auto lights = matrices.lights(slab.scene, group.lights, parity),
-               views = matrices.views(slab.scene, group.views, parity);
+    const auto [lights, views] = matrices.ends(slab.scene, group.lights, group.views, parity);
     const auto response =
         layer_response(matrices.transport(group.q, parity), slab.optical_depth(), lights, views);
     for (std::size_t i = 0; i < values.size(); ++i) {
@@ -100,7 +99,7 @@ class Refiner {
   }
 
   Refined refined() {
-    int order = std::max(refinement_.first_order, slab_.resolved.least_order());
+    int order = std::max(refinement_.first_order(), slab_.resolved.least_order());
     step(order);
     add_double_scattering();
     while (step(order = Refinement::next_order(order))) settle();

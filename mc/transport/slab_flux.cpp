@@ -33,10 +33,8 @@ Faces faces(const Scene& scene, double light, const AngularGrid& grid,
             const ScatteringMatrices& matrices) {
   const double depth = scene.medium.mu_t * scene.domain.depth;
   const auto leaving = [&](Parity parity) {
-    const Pair pair{light, light};
-    return layer_response(matrices.transport(0, parity), depth,
-                          matrices.lights(scene, {pair}, parity),
-                          matrices.views(scene, {}, parity));
+    const auto [lights, views] = matrices.ends(scene, {{light, light}}, {}, parity);
+    return layer_response(matrices.transport(0, parity), depth, lights, views);
   };
   const auto even = leaving(Parity::even), odd = leaving(Parity::odd);
   const auto exits = [&](const Rows& of_even, const Rows& of_odd) {
@@ -104,7 +102,7 @@ double worst_difference(const Refined& shares) {
 Refined refined_shares(const Scene& scene, double light, std::size_t bins, const ScatteringLaw& law,
                        const Refinement& refinement) {
   Refined found;
-  int order = std::max(refinement.first_order, law.least_order());
+  int order = std::max(refinement.first_order(), law.least_order());
   auto before = shares(scene, light, bins, law, order, found.ordinates);
   for (double last = 1, worst = 1;
        worst > refinement.tolerance || last > 100 * refinement.tolerance;) {

@@ -205,4 +205,21 @@ TEST_CASE("slabs in space: derivatives are finite differences of converged solut
   }
 }
 
+TEST_CASE("slabs in space: derivatives by the radius and the index of spheres") {
+  constexpr double depth = 200, radius = 0.2, index = 1.4;
+  const auto request = memory_effect_request(wavenumber, 0, {0.1}, {0.1 / depth});
+  const auto scene = [&](double wider, double denser) {
+    SceneSpec spec = hg_in_space(depth, 2, 0, 1);
+    spec.scatterer = "mie";
+    spec.dimension = 3;
+    spec.g = spec.albedo = std::nullopt;
+    spec.radius = radius + wider;
+    spec.index = std::to_string(index + denser) + "+0.01i";
+    return tests::in_space(spec, request);
+  };
+  check_slopes(BulkParameter::radius, radius / 4, false,
+               [&](double step) { return scene(step, 0); });
+  check_slopes(BulkParameter::index, 0.1, false, [&](double step) { return scene(0, step); });
+}
+
 }  // namespace flatspeckle::mc

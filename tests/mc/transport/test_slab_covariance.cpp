@@ -166,6 +166,20 @@ TEST_CASE("thin and thick slabs, also without absorption") {
   CHECK(one / two == doctest::Approx(two / three).epsilon(1e-6));
 }
 
+TEST_CASE("very deep slabs that absorb lose what diffuse light loses") {
+  const auto intensity = [](double optical_depth) {
+    const auto request = intensity_request({0.0}, {far_view(0)});
+    return slab_covariance(hg_slab(1000, {1000 / optical_depth, 0, 0.9}, request), false, {1e-8})
+        .value[0]
+        .real();
+  };
+  // isotropic in the plane: albedo = sqrt(1 - rate^2)
+  const double rate = std::sqrt(1 - 0.9 * 0.9);
+  for (const double optical_depth : {200.0, 400.0, 800.0})
+    CHECK(std::log(intensity(optical_depth) / intensity(optical_depth + 100)) ==
+          doctest::Approx(100 * rate).epsilon(1e-9));
+}
+
 TEST_CASE("the transport job states values with their differences as errors") {
   const auto request = memory_effect_request(wavenumber, 0, {0}, {0, 1e-4, 3e-4, 1e-3});
   const Scene scene = hg_slab(1000, {200, 0.5, 1}, request);
