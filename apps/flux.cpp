@@ -6,6 +6,7 @@
 #include "apps/subcommands.h"
 #include "core/session/session.h"
 #include "flatland/scene/scene_datasets.h"
+#include "mc/space/space_flux.h"
 #include "mc/transport/refinement.h"
 #include "mc/transport/slab_flux.h"
 
@@ -48,8 +49,10 @@ int flux(const Arguments& arguments) {
   add_medium_keys(keys, spec);
   keys.group("Lights and views");
   keys.add("light_angles", spec.light_angles, "Directions of the plane waves, from +z").angle();
-  keys.add("angle_bins", angle_bins, "Equal bins of the exit angle over (-pi, pi]").from(1, 100000);
-  keys.group("Methods");
+  keys.add("angle_bins", angle_bins,
+           "Equal bins of the exit angle over (-pi, pi], in space over (0, pi)")
+      .from(1, 100000);
+  add_dimension_key(keys, spec);
   keys.add(
           "method", method,
           "Monte Carlo, or of a slab by transport without chance; auto: the latter, unless samples "
@@ -65,9 +68,13 @@ int flux(const Arguments& arguments) {
   if (!by_mc) read_transport(keys, methods, spec, run);
   const StopRule stop = by_mc ? stop_rule(keys, run) : both_batches();
   const auto bins = static_cast<std::size_t>(keys.read(angle_bins));
-  const Scene scene = make_scene(keys, spec);
+  if (by_mc && spec.dimension == 3)
+    throw InputError("method", method, "walks in the plane; flux in space is by transport");
+  keys.read(spec.dimension);
+  const Scene scene = with_dimension(make_scene(keys, spec), spec);
+  const auto by_transport = scene.medium.dimension == 3 ? mc::space_flux_job : mc::slab_flux_job;
   const mc::FluxJob job = by_mc ? mc::flux_job(scene, bins, session.seed())
-                                : mc::slab_flux_job(scene, bins, {methods.tolerance});
+                                : by_transport(scene, bins, {methods.tolerance});
   if (!command.settle()) return ExitStatus::done;
   return session.run((by_mc ? "mc: " : "transport: ") + job.plan, {{"", "flux", job.batches, stop}},
                      "", [&](ResultFile& file) {

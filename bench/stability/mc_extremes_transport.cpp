@@ -27,13 +27,17 @@ Finding lossless_in_plane(const Bulk& bulk) {
   return {std::abs(left + std::expm1(-bulk.optical_depth)), 1e-9};
 }
 
+double lost_in_space(const Scene& scene, double optical_depth) {
+  const auto shares = mc::space_flux(scene, 0, {1e-6}).value;
+  return std::abs(shares[mc::reflected] + shares[mc::transmitted] + std::expm1(-optical_depth));
+}
+
 Finding lossless_in_space(const Bulk& bulk) {
-  const mc::SpaceSlab slab{2 * pi, bulk.optical_depth / bulk.depth, bulk.depth, bulk.albedo,
-                           mc::SpaceLaw([g = bulk.g](double cosine) {
-                             return grin::HenyeyGreenstein<3>{g}.density_at(cosine);
-                           })};
-  const auto flux = mc::space_flux(slab, 0, {1e-6});
-  return {std::abs(flux.reflected + flux.transmitted + std::expm1(-bulk.optical_depth)), 1e-9};
+  SceneSpec spec;
+  spec.scatterer = "hg";
+  spec.g = bulk.g;
+  const Scene scene = mc::in_space(hg_slab(bulk, intensity_request({0}, {far_view(0)})), spec);
+  return {lost_in_space(scene, bulk.optical_depth), 1e-9};
 }
 
 /// Intensities of Monte Carlo, in errors.
@@ -65,8 +69,7 @@ Finding lossless_spheres(double optical_depth, double radius) {
   spec.scatterer = "mie";
   spec.radius = radius;
   spec.index = "1.33";
-  const auto flux = mc::space_flux(mc::space_slab(mc::in_space(make_scene(spec), spec)), 0, {1e-6});
-  return {std::abs(flux.reflected + flux.transmitted + std::expm1(-optical_depth)), 1e-9};
+  return {lost_in_space(mc::in_space(make_scene(spec), spec), optical_depth), 1e-9};
 }
 
 /// Frequencies that differ by nothing to speak of, over the intensity; values are complex then.

@@ -100,7 +100,7 @@ FluxJob flux_job(const Scene& original, std::size_t angle_bins, std::uint64_t se
 FluxEstimates flux_estimates(const FluxJob& job, const GroupedSums& sums) {
   const Estimate all = jackknife(sums, sample_mean);
   const std::size_t size = flux_shares + job.angle_bins;
-  const double per_radian = static_cast<double>(job.angle_bins) / (2 * std::numbers::pi);
+  const double per_radian = static_cast<double>(job.angle_bins) / job.angles;
   FluxEstimates flux;
   Estimate* const shares[flux_shares] = {&flux.reflectance, &flux.transmittance, &flux.side_loss,
                                          &flux.absorptance};
@@ -144,20 +144,31 @@ const DatasetTable flux_table{
      {"absorptance", Data::estimate, "light_angle", "1", "share of the light that is absorbed"},
      {"direct_transmittance", Data::estimate, "light_angle", "1",
       "share of the light that meets no scatterer"},
-     {"exit_angle", Data::scale, "", "rad", "middle of the bin of exit directions"},
+     {"exit_angle", Data::scale, "", "rad",
+      "middle of the bin of exit directions, from +z; in space of polar angles"},
      {"exit_radiance", Data::estimate, "light_angle exit_angle", "1/rad",
       "share of the light scattered out per radian of exit direction"}}};
+
+namespace {
+
+/// Of bins over (-pi, pi), in space over (0, pi).
+std::vector<double> middles(std::size_t bins, int dimension) {
+  std::vector<double> angles;
+  for (std::size_t bin = 0; bin < bins; ++bin) {
+    const double turn = static_cast<double>(2 * bin + 1) / static_cast<double>(bins);
+    angles.push_back(std::numbers::pi * (dimension == 3 ? turn / 2 : turn - 1));
+  }
+  return angles;
+}
+
+}  // namespace
 
 void write_flux(ResultFile& file, const Scene& scene, const FluxEstimates& flux) {
   const std::size_t lights = scene.request.lights.size(),
                     bins = flux.exit_radiance.value.size() / lights;
   write_light_axis(file, scene.request.lights);
   const ResultGroup root(file, flux_table);
-  std::vector<double> middles;
-  for (std::size_t bin = 0; bin < bins; ++bin)
-    middles.push_back(std::numbers::pi *
-                      (static_cast<double>(2 * bin + 1) / static_cast<double>(bins) - 1));
-  root.put("exit_angle", middles);
+  root.put("exit_angle", middles(bins, scene.medium.dimension));
   root.put("reflectance", flux.reflectance);
   root.put("transmittance", flux.transmittance);
   root.put("absorptance", flux.absorptance);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,7 @@ struct FluxJob {
   BatchJob batches;  ///< samples: light paths of each light
   std::size_t lights = 0, angle_bins = 0;
   std::string plan;
+  double angles = 2 * std::numbers::pi;  ///< that the bins cover
 };
 
 /// For the lights of the scene's request; its views do not matter. angle_bins: equal bins of the
@@ -27,7 +29,7 @@ FluxJob flux_job(const Scene& scene, std::size_t angle_bins, std::uint64_t seed)
 /// the sides of a box, and what is absorbed. With the direct transmittance they add up to 1.
 struct FluxEstimates {
   Estimate reflectance, transmittance, side_loss, absorptance;
-  Estimate exit_radiance;  ///< [light][angle bin]: share per radian of exit angle
+  Estimate exit_radiance;  ///< [light][angle bin]: share per radian of exit angle, in space polar
 };
 FluxEstimates flux_estimates(const FluxJob& job, const GroupedSums& sums);
 

@@ -1,17 +1,16 @@
 #pragma once
 
-#include "mc/space/space_covariance.h"
+#include "flatland/scene/scene.h"
+#include "mc/estimators/flux.h"
+#include "mc/transport/refinement.h"
 
 namespace flatspeckle::mc {
 
-/// Shares of a plane wave's power that leave a slab in space diffusely; of the value and of its
-/// difference from fewer ordinates.
-struct SpaceFlux {
-  double reflected, transmitted;
-  double difference;  ///< the larger of the two
-};
+/// Of a scene in space, as slab_flux() of the plane: bins are of the polar angle, from +z, over
+/// (0, pi).
+Refined space_flux(const Scene& slab, std::size_t angle_bins, const Refinement& refinement);
 
-/// angle: of the light to the normal, below pi/2. The tolerance is absolute.
-SpaceFlux space_flux(const SpaceSlab& slab, double angle, const Refinement& refinement);
+/// The same as a job (two_batches()).
+FluxJob space_flux_job(const Scene& slab, std::size_t angle_bins, const Refinement& refinement);
 
 }  // namespace flatspeckle::mc

@@ -3,13 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <utility>
 
-#include "core/numbers/blas.h"
-#include "core/run/interrupt.h"
-#include "core/run/parallel.h"
 #include "mc/estimators/flux_walk.h"
 #include "mc/transport/chains.h"
+#include "mc/transport/flux_refinement.h"
 #include "mc/transport/scattering_matrices.h"
 
 namespace flatspeckle::mc {
@@ -65,55 +62,20 @@ double share_within(const Faces& faces, const AngularGrid& grid, double from, do
 }
 
 /// As the sums of a light in a FluxJob.
-std::vector<Complex> shares(const Scene& scene, double light, std::size_t bins,
-                            const ScatteringLaw& law, int order, int& ordinates) {
+FluxSolution solution(const Scene& scene, double light, std::size_t bins, const ScatteringLaw& law,
+                      int order) {
   const AngularGrid grid(light_foci({light, light}, law.width()), order, law.width());
   const ScatteringMatrices matrices(grid, law, scene.medium.albedo);
   const Faces exits = faces(scene, light, grid, matrices);
-  ordinates = static_cast<int>(2 * grid.size());
-  std::vector<Complex> found(flux_shares + bins);
-  found[reflected] =
+  FluxSolution found{std::vector<Complex>(flux_shares + bins), static_cast<int>(2 * grid.size())};
+  auto& shares = found.shares;
+  shares[reflected] =
       share_within(exits, grid, -pi, -pi / 2) + share_within(exits, grid, pi / 2, pi);
-  found[transmitted] = share_within(exits, grid, -pi / 2, pi / 2);
-  if (scene.medium.albedo < 1)
-    found[absorbed] =
-        1 - direct_transmittance(scene, light) - found[reflected] - found[transmitted];
+  shares[transmitted] = share_within(exits, grid, -pi / 2, pi / 2);
   const double width = 2 * pi / static_cast<double>(bins);
   for (std::size_t bin = 0; bin < bins; ++bin) {
     const double from = static_cast<double>(bin) * width - pi;
-    found[flux_shares + bin] = share_within(exits, grid, from, from + width);
-  }
-  return found;
-}
-
-/// Of what leaves through a face relative to itself; of bins relative to all that leaves, and a
-/// hundredth of it, for peaks of large disks would take a hundred times as long.
-double worst_difference(const Refined& shares) {
-  double worst = 0, leaving = 0;
-  for (const FluxShare share : {reflected, transmitted}) {
-    worst = std::max(worst, std::abs(shares.difference[share] / shares.value[share]));
-    leaving += shares.value[share].real();
-  }
-  for (std::size_t i = flux_shares; i < shares.value.size(); ++i)
-    worst = std::max(worst, std::abs(shares.difference[i]) / leaving / 100);
-  return worst;
-}
-
-Refined refined_shares(const Scene& scene, double light, std::size_t bins, const ScatteringLaw& law,
-                       const Refinement& refinement) {
-  Refined found;
-  int order = std::max(refinement.first_order(), law.least_order());
-  auto before = shares(scene, light, bins, law, order, found.ordinates);
-  for (double last = 1, worst = 1;
-       worst > refinement.tolerance || last > 100 * refinement.tolerance;) {
-    stop_if_interrupted();
-    if (4 * found.ordinates > 3 * refinement.most_ordinates) break;
-    order = Refinement::next_order(order);
-    found.value = shares(scene, light, bins, law, order, found.ordinates);
-    found.difference = found.value;
-    for (std::size_t i = 0; i < before.size(); ++i) found.difference[i] -= before[i];
-    last = std::exchange(worst, worst_difference(found));
-    before = found.value;
+    shares[flux_shares + bin] = share_within(exits, grid, from, from + width);
   }
   return found;
 }
@@ -121,28 +83,11 @@ Refined refined_shares(const Scene& scene, double light, std::size_t bins, const
 }  // namespace
 
 Refined slab_flux(const Scene& slab, std::size_t angle_bins, const Refinement& refinement) {
-  const auto lights = slab.request.lights.angles();
-  const std::size_t size = flux_shares + angle_bins;
-  Refined all{std::vector<Complex>(lights.size() * size),
-              std::vector<Complex>(lights.size() * size), 0};
-  if (slab.medium.mu_s == 0) {
-    for (std::size_t i = 0; i < lights.size(); ++i)
-      all.value[i * size + absorbed] = 1 - direct_transmittance(slab, lights[i]);
-    return all;
-  }
-  blas_single_thread();
+  if (slab.medium.mu_s == 0) return flux_of_absorber(slab, angle_bins);
   const ScatteringLaw law(slab);
-  std::vector<Refined> each(lights.size());
-  parallel_for(lights.size(), [&](std::size_t i) {
-    each[i] = refined_shares(slab, lights[i], angle_bins, law, refinement);
-  });
-  for (std::size_t i = 0; i < lights.size(); ++i) {
-    const auto at = static_cast<std::ptrdiff_t>(i * size);
-    std::copy(each[i].value.begin(), each[i].value.end(), all.value.begin() + at);
-    std::copy(each[i].difference.begin(), each[i].difference.end(), all.difference.begin() + at);
-    all.ordinates = std::max(all.ordinates, each[i].ordinates);
-  }
-  return all;
+  return refined_flux(
+      slab, refinement, std::max(refinement.first_order(), law.least_order()),
+      [&](double light, int order) { return solution(slab, light, angle_bins, law, order); });
 }
 
 FluxJob slab_flux_job(const Scene& slab, std::size_t angle_bins, const Refinement& refinement) {

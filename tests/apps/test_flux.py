@@ -34,6 +34,19 @@ class Flux(ProgramTest):
             spread = 36 * np.max(error) * 2 * np.pi / 36
             self.assertTrue(np.all(np.abs(through - file["transmittance"][:]) < spread))
 
+    def test_in_space(self):
+        """By polar angle; van de Hulst's slab."""
+        keys = {"domain": "slab", "depth": 2, "optical_depth": 2, "scatterer": "hg", "g": 0.75,
+                "albedo": 0.9, "dimension": 3}
+        with self.run_flux(keys, angle_bins=30) as file:
+            self.assertAlmostEqual(file["reflectance"][0], 0.09739, delta=5e-6)
+            radiance, angle = file["exit_radiance"][:], file["exit_angle"][:]
+            through = np.sum(radiance[:, angle < np.pi / 2], axis=1) * np.pi / 30
+            np.testing.assert_allclose(through, file["transmittance"][:], rtol=1e-4)
+            self.assertEqual(file.attrs["dimension"], 3)
+        done = self.call("flux", **keys, method="mc", out="y.h5", status=2)
+        self.assertIn("flux in space is by transport", done.stderr)
+
     def test_refused(self):
         for keys, words in (({"angle_bins": 0}, "angle_bins = 0"),
                             ({"view_angles": [0.1]}, "view_angles: unknown key"),

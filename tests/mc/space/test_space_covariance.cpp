@@ -3,7 +3,6 @@
 #include <doctest/doctest.h>
 
 #include "bench/oracles/space_pair_walk.h"
-#include "mc/space/space_flux.h"
 #include "tests/mc/space/slabs_in_space.h"
 
 namespace flatspeckle::mc {
@@ -71,17 +70,6 @@ TEST_CASE("slabs in space: known intensities, correlations and ranges") {
   };
   check(0, {0.058862, 0.5923, 0.4977, 0.4106}, 1.3950);
   check(0.5, {0.10584, 0.5627, 0.4675, 0.3820}, 1.3295);
-}
-
-TEST_CASE("slabs in space: flux") {
-  const auto known = space_flux(hg_space(1, 2, 0.75, 0.9), 0, {1e-7});  // van de Hulst 1980
-  CHECK(std::abs(known.reflected - 0.09739) < 0.5e-5);
-  CHECK(std::abs(known.transmitted + std::exp(-2.0) - 0.66096) < 0.5e-5);
-  for (const double g : {-0.5, 0.9, 0.98})
-    for (const double angle : {0.0, 1.3}) {
-      const auto all = space_flux(hg_space(1, 5, g, 1), angle, {1e-6});
-      CHECK(std::abs(all.reflected + all.transmitted + std::exp(-5 / std::cos(angle)) - 1) < 1e-9);
-    }
 }
 
 TEST_CASE("slabs in space: exchanged ends see the same, whatever the azimuths") {

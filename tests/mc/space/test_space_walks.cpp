@@ -7,7 +7,6 @@
 #include "grin/media/mie_sphere.h"
 #include "mc/estimators/brownian.h"
 #include "mc/estimators/gradient.h"
-#include "mc/space/space_flux.h"
 #include "tests/mc/space/scenes_in_space.h"
 
 namespace flatspeckle::mc {
@@ -106,18 +105,6 @@ TEST_CASE("slabs in space: spheres") {
   spec.index = "1";
   CHECK_THROWS_WITH_AS(tests::in_space(spec, tilted_pairs(0.2, 0, momenta)),
                        doctest::Contains("do not scatter"), InputError);
-}
-
-TEST_CASE("slabs in space: lossless spheres keep all power") {
-  SceneSpec spec = hg_in_space(depth, 5, 0, 1);
-  spec.g = spec.albedo = std::nullopt;
-  spec.scatterer = "mie";
-  spec.dimension = 3;
-  spec.radius = 1.5;
-  spec.index = "1.33";
-  const Scene scene = tests::in_space(spec, tilted_pairs(0.2, 0, momenta));
-  const auto all = space_flux(space_slab(scene), 0.3, {1e-5});
-  CHECK(std::abs(all.reflected + all.transmitted + std::exp(-5 / std::cos(0.3)) - 1) < 1e-9);
 }
 
 TEST_CASE("slabs in space: correlations after delays by both methods") {
