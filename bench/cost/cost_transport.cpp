@@ -9,6 +9,7 @@
 #include "bench/scenes/render_scenes.h"
 #include "core/run/stopwatch.h"
 #include "mc/estimators/covariance_estimator.h"
+#include "mc/transport/slab_covariance.h"
 
 namespace flatspeckle::bench {
 
@@ -83,6 +84,16 @@ CostRun error_against_depth() {
           }};
 }
 
+/// A doubling more, whenever the depth doubles.
+CostRun solution_against_depth() {
+  return run_of({"memory effect to 1e-6, transport", "optical depth", 2, 4096, 0,
+                 [](double depth) -> std::function<void()> {
+                   return [scene = make_scene(slab(depth))] {
+                     mc::slab_covariance(scene, false, {1e-6});
+                   };
+                 }});
+}
+
 /// box_points with 4 lights and so many views.
 SceneSpec box(double channels, const std::string& covariance) {
   constexpr int lights = 4;
@@ -125,8 +136,8 @@ CostRun render_against_depth() {
 }  // namespace
 
 std::vector<CostRun> transport_cost_runs() {
-  return {path_against_depth(), error_against_depth(), intensities_against_channels(),
-          full_against_channels(), render_against_depth()};
+  return {path_against_depth(),           error_against_depth(),   solution_against_depth(),
+          intensities_against_channels(), full_against_channels(), render_against_depth()};
 }
 
 }  // namespace flatspeckle::bench
