@@ -41,7 +41,8 @@ def reference_rows(error):
 
 def curve_rows(error, scene):
     curves = error.of_scene(scene)
-    ours = next(curve for curve in curves if curve["method"] in ("ours", "bidirectional"))
+    ours = next((curve for curve in curves if curve["method"] in ("ours", "bidirectional")),
+                curves[0])
     for curve in curves:
         if not has_slope(curve):
             seconds = seconds_to_target(curve)

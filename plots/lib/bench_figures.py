@@ -18,7 +18,8 @@ LOOKS = {  # the same method looks the same everywhere
 GUIDE = {"color": "0.6", "linewidth": 0.7, "zorder": 0}
 TITLES = {"box_points": "31 points in a box, OD 1", "box_cylinders": "67 cylinders in a box, OD 1",
           "box_points_absorbing": "absorbing points in a box", "slab_hg": "slab, OD 5, g 0.8",
-          "slab_two_term_hg": "slab, OD 5, two-term phase function",
+          "slab_two_term_hg": "slab, OD 5, two terms",
+          "slab_hg, in space": "slab in space, OD 5, g 0.8",
           "luneburg": "Luneburg ball", "waveguide": "ultrasonic waveguide",
           "slab": "slab, straight rays", "glass_ball": "glass ball in fog",
           "luneburg_even": "Luneburg ball, even light",
