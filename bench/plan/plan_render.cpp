@@ -52,8 +52,8 @@ Estimator steady(std::size_t pixels) {
   };
 }
 
-SampledKernel kernel_of(const RenderPlan& plan, const RenderScene& scene) {
-  const auto transport = transport_in(scene);
+SampledKernel kernel_of(const RenderPlan& plan, const RenderScene& scene,
+                        const std::shared_ptr<Transport>& transport) {
   const int pixels = transport->pixels();
   const TimeBins bins = plan.timed ? TimeBins{0, 20, 50} : TimeBins{};
   const auto run = [=, paths = path_kernel(plan, transport, scene)](std::uint64_t number,
@@ -75,8 +75,9 @@ PlanCase flag(const std::string& left_out, const std::string& name, const Render
     const RenderPlan special = render_plan(scene);
     RenderPlan general = special;
     generalise(general);
-    compare_sampled(row, kernel_of(general, scene), kernel_of(special, scene), numbers,
-                    Measure::sample, cpu_seconds);
+    compare_sampled(row, kernel_of(general, scene, transport_in(scene)),
+                    kernel_of(special, scene, transport_in(scene)), numbers, Measure::sample,
+                    cpu_seconds);
     return row;
   });
 }
@@ -102,6 +103,32 @@ PlanCase map_alone() {
   });
 }
 
+/// Light tracing through a slab, to an error of 1 % of what comes through.
+PlanCase depth_in(const std::string& name, const RenderScene& scene) {
+  return named("render", "importance in depth", name, [=](double cpu_seconds) {
+    PlanRow row{.per = "1 % error"};
+    const RenderRequest request{RenderMethod::light};
+    const Tracers tracers(scene, request);
+    const auto transport = tracers.make(RenderMethod::light).transport;
+    RenderPlan general = tracers.plan();
+    general.deep = false;
+    compare_sampled(row, kernel_of(general, scene, transport),
+                    kernel_of(tracers.plan(), scene, transport), Numbers::other, Measure::error,
+                    cpu_seconds);
+    return row;
+  });
+}
+
+RenderScene absorbing_slab() {
+  RenderScene scene{};
+  scene.stage.boundary = Box{Vec3(-200, -200, 0), Vec3(200, 200, 10)};
+  scene.stage.medium.mu_s = 0.9;
+  scene.stage.medium.mu_a = 0.1;
+  scene.lights = {BeamLight{{0, 0, 0}, {0, 0, 1}, 1}};
+  scene.sensors = {AreaDetector{{0, 0, 10}, {0, 1, 0}, 400, 400, {}, 1.57}};
+  return scene;
+}
+
 }  // namespace
 
 std::vector<PlanCase> render_plan_cases() {
@@ -125,8 +152,9 @@ std::vector<PlanCase> render_plan_cases() {
       flag("all but curves", box, alone, same,
            [](RenderPlan& p) {
              p = RenderPlan{};
-             p.curved = false;
+             p.curved = p.deep = false;
            }),
+      depth_in("slab of OD 10, albedo 0.9", absorbing_slab()),
       map_alone()};
 }
 

@@ -206,6 +206,25 @@ void add_maps(ExtremeRows& rows) {
            });
 }
 
+/// Of isotropic scattering and albedo 0.9: deep inside light dies out as exp(-kappa depth).
+double transmitted_deep(double optical_depth) {
+  constexpr double albedo = 0.9, known = 20;
+  double kappa = 0.5;  // albedo atanh(kappa) = kappa
+  for (int i = 0; i < 200; ++i) kappa = std::tanh(kappa / albedo);
+  return isotropic_slab(known, albedo).transmitted * std::exp(-kappa * (optical_depth - known));
+}
+
+void add_deep_slabs(ExtremeRows& rows) {
+  const auto row = [&](double depth, const std::string& name) {
+    rows.add(name, "transport's decay with depth, in errors", [=] {
+      return share_row({0.9 * depth, 0.1 * depth}, 1, false, RenderMethod::light, 20'000,
+                       transmitted_deep(depth), 0.05, 1e-4);
+    });
+  };
+  row(50, "slab of OD 50, albedo 0.9: 4e-12 comes through");
+  row(200, "slab of OD 200, albedo 0.9: 3e-46 comes through");
+}
+
 }  // namespace
 
 std::vector<ExtremeCase> render_extremes() {
@@ -213,6 +232,7 @@ std::vector<ExtremeCase> render_extremes() {
   add_furnaces(rows);
   add_slabs(rows);
   add_maps(rows);
+  add_deep_slabs(rows);
   return std::move(rows).rows();
 }
 

@@ -7,6 +7,7 @@
 #include "bench/oracles/multiprecision.h"
 #include "bench/stability/extreme_rows.h"
 #include "flatland/media/medium.h"
+#include "grin/media/diffusion_rate.h"
 #include "mc/ends/end_factors.h"
 #include "mc/estimators/single_scattering.h"
 #include "mc/speckle/speckle_field.h"
@@ -71,7 +72,7 @@ Finding decay_row(double albedo, double g) {
   const long double exact = g == 0
                                 ? std::sqrt((1 - static_cast<long double>(albedo)) * (1 + albedo))
                                 : decay_rate(albedo, g);
-  return {static_cast<double>(std::abs(diffusion_rate(albedo, g) / exact - 1)), 1e-9};
+  return {static_cast<double>(std::abs(grin::diffusion_rate(albedo, g, 2) / exact - 1)), 1e-9};
 }
 
 /// Over an area of k L = 1e6 each way, without attenuation: sinc times area.

@@ -25,6 +25,7 @@ class Bidirectional {
         random_(random),
         film_(film),
         counts_(counts),
+        family_(family(transport, film)),
         promised_(transport.sensors.size()) {}
 
   /// One light path and one path from each sensor; `stratum` in (0, 1) says through which pixel.
@@ -43,6 +44,14 @@ class Bidirectional {
   /// The root of what a search for ways through the body's surface costs more than another join.
   static constexpr double search_cost = plan.curved ? 1 : 10;
 
+  using Family = std::conditional_t<plan.deep, LightFamily, LonePath>;
+  static Family family(const Transport& transport, [[maybe_unused]] Film& film) {
+    if constexpr (plan.deep)
+      return Family(*transport.depth, film.drift);
+    else
+      return {};
+  }
+
   template <class Use>
   void for_each_sensor(const Use& use) {
     for (at_ = 0; at_ < promised_.size(); ++at_) use();
@@ -53,34 +62,41 @@ class Bidirectional {
     vertices_.clear();
     const EndPosition end = transport_.lights.sample_position(space_, random_);
     const PathVertex start = end_vertex(transport_.strategies, end);
-    for_each_sensor([&] { join_to_sensor(start); });
+    join_to_sensors(start);
     const EndDirection first = transport_.lights.sample_direction(end, random_);
+    const auto choice = [&](const EndPosition& at, const PathPoint& from) {
+      return sensor_choice(at, from);
+    };
     const auto left = [&](const PathVertex& last, const PathVertex& before) {
       if (end.is_beam && last.vertices == 2) return;  // summed apart (unscattered_beams.h)
       for_each_sensor([&] {
-        arrive(sensor(), last, before, transport_.strategies.most_sensor(),
+        arrive(sensor(), choice, last, before, transport_.strategies.most_sensor(),
                [&](const EndHit& hit) { return hit.direction.pixel; });
       });
     };
     const double last_kept = sample_last_kept();
     const auto collided = [&](const PathVertex& vertex) {
       ++counts_.light_collisions;
-      for_each_sensor([&] { join_to_sensor(vertex); });
+      join_to_sensors(vertex);
       if (vertex.vertices < last_kept) vertices_.offer(vertex, random_);
     };
     LightTally tally(film_.energy);
-    walk<plan>(transport_, space_, transport_.lights, start, first,
-               transport_.strategies.short_light, random_, counts_, tally, collided, left);
+    walk<plan>(transport_, space_, never_chosen, start, first, transport_.strategies.short_light,
+               random_, counts_, family_, tally, collided, left);
     tally.end_path();
   }
 
   void walk_from_sensor(double stratum) {
+    if (transport_.strategies.short_sensor && sensor().can_be_hit()) return;  // it ends at once
     const EndPosition end = sensor().sample_position(space_, random_, stratum);
     const PathVertex start = end_vertex(transport_.strategies, end);
     const EndDirection first = sensor().sample_direction(end, random_, stratum);
     pixel_ = first.pixel;
+    const auto choice = [&](const EndPosition& at, const PathPoint& from) {
+      return sensor_choice(at, from);
+    };
     const auto left = [&](const PathVertex& last, const PathVertex& before) {
-      arrive(transport_.lights, last, before, transport_.strategies.most_light(),
+      arrive(transport_.lights, never_chosen, last, before, transport_.strategies.most_light(),
              [&](const EndHit&) { return pixel_; });
     };
     const double last_kept = sample_last_kept();
@@ -88,9 +104,21 @@ class Bidirectional {
       join_to_light(vertex);
       if (vertex.vertices < last_kept) join_to_light_path(vertex);
     };
+    LonePath alone;
     const NoTally tally;
-    walk<plan>(transport_, space_, sensor(), start, first, transport_.strategies.short_sensor,
-               random_, counts_, tally, collided, left);
+    walk<plan>(transport_, space_, choice, start, first, transport_.strategies.short_sensor,
+               random_, counts_, alone, tally, collided, left);
+  }
+
+  /// Joins to sensors are considered where light has a chance to come there: that counts in their
+  /// density as the choice of a place does.
+  double chance_considered(const PathPoint& from) const {
+    if constexpr (plan.deep)
+      return transport_.depth->chance_to_join(from) * transport_.depth->share_of_joins(at_);
+    return 1;
+  }
+  double sensor_choice(const EndPosition& end, const PathPoint& from) const {
+    return sensor().choice(end, from.x) * chance_considered(from);
   }
 
   /// A number of vertices; those that have fewer are kept for joins to the other path.
@@ -100,13 +128,13 @@ class Bidirectional {
   }
 
   /// A path that reached the boundary meets the other ends there.
-  template <class End, class Pixel>
-  void arrive(const End& ends, const PathVertex& last, const PathVertex& before, int more,
-              const Pixel& pixel) {
+  template <class End, class Choice, class Pixel>
+  void arrive(const End& ends, const Choice& choice, const PathVertex& last,
+              const PathVertex& before, int more, const Pixel& pixel) {
     ends.hit(space_, last.point.x, last.arrived, [&](const EndHit& hit) {
       PathVertex here = last;
       here.density *= std::abs(hit.position.inward.dot(last.arrived));
-      here.first_of_other *= heuristic(ends.choice(hit.position, before.point.x));
+      here.first_of_other *= heuristic(choice(hit.position, before.point));
       const double others = rivals_of_hit(
           transport_.strategies, here, hit.position.position_density, hit.direction.density, more);
       const double value = here.weight * hit.value / (1 + others);
@@ -115,8 +143,22 @@ class Bidirectional {
     });
   }
 
-  void join_to_sensor(const PathVertex& y) {
-    const EndPosition end = sensor().choose_position(space_, y.point.x, random_);
+  void join_to_sensors(const PathVertex& y) {
+    if constexpr (plan.deep) {
+      const double draw = random_.uniform();
+      if (draw >= transport_.depth->most_joins()) return;
+      const double chance = transport_.depth->chance_to_join(y.point);
+      for_each_sensor([&] {
+        const double considered = chance * transport_.depth->share_of_joins(at_);
+        if (draw < considered) join_to_sensor(y, considered);
+      });
+    } else {
+      for_each_sensor([&] { join_to_sensor(y, 1); });
+    }
+  }
+  void join_to_sensor(const PathVertex& y, double considered) {
+    EndPosition end = sensor().choose_position(space_, y.point.x, random_);
+    end.choice *= considered;
     const PathVertex z = end_vertex(transport_.strategies, end);
     join_to_end(y, z);
   }
@@ -228,6 +270,7 @@ class Bidirectional {
   RandomStream& random_;
   Film& film_;
   TransportCounts& counts_;
+  Family family_;
   LightVertices vertices_;  ///< that are kept for joins
   std::array<double, LightVertices::capacity> of_each_{};
   std::vector<double> promised_;  ///< to each sensor

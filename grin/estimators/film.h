@@ -41,6 +41,7 @@ class Film {
   }
 
   EnergyBalance energy;  ///< of light paths that are walked to their ends
+  double drift = 0;      ///< of the same (DepthImportance::Drift)
 
  private:
   /// A contribution within the edges is shared between the two bins whose centres are next to it

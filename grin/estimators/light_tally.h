@@ -4,17 +4,28 @@
 
 #include "grin/estimators/energy_balance.h"
 #include "grin/estimators/path_vertex.h"
+#include "grin/space/flight_log.h"
 #include "grin/space/space.h"
 
 namespace flatspeckle::grin {
+
+/// A flight, stretched where the space stretches any.
+template <Space S>
+Flight flown(const S& space, const PathPoint& from, const Vec3& direction, RandomStream& random,
+             FlightLog* log, const Vec3* rise) {
+  if constexpr (requires { space.fly(from, direction, random, log, rise); })
+    return space.fly(from, direction, random, log, rise);
+  else
+    return space.fly(from, direction, random, log);
+}
 
 /// Of a path whose power is nobody's concern. `from`: the vertex that a flight began at, whose
 /// weight is the power before the flight.
 struct NoTally {
   template <Space S>
-  Flight fly(const S& space, const PathVertex& from, const Vec3& direction,
-             RandomStream& random) const {
-    return space.fly(from.point, direction, random);
+  Flight fly(const S& space, const PathVertex& from, const Vec3& direction, RandomStream& random,
+             const Vec3* rise) const {
+    return flown(space, from.point, direction, random, nullptr, rise);
   }
   void emitted(const PathVertex&) const {}
   void left(const PathVertex&, const Flight&) const {}
@@ -22,6 +33,7 @@ struct NoTally {
   void cut(const PathVertex&, const Flight&) const {}
   void absorbed(const PathVertex&, const Flight&, double) const {}
   void ended(const PathVertex&, const Flight&, double) const {}
+  void reweighed(Part, bool, double) const {}
 };
 
 /// Books the power of a light path that is walked to its end.
@@ -51,6 +63,12 @@ class LightTally : public NoTally {
   void ended(const PathVertex& from, const Flight& flight, double albedo) {
     const double share = 1 - flight.weight + flight.weight * (1 - albedo);
     absorb(from.weight / share, flight, albedo);
+  }
+
+  /// Chance took so much of the weight, or gave it: 0 on average. Where it would end most often
+  /// takes it up, so that all adds up.
+  void reweighed(Part part, bool absorbs, double power) {
+    path_.add(absorbs ? absorbed_in(part) : Fate::scattered, power);
   }
 
   void end_path() {

@@ -19,14 +19,16 @@ class MapTally : public LightTally {
       : LightTally(energy), cells_(cells), transport_(transport), sums_(sums), counts_(counts) {}
 
   template <Space S>
-  Flight fly(const S& space, const PathVertex& from, const Vec3& direction, RandomStream& random) {
+  Flight fly(const S& space, const PathVertex& from, const Vec3& direction, RandomStream& random,
+             const Vec3* rise) {
     log_.clear();
-    const Flight flight = space.fly(from.point, direction, random, &log_);
+    const Flight flight = flown(space, from.point, direction, random, &log_, rise);
+    const double weight = from.weight * flight.stretched;
     for (const FlightLeg& leg : log_) {
       const ScatteringMedium& medium = transport_.medium(leg.start.part);
       const double apart = std::max(cells_.spacing(), leg.length / most_points);
       space.for_points(leg, apart, random,
-                       [&](const Vec3& x, double length) { add(x, from.weight * length, medium); });
+                       [&](const Vec3& x, double length) { add(x, weight * length, medium); });
     }
     return flight;
   }
@@ -57,11 +59,12 @@ class MapTally : public LightTally {
 template <RenderPlan plan, Space S, class Tally>
 void walk_light(const Transport& transport, const S& space, RandomStream& random, Tally& tally,
                 TransportCounts& counts) {
+  LonePath alone;
   const EndPosition end = transport.lights.sample_position(space, random);
   const PathVertex start = end_vertex(transport.strategies, end);
   const EndDirection first = transport.lights.sample_direction(end, random);
   walk<plan>(
-      transport, space, transport.lights, start, first, false, random, counts, tally,
+      transport, space, never_chosen, start, first, false, random, counts, alone, tally,
       [](const PathVertex&) {}, [](const PathVertex&, const PathVertex&) {});
   tally.end_path();
 }

@@ -31,8 +31,8 @@ PathKernel curved_kernel(const RenderPlan& plan, std::shared_ptr<const Transport
                          std::shared_ptr<const CurvedSpace> space, bool random_phase) {
   return with_constant(plan.scatters, [&](auto scatters) {
     return with_constant(plan.timed, [&](auto timed) {
-      return kernel_of<RenderPlan{true, scatters, true, true, true, timed}>(transport, space,
-                                                                            random_phase);
+      return kernel_of<RenderPlan{true, scatters, true, true, true, timed, false}>(transport, space,
+                                                                                   random_phase);
     });
   });
 }

@@ -40,12 +40,17 @@ template <bool body>
 PathKernel straight_kernel_of_body(const RenderPlan& plan,
                                    std::shared_ptr<const Transport> transport, double excess) {
   return with_constant(plan.timed, [&](auto timed) {
+    if (plan.deep)
+      return with_constant(plan.gridded, [&](auto gridded) {
+        return straight_kernel_of<RenderPlan{false, true, true, gridded, body, timed, true}>(
+            transport, excess);
+      });
     if (plan.gridded)
-      return straight_kernel_of<RenderPlan{false, true, true, true, body, timed}>(transport,
-                                                                                  excess);
+      return straight_kernel_of<RenderPlan{false, true, true, true, body, timed, false}>(transport,
+                                                                                         excess);
     return with_constant(plan.scatters, [&](auto scatters) {
       return with_constant(plan.absorbs, [&](auto absorbs) {
-        return straight_kernel_of<RenderPlan{false, scatters, absorbs, false, body, timed}>(
+        return straight_kernel_of<RenderPlan{false, scatters, absorbs, false, body, timed, false}>(
             transport, excess);
       });
     });

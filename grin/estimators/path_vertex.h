@@ -110,16 +110,8 @@ inline Rivals fewer_of_ours(const PathVertex& last, double first, double rest, i
   return fewer;
 }
 
-/// Where a flight from `here` ended. The direction was drawn with `direction_density` (1 of a beam;
-/// phase functions have the same both ways). `choice`: of `here` if that is our end and were chosen
-/// from there. On a surface, `density` still lacks the cosine there.
-inline PathVertex arrived(const Strategies& strategies, const PathVertex& here,
-                          const Flight& flight, double direction_density, double choice,
-                          double index) {
-  const double turned = index / here.index * (index / here.index);
-  // what weights take for |J| of a way that no strategy joins cancels
-  const double spreading = !flight.is_joinable ? 1 : std::max(flight.spreading, 1e-60);
-  const double attenuation = bounded_attenuation(flight.optical_depth);
+/// Where a flight from `here` ended, before it is weighed.
+inline PathVertex moved(const PathVertex& here, const Flight& flight, double index) {
   PathVertex next;
   next.point = flight.point;
   next.arrived = flight.direction;
@@ -127,6 +119,19 @@ inline PathVertex arrived(const Strategies& strategies, const PathVertex& here,
   next.weight = here.weight * flight.weight;
   next.optical_path = here.optical_path + flight.optical_path;
   next.vertices = here.vertices + 1;
+  return next;
+}
+
+/// What weights need to know of the flight to `next`. The direction was drawn with
+/// `direction_density` (1 of a beam; phase functions have the same both ways). `choice`: of `here`
+/// if that is our end and were chosen from there. On a surface, `density` still lacks the cosine
+/// there.
+inline void weigh(PathVertex& next, const Strategies& strategies, const PathVertex& here,
+                  const Flight& flight, double direction_density, double choice) {
+  const double turned = next.index / here.index * (next.index / here.index);
+  // what weights take for |J| of a way that no strategy joins cancels
+  const double spreading = !flight.is_joinable ? 1 : std::max(flight.spreading, 1e-60);
+  const double attenuation = bounded_attenuation(flight.optical_depth);
   next.kept = here.kept * strategies.kept;
   next.density = direction_density * attenuation / spreading;
   next.back = attenuation / (spreading * turned) * here.cosine(flight.start_direction);
@@ -136,7 +141,6 @@ inline PathVertex arrived(const Strategies& strategies, const PathVertex& here,
   const bool can_be_joined = flight.is_joinable && !(here.end && here.end->is_beam);
   const double share = flight.passages.count > 0 ? found_share : 1;
   next.first_of_other = can_be_joined ? heuristic(share * choice) : 0;
-  return next;
 }
 
 }  // namespace flatspeckle::grin

@@ -52,14 +52,14 @@ Estimate own_part(const Estimate& all, const Pixels& pixels, std::size_t per_pix
 }
 
 /// theta(samples, sums of all pixels, each by its share of the area).
-Estimate of_all_pixels(const GroupedSums& sums, const Pixels& pixels, const Estimator& theta) {
-  return jackknife(sums, [&](double samples, std::span<const Complex> all) {
+Estimator of_all_pixels(const Pixels& pixels, const Estimator& theta) {
+  return [=](double samples, std::span<const Complex> all) {
     std::vector<Complex> means(pixels.sums());
     const auto own = all.subspan(pixels.first * pixels.sums(), pixels.count() * pixels.sums());
     for (std::size_t i = 0; i < own.size(); ++i)
       means[i % pixels.sums()] += pixels.share(i / pixels.sums()) * own[i];
     return theta(samples, means);
-  });
+  };
 }
 
 Estimate bounded(Estimate whole) {
@@ -67,19 +67,20 @@ Estimate bounded(Estimate whole) {
   return whole;
 }
 
-Estimate steady_mean(const GroupedSums& sums, const Pixels& pixels, double factor) {
+Estimate steady_mean(const RenderJob& job, const GroupedSums& sums, const Pixels& pixels,
+                     double factor) {
   const auto mean = [&](double samples, std::span<const Complex> all) {
     return std::vector{factor / samples * sum(all.first(pixels.parts()))};
   };
-  return bounded(of_all_pixels(sums, pixels, mean));
+  return bounded(job.estimate(sums, of_all_pixels(pixels, mean)));
 }
 
-void add_pulses(SensorResult& result, const GroupedSums& sums, const Pixels& pixels,
-                double factor) {
+void add_pulses(SensorResult& result, const RenderJob& job, const GroupedSums& sums,
+                const Pixels& pixels, double factor) {
   const auto means = [&](double samples, std::span<const Complex> all) {
     return sample_mean(samples / factor, all.first(pixels.parts()));
   };
-  const Estimate parts = of_all_pixels(sums, pixels, means);
+  const Estimate parts = job.estimate(sums, of_all_pixels(pixels, means));
   const std::size_t bins = pixels.parts() - 2;
   result.pulse_before = bounded(part(parts, 0, 1));
   result.pulse = bounded(part(parts, 1, bins));
@@ -94,10 +95,11 @@ std::array<Complex, 2> path_means(const Pixels& pixels, std::span<const Complex>
 }
 
 void add_paths(SensorResult& result, const GroupedSums& sums, const Pixels& pixels) {
-  result.paths = of_all_pixels(sums, pixels, [&](double, std::span<const Complex> all) {
+  const auto means = [&](double, std::span<const Complex> all) {
     const auto [mean, square] = path_means(pixels, all);
     return std::vector{mean, square};
-  });
+  };
+  result.paths = jackknife(sums, of_all_pixels(pixels, means));
   result.pixel_paths = jackknife(sums, [&](double, std::span<const Complex> all) {
     std::vector<Complex> means;
     for (std::size_t i = pixels.first; i < pixels.first + pixels.count(); ++i) {
@@ -108,16 +110,16 @@ void add_paths(SensorResult& result, const GroupedSums& sums, const Pixels& pixe
   });
 }
 
-SensorResult sensor_result(const DatasetTable& table, const Pixels& pixels,
+SensorResult sensor_result(const DatasetTable& table, const Pixels& pixels, const RenderJob& job,
                            const RenderedPicture& all, const GroupedSums& sums) {
   SensorResult result{.picture = {.bins = own_part(all.bins, pixels, pixels.bins.count),
                                   .steady = own_part(all.steady, pixels, 1),
                                   .before = own_part(all.before, pixels, 1),
                                   .after = own_part(all.after, pixels, 1)},
-                      .mean = steady_mean(sums, pixels, 1)};
+                      .mean = steady_mean(job, sums, pixels, 1)};
   const bool has_total = has_row(table, "total");
-  if (has_total) result.total = steady_mean(sums, pixels, pixels.of.area);
-  if (pixels.bins.count > 1) add_pulses(result, sums, pixels, has_total ? pixels.of.area : 1);
+  if (has_total) result.total = steady_mean(job, sums, pixels, pixels.of.area);
+  if (pixels.bins.count > 1) add_pulses(result, job, sums, pixels, has_total ? pixels.of.area : 1);
   if (pixels.bins.moments) add_paths(result, sums, pixels);
   return result;
 }
@@ -181,7 +183,7 @@ RenderResult render_result(const RenderScene& scene, const RenderJob& job,
   std::size_t first = 0;
   for (const Sensor& sensor : scene.sensors) {
     const Pixels pixels{pixels_of(sensor), first, job.bins};
-    result.push_back(sensor_result(table_of(sensor), pixels, all, sums));
+    result.push_back(sensor_result(table_of(sensor), pixels, job, all, sums));
     first += pixels.count();
   }
   return result;

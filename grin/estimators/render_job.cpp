@@ -8,6 +8,7 @@
 #include <sstream>
 #include <string>
 
+#include "core/numbers/control_variate.h"
 #include "core/numbers/random.h"
 #include "grin/estimators/map_datasets.h"
 #include "grin/estimators/method_choice.h"
@@ -44,20 +45,20 @@ std::string described(const RenderScene& scene, const RenderRequest& request, Re
 
 /// From [pixel][sum] `count` values for each pixel: use(sums of the pixel, its values).
 template <class Use>
-Estimate for_each_pixel(const GroupedSums& sums, std::size_t pictures, const TimeBins& bins,
-                        std::size_t count, const Use& use) {
+Estimator for_each_pixel(std::size_t pictures, const TimeBins& bins, std::size_t count,
+                         const Use& use) {
   const auto per_pixel = static_cast<std::size_t>(bins.sums());
-  return jackknife(sums, [=](double samples, std::span<const Complex> total) {
+  return [=](double samples, std::span<const Complex> total) {
     std::vector<Complex> values(pictures / per_pixel * count);
     for (std::size_t pixel = 0; pixel < pictures / per_pixel; ++pixel)
       use(samples, total.subspan(pixel * per_pixel, per_pixel),
           std::span(values).subspan(pixel * count, count));
     return values;
-  });
+  };
 }
 
-Estimate steady_picture(const GroupedSums& sums, std::size_t pictures, const TimeBins& bins) {
-  return for_each_pixel(sums, pictures, bins, 1,
+Estimator steady_picture(std::size_t pictures, const TimeBins& bins) {
+  return for_each_pixel(pictures, bins, 1,
                         [parts = static_cast<std::size_t>(bins.parts())](
                             double samples, std::span<const Complex> own, std::span<Complex> to) {
                           for (const Complex part : own.first(parts)) to[0] += part / samples;
@@ -65,9 +66,9 @@ Estimate steady_picture(const GroupedSums& sums, std::size_t pictures, const Tim
 }
 
 /// `count` of the sums of each pixel.
-Estimate some_sums(const RenderJob& job, const GroupedSums& sums, int first, int count) {
+Estimator some_sums(const RenderJob& job, int first, int count) {
   return for_each_pixel(
-      sums, job.pictures, job.bins, static_cast<std::size_t>(count),
+      job.pictures, job.bins, static_cast<std::size_t>(count),
       [first](double samples, std::span<const Complex> own, std::span<Complex> to) {
         for (std::size_t i = 0; i < to.size(); ++i)
           to[i] = own[static_cast<std::size_t>(first) + i] / samples;
@@ -78,6 +79,10 @@ std::string described_steps(const RenderScene& scene, const RenderPlan& plan) {
   std::ostringstream text;
   if (plan.curved) text << "; steps of " << scene.step;
   return text.str();
+}
+
+Estimate estimated(const GroupedSums& sums, const Estimator& theta, bool has_drift) {
+  return has_drift ? controlled_jackknife(sums, theta, sums.size() - 1) : jackknife(sums, theta);
 }
 
 /// Nothing of a single one.
@@ -159,20 +164,23 @@ RenderJob render_job(const RenderScene& scene, const RenderRequest& request, std
   job.pictures = static_cast<std::size_t>(pixels) * scene.bins.sums();
   const bool books = walks_light(tracer.method) && pixels > 0;
   job.has_energy = books || map;
-  job.batches.size = job.first_of_map() + (map ? sums_per_cell * cells(*scene.map) : 0);
+  job.has_drift = books && tracers.has_drift();
+  job.batches.size =
+      job.first_of_map() + (map ? sums_per_cell * cells(*scene.map) : 0) + (job.has_drift ? 1 : 0);
   const int paths = paths_per_batch(tracer, tracers.cost_of_flight(), job.batches.size);
   job.batches.samples_per_batch = paths;
   const auto counts = std::make_shared<TransportCounts>();
   job.counts = counts;
   const auto counting = std::make_shared<std::mutex>();
   job.batches.run = [=, bins = scene.bins, pictures = job.pictures, has_energy = job.has_energy,
-                     first_of_map = job.first_of_map()](std::uint64_t number,
-                                                        std::span<Complex> sums) {
+                     has_drift = job.has_drift, first_of_map = job.first_of_map()](
+                        std::uint64_t number, std::span<Complex> sums) {
     Film film(pixels, bins, sums.first(pictures));
     RandomStream random(seed, static_cast<std::uint64_t>(Stream::render), number);
     TransportCounts of_batch;
     EnergyBalance of_map;
     if (pixels > 0) tracer.add(paths, random, film, of_batch);
+    if (has_drift) sums.back() += film.drift;
     if (map) {
       RandomStream own(seed, static_cast<std::uint64_t>(Stream::light_map), number);
       map(paths, own, sums.subspan(first_of_map), of_map, of_batch);
@@ -182,23 +190,29 @@ RenderJob render_job(const RenderScene& scene, const RenderRequest& request, std
     const std::lock_guard lock(*counting);
     *counts += of_batch;
   };
-  job.batches.relative_error = [=, cells = scene.map, pictures = job.pictures, bins = scene.bins,
-                                first_of_map = job.first_of_map()](const GroupedSums& sums) {
-    const double of_pictures =
-        largest_error(tracer.transport->sensors, steady_picture(sums, pictures, bins));
-    return cells ? std::max(of_pictures, relative_error(fluence(sums, first_of_map, *cells)))
-                 : of_pictures;
-  };
+  job.batches.relative_error =
+      [=, cells = scene.map, steady = steady_picture(job.pictures, scene.bins),
+       has_drift = job.has_drift, first_of_map = job.first_of_map()](const GroupedSums& sums) {
+        const double of_pictures =
+            largest_error(tracer.transport->sensors, estimated(sums, steady, has_drift));
+        return cells ? std::max(of_pictures, relative_error(fluence(sums, first_of_map, *cells)))
+                     : of_pictures;
+      };
   return job;
+}
+
+Estimate RenderJob::estimate(const GroupedSums& sums, const Estimator& theta) const {
+  return estimated(sums, theta, has_drift);
 }
 
 RenderedPicture rendered_picture(const RenderJob& job, const GroupedSums& sums) {
   const TimeBins& bins = job.bins;
-  RenderedPicture picture{.bins = some_sums(job, sums, bins.count > 1 ? 1 : 0, bins.count),
-                          .steady = steady_picture(sums, job.pictures, bins)};
+  RenderedPicture picture{
+      .bins = job.estimate(sums, some_sums(job, bins.count > 1 ? 1 : 0, bins.count)),
+      .steady = job.estimate(sums, steady_picture(job.pictures, bins))};
   if (bins.count == 1) return picture;
-  picture.before = some_sums(job, sums, 0, 1);
-  picture.after = some_sums(job, sums, bins.count + 1, 1);
+  picture.before = job.estimate(sums, some_sums(job, 0, 1));
+  picture.after = job.estimate(sums, some_sums(job, bins.count + 1, 1));
   return picture;
 }
 

@@ -13,14 +13,18 @@ namespace flatspeckle::grin {
 
 /// samples: light paths and as many paths of each sensor. Sums of a batch, imaginary part 0:
 /// [pixel][TimeBins::sums] with the pixels of one sensor after the other; then [fate], where light
-/// paths are walked to their ends; then those of a map (MapKernel).
+/// paths are walked to their ends; then those of a map (MapKernel), and last a control variate
+/// (DepthImportance::Drift).
 struct RenderJob {
   BatchJob batches;
   TimeBins bins;
   std::size_t pictures = 0;  ///< sums of the pixels
   bool has_energy = false;   ///< sums by Fate
+  bool has_drift = false;    ///< the last of the sums
   std::string plan;          ///< the method, what is left out and what is not
   std::size_t first_of_map() const { return pictures + (has_energy ? EnergyBalance::size : 0); }
+  /// Of pictures: jackknife(), with the control variate where there is one.
+  Estimate estimate(const GroupedSums& sums, const Estimator& theta) const;
   /// Of all batches that have run here.
   std::shared_ptr<const TransportCounts> counts;
 };

@@ -1,14 +1,11 @@
 #pragma once
 
+#include "grin/estimators/light_family.h"
 #include "grin/estimators/light_tally.h"
 #include "grin/estimators/transport.h"
 #include "grin/space/render_plan.h"
 
 namespace flatspeckle::grin {
-
-/// Of the throughput: absorption takes a share of a path's weight until that would fall below this,
-/// and from then on all of it or nothing, by chance. Each path keeps its power to the last.
-inline constexpr double capture_level = 0.25;
 
 /// Whether a short path (Strategies) goes on from here: the next way may be one that cannot be
 /// joined.
@@ -18,50 +15,74 @@ bool short_path_goes_on(const S& space, const PathVertex& here) {
   return here.end->is_beam || (here.end->is_point && !space.joins_all());
 }
 
+/// Lights have no other choice than that of sample_position.
+inline constexpr auto never_chosen = [](const EndPosition&, const PathPoint&) { return 1.0; };
+
 /// Walks a path away from one of its ends, through collisions, until it leaves the stage, is long
 /// enough where it is to be short, or is absorbed. Calls collided(vertex) at each collision and
-/// left(vertex, the one before) on the boundary. ends: those that the path comes from. tally: what
+/// left(vertex, the one before) on the boundary. choice(end, point): of our end, if it were chosen
+/// for a join from there (EndPosition). family: the path, or all that it is split into. tally: what
 /// becomes of its power (LightTally), of a path that is not short.
-template <RenderPlan plan, Space S, class Ends, class Tally, class Collided, class Left>
-void walk(const Transport& transport, const S& space, const Ends& ends, const PathVertex& start,
+template <RenderPlan plan, Space S, class Choice, class Family, class Tally, class Collided,
+          class Left>
+void walk(const Transport& transport, const S& space, const Choice& choice, const PathVertex& start,
           const EndDirection& first, bool is_short, RandomStream& random, TransportCounts& counts,
-          Tally& tally, const Collided& collided, const Left& left) {
+          Family& family, Tally& tally, const Collided& collided, const Left& left) {
   PathVertex here = start;
   here.weight *= first.strength / first.density;
   tally.emitted(here);
+  family.begin(here, first.direction);
   Vec3 direction = first.direction;
-  double density = first.density;
-  double throughput = 1;
-  while (here.weight > 0 && (!is_short || short_path_goes_on(space, here))) {
-    const Flight flight = tally.fly(space, here, direction, random);
+  // of light tracing that of the last flight alone
+  const bool weighs_all = is_short || !transport.strategies.short_sensor;
+  const auto phase = [&]() -> const auto& {
+    return transport.medium(here.point.part).phase;
+  };
+  // To the next collision; false where the path ends.
+  const auto fly = [&] {
+    const Flight flight = tally.fly(space, here, direction, random, family.rise());
     counts.add_flight(flight.end == Flight::End::lost);
-    if (flight.end == Flight::End::lost) return tally.lost(here, flight);
-    const double choice = here.end ? ends.choice(*here.end, flight.point.x) : 1;
-    PathVertex next =
-        arrived(transport.strategies, here, flight, density, choice, space.index(flight.point));
-    if (is_short && next.first_of_other > 0) return;
+    const double before = here.weight;
+    if (flight.stretched != 1) {
+      tally.reweighed(here.point.part, plan.absorbs, (1 - flight.stretched) * before);
+      here.weight *= flight.stretched;
+      family.stretched(flight.stretched);
+    }
+    family.flew(before, here, flight);
+    if (flight.end == Flight::End::lost) {
+      tally.lost(here, flight);
+      return false;
+    }
+    PathVertex next = moved(here, flight, space.index(flight.point));
+    if (weighs_all || flight.end == Flight::End::boundary) {
+      const double chosen = here.end ? choice(*here.end, flight.point) : 1;
+      const double density =
+          here.end ? first.density : phase().density(here.arrived.dot(direction));
+      weigh(next, transport.strategies, here, flight, density, chosen);
+    }
+    if (is_short && next.first_of_other > 0) return false;
     if (!plan.scatters || flight.end == Flight::End::boundary) {
       tally.left(here, flight);
-      return left(next, here);
+      left(next, here);
+      return false;
     }
-    if (next.vertices - 2 >= transport.max_scatterings) return tally.cut(here, flight);
+    if (next.vertices - 2 >= transport.max_scatterings) {
+      tally.cut(here, flight);
+      return false;
+    }
     const ScatteringMedium& medium = transport.medium(next.point.part);
     if constexpr (plan.absorbs) next.weight *= medium.albedo();
     collided(next);
-    if constexpr (plan.absorbs) {
-      const double albedo = medium.albedo(), survives = flight.weight * albedo;
-      if (throughput * survives >= capture_level) {
-        tally.absorbed(here, flight, albedo);
-        throughput *= survives;
-      } else if (random.uniform() >= survives) {
-        return tally.ended(here, flight, albedo);
-      } else {
-        next.weight = here.weight;
-      }
-    }
-    direction = medium.phase.sample(next.arrived, random);
-    density = medium.phase.density(next.arrived.dot(direction));
+    if constexpr (plan.absorbs)
+      if (!family.collide(here, flight, medium, next, random, counts, tally)) return false;
     here = next;
+    return true;
+  };
+  for (;;) {
+    const bool ends_here = !(here.weight > 0) || (is_short && !short_path_goes_on(space, here));
+    if ((ends_here || !fly()) && !family.next(here)) return;
+    direction = phase().sample(here.arrived, random);
+    family.turned(here, direction);
   }
 }
 

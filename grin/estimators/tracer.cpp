@@ -38,7 +38,7 @@ RenderPlan render_plan(const RenderScene& scene) {
   plan.curved = !std::holds_alternative<Homogeneous>(scene.field);
   plan.body = scene.stage.body.has_value();
   plan.timed = scene.bins.keeps_paths();
-  plan.scatters = plan.absorbs = plan.gridded = false;
+  plan.scatters = plan.absorbs = plan.gridded = plan.deep = false;
   const auto add = [&](const ScatteringMedium& medium) {
     plan.scatters |= medium.mu_s > 0;
     plan.absorbs |= medium.mu_a > 0;
@@ -68,10 +68,18 @@ void Tracer::add(int paths, RandomStream& random, Film& film, TransportCounts& c
 
 Tracers::Tracers(const RenderScene& scene, const RenderRequest& request)
     : scene_(scene), request_(request), plan_(render_plan(scene)) {
+  if (!plan_.curved && plan_.scatters) find_depth();
   if (plan_.curved)
     space_ = make_curved_space(
         scene.field, scene.stage,
         {scene.step, scene.max_length, request.method != RenderMethod::photon_map});
+}
+
+void Tracers::find_depth() {
+  const auto transport = transport_of(scene_, request_, RenderMethod::light);
+  const auto depth = DepthImportance::of(scene_.stage, transport->lights, scene_.sensors);
+  if (depth) depth_ = std::make_shared<const DepthImportance>(*depth);
+  plan_.deep = depth.has_value();
 }
 
 Tracer Tracers::make(RenderMethod method) const {
@@ -111,6 +119,7 @@ double Tracers::cost_of_flight() const {
 Tracer Tracers::straight(RenderMethod method) const {
   const double excess = std::get<Homogeneous>(scene_.field).n_excess;
   const auto transport = transport_of(scene_, request_, method);
+  transport->depth = depth_;
   if (method == RenderMethod::photon_map)
     return {method, transport,
             photon_kernel(plan_.timed, transport, excess, photon_radius(scene_, request_))};

@@ -43,17 +43,22 @@ class Tracers {
   /// cost more, and those through grids with many tentative collisions.
   double cost_of_flight() const;
 
+  /// Whether light paths book their drift.
+  bool has_drift() const { return depth_ && depth_->drift(); }
+
   const RenderScene& scene() const { return scene_; }
   const RenderPlan& plan() const { return plan_; }
 
  private:
+  void find_depth();
   Tracer straight(RenderMethod method) const;
   Tracer curved(RenderMethod method) const;
 
   const RenderScene& scene_;
   const RenderRequest& request_;
   RenderPlan plan_;
-  std::shared_ptr<const CurvedSpace> space_;  ///< where rays are curved
+  std::shared_ptr<const DepthImportance> depth_;  ///< where the plan is deep
+  std::shared_ptr<const CurvedSpace> space_;      ///< where rays are curved
 };
 
 }  // namespace flatspeckle::grin

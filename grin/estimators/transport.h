@@ -2,6 +2,7 @@
 
 #include "grin/ends/light.h"
 #include "grin/ends/sensor.h"
+#include "grin/estimators/depth_importance.h"
 #include "grin/estimators/path_vertex.h"
 #include "grin/estimators/transport_counts.h"
 #include "grin/space/stage.h"
@@ -14,6 +15,8 @@ struct Transport {
   Lights lights;
   std::vector<SensorEnd> sensors;
   Strategies strategies = {};
+  /// Of plans that are deep.
+  std::shared_ptr<const DepthImportance> depth = {};
   int max_scatterings = std::numeric_limits<int>::max();
   /// Of each sensor: joins that promise less than this are left to chance, in proportion to what
   /// they promise.

@@ -14,8 +14,31 @@ inline double sample_free_flight(double mu_t, double u) {
   return -std::log(u) / mu_t;
 }
 
-/// The same on condition that it is no longer than `longest`: exact also where mu_t longest is
-/// tiny.
+/// Where the worth of light grows along a flight as exp(pull mu_t s): half of the flights are
+/// stretched (Dwivedi 1982), else long ones, rare and worth all the more, would carry the result.
+/// weight(): the density of plain flights over that of these, of one that ends in a collision;
+/// weight_beyond(): that of the chance to come so far.
+class StretchedFlight {
+ public:
+  static constexpr double most_pull = 0.9;
+
+  StretchedFlight(double mu_t, double pull) : mu_t_(mu_t), share_(1 - std::fmin(pull, most_pull)) {}
+
+  double sample(double u) const {
+    return u < 0.5 ? sample_free_flight(share_ * mu_t_, 2 * u)
+                   : sample_free_flight(mu_t_, 2 * u - 1);
+  }
+  double weight(double s) const { return 2 / (1 + share_ * gain(s)); }
+  double weight_beyond(double s) const { return 2 / (1 + gain(s)); }
+
+ private:
+  double gain(double s) const { return std::exp((1 - share_) * mu_t_ * s); }
+
+  double mu_t_, share_;
+};
+
+/// The same as sample_free_flight() on condition that it is no longer than `longest`: exact also
+/// where mu_t longest is tiny.
 struct BoundedFlight {
   double mu_t, longest;
 

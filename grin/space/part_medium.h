@@ -22,6 +22,7 @@ class PartMedium {
         scatters_(medium.mu_s > 0) {}
 
   bool scatters() const { return scatters_; }
+  bool is_uniform() const { return scatters_ && !grid_; }
   double reference() const { return reference_; }
   double mu_t() const { return mu_t_; }
   /// Known to be met everywhere; a grid may be empty.

@@ -11,7 +11,8 @@ std::string RenderPlan::describe() const {
        << (absorbs ? "absorption" : "no absorption") << "; "
        << (gridded ? "density grid" : "uniform media") << "; "
        << (body ? "a body in the stage" : "a single medium") << "; "
-       << (timed ? "optical paths" : "steady state");
+       << (timed ? "optical paths" : "steady state") << "; "
+       << (deep ? "importance in depth" : "no importance in depth");
   return text.str();
 }
 

@@ -14,6 +14,7 @@ struct RenderPlan {
   bool gridded = true;   ///< some medium's density is a grid
   bool body = true;
   bool timed = true;  ///< more than one bin of optical path
+  bool deep = true;   ///< light is split on its way to sensors deep behind a medium
 
   bool operator==(const RenderPlan&) const = default;
 

@@ -61,6 +61,7 @@ struct Flight {
   double spreading = 0;         ///< |J| from start to end (C25); 0 where no join finds it
   double optical_depth = 0;     ///< reference depth, see below
   double weight = 1;            ///< exp(-mu_a s) in media that do not scatter, else 1
+  double stretched = 1;         ///< density of plain flights over that of those sampled
   double absorbed_in_body = 0;  ///< of 1 - weight
   bool crosses_body = false;    ///< passes its surface or is reflected there
   Passages passages = {};       ///< there, where it refracts; of a way that joins can find

@@ -20,11 +20,11 @@ class StraightSpace {
 
   double index(const PathPoint& p) const { return 1 + excess(p.part); }
 
-  /// log: its legs are added to that.
+  /// log: its legs are added to that. rise: the first leg is stretched along it (StraightStage).
   Flight fly(const PathPoint& from, const Vec3& direction, RandomStream& random,
-             FlightLog* log = nullptr) const {
+             FlightLog* log = nullptr, const Vec3* rise = nullptr) const {
     Flight flight{.point = from, .start_direction = direction, .direction = direction};
-    const LegEnd end = leg(flight, random, log);
+    const LegEnd end = leg(flight, random, log, rise);
     if (plan.body && end == LegEnd::body)
       return is_clear() ? go_on(flight, random, log) : refracted(flight, random, log);
     flight.spreading = flight.arc_length * flight.arc_length;
@@ -90,9 +90,10 @@ class StraightSpace {
   /// Nothing is refracted at the body's surface.
   bool is_clear() const { return plan.body && excess_[0] == excess_[1]; }
 
-  LegEnd leg(Flight& flight, RandomStream& random, FlightLog* log) const {
+  LegEnd leg(Flight& flight, RandomStream& random, FlightLog* log,
+             const Vec3* rise = nullptr) const {
     FlightLeg now{flight.point, flight.direction, flight.arc_length, flight.weight};
-    const LegEnd end = stage_.fly(flight, index(flight.point), random);
+    const LegEnd end = stage_.fly(flight, index(flight.point), random, rise);
     if (log) {
       now.length = flight.arc_length - now.length;
       log->push_back(now);

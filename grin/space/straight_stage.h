@@ -42,13 +42,16 @@ class StraightStage {
 
   bool has_body() const { return plan.body && body_; }
 
-  /// To the next collision or to the end of the part.
-  LegEnd fly(Flight& flight, double index, RandomStream& random) const {
+  /// To the next collision or to the end of the part. rise: gradient of the logarithm of what light
+  /// is worth, along which flights are stretched; or null.
+  LegEnd fly(Flight& flight, double index, RandomStream& random, const Vec3* rise = nullptr) const {
     const Vec3 x = flight.point.x, d = flight.direction;
     const auto path = [&](double s) -> Vec3 { return x + s * d; };
     auto [way, end] = way_to_surface(flight.point, d);
     const PartMedium& in = medium(flight.point.part);
-    const double free = in.template free_path<plan>(path, way, random);
+    const double pull = rise && in.is_uniform() ? rise->dot(d) / in.mu_t() : 0;
+    const double free = pull > 0 ? stretched(flight, in.mu_t(), pull, way, random)
+                                 : in.template free_path<plan>(path, way, random);
     if (free < way) {
       way = free;
       end = LegEnd::collision;
@@ -179,6 +182,14 @@ class StraightStage {
   }
 
  private:
+  static double stretched(Flight& flight, double mu_t, double pull, double way,
+                          RandomStream& random) {
+    const StretchedFlight of(mu_t, pull);
+    const double free = of.sample(random.uniform());
+    flight.stretched = free < way ? of.weight(free) : of.weight_beyond(way);
+    return free;
+  }
+
   /// Calls use(part, from, to) for the stretches of a straight line. Returns whether it is within
   /// the boundary.
   template <class Use>

@@ -41,8 +41,8 @@ inline double way_in(const Plane& plane, const Vec3& x, const Vec3& d) {
 inline double way_out(const Box& box, const Vec3& x, const Vec3& d) {
   double way = no_way;
   for (int a = 0; a < 3; ++a) {
-    if (d[a] > 0) way = std::min(way, (box.high[a] - x[a]) / d[a]);
-    if (d[a] < 0) way = std::min(way, (box.low[a] - x[a]) / d[a]);
+    const double face = d[a] > 0 ? box.high[a] : box.low[a];  // no branch: which one is chance
+    if (d[a] != 0) way = std::min(way, (face - x[a]) / d[a]);
   }
   return std::max(0.0, way);
 }

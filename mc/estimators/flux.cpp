@@ -8,6 +8,7 @@
 
 #include "core/result/result_group.h"
 #include "flatland/scene/scene_datasets.h"
+#include "grin/media/diffusion_rate.h"
 #include "mc/ends/scattering.h"
 #include "mc/estimators/flux_walk.h"
 #include "mc/walk/importance.h"
@@ -86,7 +87,8 @@ FluxJob flux_job(const Scene& original, std::size_t angle_bins, std::uint64_t se
   require_walks(original, false);
   const auto scene = std::make_shared<const Scene>(original);
   const BulkMedium& medium = scene->medium;
-  const double kappa = medium.mu_s > 0 ? medium.mu_t * diffusion_rate(medium.albedo, medium.g) : 0;
+  const double kappa =
+      medium.mu_s > 0 ? medium.mu_t * grin::diffusion_rate(medium.albedo, medium.g, 2) : 0;
   FluxJob job{{}, scene->request.lights.size(), angle_bins, describe(medium, kappa)};
   job.batches.size = job.lights * (flux_shares + angle_bins);
   job.batches.samples_per_batch = static_cast<double>(walks_per_batch);

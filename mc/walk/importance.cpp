@@ -7,6 +7,7 @@
 #include <set>
 #include <type_traits>
 
+#include "grin/media/diffusion_rate.h"
 #include "grin/media/phase_function.h"
 #include "mc/ends/space_scattering.h"
 #include "mc/theory/diffusion.h"
@@ -17,23 +18,6 @@ namespace flatspeckle::mc {
 namespace {
 
 using std::numbers::pi;
-
-/// Whether a rate lies below the smallest root of the dispersion relation
-///   h_0 = c_1 r^2 / (h_1 - c_2 r^2 / (h_2 - c_3 r^2 / ...)),  h_n = 1 - albedo g^n,
-/// the condition that the moments of the angle decay: in flatland those of Fourier, c_n = 1/4 but
-/// c_1 = 1/2, in space those of Legendre, c_n = n^2 / (4 n^2 - 1).
-bool below_root(double albedo, double g, int dimension, double rate) {
-  const auto share = [&](int n) {
-    const double square = static_cast<double>(n) * n;
-    return rate * rate * (dimension == 3 ? square / (4 * square - 1) : n == 1 ? 0.5 : 0.25);
-  };
-  double tail = 1;  // of high moments, which scattering does not feed
-  for (int n = 1000; n >= 1; --n) {
-    tail = 1 - albedo * std::pow(g, n) - share(n + 1) / tail;
-    if (tail <= 0) return false;
-  }
-  return 1 - albedo > share(1) / tail;
-}
 
 constexpr int nodes = 512;  ///< of the table of importance
 
@@ -79,21 +63,11 @@ std::set<double> view_depths(const Scene& scene) {
 
 }  // namespace
 
-double diffusion_rate(double albedo, double g, int dimension) {
-  if (albedo >= 1) return 0;
-  double low = 0, high = 1;
-  for (int step = 0; step < 60; ++step) {
-    const double middle = (low + high) / 2;
-    (below_root(albedo, g, dimension, middle) ? low : high) = middle;
-  }
-  return low;
-}
-
 DepthImportance::DepthImportance(const Scene& scene) : step_(scene.domain.depth / nodes) {
   const double depth = scene.domain.depth;
   const auto& medium = scene.medium;
   const double beyond = extrapolation_length(medium);
-  double rate = diffusion_rate(medium.albedo, medium.g, medium.dimension) * medium.mu_t;
+  double rate = grin::diffusion_rate(medium.albedo, medium.g, medium.dimension) * medium.mu_t;
   if (scene.domain.kind == Domain::Kind::box)  // what leaves by the sides is lost as well
     rate = std::hypot(rate, pi / (scene.domain.width + 2 * beyond));
   rate = std::max(rate, 1e-8 / depth);

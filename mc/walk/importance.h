@@ -8,11 +8,6 @@
 
 namespace flatspeckle::mc {
 
-/// How fast light of all directions dies out with depth deep inside a medium, per mean free path
-/// and as a factor: exp(-rate mu_t z). The smallest root of the transport equation's dispersion
-/// relation for Henyey-Greenstein scattering in flatland or in space; 0 without absorption.
-double diffusion_rate(double albedo, double g, int dimension = 2);
-
 /// What a walker at a depth is worth to the far views: the share of its light that leaves the
 /// medium on their sides, by diffusion theory, relative to a mean free path from where the light
 /// enters. Walkers are split where it rises and play roulette where it falls, so that all

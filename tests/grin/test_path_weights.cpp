@@ -62,6 +62,13 @@ double scattering_density(const Transport& transport, const WholePath& path, std
   return transport.medium(path.points[i].part).phase.density(in.dot(out));
 }
 
+PathVertex arrived(const Transport& transport, const PathVertex& here, const Flight& flight,
+                   double direction_density, double choice, double index) {
+  PathVertex next = moved(here, flight, index);
+  weigh(next, transport.strategies, here, flight, direction_density, choice);
+  return next;
+}
+
 PathVertex light_subpath(const Transport& transport, const WholePath& path, int count) {
   PathVertex vertex = end_vertex(transport.strategies, path.light);
   for (int i = 0; i + 1 < count; ++i) {
@@ -71,7 +78,7 @@ PathVertex light_subpath(const Transport& transport, const WholePath& path, int 
       density = scattering_density(transport, path, i, true);
     else if (!path.light.is_beam)
       density = transport.lights.towards(path.light, edge.forth.start_direction).density;
-    vertex = arrived(transport.strategies, vertex, edge.forth, density, 1, path.index[i + 1]);
+    vertex = arrived(transport, vertex, edge.forth, density, 1, path.index[i + 1]);
   }
   return vertex;
 }
@@ -85,7 +92,7 @@ PathVertex sensor_subpath(const Transport& transport, const WholePath& path, int
         i == last ? transport.sensors[0].towards(path.sensor, edge.back.start_direction).density
                   : scattering_density(transport, path, i, false);
     const double choice = i == last ? path.chosen_sensor(transport).choice : 1;
-    vertex = arrived(transport.strategies, vertex, edge.back, density, choice, path.index[i - 1]);
+    vertex = arrived(transport, vertex, edge.back, density, choice, path.index[i - 1]);
   }
   return vertex;
 }

@@ -5,6 +5,7 @@
 #include "bench/oracles/slab_theory.h"
 #include "bench/oracles/textbook.h"
 #include "core/error.h"
+#include "grin/media/diffusion_rate.h"
 #include "mc/theory/diffusion.h"
 #include "mc/walk/importance.h"
 #include "tests/mc/estimates.h"
@@ -56,20 +57,21 @@ Plan with(double score_level, bool weighted) {
 TEST_CASE("the rate at which light dies out is that of the transport equation") {
   // In flatland isotropic scattering has 1 = albedo / sqrt(1 - rate^2).
   for (const double albedo : {0.01, 0.3, 0.8, 0.99, 1 - 1e-9})
-    CHECK(diffusion_rate(albedo, 0) ==
+    CHECK(grin::diffusion_rate(albedo, 0, 2) ==
           doctest::Approx(std::sqrt((1 - albedo) * (1 + albedo))).epsilon(1e-6));
   for (const double g : {-0.5, 0.5, 0.9}) {  // the diffusion limit
     const double absorbed = 1e-6;
-    CHECK(diffusion_rate(1 - absorbed, g) ==
+    CHECK(grin::diffusion_rate(1 - absorbed, g, 2) ==
           doctest::Approx(std::sqrt(2 * absorbed * (1 - g))).epsilon(1e-3));
   }
   for (const double albedo : {0.3, 0.8, 0.99}) {  // in space 1 = albedo atanh(rate) / rate
-    const double rate = diffusion_rate(albedo, 0, 3);
+    const double rate = grin::diffusion_rate(albedo, 0, 3);
     CHECK(albedo * std::atanh(rate) == doctest::Approx(rate).epsilon(1e-6));
   }
-  CHECK(diffusion_rate(1 - 1e-6, 0.9, 3) == doctest::Approx(std::sqrt(3e-6 * 0.1)).epsilon(1e-3));
-  CHECK(diffusion_rate(1, 0.9) == 0);
-  CHECK(diffusion_rate(0.9, 0.9) > diffusion_rate(0.9, 0.95));
+  CHECK(grin::diffusion_rate(1 - 1e-6, 0.9, 3) ==
+        doctest::Approx(std::sqrt(3e-6 * 0.1)).epsilon(1e-3));
+  CHECK(grin::diffusion_rate(1, 0.9, 2) == 0);
+  CHECK(grin::diffusion_rate(0.9, 0.9, 2) > grin::diffusion_rate(0.9, 0.95, 2));
 }
 
 TEST_CASE("roulette of scores and depth windows change the variance alone") {

@@ -1,0 +1,55 @@
+#include <cmath>
+
+#include <doctest/doctest.h>
+
+#include "core/numbers/control_variate.h"
+#include "core/numbers/random.h"
+
+using namespace flatspeckle;
+
+namespace {
+
+double noise(RandomStream& random) {
+  double sum = -6;
+  for (int i = 0; i < 12; ++i) sum += random.uniform();
+  return sum;
+}
+
+/// Sums of batches: one that the control tells nearly all of, one that it tells nothing of, and it.
+GroupedSums sums_of(std::uint64_t seed, int batches) {
+  GroupedSums sums(3);
+  RandomStream random(seed, 1, 0);
+  for (int i = 0; i < batches; ++i) {
+    const double control = noise(random);
+    sums.add(
+        1, std::vector<Complex>{2 + 3 * control + 0.1 * noise(random), 5 + noise(random), control});
+  }
+  return sums;
+}
+
+std::vector<Complex> first_two(double samples, std::span<const Complex> sums) {
+  return sample_mean(samples, sums.first(2));
+}
+
+}  // namespace
+
+TEST_CASE("a control variate takes away what it tells, and its errors hold") {
+  double squares = 0;
+  const int runs = 200;
+  for (int seed = 1; seed <= runs; ++seed) {
+    const GroupedSums sums = sums_of(seed, 400);
+    const Estimate found = controlled_jackknife(sums, first_two, 2),
+                   plain = jackknife(sums, first_two);
+    CHECK(found.error[0] < 0.05 * plain.error[0]);
+    const double off = (found.value[0].real() - 2) / found.error[0];
+    squares += off * off / runs;
+  }
+  CHECK(squares == doctest::Approx(1).epsilon(4 * std::sqrt(2.0 / runs)));
+}
+
+TEST_CASE("what a control variate tells nothing of stays as it is") {
+  const GroupedSums sums = sums_of(1, 400);
+  CHECK(controlled_jackknife(sums, first_two, 2).value[1] == jackknife(sums, first_two).value[1]);
+  const GroupedSums few = sums_of(1, 20);
+  CHECK(controlled_jackknife(few, first_two, 2).value[0] == jackknife(few, first_two).value[0]);
+}

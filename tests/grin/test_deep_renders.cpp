@@ -1,0 +1,171 @@
+#include <cmath>
+#include <numbers>
+
+#include <doctest/doctest.h>
+
+#include "bench/oracles/peierls_slab.h"
+#include "bench/oracles/slab_photons.h"
+#include "grin/estimators/tracer.h"
+#include "tests/grin/slab_renders.h"
+
+// Light deep behind media: importance in depth changes the variance alone.
+
+namespace flatspeckle::grin::tests {
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+ScatteringMedium hg(double albedo, double g) {
+  ScatteringMedium medium;
+  medium.mu_s = albedo;
+  medium.mu_a = 1 - albedo;
+  medium.phase = {HgPhase{g}};
+  return medium;
+}
+
+/// Sensors on both faces, the far one first.
+RenderScene both_faces(const ScatteringMedium& medium, double thickness) {
+  RenderScene scene = slab(medium, thickness, 50 * thickness, Face::transmitted);
+  scene.sensors.push_back(slab(medium, thickness, 50 * thickness, Face::reflected).sensors[0]);
+  return scene;
+}
+
+struct Shares {
+  double value, error;
+};
+Shares share(const RenderScene& scene, const Rendered& found, std::size_t face) {
+  const double area = pixels_of(scene.sensors[face]).area;
+  return {area * found.value(face), area * found.error(face)};
+}
+
+void check_face(const Shares& found, double expected, double largest_relative_error) {
+  CAPTURE(found.value);
+  CAPTURE(found.error);
+  CAPTURE(expected);
+  CHECK(found.error < largest_relative_error * expected);
+  CHECK(std::abs(found.value - expected) < 4 * found.error);
+}
+
+/// Pixels, then fates, of light tracing with importance in depth or without.
+Estimate traced(const RenderScene& scene, bool deep, RenderMethod method, int batches,
+                int paths_per_batch) {
+  const RenderRequest request{method};
+  const Tracers tracers(scene, request);
+  REQUIRE(tracers.plan().deep);
+  const Tracer tracer = tracers.make(method);
+  RenderPlan plan = tracers.plan();
+  plan.deep = deep;
+  const auto kernel =
+      straight_kernel(plan, tracer.transport, std::get<Homogeneous>(scene.field).n_excess);
+  const auto pixels = static_cast<std::size_t>(tracer.transport->pixels());
+  GroupedSums sums(pixels + EnergyBalance::size);
+  for (int batch = 0; batch < batches; ++batch) {
+    std::vector<Complex> all(sums.size());
+    Film film(static_cast<int>(pixels), scene.bins, std::span(all).first(pixels));
+    RandomStream random(deep ? 5 : 6, static_cast<std::uint64_t>(Stream::render), batch);
+    TransportCounts counts;
+    kernel(paths_per_batch, random, film, counts, nullptr);
+    film.energy.add_to(std::span(all).subspan(pixels));
+    double spent = 0;
+    for (std::size_t fate = 1; fate < fates; ++fate) spent += all[pixels + fate].real();
+    CHECK(spent == doctest::Approx(all[pixels].real()).epsilon(1e-12));
+    sums.add(paths_per_batch, all);
+  }
+  return jackknife(sums, sample_mean);
+}
+
+void check_unchanged(const RenderScene& scene, RenderMethod method, int batches = 100,
+                     int paths = 100) {
+  const Estimate split = traced(scene, true, method, batches, paths),
+                 whole = traced(scene, false, method, batches, paths);
+  for (std::size_t i = 0; i < whole.value.size(); ++i) {
+    CAPTURE(i);
+    CAPTURE(split.value[i].real());
+    CAPTURE(whole.value[i].real());
+    const double error = std::hypot(split.error[i], whole.error[i]);
+    CAPTURE(error);
+    if (whole.value[i] == 0.0 && i >= whole.value.size() - fates) {  // too rare a fate to be seen
+      CHECK(split.value[i].real() < 10.0 / (batches * paths));
+      continue;
+    }
+    const double rounding = 1e-12 * std::abs(whole.value[i]);
+    CHECK(std::abs(split.value[i] - whole.value[i]) <= 4 * error + rounding);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("deep slabs that scatter isotropically against Peierls' equation") {
+  for (const double albedo : {0.6, 0.9, 0.999}) {
+    CAPTURE(albedo);
+    const double depth = 20;
+    const oracles::SlabShares exact = oracles::isotropic_slab(depth, albedo);
+    const RenderScene scene = both_faces(isotropic(albedo), depth);
+    const Rendered found = rendered(scene, RenderMethod::light, 20000);
+    check_face(share(scene, found, 0), exact.transmitted, 0.02);
+    check_face(share(scene, found, 1), exact.reflected, 0.03);
+  }
+}
+
+TEST_CASE("deep slabs against photons that are counted") {
+  const oracles::SlabPhotons slabs[] = {{30, 0.98, 0.8}, {60, 1, 0.9}, {10, 0.8, 0.5}};
+  for (const auto& of : slabs) {
+    CAPTURE(of.optical_depth);
+    const auto counted = oracles::count_photons(of, 100'000, 1);
+    const RenderScene scene = both_faces(hg(of.albedo, of.g), of.optical_depth);
+    const Rendered found = rendered(scene, RenderMethod::light, 4000);
+    const Shares through = share(scene, found, 0), back = share(scene, found, 1);
+    CHECK(through.error < counted.transmitted_error);
+    CHECK(std::abs(through.value - counted.transmitted) <
+          4 * std::hypot(through.error, counted.transmitted_error));
+    CHECK(std::abs(back.value - counted.reflected) <
+          4 * std::hypot(back.error, counted.reflected_error));
+  }
+}
+
+TEST_CASE("splitting leaves pictures and the balance of power as they are") {
+  // pixels of a face
+  RenderScene box = slab(hg(0.8, 0.5), 10, 10, Face::transmitted);
+  std::get<AreaDetector>(box.sensors[0]).pixels = {3, 2};
+  check_unchanged(box, RenderMethod::light);
+  check_unchanged(box, RenderMethod::bidirectional, 100, 50);
+
+  // a ball lit at one pole, seen at the other and from all of the far half
+  RenderScene ball = slab(isotropic(0.8), 8, 10, Face::transmitted);
+  ball.stage.boundary = Sphere{Vec3(0, 0, 0), 5};
+  ball.lights = {PointLight{{0, 0, -4.5}, 1}};
+  ball.sensors = {AreaDetector{{0, 0, 5}, Vec3::UnitY(), 4, 4, {}, pi / 3},
+                  DirectionalDetector{Vec3::UnitZ(), Vec3::UnitY(), pi / 2, {2, 2}}};
+  check_unchanged(ball, RenderMethod::light);
+
+  // a pinhole behind a dense body in thin fog
+  RenderScene body = slab(isotropic(0.9), 8, 10, Face::transmitted);
+  body.stage.boundary = Box{Vec3(-6, -6, -6), Vec3(6, 6, 6)};
+  body.stage.medium.mu_s = 0.02;
+  body.stage.body = Body{Box{Vec3(-5, -5, -4), Vec3(5, 5, 5)}, isotropic(0.8)};
+  body.lights = {BeamLight{{0, 0, -6}, {0, 0, 1}, 1}};
+  body.sensors = {AreaDetector{{0, 0, 6}, Vec3::UnitY(), 10, 10, {}, pi / 2}};
+  check_unchanged(body, RenderMethod::light);
+  body.field = Homogeneous{0.4};
+  check_unchanged(body, RenderMethod::light);
+  body.sensors = {Camera{{0, 0, 5.9}, -Vec3::UnitZ(), Vec3::UnitY(), 1, {2, 2}}};
+  check_unchanged(body, RenderMethod::bidirectional, 100, 50);
+}
+
+TEST_CASE("in thin and in curved media nothing is split") {
+  const auto deep = [](const RenderScene& scene) { return Tracers(scene, {}).plan().deep; };
+  CHECK(deep(slab(isotropic(0.9), 20, 100, Face::transmitted)));
+  CHECK(!deep(slab(isotropic(0.9), 4, 100, Face::transmitted)));
+  CHECK(!deep(slab(isotropic(0.9), 20, 100, Face::reflected)));
+  RenderScene ramp = slab(isotropic(0.9), 20, 100, Face::transmitted);
+  ramp.field = LinearRamp{0.1, Vec3(0, 0, 1e-3)};
+  CHECK(!deep(ramp));
+}
+
+TEST_CASE("a deep slab takes a pilot to light tracing") {
+  const RenderScene scene = both_faces(isotropic(0.9), 20);
+  CHECK(render_job(scene, {}, 1).plan.starts_with("light (chosen by a pilot)"));
+}
+
+}  // namespace flatspeckle::grin::tests
