@@ -131,16 +131,53 @@ PlanRow kind_of_field(double cpu_seconds) {
 }
 
 PlanRow spreading(double cpu_seconds) {
-  const auto full = make_curved_space(Luneburg({}), foggy_ball_stage(), {step, max_length, true});
-  const auto quick = make_curved_space(Luneburg({}), foggy_ball_stage(), {step, max_length, false});
+  const Fisheye field({1, 1.5});
+  const auto full =
+      make_curved_space(field, foggy_ball_stage(), {step, max_length, Spreading::all});
+  const auto quick =
+      make_curved_space(field, foggy_ball_stage(), {step, max_length, Spreading::none});
   return same_values([&] { return flown(*full); }, [&] { return flown(*quick); }, "flight", 1e-11,
                      cpu_seconds);
+}
+
+/// Rays from anywhere in a ball out of it.
+std::vector<Complex> flown_out(const RayField& field, const Sphere& ball, double h) {
+  const Surface surface = ball;
+  const PartMedium clear;
+  std::vector<Complex> values;
+  RandomStream random(1, 0, 0);
+  for (int i = 0; i < rays; ++i) {
+    const Vec3 from = ball.radius * random_point(random).x;
+    RayState ray = start_ray(field, from, random_direction(random));
+    double weight = 1;
+    field.fly({surface, clear, h}, 10 * ball.radius, weight, random, ray, nullptr);
+    note(values, ray.x, ray.optical_path);
+  }
+  return values;
+}
+
+PlanRow closed_forms(double cpu_seconds) {
+  const Sphere ball;
+  const Surface rim = ball;
+  const auto by_steps = make_ray_field(Luneburg({1, LuneburgProfile::for_stops}));
+  const auto closed = make_ray_field(Luneburg({}), &rim);
+  return same_values([&] { return flown_out(*by_steps, ball, step); },
+                     [&] { return flown_out(*closed, ball, step); }, "ray", 1e-6, cpu_seconds);
+}
+
+/// Both to steps that render would choose.
+PlanRow leapfrogs(double cpu_seconds) {
+  const StandingWave field(0.33, 1e-3, 0, 3.4, 20);
+  const auto by_sharma = make_ray_field(field), by_leaps = make_ray_field(field, nullptr, true);
+  const Sphere ball{Vec3::Zero(), 15};
+  return same_values([&] { return flown_out(*by_sharma, ball, 0.88); },
+                     [&] { return flown_out(*by_leaps, ball, 0.7); }, "ray", 2e-4, cpu_seconds);
 }
 
 PlanRow search_for_curves(double cpu_seconds) {
   PlanRow row{.per = "join"};
   const auto general =
-      make_curved_space(constant_guide(), foggy_ball_stage(), {step, max_length, true});
+      make_curved_space(constant_guide(), foggy_ball_stage(), {step, max_length, Spreading::all});
   const StraightSpace<fog_plan> special(foggy_ball_stage(), 0.5);
   compare_sampled(row, joins(*general), joins(special), Numbers::other, Measure::sample,
                   cpu_seconds);
@@ -155,7 +192,9 @@ std::vector<PlanCase> ray_plan_cases() {
   };
   return {row("curvature", "constant index, rays out of a ball", curved_rays),
           row("search for curves", "constant index, joins in a ball", search_for_curves),
-          row("|J| of flights", "Luneburg ball", spreading),
+          row("|J| of flights", "fisheye", spreading),
+          row("steps", "Luneburg ball, rays in closed form", closed_forms),
+          row("two forces of three a step", "weak sound, by leapfrog", leapfrogs),
           row("kind of field at every step", "Luneburg ball", kind_of_field)};
 }
 

@@ -97,8 +97,8 @@ void print_straight(const char* name, const Figures& f) {
 }
 
 void print_curved(const char* name, const AnyIndexField& field, const Stage& stage, double step) {
-  const auto quick = make_curved_space(field, stage, {step, 8, false});
-  const auto full = make_curved_space(field, stage, {step, 8, true});
+  const auto quick = make_curved_space(field, stage, {step, 8, Spreading::none});
+  const auto full = make_curved_space(field, stage, {step, 8, Spreading::all});
   const Part part = stage.body ? Part::body : Part::stage;
   const Figures without = measure(*quick, part), with = measure(*full, part);
   std::printf("%-34s %8.2f %8.2f %8.2f %7.2f %7.2f %7.2f\n", name, without.fly / 1e3,

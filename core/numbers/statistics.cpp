@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "core/error.h"
+#include "core/numbers/mean_errors.h"
 
 namespace flatspeckle {
 
@@ -22,6 +23,12 @@ bool is_rare(double sum_dd, double sum_d4, std::size_t groups) {
   constexpr double enough = 24, least_share = 1.0 / 9;
   const double least = std::min(enough, least_share * static_cast<double>(groups));
   return sum_dd * sum_dd < least * sum_d4;
+}
+
+std::uint64_t is_carried_by_few(const Estimate& estimate, std::size_t i, double sum_dd,
+                                double sum_d4, std::size_t groups) {
+  const bool rounded = estimate.error[i] < rounding * std::abs(estimate.value[i]);
+  return !rounded && is_rare(sum_dd, sum_d4, groups) ? 1 : 0;
 }
 
 /// For values whose squares are below all numbers: a power of two, so that they keep their digits.
@@ -149,8 +156,53 @@ Estimate jackknife(const GroupedSums& sums, const Estimator& theta) {
     const double spread =
         sum_dd[i] - 2 * (std::conj(mean) * sum_d[i]).real() + sum_w * std::norm(mean);
     estimate.error[i] = std::sqrt(std::max(0.0, spread) / static_cast<double>(groups)) / lifted[i];
-    const bool rounded = estimate.error[i] < rounding * std::abs(estimate.value[i]);
-    estimate.rare[i] = !rounded && is_rare(sum_dd[i], sum_d4[i], groups) ? 1 : 0;
+    estimate.rare[i] = is_carried_by_few(estimate, i, sum_dd[i], sum_d4[i], groups);
+  }
+  return estimate;
+}
+
+namespace {
+
+/// parts >= 1.
+std::vector<Complex> added_up(std::span<const Complex> sums, const EntrySums& of) {
+  std::vector<Complex> values(of.count);
+  for (std::size_t i = 0; i < of.count; ++i)
+    for (std::size_t part = 0; part < of.parts; ++part) values[i] += sums[i * of.stride + part];
+  return values;
+}
+
+}  // namespace
+
+Estimate jackknife(const GroupedSums& sums, const EntrySums& of) {
+  const double samples = sums.total_samples();
+  const std::size_t groups = sums.groups();
+  Estimate estimate{sample_mean(samples, added_up(sums.total(), of)), {}};
+  estimate.rare.resize(of.count);
+  if (groups < 2) {
+    estimate.error.assign(of.count, std::numeric_limits<double>::infinity());
+    return estimate;
+  }
+  // the pseudo-values of jackknife() are the groups' means, and their mean is theta
+  std::vector<double> lifted(of.count), sum_dd(of.count), sum_d4(of.count);
+  for (std::size_t i = 0; i < of.count; ++i) lifted[i] = lift(std::abs(estimate.value[i]));
+  for (std::size_t group = 0; group < groups; ++group) {
+    const double own = sums.group_samples(group), weight = own / (samples - own);
+    const auto add = [&](std::span<const Complex> values) {
+      for (std::size_t i = 0; i < of.count; ++i) {
+        const double re = lifted[i] * (values[i].real() / own - estimate.value[i].real());
+        const double im = lifted[i] * (values[i].imag() / own - estimate.value[i].imag());
+        const double dd = weight * (re * re + im * im);
+        sum_dd[i] += dd;
+        sum_d4[i] += dd * dd;
+      }
+    };
+    const auto all = sums.group_sums(group);
+    of.stride == 1 && of.parts == 1 ? add(all) : add(added_up(all, of));
+  }
+  estimate.error.resize(of.count);
+  for (std::size_t i = 0; i < of.count; ++i) {
+    estimate.error[i] = std::sqrt(sum_dd[i] / static_cast<double>(groups)) / lifted[i];
+    estimate.rare[i] = is_carried_by_few(estimate, i, sum_dd[i], sum_d4[i], groups);
   }
   return estimate;
 }

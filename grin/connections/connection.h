@@ -44,9 +44,11 @@ struct ConnectionOptions {
   StartDirections start = {};  ///< of the trials
   int max_iterations = 40;     ///< after that a trial has failed
   double tolerance = 1e-10;    ///< distance from Q at the end, in units of |PQ|
-  double same = 1e-5;          ///< two curves are one if they start and last alike to this; rad
-  double caustic = 1e-5;       ///< Q is on one where a beam from P is narrower than this times
-                               ///< its widest
+  double carry = 0;       ///< from so near, in the same units, the last move to Q is not traced
+                          ///< but follows from derivatives; arc length and |J| err by as much
+  double same = 1e-5;     ///< two curves are one if they start and last alike to this; rad
+  double caustic = 1e-5;  ///< Q is on one where a beam from P is narrower than this times
+                          ///< its widest
   std::uint64_t roulette_after = 512;  ///< trials in search of a curve before roulette begins
   bool count_caustics = true;          ///< of a curve found: one more trace along it
 };

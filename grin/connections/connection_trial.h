@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/numbers/random.h"
 #include "grin/connections/connection.h"
@@ -179,14 +180,23 @@ class ConnectionTrial {
     const double h = aim.sigma / aim.steps, longest = 2 * options_.max_length;
     int i = 0;
     for (; i < aim.steps && shot.end.arc_length <= longest; ++i) {
-      if (i > 0 && !region_(shot.end.x)) shot.inside = false;
+      const RayState before = shot.end;
       Integrator::step(field_, shot.end, shot.tangent, h);
+      shot.inside = shot.inside && keeps(before, shot.end, h);
     }
     steps_made += i;
     shot.error = shot.end.x - to_;
     // NaN where there is no ray, or one far too long
     shot.miss = shot.end.arc_length <= longest ? shot.error.norm() : std::nan("");
     return shot;
+  }
+
+  /// The two end points are not asked about.
+  bool keeps(const RayState& start, const RayState& end, double h) const {
+    if constexpr (requires { region_.keep(start, end, h); })
+      return region_.keep(start, end, h);
+    else
+      return start.arc_length == 0 || region_(start.x);
   }
 
   CausticCount follow(const Aim& aim, ConnectionStatistics& statistics) const {
@@ -204,10 +214,12 @@ class ConnectionTrial {
   Result refine(Aim aim, ConnectionStatistics& statistics) const {
     Shot shot = shoot(aim, statistics);
     DampedStep damped;
+    double miss_before = std::numeric_limits<double>::infinity();  // by the same steps
     for (int i = 0; i < options_.max_iterations && !damped.stuck(); ++i) {
       if (!aim.precise && shot.miss <= near * gap_) {
         aim.precise = true;
         shot = shoot(aim, statistics);
+        miss_before = std::numeric_limits<double>::infinity();
       }
       if (arrived(aim, shot)) {
         if (shot.uniform && has_its_steps(aim)) return judge(aim, shot, statistics);
@@ -217,11 +229,16 @@ class ConnectionTrial {
         continue;  // as a rule it is still there, and rounding lets no move mend it
       }
       Aim next = moved(aim, shot, damped);
+      if (next.steps != aim.steps) miss_before = std::numeric_limits<double>::infinity();
+      const double left = shot.miss * std::pow(shot.miss / miss_before, 2);
+      if (shot.uniform && has_its_steps(next) && ends_well(aim, shot, left))
+        return judge(next, carried(aim, shot, next, left), statistics);
       Shot tried = shoot(next, statistics);
       ++statistics.iterations;
       if (tried.miss >= shot.miss / 2) next.sigma += draw_near(tried, next.sigma);
       if (tried.miss < shot.miss) {
         damped.succeeded(tried.miss / shot.miss);
+        miss_before = next.steps == aim.steps ? shot.miss : std::numeric_limits<double>::infinity();
         aim = next;
         shot = tried;
       } else {
@@ -236,6 +253,26 @@ class ConnectionTrial {
     const double rounding = rounding_ * std::sqrt(aim.steps);
     if (!aim.precise || !(shot.miss <= std::max(rounding, options_.tolerance * gap_))) return false;
     return shot.miss <= std::max(rounding, options_.same / 10 * end_widths(aim, shot).narrow);
+  }
+
+  /// The next move, from so close that it leaves `left` of the miss, needs no shot to be believed:
+  /// what that would tell follows from the derivative.
+  bool ends_well(const Aim& aim, const Shot& shot, double left) const {
+    if (!aim.precise || !(shot.miss <= options_.carry * gap_ && left <= options_.tolerance * gap_))
+      return false;
+    const double narrow = end_widths(aim, shot).narrow;
+    return shot.miss <= 100 * options_.carry * narrow && left <= options_.same / 10 * narrow;
+  }
+  Shot carried(const Aim& aim, Shot shot, const Aim& next, double left) const {
+    const double longer = next.sigma - aim.sigma, along = shot.error.dot(shot.end.v);
+    shot.end.optical_path -= along;  // Fermat's principle
+    shot.end.arc_length -= along / shot.end.v.norm();
+    shot.end.v += n_from_ * (shot.tangent.dv * (next.direction - aim.direction)) +
+                  longer * ray_force(field_, shot.end.x).force;
+    shot.end.x = to_;
+    shot.error.setZero();
+    shot.miss = left;
+    return shot;
   }
 
   /// Where sigma is a multiple of the step to rounding, both numbers of steps may ask for the other

@@ -2,6 +2,8 @@
 
 #include <span>
 
+#include "grin/rays/step_curve.h"
+#include "grin/surfaces/first_crossing.h"
 #include "grin/surfaces/signed_distance.h"
 
 namespace flatspeckle::grin {
@@ -15,6 +17,19 @@ struct Sides {
   bool operator()(const Vec3& x) const {
     for (std::size_t i = 0; i < surfaces.size(); ++i)
       if (!(signs[i] * distance(surfaces[i], x) <= tolerance)) return false;
+    return true;
+  }
+  /// A step h, its ends and what is between them.
+  bool keep(const RayState& start, const RayState& end, double h) const {
+    const StepCurve curve(start, end, h);
+    const double arc = 1.1 * (end.arc_length - start.arc_length);
+    for (std::size_t i = 0; i < surfaces.size(); ++i) {
+      const auto depth = [&](const Vec3& x) {
+        return tolerance - signs[i] * distance(surfaces[i], x);
+      };
+      const Bracket all{0, 1, depth(start.x), depth(end.x)};
+      if (first_change([&](double theta) { return depth(curve.x(theta)); }, all, arc)) return false;
+    }
     return true;
   }
 };

@@ -24,10 +24,11 @@ struct Trial {
 };
 
 /// What costs time, in flights of cost 1.
-double work(const TransportCounts& counts, const Tracers& tracers) {
+double work(const TransportCounts& counts, const Tracers& tracers, RenderMethod method) {
   const bool curved = tracers.plan().curved;
+  const double per_flight = curved && method == RenderMethod::light ? 0.7 : 1;  // most without |J|
   const double per_promise = curved ? 0.03 : 0.3, per_iteration = curved ? 2 : 1;
-  const double steps = static_cast<double>(counts.flights) +
+  const double steps = per_flight * static_cast<double>(counts.flights) +
                        per_iteration * static_cast<double>(counts.connections.iterations);
   return tracers.cost_of_flight() * steps +
          per_promise * static_cast<double>(counts.joins_weighed) +
@@ -79,7 +80,7 @@ std::optional<Trial> tried(const Tracers& tracers, const Tracer& tracer, int pai
     std::vector<Complex> values(pixels * static_cast<std::size_t>(bins.sums()));
     Film film(static_cast<int>(pixels), bins, values);
     tracer.add(pairs_per_group, random, film, counts);
-    if (work(counts, tracers) > most_work) return std::nullopt;
+    if (work(counts, tracers, tracer.method) > most_work) return std::nullopt;
     std::vector<double> steady(pixels);
     for (std::size_t pixel = 0; pixel < pixels; ++pixel)
       for (int part = 0; part < bins.parts(); ++part)
@@ -91,7 +92,7 @@ std::optional<Trial> tried(const Tracers& tracers, const Tracer& tracer, int pai
       first += picture.pixels();
     }
   }
-  Trial trial{{}, work(counts, tracers)};
+  Trial trial{{}, work(counts, tracers, tracer.method)};
   for (const PictureSums& picture : pictures) trial.pictures.push_back(picture.moments());
   return trial;
 }

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "core/numbers/control_variate.h"
+#include "core/numbers/mean_errors.h"
 #include "core/numbers/random.h"
 #include "grin/estimators/map_datasets.h"
 #include "grin/estimators/method_choice.h"
@@ -27,7 +28,7 @@ int paths_per_batch(const Tracer& tracer, double cost_of_flight, std::size_t sum
   const double most_flights = is_map ? 1 << 20 : 1 << 17;
   const double paths =
       is_map ? photon_paths_per_batch
-             : std::clamp(static_cast<double>(sums) / (64 * cost_of_flight), fewest, most);
+             : std::clamp(static_cast<double>(sums) / (16 * cost_of_flight), fewest, most);
   const auto short_enough =
       static_cast<std::size_t>(std::min(paths, most_flights / tracer.flights_per_pair));
   return static_cast<int>(std::bit_floor(std::max<std::size_t>(short_enough, 1)));
@@ -77,7 +78,7 @@ Estimator some_sums(const RenderJob& job, int first, int count) {
 
 std::string described_steps(const RenderScene& scene, const RenderPlan& plan) {
   std::ostringstream text;
-  if (plan.curved) text << "; steps of " << scene.step;
+  if (plan.curved) text << (scene.leapfrogs ? "; leapfrog steps of " : "; steps of ") << scene.step;
   return text.str();
 }
 
@@ -190,11 +191,15 @@ RenderJob render_job(const RenderScene& scene, const RenderRequest& request, std
     const std::lock_guard lock(*counting);
     *counts += of_batch;
   };
+  const EntrySums steady_sums{static_cast<std::size_t>(pixels),
+                              static_cast<std::size_t>(scene.bins.sums()),
+                              static_cast<std::size_t>(scene.bins.parts())};
   job.batches.relative_error =
       [=, cells = scene.map, steady = steady_picture(job.pictures, scene.bins),
        has_drift = job.has_drift, first_of_map = job.first_of_map()](const GroupedSums& sums) {
-        const double of_pictures =
-            largest_error(tracer.transport->sensors, estimated(sums, steady, has_drift));
+        const Estimate picture = has_drift ? controlled_jackknife(sums, steady, sums.size() - 1)
+                                           : jackknife(sums, steady_sums);
+        const double of_pictures = largest_error(tracer.transport->sensors, picture);
         return cells ? std::max(of_pictures, relative_error(fluence(sums, first_of_map, *cells)))
                      : of_pictures;
       };

@@ -27,6 +27,7 @@ struct RenderScene {
   TimeBins bins = {};
   std::optional<LightMap> map = {};
   std::optional<double> length_unit = {};  ///< metres in a unit of length, for times
+  bool leapfrogs = false;                  ///< steps are of Leapfrog (make_ray_field)
 };
 
 /// Of a scene with several sensors; a number where it has no names.

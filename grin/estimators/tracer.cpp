@@ -69,10 +69,6 @@ void Tracer::add(int paths, RandomStream& random, Film& film, TransportCounts& c
 Tracers::Tracers(const RenderScene& scene, const RenderRequest& request)
     : scene_(scene), request_(request), plan_(render_plan(scene)) {
   if (!plan_.curved && plan_.scatters) find_depth();
-  if (plan_.curved)
-    space_ = make_curved_space(
-        scene.field, scene.stage,
-        {scene.step, scene.max_length, request.method != RenderMethod::photon_map});
 }
 
 void Tracers::find_depth() {
@@ -83,13 +79,11 @@ void Tracers::find_depth() {
 }
 
 Tracer Tracers::make(RenderMethod method) const {
-  // of a join; less than what it costs, as a level too low only costs time
-  const double flights_per_join = plan_.curved ? 4 : 0.1;
   Tracer tracer = plan_.curved ? curved(method) : straight(method);
   tracer.flights_per_pair =
       method == RenderMethod::photon_map
           ? flights_per_pair(*tracer.transport, tracer.kernel, scene_.bins)
-          : tune_joins(*tracer.transport, tracer.kernel, scene_.bins, flights_per_join);
+          : tune_joins(*tracer.transport, tracer.kernel, scene_.bins, tracer.flights_per_join);
   return tracer;
 }
 
@@ -99,7 +93,7 @@ MapKernel Tracers::map_kernel() const {
   if (const auto* homogeneous = std::get_if<Homogeneous>(&scene_.field))
     return grin::map_kernel(*scene_.map, transport, homogeneous->n_excess);
   const std::shared_ptr<const CurvedSpace> space =
-      make_curved_space(scene_.field, scene_.stage, {scene_.step, scene_.max_length, false});
+      make_curved_space(scene_.field, scene_.stage, options(Spreading::none));
   return grin::map_kernel(*scene_.map, transport, space, scene_.random_phase);
 }
 
@@ -129,19 +123,36 @@ Tracer Tracers::straight(RenderMethod method) const {
   return tracer;
 }
 
+CurvedSpaceOptions Tracers::options(Spreading spreading) const {
+  return {scene_.step, scene_.max_length, spreading, scene_.leapfrogs};
+}
+
+namespace {
+
+/// Of its flights: weights of light tracing ask for it at the last one alone.
+Spreading spreading_of(RenderMethod method) {
+  return method == RenderMethod::photon_map ? Spreading::none
+         : method == RenderMethod::light    ? Spreading::to_boundary
+                                            : Spreading::all;
+}
+
+}  // namespace
+
 Tracer Tracers::curved(RenderMethod method) const {
   const auto transport = transport_of(scene_, request_, method);
+  const std::shared_ptr<const CurvedSpace> space =
+      make_curved_space(scene_.field, scene_.stage, options(spreading_of(method)));
   if (method == RenderMethod::photon_map)
     return {method, transport,
-            photon_kernel(plan_.timed, transport, space_, scene_.random_phase,
+            photon_kernel(plan_.timed, transport, space, scene_.random_phase,
                           photon_radius(scene_, request_))};
-  Tracer tracer{method, transport, curved_kernel(plan_, transport, space_, scene_.random_phase)};
+  Tracer tracer{method, transport, curved_kernel(plan_, transport, space, scene_.random_phase)};
+  tracer.flights_per_join = space->cost_of_join();
   if (transport->lights.beam_power() > 0)
-    tracer.unscattered_beams =
-        beams_kernel(plan_.timed, transport,
-                     make_curved_space(scene_.field, without_scattering(scene_.stage),
-                                       {scene_.step, scene_.max_length, false}),
-                     scene_.random_phase);
+    tracer.unscattered_beams = beams_kernel(
+        plan_.timed, transport,
+        make_curved_space(scene_.field, without_scattering(scene_.stage), options(Spreading::none)),
+        scene_.random_phase);
   return tracer;
 }
 

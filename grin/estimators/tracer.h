@@ -24,11 +24,13 @@ struct Tracer {
   PathKernel unscattered_beams = {};  ///< where the kernel leaves that out and there is some
   /// Of a light path and its sensor paths; infinity where they were too long to be walked.
   double flights_per_pair = 1;
+  /// Less than what one costs, as a level of joins too low only costs time.
+  double flights_per_join = 0.1;
 
   void add(int paths, RandomStream& random, Film& film, TransportCounts& counts) const;
 };
 
-/// Makes the tracers of a scene, which share its space. Refers to scene and request.
+/// Makes the tracers of a scene. Refers to scene and request.
 class Tracers {
  public:
   Tracers(const RenderScene& scene, const RenderRequest& request);
@@ -53,12 +55,12 @@ class Tracers {
   void find_depth();
   Tracer straight(RenderMethod method) const;
   Tracer curved(RenderMethod method) const;
+  CurvedSpaceOptions options(Spreading spreading) const;
 
   const RenderScene& scene_;
   const RenderRequest& request_;
   RenderPlan plan_;
   std::shared_ptr<const DepthImportance> depth_;  ///< where the plan is deep
-  std::shared_ptr<const CurvedSpace> space_;      ///< where rays are curved
 };
 
 }  // namespace flatspeckle::grin

@@ -11,8 +11,10 @@ namespace flatspeckle::grin {
 
 namespace {
 
-/// A way costs as much as some tens of rays.
-constexpr double ways_per_ray = 1.0 / 32;
+/// A way costs as much as some tens of rays; the search for one where pinholes see none, more.
+double share_of_ways(bool is_any_seen) {
+  return is_any_seen ? 1.0 / 32 : 1.0 / 512;
+}
 
 constexpr double golden = 0.61803398874989484820;
 double fraction(double x) {
@@ -41,8 +43,12 @@ bool needs_ways(const S& space, const SensorEnd& sensor) {
   return !sensor.can_be_hit() || space.joins_through();
 }
 
-/// Where searches for ways from a sensor to a beam begin, of each sensor and beam.
-using BeamSeeds = std::vector<std::vector<BeamSeed>>;
+/// Where searches for ways from a sensor to a beam begin, of each sensor and beam; and whether any
+/// light may come that way, as far as a search tells.
+struct BeamSeeds {
+  std::vector<std::vector<BeamSeed>> of_pair;
+  bool is_any_seen = false;
+};
 
 bool is_among(std::span<const BeamWay> ways, const BeamWay& one) {
   constexpr double same = 1e-4;  // rad
@@ -56,7 +62,7 @@ bool is_among(std::span<const BeamWay> ways, const BeamWay& one) {
 /// light, each once. Decided by the scene alone.
 template <Space S>
 std::vector<BeamSeed> seeds_of(const S& space, const SensorEnd& sensor, const Lights::Beam& beam,
-                               int trials) {
+                               int trials, bool& is_any_seen) {
   constexpr std::size_t most = 24;
   const int places = sensor.can_be_hit() ? 4 : 1;
   constexpr auto no_batch = std::numeric_limits<std::uint64_t>::max() - 1;
@@ -68,6 +74,8 @@ std::vector<BeamSeed> seeds_of(const S& space, const SensorEnd& sensor, const Li
   for (int place = 0; place < places; ++place) {
     const EndPosition z = sensor.sample_position(space, random);
     std::vector<BeamWay> known = space.ways_to_beam(z.point, light, seeds, random, statistics);
+    is_any_seen |= std::any_of(known.begin(), known.end(),
+                               [&](const BeamWay& way) { return beam.disk.contains(way.place); });
     std::erase_if(known, [](const BeamWay& way) { return way.multiplicity != 1; });  // by chance
     for (int i = 0; i < trials / places; ++i) {
       const auto way = space.some_way_to_beam(z.point, light, random, statistics);
@@ -79,6 +87,7 @@ std::vector<BeamSeed> seeds_of(const S& space, const SensorEnd& sensor, const Li
       found.emplace_back(strength * way->transmittance / way->thinning, seeds.back());
     }
   }
+  is_any_seen |= sensor.can_be_hit() || !seeds.empty();
   if (seeds.size() <= most) return seeds;
   std::sort(found.begin(), found.end(),
             [](const auto& a, const auto& b) { return a.first > b.first; });
@@ -93,23 +102,25 @@ BeamSeeds all_seeds(const Transport& transport, const S& space, int trials) {
   BeamSeeds seeds;
   for (const SensorEnd& sensor : transport.sensors)
     for (std::size_t beam = 0; beam < transport.lights.beams(); ++beam)
-      seeds.push_back(needs_ways(space, sensor)
-                          ? seeds_of(space, sensor, transport.lights.beam_at(beam), trials)
-                          : std::vector<BeamSeed>());
+      seeds.of_pair.push_back(
+          needs_ways(space, sensor)
+              ? seeds_of(space, sensor, transport.lights.beam_at(beam), trials, seeds.is_any_seen)
+              : std::vector<BeamSeed>());
   return seeds;
 }
 
 /// Light of beams that meets no collision: rays from the beams that hit sensors, and ways from
-/// places of the sensors back to the beams, `ways_per_ray` of them. A way that the body's surface
+/// places of the sensors back to the beams, ways_per_ray of them. A way that the body's surface
 /// refracts or reflects can be found by both, and is shared by multiple importance sampling; of
 /// sensors that can be hit the others are the rays' alone.
 template <bool timed, Space S>
 class UnscatteredBeams {
  public:
-  UnscatteredBeams(const Transport& transport, const BeamSeeds& seeds, const S& space,
-                   RandomStream& random, Film& film, TransportCounts& counts)
+  UnscatteredBeams(const Transport& transport, const BeamSeeds& seeds, double ways_per_ray,
+                   const S& space, RandomStream& random, Film& film, TransportCounts& counts)
       : transport_(transport),
         seeds_(seeds),
+        ways_per_ray_(ways_per_ray),
         space_(space),
         random_(random),
         film_(film),
@@ -134,7 +145,8 @@ class UnscatteredBeams {
     const Lights::Beam beam = transport_.lights.beam(stratum);
     for (std::size_t i = 0; i < transport_.sensors.size(); ++i)
       if (needs_ways(space_, transport_.sensors[i]))
-        add_ways(transport_.sensors[i], beam, seeds_[i * transport_.lights.beams() + beam.number]);
+        add_ways(transport_.sensors[i], beam,
+                 seeds_.of_pair[i * transport_.lights.beams() + beam.number]);
   }
 
  private:
@@ -157,7 +169,7 @@ class UnscatteredBeams {
       if (way.passages.count == 0) return;
       weight = 1 / (1 + 1 / heuristic(ways_over_rays(z, way, beam)));
     }
-    add(to.pixel, value * weight * way.multiplicity / ways_per_ray, way.optical_path);
+    add(to.pixel, value * weight * way.multiplicity / ways_per_ray_, way.optical_path);
   }
 
   double weight_of_ray(const Flight& flight, const EndHit& hit, const Lights::Beam& beam) const {
@@ -171,7 +183,7 @@ class UnscatteredBeams {
   double ways_over_rays(const EndPosition& z, const BeamWay& way, const Lights::Beam& beam) const {
     const double by_rays = beam.disk.density(way.place);
     const double by_ways = z.position_density * way.thinning / z.inward.dot(way.start_direction);
-    return ways_per_ray * by_ways / by_rays;
+    return ways_per_ray_ * by_ways / by_rays;
   }
   void add(int pixel, double value, double optical_path) {
     deposit<timed>(film_, counts_, pixel, value, optical_path);
@@ -179,6 +191,7 @@ class UnscatteredBeams {
 
   const Transport& transport_;
   const BeamSeeds& seeds_;
+  double ways_per_ray_;
   const S& space_;
   RandomStream& random_;
   Film& film_;
@@ -189,6 +202,7 @@ class UnscatteredBeams {
 template <bool timed, class WithSpace>
 PathKernel kernel(std::shared_ptr<const Transport> transport, const BeamSeeds& seeds,
                   const WithSpace& with_space) {
+  const double ways_per_ray = share_of_ways(seeds.is_any_seen);
   return [=](int rays, RandomStream& random, Film& film, TransportCounts& counts,
              std::vector<double>*) {
     const EvenSquare even(random);
@@ -201,8 +215,8 @@ PathKernel kernel(std::shared_ptr<const Transport> transport, const BeamSeeds& s
       const double stratum = (ray + beam) / rays;
       const EndPosition start = transport->lights.beam_position(stratum, even.u(ray), even.v(ray));
       with_space(random, [&](const auto& space) {
-        UnscatteredBeams<timed, std::decay_t<decltype(space)>> light(*transport, seeds, space,
-                                                                     random, film, counts);
+        UnscatteredBeams<timed, std::decay_t<decltype(space)>> light(
+            *transport, seeds, ways_per_ray, space, random, film, counts);
         if (has_area) light.add_ray(start, stratum);
         if (const double way = ways_before(ray); ways_before(ray + 1) > way)
           light.add_ways(fraction(beam_of_way + way * golden));

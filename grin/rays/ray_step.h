@@ -80,7 +80,7 @@ struct Leapfrog {
   static constexpr int order = 2;
 
   template <IndexField F, class Ray>
-  static void step(const F& field, Ray& ray, double h) {
+  [[gnu::flatten]] static void step(const F& field, Ray& ray, double h) {
     if constexpr (HomogeneousField<F>) return straight_step(field, ray, h);
     ray.x += h / 2 * ray.v;
     const RayForce at = ray_force(field, ray.x);
@@ -110,7 +110,7 @@ struct Yoshida4 {
   static constexpr double inner = 1 - 2 * outer;
 
   template <IndexField F, class Ray>
-  static void step(const F& field, Ray& ray, double h) {
+  [[gnu::flatten]] static void step(const F& field, Ray& ray, double h) {
     if constexpr (HomogeneousField<F>) return straight_step(field, ray, h);
     for (const double part : {outer, inner, outer}) Leapfrog::step(field, ray, part * h);
   }
@@ -127,7 +127,7 @@ struct Sharma {
   static constexpr int order = 4;
 
   template <IndexField F, class Ray>
-  static void step(const F& field, Ray& ray, double h) {
+  [[gnu::flatten]] static void step(const F& field, Ray& ray, double h) {
     if constexpr (HomogeneousField<F>) return straight_step(field, ray, h);
     const RayForce a = ray_force(field, ray.x);
     const Vec3 middle = ray.x + h / 2 * ray.v + h * h / 8 * a.force;

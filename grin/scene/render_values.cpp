@@ -103,21 +103,22 @@ AnyIndexField without_silence(const SceneField& field, const Stage& stage) {
       field.field);
 }
 
-double step_of(const Keys& keys, const RenderValues& values, const SceneField& field,
-               const Stage& stage, double size) {
+StepChoice steps_of(const Keys& keys, const RenderValues& values, const SceneField& field,
+                    const Stage& stage, double size) {
   constexpr double most_steps = 1e5;
-  if (!(field.scale > 0)) return size;
+  if (!(field.scale > 0)) return {size};
   const auto& given = keys.read(values.step);
   const double longest = longest_step(field, stage);
   if (given && *given > longest)
     throw InputError("step", *given,
                      "must be at most " + number_text(longest) + ": the field varies over " +
                          number_text(field.scale));
-  const double step = given ? *given : chosen_step(field, stage, keys.read(values.random_phase));
-  if (!(step * most_steps >= size))
-    throw InputError("step", step,
+  const StepChoice steps =
+      given ? StepChoice{*given} : chosen_steps(field, stage, keys.read(values.random_phase));
+  if (!(steps.step * most_steps >= size))
+    throw InputError("step", steps.step,
                      "must be at least 1e-5 of the stage's size: " + number_text(size));
-  return step;
+  return steps;
 }
 
 double max_length_of(const Keys& keys, const RenderValues& values, double scale, double size) {
@@ -194,8 +195,9 @@ RenderScene make_render_scene(const Keys& keys, const RenderValues& values) {
   const Box box = bounds(stage.boundary);
   const double size = (box.high - box.low).norm();
   const AnyIndexField heard = without_silence(field, stage);
+  const StepChoice steps = steps_of(keys, values, field, stage, size);
   RenderScene scene{.field = heard,
-                    .step = step_of(keys, values, field, stage, size),
+                    .step = steps.step,
                     .max_length = max_length_of(keys, values, field.scale, size),
                     .random_phase = any_phase && heard.index() == field.field.index(),
                     .stage = stage,
@@ -204,7 +206,8 @@ RenderScene make_render_scene(const Keys& keys, const RenderValues& values) {
                     .sensor_names = make_sensor_names(keys, values.sensors),
                     .bins = time_bins(keys, values),
                     .map = light_map(keys, values, box),
-                    .length_unit = keys.read(values.length_unit)};
+                    .length_unit = keys.read(values.length_unit),
+                    .leapfrogs = steps.leapfrogs};
   check_size(scene.sensors, scene.bins);
   if (scene.sensors.empty() && !scene.map)
     throw InputError("sensor", "none", "wants a map (map_box, map_cylinder)");

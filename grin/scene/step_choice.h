@@ -22,4 +22,11 @@ double longest_step(const SceneField& field, const Stage& stage);
 /// alone, to two digits. any_phase: of the sound, at the worst one.
 double chosen_step(const SceneField& field, const Stage& stage, bool any_phase);
 
+/// The same, or such steps of Leapfrog where these cost less for the same way.
+struct StepChoice {
+  double step;
+  bool leapfrogs = false;  ///< make_ray_field()
+};
+StepChoice chosen_steps(const SceneField& field, const Stage& stage, bool any_phase);
+
 }  // namespace flatspeckle::grin

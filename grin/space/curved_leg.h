@@ -10,10 +10,10 @@
 
 namespace flatspeckle::grin {
 
-/// The part of a flight that lies in an index field, inside a surface: equal steps of Sharma, and a
-/// shorter one at the end. As trace() it does not ask for the distance from the surface where that
+/// The part of a flight that lies in an index field, inside a surface: equal steps, and a shorter
+/// one at the end. As trace() it does not ask for the distance from the surface where that
 /// is far away; places within a step are found on its StepCurve.
-template <IndexField F>
+template <IndexField F, class Step = Sharma>
 class CurvedLeg {
  public:
   CurvedLeg(const F& field, const LegRoom& room)
@@ -36,20 +36,22 @@ class CurvedLeg {
     for (int steps = 0; steps < most_steps && ray.arc_length <= longest; ++steps) {
       const std::tuple<RayState, Tangent...> before(ray, tangent...);
       const RayState& start = std::get<0>(before);
-      Sharma::step(field_, ray, tangent..., step_);
+      Step::step(field_, ray, tangent..., step_);
       const bool is_lost = !(ray.arc_length > start.arc_length);
       const double arc = is_lost ? 3 * start.v.norm() * step_  // more than it might have been
                                  : 1.1 * (ray.arc_length - start.arc_length);
       clearance -= arc;
       std::optional<double> exit;
       if (is_lost || !(clearance > 0)) {
-        exit = way_out(start, ray, put_back, arc, is_lost);
-        if (!exit && is_lost) return LegStop::lost;
         clearance = put_back - distance(surface_, ray.x);
+        const double before_step = put_back - distance(surface_, start.x);
+        if (is_lost || !(clearance > 0 && clearance + before_step > arc))
+          exit = way_out(start, ray, put_back, arc, is_lost);
+        if (!exit && is_lost) return LegStop::lost;
       }
       const auto go_only = [&](double part) {
         std::tie(ray, tangent...) = before;
-        Sharma::step(field_, ray, tangent..., part * step_);
+        Step::step(field_, ray, tangent..., part * step_);
       };
       if (exit) go_only(*exit);
       const double part = exit.value_or(1);
@@ -71,7 +73,7 @@ class CurvedLeg {
     double left = 1, collision = next_collision(0, random);
     for (int i = 0; i < steps && left > 0; ++i) {
       const RayState start = ray;
-      Sharma::step(field_, ray, sigma / steps);
+      Step::step(field_, ray, sigma / steps);
       const StepCurve curve(start, ray, sigma / steps);
       for (; collision < ray.arc_length; collision = next_collision(collision, random))
         left *= medium_.lacking(curve.x(curve.theta_at(collision)));
@@ -85,7 +87,7 @@ class CurvedLeg {
     double left = 1, collision = next_collision(ray.arc_length, random);
     while (left > 0 && collision < end) {
       const RayState start = ray;
-      Sharma::step(field_, ray, step_);
+      Step::step(field_, ray, step_);
       if (!(ray.arc_length > start.arc_length)) return 0;
       const StepCurve curve(start, ray, step_);
       for (; collision < std::min(ray.arc_length, end);
@@ -121,7 +123,7 @@ class CurvedLeg {
                                 double arc, bool is_lost) const {
     const auto exact = [&](double theta) {
       RayState ray = start;
-      Sharma::step(field_, ray, theta * step_);
+      Step::step(field_, ray, theta * step_);
       return put_back - distance(surface_, ray.x);
     };
     if (is_lost) return search(exact, arc);

@@ -10,10 +10,11 @@
 
 namespace flatspeckle::grin {
 
-std::unique_ptr<const RayField> make_ray_field(const AnyIndexField& field, const Surface* end) {
+std::unique_ptr<const RayField> make_ray_field(const AnyIndexField& field, const Surface* end,
+                                               bool leapfrogs) {
   constexpr decltype(&make_ray_field) in_file[ray_field_files] = {ray_field_in<0>, ray_field_in<1>,
                                                                   ray_field_in<2>};
-  return in_file[field.index() % ray_field_files](field, end);
+  return in_file[field.index() % ray_field_files](field, end, leapfrogs);
 }
 
 namespace {
@@ -38,8 +39,9 @@ CurvedSpace::CurvedSpace(const AnyIndexField& field, const Stage& stage,
                                .max_length = options.max_length,
                                .start = {.chord_share = 0.2},
                                .tolerance = 1e-8,
+                               .carry = 3e-7,
                                .count_caustics = false}})),
-      field_(make_ray_field(field, &container())) {}
+      field_(make_ray_field(field, &container(), options.leapfrogs)) {}
 
 std::unique_ptr<const CurvedSpace> CurvedSpace::frozen(double phase) const {
   return std::unique_ptr<const CurvedSpace>(new CurvedSpace(setup_, field_->frozen(phase)));
@@ -55,8 +57,18 @@ struct CurvedSpace::Neighbours {
 
 Flight CurvedSpace::fly(const PathPoint& from, const Vec3& direction, RandomStream& random,
                         FlightLog* log) const {
+  const Spreading spreading = setup_->options.spreading;
+  if (spreading != Spreading::to_boundary || log)
+    return fly(from, direction, spreading != Spreading::none, random, log);
+  RandomStream again = random;
+  const Flight flight = fly(from, direction, false, random, log);
+  return flight.end == Flight::End::boundary ? fly(from, direction, true, again, log) : flight;
+}
+
+Flight CurvedSpace::fly(const PathPoint& from, const Vec3& direction, bool spreads,
+                        RandomStream& random, FlightLog* log) const {
   Flight flight{.point = from, .start_direction = direction, .direction = direction};
-  Neighbours neighbours{setup_->options.spreading};
+  Neighbours neighbours{spreads};
   const double longest =
       setup_->is_straight ? std::numeric_limits<double>::infinity() : setup_->options.max_length;
   for (int legs = 0; legs < most_legs && flight.arc_length <= longest; ++legs) {
@@ -310,12 +322,12 @@ std::optional<Join> CurvedSpace::join(const PathPoint& p, const PathPoint& q, Ra
   if (p.part != q.part) return std::nullopt;
   if (!is_curved(p)) return setup_->stage.join(p, q, index(p), random);
   static constexpr double inside = 1;
-  const CurveEnds ends{p.x, q.x, {{&container(), 1}, {&inside, 1}}};
+  const double slack = 1e-7 * ((q.x - p.x).norm() + setup_->options.step);  // ends on the surface
+  const CurveEnds ends{p.x, q.x, {{&container(), 1}, {&inside, 1}, slack}};
   const ConnectionEstimate estimate = field_->connect(ends, setup_->connection, random, statistics);
   if (!estimate.curve) return std::nullopt;
   const Connection& curve = *estimate.curve;
-  if (goes_outside(p.x, curve.start_direction) || goes_outside(q.x, -curve.end_direction) ||
-      !stays_inside(start_ray(*field_, p.x, curve.start_direction), curve.sigma, curve.steps))
+  if (goes_outside(p.x, curve.start_direction) || goes_outside(q.x, -curve.end_direction))
     return std::nullopt;
   return Join{.start_direction = curve.start_direction,
               .end_direction = curve.end_direction,

@@ -11,10 +11,14 @@
 
 namespace flatspeckle::grin {
 
+/// Which flights tell |J|, about half of their cost; joins always do.
+enum class Spreading { none, to_boundary, all };
+
 struct CurvedSpaceOptions {
-  double step;            ///< of rays in sigma: length at index 1
-  double max_length;      ///< arc length of a flight or join; longer ones are lost
-  bool spreading = true;  ///< flights tell |J|, about half of their cost; joins always do
+  double step;        ///< of rays in sigma: length at index 1
+  double max_length;  ///< arc length of a flight or join; longer ones are lost
+  Spreading spreading = Spreading::all;
+  bool leapfrogs = false;  ///< make_ray_field()
 };
 
 /// Space where the index varies: straight ways around the body, or where the field is homogeneous,
@@ -42,6 +46,8 @@ class CurvedSpace {
   }
   std::optional<Join> join(const PathPoint& p, const PathPoint& q, RandomStream& random,
                            ConnectionStatistics& statistics) const;
+  /// In flights, roughly.
+  double cost_of_join() const { return field_->cost_of_curve(); }
   bool joins_through() const { return !joins_all() && setup_->stage.joins_through(); }
   std::optional<Join> join_through(const PathPoint& p, const PathPoint& q, RandomStream& random,
                                    ConnectionStatistics& statistics) const;
@@ -93,6 +99,8 @@ class CurvedSpace {
     return joins_through() || (setup_->field_part == Part::stage && !setup_->is_straight);
   }
   bool stays_inside(RayState ray, double sigma, int steps) const;
+  Flight fly(const PathPoint& from, const Vec3& direction, bool spreads, RandomStream& random,
+             FlightLog* log) const;
   bool goes_outside(const Vec3& x, const Vec3& direction) const;
   std::optional<LegEnd> leg(Flight& flight, Neighbours& neighbours, RandomStream& random) const;
   std::optional<LegEnd> curved_leg(Flight& flight, Neighbours& neighbours,

@@ -37,7 +37,7 @@ class RayField {
   /// CurvedLeg::go(), with a tangent where there is one.
   virtual LegStop fly(const LegRoom& room, double longest, double& weight, RandomStream& random,
                       RayState& ray, RayTangent* tangent) const = 0;
-  /// Equal steps of Sharma, with a tangent where there is one.
+  /// Equal steps, with a tangent where there is one.
   virtual void advance(double sigma, int steps, RayState& ray, RayTangent* tangent) const = 0;
   /// CurvedLeg::ratio_tracked().
   virtual double ratio_tracked(const LegRoom& room, const RayState& ray, double sigma, int steps,
@@ -46,6 +46,8 @@ class RayField {
   virtual double ratio_tracked(const LegRoom& room, const RayState& ray, double arc_length,
                                RandomStream& random) const = 0;
 
+  /// In flights, roughly, what connect() costs.
+  virtual double cost_of_curve() const = 0;
   /// connect_chord_first().
   virtual ConnectionEstimate connect(const CurveEnds& ends, const ConnectionOptions& options,
                                      RandomStream& random,
@@ -61,14 +63,23 @@ class RayField {
   virtual std::unique_ptr<const RayField> frozen(double phase) const = 0;
 };
 
-/// end: of the rays, where they end on one surface.
+/// Whose rays may go by Leapfrog, which is cheaper where it is exact enough: sound, weak and finely
+/// structured.
+template <class F>
+inline constexpr bool goes_by_leapfrog = requires(const F& field) {
+  at_phase(field, 0.0);
+};
+
+/// end: of the rays, where they end on one surface. leapfrogs: by that, of a field that has it.
 std::unique_ptr<const RayField> make_ray_field(const AnyIndexField& field,
-                                               const Surface* end = nullptr);
+                                               const Surface* end = nullptr,
+                                               bool leapfrogs = false);
 
 /// Fields are compiled in so many files: ray_field_N.cpp has those whose number in the list has the
 /// remainder N, and makes nothing of others.
 inline constexpr std::size_t ray_field_files = 3;
 template <std::size_t file>
-std::unique_ptr<const RayField> ray_field_in(const AnyIndexField& field, const Surface* end);
+std::unique_ptr<const RayField> ray_field_in(const AnyIndexField& field, const Surface* end,
+                                             bool leapfrogs);
 
 }  // namespace flatspeckle::grin

@@ -1,7 +1,8 @@
-#include "grin/space/ray_field_of.h"
+#include "grin/space/ray_field_in.h"
 
 namespace flatspeckle::grin {
 
-template std::unique_ptr<const RayField> ray_field_in<1>(const AnyIndexField&, const Surface*);
+template std::unique_ptr<const RayField> ray_field_in<1>(const AnyIndexField&, const Surface*,
+                                                         bool);
 
 }  // namespace flatspeckle::grin

@@ -8,8 +8,8 @@
 
 namespace flatspeckle::grin {
 
-template <IndexField F>
-class RayFieldOf final : public RayField {
+template <IndexField F, class Step = Sharma>
+class RayFieldOf : public RayField {
  public:
   explicit RayFieldOf(F field) : field_(std::move(field)) {}
 
@@ -30,31 +30,32 @@ class RayFieldOf final : public RayField {
 
   LegStop fly(const LegRoom& room, double longest, double& weight, RandomStream& random,
               RayState& ray, RayTangent* tangent) const override {
-    const CurvedLeg<F> leg(field_, room);
+    const CurvedLeg<F, Step> leg(field_, room);
     return tangent ? leg.go(longest, weight, random, ray, *tangent)
                    : leg.go(longest, weight, random, ray);
   }
   void advance(double sigma, int steps, RayState& ray, RayTangent* tangent) const override {
     for (int i = 0; i < steps; ++i) {
       if (tangent)
-        Sharma::step(field_, ray, *tangent, sigma / steps);
+        Step::step(field_, ray, *tangent, sigma / steps);
       else
-        Sharma::step(field_, ray, sigma / steps);
+        Step::step(field_, ray, sigma / steps);
     }
   }
   double ratio_tracked(const LegRoom& room, const RayState& ray, double arc_length,
                        RandomStream& random) const override {
-    return CurvedLeg<F>(field_, room).ratio_tracked(ray, arc_length, random);
+    return CurvedLeg<F, Step>(field_, room).ratio_tracked(ray, arc_length, random);
   }
   double ratio_tracked(const LegRoom& room, const RayState& ray, double sigma, int steps,
                        RandomStream& random) const override {
-    return CurvedLeg<F>(field_, room).ratio_tracked(ray, sigma, steps, random);
+    return CurvedLeg<F, Step>(field_, room).ratio_tracked(ray, sigma, steps, random);
   }
 
+  double cost_of_curve() const override { return std::same_as<Step, Leapfrog> ? 2 : 4; }
   ConnectionEstimate connect(const CurveEnds& ends, const ConnectionOptions& options,
                              RandomStream& random,
                              ConnectionStatistics& statistics) const override {
-    const ConnectionTrial trial(field_, ends.region, ends.from, ends.to, options);
+    const Trial trial(field_, ends.region, ends.from, ends.to, options);
     if constexpr (HomogeneousField<F>)
       return grin::connect(trial, random, statistics);
     else
@@ -63,7 +64,7 @@ class RayFieldOf final : public RayField {
   std::vector<FoundConnection> connections(const CurveEnds& ends, const ConnectionOptions& options,
                                            std::uint64_t trials, RandomStream& random,
                                            ConnectionStatistics& statistics) const override {
-    const ConnectionTrial trial(field_, ends.region, ends.from, ends.to, options);
+    const Trial trial(field_, ends.region, ends.from, ends.to, options);
     return all_connections(trial, trials, random, statistics);
   }
 
@@ -75,29 +76,9 @@ class RayFieldOf final : public RayField {
   }
 
  private:
+  using Trial = ConnectionTrial<F, Sides, Step>;
+
   F field_;
 };
-
-/// A field as it is for rays that end on this surface: steps that reach past it stay smooth.
-template <IndexField F>
-std::unique_ptr<const RayField> ray_field_within(const F& field, const Surface* end) {
-  if constexpr (requires { smooth_within(field, Sphere()); })
-    if (const Sphere* sphere = end ? std::get_if<Sphere>(end) : nullptr)
-      return std::make_unique<RayFieldOf<F>>(smooth_within(field, *sphere));
-  return std::make_unique<RayFieldOf<F>>(field);
-}
-
-template <std::size_t file, std::size_t number>
-std::unique_ptr<const RayField> ray_field_from(const AnyIndexField& field, const Surface* end) {
-  if constexpr (number < std::variant_size_v<AnyIndexField>) {
-    if (const auto* of = std::get_if<number>(&field)) return ray_field_within(*of, end);
-    return ray_field_from<file, number + ray_field_files>(field, end);
-  }
-  return nullptr;
-}
-template <std::size_t file>
-std::unique_ptr<const RayField> ray_field_in(const AnyIndexField& field, const Surface* end) {
-  return ray_field_from<file, file>(field, end);
-}
 
 }  // namespace flatspeckle::grin

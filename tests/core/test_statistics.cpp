@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include "core/error.h"
+#include "core/numbers/mean_errors.h"
 #include "core/numbers/random.h"
 #include "core/numbers/statistics.h"
 
@@ -24,6 +25,41 @@ TEST_CASE("the jackknife of a mean is the standard error of the mean") {
   const auto estimate = jackknife(sums, sample_mean);
   CHECK(std::abs(estimate.value[0] - mean) < 1e-14);
   CHECK(estimate.error[0] == doctest::Approx(std::sqrt(variance / 100)).epsilon(1e-10));
+}
+
+TEST_CASE("errors of means of entries are those of the jackknife, which leaves groups out") {
+  constexpr std::size_t pixels = 5, stride = 4, parts = 3;
+  const Estimator added = [](double samples, std::span<const Complex> sums) {
+    std::vector<Complex> values(pixels);
+    for (std::size_t i = 0; i < pixels * stride; ++i)
+      if (i % stride < parts) values[i / stride] += sums[i] / samples;
+    return values;
+  };
+  for (const int batches : {1, 2, 40, 700}) {  // of which some groups have one more
+    GroupedSums sums(pixels * stride);
+    RandomStream random(3, 1, 0);
+    for (int batch = 0; batch < batches; ++batch) {
+      std::vector<Complex> values;
+      for (std::size_t i = 0; i < sums.size(); ++i)
+        values.emplace_back(random.uniform() + (i < 4 && batch % 90 == 1 ? 1e3 : 0),
+                            i < 8 ? random.uniform() : 0);
+      sums.add(16, values);
+    }
+    const Estimate expected = jackknife(sums, added),
+                   found = jackknife(sums, EntrySums{pixels, stride, parts});
+    for (std::size_t i = 0; i < pixels; ++i) {
+      CHECK(std::abs(found.value[i] - expected.value[i]) < 1e-14 * std::abs(expected.value[i]));
+      if (batches > 1)
+        CHECK(found.error[i] == doctest::Approx(expected.error[i]).epsilon(1e-9));
+      else
+        CHECK(std::isinf(found.error[i]));
+    }
+    CHECK(found.rare == expected.rare);
+    const Estimate each = jackknife(sums, sample_mean), plain = jackknife(sums, EntrySums{20});
+    CHECK(plain.value == each.value);
+    if (batches > 1) CHECK(plain.error[7] == doctest::Approx(each.error[7]).epsilon(1e-9));
+    CHECK(plain.rare == each.rare);
+  }
 }
 
 TEST_CASE("values whose squares are below all numbers have errors too") {

@@ -127,31 +127,34 @@ TEST_CASE("free flights follow the extinction along the way, straight and curved
       check_free_flights(
           StraightAll(stage, 0.1), medium, x, d,
           [&](double s) { return straight_depth(medium, x, d, s); }, way, 6000);
-      const Fisheye field({.centre_excess = 0.8, .radius = 1.5});
-      const auto curved = make_curved_space(field, stage, {0.05, 8});
-      // depth by small steps, tabulated
-      RayState ray = start_ray(field, x, d);
-      std::vector<double> arcs{0}, depths{0};
-      while (ball.distance(ray.x) < 0) {
-        const RayState before = ray;
-        Sharma::step(field, ray, 5e-4);
-        const double arc = ray.arc_length - before.arc_length;
-        const Vec3 middle = (ray.x + before.x) / 2;
-        arcs.push_back(ray.arc_length);
-        depths.push_back(depths.back() +
-                         medium.mu_t() * arc * (gridded ? (*medium.density)(middle) : 1));
-      }
-      const auto depth = [&](double s) {
-        const auto i = std::min<std::size_t>(
-            std::upper_bound(arcs.begin(), arcs.end(), s) - arcs.begin(), arcs.size() - 1);
-        const double part = (s - arcs[i - 1]) / (arcs[i] - arcs[i - 1]);
-        return depths[i - 1] + part * (depths[i] - depths[i - 1]);
+      const auto check_curved = [&](const auto& field) {
+        const auto curved = make_curved_space(field, stage, {0.05, 8});
+        // depth by small steps, tabulated
+        RayState ray = start_ray(field, x, d);
+        std::vector<double> arcs{0}, depths{0};
+        while (ball.distance(ray.x) < 0) {
+          const RayState before = ray;
+          Sharma::step(field, ray, 5e-4);
+          const double arc = ray.arc_length - before.arc_length;
+          const Vec3 middle = (ray.x + before.x) / 2;
+          arcs.push_back(ray.arc_length);
+          depths.push_back(depths.back() +
+                           medium.mu_t() * arc * (gridded ? (*medium.density)(middle) : 1));
+        }
+        const auto depth = [&](double s) {
+          const auto i = std::min<std::size_t>(
+              std::upper_bound(arcs.begin(), arcs.end(), s) - arcs.begin(), arcs.size() - 1);
+          const double part = (s - arcs[i - 1]) / (arcs[i] - arcs[i - 1]);
+          return depths[i - 1] + part * (depths[i] - depths[i - 1]);
+        };
+        RandomStream random(1, 1, 1);
+        const auto clear = make_curved_space(field, stage_of(ball), {0.05, 8});
+        const double out = clear->fly({x}, d, random).arc_length;
+        CHECK(std::abs(out - arcs.back()) < 1e-3);
+        check_free_flights(*curved, medium, x, d, depth, out, 6000);
       };
-      RandomStream random(1, 1, 1);
-      const auto clear = make_curved_space(field, stage_of(ball), {0.05, 8});
-      const double out = clear->fly({x}, d, random).arc_length;
-      CHECK(std::abs(out - arcs.back()) < 1e-3);
-      check_free_flights(*curved, medium, x, d, depth, out, 6000);
+      check_curved(Fisheye({.centre_excess = 0.8, .radius = 1.5}));
+      check_curved(Luneburg({}));
     }
   }
 }
@@ -363,16 +366,25 @@ TEST_CASE("flights that are too long, or where there is no index, are lost") {
 
 TEST_CASE("spreading is left out where it is not wanted, and nothing else changes") {
   const Stage stage = stage_of(ball, {.mu_s = 1});
-  const auto with = make_curved_space(Luneburg({}), stage, {0.05, 8, true});
-  const auto without = make_curved_space(Luneburg({}), stage, {0.05, 8, false});
-  for (int i = 0; i < 50; ++i) {
-    RandomStream a(12, 91, i), b(12, 91, i);
-    const Vec3 x(0.1, 0.2, 0.3), d = random_direction(a);
-    random_direction(b);
-    const Flight one = with->fly({x}, d, a), two = without->fly({x}, d, b);
-    CHECK((one.point.x - two.point.x).norm() < 1e-14);
-    CHECK(one.spreading > 0);
-    CHECK(two.spreading == 0);
+  const AnyIndexField fields[] = {Luneburg({}), Fisheye({1, 1.5})};
+  for (const AnyIndexField& field : fields) {
+    const auto with = make_curved_space(field, stage, {0.05, 8, Spreading::all});
+    const auto without = make_curved_space(field, stage, {0.05, 8, Spreading::none});
+    const auto last = make_curved_space(field, stage, {0.05, 8, Spreading::to_boundary});
+    for (int i = 0; i < 50; ++i) {
+      RandomStream a(12, 91, i), b(12, 91, i), c(12, 91, i);
+      const Vec3 x(0.1, 0.2, 0.3), d = random_direction(a);
+      random_direction(b);
+      random_direction(c);
+      const Flight one = with->fly({x}, d, a), two = without->fly({x}, d, b),
+                   three = last->fly({x}, d, c);
+      CHECK((one.point.x - two.point.x).norm() < 1e-14);
+      CHECK((one.point.x - three.point.x).norm() < 1e-14);
+      CHECK(one.spreading > 0);
+      CHECK(two.spreading == 0);
+      CHECK(three.spreading == (one.end == Flight::End::boundary ? one.spreading : 0));
+      CHECK(a.uniform() == c.uniform());
+    }
   }
 }
 

@@ -23,9 +23,9 @@ struct Errors {
 /// Of where rays end, by the length of their way, beside what `exact` says: end(start, sigma).
 template <IndexField F, class Exact>
 Errors end_errors(const F& field, const Surface& region, double step, double sigma,
-                  const Exact& exact) {
+                  const Exact& exact, bool leapfrogs = false) {
   constexpr int rays = 400;
-  const auto steps = make_ray_field(field, &region);
+  const auto steps = make_ray_field(field, nullptr, leapfrogs);
   const Box box = bounds(region);
   RandomStream random(5, 0, 0);
   Errors errors;
@@ -101,6 +101,25 @@ TEST_CASE("a chosen step holds rays to its tolerance: sound and narrow ramps") {
   const Errors at = end_errors(ramp, cube, step, 0.3, fine(ramp, 1e-4));
   CHECK(at.worst < 2 * step_tolerance);
   CHECK(at.mean < step_tolerance / 3);
+}
+
+TEST_CASE("weak sound goes by leapfrog, to the same tolerance") {
+  const Box tank{{-15, -15, 0}, {15, 15, 30}};
+  const StandingWave weak(0.33, 1e-3, 0, 3.4, 22);
+  const StepChoice chosen = chosen_steps(scene_of(weak), {.boundary = tank}, false);
+  REQUIRE(chosen.leapfrogs);
+  check_tolerance(
+      [&](double step) { return end_errors(weak, tank, step, 15, fine(weak, 0.05), true); },
+      chosen.step);
+
+  const StandingWave strong(0.33, 0.1, 0, 8.4, 10);
+  CHECK(
+      !chosen_steps(scene_of(strong), {.boundary = Box{{-5, -5, 0}, {5, 5, 10}}}, false).leapfrogs);
+  const Sphere ball{Vec3::Zero(), 1};
+  const Fisheye fisheye({1.6, 1});
+  const StepChoice of_fisheye = chosen_steps(scene_of(fisheye), {.boundary = ball}, false);
+  CHECK(!of_fisheye.leapfrogs);
+  CHECK(of_fisheye.step == chosen_step(scene_of(fisheye), {.boundary = ball}, false));
 }
 
 TEST_CASE("steps follow how strong a field is, not its scale alone") {

@@ -1,0 +1,37 @@
+#pragma once
+
+#include "grin/space/luneburg_rays.h"
+
+namespace flatspeckle::grin {
+
+/// A field as it is for rays that end on this surface: steps that reach past it stay smooth.
+template <IndexField F>
+std::unique_ptr<const RayField> ray_field_within(const F& field, const Surface* end,
+                                                 bool leapfrogs) {
+  if constexpr (goes_by_leapfrog<F>)
+    if (leapfrogs) return std::make_unique<RayFieldOf<F, Leapfrog>>(field);
+  if constexpr (requires { smooth_within(field, Sphere()); })
+    if (const Sphere* sphere = end ? std::get_if<Sphere>(end) : nullptr) {
+      const F smooth = smooth_within(field, *sphere);
+      if (auto closed = closed_form_within(smooth, *sphere)) return closed;
+      return std::make_unique<RayFieldOf<F>>(smooth);
+    }
+  return std::make_unique<RayFieldOf<F>>(field);
+}
+
+template <std::size_t file, std::size_t number>
+std::unique_ptr<const RayField> ray_field_from(const AnyIndexField& field, const Surface* end,
+                                               bool leapfrogs) {
+  if constexpr (number < std::variant_size_v<AnyIndexField>) {
+    if (const auto* of = std::get_if<number>(&field)) return ray_field_within(*of, end, leapfrogs);
+    return ray_field_from<file, number + ray_field_files>(field, end, leapfrogs);
+  }
+  return nullptr;
+}
+template <std::size_t file>
+std::unique_ptr<const RayField> ray_field_in(const AnyIndexField& field, const Surface* end,
+                                             bool leapfrogs) {
+  return ray_field_from<file, file>(field, end, leapfrogs);
+}
+
+}  // namespace flatspeckle::grin
