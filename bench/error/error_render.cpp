@@ -50,7 +50,7 @@ Method photon_map(const RenderScenePointer& named) {
 }
 
 /// Lambertian light of L/n^2 = 1 from all sides, no absorption: L/n^2 = 1 along every ray, so that
-/// the irradiance is pi n^2, and n = 1 on the rim.
+/// the irradiance is pi n^2, and n = 1 on the rim and around balls.
 ErrorReference even_light(std::size_t pixels) {
   return {std::vector<Complex>(pixels, std::numbers::pi), 0, "closed form: irradiance pi"};
 }
@@ -119,6 +119,7 @@ std::vector<ErrorRun> render_error_runs() {
   for (const RenderScenePointer& named : shared(lamp_scenes())) append(runs, all_methods(named));
   append(runs,
          closed_form({"luneburg_even", std::make_shared<const RenderScene>(even_luneburg())}));
+  append(runs, closed_form({"balls_even", std::make_shared<const RenderScene>(even_balls())}));
   append(runs, without_variance(
                    {"glass_ball_beam", std::make_shared<const RenderScene>(beam_on_glass_ball())}));
   runs.push_back(map_run());

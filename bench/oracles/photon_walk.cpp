@@ -81,7 +81,9 @@ bool is_out(const WalkShape& shape, const Vec3& x) {
   return (x - shape.low).minCoeff() < 0 || (shape.high - x).minCoeff() < 0;
 }
 
-enum class Met { nothing, ball, boundary };
+/// What a photon comes to: the number of a ball whose surface it is, or one of these.
+using Met = int;
+constexpr Met nothing = -1, boundary = -2;
 
 /// One photon on its way.
 class Walk {
@@ -95,9 +97,9 @@ class Walk {
       const double mu = (medium.mu_s + medium.mu_a) * medium.largest_density;
       const double flight = mu > 0 ? -std::log(uniform(random_)) / mu : infinity;
       const Met met = is_curved(photon) ? go_curved(photon, flight) : go_straight(photon, flight);
-      if (met == Met::boundary) return true;
-      if (met == Met::ball) {
-        cross_ball(photon);
+      if (met == boundary) return true;
+      if (met != nothing) {
+        cross(photon, met);
       } else if (!collide(photon, medium)) {
         return false;
       }
@@ -106,14 +108,14 @@ class Walk {
 
  private:
   const WalkMedium& medium_of(const Photon& p) const {
-    return p.in_ball ? scene_.ball->medium : scene_.medium;
+    return p.ball >= 0 ? scene_.balls[p.ball].medium : scene_.medium;
   }
-  bool is_curved(const Photon& p) const { return scene_.curved && (p.in_ball || !scene_.ball); }
-  double index_inside(const Vec3& x) const {
-    return scene_.curved ? scene_.curved->n(x) : scene_.inside;
+  bool is_curved(const Photon& p) const {
+    return scene_.curved && p.ball == (scene_.balls.empty() ? -1 : 0);
   }
-  double straight_index(const Photon& p) const {
-    return p.in_ball || !scene_.ball ? scene_.inside : scene_.around;
+  double index(const Photon& p) const {
+    if (is_curved(p)) return scene_.curved->n(p.x);
+    return p.ball >= 0 ? scene_.balls[p.ball].index : scene_.around;
   }
 
   bool collide(Photon& photon, const WalkMedium& medium) {
@@ -125,22 +127,32 @@ class Walk {
     return true;
   }
 
-  double way_to_ball(const Photon& p) const {
-    if (!scene_.ball) return infinity;
-    const auto roots = sphere_roots(p.x, p.direction, scene_.ball->centre, scene_.ball->radius);
-    if (p.in_ball) return roots ? std::max(0.0, roots->second) : 0;
+  int balls() const { return static_cast<int>(scene_.balls.size()); }
+  double way_to(int ball, const Photon& p) const {
+    const auto& [centre, radius, medium, n] = scene_.balls[ball];
+    const auto roots = sphere_roots(p.x, p.direction, centre, radius);
+    if (p.ball == ball) return roots ? std::max(0.0, roots->second) : 0;
     // Just out of it the ray leads away: its roots lie behind.
-    const bool towards = p.direction.dot(scene_.ball->centre - p.x) > 0;
+    const bool towards = p.direction.dot(centre - p.x) > 0;
     return roots && towards ? std::max(0.0, roots->first) : infinity;
   }
 
+  /// Balls before its own lie around the photon.
   Met go_straight(Photon& p, double flight) const {
-    const double ball = way_to_ball(p), out = way_out(scene_.boundary, p.x, p.direction);
-    const double way = std::min({flight, ball, out});
+    double way = way_out(scene_.boundary, p.x, p.direction);
+    Met met = boundary;
+    for (int ball = std::max(0, p.ball); ball < balls(); ++ball)
+      if (const double there = way_to(ball, p); there < way) {
+        way = there;
+        met = ball;
+      }
+    if (flight < way) {
+      way = flight;
+      met = nothing;
+    }
+    p.optical_path += way * index(p);
     p.x += way * p.direction;
-    p.optical_path += way * straight_index(p);
-    if (way == flight) return Met::nothing;
-    return ball < out ? Met::ball : Met::boundary;
+    return met;
   }
 
   struct Ray {
@@ -163,26 +175,32 @@ class Walk {
             r.path + h / 6 * (a.path + 2 * b.path + 2 * c.path + d.path)};
   }
 
+  bool is_in(int ball, const Vec3& x) const {
+    return (x - scene_.balls[ball].centre).norm() < scene_.balls[ball].radius;
+  }
+  /// Of a photon in the curved index.
   Met met_at(const Vec3& x) const {
-    if (is_out(scene_.boundary, x)) return Met::boundary;
-    if (scene_.ball && (x - scene_.ball->centre).norm() > scene_.ball->radius) return Met::ball;
-    return Met::nothing;
+    if (is_out(scene_.boundary, x)) return boundary;
+    if (balls() > 0 && !is_in(0, x)) return 0;
+    for (int ball = 1; ball < balls(); ++ball)
+      if (is_in(ball, x)) return ball;
+    return nothing;
   }
 
   Met go_curved(Photon& p, double flight) const {
     Ray ray{p.x, scene_.curved->n(p.x) * p.direction, p.optical_path};
-    Met met = Met::nothing;
-    for (double left = flight; left > 0 && met == Met::nothing;) {
+    Met met = nothing;
+    for (double left = flight; left > 0 && met == nothing;) {
       double h = std::min(left, scene_.curved->step);
       Ray next = stepped(ray, h);
       met = met_at(next.x);
-      if (met != Met::nothing) {  // halve the step to where it goes out
+      if (met != nothing) {  // halve the step to where it goes out
         double in = 0;
         for (int i = 0; i < 50; ++i) {
           const double middle = (in + h) / 2;
           const Met there = met_at(stepped(ray, middle).x);
-          (there == Met::nothing ? in : h) = middle;
-          if (there != Met::nothing) met = there;
+          (there == nothing ? in : h) = middle;
+          if (there != nothing) met = there;
         }
         next = stepped(ray, h);
       }
@@ -195,12 +213,22 @@ class Walk {
     return met;
   }
 
+  /// The last ball that x is in, but for one.
+  int innermost_but(int left, const Vec3& x) const {
+    int found = -1;
+    for (int ball = 0; ball < balls(); ++ball)
+      if (ball != left && is_in(ball, x)) found = ball;
+    return found;
+  }
+
   /// Snell's law and, by chance, Fresnel's reflectance of unpolarised light.
-  void cross_ball(Photon& p) const {
-    Vec3 out = (p.x - scene_.ball->centre).normalized();
-    const double inner = index_inside(p.x), outer = scene_.around;
-    const double ratio = p.in_ball ? inner / outer : outer / inner;
-    const Vec3 normal = p.in_ball ? out : Vec3(-out);  // along the way
+  void cross(Photon& p, int ball) const {
+    const Vec3 out = (p.x - scene_.balls[ball].centre).normalized();
+    const bool leaves = p.ball == ball;
+    Photon beyond = p;
+    beyond.ball = leaves ? innermost_but(ball, p.x) : ball;
+    const double ratio = index(p) / index(beyond);
+    const Vec3 normal = leaves ? out : Vec3(-out);  // along the way
     const double c1 = normal.dot(p.direction), s2 = ratio * ratio * (1 - c1 * c1);
     if (s2 < 1) {
       const double c2 = std::sqrt(1 - s2);
@@ -208,7 +236,7 @@ class Walk {
       const double rp = (ratio * c2 - c1) / (ratio * c2 + c1);
       if (uniform(random_) > (rs * rs + rp * rp) / 2) {
         p.direction = (ratio * p.direction + (c2 - ratio * c1) * normal).normalized();
-        p.in_ball = !p.in_ball;
+        p.ball = beyond.ball;
         return;
       }
     }
@@ -231,15 +259,15 @@ void walk_photons(const WalkScene& scene, const PhotonSource& source, std::uint6
   }
 }
 
-PhotonSource point_source(const Vec3& x, bool in_ball) {
-  return [=](Random& random) { return Photon{x, any_direction(random), 0, 0, in_ball}; };
+PhotonSource point_source(const Vec3& x) {
+  return [=](Random& random) { return Photon{x, any_direction(random)}; };
 }
 
-PhotonSource beam_source(const Vec3& centre, const Vec3& direction, double radius, bool in_ball) {
+PhotonSource beam_source(const Vec3& centre, const Vec3& direction, double radius) {
   const Vec3 d = direction.normalized(), u = any_normal_to(d), v = d.cross(u);
   return [=](Random& random) {
     const double r = radius * std::sqrt(uniform(random)), angle = two_pi * uniform(random);
-    return Photon{centre + r * (std::cos(angle) * u + std::sin(angle) * v), d, 0, 0, in_ball};
+    return Photon{centre + r * (std::cos(angle) * u + std::sin(angle) * v), d};
   };
 }
 
@@ -252,7 +280,7 @@ PhotonSource lambertian_source(const Vec3& centre, const Vec3& normal, double ra
   return [=](Random& random) {
     const double sine = std::sqrt(uniform(random));
     const Vec3 d = on_disk(sine, random) + std::sqrt(1 - sine * sine) * normal;
-    return Photon{centre + on_disk(radius * std::sqrt(uniform(random)), random), d, 0, 0, false};
+    return Photon{centre + on_disk(radius * std::sqrt(uniform(random)), random), d};
   };
 }
 

@@ -38,6 +38,7 @@ struct WalkBall {
   Vec3 centre;
   double radius;
   WalkMedium medium = {};
+  double index = 1;
 };
 
 /// An index that varies; rays take steps of `step` in arc length.
@@ -47,13 +48,13 @@ struct WalkIndex {
   double step;
 };
 
-/// With a ball `curved` is the index in it, around it the index is `around`; without one `curved`
-/// fills everything. Nothing in `curved`: the number `inside` in its place.
+/// Balls are apart, or a later one is inside of one before it. `curved` is the index in the first
+/// ball; without balls it fills everything.
 struct WalkScene {
   WalkShape boundary;
   WalkMedium medium = {};
-  std::optional<WalkBall> ball = {};
-  double around = 1, inside = 1;
+  std::vector<WalkBall> balls = {};
+  double around = 1;  ///< index around the balls
   std::optional<WalkIndex> curved = {};
 };
 
@@ -61,10 +62,10 @@ struct Photon {
   Vec3 x, direction;
   double optical_path = 0;
   int scatterings = 0;
-  bool in_ball = false;
+  int ball = -1;  ///< the number of that which it is in; -1: around them
 };
 
-/// Where a photon starts; the caller says whether in the ball.
+/// Where a photon starts; the caller says in which ball.
 using PhotonSource = std::function<Photon(Random&)>;
 /// Called for each photon that leaves, on the boundary.
 using PhotonExit = std::function<void(const Photon&)>;
@@ -73,9 +74,8 @@ void walk_photons(const WalkScene& scene, const PhotonSource& source, std::uint6
                   std::uint64_t seed, const PhotonExit& exit);
 
 /// Sources.
-PhotonSource point_source(const Vec3& x, bool in_ball = false);
-PhotonSource beam_source(const Vec3& centre, const Vec3& direction, double radius,
-                         bool in_ball = false);
+PhotonSource point_source(const Vec3& x);
+PhotonSource beam_source(const Vec3& centre, const Vec3& direction, double radius);
 /// Lambertian from a disk.
 PhotonSource lambertian_source(const Vec3& centre, const Vec3& normal, double radius);
 

@@ -150,7 +150,7 @@ std::vector<Complex> flown_out(const RayField& field, const Sphere& ball, double
     const Vec3 from = ball.radius * random_point(random).x;
     RayState ray = start_ray(field, from, random_direction(random));
     double weight = 1;
-    field.fly({surface, clear, h}, 10 * ball.radius, weight, random, ray, nullptr);
+    field.fly({{{&surface, 1}}, clear, h}, 10 * ball.radius, weight, random, ray, nullptr);
     note(values, ray.x, ray.optical_path);
   }
   return values;
@@ -160,7 +160,7 @@ PlanRow closed_forms(double cpu_seconds) {
   const Sphere ball;
   const Surface rim = ball;
   const auto by_steps = make_ray_field(Luneburg({1, LuneburgProfile::for_stops}));
-  const auto closed = make_ray_field(Luneburg({}), &rim);
+  const auto closed = make_ray_field(Luneburg({}), {&rim, 1});
   return same_values([&] { return flown_out(*by_steps, ball, step); },
                      [&] { return flown_out(*closed, ball, step); }, "ray", 1e-6, cpu_seconds);
 }
@@ -168,7 +168,7 @@ PlanRow closed_forms(double cpu_seconds) {
 /// Both to steps that render would choose.
 PlanRow leapfrogs(double cpu_seconds) {
   const StandingWave field(0.33, 1e-3, 0, 3.4, 20);
-  const auto by_sharma = make_ray_field(field), by_leaps = make_ray_field(field, nullptr, true);
+  const auto by_sharma = make_ray_field(field), by_leaps = make_ray_field(field, {}, true);
   const Sphere ball{Vec3::Zero(), 15};
   return same_values([&] { return flown_out(*by_sharma, ball, 0.88); },
                      [&] { return flown_out(*by_leaps, ball, 0.7); }, "ray", 2e-4, cpu_seconds);

@@ -20,9 +20,8 @@ constexpr int paths_per_batch = 512;
 
 std::shared_ptr<Transport> transport_in(const RenderScene& scene) {
   const double excess = std::get<Homogeneous>(scene.field).n_excess;
-  const double around = scene.stage.body ? scene.stage.excess_around : excess;
-  const auto index = [=](const PathPoint& p) {
-    return 1 + (p.part == Part::body ? excess : around);
+  const auto index = [&](const PathPoint& p) {
+    return 1 + (p.part == scene.stage.field_part() ? excess : scene.stage.excess_in(p.part));
   };
   auto transport =
       std::make_shared<Transport>(Transport{.stage = scene.stage,
@@ -135,9 +134,9 @@ std::vector<PlanCase> render_plan_cases() {
   RenderScene fog = foggy_ball();
   fog.sensors = {AreaDetector{{0, 0, 3}, {0, 1, 0}, 6, 6, {4, 4}, 1.5}};
   RenderScene clear = fog, alone = fog;
-  clear.stage.medium = clear.stage.body->medium = {};
+  clear.stage.medium = clear.stage.bodies[0].medium = {};
   clear.lights = {FaceLight{.radius = INFINITY}};  // what a beam sheds unscattered is summed apart
-  alone.stage.body = {};
+  alone.stage.bodies = {};
   alone.stage.medium.mu_s = 1;
   constexpr auto same = Numbers::same, other = Numbers::other;
   const std::string box = "box of fog";

@@ -99,7 +99,7 @@ void print_straight(const char* name, const Figures& f) {
 void print_curved(const char* name, const AnyIndexField& field, const Stage& stage, double step) {
   const auto quick = make_curved_space(field, stage, {step, 8, Spreading::none});
   const auto full = make_curved_space(field, stage, {step, 8, Spreading::all});
-  const Part part = stage.body ? Part::body : Part::stage;
+  const Part part = stage.field_part();
   const Figures without = measure(*quick, part), with = measure(*full, part);
   std::printf("%-34s %8.2f %8.2f %8.2f %7.2f %7.2f %7.2f\n", name, without.fly / 1e3,
               with.fly / 1e3, with.join / 1e3, with.found, with.trials, with.refind);
@@ -109,7 +109,7 @@ GaussianBlobs blobs(double height) {
   RandomStream random(3, 0, 0);
   std::vector<GaussianBlob> all;
   for (int i = 0; i < 12; ++i)
-    all.push_back({1.2 * random_point(random, Part::stage).x, height * (2 * random.uniform() - 1),
+    all.push_back({1.2 * random_point(random, around).x, height * (2 * random.uniform() - 1),
                    0.3 + 0.3 * random.uniform()});
   return GaussianBlobs(all);
 }
@@ -121,20 +121,20 @@ int main(int argc, char** argv) {
   const ScatteringMedium fog{.mu_s = 2};
   const Stage clear{.boundary = Sphere{}}, foggy{.boundary = Sphere{}, .medium = fog};
   Stage glass = foggy, cloud = foggy, lens{.boundary = Box{{-2, -2, -2}, {2, 2, 2}}};
-  glass.body = Body{Sphere{Vec3::Zero(), 0.3}, fog};
-  lens.body = Body{Sphere{}, fog};
+  glass.bodies.push_back({Sphere{Vec3::Zero(), 0.3}, fog});
+  lens.bodies.push_back({Sphere{}, fog});
   const FieldGrid grid{Vec3::Constant(-1), Vec3::Constant(0.1), {21, 21, 21}};
   cloud.medium.density =
       std::make_shared<const DensityGrid>(grid, std::vector<double>(grid.size(), 1));
   std::printf("%-34s %8s %8s\n", "straight, ns", "flight", "join");
-  print_straight("nothing in it", measure(StraightSpace<least>(clear, 0), Part::stage));
-  print_straight("scattering", measure(StraightSpace<scattering()>(foggy, 0), Part::stage));
+  print_straight("nothing in it", measure(StraightSpace<least>(clear, 0), around));
+  print_straight("scattering", measure(StraightSpace<scattering()>(foggy, 0), around));
   print_straight("scattering, box",
                  measure(StraightSpace<scattering()>(
                              Stage{.boundary = Box{{-1, -1, -1}, {1, 1, 1}}, .medium = fog}, 0),
-                         Part::stage));
-  print_straight("grid of density 1", measure(StraightSpace<gridded()>(cloud, 0), Part::stage));
-  print_straight("glass ball in fog", measure(StraightSpace<with_body()>(glass, 0.5), Part::stage));
+                         around));
+  print_straight("grid of density 1", measure(StraightSpace<gridded()>(cloud, 0), around));
+  print_straight("glass ball in fog", measure(StraightSpace<with_body()>(glass, 0.5), around));
   std::printf("\n%-34s %8s %8s %8s %7s %7s %7s\n", "curved, us", "flight", "with |J|", "join",
               "found", "trials", "success");
   print_curved("homogeneous", Homogeneous{0.33}, foggy, 0.05);

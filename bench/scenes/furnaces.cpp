@@ -46,7 +46,7 @@ RenderScene scene_in(AnyIndexField field, Stage stage, Light light, Sensor senso
 std::vector<NamedRender> furnaces(const ScatteringMedium& medium) {
   const Stage stage{unit_box(), medium};
   Stage with_ball = stage;
-  with_ball.body = Body{Sphere{Vec3(0.1, 0, 0.1), 0.6}, medium};
+  with_ball.bodies.push_back({Sphere{Vec3(0.1, 0, 0.1), 0.6}, medium});
   RandomStream random(5, 93, 0);
   AnySum sum;
   sum.add(random_blobs(random, 0.1)).add(random_spline(random, 0.03)).add(Homogeneous{0.2});
@@ -66,9 +66,24 @@ std::vector<NamedRender> furnaces(const ScatteringMedium& medium) {
   return all;
 }
 
+std::vector<NamedRender> furnaces_of_bodies(const ScatteringMedium& medium) {
+  Stage balls{unit_box(), medium};  // one inside of another, one beside
+  balls.bodies.push_back({Sphere{Vec3(0.1, 0, 0.1), 0.6}, medium});
+  balls.bodies.push_back({Sphere{Vec3(0.2, 0, 0.2), 0.3}, medium, 0.1});
+  balls.bodies.push_back({Sphere{Vec3(-0.6, -0.6, 0.5), 0.3}, medium, 0.8});
+  Stage layers{unit_box(), medium};  // that touch
+  layers.bodies.push_back({Box{{-0.7, -0.8, -0.5}, {0.9, 0.8, 0.6}}, medium});
+  layers.bodies.push_back({Box{{-0.7, -0.8, -0.5}, {0.9, 0.8, 0.3}}, medium, 0.2});
+  layers.bodies.push_back({Box{{-0.7, -0.8, -0.5}, {0.9, 0.8, -0.1}}, medium, 0.6});
+  const Luneburg luneburg(LuneburgProfile{.radius = 0.6}, Vec3(0.1, 0, 0.1));
+  return {{"ball in a ball", scene_in(Homogeneous{0.5}, balls, environment(), whole_face())},
+          {"ball in a Luneburg ball", scene_in(luneburg, balls, environment(), whole_face())},
+          {"layers", scene_in(Homogeneous{0.4}, layers, environment(), whole_face())}};
+}
+
 double mean_square_index(const RenderScene& scene) {
   const int nodes = 100, phases = 32;
-  if (scene.stage.body) return std::pow(1 + scene.stage.excess_around, 2);
+  if (!scene.stage.bodies.empty()) return std::pow(1 + scene.stage.excess_around, 2);
   const auto mean_of = [&](const auto& field) {
     double sum = 0;
     for (int i = 0; i < nodes; ++i)

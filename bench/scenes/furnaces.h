@@ -29,6 +29,9 @@ grin::RenderScene scene_in(grin::AnyIndexField field, grin::Stage stage, grin::L
 /// `medium`.
 std::vector<NamedRender> furnaces(const grin::ScatteringMedium& medium);
 
+/// The same with several bodies.
+std::vector<NamedRender> furnaces_of_bodies(const grin::ScatteringMedium& medium);
+
 /// Mean of n^2 over the face at z = 1, and over the phases of sound.
 double mean_square_index(const grin::RenderScene& scene);
 

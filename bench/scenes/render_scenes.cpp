@@ -34,7 +34,7 @@ RenderScene ball_under_beam() {
   scene.step = 0.1;
   scene.max_length = 100;
   scene.stage.boundary = Box{{-3, -3, -3}, {3, 3, 3}};
-  scene.stage.body = Body{Sphere{}, fog(0.5, 0, 0.5)};
+  scene.stage.bodies.push_back({Sphere{}, fog(0.5, 0, 0.5)});
   scene.lights = {BeamLight{{0, 0, -3}, {0, 0, 1}, 0.8}};
   scene.sensors = {side_camera()};
   return scene;
@@ -127,7 +127,7 @@ RenderScene glass_ball_lamp() {
   scene.max_length = 1000;
   scene.stage.boundary = Box{{-10, -10, -10}, {10, 10, 10}};
   scene.stage.medium = fog(0.05, 0, 0.5);
-  scene.stage.body = Body{Sphere{{0, 0, -2}, 4}};
+  scene.stage.bodies.push_back({Sphere{{0, 0, -2}, 4}});
   scene.lights = {FaceLight{{0, 0, -10}, 6}};
   scene.sensors = {detector({0, 0, 10}, 10)};
   return scene;
@@ -163,6 +163,14 @@ std::vector<NamedRender> lamp_scenes() {
 RenderScene even_luneburg() {
   RenderScene scene = luneburg_lamp();
   scene.lights = {FaceLight{{0, 0, 0}, std::numeric_limits<double>::infinity()}};
+  return scene;
+}
+
+RenderScene even_balls() {
+  RenderScene scene = glass_ball_lamp();
+  scene.stage.bodies.push_back({Sphere{{1, 0, -2}, 2}, fog(0.5, 0, 0), 0.3});
+  scene.stage.bodies.push_back({Sphere{{-2, 1, 6}, 2}, fog(0.5, 0, 0), 0.4});
+  scene.lights = even_luneburg().lights;
   return scene;
 }
 

@@ -24,6 +24,8 @@ std::vector<NamedRender> render_scenes();
 std::vector<NamedRender> lamp_scenes();
 /// The Luneburg ball in even light from everywhere.
 grin::RenderScene even_luneburg();
+/// Balls in each other and side by side, in the same light.
+grin::RenderScene even_balls();
 /// The glass ball in fog under a beam, seen from the side.
 grin::RenderScene beam_on_glass_ball();
 

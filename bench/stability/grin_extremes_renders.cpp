@@ -124,12 +124,12 @@ void add_furnaces(ExtremeRows& rows) {
   });
   rows.add("white furnace, Luneburg lens and its rim", white, [=] {
     RenderScene scene = in_box(Luneburg(LuneburgProfile{.radius = 0.6}, Vec3(0.1, 0, 0.1)), peaked);
-    scene.stage.body = Body{Sphere{Vec3(0.1, 0, 0.1), 0.6}, peaked};
+    scene.stage.bodies.push_back({Sphere{Vec3(0.1, 0, 0.1), 0.6}, peaked});
     return furnace(scene, 2000);
   });
   rows.add("white furnace, ball of index 3, light trapped", white, [=] {
     RenderScene scene = in_box(Homogeneous{2}, fog(1, 0, 0));
-    scene.stage.body = Body{Sphere{Vec3(0.1, 0, 0.1), 0.6}, fog(1, 0, 0)};
+    scene.stage.bodies.push_back({Sphere{Vec3(0.1, 0, 0.1), 0.6}, fog(1, 0, 0)});
     return furnace(scene, 4000);
   });
   rows.add("white furnace, density of contrast 1e6", white, [] {
@@ -200,9 +200,17 @@ void add_maps(ExtremeRows& rows) {
   rows.add("fluence in and around a ball of index 3", "4 pi n^2 in the white furnace, in errors",
            [] {
              RenderScene scene = in_box(Homogeneous{2}, fog(1, 0, 0));
-             scene.stage.body = Body{Sphere{Vec3::Zero(), 0.9}, fog(1, 0, 0)};
+             scene.stage.bodies.push_back({Sphere{Vec3::Zero(), 0.9}, fog(1, 0, 0)});
              scene.map = BoxCells({Vec3::Constant(-0.5), Vec3::Constant(0.5)}, {1, 1, 1});
              return map_row(scene, {36 * pi}, 100'000);
+           });
+  rows.add("fluence in a bubble in a ball of index 3", "4 pi n^2 in the white furnace, in errors",
+           [] {
+             RenderScene scene = in_box(Homogeneous{2}, fog(1, 0, 0));
+             scene.stage.bodies.push_back({Sphere{Vec3::Zero(), 0.9}, fog(1, 0, 0)});
+             scene.stage.bodies.push_back({Sphere{Vec3::Zero(), 0.6}, fog(1, 0, 0), 0});
+             scene.map = BoxCells({Vec3::Constant(-0.3), Vec3::Constant(0.3)}, {1, 1, 1});
+             return map_row(scene, {4 * pi}, 100'000);
            });
 }
 

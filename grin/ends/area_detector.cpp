@@ -45,7 +45,7 @@ AreaDetectorEnd::AreaDetectorEnd(const AreaDetector& detector, const Stage& stag
       centre_(centre_on(stage.boundary, detector.centre).x),
       view_("sensor_at", -centre_on(stage.boundary, detector.centre).inward, detector.up),
       acceptance_(detector.acceptance),
-      body_(body_surface(stage)) {
+      regions_(stage) {
   require_in_stage(stage, centre_);
   const auto* sphere = std::get_if<Sphere>(&boundary_);
   for (const double right : {-1, 1})
@@ -67,7 +67,7 @@ Vec3 AreaDetectorEnd::inward(const Vec3& x) const {
 
 EndPosition AreaDetectorEnd::on_face(const Vec3& x, int pixel) const {
   const Vec3 normal = inward(x);
-  return {.point = {x, part_at(body_, x)},
+  return {.point = {x, regions_.at(x)},
           .inward = normal,
           .position_density = -normal.dot(view_.forward) / face_.area(),
           .pixel = pixel};

@@ -58,7 +58,7 @@ class AreaDetectorEnd {
   Vec3 centre_;
   Orientation view_;  ///< forward is the outward normal at the centre
   Acceptance acceptance_;
-  std::optional<Surface> body_;
+  Regions regions_;
 };
 
 struct AreaValues {

@@ -25,7 +25,7 @@ CameraEnd::CameraEnd(const Camera& camera, const Stage& stage)
       film_(picture_of(camera)),
       centre_(camera.x),
       focus_distance_(1),
-      body_(body_surface(stage)) {
+      regions_(stage) {
   if (camera.lens_radius != 0) place_lens(camera, stage);
   require_in_stage(stage, centre_);
 }
@@ -42,14 +42,14 @@ void CameraEnd::place_lens(const Camera& camera, const Stage& stage) {
 }
 
 EndPosition CameraEnd::on_lens(const BoundaryPoint& at) const {
-  return {.point = {at.x, part_at(body_, at.x)},
+  return {.point = {at.x, regions_.at(at.x)},
           .inward = at.inward,
           .position_density = 1 / lens_->area()};
 }
 
 EndPosition CameraEnd::sample_position(double, RandomStream& random) const {
   if (lens_) return on_lens(lens_->sample(random));
-  return {.point = {centre_, Part::stage}, .is_point = true};
+  return {.point = {centre_, around}, .is_point = true};
 }
 
 std::optional<EndPosition> CameraEnd::position_at(const Vec3& x) const {

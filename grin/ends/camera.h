@@ -54,7 +54,7 @@ class CameraEnd {
   Vec3 centre_;
   double focus_distance_;
   std::optional<BoundaryPatch> lens_;
-  std::optional<Surface> body_;
+  Regions regions_;
 };
 
 struct CameraValues {

@@ -25,10 +25,10 @@ DirectionalEnd::DirectionalEnd(const DirectionalDetector& detector, const Stage&
     : view_("sensor_direction", detector.forward, detector.up),
       picture_(picture_of(detector)),
       boundary_(stage.boundary, "sensor"),
-      body_(body_surface(stage)) {}
+      regions_(stage) {}
 
 EndPosition DirectionalEnd::on_boundary(const BoundaryPoint& at) const {
-  return {.point = {at.x, part_at(body_, at.x)},
+  return {.point = {at.x, regions_.at(at.x)},
           .inward = at.inward,
           .position_density = 1 / boundary_.area()};
 }

@@ -46,7 +46,7 @@ class DirectionalEnd {
   Orientation view_;
   PixelRectangle picture_;
   BoundaryPatch boundary_;
-  std::optional<Surface> body_;
+  Regions regions_;
 };
 
 struct DirectionalValues {

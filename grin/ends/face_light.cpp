@@ -22,14 +22,14 @@ BoundaryPatch patch_of(const FaceLight& light, const Surface& boundary) {
 }
 
 /// Of n^2 over a patch: exact where n is constant.
-double mean_index_squared(const BoundaryPatch& patch, const std::optional<Surface>& body,
+double mean_index_squared(const BoundaryPatch& patch, const Regions& regions,
                           const IndexAt& index) {
   constexpr int points = 4096;
   RandomStream random(0, 0, 0);
   double mean = 0;
   for (int i = 0; i < points; ++i) {
     const Vec3 x = patch.sample(random).x;
-    const double n = index({x, part_at(body, x)});
+    const double n = index({x, regions.at(x)});
     mean += (n * n - mean) / (i + 1);
   }
   if (!(mean > 0 && std::isfinite(mean)))
@@ -42,7 +42,7 @@ double mean_index_squared(const BoundaryPatch& patch, const std::optional<Surfac
 FaceLightEnd::FaceLightEnd(const FaceLight& light, const Stage& stage, const IndexAt& index)
     : patch_(patch_of(light, stage.boundary)),
       radiance_(light.radiance),
-      power_(pi * mean_index_squared(patch_, body_surface(stage), index) * patch_.area() *
+      power_(pi * mean_index_squared(patch_, Regions(stage), index) * patch_.area() *
              light.radiance) {}
 
 EndDirection FaceLightEnd::sample_direction(const EndPosition& at, RandomStream& random) const {

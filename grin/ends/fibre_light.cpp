@@ -30,7 +30,7 @@ FibreLightEnd::FibreLightEnd(const FibreLight& light, const Stage& stage, const 
       spread_(light.spread),
       aperture_(light.aperture),
       power_(light.power) {
-  const double there = index({light.centre, part_at(body_surface(stage), light.centre)});
+  const double there = index({light.centre, Regions(stage).at(light.centre)});
   if (!(light.aperture <= there))
     throw InputError(std::string(fibre_key(spread_)) + ", aperture", light.aperture,
                      "must be at most the index there");

@@ -39,7 +39,7 @@ std::vector<Light> make_lights(const Keys& keys, const LightValues& values) {
 }
 
 Lights::Lights(const std::vector<Light>& lights, const Stage& stage, const IndexAt& index)
-    : body_(body_surface(stage)) {
+    : regions_(stage) {
   if (lights.empty())
     throw InputError(
         "light is not given: a scene needs one or more of point_light, beam_light, gaussian_beam, "
@@ -80,7 +80,7 @@ void Lights::settle_chances() {
 EndPosition Lights::position(int light, const BoundaryPoint& at) const {
   return std::visit(
       [&](const auto& end) -> EndPosition {
-        return {.point = {at.x, part_at(body_, at.x)},
+        return {.point = {at.x, regions_.at(at.x)},
                 .inward = at.inward,
                 .position_density = source_[light].chance * end.density(at.x),
                 .light = light,

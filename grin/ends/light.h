@@ -92,7 +92,7 @@ class Lights {
 
   std::vector<Source> source_;
   std::vector<int> faces_, beams_;
-  std::optional<Surface> body_;
+  Regions regions_;
   double power_ = 0, beam_power_ = 0;
 };
 

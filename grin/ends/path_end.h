@@ -56,11 +56,4 @@ void use_hit(const EndPosition& at, const EndDirection& back, const Use& use) {
     use(EndHit{at, back, back.strength / (at.index * at.index * cosine)});
 }
 
-inline Part part_at(const std::optional<Surface>& body, const Vec3& x) {
-  return body && distance(*body, x) < 0 ? Part::body : Part::stage;
-}
-inline std::optional<Surface> body_surface(const Stage& stage) {
-  return stage.body ? std::optional(stage.body->surface) : std::nullopt;
-}
-
 }  // namespace flatspeckle::grin

@@ -27,10 +27,10 @@ PolarDetectorEnd::PolarDetectorEnd(const PolarDetector& detector, const Stage& s
     : axis_(unit_direction("sensor_direction", detector.axis)),
       rings_(picture_of(detector)),
       boundary_(stage.boundary, "sensor"),
-      body_(body_surface(stage)) {}
+      regions_(stage) {}
 
 EndPosition PolarDetectorEnd::on_boundary(const BoundaryPoint& at) const {
-  return {.point = {at.x, part_at(body_, at.x)},
+  return {.point = {at.x, regions_.at(at.x)},
           .inward = at.inward,
           .position_density = 1 / boundary_.area()};
 }

@@ -45,7 +45,7 @@ class PolarDetectorEnd {
   Vec3 axis_;
   PixelRings rings_;
   BoundaryPatch boundary_;
-  std::optional<Surface> body_;
+  Regions regions_;
 };
 
 struct PolarValues {

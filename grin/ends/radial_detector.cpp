@@ -26,12 +26,12 @@ RadialDetectorEnd::RadialDetectorEnd(const RadialDetector& detector, const Stage
       patch_(stage.boundary, detector.centre, detector.radius, "sensor_at", "sensor_radius"),
       centre_(boundary_point(stage.boundary, detector.centre)->x),
       acceptance_(detector.acceptance),
-      body_(body_surface(stage)) {
+      regions_(stage) {
   require_in_stage(stage, centre_);
 }
 
 EndPosition RadialDetectorEnd::on_ring(const BoundaryPoint& at, int ring) const {
-  return {.point = {at.x, part_at(body_, at.x)},
+  return {.point = {at.x, regions_.at(at.x)},
           .inward = at.inward,
           .position_density = rings_.density(ring),
           .pixel = ring};

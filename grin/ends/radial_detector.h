@@ -52,7 +52,7 @@ class RadialDetectorEnd {
   BoundaryPatch patch_;
   Vec3 centre_;
   Acceptance acceptance_;
-  std::optional<Surface> body_;
+  Regions regions_;
 };
 
 struct RadialValues {

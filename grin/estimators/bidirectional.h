@@ -254,7 +254,7 @@ class Bidirectional {
     const EndDirection from_y = leaving(transport_, transport_.lights, y, curve->start_direction);
     const EndDirection from_z = leaving(transport_, sensor(), z, -curve->end_direction);
     const JoiningCurve as_weighed{curve->start_direction, curve->end_direction, curve->spreading,
-                                  curve->optical_depth, curve->passes};
+                                  curve->optical_depth,   curve->passes,        curve->fresnel};
     const JoinedPath path = joined_path(transport_.strategies, y, from_y, z, from_z, as_weighed);
     add(z.end ? path.pixel : pixel_,
         path.value * path.weight * curve->transmittance * curve->multiplicity / chance,

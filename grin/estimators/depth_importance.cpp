@@ -68,7 +68,8 @@ std::vector<PathPoint> starts_of(const Lights& lights) {
 std::optional<DepthImportance> DepthImportance::of(const Stage& stage, const Lights& lights,
                                                    const std::vector<Sensor>& sensors) {
   if (!is_in_closed_form(stage.boundary)) return std::nullopt;
-  if (stage.body && !is_in_closed_form(stage.body->surface)) return std::nullopt;
+  if (stage.bodies.size() > 1) return std::nullopt;
+  if (stage.parts() > 1 && !is_in_closed_form(stage.surface(1))) return std::nullopt;
   DepthImportance found(stage, lights, sensors);
   if (!found.is_thick_) return std::nullopt;
   return found;
@@ -76,9 +77,10 @@ std::optional<DepthImportance> DepthImportance::of(const Stage& stage, const Lig
 
 DepthImportance::DepthImportance(const Stage& stage, const Lights& lights,
                                  const std::vector<Sensor>& sensors)
-    : boundary_(stage.boundary), body_(body_surface(stage)) {
-  extinction_[0] = mean_density(stage, false) * stage.medium.mu_t();
-  if (stage.body) extinction_[1] = mean_density(stage, true) * stage.body->medium.mu_t();
+    : boundary_(stage.boundary) {
+  if (stage.parts() > 1) body_ = stage.surface(1);
+  for (Part part = around; part < stage.parts(); ++part)
+    extinction_[part] = mean_density(stage, part) * stage.medium_in(part).mu_t();
   const std::vector<PathPoint> starts = starts_of(lights);
   for (const Sensor& sensor : sensors) {
     Destination to{.place = NearestPlace(sensor, boundary_)};
@@ -96,13 +98,12 @@ DepthImportance::DepthImportance(const Stage& stage, const Lights& lights,
 
 DepthImportance::ByPart DepthImportance::decay(const Stage& stage, const Vec3& direction) const {
   ByPart found = {};
-  const auto set = [&](std::size_t part, const ScatteringMedium& medium, const Surface& within) {
-    const double density = mean_density(stage, part == 1);
-    found[part] =
-        std::hypot(diffuse_rate(medium, density), leak_rate(medium, density, within, direction));
-  };
-  set(0, stage.medium, stage.boundary);
-  if (stage.body) set(1, stage.body->medium, stage.body->surface);
+  for (Part part = around; part < stage.parts(); ++part) {
+    const ScatteringMedium& medium = stage.medium_in(part);
+    const double density = mean_density(stage, part);
+    found[part] = std::hypot(diffuse_rate(medium, density),
+                             leak_rate(medium, density, stage.surface(part), direction));
+  }
   return found;
 }
 
@@ -126,7 +127,7 @@ void DepthImportance::find_drift(const Stage& stage, const PathPoint& start) {
   const ScatteringMedium& medium = stage.medium;
   const bool is_known = std::holds_alternative<IsotropicPhase>(medium.phase.which) ||
                         std::holds_alternative<HgPhase>(medium.phase.which);
-  if (stage.body || medium.density || !(medium.mu_s > 0) || !is_known) return;
+  if (body_ || medium.density || !(medium.mu_s > 0) || !is_known) return;
   double deepest = 0;
   Vec3 axis = Vec3::Zero();
   for (const Destination& to : destinations_) {
@@ -147,7 +148,7 @@ DepthImportance::Way DepthImportance::way(const PathPoint& p, const Destination&
   if (!(length > 0)) return {Vec3::Zero()};
   Way found{chord / length, {length, 0}};
   if (!body_) return found;
-  const bool inside = p.part == Part::body;
+  const bool inside = p.part != around;
   const double in = inside ? 0 : std::min(length, way_in(*body_, p.x, found.direction));
   const double within = way_out(*body_, p.x + in * found.direction, found.direction);
   found.length[1] = std::min(length - in, within);
@@ -159,20 +160,19 @@ DepthImportance::Outlook DepthImportance::outlook(const PathPoint& p) const {
   double most = -largest_log;
   Vec3 rise = Vec3::Zero();
   if (!favours_deep_) return {1, rise};
-  const std::size_t part = p.part == Part::body ? 1 : 0;
   for (const Destination& to : destinations_) {
     if (!to.is_deep) continue;
     const Way there = way(p, to);
     const double log_worth = to.log_share - there.along(to.decay);
     if (log_worth < most) continue;
     most = log_worth;
-    rise = to.decay[part] * there.direction;
+    rise = to.decay[p.part] * there.direction;
   }
   return {most > 0 ? std::exp(std::min(most, largest_log)) : 1, rise};
 }
 
 double DepthImportance::clearance(const PathPoint& p) const {
-  if (p.part == Part::body) return -distance(*body_, p.x);
+  if (p.part != around) return -distance(*body_, p.x);
   if (body_) return 0;
   double least = -distance(boundary_, p.x);
   for (const Vec3& sensor : inner_) least = std::min(least, (sensor - p.x).norm());
@@ -180,7 +180,7 @@ double DepthImportance::clearance(const PathPoint& p) const {
 }
 
 double DepthImportance::chance_to_join(const PathPoint& p) const {
-  const double depth = extinction_[p.part == Part::body ? 1 : 0] * clearance(p);
+  const double depth = extinction_[p.part] * clearance(p);
   const double beyond = 1 + std::max(0.0, depth / 2 - 1) / 8;
   const double square = beyond * beyond, fourth = square * square;
   return 1 / (fourth * fourth);

@@ -17,8 +17,8 @@ namespace flatspeckle::grin {
 /// and plays roulette where it falls. It changes the variance alone.
 class DepthImportance {
  public:
-  /// Nothing where no sensor is deep behind a medium, and where ways lead through bodies of any
-  /// shape.
+  /// Nothing where no sensor is deep behind a medium, and where ways lead through several bodies
+  /// or one of any shape.
   static std::optional<DepthImportance> of(const Stage& stage, const Lights& lights,
                                            const std::vector<Sensor>& sensors);
 
@@ -53,7 +53,7 @@ class DepthImportance {
   bool favours_deep() const { return favours_deep_; }
 
  private:
-  using ByPart = std::array<double, 2>;
+  using ByPart = std::array<double, 2>;  ///< of two at the most
   struct Destination {
     NearestPlace place;
     ByPart decay = {};  ///< of diffuse light

@@ -10,23 +10,18 @@ namespace flatspeckle::grin {
 /// What becomes of the power of light. All but `emitted` add up to that.
 enum class Fate {
   emitted,
-  absorbed_stage,  ///< in the stage, but for the body
-  absorbed_body,
-  unscattered,  ///< left the stage without a scattering
-  specular,     ///< the same, reflected at the body's surface without having entered
-  scattered,    ///< left the stage after one or more
-  lost,         ///< in flights that led nowhere (Flight::End::lost)
-  cut           ///< of paths that reached max_scatterings
+  absorbed_stage,  ///< in the stage, but for bodies
+  absorbed_body,   ///< in bodies
+  unscattered,     ///< left the stage without a scattering
+  specular,        ///< the same, reflected at the surface of a body without having entered
+  scattered,       ///< left the stage after one or more
+  lost,            ///< in flights that led nowhere (Flight::End::lost)
+  cut              ///< of paths that reached max_scatterings
 };
 inline constexpr std::size_t fates = 8;
-inline constexpr std::array<const char*, fates> fate_words{"emitted",
-                                                           "absorbed",
-                                                           "absorbed in the body",
-                                                           "unscattered",
-                                                           "reflected by the body",
-                                                           "scattered",
-                                                           "lost",
-                                                           "cut"};
+inline constexpr std::array<const char*, fates> fate_words{
+    "emitted", "absorbed", "absorbed in bodies", "unscattered", "reflected by bodies", "scattered",
+    "lost",    "cut"};
 
 /// Power by Fate, summed over light paths. A path keeps its own until it has ended, so that sums
 /// round little.

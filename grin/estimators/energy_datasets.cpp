@@ -7,11 +7,11 @@ namespace flatspeckle::grin {
 const DatasetTable energy_table{
     "energy",
     {{"energy/emitted", Data::estimate, "", "1", "power of the lights, as light paths drew it"},
-     {"energy/absorbed_stage", Data::estimate, "", "1", "absorbed in the stage, but for the body"},
-     {"energy/absorbed_body", Data::estimate, "", "1", "absorbed in the body"},
+     {"energy/absorbed_stage", Data::estimate, "", "1", "absorbed in the stage, but for bodies"},
+     {"energy/absorbed_body", Data::estimate, "", "1", "absorbed in bodies"},
      {"energy/unscattered", Data::estimate, "", "1", "left the stage without a scattering"},
      {"energy/specular", Data::estimate, "", "1",
-      "the same, reflected at the body's surface without having entered"},
+      "the same, reflected at the surface of a body without having entered"},
      {"energy/scattered", Data::estimate, "", "1", "left the stage after a scattering or more"},
      {"energy/lost", Data::estimate, "", "1", "in flights that were lost (transport/lost_flights)"},
      {"energy/cut", Data::estimate, "", "1", "of paths that were cut by max_scatterings"}}};
@@ -20,7 +20,7 @@ namespace {
 
 /// Fates in the order of their rows.
 bool can_be(Fate fate, const RenderScene& scene, const RenderRequest& request) {
-  if (fate == Fate::absorbed_body || fate == Fate::specular) return scene.stage.body.has_value();
+  if (fate == Fate::absorbed_body || fate == Fate::specular) return !scene.stage.bodies.empty();
   return fate != Fate::cut || request.max_scatterings > 0;
 }
 

@@ -78,7 +78,7 @@ class LightTally : public NoTally {
 
  private:
   static Fate absorbed_in(Part part) {
-    return part == Part::body ? Fate::absorbed_body : Fate::absorbed_stage;
+    return part == around ? Fate::absorbed_stage : Fate::absorbed_body;
   }
   static Fate fate(const PathVertex& from, const Flight& flight) {
     if (!from.end) return Fate::scattered;
@@ -91,8 +91,8 @@ class LightTally : public NoTally {
   }
   void spend(double power, const Flight& flight) {
     path_.add(Fate::absorbed_body, power * flight.absorbed_in_body);
-    const double around = 1 - flight.weight - flight.absorbed_in_body;
-    path_.add(Fate::absorbed_stage, power * std::max(0.0, around));
+    const double elsewhere = 1 - flight.weight - flight.absorbed_in_body;
+    path_.add(Fate::absorbed_stage, power * std::max(0.0, elsewhere));
   }
 
   EnergyBalance& all_;

@@ -17,7 +17,7 @@ using MapKernel = std::function<void(int paths, RandomStream& random, std::span<
                                      EnergyBalance& energy, TransportCounts& counts)>;
 inline constexpr std::size_t sums_per_cell = 2;
 
-/// Index 1 + excess everywhere, or in the body.
+/// Index 1 + excess in the part that the field fills.
 MapKernel map_kernel(const LightMap& map, std::shared_ptr<const Transport> transport,
                      double excess);
 

@@ -19,7 +19,7 @@ using PathKernel = std::function<void(int paths, RandomStream& random, Film& fil
 
 /// Estimators compiled for a plan. The transport may still change before they are called.
 
-/// Index 1 + excess everywhere, or in the body.
+/// Index 1 + excess in the part that the field fills.
 PathKernel straight_kernel(const RenderPlan& plan, std::shared_ptr<const Transport> transport,
                            double excess);
 

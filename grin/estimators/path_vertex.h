@@ -9,8 +9,11 @@
 namespace flatspeckle::grin {
 
 /// What weights take for the density of ways found by search, over that of other joins: sums over
-/// such ways vary more than what else makes a path, where there is something else.
-inline constexpr double found_share = 0.03;
+/// such ways vary more than what else makes a path, where there is something else, and the fainter
+/// a way is, by Fresnel's chance of it, the more.
+inline double found_share(double fresnel) {
+  return 0.03 * std::max(fresnel, 1e-40);
+}
 
 /// What a ratio of densities counts in the weights of multiple importance sampling (power
 /// heuristic, Veach 1997, 9.2.4).
@@ -139,7 +142,7 @@ inline void weigh(PathVertex& next, const Strategies& strategies, const PathVert
   next.before = fewer_of_ours(here, 1 / heuristic(here.density),
                               heuristic(direction_density * here.back / here.density), others);
   const bool can_be_joined = flight.is_joinable && !(here.end && here.end->is_beam);
-  const double share = flight.passages.count > 0 ? found_share : 1;
+  const double share = flight.passages.count > 0 ? found_share(flight.fresnel) : 1;
   next.first_of_other = can_be_joined ? heuristic(share * choice) : 0;
 }
 

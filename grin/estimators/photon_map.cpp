@@ -246,9 +246,9 @@ double default_photon_radius(const Stage& stage) {
     if (medium.mu_s * density > 0) least = std::min(least, 1 / (medium.mu_t() * density));
   };
   shorten(stage.medium);
-  if (stage.body) {
-    least = std::min(least, half_width(stage.body->surface));
-    shorten(stage.body->medium);
+  for (const Body& body : stage.bodies) {
+    least = std::min(least, half_width(body.surface));
+    shorten(body.medium);
   }
   return least / 20;
 }

@@ -66,7 +66,7 @@ PathKernel photon_kernel(bool timed, std::shared_ptr<const Transport> transport,
                          std::shared_ptr<const CurvedSpace> space, bool random_phase,
                          double radius);
 
-/// A twentieth of the shortest of the mean free paths and the half widths of stage and body.
+/// A twentieth of the shortest of the mean free paths and the half widths of stage and bodies.
 double default_photon_radius(const Stage& stage);
 
 /// Maps want many photons: pairs grow with their square.

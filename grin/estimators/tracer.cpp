@@ -27,7 +27,7 @@ double photon_radius(const RenderScene& scene, const RenderRequest& request) {
 }
 
 double index_at(const RenderScene& scene, const PathPoint& p) {
-  if (scene.stage.body && p.part == Part::stage) return 1 + scene.stage.excess_around;
+  if (p.part != scene.stage.field_part()) return 1 + scene.stage.excess_in(p.part);
   return std::visit([&](const auto& field) { return index(field, p.x); }, scene.field);
 }
 
@@ -36,7 +36,7 @@ double index_at(const RenderScene& scene, const PathPoint& p) {
 RenderPlan render_plan(const RenderScene& scene) {
   RenderPlan plan;
   plan.curved = !std::holds_alternative<Homogeneous>(scene.field);
-  plan.body = scene.stage.body.has_value();
+  plan.body = !scene.stage.bodies.empty();
   plan.timed = scene.bins.keeps_paths();
   plan.scatters = plan.absorbs = plan.gridded = plan.deep = false;
   const auto add = [&](const ScatteringMedium& medium) {
@@ -45,7 +45,7 @@ RenderPlan render_plan(const RenderScene& scene) {
     plan.gridded |= medium.density && medium.mu_t() > 0;
   };
   add(scene.stage.medium);
-  if (scene.stage.body) add(scene.stage.body->medium);
+  for (const Body& body : scene.stage.bodies) add(body.medium);
   return plan;
 }
 
@@ -105,7 +105,7 @@ double Tracers::cost_of_flight() const {
     if (medium.density) tentative += medium.mu_t() * medium.density->largest() * diagonal;
   };
   add(scene_.stage.medium);
-  if (scene_.stage.body) add(scene_.stage.body->medium);
+  for (const Body& body : scene_.stage.bodies) add(body.medium);
   const double steps = plan_.curved ? diagonal / scene_.step : 0;
   return std::max(1.0, steps / 20) + tentative / 5;
 }

@@ -29,9 +29,7 @@ struct Transport {
     return count;
   }
 
-  const ScatteringMedium& medium(Part part) const {
-    return part == Part::body ? stage.body->medium : stage.medium;
-  }
+  const ScatteringMedium& medium(Part part) const { return stage.medium_in(part); }
 };
 
 }  // namespace flatspeckle::grin

@@ -98,6 +98,7 @@ void add_keys(Keys& keys, StageValues& values) {
   keys.group("Body in the stage", "a body (body_box, body_sphere)");
   keys.add("index_around", values.index_around, "Index around the body").positive();
   add_keys(keys, values.body_medium, "body_");
+  add_keys(keys, values.plain_bodies);
 }
 
 FilledStage make_stage(const Keys& keys, const StageValues& values, const IndexFieldValues& field,
@@ -113,13 +114,16 @@ FilledStage make_stage(const Keys& keys, const StageValues& values, const IndexF
                      make_scene_field(keys, field, {.reach = reach, .any_phase = any_phase})};
   Stage& stage = filled.stage;
   if (const auto body = body_of(filled.field, *boundary, given_body)) {
-    stage.body = Body{*body, medium_in(keys, values.body_medium, *body, "body")};
+    stage.bodies.push_back({*body, medium_in(keys, values.body_medium, *body, "body")});
     stage.excess_around = keys.read(values.index_around) - 1;
   }
+  for (Body& body : make_plain_bodies(keys, values.plain_bodies, *boundary))
+    stage.bodies.push_back(std::move(body));
+  sort_by_size(stage.bodies);
   stage.medium = medium_in(keys, values.medium, *boundary, "stage");
   check(stage);
-  check_field(filled.field, stage.body ? stage.body->surface : *boundary,
-              stage.body ? "body" : "stage");
+  const Part filled_part = stage.field_part();
+  check_field(filled.field, stage.surface(filled_part), filled_part == around ? "stage" : "body");
   return filled;
 }
 

@@ -4,15 +4,17 @@
 #include <vector>
 
 #include "grin/fields/scene_field.h"
+#include "grin/scene/plain_bodies.h"
 #include "grin/space/stage.h"
 
 namespace flatspeckle::grin {
 
-/// The stage of light and the body in it as keys have them.
+/// The stage of light and the bodies in it as keys have them.
 struct StageValues {
   std::vector<double> stage_box{}, stage_sphere{}, body_box{}, body_sphere{};
   double index_around = 1;
   MediumValues medium{}, body_medium{};
+  PlainBodyValues plain_bodies{};
 };
 
 void add_keys(Keys& keys, StageValues& values);

@@ -16,7 +16,7 @@ constexpr std::size_t spread = 32, steep = 16, places = 16;  // rays of the pilo
 constexpr double longest_ray = 1000;                         // in steps of the field's scale
 
 const Surface& filled(const Stage& stage) {
-  return stage.body ? stage.body->surface : stage.boundary;
+  return stage.surface(stage.field_part());
 }
 double size(const Stage& stage) {
   const Box box = bounds(filled(stage));
@@ -27,7 +27,7 @@ double size(const Stage& stage) {
 std::vector<std::unique_ptr<const RayField>> fields_met(const SceneField& field, bool any_phase,
                                                         bool leapfrogs) {
   std::vector<std::unique_ptr<const RayField>> met;
-  met.push_back(make_ray_field(field.field, nullptr, leapfrogs));
+  met.push_back(make_ray_field(field.field, {}, leapfrogs));
   if (any_phase)
     for (const double phase : {std::numbers::pi / 2, std::numbers::pi})
       met.push_back(met.front()->frozen(phase));

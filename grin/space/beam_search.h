@@ -87,7 +87,7 @@ class BeamSearch {
   };
 
   BeamSeed from_here(BeamSeed seed) const {
-    if (seed.passages.count > 0 && walk_.aims_at_body())
+    if (seed.passages.count > 0 && walk_.aims_at_bodies())
       seed.start_direction = (seed.first_met - to_.x).normalized();
     return seed;
   }
@@ -138,7 +138,7 @@ class BeamSearch {
     double total = 0;
     walk_.at_random(aim.start_direction, random,
                     [&](const Passages& met, Part part, const RayState& ray) {
-                      if (met.count == 0 && walk_.aims_at_body()) return;  // along_light finds it
+                      if (met.count == 0 && walk_.aims_at_bodies()) return;  // along_light finds it
                       const double weight = 1 / (squared_error(part, ray) + 1e-4);
                       total += weight;
                       if (random.uniform() * total <= weight) aim.passages = met;

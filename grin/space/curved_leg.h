@@ -10,7 +10,7 @@
 
 namespace flatspeckle::grin {
 
-/// The part of a flight that lies in an index field, inside a surface: equal steps, and a shorter
+/// The part of a flight that lies in an index field, in a room: equal steps, and a shorter
 /// one at the end. As trace() it does not ask for the distance from the surface where that
 /// is far away; places within a step are found on its StepCurve.
 template <IndexField F, class Step = Sharma>
@@ -18,19 +18,19 @@ class CurvedLeg {
  public:
   CurvedLeg(const F& field, const LegRoom& room)
       : field_(field),
-        surface_(room.surface),
+        room_(room.room),
         medium_(room.medium),
         step_(room.step),
         tolerance_(1e-9 * step_),
         has_collisions_(medium_.scatters() || medium_.grid()) {}
 
-  /// Goes on from a state inside the surface, or on it and on the way in, at arc length 0. weight:
-  /// of light that is absorbed and not scattered, is multiplied by an estimate of what is left.
-  /// Tangent: nothing or a RayTangent, which becomes that of a fixed last step.
+  /// Goes on from a state in the room, or on its surface and on the way in, at arc length 0.
+  /// weight: of light that is absorbed and not scattered, is multiplied by an estimate of what is
+  /// left. Tangent: nothing or a RayTangent, which becomes that of a fixed last step.
   template <class... Tangent>
   LegStop go(double longest, double& weight, RandomStream& random, RayState& ray,
              Tangent&... tangent) const {
-    const double outside = distance(surface_, ray.x);
+    const double outside = room_.distance(ray.x);
     const double put_back = outside >= -tolerance_ ? std::max(0.0, outside) + 0.75 * tolerance_ : 0;
     double clearance = put_back - outside, collision = next_collision(0, random);
     for (int steps = 0; steps < most_steps && ray.arc_length <= longest; ++steps) {
@@ -43,8 +43,8 @@ class CurvedLeg {
       clearance -= arc;
       std::optional<double> exit;
       if (is_lost || !(clearance > 0)) {
-        clearance = put_back - distance(surface_, ray.x);
-        const double before_step = put_back - distance(surface_, start.x);
+        clearance = put_back - room_.distance(ray.x);
+        const double before_step = put_back - room_.distance(start.x);
         if (is_lost || !(clearance > 0 && clearance + before_step > arc))
           exit = way_out(start, ray, put_back, arc, is_lost);
         if (!exit && is_lost) return LegStop::lost;
@@ -62,8 +62,7 @@ class CurvedLeg {
         }
       }
       if (exit)
-        return put_back - distance(surface_, ray.x) <= tolerance_ ? LegStop::surface
-                                                                  : LegStop::lost;
+        return put_back - room_.distance(ray.x) <= tolerance_ ? LegStop::surface : LegStop::lost;
     }
     return LegStop::lost;
   }
@@ -124,11 +123,11 @@ class CurvedLeg {
     const auto exact = [&](double theta) {
       RayState ray = start;
       Step::step(field_, ray, theta * step_);
-      return put_back - distance(surface_, ray.x);
+      return put_back - room_.distance(ray.x);
     };
     if (is_lost) return search(exact, arc);
     const StepCurve curve(start, end, step_);
-    const auto close = [&](double theta) { return put_back - distance(surface_, curve.x(theta)); };
+    const auto close = [&](double theta) { return put_back - room_.distance(curve.x(theta)); };
     const auto guess = search(close, arc);
     if (!guess) return std::nullopt;
     const auto mended = mend(exact, *guess, close);
@@ -157,7 +156,7 @@ class CurvedLeg {
   }
 
   const F& field_;
-  const Surface& surface_;
+  const Room room_;
   const PartMedium& medium_;
   double step_, tolerance_;
   bool has_collisions_;

@@ -10,18 +10,26 @@
 
 namespace flatspeckle::grin {
 
-std::unique_ptr<const RayField> make_ray_field(const AnyIndexField& field, const Surface* end,
-                                               bool leapfrogs) {
+std::unique_ptr<const RayField> make_ray_field(const AnyIndexField& field,
+                                               std::span<const Surface> room, bool leapfrogs) {
   constexpr decltype(&make_ray_field) in_file[ray_field_files] = {ray_field_in<0>, ray_field_in<1>,
                                                                   ray_field_in<2>};
-  return in_file[field.index() % ray_field_files](field, end, leapfrogs);
+  return in_file[field.index() % ray_field_files](field, room, leapfrogs);
 }
 
 namespace {
 
-bool refracts_nowhere(const AnyIndexField& field, const Stage& stage) {
+/// Of all the part that it fills.
+std::optional<double> excess_of(const AnyIndexField& field) {
   const auto* homogeneous = std::get_if<Homogeneous>(&field);
-  return homogeneous && stage.body && homogeneous->n_excess == stage.excess_around;
+  return homogeneous ? std::optional(homogeneous->n_excess) : std::nullopt;
+}
+
+/// Inside of the first surface and outside of all others.
+std::vector<double> sides_of_room(const Stage& stage) {
+  std::vector<double> sides(stage.parts() - stage.field_part(), -1);
+  sides.front() = 1;
+  return sides;
 }
 
 }  // namespace
@@ -29,11 +37,10 @@ bool refracts_nowhere(const AnyIndexField& field, const Stage& stage) {
 CurvedSpace::CurvedSpace(const AnyIndexField& field, const Stage& stage,
                          const CurvedSpaceOptions& options)
     : setup_(std::make_shared<const Setup>(
-          Setup{.stage = StraightStage<RenderPlan{}>(stage),
-                .excess_around = stage.excess_around,
-                .field_part = stage.body ? Part::body : Part::stage,
-                .is_straight = std::holds_alternative<Homogeneous>(field),
-                .is_clear = refracts_nowhere(field, stage),
+          Setup{.stage = StraightStage<RenderPlan{}>(stage, excess_of(field)),
+                .field_part = stage.field_part(),
+                .is_straight = excess_of(field).has_value(),
+                .sides = sides_of_room(stage),
                 .options = options,
                 .connection = {.step = options.step,
                                .max_length = options.max_length,
@@ -41,7 +48,7 @@ CurvedSpace::CurvedSpace(const AnyIndexField& field, const Stage& stage,
                                .tolerance = 1e-8,
                                .carry = 3e-7,
                                .count_caustics = false}})),
-      field_(make_ray_field(field, &container(), options.leapfrogs)) {}
+      field_(make_ray_field(field, room().surfaces, options.leapfrogs)) {}
 
 std::unique_ptr<const CurvedSpace> CurvedSpace::frozen(double phase) const {
   return std::unique_ptr<const CurvedSpace>(new CurvedSpace(setup_, field_->frozen(phase)));
@@ -50,7 +57,7 @@ std::unique_ptr<const CurvedSpace> CurvedSpace::frozen(double phase) const {
 /// How the rays beside a flight go.
 struct CurvedSpace::Neighbours {
   bool wanted;
-  bool bent = false;  ///< by the field or at the body's surface
+  bool bent = false;  ///< by the field or at the surface of a body
   double n_start = 0;
   RayTangent tangent = {};
 };
@@ -79,12 +86,12 @@ Flight CurvedSpace::fly(const PathPoint& from, const Vec3& direction, bool sprea
       now.length = flight.arc_length - now.length;
       log->push_back(now);
     }
-    if (end == LegEnd::body) {
-      cross(flight, neighbours, random);
+    if (*end > at_boundary) {
+      cross(flight, *end, neighbours, random);
       continue;
     }
     if (flight.arc_length > longest) return flight;
-    flight.end = end == LegEnd::collision ? Flight::End::collision : Flight::End::boundary;
+    flight.end = *end == at_collision ? Flight::End::collision : Flight::End::boundary;
     if (!flight.is_joinable) return flight;
     if (!neighbours.bent)
       flight.spreading = flight.arc_length * flight.arc_length;
@@ -99,9 +106,9 @@ Flight CurvedSpace::fly(const PathPoint& from, const Vec3& direction, bool sprea
 /// Nothing: lost.
 std::optional<LegEnd> CurvedSpace::leg(Flight& flight, Neighbours& neighbours,
                                        RandomStream& random) const {
-  if (is_curved(flight.point)) return curved_leg(flight, neighbours, random);
+  if (is_curved(flight.point.part)) return curved_leg(flight, neighbours, random);
   const double before = flight.arc_length, n = index(flight.point);
-  const LegEnd end = setup_->stage.fly(flight, n, random);
+  const LegEnd end = setup_->stage.fly(flight, random);
   if (before == 0) neighbours.n_start = n;
   if (neighbours.bent)
     neighbours.tangent.dx += (flight.arc_length - before) / n * neighbours.tangent.dv;
@@ -116,8 +123,8 @@ std::optional<LegEnd> CurvedSpace::curved_leg(Flight& flight, Neighbours& neighb
   const double longest = setup_->options.max_length - flight.arc_length;
   const bool follows = neighbours.wanted && flight.is_joinable;
   double weight = flight.weight;
-  const LegStop stop =
-      field_->fly(room(), longest, weight, random, ray, follows ? &neighbours.tangent : nullptr);
+  const LegStop stop = field_->fly(leg_room(), longest, weight, random, ray,
+                                   follows ? &neighbours.tangent : nullptr);
   if (stop == LegStop::lost) return std::nullopt;
   if (!medium().scatters() && !medium().grid())
     weight *= transmittance(medium().mu_t(), ray.arc_length);
@@ -127,61 +134,62 @@ std::optional<LegEnd> CurvedSpace::curved_leg(Flight& flight, Neighbours& neighb
   flight.arc_length += ray.arc_length;
   flight.optical_path += ray.optical_path;
   flight.optical_depth += medium().reference() * ray.arc_length;
-  if (stop == LegStop::collision) return LegEnd::collision;
-  return setup_->field_part == Part::body ? LegEnd::body : LegEnd::boundary;
+  return stop == LegStop::collision ? at_collision : end_at(ray.x);
 }
 
-void CurvedSpace::cross(Flight& flight, Neighbours& neighbours, RandomStream& random) const {
-  if (is_clear()) return setup_->stage.pass(flight);
+void CurvedSpace::cross(Flight& flight, LegEnd surface, Neighbours& neighbours,
+                        RandomStream& random) const {
+  const Part from = flight.point.part, to = setup_->stage.beyond(flight, surface);
+  if (setup_->stage.are_alike(from, to)) return setup_->stage.pass(flight, to);
   if (!neighbours.bent) {
     neighbours.bent = true;
     neighbours.tangent.dx.diagonal().fill(flight.arc_length / neighbours.n_start);
   }
-  setup_->stage.cross(flight, field_->gradient(flight.point.x),
-                      {setup_->excess_around, Vec3::Zero()},
+  setup_->stage.cross(flight, surface, to, {side(from, flight.point.x), side(to, flight.point.x)},
                       neighbours.wanted ? &neighbours.tangent : nullptr, random);
 }
 
-/// Without collisions, for searches (straight_legs.h): straight around the body.
+/// Without collisions, for searches (straight_legs.h).
 class CurvedSpace::Legs {
  public:
-  explicit Legs(const CurvedSpace& space)
-      : space_(space),
-        excess_{space.setup_->excess_around,
-                space.setup_->is_straight ? space.field_->excess(Vec3::Zero()) : 0},
-        straight_(space.setup_->stage, excess_) {}
-  Legs(const Legs&) = delete;
+  explicit Legs(const CurvedSpace& space) : space_(space), straight_(space.setup_->stage) {}
 
-  bool has_body() const { return straight_.has_body(); }
-  const Surface& body() const { return straight_.body(); }
+  const Regions& regions() const { return straight_.regions(); }
+  bool are_alike(Part a, Part b) const { return straight_.are_alike(a, b); }
+  bool is_alone(Part part) const { return straight_.is_alone(part); }
   double index(const PathPoint& p) const { return space_.index(p); }
   RayState start(const PathPoint& p, const Vec3& direction) const {
     return {p.x, index(p) * direction};
   }
 
-  bool to_body(Part part, RayState& ray, RayTangent* tangent, RandomStream& random) const {
-    if (!is_curved(part)) return straight_.to_body(part, ray, tangent, random);
-    if (!has_body()) return false;
+  std::optional<Meeting> to_surface(Part part, RayState& ray, RayTangent* tangent,
+                                    RandomStream& random) const {
+    if (!space_.is_curved(part)) return straight_.to_surface(part, ray, tangent, random);
+    if (!space_.joins_through()) return std::nullopt;
     static const PartMedium clear;
     double all = 1;
-    const LegRoom room{body(), clear, step()};
-    return space_.field_->fly(room, longest(), all, random, ray, tangent) == LegStop::surface;
+    const LegRoom room{space_.room(), clear, step()};
+    if (space_.field_->fly(room, longest(), all, random, ray, tangent) != LegStop::surface)
+      return std::nullopt;
+    const LegEnd end = space_.end_at(ray.x);
+    if (end == at_boundary) return std::nullopt;
+    return Meeting{end, regions().beyond(part, end, ray.x, ray.v)};
   }
   int steps(Part part, double sigma) const {
-    if (!is_curved(part)) return 1;
+    if (!space_.is_curved(part)) return 1;
     return static_cast<int>(std::clamp(std::ceil(sigma / step()), 1.0, 1e5));
   }
   void advance(Part part, double sigma, int steps, RayState& ray, RayTangent* tangent) const {
-    if (!is_curved(part)) return straight_.advance(part, sigma, steps, ray, tangent);
+    if (!space_.is_curved(part)) return straight_.advance(part, sigma, steps, ray, tangent);
     space_.field_->advance(sigma, steps, ray, tangent);
   }
   bool stays(Part part, const RayState& start, double sigma) const {
-    if (!is_curved(part)) return straight_.stays(part, start, sigma);
+    if (!space_.is_curved(part)) return straight_.stays(part, start, sigma);
     return space_.stays_inside(start, sigma, steps(part, sigma));
   }
   template <class Offer>
   void approach(Part part, RayState ray, const Vec3& x, const Offer& offer) const {
-    if (!is_curved(part)) return straight_.approach(part, ray, x, offer);
+    if (!space_.is_curved(part)) return straight_.approach(part, ray, x, offer);
     const double h = step();
     double nearing = (x - ray.x).dot(ray.v);
     for (int i = 0; ray.arc_length <= longest(); ++i) {
@@ -190,7 +198,7 @@ class CurvedSpace::Legs {
       space_.field_->advance(h, 1, ray, nullptr);
       if (!(ray.arc_length > before.arc_length)) return;
       nearing = (x - ray.x).dot(ray.v);
-      const bool is_out = distance(body(), ray.x) > 0;
+      const bool is_out = space_.room().distance(ray.x) > 0;
       if (was_nearing > 0 && nearing <= 0) {
         const double part_of_step = was_nearing / (was_nearing - nearing);
         const Vec3 closest = before.x + part_of_step * (ray.x - before.x);
@@ -203,7 +211,7 @@ class CurvedSpace::Legs {
   }
   PlaneCrossing to_plane(Part part, const ParallelLight& light, RayState& ray,
                          RayTangent* tangent) const {
-    if (!is_curved(part)) return straight_.to_plane(part, light, ray, tangent);
+    if (!space_.is_curved(part)) return straight_.to_plane(part, light, ray, tangent);
     const auto ahead = [&](const RayState& at) { return (at.x - light.x).dot(light.direction); };
     for (int i = 0; ray.arc_length <= longest(); ++i) {
       const RayState before = ray;
@@ -216,31 +224,27 @@ class CurvedSpace::Legs {
         ray = before;
         space_.field_->advance(sigma, 1, ray, tangent);
         if (tangent) meet(light, ray, *tangent);
-        return {distance(space_.container(), ray.x) <= 1e-6 * step(), i * step() + sigma};
+        return {space_.room().distance(ray.x) <= 1e-6 * step(), i * step() + sigma};
       }
-      if (distance(space_.container(), ray.x) > 0) return {};
+      if (space_.room().distance(ray.x) > 0) return {};
     }
     return {};
   }
-  RayJump jump(Part from, const RayState& ray) const {
-    const IndexGradient around{space_.setup_->excess_around, Vec3::Zero()};
-    const IndexGradient in = space_.field_->gradient(ray.x);
-    return from == Part::body ? RayJump(body(), ray, in, around) : RayJump(body(), ray, around, in);
+  RayJump jump(Part from, const Meeting& at, const RayState& ray) const {
+    return RayJump(regions().surface(at.surface), ray, space_.side(from, ray.x),
+                   space_.side(at.beyond, ray.x));
   }
 
   double extinction(Part part) const { return straight_.extinction(part); }
   double reference(Part part) const { return straight_.reference(part); }
   double transmitted(Part part, const RayState& start, double length, RandomStream& random) const {
-    if (!is_curved(part)) return straight_.transmitted(part, start, length, random);
+    if (!space_.is_curved(part)) return straight_.transmitted(part, start, length, random);
     const PartMedium& medium = space_.medium();
     if (!medium.grid()) return transmittance(medium.mu_t(), length);
-    return space_.field_->ratio_tracked(space_.room(), start, length, random);
+    return space_.field_->ratio_tracked(space_.leg_room(), start, length, random);
   }
 
  private:
-  bool is_curved(Part part) const {
-    return part == space_.setup_->field_part && !space_.setup_->is_straight;
-  }
   /// From a state to the plane of a light, no further than another: secants.
   double last_step(const ParallelLight& light, const RayState& from, const RayState& to) const {
     const auto ahead = [&](const Vec3& x) { return (x - light.x).dot(light.direction); };
@@ -267,7 +271,6 @@ class CurvedSpace::Legs {
   double longest() const { return space_.setup_->options.max_length; }
 
   const CurvedSpace& space_;
-  double excess_[2];
   StraightLegs<RenderPlan{}> straight_;
 };
 
@@ -278,7 +281,7 @@ std::optional<Join> CurvedSpace::join_through(const PathPoint& p, const PathPoin
   return join_by_way(Legs(*this), p, q, search(), random, statistics);
 }
 
-/// Of ways through the body's surface, or to a beam.
+/// Of ways that are refracted, or to a beam.
 ConnectionOptions CurvedSpace::search() const {
   ConnectionOptions options = setup_->connection;
   options.max_iterations = 20;
@@ -295,8 +298,8 @@ std::vector<BeamWay> CurvedSpace::ways_to_beam(const PathPoint& p, const Paralle
     const ConnectionOptions options = search();
     return BeamSearch(legs, p, light, options).find(seeds, random, statistics);
   }
-  if (is_curved(p)) return {};
-  return setup_->stage.ways_to_beam(p, light, index(p), is_clear(), random);
+  if (is_curved(p.part)) return {};
+  return setup_->stage.ways_to_beam(p, light, random);
 }
 
 std::optional<BeamWay> CurvedSpace::some_way_to_beam(const PathPoint& p, const ParallelLight& light,
@@ -318,12 +321,10 @@ std::optional<BeamWay> CurvedSpace::beam_way(const PathPoint& p, const ParallelL
 
 std::optional<Join> CurvedSpace::join(const PathPoint& p, const PathPoint& q, RandomStream& random,
                                       ConnectionStatistics& statistics) const {
-  if (is_clear()) return setup_->stage.join_through(p, q, index(p), random);
+  if (!is_curved(p.part)) return setup_->stage.join(p, q, random);
   if (p.part != q.part) return std::nullopt;
-  if (!is_curved(p)) return setup_->stage.join(p, q, index(p), random);
-  static constexpr double inside = 1;
   const double slack = 1e-7 * ((q.x - p.x).norm() + setup_->options.step);  // ends on the surface
-  const CurveEnds ends{p.x, q.x, {{&container(), 1}, {&inside, 1}, slack}};
+  const CurveEnds ends{p.x, q.x, {room().surfaces, setup_->sides, slack}};
   const ConnectionEstimate estimate = field_->connect(ends, setup_->connection, random, statistics);
   if (!estimate.curve) return std::nullopt;
   const Connection& curve = *estimate.curve;
@@ -345,7 +346,7 @@ bool CurvedSpace::stays_inside(RayState ray, double sigma, int steps) const {
     const RayState before = ray;
     field_->advance(h, 1, ray, nullptr);
     const StepCurve curve(before, ray, h);
-    const auto depth = [&](double theta) { return slack - distance(container(), curve.x(theta)); };
+    const auto depth = [&](double theta) { return slack - room().distance(curve.x(theta)); };
     const double arc = 1.1 * (ray.arc_length - before.arc_length);
     if (first_change(depth, {0, 1, depth(0), depth(1)}, arc)) return false;
   }
@@ -355,14 +356,14 @@ bool CurvedSpace::stays_inside(RayState ray, double sigma, int steps) const {
 /// From a point on the surface.
 bool CurvedSpace::goes_outside(const Vec3& x, const Vec3& direction) const {
   const double on_surface = 1e-9 * setup_->options.step;
-  return distance(container(), x) >= -on_surface && direction.dot(normal(container(), x)) > 0;
+  return room().distance(x) >= -on_surface && direction.dot(room().normal(x)) > 0;
 }
 
 double CurvedSpace::transmitted(const PathPoint& p, const Connection& curve,
                                 RandomStream& random) const {
   if (!medium().grid()) return transmittance(medium().mu_t(), curve.arc_length);
-  return field_->ratio_tracked(room(), start_ray(*field_, p.x, curve.start_direction), curve.sigma,
-                               curve.steps, random);
+  return field_->ratio_tracked(leg_room(), start_ray(*field_, p.x, curve.start_direction),
+                               curve.sigma, curve.steps, random);
 }
 
 std::unique_ptr<const CurvedSpace> make_curved_space(const AnyIndexField& field, const Stage& stage,

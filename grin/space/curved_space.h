@@ -21,14 +21,16 @@ struct CurvedSpaceOptions {
   bool leapfrogs = false;  ///< make_ray_field()
 };
 
-/// Space where the index varies: straight ways around the body, or where the field is homogeneous,
-/// and those of a RayField in the rest.
+/// Space where the index varies: straight ways where it is the same everywhere in a part, and those
+/// of a RayField in the part that the field fills.
 class CurvedSpace {
  public:
   /// Use make_curved_space.
   CurvedSpace(const AnyIndexField& field, const Stage& stage, const CurvedSpaceOptions& options);
 
-  double index(const PathPoint& p) const { return 1 + excess(p); }
+  double index(const PathPoint& p) const {
+    return 1 + (is_curved(p.part) ? field_->excess(p.x) : setup_->stage.excess(p.part));
+  }
   /// log: its legs are added to that.
   Flight fly(const PathPoint& from, const Vec3& direction, RandomStream& random,
              FlightLog* log = nullptr) const;
@@ -36,10 +38,10 @@ class CurvedSpace {
   template <class Use>
   void for_points(const FlightLeg& leg, double apart, RandomStream& random, const Use& use) const;
   /// All ways of light between two points.
-  bool joins_all() const { return setup_->field_part == Part::stage || is_clear(); }
+  bool joins_all() const { return !setup_->stage.refracts(); }
   /// Any, between points of these parts.
   bool can_join(const PathPoint& p, const PathPoint& q) const {
-    return p.part == q.part || is_clear() || joins_through();
+    return setup_->stage.are_alike(p.part, q.part) || joins_through();
   }
   double least_depth(const PathPoint& p, const PathPoint& q) const {
     return setup_->stage.least_depth(p, q);
@@ -48,7 +50,7 @@ class CurvedSpace {
                            ConnectionStatistics& statistics) const;
   /// In flights, roughly.
   double cost_of_join() const { return field_->cost_of_curve(); }
-  bool joins_through() const { return !joins_all() && setup_->stage.joins_through(); }
+  bool joins_through() const { return setup_->stage.joins_through(); }
   std::optional<Join> join_through(const PathPoint& p, const PathPoint& q, RandomStream& random,
                                    ConnectionStatistics& statistics) const;
 
@@ -70,34 +72,36 @@ class CurvedSpace {
   /// What is the same at all phases.
   struct Setup {
     StraightStage<RenderPlan{}> stage;
-    double excess_around;
     Part field_part;
-    bool is_straight, is_clear;
+    bool is_straight;
+    std::vector<double> sides;  ///< of the surfaces of the field's room
     CurvedSpaceOptions options;
     ConnectionOptions connection;
   };
   CurvedSpace(std::shared_ptr<const Setup> setup, std::shared_ptr<const RayField> field)
       : setup_(std::move(setup)), field_(std::move(field)) {}
 
-  bool in_field(const PathPoint& p) const { return p.part == setup_->field_part; }
-  bool is_curved(const PathPoint& p) const { return in_field(p) && !setup_->is_straight; }
-  /// Nothing is refracted anywhere.
-  bool is_clear() const { return setup_->is_clear; }
-  double excess(const PathPoint& p) const {
-    return in_field(p) ? field_->excess(p.x) : setup_->excess_around;
+  bool is_curved(Part part) const { return part == setup_->field_part && !setup_->is_straight; }
+  /// As stage has it, but in the field of this phase.
+  IndexGradient side(Part part, const Vec3& x) const {
+    if (is_curved(part)) return field_->gradient(x);
+    return {setup_->stage.excess(part), Vec3::Zero()};
   }
-  const Surface& container() const { return setup_->stage.container(setup_->field_part); }
+  /// That of the field.
+  Room room() const { return setup_->stage.regions().room(setup_->field_part); }
   const PartMedium& medium() const { return setup_->stage.medium(setup_->field_part); }
-  LegRoom room() const { return {container(), medium(), setup_->options.step}; }
+  LegRoom leg_room() const { return {room(), medium(), setup_->options.step}; }
+  /// The surface on which it ends at x.
+  LegEnd end_at(const Vec3& x) const {
+    return setup_->field_part + static_cast<Part>(room().nearest(x));
+  }
 
   class Legs;
   struct Neighbours;
   class Curve;
 
   ConnectionOptions search() const;
-  bool searches_for_beams() const {
-    return joins_through() || (setup_->field_part == Part::stage && !setup_->is_straight);
-  }
+  bool searches_for_beams() const { return joins_through() || is_curved(around); }
   bool stays_inside(RayState ray, double sigma, int steps) const;
   Flight fly(const PathPoint& from, const Vec3& direction, bool spreads, RandomStream& random,
              FlightLog* log) const;
@@ -105,7 +109,7 @@ class CurvedSpace {
   std::optional<LegEnd> leg(Flight& flight, Neighbours& neighbours, RandomStream& random) const;
   std::optional<LegEnd> curved_leg(Flight& flight, Neighbours& neighbours,
                                    RandomStream& random) const;
-  void cross(Flight& flight, Neighbours& neighbours, RandomStream& random) const;
+  void cross(Flight& flight, LegEnd surface, Neighbours& neighbours, RandomStream& random) const;
   double transmitted(const PathPoint& p, const Connection& curve, RandomStream& random) const;
 
   std::shared_ptr<const Setup> setup_;
@@ -143,12 +147,13 @@ template <class Use>
 void CurvedSpace::for_points(const FlightLeg& leg, double apart, RandomStream& random,
                              const Use& use) const {
   const PartMedium& in = setup_->stage.medium(leg.start.part);
-  if (is_curved(leg.start)) return grin::for_points(leg, in, apart, random, Curve(*this, leg), use);
+  if (is_curved(leg.start.part))
+    return grin::for_points(leg, in, apart, random, Curve(*this, leg), use);
   const auto x_at = [&](double s) -> Vec3 { return leg.start.x + s * leg.direction; };
   grin::for_points(leg, in, apart, random, x_at, use);
 }
 
-/// The field fills the body if there is one, else the stage. Throws InputError for a bad stage.
+/// Throws InputError for a bad stage.
 std::unique_ptr<const CurvedSpace> make_curved_space(const AnyIndexField& field, const Stage& stage,
                                                      const CurvedSpaceOptions& options);
 

@@ -1,13 +1,13 @@
 #pragma once
 
 #include "grin/space/part_medium.h"
-#include "grin/surfaces/signed_distance.h"
+#include "grin/surfaces/room.h"
 
 namespace flatspeckle::grin {
 
-/// What a leg of a flight is in: a medium inside a surface, by equal steps.
+/// What a leg of a flight is in: a medium, by equal steps.
 struct LegRoom {
-  const Surface& surface;
+  Room room;
   const PartMedium& medium;
   double step;
 };

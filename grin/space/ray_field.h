@@ -70,16 +70,17 @@ inline constexpr bool goes_by_leapfrog = requires(const F& field) {
   at_phase(field, 0.0);
 };
 
-/// end: of the rays, where they end on one surface. leapfrogs: by that, of a field that has it.
+/// room: that the rays end at the surfaces of (Room), where they do. leapfrogs: by that, of a field
+/// that has it.
 std::unique_ptr<const RayField> make_ray_field(const AnyIndexField& field,
-                                               const Surface* end = nullptr,
+                                               std::span<const Surface> room = {},
                                                bool leapfrogs = false);
 
 /// Fields are compiled in so many files: ray_field_N.cpp has those whose number in the list has the
 /// remainder N, and makes nothing of others.
 inline constexpr std::size_t ray_field_files = 3;
 template <std::size_t file>
-std::unique_ptr<const RayField> ray_field_in(const AnyIndexField& field, const Surface* end,
-                                             bool leapfrogs);
+std::unique_ptr<const RayField> ray_field_in(const AnyIndexField& field,
+                                             std::span<const Surface> room, bool leapfrogs);
 
 }  // namespace flatspeckle::grin

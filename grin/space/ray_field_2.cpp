@@ -2,7 +2,7 @@
 
 namespace flatspeckle::grin {
 
-template std::unique_ptr<const RayField> ray_field_in<2>(const AnyIndexField&, const Surface*,
-                                                         bool);
+template std::unique_ptr<const RayField> ray_field_in<2>(const AnyIndexField&,
+                                                         std::span<const Surface>, bool);
 
 }  // namespace flatspeckle::grin

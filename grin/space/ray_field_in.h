@@ -4,34 +4,35 @@
 
 namespace flatspeckle::grin {
 
-/// A field as it is for rays that end on this surface: steps that reach past it stay smooth.
+/// A field as it is for rays in a room: steps that reach past its outer surface stay smooth.
 template <IndexField F>
-std::unique_ptr<const RayField> ray_field_within(const F& field, const Surface* end,
+std::unique_ptr<const RayField> ray_field_within(const F& field, std::span<const Surface> room,
                                                  bool leapfrogs) {
   if constexpr (goes_by_leapfrog<F>)
     if (leapfrogs) return std::make_unique<RayFieldOf<F, Leapfrog>>(field);
   if constexpr (requires { smooth_within(field, Sphere()); })
-    if (const Sphere* sphere = end ? std::get_if<Sphere>(end) : nullptr) {
+    if (const Sphere* sphere = room.empty() ? nullptr : std::get_if<Sphere>(&room[0])) {
       const F smooth = smooth_within(field, *sphere);
-      if (auto closed = closed_form_within(smooth, *sphere)) return closed;
+      if (room.size() == 1)
+        if (auto closed = closed_form_within(smooth, *sphere)) return closed;
       return std::make_unique<RayFieldOf<F>>(smooth);
     }
   return std::make_unique<RayFieldOf<F>>(field);
 }
 
 template <std::size_t file, std::size_t number>
-std::unique_ptr<const RayField> ray_field_from(const AnyIndexField& field, const Surface* end,
-                                               bool leapfrogs) {
+std::unique_ptr<const RayField> ray_field_from(const AnyIndexField& field,
+                                               std::span<const Surface> room, bool leapfrogs) {
   if constexpr (number < std::variant_size_v<AnyIndexField>) {
-    if (const auto* of = std::get_if<number>(&field)) return ray_field_within(*of, end, leapfrogs);
-    return ray_field_from<file, number + ray_field_files>(field, end, leapfrogs);
+    if (const auto* of = std::get_if<number>(&field)) return ray_field_within(*of, room, leapfrogs);
+    return ray_field_from<file, number + ray_field_files>(field, room, leapfrogs);
   }
   return nullptr;
 }
 template <std::size_t file>
-std::unique_ptr<const RayField> ray_field_in(const AnyIndexField& field, const Surface* end,
-                                             bool leapfrogs) {
-  return ray_field_from<file, file>(field, end, leapfrogs);
+std::unique_ptr<const RayField> ray_field_in(const AnyIndexField& field,
+                                             std::span<const Surface> room, bool leapfrogs) {
+  return ray_field_from<file, file>(field, room, leapfrogs);
 }
 
 }  // namespace flatspeckle::grin

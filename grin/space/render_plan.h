@@ -8,13 +8,13 @@ namespace flatspeckle::grin {
 /// made for a plan has no code for what the plan leaves out, and leaving it out never changes a
 /// result beyond rounding. Each `false` is a promise about the scene.
 struct RenderPlan {
-  bool curved = true;    ///< the index changes from point to point, not only at the body's surface
+  bool curved = true;    ///< the index changes from point to point, not only at surfaces of bodies
   bool scatters = true;  ///< some medium does
   bool absorbs = true;   ///< some medium does; all that scatters is lossless without
   bool gridded = true;   ///< some medium's density is a grid
-  bool body = true;
-  bool timed = true;  ///< more than one bin of optical path
-  bool deep = true;   ///< light is split on its way to sensors deep behind a medium
+  bool body = true;      ///< one or more in the stage
+  bool timed = true;     ///< more than one bin of optical path
+  bool deep = true;      ///< light is split on its way to sensors deep behind a medium
 
   bool operator==(const RenderPlan&) const = default;
 

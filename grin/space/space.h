@@ -7,24 +7,12 @@
 
 #include "core/numbers/random.h"
 #include "grin/connections/connection.h"
-#include "grin/geometry/vec3.h"
+#include "grin/space/regions.h"
 
 namespace flatspeckle::grin {
 
-/// What a point lies in.
-enum class Part { stage, body };
-
-/// The other side of the body's surface.
-inline Part beyond(Part part) {
-  return part == Part::body ? Part::stage : Part::body;
-}
-
-struct PathPoint {
-  Vec3 x;
-  Part part = Part::stage;
-};
-
-/// Where a way of light is refracted or reflected at the body's surface, one after the other.
+/// Where a way of light is refracted or reflected at surfaces of bodies, one after the other; those
+/// where the index does not jump are none.
 struct Passages {
   int count = 0;
   std::uint32_t reflected = 0;  ///< bit i: the i-th is a reflection
@@ -45,8 +33,8 @@ struct Passages {
   bool operator==(const Passages&) const = default;
 };
 
-/// The way of light from a point to the next event, along a curve, through the body's surface where
-/// it meets that.
+/// The way of light from a point to the next event, along a curve, through surfaces of bodies where
+/// it meets them.
 struct Flight {
   enum class End {
     collision,  ///< in a medium
@@ -62,9 +50,10 @@ struct Flight {
   double optical_depth = 0;     ///< reference depth, see below
   double weight = 1;            ///< exp(-mu_a s) in media that do not scatter, else 1
   double stretched = 1;         ///< density of plain flights over that of those sampled
-  double absorbed_in_body = 0;  ///< of 1 - weight
-  bool crosses_body = false;    ///< passes its surface or is reflected there
+  double absorbed_in_body = 0;  ///< in any; of 1 - weight
+  bool crosses_body = false;    ///< passes the surface of one or is reflected there
   Passages passages = {};       ///< there, where it refracts; of a way that joins can find
+  double fresnel = 1;           ///< chance of these
   bool is_joinable = true;      ///< a join of its ends finds the same way
 };
 
@@ -75,9 +64,10 @@ struct Join {
   double optical_path;
   double optical_depth;  ///< reference depth, see below
   double transmittance;  ///< or an unbiased estimate of it, where the density is a grid; and the
-                         ///< chance of what happens at the body's surface, Fresnel's
+                         ///< chance of what happens at surfaces of bodies, Fresnel's
   double multiplicity;   ///< K of C26: f multiplicity is unbiased for the sum of f over the curves
-  bool passes = false;   ///< the body's surface, found by search
+  bool passes = false;   ///< surfaces that refract, found by search
+  double fresnel = 1;    ///< chance of that
 };
 
 /// Light of one direction, at the plane across it through x.
@@ -89,7 +79,7 @@ struct ParallelLight {
 struct BeamWay {
   Vec3 start_direction;           ///< unit tangent, against the light
   Vec3 place;                     ///< on the plane
-  Vec3 first_met = Vec3::Zero();  ///< where it meets the body's surface first, if it does
+  Vec3 first_met = Vec3::Zero();  ///< where it is refracted or reflected first, if it is
   double thinning;                ///< area across the light at the point per area at the plane
   int orientation;                ///< sign of the determinant in it
   double arc_length, optical_path;
@@ -98,8 +88,8 @@ struct BeamWay {
   double multiplicity = 1;  ///< as in Join
 };
 
-/// Where a search for ways to parallel light begins: along a direction, or from outside of a body
-/// towards the place where it first meets its surface.
+/// Where a search for ways to parallel light begins: along a direction, or from outside of all
+/// bodies towards the place where it is first refracted or reflected.
 struct BeamSeed {
   Vec3 start_direction;
   Passages passages = {};
@@ -112,7 +102,7 @@ struct BeamSeed {
 // does not: 0, as no flight ends there. Weights of multiple importance sampling use it in place of
 // the true one, which leaves them weights and needs no second estimate.
 
-/// What the estimators ask of space. join() finds ways that the body's surface leaves alone,
+/// What the estimators ask of space. join() finds ways that surfaces of bodies leave alone,
 /// join_through() one of those that are refracted or reflected there; ways_to_beam() those of
 /// parallel light, backwards, some_way_to_beam() what one random trial finds of them, and
 /// beam_way() that which starts so. StraightSpace<plan>

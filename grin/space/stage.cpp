@@ -5,7 +5,7 @@
 #include <sstream>
 
 #include "core/error.h"
-#include "grin/geometry/vector_values.h"
+#include "grin/space/regions.h"
 
 namespace flatspeckle::grin {
 
@@ -88,55 +88,39 @@ bool lies_in(const Surface& inner, const Surface& outer) {
   return true;
 }
 
+Part Stage::field_part() const {
+  for (Part part = 1; part < parts(); ++part)
+    if (!bodies[part - 1].excess) return part;
+  return around;
+}
+
 Stage without_scattering(const Stage& stage) {
   Stage black = stage;
   black.medium = without_scattering(stage.medium);
-  if (stage.body) black.body->medium = without_scattering(stage.body->medium);
+  for (Body& body : black.bodies) body.medium = without_scattering(body.medium);
   return black;
 }
 
 void check(const Stage& stage) {
   bounds(stage.boundary);
   check_flights(stage.medium, stage.boundary, "");
-  if (!stage.body) return;
-  check_flights(stage.body->medium, stage.body->surface, "body_");
-  if (!lies_in(stage.body->surface, stage.boundary))
-    throw InputError(
-        "body: must be inside of the stage; of luneburg without one the ball, or the stage inside "
-        "of it");
+  for (Part part = 1; part < stage.parts(); ++part) {
+    const Body& body = stage.bodies[part - 1];
+    check_flights(body.medium, body.surface, body.keys);
+    if (!lies_in(body.surface, stage.boundary))
+      throw InputError(
+          "body: must be inside of the stage; of luneburg without one the ball, or the stage "
+          "inside of it");
+    if (!body.excess && part != stage.field_part())
+      throw InputError("body: only one of them may be filled by the index field");
+  }
 }
 
 void check_path_lengths(const Stage& stage, int max_scatterings) {
   if (max_scatterings <= 100'000'000) return;
-  check_path_lengths(stage.medium, stage.boundary, mean_density(stage, false), "");
-  if (stage.body)
-    check_path_lengths(stage.body->medium, stage.body->surface, mean_density(stage, true), "body_");
-}
-
-void require_in_stage(const Stage& stage, const Vec3& x) {
-  if (!(distance(stage.boundary, x) <= 1e-9 * x.norm()))
-    throw InputError("sensor_at", listed(x), "must be inside the stage");
-  if (stage.body && !(distance(stage.body->surface, x) >= 0))
-    throw InputError("sensor_at", listed(x), "must not be inside the body");
-}
-
-double mean_density(const Stage& stage, bool in_body) {
-  constexpr int points = 32;  // along an axis
-  const ScatteringMedium& medium = in_body ? stage.body->medium : stage.medium;
-  if (!medium.density) return 1;
-  const auto [low, high] = bounds(in_body ? stage.body->surface : stage.boundary);
-  double sum = 0;
-  int inside = 0;
-  for (int point = 0; point < points * points * points; ++point) {
-    const Vec3 at(point / points / points, point / points % points, point % points);
-    const Vec3 share = (at + Vec3::Constant(0.5)) / points;
-    const Vec3 x = low + share.cwiseProduct(high - low);
-    const bool is_in_body = stage.body && distance(stage.body->surface, x) < 0;
-    if (is_in_body != in_body || distance(stage.boundary, x) > 0) continue;
-    sum += (*medium.density)(x);
-    ++inside;
-  }
-  return inside > 0 ? sum / inside : 1;
+  for (Part part = around; part < stage.parts(); ++part)
+    check_path_lengths(stage.medium_in(part), stage.surface(part), mean_density(stage, part),
+                       part == around ? "" : stage.bodies[part - 1].keys);
 }
 
 }  // namespace flatspeckle::grin

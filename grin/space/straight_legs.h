@@ -12,24 +12,26 @@ namespace flatspeckle::grin {
 template <RenderPlan plan>
 class StraightLegs {
  public:
-  /// Refers to the stage. excess: of a part.
-  StraightLegs(const StraightStage<plan>& stage, const double (&excess)[2])
-      : stage_(stage), excess_(excess) {}
+  /// Refers to the stage.
+  explicit StraightLegs(const StraightStage<plan>& stage) : stage_(stage) {}
 
-  bool has_body() const { return stage_.has_body(); }
-  const Surface& body() const { return stage_.container(Part::body); }
-  double index(const PathPoint& p) const { return 1 + excess(p.part); }
+  const Regions& regions() const { return stage_.regions(); }
+  bool are_alike(Part a, Part b) const { return stage_.are_alike(a, b); }
+  bool is_alone(Part part) const { return stage_.is_alone(part); }
+  double index(const PathPoint& p) const { return 1 + stage_.excess(p.part); }
   RayState start(const PathPoint& p, const Vec3& direction) const {
     return {p.x, index(p) * direction};
   }
 
-  /// On to the body's surface; false where the leg does not end there.
-  bool to_body(Part part, RayState& ray, RayTangent* tangent, RandomStream&) const {
+  /// On to the surface of a body; nothing where the leg does not end on one.
+  std::optional<Meeting> to_surface(Part part, RayState& ray, RayTangent* tangent,
+                                    RandomStream&) const {
     const double n = ray.v.norm();
-    const auto [way, end] = stage_.way_to_surface({ray.x, part}, ray.v / n);
-    if (end != LegEnd::body) return false;
+    const Vec3 d = ray.v / n;
+    const auto [way, end] = stage_.way_to_surface({ray.x, part}, d);
+    if (end == at_boundary) return std::nullopt;
     advance(part, way / n, 1, ray, tangent);
-    return true;
+    return Meeting{end, regions().beyond(part, end, ray.x, d)};
   }
   int steps(Part, double) const { return 1; }
   void advance(Part, double sigma, int, RayState& ray, RayTangent* tangent) const {
@@ -39,16 +41,16 @@ class StraightLegs {
     ray.optical_path += sigma * square;
     if (tangent) tangent->dx += sigma * tangent->dv;
   }
-  /// A last leg does not leave its part.
+  /// A last leg is not refracted and does not leave the stage.
   bool stays(Part part, const RayState& start, double sigma) const {
     const double n = start.v.norm();
-    return stage_.way_to_surface({start.x, part}, start.v / n).length >= (1 - 1e-9) * sigma * n;
+    return stage_.way_to_jump({start.x, part}, start.v / n) >= (1 - 1e-9) * sigma * n;
   }
   /// offer(sigma, squared distance) where a leg comes closest to x.
   template <class Offer>
   void approach(Part part, const RayState& ray, const Vec3& x, const Offer& offer) const {
     const double n = ray.v.norm();
-    const double way = stage_.way_to_surface({ray.x, part}, ray.v / n).length;
+    const double way = stage_.way_to_jump({ray.x, part}, ray.v / n);
     const double sigma = std::min((x - ray.x).dot(ray.v) / (n * n), way / n);
     if (sigma > 0) offer(sigma, (ray.x + sigma * ray.v - x).squaredNorm());
   }
@@ -61,9 +63,9 @@ class StraightLegs {
     advance(part, sigma, 1, ray, tangent);
     return {sigma > 0, sigma};
   }
-  RayJump jump(Part from, const RayState& ray) const {
-    const auto side = [&](Part part) { return IndexGradient{excess(part), Vec3::Zero()}; };
-    return RayJump(body(), ray, side(from), side(beyond(from)));
+  RayJump jump(Part from, const Meeting& at, const RayState& ray) const {
+    const auto side = [&](Part part) { return IndexGradient{stage_.excess(part), Vec3::Zero()}; };
+    return RayJump(regions().surface(at.surface), ray, side(from), side(at.beyond));
   }
 
   double extinction(Part part) const { return stage_.medium(part).mu_t(); }
@@ -75,10 +77,7 @@ class StraightLegs {
   }
 
  private:
-  double excess(Part part) const { return excess_[part == Part::body ? 1 : 0]; }
-
   const StraightStage<plan>& stage_;
-  const double (&excess_)[2];
 };
 
 }  // namespace flatspeckle::grin

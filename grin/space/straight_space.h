@@ -14,19 +14,18 @@ class StraightSpace {
   static_assert(!plan.curved);
 
  public:
-  /// field_excess: of the body where there is one, of the whole stage otherwise.
-  StraightSpace(const Stage& stage, double field_excess)
-      : stage_(stage), excess_{stage.body ? stage.excess_around : field_excess, field_excess} {}
+  /// field_excess: of the part that the field fills.
+  StraightSpace(const Stage& stage, double field_excess) : stage_(stage, field_excess) {}
 
-  double index(const PathPoint& p) const { return 1 + excess(p.part); }
+  double index(const PathPoint& p) const { return 1 + stage_.excess(p.part); }
 
   /// log: its legs are added to that. rise: the first leg is stretched along it (StraightStage).
   Flight fly(const PathPoint& from, const Vec3& direction, RandomStream& random,
              FlightLog* log = nullptr, const Vec3* rise = nullptr) const {
     Flight flight{.point = from, .start_direction = direction, .direction = direction};
     const LegEnd end = leg(flight, random, log, rise);
-    if (plan.body && end == LegEnd::body)
-      return is_clear() ? go_on(flight, random, log) : refracted(flight, random, log);
+    if (plan.body && end > at_boundary)
+      return joins_all() ? go_on(flight, end, random, log) : refracted(flight, end, random, log);
     flight.spreading = flight.arc_length * flight.arc_length;
     return finished(flight, end);
   }
@@ -39,20 +38,19 @@ class StraightSpace {
   }
 
   /// All ways of light between two points.
-  bool joins_all() const { return !plan.body || is_clear(); }
+  bool joins_all() const { return !stage_.refracts(); }
   /// Any, between points of these parts.
   bool can_join(const PathPoint& p, const PathPoint& q) const {
-    return p.part == q.part || is_clear() || joins_through();
+    return stage_.are_alike(p.part, q.part) || joins_through();
   }
   double least_depth(const PathPoint& p, const PathPoint& q) const {
     return stage_.least_depth(p, q);
   }
   std::optional<Join> join(const PathPoint& p, const PathPoint& q, RandomStream& random,
                            ConnectionStatistics&) const {
-    if (is_clear()) return stage_.join_through(p, q, index(p), random);
-    return stage_.join(p, q, index(p), random);
+    return stage_.join(p, q, random);
   }
-  bool joins_through() const { return !joins_all() && stage_.joins_through(); }
+  bool joins_through() const { return stage_.joins_through(); }
   std::optional<Join> join_through(const PathPoint& p, const PathPoint& q, RandomStream& random,
                                    ConnectionStatistics& statistics) const {
     if (!joins_through()) return std::nullopt;
@@ -64,7 +62,7 @@ class StraightSpace {
                                     ConnectionStatistics& statistics) const {
     if (joins_through())
       return BeamSearch(legs(), p, light, search).find(seeds, random, statistics);
-    return stage_.ways_to_beam(p, light, index(p), is_clear(), random);
+    return stage_.ways_to_beam(p, light, random);
   }
   std::optional<BeamWay> some_way_to_beam(const PathPoint& p, const ParallelLight& light,
                                           RandomStream& random,
@@ -84,44 +82,40 @@ class StraightSpace {
       .max_length = std::numeric_limits<double>::infinity(),
       .start = {.chord_share = 0.3},
       .max_iterations = 20};
-  StraightLegs<plan> legs() const { return {stage_, excess_}; }
-  double excess(Part part) const { return excess_[plan.body && part == Part::body ? 1 : 0]; }
-
-  /// Nothing is refracted at the body's surface.
-  bool is_clear() const { return plan.body && excess_[0] == excess_[1]; }
+  StraightLegs<plan> legs() const { return StraightLegs<plan>(stage_); }
+  IndexGradient side(Part part) const { return {stage_.excess(part), Vec3::Zero()}; }
 
   LegEnd leg(Flight& flight, RandomStream& random, FlightLog* log,
              const Vec3* rise = nullptr) const {
     FlightLeg now{flight.point, flight.direction, flight.arc_length, flight.weight};
-    const LegEnd end = stage_.fly(flight, index(flight.point), random, rise);
+    const LegEnd end = stage_.fly(flight, random, rise);
     if (log) {
       now.length = flight.arc_length - now.length;
       log->push_back(now);
     }
     return end;
   }
-  /// At the body's surface.
-  Flight& go_on(Flight& flight, RandomStream& random, FlightLog* log) const {
+  /// At the surface of a body.
+  Flight& go_on(Flight& flight, LegEnd end, RandomStream& random, FlightLog* log) const {
     for (int legs = 1; legs < most_legs; ++legs) {
-      stage_.pass(flight);
-      const LegEnd end = leg(flight, random, log);
-      if (end == LegEnd::body) continue;
+      stage_.pass(flight, stage_.beyond(flight, end));
+      end = leg(flight, random, log);
+      if (end > at_boundary) continue;
       flight.spreading = flight.arc_length * flight.arc_length;
       return finished(flight, end);
     }
     return flight;  // lost
   }
-  Flight& refracted(Flight& flight, RandomStream& random, FlightLog* log) const {
-    const auto side = [&](Part part) { return IndexGradient{excess(part), Vec3::Zero()}; };
+  Flight& refracted(Flight& flight, LegEnd end, RandomStream& random, FlightLog* log) const {
     const double n_start = index(flight.point);
     RayTangent tangent;
     tangent.dx.diagonal().fill(flight.arc_length / n_start);
     for (int legs = 1; legs < most_legs; ++legs) {
-      stage_.cross(flight, side(Part::body), side(Part::stage), &tangent, random);
+      cross(flight, end, tangent, random);
       const double before = flight.arc_length, n = index(flight.point);
-      const LegEnd end = leg(flight, random, log);
+      end = leg(flight, random, log);
       tangent.dx += (flight.arc_length - before) / n * tangent.dv;
-      if (end == LegEnd::body) continue;
+      if (end > at_boundary) continue;
       if (flight.is_joinable)
         flight.spreading =
             std::abs(signed_spreading(tangent, n_start, flight.start_direction, flight.direction));
@@ -129,13 +123,17 @@ class StraightSpace {
     }
     return flight;  // lost
   }
+  void cross(Flight& flight, LegEnd surface, RayTangent& tangent, RandomStream& random) const {
+    const Part from = flight.point.part, to = stage_.beyond(flight, surface);
+    if (stage_.are_alike(from, to)) return stage_.pass(flight, to);
+    stage_.cross(flight, surface, to, {side(from), side(to)}, &tangent, random);
+  }
   static Flight& finished(Flight& flight, LegEnd end) {
-    flight.end = end == LegEnd::collision ? Flight::End::collision : Flight::End::boundary;
+    flight.end = end == at_collision ? Flight::End::collision : Flight::End::boundary;
     return flight;
   }
 
   StraightStage<plan> stage_;
-  double excess_[2];
 };
 
 }  // namespace flatspeckle::grin

@@ -3,20 +3,15 @@
 #include "grin/rays/ray_jump.h"
 #include "grin/space/part_medium.h"
 #include "grin/space/space.h"
-#include "grin/space/stage.h"
-#include "grin/surfaces/straight_way.h"
 
 namespace flatspeckle::grin {
 
-/// Where a flight is after a leg of it, within one part.
-enum class LegEnd { collision, boundary, body };
-
-/// Through the body's surface so often at most: what total reflection traps is lost.
+/// Through surfaces of bodies so often at most: what total reflection traps is lost.
 inline constexpr int most_legs = 1000;
 
 /// A leg within one part, which absorbs and does not scatter, leaves as much of the light.
 inline void attenuate(Flight& flight, double weight) {
-  if (flight.point.part == Part::body) flight.absorbed_in_body += flight.weight - weight;
+  if (flight.point.part != around) flight.absorbed_in_body += flight.weight - weight;
   flight.weight = weight;
 }
 
@@ -24,41 +19,51 @@ inline void attenuate(Flight& flight, double weight) {
 template <RenderPlan plan>
 class StraightStage {
  public:
-  explicit StraightStage(const Stage& stage)
-      : boundary_(stage.boundary),
-        media_{PartMedium(stage.medium, mean_density(stage, false)), {}} {
-    if (!stage.body) return;
-    body_ = stage.body->surface;
-    media_[1] = PartMedium(stage.body->medium, mean_density(stage, true));
+  /// field_excess: of the part that the field fills, where it is the same everywhere.
+  StraightStage(const Stage& stage, std::optional<double> field_excess) : regions_(stage) {
+    for (Part part = around; part < stage.parts(); ++part) {
+      const PartMedium medium(stage.medium_in(part), mean_density(stage, part));
+      if (part != stage.field_part())
+        add(medium, stage.excess_in(part));
+      else
+        add(medium, field_excess);
+    }
   }
 
-  const PartMedium& medium(Part part) const {
-    return media_[plan.body && part == Part::body ? 1 : 0];
-  }
-  /// What a part lies in.
-  const Surface& container(Part part) const {
-    return plan.body && part == Part::body ? *body_ : boundary_;
-  }
+  const Regions& regions() const { return regions_; }
+  const PartMedium& medium(Part part) const { return parts_[plan.body ? part : around].medium; }
+  /// Index - 1 of a part where it is the same everywhere.
+  double excess(Part part) const { return *parts_[plan.body ? part : around].excess; }
 
-  bool has_body() const { return plan.body && body_; }
+  /// Light goes from one part into the other as if they were one.
+  bool are_alike(Part a, Part b) const {
+    return !plan.body || parts_[a].first_alike == parts_[b].first_alike;
+  }
+  /// No other part is alike.
+  bool is_alone(Part part) const { return !plan.body || parts_[part].is_alone; }
+  /// The index jumps anywhere.
+  bool refracts() const { return plan.body && refracts_; }
+  /// Whether ways can be found that surfaces refract.
+  bool joins_through() const { return plan.body && joins_through_; }
 
   /// To the next collision or to the end of the part. rise: gradient of the logarithm of what light
   /// is worth, along which flights are stretched; or null.
-  LegEnd fly(Flight& flight, double index, RandomStream& random, const Vec3* rise = nullptr) const {
+  LegEnd fly(Flight& flight, RandomStream& random, const Vec3* rise = nullptr) const {
     const Vec3 x = flight.point.x, d = flight.direction;
     const auto path = [&](double s) -> Vec3 { return x + s * d; };
     auto [way, end] = way_to_surface(flight.point, d);
-    const PartMedium& in = medium(flight.point.part);
+    const Part part = flight.point.part;
+    const PartMedium& in = medium(part);
     const double pull = rise && in.is_uniform() ? rise->dot(d) / in.mu_t() : 0;
     const double free = pull > 0 ? stretched(flight, in.mu_t(), pull, way, random)
                                  : in.template free_path<plan>(path, way, random);
     if (free < way) {
       way = free;
-      end = LegEnd::collision;
+      end = at_collision;
     }
     flight.point.x = path(way);
     flight.arc_length += way;
-    flight.optical_path += index * way;
+    flight.optical_path += (1 + excess(part)) * way;
     if constexpr (plan.scatters) flight.optical_depth += in.reference() * way;
     if constexpr (plan.absorbs)
       if (!in.scatters())
@@ -66,54 +71,40 @@ class StraightStage {
     return end;
   }
 
-  /// At the body's surface, where it refracts: to the other side or back. The tangent, if not
-  /// null, goes on too.
-  void cross(Flight& flight, const IndexGradient& body, const IndexGradient& around,
-             RayTangent* tangent, RandomStream& random) const {
-    const bool leaves = flight.point.part == Part::body;
-    const IndexGradient& from = leaves ? body : around;
-    RayState ray{flight.point.x, (1 + from.excess) * flight.direction};
-    const RayJump jump(*body_, ray, from, leaves ? around : body);
+  /// The part that begins where a leg has ended on the surface of a body.
+  Part beyond(const Flight& flight, LegEnd surface) const {
+    return regions_.beyond(flight.point.part, surface, flight.point.x, flight.direction);
+  }
+  /// At a surface that refracts: to the part beyond or back. The tangent, if not null, goes on too.
+  struct Sides {
+    IndexGradient here, beyond;
+  };
+  void cross(Flight& flight, LegEnd surface, Part to, const Sides& sides, RayTangent* tangent,
+             RandomStream& random) const {
+    RayState ray{flight.point.x, (1 + sides.here.excess) * flight.direction};
+    const RayJump jump(regions_.surface(surface), ray, sides.here, sides.beyond);
     const double reflectance = jump.reflectance();
     const bool reflected = jump.is_total() || random.uniform() < reflectance;
     jump.pass(reflected, ray, tangent);
     flight.crosses_body = true;
-    flight.is_joinable = flight.passages.count < Passages::most && joins_through();
+    flight.is_joinable = flight.is_joinable && flight.passages.count < Passages::most &&
+                         has_curvature(regions_.surface(surface));
     if (flight.is_joinable) flight.passages.add(reflected);
-    flight.optical_depth -= std::log(reflected ? reflectance : 1 - reflectance);
+    const double chance = reflected ? reflectance : 1 - reflectance;
+    flight.fresnel *= chance;
+    flight.optical_depth -= std::log(chance);
     flight.direction = ray.v.normalized();
-    if (!reflected) flight.point.part = beyond(flight.point.part);
+    if (!reflected) flight.point.part = to;
   }
   /// The same where it does not.
-  void pass(Flight& flight) const {
+  void pass(Flight& flight, Part to) const {
     flight.crosses_body = true;
-    flight.point.part = beyond(flight.point.part);
-  }
-  /// Whether ways can be found that the body's surface refracts.
-  bool joins_through() const { return plan.body && body_ && has_curvature(*body_); }
-
-  std::optional<Join> join(const PathPoint& p, const PathPoint& q, double index,
-                           RandomStream& random) const {
-    if (plan.body && p.part != q.part) return std::nullopt;
-    const Vec3 chord = q.x - p.x;
-    const double square = chord.squaredNorm(), length = std::sqrt(square);
-    if (!(length > 0)) return std::nullopt;
-    const Vec3 d = chord / length;
-    if (is_blocked(p, d, length)) return std::nullopt;
-    const PartMedium& in = medium(p.part);
-    const auto path = [&](double s) -> Vec3 { return p.x + s * d; };
-    return Join{.start_direction = d,
-                .end_direction = d,
-                .spreading = square,
-                .optical_path = index * length,
-                .optical_depth = in.reference() * length,
-                .transmittance = in.template transmitted<plan>(path, length, random),
-                .multiplicity = 1};
+    flight.point.part = to;
   }
 
-  /// Through the body's surface as if there were none.
-  std::optional<Join> join_through(const PathPoint& p, const PathPoint& q, double index,
-                                   RandomStream& random) const {
+  /// Along the straight line, where nothing on it refracts.
+  std::optional<Join> join(const PathPoint& p, const PathPoint& q, RandomStream& random) const {
+    if (!are_alike(p.part, q.part)) return std::nullopt;
     const Vec3 chord = q.x - p.x;
     const double square = chord.squaredNorm(), length = std::sqrt(square);
     if (!(length > 0)) return std::nullopt;
@@ -121,26 +112,31 @@ class StraightStage {
     Join join{.start_direction = d,
               .end_direction = d,
               .spreading = square,
-              .optical_path = index * length,
+              .optical_path = (1 + excess(p.part)) * length,
               .optical_depth = 0,
               .transmittance = 1,
               .multiplicity = 1};
-    const bool arrives = for_each_part(p, d, length, [&](Part part, double from, double to) {
+    const auto pass = [&](Part part, double from, double to) {
       const auto path = [&](double s) -> Vec3 { return p.x + (from + s) * d; };
       join.optical_depth += medium(part).reference() * (to - from);
       join.transmittance *= medium(part).template transmitted<plan>(path, to - from, random);
-    });
-    return arrives ? std::optional(join) : std::nullopt;
+    };
+    if (is_alone(p.part)) {
+      if (is_blocked(p, d, length)) return std::nullopt;
+      pass(p.part, 0, length);
+    } else if (!for_each_part(p, d, length, pass)) {
+      return std::nullopt;
+    }
+    return join;
   }
 
-  /// The straight way of parallel light to a point, through the body's surface where that is clear.
-  std::vector<BeamWay> ways_to_beam(const PathPoint& p, const ParallelLight& light, double index,
-                                    bool is_clear, RandomStream& random) const {
+  /// The straight way of parallel light to a point.
+  std::vector<BeamWay> ways_to_beam(const PathPoint& p, const ParallelLight& light,
+                                    RandomStream& random) const {
     const double length = (p.x - light.x).dot(light.direction);
     if (!(length > 0)) return {};
     const PathPoint from{p.x - length * light.direction, p.part};
-    const auto join =
-        is_clear ? join_through(p, from, index, random) : this->join(p, from, index, random);
+    const auto join = this->join(p, from, random);
     if (!join) return {};
     return {BeamWay{.start_direction = join->start_direction,
                     .place = from.x,
@@ -155,30 +151,26 @@ class StraightStage {
   double least_depth(const PathPoint& p, const PathPoint& q) const {
     const Vec3 chord = q.x - p.x;
     const double length = chord.norm();
-    const bool in_one_part = p.part == q.part && (p.part == Part::body || !body_);
+    const bool in_one_part = p.part == q.part && p.part == regions_.parts() - 1;
     if (!plan.body || in_one_part) return medium(p.part).least_extinction() * length;
     double depth = 0;
-    for_each_part(p, chord / length, length, [&](Part part, double from, double to) {
+    for_each_part<true>(p, chord / length, length, [&](Part part, double from, double to) {
       depth += medium(part).least_extinction() * (to - from);
     });
     return depth;
   }
 
   /// From a point of a part or on its surface to where it ends.
-  struct WayOut {
-    double length;
-    LegEnd end;
-  };
-  WayOut way_to_surface(const PathPoint& p, const Vec3& d) const {
-    if (plan.body && p.part == Part::body) return {way_out(*body_, p.x, d), LegEnd::body};
-    const double out = way_out(boundary_, p.x, d);
-    if constexpr (plan.body) {
-      if (body_) {
-        const double in = way_in(*body_, p.x, d);
-        if (in < out) return {in, LegEnd::body};
-      }
-    }
-    return {out, LegEnd::boundary};
+  Regions::WayOut way_to_surface(const PathPoint& p, const Vec3& d) const {
+    if constexpr (plan.body) return regions_.way_out(p, d);
+    return {way_out(regions_.surface(at_boundary), p.x, d), at_boundary};
+  }
+  /// To where light cannot go on straight.
+  double way_to_jump(const PathPoint& p, const Vec3& d) const {
+    if (is_alone(p.part)) return way_to_surface(p, d).length;
+    double way = 0;
+    for_each_part(p, d, no_way, [&](Part, double, double to) { way = to; });
+    return way;
   }
 
  private:
@@ -190,9 +182,31 @@ class StraightStage {
     return free;
   }
 
-  /// Calls use(part, from, to) for the stretches of a straight line. Returns whether it is within
-  /// the boundary.
-  template <class Use>
+  struct OfPart {
+    PartMedium medium;
+    std::optional<double> excess;
+    Part first_alike;
+    bool is_alone;
+  };
+
+  void add(const PartMedium& medium, std::optional<double> excess) {
+    const Part part = static_cast<Part>(parts_.size());
+    OfPart& added = parts_.emplace_back(OfPart{medium, excess, part, true});
+    for (Part other = around; other < part; ++other) {
+      OfPart& of = parts_[other];
+      if (!excess || of.excess != excess) {
+        joins_through_ |= has_curvature(regions_.surface(part));
+        refracts_ = true;
+      } else {
+        added.first_alike = std::min(added.first_alike, other);
+        added.is_alone = of.is_alone = false;
+      }
+    }
+  }
+
+  /// Calls use(part, from, to) for the stretches of a straight line, through surfaces that do not
+  /// refract, or through all. Returns whether the line goes on to its end.
+  template <bool through_all = false, class Use>
   bool for_each_part(PathPoint at, const Vec3& d, double length, const Use& use) const {
     const double shorter = (1 - 1e-9) * length;  // the end may be on a surface itself
     const Vec3 start = at.x;
@@ -203,10 +217,12 @@ class StraightStage {
         use(at.part, from, length);
         return true;
       }
-      if (end == LegEnd::boundary) return false;
       use(at.part, from, from + way);
+      if (end == at_boundary) return false;
       from += way;
-      at = {start + from * d, beyond(at.part)};
+      const PathPoint next{start + from * d, regions_.beyond(at.part, end, start + from * d, d)};
+      if (!through_all && !are_alike(at.part, next.part)) return false;
+      at = next;
     }
     return false;
   }
@@ -214,13 +230,17 @@ class StraightStage {
   bool is_blocked(const PathPoint& p, const Vec3& d, double length) const {
     // The end may be on the surface itself.
     const double shorter = (1 - 1e-9) * length;
-    if (!is_convex(container(p.part)) && way_out(container(p.part), p.x, d) < shorter) return true;
-    return plan.body && p.part == Part::stage && body_ && way_in(*body_, p.x, d) < shorter;
+    const Room room = regions_.room(plan.body ? p.part : around);
+    if (!is_convex(room.surfaces[0]) && way_out(room.surfaces[0], p.x, d) < shorter) return true;
+    if constexpr (plan.body)
+      for (const Surface& hole : room.surfaces.subspan(1))
+        if (way_in(hole, p.x, d) < shorter) return true;
+    return false;
   }
 
-  Surface boundary_;
-  std::optional<Surface> body_;
-  std::array<PartMedium, 2> media_;
+  Regions regions_;
+  std::vector<OfPart> parts_;
+  bool refracts_ = false, joins_through_ = false;
 };
 
 }  // namespace flatspeckle::grin

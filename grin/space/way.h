@@ -4,7 +4,13 @@
 
 namespace flatspeckle::grin {
 
-/// A way between two points that meets the body's surface.
+/// Where a ray meets the surface of a body, and the part beyond.
+struct Meeting {
+  LegEnd surface;
+  Part beyond;
+};
+
+/// A way between two points that is refracted or reflected.
 struct Way {
   Vec3 start_direction, end_direction;  ///< unit tangents along the way
   double spreading;                     ///< |J| from start to end
@@ -20,4 +26,5 @@ struct PlaneCrossing {
   bool is_reached = false;  ///< on the way of the ray
   double sigma = 0;         ///< of the leg, ray parameter
 };
+
 }  // namespace flatspeckle::grin

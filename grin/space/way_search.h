@@ -16,8 +16,8 @@ struct WayEstimate {
   double multiplicity = 0;
 };
 
-/// Ways between two points that meet the body's surface once or more (Fermat's principle). One
-/// trial (conventions, C26) draws a start direction, follows its ray, which at the surface is
+/// Ways between two points that are refracted or reflected once or more (Fermat's principle). One
+/// trial (conventions, C26) draws a start direction, follows its ray, which at surfaces is
 /// refracted or reflected at random, picks one of the points where the ray comes closest to the
 /// end, and mends the direction and the length of the last leg from there by damped Gauss-Newton
 /// steps, through the same passages. What converges is a ray of light: no other check is needed.
@@ -77,7 +77,7 @@ class WaySearch {
   };
   struct Shot {
     bool is_ray = false;  // goes through the passages
-    Part part = Part::stage;
+    Part part = around;
     RayState last = {}, end = {};  // where the last leg begins and ends
     RayTangent tangent = {};
     double chance = 1;
@@ -128,7 +128,7 @@ class WaySearch {
   template <class Offer>
   auto approaches(const Offer& offer) const {
     return [this, offer](const Passages& met, Part part, const RayState& ray) {
-      if (met.count == 0 || part != to_.part) return;
+      if (met.count == 0 || !legs_.are_alike(part, to_.part)) return;
       legs_.approach(part, ray, to_.x,
                      [&](double sigma, double square) { offer(met, sigma, square); });
     };
@@ -217,7 +217,8 @@ class WaySearch {
   }
 
   Trial judged(const Aim& aim, const Shot& shot) const {
-    if (!legs_.stays(shot.part, shot.last, aim.sigma)) return {TrialOutcome::left_region};
+    if (!legs_.are_alike(shot.part, to_.part) || !legs_.stays(shot.part, shot.last, aim.sigma))
+      return {TrialOutcome::left_region};
     if (shot.end.arc_length > options_.max_length) return {TrialOutcome::too_long};
     if (end_widths(aim, shot).narrow < on_caustic * shot.end.arc_length)
       return {TrialOutcome::degenerate};
@@ -253,7 +254,8 @@ std::optional<Join> join_by_way(const Legs& legs, const PathPoint& p, const Path
             .optical_depth = -std::log(way->chance),
             .transmittance = way->chance,
             .multiplicity = multiplicity,
-            .passes = true};
+            .passes = true,
+            .fresnel = way->chance};
   if (backwards) {  // n_p^2 / |J_pq| = n_q^2 / |J_qp|
     join.start_direction = -way->end_direction;
     join.end_direction = -way->start_direction;

@@ -33,7 +33,7 @@ KEYS = {
                       "integrator", "step", "tolerance", "connect", "trials", "path_points",
                       "length_unit", "seed", "threads"],
     "render": FIELD + SPACE_MEDIUM + ["body_" + key for key in SPACE_MEDIUM] + RUN + [
-        "stage_box", "stage_sphere", "body_box", "body_sphere", "index_around", "point_light",
+        "stage_box", "stage_sphere", "body_box", "body_sphere", "index_around", "ball", "block", "point_light",
         "beam_light", "face_light", "environment", "sensor", "sensor_at", "sensor_direction",
         "sensor_up", "sensor_size", "pixels", "field_of_view", "lens_radius", "focus_distance",
         "acceptance", "half_angle", "path_bins", "length_unit", "method", "photon_radius",

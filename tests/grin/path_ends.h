@@ -29,7 +29,7 @@ inline const Box test_box{Vec3(-1, -2, 0.5), Vec3(2, 1, 3)};
 inline const Sphere test_sphere{Vec3(0.3, -0.2, 0.1), 1.7};
 
 inline Stage empty_stage(const Surface& boundary) {
-  return {.boundary = boundary, .medium = {}, .body = {}, .excess_around = 0};
+  return {.boundary = boundary, .medium = {}, .bodies = {}, .excess_around = 0};
 }
 
 /// Where a straight ray from x, inside or on the boundary, leaves.

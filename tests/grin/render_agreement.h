@@ -15,7 +15,7 @@ inline const AreaDetector far_detector{Vec3::UnitZ(), Vec3::UnitY(), 1, 1, {2, 1
 
 inline Stage ball_in_fog(const ScatteringMedium& around, const ScatteringMedium& inside) {
   Stage stage{unit_box(), around};
-  stage.body = Body{Sphere{Vec3::Zero(), 0.7}, inside};
+  stage.bodies.push_back({Sphere{Vec3::Zero(), 0.7}, inside});
   return stage;
 }
 

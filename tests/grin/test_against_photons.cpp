@@ -1,6 +1,7 @@
 #include <cmath>
 #include <numbers>
 #include <span>
+#include <vector>
 
 #include <doctest/doctest.h>
 
@@ -42,7 +43,7 @@ TwoScenes foggy_sphere() {
                               .mu_a = 0.3,
                               .law = WalkMedium::Law::henyey_greenstein,
                               .g = 0.6},
-                   .inside = 1.3},
+                   .around = 1.3},
           .source = point_source(light),
           .power = 3,
           .sensor = area_sensor(cap, {0, 0, 1}, 1)};
@@ -57,16 +58,17 @@ TwoScenes glass_ball() {
                     .max_length = 100,
                     .stage = {.boundary = Box{{-2, -2, -2}, {2, 2, 2}},
                               .medium = {.mu_s = 0.3},
-                              .body = Body{Sphere{{0.1, 0, 0}, 1},
-                                           {.mu_s = 0.8, .mu_a = 0.1, .phase = {RayleighPhase{}}}}},
+                              .bodies = std::vector<Body>(
+                                  1, {Sphere{{0.1, 0, 0}, 1},
+                                      {.mu_s = 0.8, .mu_a = 0.1, .phase = {RayleighPhase{}}}})},
                     .lights = {BeamLight{{0, 0, -2}, {0, 0, 1}, 0.7}},
                     .sensors = {far}},
           .walk = {.boundary = {{-2, -2, -2}, {2, 2, 2}},
                    .medium = {.mu_s = 0.3},
-                   .ball = WalkBall{{0.1, 0, 0},
-                                    1,
-                                    {.mu_s = 0.8, .mu_a = 0.1, .law = WalkMedium::Law::rayleigh}},
-                   .inside = 1.5},
+                   .balls = {{{0.1, 0, 0},
+                              1,
+                              {.mu_s = 0.8, .mu_a = 0.1, .law = WalkMedium::Law::rayleigh},
+                              1.5}}},
           .source = beam_source({0, 0, -2}, {0, 0, 1}, 0.7),
           .sensor = directional_sensor(far)};
 }
@@ -80,23 +82,23 @@ TwoScenes luneburg_ball() {
                           .pixels = {3, 3},
                           .acceptance = 1.0};
   const auto n = [](const Vec3& x) { return std::sqrt(2 - x.squaredNorm()); };
-  return {
-      .scene = {.field = Luneburg({}),
-                .step = 0.1,
-                .max_length = 100,
-                .stage = {.boundary = Box{{-1.5, -1.5, -1.5}, {1.5, 1.5, 1.5}},
-                          .medium = {.mu_s = 0.1},
-                          .body = Body{Sphere{}, {.mu_s = 0.7, .phase = {HgPhase{0.5}}}}},
-                .lights = {BeamLight{{0, 0, -1.5}, {0, 0, 1}, 0.8}},
-                .sensors = {wall}},
-      .walk = {.boundary = {{-1.5, -1.5, -1.5}, {1.5, 1.5, 1.5}},
-               .medium = {.mu_s = 0.1},
-               .ball = WalkBall{Vec3::Zero(),
-                                1,
-                                {.mu_s = 0.7, .law = WalkMedium::Law::henyey_greenstein, .g = 0.5}},
-               .curved = WalkIndex{n, [=](const Vec3& x) { return Vec3(-x / n(x)); }, 0.05}},
-      .source = beam_source({0, 0, -1.5}, {0, 0, 1}, 0.8),
-      .sensor = area_sensor(wall, {0, 0, 1})};
+  return {.scene = {.field = Luneburg({}),
+                    .step = 0.1,
+                    .max_length = 100,
+                    .stage = {.boundary = Box{{-1.5, -1.5, -1.5}, {1.5, 1.5, 1.5}},
+                              .medium = {.mu_s = 0.1},
+                              .bodies = std::vector<Body>(
+                                  1, {Sphere{}, {.mu_s = 0.7, .phase = {HgPhase{0.5}}}})},
+                    .lights = {BeamLight{{0, 0, -1.5}, {0, 0, 1}, 0.8}},
+                    .sensors = {wall}},
+          .walk = {.boundary = {{-1.5, -1.5, -1.5}, {1.5, 1.5, 1.5}},
+                   .medium = {.mu_s = 0.1},
+                   .balls = {{Vec3::Zero(),
+                              1,
+                              {.mu_s = 0.7, .law = WalkMedium::Law::henyey_greenstein, .g = 0.5}}},
+                   .curved = WalkIndex{n, [=](const Vec3& x) { return Vec3(-x / n(x)); }, 0.05}},
+          .source = beam_source({0, 0, -1.5}, {0, 0, 1}, 0.8),
+          .sensor = area_sensor(wall, {0, 0, 1})};
 }
 
 /// A guide n^2 = n0^2 - alpha^2 rho^2 whose fog grows denser along it; pulses from a lit end.
@@ -257,22 +259,22 @@ const Camera small_lens{.x = {2, 0, 0},
 /// A body in a clear room, seen from its side.
 TwoScenes body_from_outside(const AnyIndexField& field, const WalkScene& walk, const Light& light,
                             const PhotonSource& source) {
-  return {.scene = {.field = field,
-                    .step = 0.1,
-                    .max_length = 100,
-                    .stage = {.boundary = Box{{-2, -2, -2}, {2, 2, 2}},
-                              .body = Body{Sphere{}, {.mu_s = 0.5, .mu_a = 0.5}}},
-                    .lights = {light},
-                    .sensors = {small_lens}},
-          .walk = walk,
-          .source = source,
-          .sensor = lens_sensor(small_lens)};
+  return {
+      .scene = {.field = field,
+                .step = 0.1,
+                .max_length = 100,
+                .stage = {.boundary = Box{{-2, -2, -2}, {2, 2, 2}},
+                          .bodies = std::vector<Body>(1, {Sphere{}, {.mu_s = 0.5, .mu_a = 0.5}})},
+                .lights = {light},
+                .sensors = {small_lens}},
+      .walk = walk,
+      .source = source,
+      .sensor = lens_sensor(small_lens)};
 }
 
 WalkScene ball_walk(double inside) {
   return {.boundary = {{-2, -2, -2}, {2, 2, 2}},
-          .ball = WalkBall{Vec3::Zero(), 1, {.mu_s = 0.5, .mu_a = 0.5}},
-          .inside = inside};
+          .balls = {{Vec3::Zero(), 1, {.mu_s = 0.5, .mu_a = 0.5}, inside}}};
 }
 
 /// The lens against photons; and the pinhole in its middle against the lens.
@@ -325,4 +327,49 @@ TEST_CASE("a Luneburg ball that scatters, seen from outside by a lens and a pinh
   check_lens_and_pinhole(
       body_from_outside(Luneburg({}), walk, beam, beam_source({0, 0, -1.9}, {0, 0, 1}, 0.8)),
       600000, 50000);
+}
+
+namespace {
+
+/// The same ball twice: for the estimators and for the oracle.
+void add_ball(TwoScenes& scenes, const Vec3& centre, double radius, double index, double mu_s,
+              double mu_a) {
+  scenes.scene.stage.bodies.push_back(
+      {Sphere{centre, radius}, {.mu_s = mu_s, .mu_a = mu_a}, index - 1});
+  scenes.walk.balls.push_back({centre, radius, {.mu_s = mu_s, .mu_a = mu_a}, index});
+}
+
+/// A ball within a ball, and one beside them.
+TwoScenes three_balls(const AnyIndexField& field, const WalkScene& walk, const Light& light,
+                      const PhotonSource& source) {
+  TwoScenes scenes = body_from_outside(field, walk, light, source);
+  add_ball(scenes, {0.2, 0.1, -0.3}, 0.5, 1.6, 2, 0.5);
+  add_ball(scenes, {1.1, 0.2, 1.1}, 0.5, 1.2, 1, 0);
+  return scenes;
+}
+
+}  // namespace
+
+TEST_CASE("a ball within a ball and one beside, seen from outside by a lens and a pinhole") {
+  check_lens_and_pinhole(
+      three_balls(Homogeneous{0.4}, ball_walk(1.4), point, point_source({0, 0, -1.5})), 6000000,
+      400000, 0.06);
+  check_lens_and_pinhole(three_balls(Homogeneous{0.4}, ball_walk(1.4), beam,
+                                     beam_source({0, 0, -1.9}, {0, 0, 1}, 0.8)),
+                         3000000, 200000, 0.06);
+}
+
+TEST_CASE("a ball of the same index as the one around it, seen from outside") {
+  TwoScenes scenes =
+      body_from_outside(Homogeneous{0.4}, ball_walk(1.4), point, point_source({0, 0, -1.5}));
+  add_ball(scenes, {0.2, 0.1, -0.3}, 0.5, 1.4, 3, 1);
+  check_lens_and_pinhole(scenes, 6000000, 400000);
+}
+
+TEST_CASE("a glass ball in a Luneburg ball, seen from outside by a lens and a pinhole") {
+  WalkScene walk = ball_walk(1);
+  const auto n = [](const Vec3& x) { return std::sqrt(2 - x.squaredNorm()); };
+  walk.curved = WalkIndex{n, [=](const Vec3& x) { return Vec3(-x / n(x)); }, 0.05};
+  check_lens_and_pinhole(three_balls(Luneburg({}), walk, point, point_source({0, 0, -1.5})),
+                         1500000, 100000, 0.1);
 }

@@ -30,12 +30,12 @@ struct BentSpace {
 std::vector<BentSpace> bent_spaces() {
   const Surface ball = Sphere{Vec3(0.1, 0, 0), 1};
   const Surface block = Box{{-0.9, -0.8, -1}, {0.7, 1, 0.9}};
-  const auto with = [&](const Surface& body) { return Stage{room, {}, Body{body, {}}, 0.1}; };
+  const auto with = [&](const Surface& body) { return Stage{room, {}, {Body{body, {}}}, 0.1}; };
   RandomStream random(5, 98, 0);
   return {{"glass ball", with(ball), Homogeneous{0.5}},
           {"bubble", with(ball), Homogeneous{-0.2}},
           {"glass block", with(block), Homogeneous{0.5}},
-          {"Luneburg ball", Stage{room, {}, Body{Sphere{}, {}}}, Luneburg({})},
+          {"Luneburg ball", Stage{room, {}, {Body{Sphere{}, {}}}}, Luneburg({})},
           {"fisheye block", with(block), Fisheye({.centre_excess = 0.6, .radius = 2})},
           {"parabolic stage", Stage{room, {}}, ParabolicGuide({.axis_excess = 0.5, .alpha = 0.3})},
           {"blobs in the stage", Stage{room, {}}, bench::random_blobs(random, 0.2)}};
@@ -164,7 +164,7 @@ void for_each_glint(double index, double rho, double z,
 
 constexpr double glass = 1.5;
 RenderScene glints(const Vec3& camera_at, double lens_radius) {
-  const Stage stage{room, {}, Body{Sphere{}, {}}};
+  const Stage stage{room, {}, {Body{Sphere{}, {}}}};
   Camera camera{camera_at, -Vec3::UnitX(), Vec3::UnitY(), 2.0, {1, 1}, lens_radius, 2};
   return scene_in(Homogeneous{glass - 1}, stage,
                   BeamLight{Vec3(0, 0, -1.9), Vec3::UnitZ(), 1.1, pi * 1.1 * 1.1}, camera);
@@ -187,7 +187,7 @@ double expected_picture(const Vec3& x) {
 }  // namespace
 
 TEST_CASE("the ways of a beam to a point behind a glass ball, by impact parameters") {
-  const Stage stage{room, {}, Body{Sphere{}, {}}};
+  const Stage stage{room, {}, {Body{Sphere{}, {}}}};
   const auto check = [&](const auto& space, std::span<const BeamSeed> seeds) {
     RandomStream random(7, 98, 0);
     ConnectionStatistics statistics;
@@ -290,7 +290,7 @@ TEST_CASE("a pinhole sees a beam that shines into it, thinned by what absorbs on
     const double film = 4 * std::tan(0.5) * std::tan(0.5) * index * index;
     RenderScene without = scene;
     without.stage.medium = {};
-    if (without.stage.body) without.stage.body->medium = {};
+    if (!without.stage.bodies.empty()) without.stage.bodies[0].medium = {};
     const Rendered clear = rendered(without, RenderMethod::bidirectional, 5e4);
     CHECK(clear.value() == doctest::Approx(irradiance / film).epsilon(1e-7));
     const double unscattered = irradiance * std::exp(-0.3 * 2) / film;
@@ -300,7 +300,7 @@ TEST_CASE("a pinhole sees a beam that shines into it, thinned by what absorbs on
   const BeamLight even{Vec3(0, 0, -1.5), Vec3::UnitZ(), 1, 2 * pi};
   const BeamLight gaussian{Vec3(0, 0, -1.5), Vec3::UnitZ(), 0.5, 2 * pi, Spread::gaussian};
   const double there = 4 / 0.25 * std::exp(-2 * (0.3 * 0.3 + 0.2 * 0.2) / 0.25);
-  const Stage ball{room, fog, Body{Sphere{Vec3(0, 0, -0.5), 0.6}, fog}, 0.2};
+  const Stage ball{room, fog, {Body{Sphere{Vec3(0, 0, -0.5), 0.6}, fog}}, 0.2};
   check(Homogeneous{}, {room, fog}, 1, even, 2);
   check(Homogeneous{0.2}, ball, 1.2, even, 2);
   check(Homogeneous{}, {room, fog}, 1, gaussian, there);

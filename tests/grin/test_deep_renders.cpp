@@ -143,7 +143,7 @@ TEST_CASE("splitting leaves pictures and the balance of power as they are") {
   RenderScene body = slab(isotropic(0.9), 8, 10, Face::transmitted);
   body.stage.boundary = Box{Vec3(-6, -6, -6), Vec3(6, 6, 6)};
   body.stage.medium.mu_s = 0.02;
-  body.stage.body = Body{Box{Vec3(-5, -5, -4), Vec3(5, 5, 5)}, isotropic(0.8)};
+  body.stage.bodies.push_back({Box{Vec3(-5, -5, -4), Vec3(5, 5, 5)}, isotropic(0.8)});
   body.lights = {BeamLight{{0, 0, -6}, {0, 0, 1}, 1}};
   body.sensors = {AreaDetector{{0, 0, 6}, Vec3::UnitY(), 10, 10, {}, pi / 2}};
   check_unchanged(body, RenderMethod::light);

@@ -31,7 +31,7 @@ Stage stage_of(const Surface& boundary, const ScatteringMedium& medium = {}) {
 }
 Stage with_body(const Surface& boundary, const Surface& body, const ScatteringMedium& around = {},
                 const ScatteringMedium& in = {}) {
-  return {.boundary = boundary, .medium = around, .body = Body{body, in}};
+  return {.boundary = boundary, .medium = around, .bodies = {Body{body, in}}};
 }
 
 /// The chance to have ended at an optical depth below tau, of flights from `from`: uniform where
@@ -309,10 +309,10 @@ TEST_CASE("what total reflection traps is lost, and what it does not trap is not
   for (const double radius : {0.5, 0.9}) {
     for (int i = 0; i < 200; ++i) {
       const Vec3 x = radius * random_direction(random), d = random_direction(random);
-      const Flight flight = space.fly({x, Part::body}, d, random);
+      const Flight flight = space.fly({x, Part{1}}, d, random);
       const double momentum = x.cross(d).norm();
       CHECK((flight.end == Flight::End::lost) == (momentum > free));
-      if (momentum < free) CHECK(flight.point.part == Part::stage);
+      if (momentum < free) CHECK(flight.point.part == around);
     }
   }
 }
@@ -343,7 +343,7 @@ TEST_CASE("a Luneburg body in a box: a beam meets at the far pole, whatever the 
       const Flight flight = space->fly({x}, Vec3::UnitZ(), random);
       REQUIRE(flight.end == Flight::End::boundary);
       CHECK(flight.crosses_body);
-      CHECK(flight.point.part == Part::stage);
+      CHECK(flight.point.part == around);
       // beyond the pole light goes straight from it
       const Vec3 from = flight.point.x - Vec3::UnitZ();
       CHECK((from.normalized() - flight.direction).norm() < (step > 0.03 ? 1e-5 : 1e-6));

@@ -84,21 +84,21 @@ TEST_CASE("the reference extinction is that of the density inside of the part") 
     density.push_back(core.distance(x) < 0.25 ? 1 : box.distance(x) < 0.25 ? 3 : 100);
   }
   const ScatteringMedium medium{2, 0, {}, std::make_shared<DensityGrid>(grid, density)};
-  const Stage stage{box, medium, Body{core, medium}};
+  const Stage stage{box, medium, {Body{core, medium}}};
   const StraightSpace<RenderPlan{.curved = false}> space(stage, 0);
   RandomStream random(2, 94, 0);
   ConnectionStatistics statistics;
   const auto depth = [&](const Vec3& p, const Vec3& q, Part part) {
     return space.join({p, part}, {q, part}, random, statistics)->optical_depth;
   };
-  CHECK(depth({0, 0, 0}, {0.5, 0, 0}, Part::body) == doctest::Approx(2 * 1 * 0.5));
-  CHECK(depth({1.5, 0, 0}, {1.5, 1, 0}, Part::stage) == doctest::Approx(2 * 3 * 1).epsilon(0.1));
+  CHECK(depth({0, 0, 0}, {0.5, 0, 0}, Part{1}) == doctest::Approx(2 * 1 * 0.5));
+  CHECK(depth({1.5, 0, 0}, {1.5, 1, 0}, around) == doctest::Approx(2 * 3 * 1).epsilon(0.1));
 }
 
 TEST_CASE("straight joins: closed form, none through a body or to another part") {
   const Stage stage{.boundary = Sphere{Vec3::Zero(), 3},
                     .medium = {.mu_s = 0.4, .mu_a = 0.1},
-                    .body = Body{ball, {.mu_a = 0.7}},
+                    .bodies = {Body{ball, {.mu_a = 0.7}}},
                     .excess_around = 0.2};
   const StraightAll space(stage, 0.5);
   RandomStream random(1, 96, 0);
@@ -120,9 +120,8 @@ TEST_CASE("straight joins: closed form, none through a body or to another part")
     CHECK(join->optical_depth == doctest::Approx(0.5 * chord.norm()));
     CHECK(join->multiplicity == 1);
     CHECK((join->start_direction - chord.normalized()).norm() < 1e-14);
-    CHECK(!space.join(p, {0.3 * q.x, Part::body}, random, statistics));
-    const auto within =
-        space.join({0.3 * p.x, Part::body}, {0.3 * q.x, Part::body}, random, statistics);
+    CHECK(!space.join(p, {0.3 * q.x, Part{1}}, random, statistics));
+    const auto within = space.join({0.3 * p.x, Part{1}}, {0.3 * q.x, Part{1}}, random, statistics);
     REQUIRE(within);
     CHECK(within->optical_path == doctest::Approx(1.5 * 0.3 * chord.norm()));
     CHECK(within->transmittance == doctest::Approx(std::exp(-0.7 * 0.3 * chord.norm())));
@@ -184,9 +183,9 @@ TEST_CASE("flights and joins agree on where light from a point collides") {
 
 TEST_CASE("flights and joins agree within a body") {
   const ScatteringMedium medium{.mu_s = 1.5};
-  const Stage stage{.boundary = Box{{-2, -2, -2}, {2, 2, 2}}, .body = Body{ball, medium}};
+  const Stage stage{.boundary = Box{{-2, -2, -2}, {2, 2, 2}}, .bodies = {Body{ball, medium}}};
   const auto space = make_curved_space(Luneburg({}), stage, {0.05, 10});
-  check_flights_against_joins(*space, {Vec3(0.4, 0.3, -0.5), Part::body}, medium, 8000);
+  check_flights_against_joins(*space, {Vec3(0.4, 0.3, -0.5), Part{1}}, medium, 8000);
   // around the body light is straight, and no solver runs
   ConnectionStatistics statistics;
   RandomStream random(5, 96, 0);

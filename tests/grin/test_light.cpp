@@ -277,7 +277,7 @@ TEST_CASE("what a fibre's sampling says is what it is towards a direction") {
 
 TEST_CASE("points and beams are not hit, beams not joined; a light may be in the body") {
   Stage stage = empty_stage(test_box);
-  stage.body = Body{Sphere{Vec3(0, 0, 1.5), 0.5}};
+  stage.bodies.push_back({Sphere{Vec3(0, 0, 1.5), 0.5}});
   const Lights lights({PointLight{Vec3(0, 0, 1.2)}, BeamLight{Vec3(0, 0, 2.5), Vec3(0, 1, 0), 0.1}},
                       stage, [](const PathPoint&) { return 1.0; });
   lights.hit(UniformSpace{}, Vec3(0, 0, 0.5), Vec3(0, 0, -1), [](const EndHit&) { CHECK(false); });
@@ -288,7 +288,7 @@ TEST_CASE("points and beams are not hit, beams not joined; a light may be in the
     seen[at.light] = true;
     CHECK(at.is_point == (at.light == 0));
     CHECK(at.is_beam == (at.light == 1));
-    CHECK(at.point.part == (at.light == 0 ? Part::body : Part::stage));
+    CHECK(at.point.part == (at.light == 0 ? Part{1} : around));
     const EndDirection to = lights.sample_direction(at, random);
     if (!at.is_beam) continue;
     CHECK((to.direction - Vec3(0, 1, 0)).norm() < 1e-15);

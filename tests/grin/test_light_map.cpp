@@ -54,8 +54,8 @@ void check_cells(const Estimate& found, const std::vector<double>& expected) {
 /// Of the field at one phase of sound.
 double square_index(const RenderScene& scene, const Vec3& x, double phase) {
   const Stage& stage = scene.stage;
-  if (stage.body && distance(stage.body->surface, x) > 0)
-    return std::pow(1 + stage.excess_around, 2);
+  if (const Part part = Regions(stage).at(x); part != stage.field_part())
+    return std::pow(1 + stage.excess_in(part), 2);
   return std::visit(
       [&]<class F>(const F& field) {
         if constexpr (std::same_as<F, StandingWave>)
@@ -119,7 +119,9 @@ TEST_CASE("fluence around a point light is that of transport theory") {
 TEST_CASE("a map alone books the power of light; what it finds absorbed is all of that") {
   const ScatteringMedium medium = fog(1, 0.4, 0.7);
   RenderScene scene = lamp_in(unit_box(), medium);
-  scene.stage.body = Body{Sphere{Vec3(0.2, 0, 0.3), 0.4}, fog(0, 2, 0)};
+  scene.stage.bodies.push_back({Sphere{Vec3(0.2, 0, 0.3), 0.4}, fog(0, 2, 0)});
+  scene.stage.bodies.push_back({Sphere{Vec3(0.3, 0, 0.3), 0.2}, fog(1, 3, 0), 0.2});
+  scene.stage.bodies.push_back({Box{{-0.9, -0.9, -0.9}, {-0.3, 0.5, 0.5}}, fog(2, 0.5, 0), 0.1});
   scene.field = Homogeneous{0.4};
   const BoxCells cells(std::get<Box>(unit_box()), {5, 4, 3});
   const Mapped found = mapped(scene, cells, 20000);
@@ -135,6 +137,10 @@ TEST_CASE("a map alone books the power of light; what it finds absorbed is all o
   CHECK(share(Fate::emitted) == doctest::Approx(1).epsilon(1e-12));
   CHECK(share(Fate::absorbed_body) > 0.05);
   CHECK(share(Fate::scattered) > 0.05);
+  double all = 0;
+  for (std::size_t fate = 1; fate < EnergyBalance::size; ++fate)
+    all += found.energy.value[fate].real();
+  CHECK(all == doctest::Approx(1).epsilon(1e-12));
   CHECK(std::abs(power - booked) < 4 * std::sqrt(variance));
   CHECK(std::sqrt(variance) < 0.03);
 }
@@ -172,6 +178,12 @@ TEST_CASE("fluence in the white furnace is that of the index, in every field") {
     CAPTURE(named.name);
     const bool is_sound = named.scene.random_phase;
     const Estimate found = mapped(named.scene, cells, is_sound ? 40000 : 10000).fluence;
+    CHECK(largest_error(found) < 0.1);
+    check_cells(found, mean_square_index(named.scene, cells));
+  }
+  for (const NamedRender& named : furnaces_of_bodies(fog(0.6, 0, 0.5))) {
+    CAPTURE(named.name);
+    const Estimate found = mapped(named.scene, cells, 20000).fluence;
     CHECK(largest_error(found) < 0.1);
     check_cells(found, mean_square_index(named.scene, cells));
   }

@@ -45,7 +45,7 @@ void check_same(const Both& a, const Both& b, double tolerance) {
 }  // namespace
 
 TEST_CASE("rays of a Luneburg ball go where small steps lead, their neighbours too") {
-  const auto rays = make_ray_field(lens, &rim);
+  const auto rays = make_ray_field(lens, {&rim, 1});
   RandomStream random(3, 1, 0);
   for (int i = 0; i < 100; ++i) {
     Both start{
@@ -83,7 +83,7 @@ TEST_CASE("rays of a Luneburg ball end on its rim or a sphere within, where n^2 
 }
 
 TEST_CASE("the one way between two points of a Luneburg ball, as the solver of curves has it") {
-  const auto closed = make_ray_field(lens, &rim);
+  const auto closed = make_ray_field(lens, {&rim, 1});
   const double inside = 1;
   ConnectionStatistics statistics;
   RandomStream random(5, 1, 0);
@@ -112,7 +112,7 @@ TEST_CASE("the one way between two points of a Luneburg ball, as the solver of c
 }
 
 TEST_CASE("points on one another have no way between them") {
-  const auto closed = make_ray_field(lens, &rim);
+  const auto closed = make_ray_field(lens, {&rim, 1});
   const double inside = 1;
   ConnectionStatistics statistics;
   RandomStream random(6, 1, 0);

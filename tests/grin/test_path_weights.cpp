@@ -41,6 +41,7 @@ Flight as_flight(const Join& join, const PathPoint& to) {
   flight.spreading = join.spreading;
   flight.optical_depth = join.optical_depth;
   if (join.passes) flight.passages.add(false);
+  flight.fresnel = join.fresnel;
   return flight;
 }
 
@@ -129,8 +130,8 @@ std::optional<double> weight_of(const Transport& transport, const WholePath& pat
   const EndPosition chosen = path.chosen_sensor(transport);
   const PathVertex z = s == all - 1 ? end_vertex(transport.strategies, chosen)
                                     : sensor_subpath(transport, path, all - s);
-  const JoiningCurve curve{edge.start_direction, edge.direction, edge.spreading, edge.optical_depth,
-                           edge.passages.count > 0};
+  const JoiningCurve curve{edge.start_direction, edge.direction,          edge.spreading,
+                           edge.optical_depth,   edge.passages.count > 0, edge.fresnel};
   return joined_path(allowed, y, leaving(transport, transport.lights, y, curve.start_direction), z,
                      leaving(transport, transport.sensors[0], z, -curve.end_direction), curve)
       .weight;
@@ -278,7 +279,7 @@ int joined_through(const WholePath& path) {
 
 TEST_CASE("weights sum to 1 on paths through a body that refracts nothing") {
   Stage stage = foggy_ball();
-  stage.body = Body{Sphere{Vec3(0.1, 0, 0), 0.8}, {2.5, 0, {}}};
+  stage.bodies.push_back({Sphere{Vec3(0.1, 0, 0), 0.8}, {2.5, 0, {}}});
   const auto space = make_curved_space(Homogeneous{}, stage, {0.02, 20});
   RandomStream random(5, 91, 0);
   int paths = 0, through = 0;
@@ -309,7 +310,7 @@ TEST_CASE("weights sum to 1 on paths through a body that refracts nothing") {
 
 TEST_CASE("weights sum to 1 on paths that cross a body, and of beams") {
   Stage stage = foggy_ball();
-  stage.body = Body{Sphere{Vec3(0.1, 0, 0), 0.8}, {2.5, 0, {}}};
+  stage.bodies.push_back({Sphere{Vec3(0.1, 0, 0), 0.8}, {2.5, 0, {}}});
   const auto space =
       make_curved_space(Fisheye({.centre_excess = 0.7, .radius = 1.5}), stage, {0.02, 20});
   const Light beam = BeamLight{Vec3(0, 0, -1.4), Vec3::UnitZ(), 0.07, 1, Spread::gaussian};

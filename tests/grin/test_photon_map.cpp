@@ -145,8 +145,8 @@ TEST_CASE("photons of another part are not counted") {
   // none of which leaves, must not show.
   const auto scene_of = [](double mu_s_of_ball) {
     RenderScene scene = furnace(Homogeneous{}, {.mu_s = 0.5});
-    scene.stage.body =
-        Body{Sphere{{0, 0, 0.5}, 0.3}, {.mu_s = mu_s_of_ball, .mu_a = 1000 - mu_s_of_ball}};
+    scene.stage.bodies = {
+        {Sphere{{0, 0, 0.5}, 0.3}, {.mu_s = mu_s_of_ball, .mu_a = 1000 - mu_s_of_ball}}};
     return scene;
   };
   const RenderRequest request{RenderMethod::photon_map, 0, 0.2};
@@ -173,7 +173,7 @@ RenderScene beam_in_fog(bool ball) {
     body.surface = Sphere{};
     body.medium.mu_s = 0.5;
     scene.field = Luneburg({});
-    scene.stage.body = body;
+    scene.stage.bodies = {body};
   }
   scene.lights = {BeamLight{{0, 0, -2}, {0, 0, 1}, 0.3}};
   // a patch of the side wall, for light that is nearly normal to it, sees the beam; what leaves the

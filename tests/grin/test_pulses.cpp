@@ -55,7 +55,7 @@ void check_ballistic(RenderScene scene, double path, double tolerance,
 Stage stage(const Surface& boundary, const std::optional<Body>& body = {}) {
   Stage result;
   result.boundary = boundary;
-  result.body = body;
+  if (body) result.bodies = {*body};
   return result;
 }
 

@@ -136,7 +136,7 @@ TEST_CASE("what a plan leaves out changes no bit of a picture") {
   const RenderScene least = scene_in(Homogeneous{0.2}, {unit_box(), fog(1, 0, 0.5)}, point, camera);
   RenderScene more = least;
   // a body that light hardly ever meets
-  more.stage.body = Body{Sphere{Vec3(-0.999, -0.999, -0.999), 1e-4}, {}};
+  more.stage.bodies.push_back({Sphere{Vec3(-0.999, -0.999, -0.999), 1e-4}, {}});
   more.stage.excess_around = 0.2;
   more.field = Homogeneous{0.2};
   CHECK(render_job(least, {}, 1).plan.find("single medium") != std::string::npos);

@@ -41,4 +41,13 @@ TEST_CASE("light stays uniform where it scatters, in every field and by every es
   }
 }
 
+TEST_CASE("light stays uniform where bodies lie in each other, side by side, and touch") {
+  for (const ScatteringMedium& medium : {ScatteringMedium(), fog(1, 0, 0.85)})
+    for (const NamedRender& named : furnaces_of_bodies(medium)) {
+      CAPTURE(named.name);
+      for (const RenderMethod method : unbiased_methods)
+        CHECK(check_furnace_face(named.scene, method, 10000) < 0.1);
+    }
+}
+
 }  // namespace flatspeckle::grin::tests

@@ -99,11 +99,11 @@ TEST_CASE("phase functions integrate to 1, and their mean cosine is g") {
 
 TEST_CASE("scattered directions follow the phase function in angle and azimuth") {
   std::uint64_t seed = 0;
-  constexpr int polar = 25, around = 8, samples = 200000;
+  constexpr int polar = 25, azimuths = 8, samples = 200000;
   for (const SpacePhaseFunction& phase : phases) {
     const Vec3 axis = axes[seed % std::size(axes)];
     const Frame across = frame_across(axis);
-    std::vector<double> edges, counts(polar * around), probabilities;
+    std::vector<double> edges, counts(polar * azimuths), probabilities;
     for (int i = 0; i <= polar; ++i)
       edges.push_back(angle_at(1.0 * i / polar, phase.mean_cosine()));
     RandomStream random(++seed, 81, 0);
@@ -115,13 +115,13 @@ TEST_CASE("scattered directions follow the phase function in angle and azimuth")
       const auto bin =
           std::upper_bound(edges.begin() + 1, edges.end() - 1, angle) - edges.begin() - 1;
       const double turn = (std::atan2(part[1], part[0]) / pi + 1) / 2;
-      ++counts[bin * around + std::min(around - 1, static_cast<int>(turn * around))];
+      ++counts[bin * azimuths + std::min(azimuths - 1, static_cast<int>(turn * azimuths))];
     }
     const auto ring = [&](double t) { return 2 * pi * phase.density(std::cos(t)) * std::sin(t); };
     for (int i = 0; i < polar; ++i)
-      for (int k = 0; k < around; ++k)
+      for (int k = 0; k < azimuths; ++k)
         probabilities.push_back(flatspeckle::tests::integral(ring, edges[i], edges[i + 1]) /
-                                around);
+                                azimuths);
     flatspeckle::tests::check_chi_square(counts, probabilities);
   }
 }
@@ -239,17 +239,17 @@ TEST_CASE("stages refuse what cannot be") {
       CHECK(std::string(error.what()).find(word) != std::string::npos);
     }
   };
-  const Stage good{.boundary = Box{{-1, -1, -1}, {1, 1, 1}}, .body = Body{Sphere{}}};
+  const Stage good{.boundary = Box{{-1, -1, -1}, {1, 1, 1}}, .bodies = {Body{Sphere{}}}};
   check(good);
   Stage bad = good;
   bad.boundary = Plane{{0, 0, 1}, Vec3::UnitZ()};
   refuses(bad, "closed");
   bad = good;
-  bad.body->surface = Sphere{{0.1, 0, 0}, 1};
+  bad.bodies[0].surface = Sphere{{0.1, 0, 0}, 1};
   refuses(bad, "inside of the stage");
   bad = good;
   bad.boundary = Sphere{Vec3::Zero(), 1.7};
-  bad.body->surface = Box{{-1, -1, -1}, {1, 1, 1}};
+  bad.bodies[0].surface = Box{{-1, -1, -1}, {1, 1, 1}};
   refuses(bad, "inside of the stage");
 }
 

@@ -282,10 +282,19 @@ TEST_CASE("stages of values: bodies, silence and steps") {
   values.stage.index_around = 1.2;
   values.stage.body_medium.mu_s = 3;
   const RenderScene ball = make_render_scene(values);
-  REQUIRE(ball.stage.body);
-  CHECK(ball.stage.body->medium.mu_s == 3);
+  REQUIRE(ball.stage.bodies.size() == 1);
+  CHECK(ball.stage.bodies[0].medium.mu_s == 3);
   CHECK(ball.stage.excess_around == doctest::Approx(0.2));
   CHECK(ball.step == doctest::Approx(0.14));  // chosen
+  values.stage.plain_bodies.ball = {0, 0, 2, 0.2, 1.5, 3, 1, 0.5, 0, 0, 3, 0.4, 1.1, 0, 0, 0};
+  values.stage.plain_bodies.block = {-0.9, -0.9, 1.1, 0.9, 0.9, 2.9, 1.3, 0, 2, 0};
+  const Stage nested = make_render_scene(values).stage;  // from the largest to the smallest
+  REQUIRE(nested.parts() == 5);
+  CHECK(nested.field_part() == 2);
+  CHECK(nested.excess_in(1) == doctest::Approx(0.3));
+  CHECK(nested.excess_in(3) == doctest::Approx(0.1));
+  CHECK(nested.medium_in(4).mu_s == 3);
+  CHECK(Regions(nested).at({0, 0, 2}) == 4);
   values = render_values();
   UltrasoundValues sound;
   sound.index = 1.33;
@@ -308,6 +317,21 @@ TEST_CASE("pictures that cannot be are refused by their keys") {
   refused([](auto& v) { v.stage.body_sphere = {0, 0, 2, 1.5}; }, "inside of the stage");
   refused([](auto& v) { v.stage.index_around = 1.3; }, "index_around = 1.3: is a key of a body");
   refused([](auto& v) { v.stage.body_medium.mu_s = 1; }, "body_mu_s = 1: is a key of a body");
+  using Numbers = std::vector<double>;
+  const auto refused_ball = [&](const Numbers& ball, const std::string& words) {
+    refused([&](auto& v) { v.stage.plain_bodies.ball = ball; }, words);
+  };
+  refused_ball({0, 0, 2, 0.5, 1.4, 1, 0}, "must be 8 numbers for each");
+  refused_ball({0, 0, 2, 1.5, 1.4, 1, 0, 0}, "must be inside of the stage");
+  refused_ball({0, 0, 2, 0, 1.4, 1, 0, 0}, "ball, radius = 0: must be positive");
+  refused_ball({0, 0, 2, 0.5, 0, 1, 0, 0}, "ball, index = 0: must be positive");
+  refused_ball({0, 0, 2, 0.5, 1.4, -1, 0, 0}, "ball, mu_s = -1: must not be negative");
+  refused_ball({0, 0, 2, 0.5, 1.4, 1, -1, 0}, "ball, mu_a = -1: must not be negative");
+  refused_ball({0, 0, 2, 0.5, 1.4, 1, 0, 1}, "ball, g = 1: must be between -1 and 1");
+  refused([](auto& v) { v.stage.plain_bodies.block = {0, 0, 2, 0.5, 0.5, 1, 1.4, 1, 0, 0}; },
+          "must have its low corner first");
+  refused([](auto& v) { v.stage.plain_bodies.ball = {0, 0, 2, 0.5, 1.4, 1e7, 0, 0}; },
+          "ball, mu_s = 1e+07: is too dense");
   refused([](auto& v) { v.stage.medium.mu_s = -1; }, "mu_s = -1: must not be negative");
   refused([](RenderValues& v) { v.stage.medium.of<HgPhase>().g = 0.5; },
           "g = 0.5: is a key of henyey_greenstein");

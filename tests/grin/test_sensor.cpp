@@ -189,7 +189,7 @@ TEST_CASE("even strata give every pixel the same number of paths") {
 
 TEST_CASE("where the body reaches through the boundary, hits and positions are in the body") {
   Stage stage = empty_stage(test_box);
-  stage.body = Body{Box{Vec3(-0.5, -0.5, 0), Vec3(0.5, 0.5, 4)}};
+  stage.bodies.push_back({Box{Vec3(-0.5, -0.5, 0), Vec3(0.5, 0.5, 4)}});
   const SensorEnd end(directional(0.5), stage);
   int inside = 0;
   RandomStream random(1, 98, 0);
@@ -197,7 +197,7 @@ TEST_CASE("where the body reaches through the boundary, hits and positions are i
     const EndPosition at = end.sample_position(UniformSpace{}, random);
     const Vec3 x = at.point.x;
     const bool in_body = std::max(std::abs(x.x()), std::abs(x.y())) < 0.5;
-    CHECK(at.point.part == (in_body ? Part::body : Part::stage));
+    CHECK(at.point.part == (in_body ? Part{1} : around));
     inside += in_body;
   }
   CHECK(inside > 10);
@@ -207,7 +207,7 @@ TEST_CASE("sensors that cannot be are refused by the keys of the scene") {
   const double nan = std::nan("");
   const Stage box = empty_stage(test_box), sphere = empty_stage(test_sphere);
   Stage filled = box;
-  filled.body = Body{Sphere{Vec3(0.4, -0.6, 1.4), 0.2}};
+  filled.bodies.push_back({Sphere{Vec3(0.4, -0.6, 1.4), 0.2}});
   const auto refused = [](const Stage& stage, const Sensor& sensor, const std::string& words) {
     const std::string line = complaint(stage, sensor);
     CAPTURE(line);

@@ -25,7 +25,7 @@ template <IndexField F, class Exact>
 Errors end_errors(const F& field, const Surface& region, double step, double sigma,
                   const Exact& exact, bool leapfrogs = false) {
   constexpr int rays = 400;
-  const auto steps = make_ray_field(field, nullptr, leapfrogs);
+  const auto steps = make_ray_field(field, {}, leapfrogs);
   const Box box = bounds(region);
   RandomStream random(5, 0, 0);
   Errors errors;

@@ -102,7 +102,7 @@ TEST_CASE("slabs in space: spheres") {
   CHECK_THROWS_WITH_AS(tests::in_space(spec, tilted_pairs(0.2, 0, momenta)),
                        doctest::Contains("1e-6 to 500"), InputError);
   spec.radius = 1;
-  spec.index = "1";
+  spec.index = std::string("1");
   CHECK_THROWS_WITH_AS(tests::in_space(spec, tilted_pairs(0.2, 0, momenta)),
                        doctest::Contains("do not scatter"), InputError);
 }
