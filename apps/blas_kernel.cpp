@@ -2,9 +2,9 @@
 
 #include <cstdlib>
 #include <string_view>
-#include <sys/resource.h>
 #include <unistd.h>
 
+#include "core/numbers/address_space.h"
 #include "core/numbers/blas.h"
 
 namespace flatspeckle::apps {
@@ -22,11 +22,6 @@ const char* better_kernel() {
   if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return "Haswell";
 #endif
   return nullptr;
-}
-
-bool address_space_is_limited() {
-  rlimit limit{};
-  return getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY;
 }
 
 /// Whether it changed: not where the variable is set already, or to nullptr.

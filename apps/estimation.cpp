@@ -138,7 +138,6 @@ Estimation transport_estimation(const Scene& scene, mc::ReversedPaths reversed, 
 }
 
 Estimation wave_estimation(const Scene& scene, double tolerance, std::uint64_t seed) {
-  blas_single_thread();  // says now what it lacks
   std::ostringstream plan;
   plan << "wave: dense T-matrix solutions of " << placement_word(scene.placement.kind)
        << " placements, tolerance " << tolerance << "; sample mean removed";

@@ -98,11 +98,11 @@ void check_memory(const Scene& scene, const mc::FieldDemand& demand) {
   constexpr double sums = 100;  // per channel, held beside the fields
   const auto channels = static_cast<double>(scene.request.channels.size());
   const double bytes = sizeof(Complex) * channels * (static_cast<double>(demand.fields) + sums);
-  const double memory = physical_memory();
+  const double memory = usable_memory();
   if (bytes > 0.8 * memory)
     throw InputError("fields", demand.fields,
                      std::to_string(scene.request.channels.size()) + " channels need " +
-                         std::to_string(bytes / 1e9) + " GB, this machine has " +
+                         std::to_string(bytes / 1e9) + " GB, there are " +
                          std::to_string(memory / 1e9));
   if (demand.method != mc::FieldMethod::covariance) return;
   full_request(scene.request.lights, scene.request.views);  // throws where that does not fit

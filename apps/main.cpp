@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <iostream>
 #include <new>
+#include <system_error>
 #include <thread>
 
 #include "apps/blas_kernel.h"
@@ -94,6 +95,10 @@ int main(int argc, char** argv) {
     return fail(error.what(), ExitStatus::io_failed);
   } catch (const std::bad_alloc&) {
     return fail("this scene needs more memory than there is", ExitStatus::bad_input);
+  } catch (const std::system_error& error) {
+    if (error.code() != std::errc::resource_unavailable_try_again) return fail(error.what(), 1);
+    return fail("no thread can be started, for which memory may be too little",
+                ExitStatus::bad_input);
   } catch (const std::exception& error) {
     return fail(error.what(), 1);
   }

@@ -8,6 +8,7 @@
 #include "apps/subcommands.h"
 #include "core/error.h"
 #include "core/keys/csv.h"
+#include "core/numbers/blas.h"
 #include "core/result/result_group.h"
 #include "core/run/interrupt.h"
 #include "core/session/session.h"
@@ -153,6 +154,7 @@ int solve(const Arguments& arguments) {
   const Placement placement = scene ? drawn_placement(spec, *scene, session.seed())
                                     : placement_of_file(keys, spec, values.run);
   if (!command.settle()) return ExitStatus::done;
+  blas_single_thread();  // says now what it lacks
   const auto solution = solved(values, placement, grid, sensors.points);
   if (grid) catch_interrupts();  // which must not leave the file that a map is written to
   ResultFile result(session.out(), grid ? ResultFile::Storage::disk : ResultFile::Storage::memory);

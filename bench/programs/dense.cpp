@@ -57,7 +57,7 @@ Placement draw(const Case& scene, std::size_t count, std::uint64_t number) {
   return draw_placement({Domain::Kind::box, side, side}, scene.scatterer, rule, random);
 }
 
-double lu_seconds(std::vector<Complex> matrix, std::size_t unknowns) {
+double lu_seconds(Entries matrix, std::size_t unknowns) {
   const auto n = static_cast<lapack_int>(unknowns);
   std::vector<lapack_int> pivots(unknowns);
   const Stopwatch clock;

@@ -304,7 +304,7 @@ void add_refusals(ExtremeRows& rows) {
   });
   refuse(rows, "light along a slab from below, 3 pi / 4", "light enters a slab at z = 0", hg(0, 1),
          [](auto& s) { s.light_angles = {3 * pi / 4}; });
-  refuse(rows, "full covariance of 1e6 channels", "GB, this machine has", box(), [](auto& s) {
+  refuse(rows, "full covariance of 1e6 channels", "GB, there are", box(), [](auto& s) {
     s.count = 1;
     s.covariance = "full";
     s.view_angles.clear();

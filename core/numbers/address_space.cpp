@@ -1,11 +1,43 @@
 #include "core/numbers/address_space.h"
 
+#include <algorithm>
+#include <atomic>
+#include <fstream>
+#include <limits>
 #include <string>
 #include <sys/mman.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include "core/error.h"
 
 namespace flatspeckle {
+
+namespace {
+
+// They stay.
+void start_threads(int threads) {
+  std::atomic<int> started = 0;
+#pragma omp parallel num_threads(threads)
+  ++started;
+}
+
+}  // namespace
+
+bool address_space_is_limited() {
+  rlimit limit{};
+  return getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY;
+}
+
+double address_space_left() {
+  if (!address_space_is_limited()) return std::numeric_limits<double>::infinity();
+  rlimit limit{};
+  getrlimit(RLIMIT_AS, &limit);
+  double pages = 0;
+  std::ifstream("/proc/self/statm") >> pages;
+  return std::max(0.0, static_cast<double>(limit.rlim_cur) -
+                           pages * static_cast<double>(sysconf(_SC_PAGESIZE)));
+}
 
 bool address_space_holds(std::size_t bytes) {
   void* const mapped =
@@ -20,6 +52,7 @@ void require_address_space_of_threads(int threads) {
   if (!address_space_holds(rest + static_cast<std::size_t>(threads) * of_thread))
     throw InputError("threads: ulimit -v does not leave 10 MiB of address space for each of " +
                      std::to_string(threads) + " threads and 32 MiB; fewer need less");
+  if (address_space_is_limited()) start_threads(threads);
 }
 
 }  // namespace flatspeckle

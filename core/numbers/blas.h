@@ -2,6 +2,7 @@
 
 // The system's BLAS and LAPACK, with C++ complex numbers.
 
+#include <algorithm>
 #include <complex>
 #include <cstddef>
 #include <vector>
@@ -21,9 +22,10 @@ std::size_t threads_of_blas();
 extern "C" void* blas_memory_alloc(int);
 extern "C" void blas_memory_free(void*);
 
-/// OpenBLAS keeps the buffers that it has mapped.
+/// OpenBLAS keeps the buffers that it has mapped. It complains of more than it was made for.
 inline void map_blas_buffers(std::size_t count) {
-  std::vector<void*> buffers(count);
+  constexpr std::size_t most = 128;
+  std::vector<void*> buffers(std::min(count, most));
   for (void*& buffer : buffers) buffer = blas_memory_alloc(0);
   for (void* buffer : buffers) blas_memory_free(buffer);
 }

@@ -164,7 +164,8 @@ void require_outside(const Placement& placement, Vec2 sensor) {
 void check_no_overlap(const Placement& placement) {
   double largest = 0;
   for (const auto& placed : placement) largest = std::max(largest, placed.scatterer.disk_radius());
-  CellGrid grid(largest > 0 ? 2 * largest : 1);
+  constexpr double tiny = 1e-6;  // points meet only where they are equal
+  CellGrid grid(largest > 0 ? 2 * largest : tiny);
   for (std::size_t j = 0; j < placement.size(); ++j) {
     const PlacedScatterer& here = placement[j];
     grid.any_near(here.position, [&, j](Vec2 other, std::size_t l) {

@@ -172,11 +172,11 @@ CovarianceRequest full_request(Lights lights, std::vector<View> views) {
   const std::size_t n = request.channels.size(), entries = n * (n + 1) / 2;
   // About twenty copies of the sums are held: the groups and the batches in hand.
   const double bytes = 20.0 * sizeof(Complex) * static_cast<double>(entries);
-  const double memory = physical_memory();
+  const double memory = usable_memory();
   if (bytes > 0.8 * memory) {
     throw InputError("covariance", "full",
                      std::to_string(n) + " channels need " + std::to_string(bytes / 1e9) +
-                         " GB, this machine has " + std::to_string(memory / 1e9));
+                         " GB, there are " + std::to_string(memory / 1e9));
   }
   request.entries.reserve(entries);
   for (std::size_t a = 0; a < n; ++a)

@@ -16,7 +16,7 @@ void check_memory(const TraceValues& values) {
   constexpr double ray = 600, point = 2 * sizeof(Vec3);
   const double points = static_cast<double>(values.path_points);
   const double bytes = static_cast<double>(values.starts.ray_count) * (ray + point * points);
-  const double memory = physical_memory();
+  const double memory = usable_memory();
   if (bytes > 0.8 * memory)
     throw InputError("ray_count", values.starts.ray_count,
                      "with path_points = " + std::to_string(values.path_points) + " needs " +

@@ -64,7 +64,7 @@ std::uint64_t rounded_up(double number, double least) {
 
 /// About twenty copies of the sums are held while they are estimated, as full_request has it.
 bool covariance_fits(double channels) {
-  return 10.0 * sizeof(Complex) * channels * channels < 0.8 * physical_memory();
+  return 10.0 * sizeof(Complex) * channels * channels < 0.8 * usable_memory();
 }
 
 /// In complex multiply-adds of a plain loop: of a path's step, that of walking it and of each end

@@ -3,9 +3,9 @@
 #include <doctest/doctest.h>
 
 #include "core/error.h"
-#include "grin/fields/fisheye.h"
 #include "grin/fields/gaussian_blobs.h"
 #include "grin/fields/linear_ramp.h"
+#include "grin/fields/fisheye.h"
 #include "grin/fields/parabolic.h"
 #include "grin/fields/sech.h"
 #include "grin/fields/tanh_ramp.h"

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/error.h"
 #include "core/numbers/random.h"
 #include "multipole_oracle.h"
 #include "wave_solver/maps/field_map.h"
@@ -29,11 +30,7 @@ Scatterer random_disk(double size, RandomStream& random) {
   return disk;
 }
 
-/// Of the smaller radius. Beside soft and hard disks that nearly touch them, disks take thousands
-/// of orders each to be resolved up to their rims.
-double least_gap(const Scatterer& a, const Scatterer& b) {
-  return a.is_penetrable() && b.is_penetrable() ? 1e-4 : 0.03;
-}
+constexpr double least_gap = 1e-4;  // of the smaller radius
 
 /// Each disk is close to one before it, up to the smaller radius.
 Placement random_cluster(int number, int most_disks) {
@@ -46,23 +43,41 @@ Placement random_cluster(int number, int most_disks) {
     const auto& by = placement[static_cast<std::size_t>(random.uniform() *
                                                         static_cast<double>(placement.size()))];
     const double smaller = std::min(disk.radius, by.scatterer.radius);
-    const double away = disk.radius + by.scatterer.radius +
-                        between(random, least_gap(disk, by.scatterer), 1) * smaller;
+    const double away = disk.radius + by.scatterer.radius + between(random, least_gap, 1) * smaller;
     const Vec2 at = by.position + away * direction(two_pi * random.uniform());
     const bool is_free = std::all_of(placement.begin(), placement.end(), [&](const auto& other) {
       const double gap = length(at - other.position) - disk.radius - other.scatterer.radius;
-      return gap > 0.99 * least_gap(disk, other.scatterer) *
-                       std::min(disk.radius, other.scatterer.radius);
+      return gap > 0.99 * least_gap * std::min(disk.radius, other.scatterer.radius);
     });
     if (is_free) placement.push_back({at, disk});
   }
   return placement;
 }
 
+/// Of a map that holds all disks.
+std::vector<Vec2> sensors(const Placement& placement) {
+  return map_sensors({{-50, -50}, {50, 50}, 1, 1}, placement);
+}
+
 WaveSolution solved(const Placement& placement, double tolerance) {
-  SolveOptions options{.tolerance = tolerance, .sensors = {}, .diagnose = false};
-  options.sensors = map_sensors({{-50, -50}, {50, 50}, 1, 1}, placement);
-  return solve(placement, two_pi, {light}, options);
+  return solve(placement, two_pi, {light},
+               {.tolerance = tolerance, .sensors = sensors(placement), .diagnose = false});
+}
+
+/// Whether the finest solution is affordable; some disks are too close to be solved at all.
+bool is_small(const Placement& placement, std::size_t most_unknowns) {
+  try {
+    return TMatrixSystem(placement, two_pi, 1e-12, sensors(placement)).unknowns() <= most_unknowns;
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
+/// Of a solution of orders that surely suffice.
+MultipoleOracle oracle_of(const WaveSolution& solution) {
+  std::vector<int> orders = solution.basis_order();
+  for (int& order : orders) order += order / 4 + 4;
+  return {solution.system().placement(), two_pi, solution.light_angles()[0], orders};
 }
 
 Complex inside(const WaveSolution& solution, std::size_t disk, Vec2 point) {
@@ -115,17 +130,39 @@ WorstError error_of(const WaveSolution& solution, const MultipoleOracle& oracle,
 
 }  // namespace
 
-std::vector<WorstError> worst_errors(int first, int clusters, int most_disks,
+std::vector<WorstError> worst_errors(int first, int clusters, const ClusterSize& most,
                                      const std::vector<double>& tolerances) {
   std::vector<WorstError> worst(tolerances.size());
-  for (int number = first; number < first + clusters; ++number) {
-    const Placement placement = random_cluster(number, most_disks);
-    std::vector<int> orders = solved(placement, 1e-12).basis_order();
-    for (int& order : orders) order += order / 4 + 4;
-    const MultipoleOracle oracle(placement, two_pi, light, orders);
+  for (int number = first; clusters > 0; ++number) {
+    const Placement placement = random_cluster(number, most.disks);
+    if (!is_small(placement, most.unknowns)) continue;
+    --clusters;
+    const MultipoleOracle oracle = oracle_of(solved(placement, 1e-12));
     const auto points = rim_points(placement);
     for (std::size_t i = 0; i < tolerances.size(); ++i)
       worst[i].add(error_of(solved(placement, tolerances[i]), oracle, points), tolerances[i]);
+  }
+  return worst;
+}
+
+double worst_on_map(const Placement& placement, double angle, const MapGrid& grid, double tolerance,
+                    std::size_t stride) {
+  SolveOptions options{.tolerance = tolerance, .sensors = {}, .diagnose = false};
+  options.sensors = map_sensors(grid, placement);
+  const auto solution = solve(placement, two_pi, {angle}, options);
+  const MultipoleOracle oracle = oracle_of(solution);
+  const MapTile all{0, 0, grid.nx, grid.nz};
+  const auto field = FieldMap(solution, grid, tolerance).field(all);
+  double worst = 0;
+  for (std::size_t pixel = 0; pixel < all.pixels(); pixel += stride) {
+    const Vec2 point = grid.pixel(pixel % grid.nx, pixel / grid.nx);
+    const auto around = std::find_if(placement.begin(), placement.end(), [&](const auto& placed) {
+      return length(point - placed.position) < placed.scatterer.radius;
+    });
+    const auto disk = static_cast<std::size_t>(around - placement.begin());
+    const Complex exact =
+        around == placement.end() ? oracle.outside(point) : oracle.inside(disk, point);
+    worst = std::max(worst, std::abs(field[pixel] - exact));
   }
   return worst;
 }

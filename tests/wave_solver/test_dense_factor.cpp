@@ -5,6 +5,7 @@
 
 #include "core/numbers/random.h"
 #include "reference.h"
+#include "wave_solver/dense/combinations.h"
 #include "wave_solver/dense/dense_factor.h"
 #include "wave_solver/dense/symmetric_factor.h"
 #include "wave_solver/equations/t_matrix_system.h"
@@ -30,8 +31,7 @@ std::vector<Complex> random_columns(std::size_t size) {
   return values;
 }
 
-std::vector<Complex> product(const std::vector<Complex>& matrix, const std::vector<Complex>& x,
-                             std::size_t n) {
+std::vector<Complex> product(const Entries& matrix, const std::vector<Complex>& x, std::size_t n) {
   std::vector<Complex> y(x.size());
   for (std::size_t column = 0; column < x.size() / n; ++column)
     for (std::size_t j = 0; j < n; ++j)
@@ -41,8 +41,8 @@ std::vector<Complex> product(const std::vector<Complex>& matrix, const std::vect
 }
 
 // Relative to b; what a stable method leaves is the condition number larger at most.
-double residual(const std::vector<Complex>& matrix, const std::vector<Complex>& x,
-                const std::vector<Complex>& b, std::size_t n) {
+double residual(const Entries& matrix, const std::vector<Complex>& x, const std::vector<Complex>& b,
+                std::size_t n) {
   return relative_distance(product(matrix, x, n), b);
 }
 
@@ -91,13 +91,35 @@ TEST_CASE("A pivot that is small, but not 0, is found out by the residual") {
 }
 
 TEST_CASE("Where no pivot may be kept, rows are exchanged") {
-  const std::vector<Complex> matrix{0, 1, 0, 1, 0, 0, 0, 0, 2};
+  const Entries matrix{0, 1, 0, 1, 0, 0, 0, 0, 2};
   const std::vector<Complex> b{1, 2, 3};
   DenseFactor factor(matrix, 3);
   const auto x = factor.solve(b);
   CHECK(factor.is_pivoted());
   CHECK(relative_distance(x, std::vector<Complex>{2, 1, 1.5}) < 1e-15);
-  CHECK(factor.condition() == doctest::Approx(2));
+  CHECK(factor.condition() == doctest::Approx(std::sqrt(6 * 2.25)));
+}
+
+TEST_CASE("The condition is that of the Frobenius norm, within a factor of two") {
+  const std::size_t n = 300;
+  const auto matrix = resonant_points(n).matrix();
+  DenseFactor factor(matrix, n);
+  std::vector<Complex> unit(n * n);
+  for (std::size_t i = 0; i < n; ++i) unit[i * (n + 1)] = 1;
+  double square = 0, inverse_square = 0;
+  for (const Complex& value : matrix) square += std::norm(value);
+  for (const Complex& value : factor.solve(unit)) inverse_square += std::norm(value);
+  const double ratio = factor.condition() / std::sqrt(square * inverse_square);
+  CHECK(ratio > 0.5);
+  CHECK(ratio < 2);
+}
+
+TEST_CASE("What is left of many columns is told by a few sums of them") {
+  const std::size_t n = 500;
+  const auto b = random_columns(64 * n);
+  CHECK(combinations(b, n).size() < b.size() / 10);
+  CHECK(relative_size(combinations(b, n), b, std::vector<double>(n, 1)) ==
+        doctest::Approx(1).epsilon(0.1));  // 4 n random numbers: 1 +- 1 / sqrt(8 n) = 0.016
 }
 
 TEST_CASE("Singular and infinite systems are refused") {

@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include <doctest/doctest.h>
+#include <omp.h>
 
 #include "core/error.h"
 #include "reference.h"
@@ -47,6 +48,16 @@ TEST_CASE("A batch depends on seed and number alone") {
   CHECK(batch(again, 3) == first);
   CHECK(batch(job, 4) != first);
   CHECK(batch(wave_job(scene, 8, 1e-8), 3) != first);
+}
+
+TEST_CASE("The memory of all threads' matrices is asked for before the first placement") {
+  Scene scene = box_points(full_request({0}, {far_view(0.5)}));
+  scene.placement.mean_count = 4000;
+  const int threads = omp_get_max_threads();
+  CHECK_NOTHROW(wave_job(scene, 1, 1e-10));
+  omp_set_num_threads(10000);  // 2.6 TB
+  CHECK_THROWS_AS(wave_job(scene, 1, 1e-10), InputError);
+  omp_set_num_threads(threads);
 }
 
 TEST_CASE("Sensors and sources that a cylinder may cover are refused") {

@@ -48,8 +48,7 @@ Scatterer weak_point() {
   return point;
 }
 
-std::vector<Complex> times(const std::vector<Complex>& matrix, const std::vector<Complex>& x,
-                           std::size_t n) {
+std::vector<Complex> times(const Entries& matrix, const std::vector<Complex>& x, std::size_t n) {
   std::vector<Complex> y(x.size());
   for (std::size_t start = 0; start < x.size(); start += n)
     for (std::size_t j = 0; j < n; ++j)

@@ -40,7 +40,7 @@ std::vector<double> residuals(const TMatrixSystem& system, std::span<const Compl
   return residuals;
 }
 
-BlockMap dense_map(const std::vector<Complex>& matrix, std::size_t n) {
+BlockMap dense_map(const Entries& matrix, std::size_t n) {
   return [&matrix, n](std::span<const Complex> x) {
     std::vector<Complex> y(x.size());
     for (std::size_t c = 0; c < x.size() / n; ++c)

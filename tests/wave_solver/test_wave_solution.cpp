@@ -49,6 +49,33 @@ TEST_CASE("Residual and condition are those of a well-posed problem") {
   CHECK(diagnosis.condition < 1e5);
 }
 
+TEST_CASE("The residual that is told is that of the equations, of few lights and of many") {
+  RandomStream random(3, 1, 0);
+  Placement points(2000);
+  for (auto& placed : points) placed.position = {14 * random.uniform(), 14 * random.uniform()};
+  for (const Method method : {Method::dense, Method::fast})
+    for (const int lights : {2, 24}) {
+      std::vector<double> angles;
+      for (int light = 0; light < lights; ++light) angles.push_back(two_pi * light / lights);
+      const auto solution =
+          solve(points, two_pi, angles,
+                {.tolerance = 1e-3, .sensors = {}, .diagnose = true, .method = method});
+      const TMatrixSystem& system = solution.system();
+      std::vector<Complex> x;
+      for (int light = 0; light < lights; ++light) {
+        const auto beta = solution.coefficients(light);
+        x.insert(x.end(), beta.begin(), beta.end());
+      }
+      const double residual = relative_distance(system.apply(x), system.right_sides(angles));
+      CAPTURE(lights);
+      if (method == Method::dense)
+        CHECK(solution.diagnosis().residual < 1e-12);
+      else
+        CHECK(solution.diagnosis().residual == doctest::Approx(residual).epsilon(0.3));
+      CHECK(residual < (method == Method::dense ? 1e-12 : 1e-3));
+    }
+}
+
 TEST_CASE("The product formed block by block is that of the matrix") {
   TMatrixSystem system(reference_placement("g2", "D"), two_pi, 1e-12);
   const std::vector<double> lights{0};

@@ -4,13 +4,14 @@
 #include <vector>
 
 #include "core/numbers/complex.h"
+#include "wave_solver/dense/entries.h"
 
 namespace flatspeckle::wave {
 
 /// A complex symmetric system M x = b: L L^T without pivoting (symmetric_factor.h), or LU with row
 /// exchanges where that leaves a backward error |b - M x| / (|M| |x| + |b|) above 1e-14 after
-/// refinement. It is measured in the 2- and Frobenius norms on a combination of all columns, or on
-/// each where they are refined.
+/// refinement. It is measured in the 2- and Frobenius norms on combinations of all columns
+/// (combinations.h), or on each where they are refined.
 ///
 /// Cost: n^3/6 complex multiplications and as many additions, half of LU's. For the points and
 /// disks of this room that is 0.51 of LAPACK's zgetrf (zsytrf: 0.59). Single precision with
@@ -19,7 +20,7 @@ namespace flatspeckle::wave {
 class DenseFactor {
  public:
   /// matrix: both triangles, column-major.
-  DenseFactor(std::vector<Complex> matrix, std::size_t unknowns);
+  DenseFactor(Entries matrix, std::size_t unknowns);
 
   /// columns: [column][unknown]. Throws std::runtime_error if no finite solution of small backward
   /// error is found.
@@ -27,26 +28,29 @@ class DenseFactor {
 
   /// Whether rows had to be exchanged.
   bool is_pivoted() const { return pivoted_; }
-  /// Condition number of M in the 1-norm, an estimate from below (LAPACK's zlacn2).
+  /// B - M X of combinations (combinations.h) of the last columns B and their solution X.
+  const std::vector<Complex>& remainder() const { return remainder_; }
+  /// Condition number of M in the Frobenius norm, about: at least that in the 2-norm. Four random
+  /// vectors tell it within a factor of two or so (Kenney and Laub 1994). After a solve.
   double condition() const;
 
  private:
-  std::vector<Complex> attempt(const std::vector<Complex>& b) const;
+  std::vector<Complex> attempt(const std::vector<Complex>& b);
   bool factor_pivoted();
   void solve_once(std::vector<Complex>& x) const;
   std::vector<Complex> residual(const std::vector<Complex>& b, const std::vector<Complex>& x) const;
   double backward_error(const std::vector<Complex>& b, const std::vector<Complex>& x,
                         const std::vector<Complex>& r) const;
-  bool is_good(const std::vector<Complex>& b, const std::vector<Complex>& x) const;
+  bool is_good(const std::vector<Complex>& b, const std::vector<Complex>& x);
   bool refine(const std::vector<Complex>& b, std::vector<Complex>& x) const;
-  double one_norm() const;
 
   std::size_t n_;
   // The strict upper triangle is M's; the rest is L, or what is left of it once rows were
   // exchanged.
-  std::vector<Complex> matrix_;
+  Entries matrix_;
   std::vector<Complex> diagonal_;  // of M
   std::vector<Complex> lu_;
+  std::vector<Complex> remainder_;
   std::vector<int> pivots_;
   double norm_ = 0;  // Frobenius
   bool factored_ = false, pivoted_ = false;

@@ -25,7 +25,7 @@ bool factor_small(Complex* a, std::size_t n, std::size_t ld) {
   return true;
 }
 
-constexpr std::size_t small = 32, block = 192;
+constexpr std::size_t small = 48, block = 96;
 
 // Halves down to small ones, so that the panels of a block are made by BLAS too.
 bool factor_block(Complex* a, std::size_t n, std::size_t ld) {

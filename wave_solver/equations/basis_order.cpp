@@ -28,7 +28,7 @@ int most_paired(const Scatterer& disk) {
   return disk.kind == Scatterer::Kind::hard ? 64 : 512;
 }
 
-// For what the nearest neighbour does not tell, all the others: measured on pairs and clusters.
+// For what pairs do not tell, all the others: measured on pairs and clusters.
 // Modes of large or dense disks resonate among many.
 double safety(const Scatterer& disk, double k) {
   const double x = k * disk.radius;
@@ -117,9 +117,9 @@ class BasisOrders {
     for (const auto& placed : placement) species_of_.push_back(species_of(placed.scatterer));
   }
 
-  std::vector<ScaledComplex> basis(std::size_t j, const Neighbour& neighbour) {
+  std::vector<ScaledComplex> basis(std::size_t j, const std::vector<Neighbour>& around) {
     const bool disk = placement_[j].scatterer.is_disk();
-    return species_[species_of_[j]].up_to(disk ? order_of(j, neighbour) : 0);
+    return species_[species_of_[j]].up_to(disk ? order_of(j, around) : 0);
   }
 
  private:
@@ -157,17 +157,37 @@ class BasisOrders {
     return a + b + (b > 0 ? std::min(a, b) : a) * std::exp2(contact.step / steps);
   }
 
-  int order_of(std::size_t j, const Neighbour& neighbour) {
+  int order_of(std::size_t j, const std::vector<Neighbour>& around) {
     const double sensor = nearest_sensor(j);
+    if (around.empty()) return lone_order(species_[species_of_[j]], sensor);
+    int order = 0;
+    for (const Neighbour& neighbour : around)
+      if (may_matter(j, neighbour, order))
+        order = std::max(order, pair_order(j, neighbour, sensor));
+    return order;
+  }
+
+  // Images of the order fade as (radius / image)^(2 order).
+  bool may_matter(std::size_t j, const Neighbour& neighbour, int order) const {
+    return order * std::log(neighbour.image / placement_[j].scatterer.radius) <
+           -2 * std::log(tolerance_);
+  }
+
+  int lone_order(Species& own, double sensor) {
+    for (int more = first_orders;; more *= 2)
+      if (const auto order =
+              order_within(own, lone_strength(own, own.oscillating + more), sensor, lone_safety))
+        return *order;
+  }
+
+  int pair_order(std::size_t j, const Neighbour& neighbour, double sensor) {
     Species& own = species_[species_of_[j]];
-    const bool alone = neighbour.distance == nowhere;
-    const Contact contact = alone ? Contact{} : contact_of(j, neighbour);
-    const double factor = alone ? lone_safety : safety(own.scatterer, k_);
-    for (int more = first_orders; alone || more <= most_paired(own.scatterer); more *= 2) {
-      const int size = own.oscillating + more;
-      const auto& strength = alone ? lone_strength(own, size) : pair_strength(contact, size);
-      if (const auto order = order_within(own, strength, sensor, factor)) return *order;
-    }
+    const Contact contact = contact_of(j, neighbour);
+    const double factor = safety(own.scatterer, k_);
+    for (int more = first_orders; more <= most_paired(own.scatterer); more *= 2)
+      if (const auto order =
+              order_within(own, pair_strength(contact, own.oscillating + more), sensor, factor))
+        return *order;
     return bounded_order(j, contact, sensor);
   }
 
@@ -284,11 +304,10 @@ std::vector<std::vector<ScaledComplex>> basis(const Placement& placement, double
   BasisOrders orders(placement, k, tolerance, sensors);
   const bool disks = std::any_of(placement.begin(), placement.end(),
                                  [](const auto& placed) { return placed.scatterer.is_disk(); });
-  const auto neighbours =
-      disks ? nearest_neighbours(placement) : std::vector<Neighbour>(placement.size());
+  const auto around =
+      disks ? neighbours(placement) : std::vector<std::vector<Neighbour>>(placement.size());
   std::vector<std::vector<ScaledComplex>> basis;
-  for (std::size_t j = 0; j < placement.size(); ++j)
-    basis.push_back(orders.basis(j, neighbours[j]));
+  for (std::size_t j = 0; j < placement.size(); ++j) basis.push_back(orders.basis(j, around[j]));
   return basis;
 }
 

@@ -29,23 +29,34 @@ DiskExtent extent_of(const Placement& placement) {
   return extent;
 }
 
-struct Candidate {
-  Neighbour neighbour;
-  double image = far_away;
-};
+// Keeps those found ordered by their images, and of equal scatterers the closest one.
+void enter(const Neighbour& candidate, const Placement& placement, std::size_t most,
+           std::vector<Neighbour>& found) {
+  const auto place = std::find_if(found.begin(), found.end(), [&](const Neighbour& other) {
+    return candidate.image < other.image;
+  });
+  const auto is_equal = [&](const Neighbour& other) {
+    return placement[other.scatterer].scatterer == placement[candidate.scatterer].scatterer;
+  };
+  if (std::any_of(found.begin(), place, is_equal)) return;
+  const auto after = found.insert(place, candidate) + 1;
+  found.erase(std::remove_if(after, found.end(), is_equal), found.end());
+  if (found.size() > most) found.pop_back();
+}
 
-Candidate nearest_in(const CellGrid& grid, const Placement& placement, std::size_t j) {
+std::vector<Neighbour> found_in(const CellGrid& grid, const Placement& placement, std::size_t j,
+                                std::size_t most) {
   const Vec2 position = placement[j].position;
   const double radius = placement[j].scatterer.disk_radius();
-  Candidate best{{j, far_away}, far_away};
+  std::vector<Neighbour> found;
   grid.any_near(position, [&](Vec2 other, std::size_t l) {
     if (l == j) return false;
     const double distance = length(other - position);
     const double image = nearest_image(radius, placement[l].scatterer.disk_radius(), distance);
-    if (image < best.image) best = {{l, distance}, image};
+    enter({l, distance, image}, placement, most, found);
     return false;
   });
-  return best;
+  return found;
 }
 
 }  // namespace
@@ -59,8 +70,8 @@ double nearest_image(double a, double b, double d) {
 
 // Cells are widened for those that have nothing close enough to rule out all that lies farther
 // away.
-std::vector<Neighbour> nearest_neighbours(const Placement& placement) {
-  std::vector<Neighbour> nearest(placement.size());
+std::vector<std::vector<Neighbour>> neighbours(const Placement& placement, std::size_t different) {
+  std::vector<std::vector<Neighbour>> all(placement.size());
   std::vector<std::size_t> left;
   for (std::size_t j = 0; j < placement.size(); ++j) left.push_back(j);
   const DiskExtent extent = extent_of(placement);
@@ -69,15 +80,15 @@ std::vector<Neighbour> nearest_neighbours(const Placement& placement) {
        cell *= 2) {
     CellGrid grid(cell);
     for (std::size_t l = 0; l < placement.size(); ++l) grid.insert(placement[l].position, l);
-    const bool all = cell > extent.width;
+    const bool last = cell > extent.width;
     std::erase_if(left, [&](std::size_t j) {
-      const Candidate best = nearest_in(grid, placement, j);
-      nearest[j] = best.neighbour;
+      all[j] = found_in(grid, placement, j, different);
       const double radius = placement[j].scatterer.disk_radius();
-      return all || best.image <= nearest_image(radius, extent.largest_radius, cell);
+      const double beyond = nearest_image(radius, extent.largest_radius, cell);
+      return last || (!all[j].empty() && all[j][0].image <= beyond);
     });
   }
-  return nearest;
+  return all;
 }
 
 }  // namespace flatspeckle::wave

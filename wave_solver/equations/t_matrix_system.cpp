@@ -3,16 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <string>
 #include <utility>
 
-#include "core/error.h"
 #include "core/numbers/hankel_array.h"
-#include "core/numbers/memory.h"
 #include "core/numbers/phasor.h"
 #include "core/run/parallel.h"
 #include "wave_solver/dense/blas.h"
 #include "wave_solver/equations/basis_order.h"
+#include "wave_solver/equations/system_memory.h"
 #include "wave_solver/equations/tiles.h"
 
 namespace flatspeckle::wave {
@@ -20,18 +18,6 @@ namespace flatspeckle::wave {
 namespace {
 
 constexpr std::size_t worth_threads = 300;  // unknowns
-
-void require_memory(std::size_t unknowns) {
-  const double bytes =
-      sizeof(Complex) * static_cast<double>(unknowns) * static_cast<double>(unknowns);
-  const double physical = physical_memory();
-  if (bytes < 0.9 * physical) return;
-  throw InputError("unknowns", unknowns,
-                   "the dense matrix needs " + std::to_string(static_cast<long long>(bytes)) +
-                       " bytes, this machine has " +
-                       std::to_string(static_cast<long long>(physical)) +
-                       "; take fewer scatterers, wider gaps or a larger tolerance");
-}
 
 }  // namespace
 
@@ -124,7 +110,7 @@ void TMatrixSystem::point_columns(Complex* matrix) const {
     strength[j] = std::numbers::sqrt2 * static_cast<double>(modes_[j].weight);
     positions[j] = placement_[j].position;
   }
-  parallel_for(size, size > worth_threads, [&](std::size_t j) {
+  const auto fill = [&](std::size_t j) {
     Complex* const column = matrix + j * (size + 1);
     std::vector<double> distance(size - j);
     for (std::size_t i = 1; i < distance.size(); ++i) {
@@ -134,6 +120,11 @@ void TMatrixSystem::point_columns(Complex* matrix) const {
     column[0] = diagonal_[j];
     hankel0(std::span(distance).subspan(1), {column + 1, distance.size() - 1});
     for (std::size_t i = 1; i < distance.size(); ++i) column[i] *= strength[j] * strength[j + i];
+  };
+  parallel_for((size + tile - 1) / tile, size > worth_threads, [&](std::size_t part) {
+    const std::size_t begin = part * tile, end = std::min(begin + tile, size);
+    for (std::size_t j = begin; j < end; ++j) fill(j);
+    mirror_columns(matrix, size, begin, end);
   });
 }
 
@@ -143,20 +134,23 @@ void TMatrixSystem::multipole_columns(Complex* matrix) const {
   parallel_for(all.size(), size > worth_threads, [&](std::size_t j) {
     Complex* const corner = matrix + first_[j] * (size + 1);
     const std::size_t height = all[j].modes.size();
-    for (std::size_t i = 0; i < height; ++i) corner[i * (size + 1)] = diagonal_[first_[j] + i];
+    for (std::size_t i = 0; i < height; ++i) {
+      std::fill_n(corner + i * size, height, Complex());
+      corner[i * (size + 1)] = diagonal_[first_[j] + i];
+    }
     translate(k_, std::span(all).subspan(j + 1), all[j], {corner + height, size});
+    mirror_columns(matrix, size, first_[j], first_[j + 1]);
   });
 }
 
-std::vector<Complex> TMatrixSystem::matrix() const {
-  require_memory(unknowns());
+Entries TMatrixSystem::matrix() const {
+  require_dense_memory(unknowns());
   const std::size_t size = unknowns();
-  std::vector<Complex> matrix(size * size);
+  Entries matrix(size * size);
   if (size == placement_.size())
     point_columns(matrix.data());
   else
     multipole_columns(matrix.data());
-  mirror_lower(matrix, size);
   return matrix;
 }
 

@@ -5,6 +5,7 @@
 
 #include "core/numbers/complex.h"
 #include "flatland/placement/placement.h"
+#include "wave_solver/dense/entries.h"
 #include "wave_solver/equations/cylinder_waves.h"
 
 namespace flatspeckle::wave {
@@ -47,7 +48,7 @@ class TMatrixSystem {
                 std::size_t ld) const;
 
   /// M, column by column. Threaded unless called from a parallel region.
-  std::vector<Complex> matrix() const;
+  Entries matrix() const;
   /// M x formed a block of columns at a time: [column][unknown].
   std::vector<Complex> apply(std::span<const Complex> x) const;
 
@@ -66,7 +67,7 @@ class TMatrixSystem {
   struct Listed;
   std::vector<ModeSet> all_modes() const;
   std::vector<std::size_t> column_blocks() const;
-  // The lower triangle and diagonal of M.
+  // M, in parts of columns with what is symmetric to them.
   void point_columns(Complex* matrix) const;
   void multipole_columns(Complex* matrix) const;
   void plane_wave(Vec2 w, Complex factor, std::span<Complex> column) const;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <vector>
 
@@ -22,16 +23,24 @@ struct Rim {
   double angle = 0;  // towards the neighbour
 };
 
+Rim rim_of(const Placement& placement, std::size_t disk, const std::vector<Neighbour>& around) {
+  if (around.empty()) return {disk, std::numeric_limits<double>::infinity(), 0};
+  const auto& [position, scatterer] = placement[disk];
+  const auto& other = placement[around[0].scatterer];
+  return {disk, around[0].distance - scatterer.radius - other.scatterer.disk_radius(),
+          angle_of(other.position - position)};
+}
+
 std::vector<Rim> narrowest(const Placement& placement) {
   constexpr std::size_t most = 16;
-  const auto neighbours = nearest_neighbours(placement);
+  if (std::none_of(placement.begin(), placement.end(),
+                   [](const auto& placed) { return placed.scatterer.is_disk(); }))
+    return {};
+  const auto around = neighbours(placement, 1);
   std::vector<Rim> rims;
   for (std::size_t j = 0; j < placement.size(); ++j) {
     if (!placement[j].scatterer.is_disk()) continue;
-    const auto& other = placement[neighbours[j].scatterer];
-    rims.push_back(
-        {j, neighbours[j].distance - placement[j].scatterer.radius - other.scatterer.disk_radius(),
-         angle_of(other.position - placement[j].position)});
+    rims.push_back(rim_of(placement, j, around[j]));
   }
   std::stable_sort(rims.begin(), rims.end(),
                    [](const Rim& a, const Rim& b) { return a.gap < b.gap; });

@@ -5,9 +5,13 @@
 #include <memory>
 #include <vector>
 
+#include <omp.h>
+
 #include "core/error.h"
 #include "core/keys/number_text.h"
+#include "core/numbers/blas.h"
 #include "core/numbers/random.h"
+#include "wave_solver/equations/system_memory.h"
 #include "wave_solver/solutions/wave_solution.h"
 
 namespace flatspeckle::wave {
@@ -80,11 +84,22 @@ void require_solvable(const Scene& scene) {
     if (light.kind == Light::Kind::point) require_uncovered(scene, "near_sources", light.point);
 }
 
+// What placements have at the least: disks, orders that their neighbours ask for as well.
+void require_memory(const Scene& scene, double tolerance) {
+  const bool disk = scene.scatterer.is_disk();
+  const int order = disk ? isolated_order(scene.scatterer, scene.k, tolerance) : 0;
+  const auto unknowns = static_cast<std::size_t>(scene.placement.mean_count * (2 * order + 1));
+  if (method_for(unknowns, tolerance) == Method::dense)
+    require_dense_memory(unknowns, omp_get_max_threads());
+}
+
 }  // namespace
 
 FieldJob wave_job(const Scene& scene, std::uint64_t seed, double tolerance) {
   require_solvable(scene);
   require_placeable(scene.placement);
+  require_memory(scene, tolerance);
+  blas_single_thread();  // says now what it lacks
   const auto shared = std::make_shared<const Scene>(scene);
   const SolveOptions options = batch_options(scene, tolerance);
   const auto plan = std::make_shared<const FieldPlan>(field_plan(scene, tolerance));

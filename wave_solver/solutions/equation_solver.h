@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,21 +35,26 @@ class EquationSolver {
   /// residual stays more than a hundred times above the tolerance.
   std::vector<Complex> solve(const std::vector<Complex>& sides);
 
-  /// M x, by the matrix-free product that belongs to the method.
-  std::vector<Complex> product(const std::vector<Complex>& x) const;
-  /// In the 1-norm, an estimate; -1 for methods that do not tell. After a solve.
+  /// What is left of the last sides, by combinations() of them; by the fast product or, where the
+  /// method is dense, by the matrix that was factored.
+  const std::vector<Complex>& remainder() const { return remainder_; }
+  /// In the Frobenius norm, an estimate; -1 for methods that do not tell. After a solve.
   double condition() const;
   /// What was done, in words.
   const std::string& description() const { return description_; }
 
  private:
   std::vector<Complex> iterate(const std::vector<Complex>& sides);
+  std::optional<std::vector<Complex>> refined(std::vector<Complex> sides);
+  std::vector<Complex> by_gmres(const std::vector<Complex>& sides);
+  std::vector<Complex> subtracted(std::vector<Complex> b, const std::vector<Complex>& x) const;
 
   const TMatrixSystem& system_;
   double tolerance_;
   std::unique_ptr<DenseFactor> dense_;
   std::unique_ptr<FastDirect> fast_;
   std::unique_ptr<FastProduct> product_;
+  std::vector<Complex> remainder_;
   std::string description_;
 };
 

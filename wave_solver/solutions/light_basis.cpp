@@ -117,7 +117,7 @@ LightBasis light_basis(std::span<const double> angles, double k, const Circle& c
   const auto diagonal = [&](lapack_int i) { return std::abs(matrix[i * (rows + 1)]); };
   lapack_int rank = 0;
   while (rank < std::min(rows, columns) && diagonal(rank) > tolerance) ++rank;
-  if (4 * rank > 3 * columns) return all;
+  if (10 * rank > 9 * columns) return all;
   // The columns left out are R11^-1 R12 of those kept.
   triangular_solve(CblasLeft, CblasUpper, CblasNoTrans, rank, columns - rank, matrix.data(), rows,
                    &matrix[rank * rows], rows);

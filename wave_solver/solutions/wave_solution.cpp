@@ -9,6 +9,7 @@
 #include "core/result/result_group.h"
 #include "flatland/scene/scene_datasets.h"
 #include "wave_solver/dense/blas.h"
+#include "wave_solver/dense/combinations.h"
 #include "wave_solver/solutions/boundary_residual.h"
 
 namespace flatspeckle::wave {
@@ -25,7 +26,8 @@ const DatasetTable solution_table{
      {"placement/radius", Data::real, "scatterer", "length", "radius, 0 for a point"},
      {"solve/basis_order", Data::count, "scatterer", "1", "highest angular order per scatterer"},
      {"solve/residual", Data::real, "", "1", "relative residual of the unscaled equations"},
-     {"solve/condition", Data::real, "", "1", "condition estimate of the scaled matrix, 1-norm"},
+     {"solve/condition", Data::real, "", "1",
+      "condition of the scaled matrix, Frobenius norm, estimated"},
      {"solve/boundary_residual", Data::real, "", "1",
       "largest mismatch of the boundary conditions, unit incident waves"}}};
 
@@ -37,18 +39,13 @@ void require_finite(std::span<const Complex> values) {
       throw std::runtime_error("the multiple-scattering equations have no finite solution");
 }
 
-// Rows of the scaled equations times sigma are those of the unscaled ones.
-double unscaled_residual(const TMatrixSystem& system, std::span<const Complex> sides,
-                         std::span<const Complex> product) {
-  double left = 0, given = 0;
-  for (std::size_t i = 0; i < product.size(); ++i) {
-    const std::size_t unknown = i % system.unknowns(), j = system.scatterer_of(unknown);
-    const int n = system.modes(j).modes[unknown - system.first(j)].order;
-    const auto weight = static_cast<double>(std::abs(system.t_matrix(j)[n]));
-    left += weight * std::norm(sides[i] - product[i]);
-    given += weight * std::norm(sides[i]);
-  }
-  return given > 0 ? std::sqrt(left / given) : 0;
+// |T_n| of each unknown: rows of the scaled equations times its root are those of the unscaled.
+std::vector<double> row_weights(const TMatrixSystem& system) {
+  std::vector<double> weights;
+  for (std::size_t j = 0; j < system.placement().size(); ++j)
+    for (const Mode& mode : system.modes(j).modes)
+      weights.push_back(static_cast<double>(std::abs(system.t_matrix(j)[mode.order])));
+  return weights;
 }
 
 // a^T b of matrices with n rows, columns by columns: [column of b][column of a].
@@ -155,17 +152,30 @@ std::vector<Complex> WaveSolution::fields(std::span<const View> views) const {
   return fields;
 }
 
+namespace {
+
+// Fields at the rims and inside of disks amplify what is left of the equations.
+EquationSolver solver_of(const TMatrixSystem& system, const SolveOptions& options) {
+  const Method method = options.method == Method::automatic
+                            ? method_for(system.unknowns(), options.tolerance)
+                            : options.method;
+  return {system, method, options.sensors.empty() ? options.tolerance : options.tolerance / 10};
+}
+
+}  // namespace
+
 WaveSolution solve(const Placement& placement, double k, const std::vector<double>& light_angles,
                    const SolveOptions& options) {
   check_no_overlap(placement);
   TMatrixSystem system(placement, k, options.tolerance, options.sensors);
   const auto basis = light_basis(light_angles, k, enclosing_circle(placement), options.tolerance);
-  EquationSolver solver(system, options.method, options.tolerance);
+  EquationSolver solver = solver_of(system, options);
   const auto sides = system.right_sides(basis.angles);
   auto x = solver.solve(sides);
   Diagnosis diagnosis;
   if (options.diagnose)
-    diagnosis = {unscaled_residual(system, sides, solver.product(x)), solver.condition(), -1};
+    diagnosis = {relative_size(solver.remainder(), sides, row_weights(system)), solver.condition(),
+                 -1};
   x = expanded(basis, std::move(x), system.unknowns());
   WaveSolution solution(std::move(system), light_angles, std::move(x));
   if (options.diagnose) diagnosis.boundary_residual = boundary_residual(solution);
@@ -196,7 +206,7 @@ std::vector<Complex> scattered_fields(const Placement& placement, double k, cons
   const auto rows = view_rows(system, views), sides = right_sides(system, plan.lights);
   const std::size_t lights = plan.lights.size();
   if (n == 0) return std::vector<Complex>(plan.views.size() * plan.lights.count());
-  EquationSolver solver(system, options.method, options.tolerance);
+  EquationSolver solver = solver_of(system, options);
   auto fields = views.size() < lights
                     ? transposed_product(solver.solve(rows), sides.data(), lights, n)
                     : transposed_product(rows, solver.solve(sides).data(), lights, n);

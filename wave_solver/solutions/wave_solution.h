@@ -16,15 +16,16 @@ struct SolveOptions {
   /// Relative accuracy asked of far fields, and of near fields at `sensors`; sets the basis orders.
   double tolerance = 1e-12;
   std::vector<Vec2> sensors;
-  /// Also estimate residual, condition and boundary residual: about the cost of a second assembly.
+  /// Also estimate residual, condition and boundary residual.
   bool diagnose = true;
   Method method = Method::automatic;
 };
 
 /// How far a solution can be trusted; NaN-free, -1 where it was not asked for.
 struct Diagnosis {
-  double residual = -1;           ///< ||b - T(a + S b)|| / ||T a||, over all lights (C10)
-  double condition = -1;          ///< of the scaled matrix, in the 1-norm (an estimate)
+  /// ||b - T(a + S b)|| / ||T a||, over all lights (C10); of many an estimate (combinations.h)
+  double residual = -1;
+  double condition = -1;          ///< of the scaled matrix, in the Frobenius norm (an estimate)
   double boundary_residual = -1;  ///< see boundary_residual.h
 };
 
