@@ -64,7 +64,7 @@ Finding beside_the_rim() {
 /// On a circle of radius 1/sin(angle) through a point of the unit sphere and its image: far out the
 /// index is angle^2/4. Place, and optical path pi n0 a / 2; what v^2 - n^2 loses far out, where n
 /// is small, weighs the more further in, and n = 1 + excess is rounded to 2^-53 there in each of
-/// some hundred steps of nine looks at it.
+/// nine looks at it of every step.
 Finding fisheye_far_out(double angle) {
   const Fisheye eye(FisheyeProfile{0.5, 1});
   auto steps = controlled(1e-12, 1e9);
@@ -73,7 +73,8 @@ Finding fisheye_far_out(double angle) {
   const double arc = 2 * (pi - angle) / std::sin(angle);
   const TraceEnd end = trace(eye, nothing, {arc, 1e-11 * arc}, steps, ray);
   if (end.stop != Stop::length) return yes(false);
-  const double rounded = 1000 * std::ldexp(4 / (angle * angle), -53);
+  const double looks = 9 * static_cast<double>(end.steps),
+               rounded = looks * std::ldexp(4 / (angle * angle), -53);
   return {larger((ray.x + start).norm(), std::abs(ray.optical_path - pi * 0.75)),
           1e-9 / angle + rounded};
 }

@@ -9,6 +9,7 @@ namespace flatspeckle::grin {
 
 Regions::Regions(const Stage& stage) {
   for (Part part = around; part < stage.parts(); ++part) surfaces_.push_back(stage.surface(part));
+  if (stage.bodies.empty()) return;
   const auto [low, high] = bounds(stage.boundary);
   touching_ = 1e-9 * (high - low).norm();
 }

@@ -57,7 +57,7 @@ class Regions {
   bool goes_into(Part body, const Vec3& x, const Vec3& d) const;
 
   std::vector<Surface> surfaces_;
-  double touching_;
+  double touching_ = 0;  ///< so near to a surface is on it
 };
 
 /// The relative density of a part's medium, averaged over points of a lattice.

@@ -183,7 +183,7 @@ void check_methods(const TwoScenes& scenes, std::span<const RenderMethod> method
 // 1/r^2 alone, its variance is infinite.
 
 TEST_CASE("fog in a sphere around a point light: as photons see it") {
-  check_methods(foggy_sphere(), two_methods, 500000, 0.01, 200000);
+  check_methods(foggy_sphere(), two_methods, 400000, 0.01, 250000);
 }
 
 TEST_CASE("a glass ball in fog under a beam: as photons see it") {

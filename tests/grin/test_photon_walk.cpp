@@ -70,7 +70,8 @@ TEST_CASE("analog photons in a slab: van de Hulst, and Peierls") {
 }
 
 TEST_CASE("analog photons follow curved rays: Luneburg's focus and paths") {
-  WalkScene scene{.boundary = {{-1.5, -1.5, -1}, {1.5, 1.5, 1.5}}, .balls = {{Vec3::Zero(), 1}}};
+  WalkScene scene{{{-1.5, -1.5, -1}, {1.5, 1.5, 1.5}}};
+  scene.balls = {{Vec3::Zero(), 1}};
   scene.curved =
       WalkIndex{[](const Vec3& x) { return std::sqrt(2 - x.squaredNorm()); },
                 [](const Vec3& x) { return Vec3(-x / std::sqrt(2 - x.squaredNorm())); }, 0.02};
