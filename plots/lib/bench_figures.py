@@ -23,7 +23,7 @@ TITLES = {"box_points": "31 points in a box, OD 1", "box_cylinders": "67 cylinde
           "luneburg": "Luneburg ball", "waveguide": "ultrasonic waveguide",
           "slab": "slab, straight rays", "glass_ball": "glass ball in fog",
           "luneburg_even": "Luneburg ball, even light",
-          "glass_ball_beam": "glass ball under a beam"}
+          "glass_ball_beam": "glass ball under a beam", "balls_even": "balls, even light"}
 ROOM_NAMES = {"mc": "Monte Carlo", "wave": "wave solver", "wave_solver": "wave solver"}
 
 
