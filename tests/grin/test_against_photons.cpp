@@ -287,13 +287,15 @@ void check_lens_and_pinhole(TwoScenes scenes, std::uint64_t photons, unsigned sa
     const Estimate found = pixel_mean(job, run_render(job, samples));
     return std::pair(found.value[0].real(), found.error[0]);
   };
-  const auto [lens, lens_error] = mean(RenderMethod::light);
+  const auto by_lens = mean(RenderMethod::light);
+  const double lens = by_lens.first, lens_error = by_lens.second;
   Camera pinhole = small_lens;
   pinhole.x[0] -= 1e-3;
   pinhole.lens_radius = 0;
   scenes.scene.sensors = {pinhole};
   for (const RenderMethod method : two_methods) {
-    const auto [value, error] = mean(method);
+    const auto seen = mean(method);
+    const double value = seen.first, error = seen.second;
     CAPTURE(value);
     CAPTURE(error);
     CAPTURE(lens);
