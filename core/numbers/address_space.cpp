@@ -15,6 +15,14 @@ namespace flatspeckle {
 
 namespace {
 
+constexpr double unlimited = std::numeric_limits<double>::infinity();
+
+double limit_of_address_space() {
+  rlimit limit{};
+  const bool known = getrlimit(RLIMIT_AS, &limit) == 0;
+  return known && limit.rlim_cur != RLIM_INFINITY ? static_cast<double>(limit.rlim_cur) : unlimited;
+}
+
 // They stay.
 void start_threads(int threads) {
   std::atomic<int> started = 0;
@@ -25,18 +33,15 @@ void start_threads(int threads) {
 }  // namespace
 
 bool address_space_is_limited() {
-  rlimit limit{};
-  return getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY;
+  return limit_of_address_space() < unlimited;
 }
 
 double address_space_left() {
-  if (!address_space_is_limited()) return std::numeric_limits<double>::infinity();
-  rlimit limit{};
-  getrlimit(RLIMIT_AS, &limit);
+  const double limit = limit_of_address_space();
+  if (limit == unlimited) return unlimited;
   double pages = 0;
   std::ifstream("/proc/self/statm") >> pages;
-  return std::max(0.0, static_cast<double>(limit.rlim_cur) -
-                           pages * static_cast<double>(sysconf(_SC_PAGESIZE)));
+  return std::max(0.0, limit - pages * static_cast<double>(sysconf(_SC_PAGESIZE)));
 }
 
 bool address_space_holds(std::size_t bytes) {

@@ -82,10 +82,6 @@ std::string described_steps(const RenderScene& scene, const RenderPlan& plan) {
   return text.str();
 }
 
-Estimate estimated(const GroupedSums& sums, const Estimator& theta, bool has_drift) {
-  return has_drift ? controlled_jackknife(sums, theta, sums.size() - 1) : jackknife(sums, theta);
-}
-
 /// Nothing of a single one.
 std::string described_sensors(const RenderScene& scene) {
   std::string text;
@@ -207,7 +203,7 @@ RenderJob render_job(const RenderScene& scene, const RenderRequest& request, std
 }
 
 Estimate RenderJob::estimate(const GroupedSums& sums, const Estimator& theta) const {
-  return estimated(sums, theta, has_drift);
+  return has_drift ? controlled_jackknife(sums, theta, sums.size() - 1) : jackknife(sums, theta);
 }
 
 RenderedPicture rendered_picture(const RenderJob& job, const GroupedSums& sums) {
