@@ -49,7 +49,7 @@ EndPosition CameraEnd::on_lens(const BoundaryPoint& at) const {
 
 EndPosition CameraEnd::sample_position(double, RandomStream& random) const {
   if (lens_) return on_lens(lens_->sample(random));
-  return {.point = {centre_, around}, .is_point = true};
+  return {.point = {centre_, regions_.at(centre_)}, .is_point = true};
 }
 
 std::optional<EndPosition> CameraEnd::position_at(const Vec3& x) const {

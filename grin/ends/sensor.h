@@ -58,7 +58,7 @@ SensorPixels pixels_of(const Sensor& sensor);
 /// uniform stratum.
 class SensorEnd {
  public:
-  /// Throws InputError naming the key for a sensor outside the stage or inside the body, or one
+  /// Throws InputError naming the key for a sensor outside the stage, or one
   /// that does not fit on the boundary.
   SensorEnd(const Sensor& sensor, const Stage& stage, int first_pixel = 0);
 

@@ -20,10 +20,12 @@ namespace flatspeckle::grin {
 
 namespace {
 
-/// So many that adding up the picture takes little of the time, and so few that a batch ends soon.
+/// So many that adding up the picture takes little of the time, and so few that a batch ends soon
+/// and the number of batches from which errors are trusted is soon there: long paths are fewer.
 /// A power of two: no rounding of the flights changes it.
 int paths_per_batch(const Tracer& tracer, double cost_of_flight, std::size_t sums) {
-  constexpr double fewest = 32, most = 16384;
+  constexpr double most = 16384, flights_soon_made = 8192;
+  const double fewest = std::clamp(flights_soon_made / tracer.flights_per_pair, 4.0, 32.0);
   const bool is_map = tracer.method == RenderMethod::photon_map;
   const double most_flights = is_map ? 1 << 20 : 1 << 17;
   const double paths =

@@ -48,8 +48,6 @@ double mean_density(const Stage& stage, Part part) {
 void require_in_stage(const Stage& stage, const Vec3& x) {
   if (!(distance(stage.boundary, x) <= 1e-9 * x.norm()))
     throw InputError("sensor_at", listed(x), "must be inside the stage");
-  if (Regions(stage).at(x) != around)
-    throw InputError("sensor_at", listed(x), "must not be inside the body");
 }
 
 }  // namespace flatspeckle::grin

@@ -63,7 +63,7 @@ class Regions {
 /// The relative density of a part's medium, averaged over points of a lattice.
 double mean_density(const Stage& stage, Part part);
 
-/// Throws InputError unless a sensor here is inside the stage or on its boundary, and in no body.
+/// Throws InputError unless a sensor here is inside the stage or on its boundary.
 void require_in_stage(const Stage& stage, const Vec3& x);
 
 }  // namespace flatspeckle::grin

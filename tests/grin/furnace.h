@@ -24,8 +24,9 @@ inline double check_furnace_face(RenderScene scene, RenderMethod method, double 
 }
 
 /// A camera in the field reads 1 in each pixel.
-inline double check_furnace_camera(RenderScene scene, RenderMethod method, double samples) {
-  scene.sensors = {Camera{Vec3(0.2, -0.1, -0.8), Vec3::UnitZ(), Vec3::UnitY(), 1.2, {2, 1}}};
+inline double check_furnace_camera(RenderScene scene, RenderMethod method, double samples,
+                                   const Vec3& at = {0.2, -0.1, -0.8}) {
+  scene.sensors = {Camera{at, Vec3::UnitZ(), Vec3::UnitY(), 1.2, {2, 1}}};
   const Rendered result = rendered(scene, method, samples);
   CAPTURE(name(method));
   double worst = 0;

@@ -50,4 +50,14 @@ TEST_CASE("light stays uniform where bodies lie in each other, side by side, and
     }
 }
 
+TEST_CASE("light is uniform for a camera inside a body, too") {
+  const Vec3 inner(0.15, 0.05, 0.12), outer(-0.1, 0.2, -0.1);
+  for (const NamedRender& named : furnaces_of_bodies(fog(1, 0, 0.85))) {
+    CAPTURE(named.name);
+    for (const RenderMethod method : {RenderMethod::path, RenderMethod::bidirectional})
+      for (const Vec3& at : {inner, outer})
+        CHECK(check_furnace_camera(named.scene, method, 8000, at) < 0.1);
+  }
+}
+
 }  // namespace flatspeckle::grin::tests
