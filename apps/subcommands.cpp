@@ -10,6 +10,7 @@ int flux(const Arguments& arguments);
 int sweep(const Arguments& arguments);
 int merge(const Arguments& arguments);
 int field(const Arguments& arguments);
+int image(const Arguments& arguments);
 int trace(const Arguments& arguments);
 int render(const Arguments& arguments);
 int bench(const Arguments& arguments);
@@ -30,6 +31,9 @@ std::span<const SubcommandEntry> subcommands() {
       {"merge", "the points of a sweep that ran in shares, as one result", merge},
       {"field", "speckle fields drawn with the covariance of a scene, also over tilts of the light",
        field},
+      {"image",
+       "pictures of hidden points through a medium, and what the memory effect finds in them",
+       image},
       {"trace", "rays and the curves between two points in a gradient-index field", trace},
       {"render", "pictures of scattering media with a gradient index: 3D refractive path tracing",
        render},

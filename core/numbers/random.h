@@ -48,7 +48,8 @@ enum class Stream : std::uint64_t {
   light_paths = 2,
   fields = 3,
   render = 4,
-  light_map = 5
+  light_map = 5,
+  camera = 7
 };
 
 }  // namespace flatspeckle

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <fftw3.h>
-#include <mutex>
+
+#include "core/numbers/fourier.h"
 
 namespace flatspeckle::mc {
 
@@ -65,7 +66,7 @@ struct Autocorrelation::Plans {
     std::vector<double> line(size);
     std::vector<Complex> spectrum(size / 2 + 1);
     auto* native = reinterpret_cast<fftw_complex*>(spectrum.data());
-    const std::lock_guard lock(planning());
+    const std::lock_guard lock(fourier_planning());
     const auto n = static_cast<int>(size);
     forward = fftw_plan_dft_r2c_1d(n, line.data(), native, FFTW_ESTIMATE | FFTW_UNALIGNED);
     backward = fftw_plan_dft_c2r_1d(n, native, line.data(), FFTW_ESTIMATE | FFTW_UNALIGNED);
@@ -73,16 +74,10 @@ struct Autocorrelation::Plans {
   Plans(const Plans&) = delete;
   Plans& operator=(const Plans&) = delete;
   ~Plans() {
-    const std::lock_guard lock(planning());
+    const std::lock_guard lock(fourier_planning());
     fftw_destroy_plan(forward);
     fftw_destroy_plan(backward);
   }
-  // Only execution is thread-safe in FFTW.
-  static std::mutex& planning() {
-    static std::mutex mutex;
-    return mutex;
-  }
-
   std::size_t size;
   fftw_plan forward, backward;
 };

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <fftw3.h>
-#include <mutex>
 #include <numbers>
 
+#include "core/numbers/fourier.h"
 #include "mc/estimators/bulk_parameter.h"
 
 namespace flatspeckle::mc {
@@ -16,17 +16,16 @@ using std::numbers::pi;
 
 /// int p cos(m theta) over the circle, m = 0 .. intervals, by the trapezoidal rule.
 std::vector<double> cosine_modes(const std::function<double(double)>& p, int intervals) {
-  static std::mutex planning;
   std::vector<double> line(static_cast<std::size_t>(intervals) + 1);
   for (int i = 0; i <= intervals; ++i) line[i] = p(pi * i / intervals) * pi / intervals;
   fftw_plan plan;
   {
-    const std::lock_guard lock(planning);
+    const std::lock_guard lock(fourier_planning());
     plan = fftw_plan_r2r_1d(intervals + 1, line.data(), line.data(), FFTW_REDFT00,
                             FFTW_ESTIMATE | FFTW_UNALIGNED);
   }
   fftw_execute(plan);
-  const std::lock_guard lock(planning);
+  const std::lock_guard lock(fourier_planning());
   fftw_destroy_plan(plan);
   return line;
 }

@@ -33,10 +33,16 @@ FILES = {
 }
 
 # name: subcommand, keys, exit status if not 0
+IMAGE = {"domain": "box", "width": 60, "depth": 10, "scatterer": "hg", "g": 0.5, "optical_depth": 2,
+         "object_x": [0, 20], "object_depth": -500, "camera": [-0.3, 0.3], "pixels": 128,
+         "repeats": 2, "paths_per_field": 20, "prediction_paths": 500, "samples": None}
+
 RUNS = {
     "intensity": ("covariance", {**BOX, **FAR}),
     "intensity_near": ("covariance", {**BOX, **NEAR}),
     "full": ("covariance", {**BOX, **FAR, **FULL}),
+    "image": ("image", IMAGE),
+    "image_near": ("image", {**IMAGE, "camera_depth": 200, "camera": [-50, 50]}),
     "full_near": ("covariance", {**BOX, **NEAR, **FULL}),
     "full_beams": ("covariance", {**BOX, "beam_waist": 2, "beam_positions": [0, 3], **FULL}),
     "pairs": ("covariance", {**BOX, **PAIRS}),

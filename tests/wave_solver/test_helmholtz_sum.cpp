@@ -4,9 +4,9 @@
 #include <omp.h>
 
 #include "core/numbers/bessel.h"
+#include "core/numbers/fourier.h"
 #include "core/numbers/random.h"
 #include "reference.h"
-#include "wave_solver/sums/fourier.h"
 #include "wave_solver/sums/grid_sum.h"
 #include "wave_solver/sums/helmholtz_sum.h"
 

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "core/numbers/complex.h"
+#include "core/numbers/fourier.h"
 #include "flatland/media/domain.h"
-#include "wave_solver/sums/fourier.h"
 #include "wave_solver/sums/kernel_split.h"
 
 namespace flatspeckle::wave {

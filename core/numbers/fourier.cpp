@@ -1,21 +1,14 @@
-#include "wave_solver/sums/fourier.h"
+#include "core/numbers/fourier.h"
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>
 #include <fftw3.h>
-#include <mutex>
 
-namespace flatspeckle::wave {
+namespace flatspeckle {
 
 namespace {
-
-// Only execution is thread-safe in FFTW.
-std::mutex& planning() {
-  static std::mutex mutex;
-  return mutex;
-}
 
 fftw_complex* native(Complex* values) {
   return reinterpret_cast<fftw_complex*>(values);
@@ -23,12 +16,17 @@ fftw_complex* native(Complex* values) {
 
 }  // namespace
 
+std::mutex& fourier_planning() {
+  static std::mutex mutex;
+  return mutex;
+}
+
 struct LineTransform::Plan {
   explicit Plan(fftw_plan made) : plan(made) {}
   Plan(const Plan&) = delete;
   Plan& operator=(const Plan&) = delete;
   ~Plan() {
-    const std::lock_guard lock(planning());
+    const std::lock_guard lock(fourier_planning());
     fftw_destroy_plan(plan);
   }
   fftw_plan plan;
@@ -37,7 +35,7 @@ struct LineTransform::Plan {
 // All lines begin at multiples of 16 bytes, as this one does; more FFTW does not ask.
 LineTransform::LineTransform(std::size_t size, Direction direction) {
   std::vector<Complex> line(size);
-  const std::lock_guard lock(planning());
+  const std::lock_guard lock(fourier_planning());
   plan_ = std::make_shared<Plan>(fftw_plan_dft_1d(
       static_cast<int>(size), native(line.data()), native(line.data()),
       direction == Direction::forward ? FFTW_FORWARD : FFTW_BACKWARD, FFTW_ESTIMATE));
@@ -53,12 +51,12 @@ void transform_even(std::vector<Complex>& values, std::size_t rows, std::size_t 
   auto* data = reinterpret_cast<double*>(values.data());
   fftw_plan plan;
   {
-    const std::lock_guard lock(planning());
+    const std::lock_guard lock(fourier_planning());
     plan = fftw_plan_many_r2r(2, sizes, 2, data, nullptr, 2, 1, data, nullptr, 2, 1, kinds,
                               FFTW_ESTIMATE);
   }
   fftw_execute(plan);
-  const std::lock_guard lock(planning());
+  const std::lock_guard lock(fourier_planning());
   fftw_destroy_plan(plan);
 }
 
@@ -75,4 +73,4 @@ std::size_t transform_size(double least) {
   return best;
 }
 
-}  // namespace flatspeckle::wave
+}  // namespace flatspeckle

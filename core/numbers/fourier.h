@@ -2,11 +2,15 @@
 
 #include <cstddef>
 #include <memory>
+#include <mutex>
 #include <vector>
 
 #include "core/numbers/complex.h"
 
-namespace flatspeckle::wave {
+namespace flatspeckle {
+
+/// Held while FFTW plans, or forgets a plan: it does neither for two threads at a time.
+std::mutex& fourier_planning();
 
 /// In-place transform of one contiguous line, sum_j x_j exp(-+ 2 pi i j m / size), without factor.
 /// Plans are estimated, not timed, so that a result does not depend on the machine's mood. Safe to
@@ -29,4 +33,4 @@ void transform_even(std::vector<Complex>& values, std::size_t rows, std::size_t 
 /// Smallest even 2^a 3^b 5^c from `least` on.
 std::size_t transform_size(double least);
 
-}  // namespace flatspeckle::wave
+}  // namespace flatspeckle

@@ -1,0 +1,270 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "apps/estimation.h"
+#include "apps/subcommands.h"
+#include "core/error.h"
+#include "core/numbers/memory.h"
+#include "core/run/interrupt.h"
+#include "core/session/session.h"
+#include "flatland/scene/scene_datasets.h"
+#include "mc/imaging/imaging_datasets.h"
+
+namespace flatspeckle::apps {
+
+namespace {
+
+/// What the user asks.
+struct ImageKeys {
+  SceneSpec spec;
+  std::vector<double> object_x, object_brightness;
+  std::optional<double> object_depth, object_extent, camera_depth;
+  std::vector<double> camera;
+  std::int64_t pixels = 4096, repeats = 16;
+  std::optional<std::int64_t> points, paths_per_field;
+  double resolution = 1;
+  mc::CameraNoise noise;
+  std::string method = "paths";
+  std::int64_t prediction_paths = 20000;
+  MethodSettings estimation;
+  RunSettings run;
+};
+
+void add_object_keys(Keys& keys, ImageKeys& values) {
+  keys.group("Object and camera");
+  keys.add("object_x", values.object_x, "Points of the object, incoherent with each other")
+      .unit("length");
+  keys.add("object_brightness", values.object_brightness, "Of each point (default 1)").positive();
+  keys.add("object_depth", values.object_depth, "z of the object's line, outside of the box")
+      .unit("length");
+  keys.add("camera_depth", values.camera_depth,
+           "z of the camera's line, outside of the box (default: far away, beyond the box)")
+      .unit("length");
+  keys.add("camera", values.camera,
+           "First and last pixel: x, or without camera_depth the sine of the direction")
+      .exactly(2, "first last");
+  keys.add("pixels", values.pixels, "Of the camera").from(64, 1 << 20);
+  keys.add("photons", values.noise.photons,
+           "Detected per pixel, mean of the light (default 0: no shot noise)")
+      .not_negative();
+  keys.add("read_noise", values.noise.read_noise, "Standard deviation, photons").not_negative();
+  keys.add("background", values.noise.background, "Even light besides, over the mean of the light")
+      .not_negative();
+}
+
+void add_keys(Keys& keys, ImageKeys& values) {
+  add_scatterer_keys(keys, values.spec);
+  add_bulk_keys(keys, values.spec);
+  add_medium_keys(keys, values.spec);
+  add_structure_key(keys, values.spec);
+  add_object_keys(keys, values);
+  keys.group("Pictures");
+  keys.add("repeats", values.repeats, "Media, with a frame of each")
+      .from(1, std::numeric_limits<double>::infinity());
+  keys.add("method", values.method,
+           "Fields by light paths, or of placements by the exact solver (wave)")
+      .one_of({"paths", "wave"});
+  keys.add("paths_per_field", values.paths_per_field,
+           "Light paths of each medium (default: so many that the excess kurtosis is 0.01)")
+      .positive();
+  add_wave_keys(keys, values.estimation);
+  keys.remove("wave_samples");
+  keys.add("points", values.points,
+           "How many points the search looks for (default: as many as there are; 0: no search)")
+      .from(0, 64);
+  keys.add("object_extent", values.object_extent,
+           "Longest distance that the search looks for (default: 1.25 times the object's)")
+      .positive()
+      .unit("length");
+  keys.add("resolution", values.resolution,
+           "Least distance of points, and what counts as found, in grains of the speckle")
+      .positive();
+  keys.add("prediction_paths", values.prediction_paths,
+           "Light paths that predict the peaks of pairs")
+      .positive();
+  add_seed_key(keys, values.run, "Seed; medium n of a seed is always the same");
+  add_thread_key(keys, values.run);
+  add_output_key(keys, values.run);
+}
+
+mc::LineObject object_of(const Keys& keys, const ImageKeys& values) {
+  mc::LineObject object{keys.required(values.object_x), keys.read(values.object_brightness)};
+  if (object.brightness.empty()) object.brightness.assign(object.x.size(), 1);
+  if (object.brightness.size() != object.x.size())
+    throw InputError("object_brightness", object.brightness.size(),
+                     "numbers for " + std::to_string(object.x.size()) + " points");
+  return object;
+}
+
+mc::LineCamera camera_of(const Keys& keys, const ImageKeys& values) {
+  const auto& ends = keys.required(values.camera);
+  if (!(ends[0] < ends[1])) throw InputError("camera", ends[1], "must be more than the first");
+  const auto& depth = keys.read(values.camera_depth);
+  if (!depth && !(ends[0] > -1 && ends[1] < 1))
+    throw InputError("camera: sines of directions are between -1 and 1");
+  return {depth, ends[0], ends[1], static_cast<std::size_t>(keys.read(values.pixels))};
+}
+
+/// Pixels of the longest distance that is looked for.
+std::size_t lags_of(const mc::LineScene& line, const std::optional<double>& object_extent) {
+  const auto [first, last] = std::minmax_element(line.object.x.begin(), line.object.x.end());
+  const double extent = object_extent.value_or(1.25 * (*last - *first)),
+               lags = std::ceil(extent * std::abs(magnification(line))) + 16,
+               most = static_cast<double>(line.camera.pixels) / 4;
+  if (!(lags <= most))
+    throw InputError("object_extent", extent,
+                     "takes " + std::to_string(static_cast<long>(lags)) +
+                         " pixels of the camera, more than a quarter of them");
+  return static_cast<std::size_t>(lags);
+}
+
+/// All but the lags.
+mc::ImagingTask task_of(const Keys& keys, const ImageKeys& values, std::size_t points) {
+  mc::ImagingTask task;
+  task.repeats = static_cast<std::uint64_t>(keys.read(values.repeats));
+  task.noise.photons = keys.read(values.noise.photons);
+  task.noise.background = keys.read(values.noise.background);
+  if (task.noise.photons > 0) task.noise.read_noise = keys.read(values.noise.read_noise);
+  if (const auto& sought = keys.read(values.points)) points = static_cast<std::size_t>(*sought);
+  if (points > 1) task.points = points;  // one point has no distances
+  if (task.points > 0) task.resolution_grains = keys.read(values.resolution);
+  return task;
+}
+
+void check_memory(const mc::LineScene& line, const mc::ImagingTask& task) {
+  const auto channels = static_cast<double>(line.scene.request.channels.size()),
+             pixels = static_cast<double>(line.camera.pixels);
+  const double bytes = 32 * channels * task.threads +
+                       sizeof(double) * static_cast<double>(task.repeats) * 2 * pixels;
+  if (bytes > 0.8 * usable_memory())
+    throw InputError("repeats", task.repeats,
+                     "frames and fields need " + std::to_string(bytes / 1e9) + " GB");
+}
+
+/// The exact solver's fields of all placements, less their mean: the speckle alone, as light paths
+/// have it. Nothing where a signal came.
+std::optional<mc::FieldDraw> exact_fields(const mc::LineScene& line, const mc::ImagingTask& task,
+                                          double tolerance) {
+  const FieldJob exact = wave_estimation(line.scene, tolerance, task.seed).job;
+  const std::size_t channels = line.scene.request.channels.size();
+  const auto fields = std::make_shared<std::vector<Complex>>(task.repeats * channels);
+  BatchJob job = exact.batches;
+  job.run = [&](std::uint64_t number, std::span<Complex> sums) {
+    if (number >= task.repeats) return;
+    exact.batches.run(number, sums);
+    std::copy_n(sums.begin(), channels, fields->begin() + static_cast<long>(number * channels));
+  };
+  RunState state;
+  run_batches(job, {{task.repeats, std::nullopt, std::nullopt}, task.threads, "wave", {}}, state);
+  if (interrupted()) return std::nullopt;
+  const auto n = static_cast<double>(task.repeats);
+  return [=](std::uint64_t number, std::span<Complex> field, std::span<double>) {
+    for (std::size_t c = 0; c < channels; ++c) {
+      Complex mean = 0;
+      for (std::size_t r = 0; r < task.repeats; ++r) mean += (*fields)[r * channels + c] / n;
+      field[c] = ((*fields)[number * channels + c] - mean) * std::sqrt(n / (n - 1));
+    }
+  };
+}
+
+struct Fields {
+  mc::FieldDraw draw;
+  std::string how;
+};
+
+/// Nothing where a signal came.
+std::optional<Fields> fields_of(const mc::LineScene& line, const mc::ImagingTask& task,
+                                const std::string& method, double wave_tolerance,
+                                const std::optional<std::int64_t>& paths_per_field) {
+  if (method == "wave") {
+    auto draw = exact_fields(line, task, wave_tolerance);
+    if (!draw) return std::nullopt;
+    return Fields{std::move(*draw), "wave: placements by the exact solver, less their mean field"};
+  }
+  const auto paths = paths_per_field ? static_cast<std::uint64_t>(*paths_per_field)
+                                     : mc::paths_for_fields(line, task.seed, task.threads);
+  if (!paths) return std::nullopt;
+  const mc::Plan plan = mc::make_plan(line.scene, mc::ReversedPaths::automatic);
+  return Fields{mc::fields_by_paths(line.scene, plan, task.seed, *paths),
+                "mc: fields of " + std::to_string(*paths) + " light paths; " + plan.describe()};
+}
+
+void print_summary(const mc::LineScene& line, const mc::ImagingTask& task,
+                   const std::vector<mc::ImagedMedium>& media,
+                   const mc::ImagingPrediction& prediction) {
+  double contrast = 0, grains = 0;
+  for (const mc::ImagedMedium& medium : media) {
+    contrast += medium.statistics.contrast / static_cast<double>(media.size());
+    grains += medium.statistics.grains / static_cast<double>(media.size());
+  }
+  const double n = static_cast<double>(line.object.x.size());
+  std::printf("contrast %.3f (equal points, Gaussian: %.3f), %.0f grains in a frame\n", contrast,
+              1 / std::sqrt(n), grains);
+  if (const auto correlation = real_parts(prediction.correlation.value); !correlation.empty()) {
+    const auto signals = mc::peaks_over_noise(line.object, correlation, grains);
+    std::printf("pairs of points: C_I down to %.3f, peaks down to %.1f times the noise\n",
+                *std::min_element(correlation.begin(), correlation.end()),
+                *std::min_element(signals.begin(), signals.end()));
+  }
+  if (task.points == 0) return;
+  const auto [rate, error] = mc::success_rate(media);
+  std::printf("all %zu points found in %.3g +- %.2g of the media\n", line.object.x.size(), rate,
+              error);
+}
+
+}  // namespace
+
+int image(const Arguments& arguments) {
+  ImageKeys values;
+  Subcommand command("image",
+                     "Pictures of hidden points through a scattering medium, and the points found "
+                     "in the autocorrelation of each");
+  Keys& keys = command.keys();
+  add_keys(keys, values);
+  if (!command.parse(arguments)) return ExitStatus::done;
+
+  const Session session(command.text(), keys, values.run, command.only_prints());
+  const std::string& method = keys.read(values.method);
+  const double wave_tolerance = method == "wave" ? keys.read(values.estimation.wave_tolerance) : 0;
+  const auto paths_per_field = method == "paths" ? keys.read(values.paths_per_field) : std::nullopt;
+  mc::LineObject object = object_of(keys, values);
+  const double object_depth = keys.required(values.object_depth);
+  const mc::LineCamera camera = camera_of(keys, values);
+  const auto prediction_paths = static_cast<std::uint64_t>(keys.read(values.prediction_paths));
+  mc::ImagingTask task = task_of(keys, values, object.x.size());
+  if (method == "wave" && task.repeats < 2)
+    throw InputError("repeats", task.repeats, "the exact solver's mean field takes two or more");
+  task.seed = session.seed();
+  task.threads = session.threads();
+  const auto& object_extent = keys.read(values.object_extent);
+  Scene medium = make_scene(keys, values.spec);
+  if (medium.domain.kind == Domain::Kind::slab)
+    throw InputError("domain", "slab", "pictures need a box");
+  const mc::LineScene line =
+      mc::line_scene(std::move(medium), std::move(object), object_depth, camera);
+  task.lags = lags_of(line, object_extent);
+  check_memory(line, task);
+  if (!command.settle()) return ExitStatus::done;
+  catch_interrupts();
+  return session.once(
+      ResultFile(session.out(), ResultFile::Storage::disk),
+      [&](ResultFile& file) -> std::optional<Made> {
+        const auto fields = fields_of(line, task, method, wave_tolerance, paths_per_field);
+        if (!fields) return std::nullopt;
+        const auto prediction = mc::predicted(line, prediction_paths, task.seed, task.threads);
+        if (!prediction) return std::nullopt;
+        const auto media = mc::imaged(line, task, fields->draw);
+        if (!media) return std::nullopt;
+        write_medium(file, line.scene);
+        mc::write_imaging(file, line, task, *media, *prediction);
+        print_summary(line, task, *media, *prediction);
+        return Made{fields->how, static_cast<double>(task.repeats)};
+      });
+}
+
+}  // namespace flatspeckle::apps

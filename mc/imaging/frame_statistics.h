@@ -1,0 +1,28 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+namespace flatspeckle::mc {
+
+/// What the pixels of a frame tell without a reference.
+struct FrameStatistics {
+  double contrast = 0;  ///< standard deviation over mean, of what is left of the envelope
+  double grain = 0;     ///< pixels: the integral of the square of the autocorrelation's central
+                        ///< peak over its height, by which averages over the frame get better
+  double grains = 0;    ///< in the frame
+  double noise = 0;     ///< standard deviation of the autocorrelation where nothing is expected
+  std::vector<double> autocorrelation;  ///< by lag in pixels, from 0
+};
+
+/// The frame over its smooth envelope, less 1: what varies within `width` pixels (standard
+/// deviation of a Gaussian average). Throws InputError for a frame whose envelope is not positive.
+std::vector<double> without_envelope(std::span<const double> frame, double width);
+
+/// lags: so many of the autocorrelation, at most half of the pixels; the noise is that of as many
+/// beyond. noise_variance: of the camera, over the square of the mean: without correlation, it
+/// stands in the first value alone, and is taken off there.
+FrameStatistics frame_statistics(std::span<const double> frame, std::size_t lags,
+                                 double noise_variance = 0);
+
+}  // namespace flatspeckle::mc

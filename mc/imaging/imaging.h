@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "core/numbers/statistics.h"
+#include "mc/imaging/camera_frame.h"
+#include "mc/imaging/frame_statistics.h"
+#include "mc/imaging/image_score.h"
+#include "mc/imaging/line_camera.h"
+#include "mc/imaging/sparse_search.h"
+#include "mc/speckle/speckle_field.h"
+
+namespace flatspeckle::mc {
+
+/// What is done with each of the media that a scene stands for.
+struct ImagingTask {
+  std::uint64_t repeats = 1;
+  CameraNoise noise;
+  std::size_t lags = 0;          ///< pixels: the longest distance that is looked for
+  std::size_t points = 0;        ///< that are looked for; 0: none
+  double resolution_grains = 1;  ///< of the search, and for a point to count as found
+  std::uint64_t seed = 1;
+  int threads = 1;
+};
+
+/// One medium: its frame, and what that tells.
+struct ImagedMedium {
+  std::vector<double> frame;
+  FrameStatistics statistics;
+  SparseFit fit;  ///< in pixels
+  ImageScore score;
+};
+
+/// All frames, one of each medium: number, seed and scene make them, no thread does. Nothing where
+/// a signal came (catch_interrupts). draw: fields of line.scene, [point][pixel].
+std::optional<std::vector<ImagedMedium>> imaged(const LineScene& line, const ImagingTask& task,
+                                                const FieldDraw& draw);
+
+/// What to expect without a picture. C_I of two points: |C|^2/(I I') of the one's light and of the
+/// other's, at places of the camera that differ by how far the picture moves.
+struct ImagingPrediction {
+  std::vector<double> distance;  ///< of pairs of points, in the order (0, 1), (0, 2), ...
+  Estimate correlation;          ///< C_I
+};
+
+/// By so many light paths. Averaged over a few places of the camera.
+std::optional<ImagingPrediction> predicted(const LineScene& line, std::uint64_t paths,
+                                           std::uint64_t seed, int threads);
+
+/// Heights of the pairs' peaks in the autocorrelation over its noise, from `grains` grains in the
+/// frame. A peak is a_ij = C_I b_i b_j / (sum of b)^2, that at lag 0 a_0 = (sum of b^2) / (sum of
+/// b)^2; the noise of an estimated autocorrelation is that of all its peaks, sqrt((a_0^2 + 2 sum of
+/// a_ij^2) / grains) (Bartlett's formula; distances distinct). For N equal points of C_I that is
+/// C_I sqrt(grains) / N / sqrt(1 + C_I^2 (1 - 1/N)).
+std::vector<double> peaks_over_noise(const LineObject& object,
+                                     const std::vector<double>& correlation, double grains);
+
+/// Light paths of one field: as many as a pixel's excess kurtosis of 0.01 asks for, by a survey of
+/// a few pixels, and twice as many as grains that can be seen, or the frame's autocorrelation would
+/// show the places where the paths end. Nothing where a signal came.
+std::optional<std::uint64_t> paths_for_fields(const LineScene& line, std::uint64_t seed,
+                                              int threads);
+
+}  // namespace flatspeckle::mc

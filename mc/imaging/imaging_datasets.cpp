@@ -1,0 +1,154 @@
+#include "mc/imaging/imaging_datasets.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/result/result_group.h"
+
+namespace flatspeckle::mc {
+
+const DatasetTable imaging_table{
+    .name = "image",
+    .rows = {{"camera_place", Data::scale, "", "PLACE", "pixels: x, or sines of directions"},
+             {"repeat", Data::numbers, "", "1", "number of the medium"},
+             {"point", Data::numbers, "", "1", "number of the point of the object"},
+             {"sought", Data::numbers, "", "1", "number of the point that was looked for"},
+             {"pair", Data::numbers, "", "1", "number of the pair of points (0, 1), (0, 2), ..."},
+             {"distance", Data::scale, "", "length", "lag of the camera in lengths of the object"},
+             {"object_x", Data::real, "point", "length", "the object"},
+             {"object_brightness", Data::real, "point", "1", "relative"},
+             {"frame", Data::real, "repeat camera_place", "1", "in units of the light's mean"},
+             {"autocorrelation", Data::real, "repeat distance", "1",
+              "<dI dI'> / <I>^2 of the frame without its envelope"},
+             {"mean_autocorrelation", Data::estimate, "distance", "1", "mean over the media"},
+             {"contrast", Data::real, "repeat", "1",
+              "standard deviation over mean, without envelope"},
+             {"grains", Data::real, "repeat", "1", "independent speckle grains in the frame"},
+             {"noise", Data::real, "repeat", "1", "standard deviation of the autocorrelation"},
+             {"found_x", Data::real, "repeat sought", "length", "from the first, mirrored or not"},
+             {"found_brightness", Data::real, "repeat sought", "1", "relative, mean 1"},
+             {"found_share", Data::real, "repeat", "1", "points that were found within a grain"},
+             {"brightness_match", Data::real, "repeat", "1",
+              "correlation of the brightness found with the true one"},
+             {"success", Data::estimate, "", "1", "media in which all points were found"},
+             {"pair_distance", Data::real, "pair", "length", "of two points of the object"},
+             {"pair_correlation", Data::estimate, "pair", "1",
+              "C_I of their speckles, from light paths"},
+             {"pair_signal", Data::real, "pair", "1",
+              "height of their peak in a frame's autocorrelation over its noise, predicted"}},
+    .attributes = {{"frame", "magnification", "float64",
+                    "pixels that the picture moves by for a length of the object"}},
+    .roles = {{"PLACE", {"1", "length"}}}};
+
+namespace {
+
+std::vector<double> scaled(std::vector<double> values, double factor) {
+  for (double& value : values) value *= factor;
+  return values;
+}
+
+template <class Value>
+std::vector<double> of_each(const std::vector<ImagedMedium>& media, const Value& value) {
+  std::vector<double> all;
+  for (const ImagedMedium& medium : media) {
+    const std::vector<double> one = value(medium);
+    all.insert(all.end(), one.begin(), one.end());
+  }
+  return all;
+}
+
+Estimate mean_autocorrelation(const std::vector<ImagedMedium>& media) {
+  const auto n = static_cast<double>(media.size());
+  const std::size_t lags = media.front().statistics.autocorrelation.size();
+  Estimate mean{std::vector<Complex>(lags), std::vector<double>(lags)};
+  for (std::size_t lag = 0; lag < lags; ++lag) {
+    double sum = 0, squares = 0;
+    for (const ImagedMedium& medium : media) {
+      const double value = medium.statistics.autocorrelation[lag];
+      sum += value / n;
+      squares += value * value / n;
+    }
+    mean.value[lag] = sum;
+    mean.error[lag] = media.size() > 1 ? std::sqrt(std::max(squares - sum * sum, 0.0) / (n - 1))
+                                       : media.front().statistics.noise;
+  }
+  return mean;
+}
+
+void write_axes(ResultFile& file, const ResultGroup& root, const LineScene& line,
+                const ImagingTask& task, double length_of_pixel, std::size_t media) {
+  file.bind("PLACE", {line.camera.depth ? "length" : "1"});
+  std::vector<double> places, distances;
+  for (std::size_t p = 0; p < line.camera.pixels; ++p)
+    places.push_back(line.camera.first + line.camera.step() * static_cast<double>(p));
+  for (std::size_t lag = 0; lag < task.lags; ++lag)
+    distances.push_back(static_cast<double>(lag) * length_of_pixel);
+  root.put("camera_place", places);
+  root.number("repeat", media);
+  root.number("point", line.object.x.size());
+  root.put("distance", distances);
+}
+
+void write_fits(const ResultGroup& root, const ImagingTask& task,
+                const std::vector<ImagedMedium>& media, double length_of_pixel) {
+  root.number("sought", task.points);
+  // a fit that found nothing has points at 0 without brightness
+  const auto filled = [&](std::vector<double> values) {
+    values.resize(task.points);
+    return values;
+  };
+  root.put("found_x", of_each(media, [&](const ImagedMedium& m) {
+             return filled(scaled(m.fit.object.x, length_of_pixel));
+           }));
+  root.put("found_brightness",
+           of_each(media, [&](const ImagedMedium& m) { return filled(m.fit.object.brightness); }));
+  root.put("found_share", column(media, [](const ImagedMedium& m) { return m.score.found; }));
+  root.put("brightness_match",
+           column(media, [](const ImagedMedium& m) { return m.score.correlation; }));
+  const auto [rate, error] = success_rate(media);
+  root.put("success", rate, error);
+}
+
+void write_prediction(const ResultGroup& root, const LineScene& line,
+                      const std::vector<ImagedMedium>& media, const ImagingPrediction& prediction) {
+  double grains = 0;
+  for (const ImagedMedium& medium : media)
+    grains += medium.statistics.grains / static_cast<double>(media.size());
+  const auto signal =
+      peaks_over_noise(line.object, real_parts(prediction.correlation.value), grains);
+  root.number("pair", signal.size());
+  root.put("pair_distance", prediction.distance);
+  root.put("pair_correlation", prediction.correlation);
+  root.put("pair_signal", signal);
+}
+
+}  // namespace
+
+SuccessRate success_rate(const std::vector<ImagedMedium>& media) {
+  double found = 0;
+  for (const ImagedMedium& medium : media) found += medium.score.found == 1;
+  const auto n = static_cast<double>(media.size());
+  const double likely = (found + 1) / (n + 2);
+  return {found / n, std::sqrt(likely * (1 - likely) / (n + 3))};
+}
+
+void write_imaging(ResultFile& file, const LineScene& line, const ImagingTask& task,
+                   const std::vector<ImagedMedium>& media, const ImagingPrediction& prediction) {
+  const double moved = magnification(line), length_of_pixel = 1 / std::abs(moved);
+  const ResultGroup root(file, imaging_table);
+  write_axes(file, root, line, task, length_of_pixel, media.size());
+  root.put("object_x", line.object.x);
+  root.put("object_brightness", line.object.brightness);
+  root.put("frame", of_each(media, [](const ImagedMedium& m) { return m.frame; }));
+  root.attribute("frame", "magnification", moved);
+  root.put("autocorrelation",
+           of_each(media, [](const ImagedMedium& m) { return m.statistics.autocorrelation; }));
+  root.put("mean_autocorrelation", mean_autocorrelation(media));
+  root.put("contrast", column(media, [](const ImagedMedium& m) { return m.statistics.contrast; }));
+  root.put("grains", column(media, [](const ImagedMedium& m) { return m.statistics.grains; }));
+  root.put("noise", column(media, [](const ImagedMedium& m) { return m.statistics.noise; }));
+  if (task.points > 0) write_fits(root, task, media, length_of_pixel);
+  if (!prediction.distance.empty()) write_prediction(root, line, media, prediction);
+}
+
+}  // namespace flatspeckle::mc

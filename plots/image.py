@@ -1,0 +1,81 @@
+#!/usr/bin/env python3
+"""Pictures of `flatspeckle image`: a part of the first frame, its autocorrelation beside the peaks
+that are expected of each pair of points, and the points found in all frames beside the object."""
+
+from lib import style
+
+import matplotlib.pyplot as plt
+import numpy as np
+
+SHOWN = 400  # pixels of the frame
+
+
+def best_match(truth, found, resolution):
+    """Found points where most of them lie on the object: shifted, and mirrored where that helps."""
+    best, most = found, -1
+    for each in (found, -found):
+        for shift in np.subtract.outer(truth, each).ravel():
+            off = np.abs(np.subtract.outer(truth, each + shift)).min(axis=1)
+            score = np.sum(off <= resolution) - 0.01 * np.minimum(off, resolution).sum() / resolution
+            if score > most:
+                best, most = each + shift, score
+    return best
+
+
+def draw_frame(axis, result):
+    place = result.values("camera_place")
+    frame = result.values("frame")[0]
+    middle = len(place) // 2
+    part = slice(max(0, middle - SHOWN // 2), middle + SHOWN // 2)
+    axis.plot(place[part], frame[part], linewidth=0.8)
+    axis.set(xlabel="camera", ylabel="intensity over its mean", xlim=place[part][[0, -1]])
+
+
+def draw_autocorrelation(axis, result):
+    distance = result.values("distance")
+    all_frames = result.values("autocorrelation")
+    noise = result.values("noise")[0]
+    axis.axhspan(-noise, noise, color="0.85", label="noise")
+    axis.plot(distance, all_frames[0], linewidth=0.9, label="one frame")
+    if len(all_frames) > 1:
+        axis.plot(distance, result.values("mean_autocorrelation"), linewidth=0.9, color="0.35",
+                  linestyle="--", label=f"mean of {len(all_frames)}")
+    if result.has("pair_distance"):
+        height = result.values("pair_signal") * noise
+        axis.plot(result.values("pair_distance"), height, "v", markersize=5, markerfacecolor="none",
+                  color="C3", label="expected of pairs")
+    top = 1.15 * max(all_frames[0][distance > 4 * distance[1]].max(),
+                     result.values("contrast")[0]**2 / 3)
+    axis.set(xlabel="distance on the object", ylabel=r"$\langle\delta I\,\delta I'\rangle/"
+             r"\langle I\rangle^2$", ylim=(-4 * noise, top), xlim=(0, distance[-1]))
+    axis.legend()
+
+
+def draw_object(axis, result):
+    truth, brightness = result.values("object_x"), result.values("object_brightness")
+    axis.plot(truth, brightness / brightness.mean(), "o", markersize=9, markerfacecolor="none",
+              color="0.3", label="object")
+    if result.has("found_x"):
+        resolution = 3 * result.values("distance")[1]
+        for number, (x, b) in enumerate(zip(result.values("found_x"),
+                                            result.values("found_brightness"))):
+            axis.plot(best_match(truth, x, resolution), b, "x", color="C3", markersize=5,
+                      label=None if number else "found, each frame")
+    axis.set(xlabel="x of the object", ylabel="brightness over its mean",
+             ylim=(0, 1.35 * (brightness / brightness.mean()).max()))
+    axis.legend(loc="lower left")
+
+
+def draw(results):
+    result = results[0]
+    if not result.has("camera_place"):
+        raise style.Unusable(f"{result.path}: is no result of image")
+    figure, axes = plt.subplots(1, 3, figsize=(1.4 * style.PAGE, 2.9), layout="constrained")
+    draw_frame(axes[0], result)
+    draw_autocorrelation(axes[1], result)
+    draw_object(axes[2], result)
+    return figure
+
+
+if __name__ == "__main__":
+    style.main(draw, __doc__)

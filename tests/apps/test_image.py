@@ -1,0 +1,99 @@
+"""Pictures through a medium: what the file holds, that chance alone makes it, and what is refused."""
+
+import unittest
+
+import numpy as np
+
+from program import ProgramTest, attributes, datasets
+
+FOG = {"domain": "box", "width": 300, "depth": 20, "scatterer": "hg", "g": 0.9, "optical_depth": 5}
+IMAGE = {**FOG, "object_x": [0, 40, 130], "object_depth": -4000, "camera": [-0.4, 0.4],
+         "pixels": 512, "repeats": 3, "paths_per_field": 300, "prediction_paths": 4000}
+POINTS = {"domain": "box", "width": 40, "depth": 10, "scatterer": "point", "density": 0.1,
+          "object_x": [-6, 7], "object_depth": -200, "camera": [-0.5, 0.5], "pixels": 128}
+
+
+class Image(ProgramTest):
+    def image(self, name="image.h5", **keys):
+        self.output = self.call("image", **keys, out=name).stdout
+        return datasets(self.folder / name)
+
+    def test_contents(self):
+        found = self.image(**IMAGE)
+        self.assertEqual(found["frame"].shape, (3, 512))
+        np.testing.assert_allclose(found["frame"].mean(axis=1), 1)
+        self.assertEqual(found["found_x"].shape, (3, 3))
+        np.testing.assert_allclose(found["pair_distance"], [40, 130, 90])
+        self.assertTrue(np.all((found["pair_correlation"] > 0) & (found["pair_correlation"] <= 1)))
+        self.assertTrue(np.all(np.diff(found["pair_correlation"][[0, 2, 1]]) < 0))
+        np.testing.assert_allclose(found["mean_autocorrelation"],
+                                   found["autocorrelation"].mean(axis=0))
+        step = found["distance"][1]
+        pixel = 0.8 / 511
+        self.assertAlmostEqual(step, 4000 * pixel)
+        for name, values in found.items():
+            if values.dtype.kind == "f":
+                self.assertTrue(np.all(np.isfinite(values)), name)
+        self.assertIn("of the media", self.output)
+
+    def test_threads_do_not_matter_and_the_seed_does(self):
+        frames = {}
+        for name, extra in {"one": {"threads": 1}, "two": {"threads": 2},
+                            "other": {"seed": 2}}.items():
+            frames[name] = self.image(f"{name}.h5", **IMAGE, **extra)["frame"]
+        np.testing.assert_array_equal(frames["one"], frames["two"])
+        self.assertGreater(np.abs(frames["one"] - frames["other"]).max(), 0.1)
+
+    def test_more_points_less_contrast(self):
+        one = self.image(**{**IMAGE, "object_x": [0], "object_extent": 150})["contrast"].mean()
+        three = self.image(**IMAGE)["contrast"].mean()
+        self.assertAlmostEqual(one, 1, delta=0.15)
+        self.assertAlmostEqual(three, 3**-0.5, delta=0.12)
+
+    def test_noise(self):
+        dark = self.image(**IMAGE, photons=3, read_noise=2, background=1)
+        self.assertAlmostEqual(dark["frame"].mean(), 2, delta=0.1)
+        self.assertGreater(dark["frame"].std(), self.image(**IMAGE)["frame"].std())
+        self.refused("read_noise = 2: nothing here has use for it", **IMAGE, read_noise=2)
+
+    def test_exact_placements(self):
+        """Their contrast is that of light paths."""
+        contrast = {method: self.image(f"{method}.h5", **POINTS, method=method, points=0,
+                                       repeats=100)["contrast"] for method in ("paths", "wave")}
+        error = np.hypot(*(c.std() / 10 for c in contrast.values()))
+        self.assertLess(abs(contrast["wave"].mean() - contrast["paths"].mean()), 4 * error + 0.02)
+        self.assertIn("exact solver", attributes(self.folder / "wave.h5")["plan"])
+
+    def test_near_camera(self):
+        near = self.image(**{**IMAGE, "camera_depth": 1020, "camera": [-300, 300]})
+        self.assertAlmostEqual(near["distance"][1], 4 * 600 / 511)
+
+    def refused(self, words, **keys):
+        (self.folder / "image.h5").unlink(missing_ok=True)
+        line = self.call("image", **keys, out="image.h5", status=2).stderr
+        self.assertIn(words, line)
+        self.assertEqual(line.count("\n"), 1)
+        self.assertFalse((self.folder / "image.h5").exists())
+
+    def test_bad_input(self):
+        def other(**keys):
+            return {key: value for key, value in {**IMAGE, **keys}.items() if value is not None}
+        self.refused("object_depth = 3: must be outside of the box", **other(object_depth=3))
+        self.refused("camera_depth = 20: must be outside", **other(camera_depth=20))
+        self.refused("object_x", **other(object_x=None))
+        self.refused("object_depth", **other(object_depth=None))
+        self.refused("camera", **other(camera=None))
+        self.refused("camera = 0.1: must be more than the first", **other(camera=[0.4, 0.1]))
+        self.refused("camera: sines", **other(camera=[-2, 2]))
+        self.refused("object_brightness = 2: numbers for 3 points",
+                     **other(object_brightness=[1, 2]))
+        self.refused("object_brightness", **other(object_brightness=[1, 2, -1]))
+        self.refused("object_extent = 1000: takes", **other(object_extent=1000))
+        self.refused("slab", **other(domain="slab", width=None))
+        self.refused("photons", **other(photons=-1))
+        self.refused("pixels", **other(pixels=3))
+        self.refused("point", **other(method="wave", paths_per_field=None))
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,225 @@
+// Pictures of points through a medium: frames, their autocorrelation, the points found in it.
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include <doctest/doctest.h>
+
+#include "mc/imaging/imaging.h"
+#include "tests/mc/estimates.h"
+
+namespace flatspeckle::mc {
+
+namespace {
+
+using Positions = std::vector<int>;
+
+bool distances_distinct(const Positions& x, int apart) {
+  std::vector<int> distances;
+  for (std::size_t i = 0; i < x.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j) distances.push_back(std::abs(x[i] - x[j]));
+  std::sort(distances.begin(), distances.end());
+  if (distances.front() < apart) return false;
+  for (std::size_t i = 1; i < distances.size(); ++i)
+    if (distances[i] - distances[i - 1] < apart) return false;
+  return true;
+}
+
+/// With distinct distances.
+Positions random_ruler(std::size_t points, int longest, int apart, std::mt19937& random) {
+  std::uniform_int_distribution<int> place(0, longest);
+  for (;;) {
+    Positions x(points);
+    for (int& each : x) each = place(random);
+    if (distances_distinct(x, apart)) return x;
+  }
+}
+
+/// Independent pixels that are exponentially distributed; the pattern of each point is the first's
+/// shifted, with the correlation C_I of two intensities.
+std::vector<double> shifted_speckle(const Positions& x, std::size_t pixels, double correlation,
+                                    std::mt19937& random) {
+  std::normal_distribution<double> normal(0, std::sqrt(0.5));
+  const auto field = [&](std::size_t count) {
+    std::vector<Complex> u(count);
+    for (Complex& each : u) each = {normal(random), normal(random)};
+    return u;
+  };
+  const int longest = *std::max_element(x.begin(), x.end());
+  const auto shared = field(pixels + static_cast<std::size_t>(longest));
+  const double common = std::sqrt(std::sqrt(correlation)), own = std::sqrt(1 - common * common);
+  std::vector<double> frame(pixels);
+  for (const int shift : x) {
+    const auto alone = field(pixels);
+    for (std::size_t p = 0; p < pixels; ++p)
+      frame[p] += std::norm(common * shared[p + static_cast<std::size_t>(shift)] + own * alone[p]) /
+                  static_cast<double>(x.size());
+  }
+  return frame;
+}
+
+LineObject object_of(const Positions& x) {
+  return {{x.begin(), x.end()}, std::vector<double>(x.size(), 1)};
+}
+
+/// Peaks of height b_i b_j and half width 1.
+std::vector<double> ideal_autocorrelation(const LineObject& object, std::size_t lags) {
+  std::vector<double> values(lags);
+  for (std::size_t i = 0; i < object.x.size(); ++i)
+    for (std::size_t j = 0; j < object.x.size(); ++j) {
+      const double distance = object.x[i] - object.x[j];
+      for (std::size_t lag = 0; lag < lags; ++lag)
+        if (const double off = std::abs(static_cast<double>(lag) - distance); off < 2)
+          values[lag] += object.brightness[i] * object.brightness[j] * (1 - off / 2);
+    }
+  return values;
+}
+
+Scene forward_box(double width, double depth, double optical_depth) {
+  SceneSpec spec;
+  spec.scatterer = "hg";
+  spec.g = 0.9;
+  spec.width = width;
+  spec.depth = depth;
+  spec.optical_depth = optical_depth;
+  return make_scene(spec);
+}
+
+}  // namespace
+
+TEST_CASE("points are found in what their autocorrelation would be without noise") {
+  std::mt19937 random(1);
+  for (const std::size_t points : {2, 3, 4, 6, 8, 10}) {
+    CAPTURE(points);
+    LineObject object = object_of(random_ruler(points, 400, 3, random));
+    for (const bool equal : {true, false}) {
+      if (!equal)
+        for (double& b : object.brightness)
+          b = std::uniform_real_distribution<double>(1, 3)(random);
+      const SparseFit fit = sparse_search(ideal_autocorrelation(object, 420), {points, 2, 300});
+      const ImageScore match = score(object, fit.object, 1);
+      CHECK(match.found == 1);
+      CHECK(fit.explained > 0.99);
+      if (points > 2) CHECK(match.correlation > 0.99);
+    }
+  }
+}
+
+TEST_CASE("a search that cannot succeed finds nothing") {
+  const std::vector<double> few(8, 1.0);
+  CHECK(sparse_search(few, {6, 1}).object.x.empty());
+  const LineObject none;
+  CHECK(score(object_of({0, 4, 9}), none, 1).found == 0);
+}
+
+TEST_CASE("an object, shifted and mirrored, is the same picture") {
+  const LineObject truth{{0, 10, 25}, {1, 2, 3}}, image{{-7, -17, -32}, {1, 2, 3}};
+  const LineObject mirrored{{57, 72, 82}, {3, 2, 1}}, other{{0, 10, 30}, {1, 2, 3}};
+  for (const LineObject& same : {image, mirrored}) {
+    CHECK(score(truth, same, 0.1).found == 1);
+    CHECK(score(truth, same, 0.1).correlation == doctest::Approx(1));
+  }
+  CHECK(score(truth, other, 0.1).found == doctest::Approx(2.0 / 3));
+}
+
+TEST_CASE("peaks of pairs stand above the noise as predicted") {
+  std::mt19937 random(2);
+  struct Case {
+    std::size_t grains;
+    int points;
+    double correlation;
+  };
+  for (const auto& [grains, points, correlation] :
+       {Case{1000, 8, 1}, Case{10000, 8, 1}, Case{10000, 2, 0.3}, Case{100000, 32, 1},
+        Case{100000, 4, 0.6}}) {
+    CAPTURE(grains);
+    CAPTURE(points);
+    const std::size_t lags = grains > 5000 ? 128 : 32;
+    Positions x{0, 5};  // the others far away: their peaks are no noise
+    for (int i = 2; i < points; ++i) x.push_back(static_cast<int>(4 * lags) * i + 5 * i * i);
+    const int runs = grains > 50000 ? 20 : grains > 5000 ? 100 : 400;
+    double peak = 0, noise = 0;
+    for (int run = 0; run < runs; ++run) {
+      const auto found = frame_statistics(shifted_speckle(x, grains, correlation, random), lags);
+      peak += found.autocorrelation[5] / runs;
+      noise += found.noise * found.noise / runs;
+    }
+    const std::vector<double> all(static_cast<std::size_t>(points * (points - 1) / 2), correlation);
+    const double expected = peaks_over_noise(object_of(x), all, static_cast<double>(grains))[0];
+    CHECK(peak / std::sqrt(noise) == doctest::Approx(expected).epsilon(0.1));
+  }
+}
+
+TEST_CASE("points in the speckle of one frame are found") {
+  std::mt19937 random(3);
+  int found = 0;
+  constexpr int objects = 20;
+  for (int i = 0; i < objects; ++i) {
+    const Positions x = random_ruler(static_cast<std::size_t>(4 + i % 5), 200, 2, random);
+    const auto frame = shifted_speckle(x, 10000, 1, random);
+    const auto statistics = frame_statistics(frame, 220);
+    CHECK(statistics.grain == doctest::Approx(1).epsilon(0.1));
+    const auto fit = sparse_search(statistics.autocorrelation, {x.size(), 1, 300});
+    found += score(object_of(x), fit.object, 0.5).found == 1;
+  }
+  CHECK(found >= 18);
+}
+
+TEST_CASE("a camera's noise is what was asked for, and leaves the contrast") {
+  std::mt19937 random(4);
+  const auto clean = shifted_speckle({0}, 200000, 1, random);
+  const CameraNoise noise{.photons = 5, .read_noise = 2, .background = 0.5};
+  std::vector<double> frame = clean;
+  RandomStream stream(1, static_cast<std::uint64_t>(Stream::camera), 0);
+  expose(frame, noise, stream);
+  double mean = 0, square = 0;
+  for (std::size_t p = 0; p < frame.size(); ++p) {
+    const double off = frame[p] - clean[p] - noise.background;
+    mean += off / static_cast<double>(frame.size());
+    square += off * off / static_cast<double>(frame.size());
+  }
+  const double expected = noise_variance(noise) * 1.5 * 1.5;
+  CHECK(std::abs(mean) < 4 * std::sqrt(expected / static_cast<double>(frame.size())));
+  CHECK(square == doctest::Approx(expected).epsilon(0.02));
+  CHECK(frame_statistics(frame, 64, noise_variance(noise)).contrast ==
+        doctest::Approx(1 / 1.5).epsilon(0.02));
+}
+
+TEST_CASE("the speckle of a point that moves is shifted, and as alike as predicted") {
+  const LineObject object{{0, 30}, {1, 1}};
+  for (const bool near : {false, true}) {
+    LineCamera camera{std::nullopt, -0.3, 0.3, 700};
+    if (near) camera = {3020.0, -900, 900, 700};
+    const LineScene line = line_scene(forward_box(300, 20, 5), object, -3000, camera);
+    const double shift = magnification(line) * 30;
+    const auto expected = predicted(line, 20000, 1, 2);
+    REQUIRE(expected);
+    const FieldDraw draw =
+        fields_by_paths(line.scene, make_plan(line.scene, ReversedPaths::automatic), 1, 1000);
+    // correlation of the two intensities by shift, over frames
+    const int longest = static_cast<int>(2 * std::abs(shift));
+    std::vector<double> alike(2 * static_cast<std::size_t>(longest) + 1);
+    constexpr int frames = 40;
+    for (int frame = 0; frame < frames; ++frame) {
+      std::vector<Complex> field(1400);
+      std::vector<double> intensity(1400);
+      draw(static_cast<std::uint64_t>(frame), field, intensity);
+      const auto of = [&](std::size_t point) {
+        std::vector<double> one(700);
+        for (std::size_t p = 0; p < 700; ++p) one[p] = std::norm(field[point * 700 + p]);
+        return without_envelope(one, 100);
+      };
+      const auto first = of(0), second = of(1);
+      for (int s = -longest; s <= longest; ++s)
+        for (int p = 100; p < 600; ++p)
+          alike[static_cast<std::size_t>(s + longest)] += first[static_cast<std::size_t>(p)] *
+                                                          second[static_cast<std::size_t>(p + s)] /
+                                                          (500.0 * frames);
+    }
+    const auto peak = std::max_element(alike.begin(), alike.end());
+    CHECK(std::abs(static_cast<double>(peak - alike.begin()) - longest - shift) < 1.5);
+    CHECK(*peak == doctest::Approx(expected->correlation.value[0].real()).epsilon(0.2));
+  }
+}
+
+}  // namespace flatspeckle::mc
