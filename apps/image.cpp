@@ -127,12 +127,13 @@ std::size_t lags_of(const mc::LineScene& line, const std::optional<double>& obje
 mc::ImagingTask task_of(const Keys& keys, const ImageKeys& values, std::size_t points) {
   mc::ImagingTask task;
   task.repeats = static_cast<std::uint64_t>(keys.read(values.repeats));
-  task.noise.photons = keys.read(values.noise.photons);
-  task.noise.background = keys.read(values.noise.background);
-  if (task.noise.photons > 0) task.noise.read_noise = keys.read(values.noise.read_noise);
+  task.recovery.noise.photons = keys.read(values.noise.photons);
+  task.recovery.noise.background = keys.read(values.noise.background);
+  if (task.recovery.noise.photons > 0)
+    task.recovery.noise.read_noise = keys.read(values.noise.read_noise);
   if (const auto& sought = keys.read(values.points)) points = static_cast<std::size_t>(*sought);
-  if (points > 1) task.points = points;  // one point has no distances
-  if (task.points > 0) task.resolution_grains = keys.read(values.resolution);
+  if (points > 1) task.recovery.points = points;  // one point has no distances
+  if (task.recovery.points > 0) task.recovery.resolution_grains = keys.read(values.resolution);
   return task;
 }
 
@@ -211,7 +212,7 @@ void print_summary(const mc::LineScene& line, const mc::ImagingTask& task,
                 *std::min_element(correlation.begin(), correlation.end()),
                 *std::min_element(signals.begin(), signals.end()));
   }
-  if (task.points == 0) return;
+  if (task.recovery.points == 0) return;
   const auto [rate, error] = mc::success_rate(media);
   std::printf("all %zu points found in %.3g +- %.2g of the media\n", line.object.x.size(), rate,
               error);
@@ -247,7 +248,7 @@ int image(const Arguments& arguments) {
     throw InputError("domain", "slab", "pictures need a box");
   const mc::LineScene line =
       mc::line_scene(std::move(medium), std::move(object), object_depth, camera);
-  task.lags = lags_of(line, object_extent);
+  task.recovery.lags = lags_of(line, object_extent);
   check_memory(line, task);
   if (!command.settle()) return ExitStatus::done;
   catch_interrupts();

@@ -39,12 +39,11 @@ ImagedMedium imaged_one(const LineScene& line, const ImagingTask& task, const Fi
   ImagedMedium medium;
   medium.frame = incoherent_sum(field, line.object.brightness);
   RandomStream random(task.seed, static_cast<std::uint64_t>(Stream::camera), number);
-  expose(medium.frame, task.noise, random);
-  medium.statistics = frame_statistics(medium.frame, task.lags, noise_variance(task.noise));
-  if (task.points == 0) return medium;
-  const double resolution = task.resolution_grains * medium.statistics.grain;
-  medium.fit = sparse_search(medium.statistics.autocorrelation, {task.points, resolution});
-  medium.score = score(scaled(line.object, magnification(line)), medium.fit.object, resolution);
+  expose(medium.frame, task.recovery.noise, random);
+  static_cast<Recovered&>(medium) = recovered(medium.frame, task.recovery);
+  if (task.recovery.points > 0)
+    medium.score = score(scaled(line.object, magnification(line)), medium.fit.object,
+                         task.recovery.resolution_grains * medium.statistics.grain);
   return medium;
 }
 

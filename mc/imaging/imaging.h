@@ -5,31 +5,24 @@
 #include <vector>
 
 #include "core/numbers/statistics.h"
-#include "mc/imaging/camera_frame.h"
-#include "mc/imaging/frame_statistics.h"
 #include "mc/imaging/image_score.h"
 #include "mc/imaging/line_camera.h"
-#include "mc/imaging/sparse_search.h"
+#include "mc/imaging/recovery.h"
 #include "mc/speckle/speckle_field.h"
 
 namespace flatspeckle::mc {
 
 /// What is done with each of the media that a scene stands for.
 struct ImagingTask {
+  RecoveryTask recovery;  ///< its resolution is also what counts as found
   std::uint64_t repeats = 1;
-  CameraNoise noise;
-  std::size_t lags = 0;          ///< pixels: the longest distance that is looked for
-  std::size_t points = 0;        ///< that are looked for; 0: none
-  double resolution_grains = 1;  ///< of the search, and for a point to count as found
   std::uint64_t seed = 1;
   int threads = 1;
 };
 
 /// One medium: its frame, and what that tells.
-struct ImagedMedium {
+struct ImagedMedium : Recovered {
   std::vector<double> frame;
-  FrameStatistics statistics;
-  SparseFit fit;  ///< in pixels
   ImageScore score;
 };
 

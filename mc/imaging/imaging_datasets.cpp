@@ -81,7 +81,7 @@ void write_axes(ResultFile& file, const ResultGroup& root, const LineScene& line
   std::vector<double> places, distances;
   for (std::size_t p = 0; p < line.camera.pixels; ++p)
     places.push_back(line.camera.first + line.camera.step() * static_cast<double>(p));
-  for (std::size_t lag = 0; lag < task.lags; ++lag)
+  for (std::size_t lag = 0; lag < task.recovery.lags; ++lag)
     distances.push_back(static_cast<double>(lag) * length_of_pixel);
   root.put("camera_place", places);
   root.number("repeat", media);
@@ -91,10 +91,10 @@ void write_axes(ResultFile& file, const ResultGroup& root, const LineScene& line
 
 void write_fits(const ResultGroup& root, const ImagingTask& task,
                 const std::vector<ImagedMedium>& media, double length_of_pixel) {
-  root.number("sought", task.points);
+  root.number("sought", task.recovery.points);
   // a fit that found nothing has points at 0 without brightness
   const auto filled = [&](std::vector<double> values) {
-    values.resize(task.points);
+    values.resize(task.recovery.points);
     return values;
   };
   root.put("found_x", of_each(media, [&](const ImagedMedium& m) {
@@ -147,7 +147,7 @@ void write_imaging(ResultFile& file, const LineScene& line, const ImagingTask& t
   root.put("contrast", column(media, [](const ImagedMedium& m) { return m.statistics.contrast; }));
   root.put("grains", column(media, [](const ImagedMedium& m) { return m.statistics.grains; }));
   root.put("noise", column(media, [](const ImagedMedium& m) { return m.statistics.noise; }));
-  if (task.points > 0) write_fits(root, task, media, length_of_pixel);
+  if (task.recovery.points > 0) write_fits(root, task, media, length_of_pixel);
   if (!prediction.distance.empty()) write_prediction(root, line, media, prediction);
 }
 

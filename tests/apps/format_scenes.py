@@ -25,6 +25,7 @@ STAGE = {"field": "parabolic", "index": 1.5, "alpha": 0.5, "stage_box": [-1, -1,
          "pixels": [30, 20]}
 
 FILES = {
+    "frames.csv": "a,b\n" + "".join(f"{1 + i * i % 7},{1 + i * i % 11}\n" for i in range(80)),
     "sensors.csv": "x,z\n0,13\n3,15\n",
     "sources.csv": "x,z\n1,-3\n2,-4\n",
     "line.csv": "x,z\n" + "".join(f"{0.5 * i},14\n" for i in range(10)),
@@ -42,6 +43,7 @@ RUNS = {
     "intensity_near": ("covariance", {**BOX, **NEAR}),
     "full": ("covariance", {**BOX, **FAR, **FULL}),
     "image": ("image", IMAGE),
+    "recover": ("recover", {"frames": "frames.csv", "points": 2, "samples": None}),
     "image_near": ("image", {**IMAGE, "camera_depth": 200, "camera": [-50, 50]}),
     "full_near": ("covariance", {**BOX, **NEAR, **FULL}),
     "full_beams": ("covariance", {**BOX, "beam_waist": 2, "beam_positions": [0, 3], **FULL}),

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <span>
+
+#include "mc/imaging/camera_frame.h"
+#include "mc/imaging/frame_statistics.h"
+#include "mc/imaging/sparse_search.h"
+
+namespace flatspeckle::mc {
+
+/// What is looked for in a frame, and what is known of its camera.
+struct RecoveryTask {
+  CameraNoise noise;
+  std::size_t lags = 0;          ///< pixels: longer distances are not looked for
+  std::size_t points = 0;        ///< that are looked for; 0: none
+  double resolution_grains = 1;  ///< least distance of points
+};
+
+struct Recovered {
+  FrameStatistics statistics;
+  SparseFit fit;  ///< in pixels
+};
+
+/// Of one frame alone.
+Recovered recovered(std::span<const double> frame, const RecoveryTask& task);
+
+}  // namespace flatspeckle::mc

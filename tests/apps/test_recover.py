@@ -1,0 +1,63 @@
+"""Points found in frames of a user's own."""
+
+import unittest
+
+import numpy as np
+
+from program import ProgramTest, datasets
+
+PLACES = {"a": [0, 17, 60], "b": [0, 40, 51]}
+
+
+def frame(places, random, pixels=6000, background=0.0):
+    """Points whose speckle is the first one's, shifted; under a smooth envelope."""
+    u = random.normal(size=(2, pixels + 100))
+    speckle = (u**2).sum(axis=0) / 2
+    light = sum(speckle[x:x + pixels] for x in places) / len(places)
+    return (light + background) * (1 + 0.5 * np.sin(np.arange(pixels) / 2000))
+
+
+class Recover(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        random = np.random.default_rng(1)
+        columns = [frame(places, random) for places in PLACES.values()]
+        np.savetxt(self.folder / "frames.csv", np.transpose(columns), delimiter=",",
+                   header=",".join(PLACES), comments="")
+
+    def test_points(self):
+        output = self.call("recover", frames="frames.csv", points=3, longest=80, out="r.h5").stdout
+        found = datasets(self.folder / "r.h5")
+        for number, (name, places) in enumerate(PLACES.items()):
+            self.assertEqual(found["frame_name"][number].decode(), name)
+            x = found["found_x"][number]
+            mirrored = sorted(x[-1] - x)
+            self.assertIn(places, [list(x), mirrored])
+            self.assertGreater(found["explained"][number], 0.95)
+            self.assertAlmostEqual(found["contrast"][number], 3**-0.5, delta=0.05)
+        self.assertIn("points (pixels; mirrored or not)", output)
+
+    def refused(self, words, status=2, **keys):
+        line = self.call("recover", **keys, out="r.h5", status=status).stderr
+        self.assertIn(words, line)
+        self.assertEqual(line.count("\n"), 1)
+        self.assertFalse((self.folder / "r.h5").exists())
+
+    def test_bad_input(self):
+        self.refused("frames", points=3)
+        self.refused("points", frames="frames.csv")
+        self.refused("points", frames="frames.csv", points=1)
+        self.refused("longest = 1500: must be less than a quarter", frames="frames.csv", points=3,
+                     longest=1500)
+        self.refused("read_noise", frames="frames.csv", points=3, read_noise=1)
+        self.write("nan.csv", "a\n1\nnan\n2\n")
+        self.refused("nan.csv", frames="nan.csv", points=3)
+        self.write("dark.csv", "a\n" + "0\n" * 100)
+        self.refused("mean about pixel 0 is not positive", frames="dark.csv", points=3)
+        self.write("short.csv", "a\n1\n2\n")
+        self.refused("at least 64", frames="short.csv", points=3)
+        self.refused("no.csv", frames="no.csv", points=3)
+
+
+if __name__ == "__main__":
+    unittest.main()
