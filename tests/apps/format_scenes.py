@@ -43,7 +43,7 @@ RUNS = {
     "intensity_near": ("covariance", {**BOX, **NEAR}),
     "full": ("covariance", {**BOX, **FAR, **FULL}),
     "image": ("image", IMAGE),
-    "recover": ("recover", {"frames": "frames.csv", "points": 2, "samples": None}),
+    "recover": ("recover", {"frames": "frames.csv", "points": 2, "samples": None, "threads": None}),
     "image_near": ("image", {**IMAGE, "camera_depth": 200, "camera": [-50, 50]}),
     "full_near": ("covariance", {**BOX, **NEAR, **FULL}),
     "full_beams": ("covariance", {**BOX, "beam_waist": 2, "beam_positions": [0, 3], **FULL}),
