@@ -406,6 +406,7 @@ class AcceptedScenes(ProgramTest):
             for subcommand in (("sweep",) if tilts else ("solve",) if "\nmap = " in text else
                                ("field",) if "\nfields = " in text else
                                ("render",) if "\nsensor = " in text else
+                               ("image",) if "\nobject_x = " in text else
                                ("trace",) if "\nmax_length = " in text else
                                ("covariance",) if '"hg"' in text else ("validate", "covariance")):
                 with self.subTest(scene=scene.name, subcommand=subcommand):

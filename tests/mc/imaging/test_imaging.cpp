@@ -129,9 +129,11 @@ TEST_CASE("peaks of pairs stand above the noise as predicted") {
     int points;
     double correlation;
   };
-  for (const auto& [grains, points, correlation] :
-       {Case{1000, 8, 1}, Case{10000, 8, 1}, Case{10000, 2, 0.3}, Case{100000, 32, 1},
-        Case{100000, 4, 0.6}}) {
+  for (const Case& of : {Case{1000, 8, 1}, Case{10000, 8, 1}, Case{10000, 2, 0.3},
+                         Case{100000, 32, 1}, Case{100000, 4, 0.6}}) {
+    const std::size_t grains = of.grains;
+    const int points = of.points;
+    const double correlation = of.correlation;
     CAPTURE(grains);
     CAPTURE(points);
     const std::size_t lags = grains > 5000 ? 128 : 32;
