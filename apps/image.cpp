@@ -70,7 +70,8 @@ void add_keys(Keys& keys, ImageKeys& values) {
            "Fields by light paths, or of placements by the exact solver (wave)")
       .one_of({"paths", "wave"});
   keys.add("paths_per_field", values.paths_per_field,
-           "Light paths of each medium (default: so many that the excess kurtosis is 0.01)")
+           "Light paths of each medium (default: so many that the excess kurtosis is 0.01, and two "
+           "for each grain that can be seen)")
       .positive();
   add_wave_keys(keys, values.estimation);
   keys.remove("wave_samples");
@@ -137,39 +138,53 @@ mc::ImagingTask task_of(const Keys& keys, const ImageKeys& values, std::size_t p
   return task;
 }
 
-void check_memory(const mc::LineScene& line, const mc::ImagingTask& task) {
+/// keeps_fields: of all media, as those of the exact solver.
+void check_memory(const mc::LineScene& line, const mc::ImagingTask& task, bool keeps_fields) {
   const auto channels = static_cast<double>(line.scene.request.channels.size()),
              pixels = static_cast<double>(line.camera.pixels);
-  const double bytes = 32 * channels * task.threads +
-                       sizeof(double) * static_cast<double>(task.repeats) * 2 * pixels;
+  const double of_a_medium =
+      sizeof(double) * 2 * pixels + (keeps_fields ? sizeof(Complex) * channels : 0);
+  const double bytes =
+      32 * channels * task.threads + static_cast<double>(task.repeats) * of_a_medium;
   if (bytes > 0.8 * usable_memory())
     throw InputError("repeats", task.repeats,
                      "frames and fields need " + std::to_string(bytes / 1e9) + " GB");
+}
+
+/// Takes the mean over n fields off each; what is left is scaled to the variance of all fields.
+void remove_mean(std::vector<Complex>& fields, std::size_t channels) {
+  const std::size_t count = fields.size() / channels;
+  const auto n = static_cast<double>(count);
+  for (std::size_t c = 0; c < channels; ++c) {
+    Complex mean = 0;
+    for (std::size_t r = 0; r < count; ++r) mean += fields[r * channels + c] / n;
+    for (std::size_t r = 0; r < count; ++r) {
+      Complex& field = fields[r * channels + c];
+      field = (field - mean) * std::sqrt(n / (n - 1));
+    }
+  }
 }
 
 /// The exact solver's fields of all placements, less their mean: the speckle alone, as light paths
 /// have it. Nothing where a signal came.
 std::optional<mc::FieldDraw> exact_fields(const mc::LineScene& line, const mc::ImagingTask& task,
                                           double tolerance) {
-  const FieldJob exact = wave_estimation(line.scene, tolerance, task.seed).job;
+  const BatchJob exact = wave_estimation(line.scene, tolerance, task.seed).job.batches;
   const std::size_t channels = line.scene.request.channels.size();
   const auto fields = std::make_shared<std::vector<Complex>>(task.repeats * channels);
-  BatchJob job = exact.batches;
-  job.run = [&](std::uint64_t number, std::span<Complex> sums) {
-    if (number >= task.repeats) return;
-    exact.batches.run(number, sums);
+  BatchJob job;
+  job.size = 1;
+  job.run = [&](std::uint64_t number, std::span<Complex>) {
+    std::vector<Complex> sums(exact.size);
+    exact.run(number, sums);
     std::copy_n(sums.begin(), channels, fields->begin() + static_cast<long>(number * channels));
   };
   RunState state;
   run_batches(job, {{task.repeats, std::nullopt, std::nullopt}, task.threads, "wave", {}}, state);
   if (interrupted()) return std::nullopt;
-  const auto n = static_cast<double>(task.repeats);
-  return [=](std::uint64_t number, std::span<Complex> field, std::span<double>) {
-    for (std::size_t c = 0; c < channels; ++c) {
-      Complex mean = 0;
-      for (std::size_t r = 0; r < task.repeats; ++r) mean += (*fields)[r * channels + c] / n;
-      field[c] = ((*fields)[number * channels + c] - mean) * std::sqrt(n / (n - 1));
-    }
+  remove_mean(*fields, channels);
+  return [fields, channels](std::uint64_t number, std::span<Complex> field, std::span<double>) {
+    std::copy_n(fields->begin() + static_cast<long>(number * channels), channels, field.begin());
   };
 }
 
@@ -198,11 +213,10 @@ std::optional<Fields> fields_of(const mc::LineScene& line, const mc::ImagingTask
 void print_summary(const mc::LineScene& line, const mc::ImagingTask& task,
                    const std::vector<mc::ImagedMedium>& media,
                    const mc::ImagingPrediction& prediction) {
-  double contrast = 0, grains = 0;
-  for (const mc::ImagedMedium& medium : media) {
+  double contrast = 0;
+  for (const mc::ImagedMedium& medium : media)
     contrast += medium.statistics.contrast / static_cast<double>(media.size());
-    grains += medium.statistics.grains / static_cast<double>(media.size());
-  }
+  const double grains = mc::mean_grains(media);
   const double n = static_cast<double>(line.object.x.size());
   std::printf("contrast %.3f (equal points, Gaussian: %.3f), %.0f grains in a frame\n", contrast,
               1 / std::sqrt(n), grains);
@@ -249,7 +263,7 @@ int image(const Arguments& arguments) {
   const mc::LineScene line =
       mc::line_scene(std::move(medium), std::move(object), object_depth, camera);
   task.recovery.lags = lags_of(line, object_extent);
-  check_memory(line, task);
+  check_memory(line, task, method == "wave");
   if (!command.settle()) return ExitStatus::done;
   catch_interrupts();
   return session.once(

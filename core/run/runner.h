@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -18,8 +19,11 @@ struct BatchJob {
   /// Adds batch `number` to `sums` (zeroed). Called from several threads at once. A long one looks
   /// whether it is to stop (interrupt.h).
   std::function<void(std::uint64_t number, std::span<Complex> sums)> run;
-  /// Relative error of what has been merged so far; steers the target and fills the trace.
-  std::function<double(const GroupedSums&)> relative_error;
+  /// Relative error of what has been merged so far; steers the target and fills the trace. Unknown
+  /// unless it is asked for, as of runs that stop at a number of samples.
+  std::function<double(const GroupedSums&)> relative_error = [](const GroupedSums&) {
+    return std::numeric_limits<double>::infinity();
+  };
   /// Batches share their work, a solution without chance: a thread that took the second would wait
   /// for the first, and their number says nothing.
   bool one_by_one = false;

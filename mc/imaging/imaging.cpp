@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -13,10 +12,6 @@
 namespace flatspeckle::mc {
 
 namespace {
-
-double unknown_error(const GroupedSums&) {
-  return std::numeric_limits<double>::infinity();
-}
 
 /// Whether it ran to its end.
 bool run(const BatchJob& job, std::uint64_t samples, int threads, const char* label,
@@ -99,10 +94,15 @@ std::optional<std::vector<ImagedMedium>> imaged(const LineScene& line, const Ima
     // there are always two batches
     if (number < task.repeats) media[number] = imaged_one(line, task, draw, number);
   };
-  job.relative_error = unknown_error;
   RunState state;
   if (!run(job, task.repeats, task.threads, "frames", state)) return std::nullopt;
   return media;
+}
+
+double mean_grains(const std::vector<ImagedMedium>& media) {
+  double sum = 0;
+  for (const ImagedMedium& medium : media) sum += medium.statistics.grains;
+  return sum / static_cast<double>(media.size());
 }
 
 std::optional<ImagingPrediction> predicted(const LineScene& line, std::uint64_t paths,

@@ -31,6 +31,9 @@ struct ImagedMedium : Recovered {
 std::optional<std::vector<ImagedMedium>> imaged(const LineScene& line, const ImagingTask& task,
                                                 const FieldDraw& draw);
 
+/// Grains of a frame, averaged over all.
+double mean_grains(const std::vector<ImagedMedium>& media);
+
 /// What to expect without a picture. C_I of two points: |C|^2/(I I') of the one's light and of the
 /// other's, at places of the camera that differ by how far the picture moves.
 struct ImagingPrediction {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/result/result_group.h"
+#include "mc/imaging/recovery_datasets.h"
 
 namespace flatspeckle::mc {
 
@@ -42,21 +43,6 @@ const DatasetTable imaging_table{
 
 namespace {
 
-std::vector<double> scaled(std::vector<double> values, double factor) {
-  for (double& value : values) value *= factor;
-  return values;
-}
-
-template <class Value>
-std::vector<double> of_each(const std::vector<ImagedMedium>& media, const Value& value) {
-  std::vector<double> all;
-  for (const ImagedMedium& medium : media) {
-    const std::vector<double> one = value(medium);
-    all.insert(all.end(), one.begin(), one.end());
-  }
-  return all;
-}
-
 Estimate mean_autocorrelation(const std::vector<ImagedMedium>& media) {
   const auto n = static_cast<double>(media.size());
   const std::size_t lags = media.front().statistics.autocorrelation.size();
@@ -80,7 +66,7 @@ void write_axes(ResultFile& file, const ResultGroup& root, const LineScene& line
   file.bind("PLACE", {line.camera.depth ? "length" : "1"});
   std::vector<double> places, distances;
   for (std::size_t p = 0; p < line.camera.pixels; ++p)
-    places.push_back(line.camera.first + line.camera.step() * static_cast<double>(p));
+    places.push_back(line.camera.place(static_cast<double>(p)));
   for (std::size_t lag = 0; lag < task.recovery.lags; ++lag)
     distances.push_back(static_cast<double>(lag) * length_of_pixel);
   root.put("camera_place", places);
@@ -91,17 +77,7 @@ void write_axes(ResultFile& file, const ResultGroup& root, const LineScene& line
 
 void write_fits(const ResultGroup& root, const ImagingTask& task,
                 const std::vector<ImagedMedium>& media, double length_of_pixel) {
-  root.number("sought", task.recovery.points);
-  // a fit that found nothing has points at 0 without brightness
-  const auto filled = [&](std::vector<double> values) {
-    values.resize(task.recovery.points);
-    return values;
-  };
-  root.put("found_x", of_each(media, [&](const ImagedMedium& m) {
-             return filled(scaled(m.fit.object.x, length_of_pixel));
-           }));
-  root.put("found_brightness",
-           of_each(media, [&](const ImagedMedium& m) { return filled(m.fit.object.brightness); }));
+  write_points(root, media, task.recovery.points, length_of_pixel);
   root.put("found_share", column(media, [](const ImagedMedium& m) { return m.score.found; }));
   root.put("brightness_match",
            column(media, [](const ImagedMedium& m) { return m.score.correlation; }));
@@ -111,11 +87,8 @@ void write_fits(const ResultGroup& root, const ImagingTask& task,
 
 void write_prediction(const ResultGroup& root, const LineScene& line,
                       const std::vector<ImagedMedium>& media, const ImagingPrediction& prediction) {
-  double grains = 0;
-  for (const ImagedMedium& medium : media)
-    grains += medium.statistics.grains / static_cast<double>(media.size());
   const auto signal =
-      peaks_over_noise(line.object, real_parts(prediction.correlation.value), grains);
+      peaks_over_noise(line.object, real_parts(prediction.correlation.value), mean_grains(media));
   root.number("pair", signal.size());
   root.put("pair_distance", prediction.distance);
   root.put("pair_correlation", prediction.correlation);
@@ -139,14 +112,11 @@ void write_imaging(ResultFile& file, const LineScene& line, const ImagingTask& t
   write_axes(file, root, line, task, length_of_pixel, media.size());
   root.put("object_x", line.object.x);
   root.put("object_brightness", line.object.brightness);
-  root.put("frame", of_each(media, [](const ImagedMedium& m) { return m.frame; }));
+  root.put("frame",
+           of_each(media, line.camera.pixels, [](const ImagedMedium& m) { return m.frame; }));
   root.attribute("frame", "magnification", moved);
-  root.put("autocorrelation",
-           of_each(media, [](const ImagedMedium& m) { return m.statistics.autocorrelation; }));
   root.put("mean_autocorrelation", mean_autocorrelation(media));
-  root.put("contrast", column(media, [](const ImagedMedium& m) { return m.statistics.contrast; }));
-  root.put("grains", column(media, [](const ImagedMedium& m) { return m.statistics.grains; }));
-  root.put("noise", column(media, [](const ImagedMedium& m) { return m.statistics.noise; }));
+  write_statistics(root, media);
   if (task.recovery.points > 0) write_fits(root, task, media, length_of_pixel);
   if (!prediction.distance.empty()) write_prediction(root, line, media, prediction);
 }

@@ -1,5 +1,6 @@
 #include "mc/imaging/line_camera.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -23,10 +24,15 @@ void require_outside(const Scene& medium, const std::string& key, double z) {
                          ", by more than a scatterer's radius");
 }
 
+/// Of the camera by which a sine moves what it sees.
+double length_of_sine(const LineScene& line) {
+  return line.camera.depth ? distance_to(line.scene.domain, *line.camera.depth) : 1;
+}
+
 }  // namespace
 
 View view_at(const LineCamera& camera, double pixel) {
-  const double place = camera.first + camera.step() * pixel;
+  const double place = camera.place(pixel);
   return camera.depth ? near_sensor({place, *camera.depth}) : far_view(std::asin(place));
 }
 
@@ -44,17 +50,13 @@ LineScene line_scene(Scene medium, LineObject object, double object_depth,
 }
 
 double most_grains(const LineScene& line) {
-  const Domain& domain = line.scene.domain;
-  const double range = line.camera.last - line.camera.first,
-               away = line.camera.depth ? distance_to(domain, *line.camera.depth) : 1;
-  return std::min(range / away, 2.0) * domain.width / line.scene.wavelength;
+  const double sines = (line.camera.last - line.camera.first) / length_of_sine(line);
+  return std::min(sines, 2.0) * line.scene.domain.width / line.scene.wavelength;
 }
 
 double magnification(const LineScene& line) {
-  const Domain& domain = line.scene.domain;
-  const double tilt = -1 / distance_to(domain, line.object_depth);
-  const double away = line.camera.depth ? distance_to(domain, *line.camera.depth) : 1;
-  return tilt * away / line.camera.step();
+  const double tilt = -1 / distance_to(line.scene.domain, line.object_depth);
+  return tilt * length_of_sine(line) / line.camera.step();
 }
 
 }  // namespace flatspeckle::mc

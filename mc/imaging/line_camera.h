@@ -16,6 +16,7 @@ struct LineCamera {
   std::size_t pixels = 2;
 
   double step() const { return (last - first) / static_cast<double>(pixels - 1); }
+  double place(double pixel) const { return first + step() * pixel; }
 };
 
 /// An object on a line outside the box, its camera, and the medium between or beside them.

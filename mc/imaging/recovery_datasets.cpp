@@ -1,7 +1,5 @@
 #include "mc/imaging/recovery_datasets.h"
 
-#include "core/result/result_group.h"
-
 namespace flatspeckle::mc {
 
 const DatasetTable recovery_table{
@@ -22,40 +20,15 @@ const DatasetTable recovery_table{
         {"explained", Data::real, "frame", "1",
          "how well the brightness fits the peaks of all pairs, at most 1"}}};
 
-namespace {
-
-template <class Value>
-std::vector<double> of_each(const std::vector<Recovered>& all, std::size_t count,
-                            const Value& value) {
-  std::vector<double> joined;
-  for (const Recovered& one : all) {
-    std::vector<double> values = value(one);
-    values.resize(count);
-    joined.insert(joined.end(), values.begin(), values.end());
-  }
-  return joined;
-}
-
-}  // namespace
-
 void write_recovery(ResultFile& file, const std::vector<std::string>& names,
                     const RecoveryTask& task, const std::vector<Recovered>& all) {
   const ResultGroup root(file, recovery_table);
   root.number("frame", all.size());
   root.put("frame_name", names);
   root.number("lag", task.lags);
-  root.number("sought", task.points);
-  root.put("autocorrelation", of_each(all, task.lags, [](const Recovered& one) {
-             return one.statistics.autocorrelation;
-           }));
-  root.put("contrast", column(all, [](const Recovered& one) { return one.statistics.contrast; }));
-  root.put("grains", column(all, [](const Recovered& one) { return one.statistics.grains; }));
-  root.put("noise", column(all, [](const Recovered& one) { return one.statistics.noise; }));
-  root.put("found_x",
-           of_each(all, task.points, [](const Recovered& one) { return one.fit.object.x; }));
-  root.put("found_brightness", of_each(all, task.points, [](const Recovered& one) {
-             return one.fit.object.brightness;
-           }));
+  write_statistics(root, all);
+  constexpr double in_pixels = 1;
+  write_points(root, all, task.points, in_pixels);
   root.put("explained", column(all, [](const Recovered& one) { return one.fit.explained; }));
 }
 

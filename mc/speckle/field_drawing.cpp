@@ -1,7 +1,6 @@
 #include "mc/speckle/field_drawing.h"
 
 #include <algorithm>
-#include <limits>
 
 #include "core/run/interrupt.h"
 #include "mc/estimators/covariance_estimator.h"
@@ -19,10 +18,6 @@ constexpr std::uint64_t siegert_paths = 20000;
 
 /// Few and long: the runs have a fixed length, and a batch costs a pass over the covariance.
 constexpr std::uint64_t covariance_batches = 128;
-
-double unknown_error(const GroupedSums&) {
-  return std::numeric_limits<double>::infinity();
-}
 
 /// One run after the other, and what they cost.
 class Drawing {
@@ -70,7 +65,7 @@ class Drawing {
     Plan plan = make_plan(scene, settings_.reversed);
     plan.paths_per_batch = (paths + covariance_batches - 1) / covariance_batches;
     FieldJob job = covariance_job(scene, plan, settings_.seed);
-    job.batches.relative_error = unknown_error;
+    job.batches.relative_error = BatchJob().relative_error;
     RunState state = run("covariance", job.batches, paths);
     if (siegert_applies())
       drawn_.siegert = siegert_relation(state.sums, job.covariance, scene_.request.views.size());
@@ -102,7 +97,6 @@ class Drawing {
       draw(number, std::span(drawn_.field).subspan(number * channels, channels), intensity);
       std::copy(intensity.begin(), intensity.end(), sums.begin());
     };
-    job.relative_error = unknown_error;
     return job;
   }
 

@@ -97,7 +97,6 @@ BatchJob survey_job(const Scene& scene, const Plan& general, std::uint64_t seed)
     batches(first_survey_batch + number, accumulator);
     accumulator.finish(sums);
   };
-  job.relative_error = [](const GroupedSums&) { return std::numeric_limits<double>::infinity(); };
   return job;
 }
 
