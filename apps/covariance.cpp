@@ -1,11 +1,11 @@
 #include <cstdio>
 
-#include "apps/extras.h"
-#include "apps/moments_table.h"
-#include "apps/subcommands.h"
+#include "apps/command/subcommands.h"
+#include "apps/results/extras.h"
+#include "apps/results/moments_table.h"
 #include "core/session/session.h"
 #include "flatland/scene/scene_datasets.h"
-#include "mc/transport/refinement.h"
+#include "mc/slab/refinement.h"
 
 namespace flatspeckle::apps {
 

@@ -3,8 +3,8 @@
 #include <cstdio>
 #include <limits>
 
-#include "apps/estimation.h"
-#include "apps/subcommands.h"
+#include "apps/command/subcommands.h"
+#include "apps/results/estimation.h"
 #include "core/error.h"
 #include "core/numbers/blas.h"
 #include "core/numbers/memory.h"

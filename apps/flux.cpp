@@ -2,13 +2,13 @@
 
 #include <cstdio>
 
-#include "apps/estimation.h"
-#include "apps/subcommands.h"
+#include "apps/command/subcommands.h"
+#include "apps/results/estimation.h"
 #include "core/session/session.h"
 #include "flatland/scene/scene_datasets.h"
+#include "mc/slab/refinement.h"
+#include "mc/slab/slab_flux.h"
 #include "mc/space/space_flux.h"
-#include "mc/transport/refinement.h"
-#include "mc/transport/slab_flux.h"
 
 namespace flatspeckle::apps {
 

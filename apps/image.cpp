@@ -6,8 +6,8 @@
 #include <string>
 #include <utility>
 
-#include "apps/estimation.h"
-#include "apps/subcommands.h"
+#include "apps/command/subcommands.h"
+#include "apps/results/estimation.h"
 #include "core/error.h"
 #include "core/numbers/memory.h"
 #include "core/run/interrupt.h"

@@ -2,7 +2,7 @@
 #include <cstring>
 #include <iostream>
 
-#include "apps/subcommands.h"
+#include "apps/command/subcommands.h"
 #include "core/error.h"
 
 namespace flatspeckle::apps {

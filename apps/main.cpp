@@ -10,7 +10,7 @@
 #include <thread>
 
 #include "apps/blas_kernel.h"
-#include "apps/subcommands.h"
+#include "apps/command/subcommands.h"
 #include "core/error.h"
 #include "core/result/version.h"
 #include "core/run/interrupt.h"

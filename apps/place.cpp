@@ -6,8 +6,8 @@
 #include <numeric>
 #include <sstream>
 
-#include "apps/datasets.h"
-#include "apps/subcommands.h"
+#include "apps/command/subcommands.h"
+#include "apps/results/datasets.h"
 #include "core/error.h"
 #include "core/keys/number_text.h"
 #include "core/result/atomic_file.h"

@@ -5,7 +5,7 @@
 #include <string>
 #include <utility>
 
-#include "apps/subcommands.h"
+#include "apps/command/subcommands.h"
 #include "core/error.h"
 #include "core/keys/csv.h"
 #include "core/session/session.h"

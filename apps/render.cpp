@@ -1,12 +1,12 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "apps/subcommands.h"
+#include "apps/command/subcommands.h"
 #include "core/session/identity.h"
 #include "core/session/session.h"
-#include "grin/estimators/energy_datasets.h"
-#include "grin/estimators/map_datasets.h"
-#include "grin/estimators/render_datasets.h"
+#include "grin/render/energy_datasets.h"
+#include "grin/render/map_datasets.h"
+#include "grin/render/render_datasets.h"
 #include "grin/scene/render_values.h"
 
 namespace flatspeckle::apps {

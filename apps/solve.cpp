@@ -4,8 +4,8 @@
 #include <numbers>
 #include <sstream>
 
-#include "apps/field_map_output.h"
-#include "apps/subcommands.h"
+#include "apps/command/subcommands.h"
+#include "apps/results/field_map_output.h"
 #include "core/error.h"
 #include "core/keys/csv.h"
 #include "core/numbers/blas.h"

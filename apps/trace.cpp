@@ -3,7 +3,7 @@
 #include <iomanip>
 #include <sstream>
 
-#include "apps/subcommands.h"
+#include "apps/command/subcommands.h"
 #include "core/session/session.h"
 #include "grin/rays/light_speed.h"
 #include "grin/scene/trace_datasets.h"

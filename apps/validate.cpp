@@ -4,16 +4,16 @@
 #include <functional>
 #include <numbers>
 
-#include "apps/datasets.h"
-#include "apps/estimation.h"
-#include "apps/moments_table.h"
-#include "apps/subcommands.h"
+#include "apps/command/subcommands.h"
+#include "apps/results/datasets.h"
+#include "apps/results/estimation.h"
+#include "apps/results/moments_table.h"
 #include "core/error.h"
 #include "core/result/result_group.h"
 #include "core/session/session.h"
 #include "flatland/scene/scene_datasets.h"
+#include "mc/slab/refinement.h"
 #include "mc/theory/moments_datasets.h"
-#include "mc/transport/refinement.h"
 
 namespace flatspeckle::apps {
 

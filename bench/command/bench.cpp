@@ -4,7 +4,7 @@
 
 #include <omp.h>
 
-#include "apps/subcommands.h"
+#include "apps/command/subcommands.h"
 #include "bench/command/bench_log.h"
 #include "bench/command/bench_output.h"
 #include "core/error.h"

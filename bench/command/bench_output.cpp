@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "apps/datasets.h"
+#include "apps/results/datasets.h"
 #include "core/result/result_group.h"
 
 namespace flatspeckle::apps {

@@ -9,7 +9,7 @@
 #include "bench/scenes/render_scenes.h"
 #include "core/run/stopwatch.h"
 #include "mc/estimators/covariance_estimator.h"
-#include "mc/transport/slab_covariance.h"
+#include "mc/slab/slab_covariance.h"
 
 namespace flatspeckle::bench {
 

@@ -5,7 +5,7 @@
 
 #include "bench/oracles/lamp_map.h"
 #include "bench/scenes/render_scenes.h"
-#include "grin/estimators/map_datasets.h"
+#include "grin/render/map_datasets.h"
 
 namespace flatspeckle::bench {
 

@@ -8,9 +8,9 @@
 #include "bench/error/error_paths.h"
 #include "bench/oracles/discrete_ordinates.h"
 #include "core/run/stopwatch.h"
+#include "mc/slab/slab_covariance.h"
 #include "mc/space/space_covariance.h"
 #include "mc/space/space_scene.h"
-#include "mc/transport/slab_covariance.h"
 
 namespace flatspeckle::bench {
 

@@ -3,9 +3,9 @@
 
 #include "bench/plan/plan_rooms.h"
 #include "bench/plan/plan_timing.h"
+#include "grin/curved/curved_space.h"
 #include "grin/rays/trace.h"
-#include "grin/space/curved_space.h"
-#include "grin/space/straight_space.h"
+#include "grin/straight/straight_space.h"
 
 namespace flatspeckle::bench {
 

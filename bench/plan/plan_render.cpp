@@ -6,9 +6,9 @@
 #include "bench/plan/plan_rooms.h"
 #include "bench/plan/plan_timing.h"
 #include "bench/scenes/render_scenes.h"
-#include "grin/estimators/map_datasets.h"
 #include "grin/estimators/path_kernels.h"
 #include "grin/estimators/tracer.h"
+#include "grin/render/map_datasets.h"
 
 namespace flatspeckle::bench {
 

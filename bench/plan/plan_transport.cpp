@@ -3,9 +3,9 @@
 #include "bench/plan/plan_rooms.h"
 #include "bench/plan/plan_timing.h"
 #include "bench/scenes/standard_scenes.h"
+#include "mc/slab/slab_covariance.h"
 #include "mc/space/space_covariance.h"
 #include "mc/space/space_scene.h"
-#include "mc/transport/slab_covariance.h"
 
 namespace flatspeckle::bench {
 

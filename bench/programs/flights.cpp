@@ -9,8 +9,8 @@
 #include <string>
 
 #include "core/run/stopwatch.h"
-#include "grin/space/curved_space.h"
-#include "grin/space/straight_space.h"
+#include "grin/curved/curved_space.h"
+#include "grin/straight/straight_space.h"
 
 using namespace flatspeckle;
 using namespace flatspeckle::grin;

@@ -9,10 +9,10 @@
 
 #include "bench/oracles/multiprecision.h"
 #include "bench/stability/extreme_rows.h"
+#include "grin/curved/curved_space.h"
 #include "grin/media/free_flight.h"
 #include "grin/media/phase_function.h"
-#include "grin/space/curved_space.h"
-#include "grin/space/straight_space.h"
+#include "grin/straight/straight_space.h"
 #include "mc/walk/stretched_flight.h"
 
 namespace flatspeckle::bench {

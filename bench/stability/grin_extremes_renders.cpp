@@ -8,7 +8,7 @@
 #include "bench/oracles/peierls_slab.h"
 #include "bench/scenes/furnaces.h"
 #include "bench/stability/extreme_rows.h"
-#include "grin/estimators/map_datasets.h"
+#include "grin/render/map_datasets.h"
 
 namespace flatspeckle::bench {
 

@@ -7,10 +7,10 @@
 #include "bench/stability/mc_extremes.h"
 #include "grin/media/phase_function.h"
 #include "mc/estimators/flux_walk.h"
+#include "mc/slab/slab_covariance.h"
+#include "mc/slab/slab_flux.h"
 #include "mc/space/space_flux.h"
 #include "mc/space/space_scene.h"
-#include "mc/transport/slab_covariance.h"
-#include "mc/transport/slab_flux.h"
 
 namespace flatspeckle::bench {
 

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "grin/estimators/subpath.h"
-#include "grin/space/straight_space.h"
+#include "grin/paths/subpath.h"
+#include "grin/straight/straight_space.h"
 
 namespace flatspeckle::grin {
 

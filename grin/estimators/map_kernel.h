@@ -4,9 +4,9 @@
 #include <memory>
 
 #include "core/numbers/complex.h"
+#include "grin/curved/curved_space.h"
 #include "grin/estimators/light_map.h"
-#include "grin/estimators/transport.h"
-#include "grin/space/curved_space.h"
+#include "grin/paths/transport.h"
 
 namespace flatspeckle::grin {
 

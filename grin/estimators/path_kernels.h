@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "core/numbers/random.h"
-#include "grin/estimators/film.h"
-#include "grin/estimators/transport.h"
-#include "grin/space/curved_space.h"
+#include "grin/curved/curved_space.h"
+#include "grin/paths/film.h"
+#include "grin/paths/transport.h"
 #include "grin/space/render_plan.h"
 
 namespace flatspeckle::grin {

@@ -1,7 +1,7 @@
 #include <numbers>
 
-#include "grin/estimators/bidirectional.h"
 #include "grin/estimators/path_kernels_straight.h"
+#include "grin/paths/bidirectional.h"
 
 namespace flatspeckle::grin {
 

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "grin/estimators/bidirectional.h"
 #include "grin/estimators/path_kernels.h"
-#include "grin/space/straight_space.h"
+#include "grin/paths/bidirectional.h"
+#include "grin/straight/straight_space.h"
 
 namespace flatspeckle::grin {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "grin/space/straight_space.h"
+#include "grin/straight/straight_space.h"
 
 namespace flatspeckle::grin {
 

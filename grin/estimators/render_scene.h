@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "grin/ends/light.h"
-#include "grin/ends/sensor.h"
-#include "grin/estimators/film.h"
 #include "grin/estimators/light_map.h"
 #include "grin/fields/any_index_field.h"
+#include "grin/lights/light.h"
+#include "grin/paths/film.h"
+#include "grin/sensors/sensor.h"
 #include "grin/space/stage.h"
 
 namespace flatspeckle::grin {

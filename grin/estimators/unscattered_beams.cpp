@@ -5,7 +5,7 @@
 #include <limits>
 #include <numbers>
 
-#include "grin/space/straight_space.h"
+#include "grin/straight/straight_space.h"
 
 namespace flatspeckle::grin {
 

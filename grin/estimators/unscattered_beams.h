@@ -2,8 +2,8 @@
 
 #include <memory>
 
+#include "grin/curved/curved_space.h"
 #include "grin/estimators/path_kernels.h"
-#include "grin/space/curved_space.h"
 
 namespace flatspeckle::grin {
 

@@ -3,7 +3,6 @@
 #include <tuple>
 #include <variant>
 
-#include "grin/fields/field_sum.h"
 #include "grin/fields/fisheye.h"
 #include "grin/fields/focused_sound.h"
 #include "grin/fields/gaussian_blobs.h"
@@ -15,6 +14,7 @@
 #include "grin/fields/spline_field.h"
 #include "grin/fields/tanh_ramp.h"
 #include "grin/fields/ultrasound.h"
+#include "grin/index/field_sum.h"
 
 namespace flatspeckle::grin {
 

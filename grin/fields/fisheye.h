@@ -1,7 +1,7 @@
 #pragma once
 
-#include "grin/fields/field_kind.h"
-#include "grin/fields/radial_field.h"
+#include "grin/index/field_kind.h"
+#include "grin/index/radial_field.h"
 
 namespace flatspeckle::grin {
 

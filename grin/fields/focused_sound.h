@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "grin/fields/sound.h"
+#include "grin/index/sound.h"
 
 namespace flatspeckle::grin {
 

@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "grin/fields/field_kind.h"
+#include "grin/index/field_kind.h"
 
 namespace flatspeckle::grin {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "grin/fields/field_kind.h"
+#include "grin/index/field_kind.h"
 
 namespace flatspeckle::grin {
 

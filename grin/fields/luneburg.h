@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "grin/fields/field_kind.h"
-#include "grin/fields/radial_field.h"
+#include "grin/index/field_kind.h"
+#include "grin/index/radial_field.h"
 
 namespace flatspeckle::grin {
 

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "grin/fields/guide.h"
-#include "grin/fields/radial_field.h"
+#include "grin/index/guide.h"
+#include "grin/index/radial_field.h"
 
 namespace flatspeckle::grin {
 

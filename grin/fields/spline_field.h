@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "grin/fields/field_kind.h"
-#include "grin/fields/sample_grid.h"
+#include "grin/index/field_kind.h"
+#include "grin/index/sample_grid.h"
 
 namespace flatspeckle::grin {
 

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "grin/fields/field_kind.h"
+#include "grin/index/field_kind.h"
 
 namespace flatspeckle::grin {
 

@@ -4,8 +4,8 @@
 #include <complex>
 #include <memory>
 
-#include "grin/fields/bessel_profile.h"
-#include "grin/fields/sound.h"
+#include "grin/index/bessel_profile.h"
+#include "grin/index/sound.h"
 
 namespace flatspeckle::grin {
 

@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "grin/fields/sample_grid.h"
+#include "grin/index/sample_grid.h"
 
 namespace flatspeckle::grin {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "grin/fields/index_field.h"
+#include "grin/index/index_field.h"
 
 namespace flatspeckle::grin {
 

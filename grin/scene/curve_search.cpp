@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "core/keys/number_text.h"
-#include "grin/space/ray_field.h"
+#include "grin/curved/ray_field.h"
 
 namespace flatspeckle::grin {
 

@@ -1,7 +1,7 @@
 #include "grin/scene/ray_tracing.h"
 
 #include "core/run/parallel.h"
-#include "grin/space/ray_field.h"
+#include "grin/curved/ray_field.h"
 
 namespace flatspeckle::grin {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "grin/estimators/render_job.h"
+#include "grin/render/render_job.h"
 #include "grin/scene/stage_values.h"
 
 namespace flatspeckle::grin {

@@ -5,8 +5,8 @@
 #include <numbers>
 
 #include "grin/connections/geometric_spreading.h"
+#include "grin/curved/ray_field.h"
 #include "grin/media/start_directions.h"
-#include "grin/space/ray_field.h"
 
 namespace flatspeckle::grin {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "mc/transport/dense.h"
+#include "mc/numbers/dense.h"
 
 namespace flatspeckle::mc {
 

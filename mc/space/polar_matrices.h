@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
+#include "mc/numbers/dual_dense.h"
 #include "mc/space/space_slope.h"
 #include "mc/transport/angular_grid.h"
-#include "mc/transport/dual_dense.h"
 
 namespace flatspeckle::mc {
 

@@ -7,8 +7,8 @@
 
 #include "core/numbers/blas.h"
 #include "core/run/parallel.h"
+#include "mc/numbers/divided_difference.h"
 #include "mc/space/azimuthal_modes.h"
-#include "mc/transport/divided_difference.h"
 
 namespace flatspeckle::mc {
 

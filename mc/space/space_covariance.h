@@ -1,8 +1,8 @@
 #pragma once
 
+#include "mc/slab/refinement.h"
 #include "mc/space/space_chains.h"
 #include "mc/space/space_slab.h"
-#include "mc/transport/refinement.h"
 
 namespace flatspeckle::mc {
 

@@ -5,9 +5,9 @@
 #include <numeric>
 
 #include "mc/estimators/flux_walk.h"
+#include "mc/slab/flux_refinement.h"
 #include "mc/space/azimuthal_modes.h"
 #include "mc/space/space_scene.h"
-#include "mc/transport/flux_refinement.h"
 
 namespace flatspeckle::mc {
 

@@ -2,7 +2,7 @@
 
 #include "flatland/scene/scene.h"
 #include "mc/estimators/flux.h"
-#include "mc/transport/refinement.h"
+#include "mc/slab/refinement.h"
 
 namespace flatspeckle::mc {
 

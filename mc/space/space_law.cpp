@@ -5,7 +5,7 @@
 #include <numbers>
 #include <utility>
 
-#include "mc/transport/gauss.h"
+#include "mc/numbers/gauss.h"
 
 namespace flatspeckle::mc {
 

@@ -9,8 +9,8 @@
 #include "grin/media/rayleigh_phase.h"
 #include "grin/media/table_phase.h"
 #include "grin/media/two_term_phase.h"
+#include "mc/slab/range_refinement.h"
 #include "mc/transport/bulk_slope.h"
-#include "mc/transport/range_refinement.h"
 
 namespace flatspeckle::mc {
 

@@ -2,8 +2,8 @@
 
 #include "flatland/request/field_moments.h"
 #include "flatland/scene/scene.h"
+#include "mc/slab/transport_jobs.h"
 #include "mc/space/space_covariance.h"
-#include "mc/transport/transport_jobs.h"
 
 namespace flatspeckle::mc {
 

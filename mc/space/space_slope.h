@@ -3,8 +3,8 @@
 #include <type_traits>
 #include <vector>
 
+#include "mc/numbers/dual.h"
 #include "mc/space/space_law.h"
-#include "mc/transport/dual.h"
 
 namespace flatspeckle::mc {
 

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "core/numbers/complex.h"
-#include "mc/transport/dense.h"
-#include "mc/transport/gauss.h"
+#include "mc/numbers/dense.h"
+#include "mc/numbers/gauss.h"
 
 namespace flatspeckle::mc {
 

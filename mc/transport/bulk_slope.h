@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "mc/estimators/bulk_parameter.h"
-#include "mc/transport/dual.h"
+#include "mc/numbers/dual.h"
 #include "mc/transport/scattering_law.h"
 
 namespace flatspeckle::mc {

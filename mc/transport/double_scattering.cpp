@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "core/run/interrupt.h"
-#include "mc/transport/divided_difference.h"
-#include "mc/transport/gauss.h"
+#include "mc/numbers/divided_difference.h"
+#include "mc/numbers/gauss.h"
 
 namespace flatspeckle::mc {
 

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "mc/transport/dual_dense.h"
+#include "mc/numbers/dual_dense.h"
 
 namespace flatspeckle::mc {
 

@@ -6,7 +6,7 @@
 #include <type_traits>
 
 #include "flatland/scene/scene.h"
-#include "mc/transport/dual.h"
+#include "mc/numbers/dual.h"
 
 namespace flatspeckle::mc {
 

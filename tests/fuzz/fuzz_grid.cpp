@@ -4,10 +4,10 @@
 #include <vector>
 
 #include "core/result/hdf5_handle.h"
-#include "grin/estimators/render_job.h"
+#include "grin/curved/curved_space.h"
 #include "grin/media/density_grid.h"
+#include "grin/render/render_job.h"
 #include "grin/scene/ray_tracing.h"
-#include "grin/space/curved_space.h"
 #include "tests/fuzz/input.h"
 
 // Grids of the index and of the density, of any numbers, and a few rays or flights through those

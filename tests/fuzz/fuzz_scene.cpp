@@ -8,11 +8,11 @@
 #include <string_view>
 #include <vector>
 
-#include "apps/subcommands.h"
+#include "apps/command/subcommands.h"
 #include "core/result/result_file.h"
 #include "core/session/run_settings.h"
 #include "flatland/scene/scene.h"
-#include "grin/estimators/render_datasets.h"
+#include "grin/render/render_datasets.h"
 #include "grin/scene/render_values.h"
 #include "grin/scene/trace_scene.h"
 #include "tests/fuzz/input.h"

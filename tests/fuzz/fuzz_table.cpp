@@ -1,6 +1,6 @@
 #include <map>
 
-#include "apps/sweep_plan.h"
+#include "apps/sweep/sweep_plan.h"
 #include "core/keys/csv.h"
 #include "flatland/placement/placement.h"
 #include "flatland/request/sensor.h"

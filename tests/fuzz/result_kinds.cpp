@@ -2,7 +2,7 @@
 
 #include <numbers>
 
-#include "apps/point_result.h"
+#include "apps/sweep/point_result.h"
 #include "core/result/result_file.h"
 #include "core/result/result_reader.h"
 #include "core/result/run_state_file.h"

@@ -2,7 +2,7 @@
 
 #include <numbers>
 
-#include "grin/ends/sensor.h"
+#include "grin/sensors/sensor.h"
 #include "tests/grin/path_ends.h"
 
 namespace flatspeckle::grin {

@@ -7,7 +7,7 @@
 
 #include <doctest/doctest.h>
 
-#include "grin/estimators/render_job.h"
+#include "grin/render/render_job.h"
 
 namespace flatspeckle::grin::tests {
 

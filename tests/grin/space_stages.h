@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "core/numbers/random.h"
-#include "grin/space/curved_space.h"
-#include "grin/space/straight_space.h"
+#include "grin/curved/curved_space.h"
+#include "grin/straight/straight_space.h"
 
 namespace flatspeckle::grin::tests {
 

@@ -5,7 +5,7 @@
 
 #include <doctest/doctest.h>
 
-#include "grin/estimators/render_datasets.h"
+#include "grin/render/render_datasets.h"
 #include "tests/grin/photon_comparison.h"
 #include "tests/grin/render_tests.h"
 

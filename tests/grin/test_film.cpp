@@ -4,7 +4,7 @@
 
 #include "core/error.h"
 #include "core/numbers/random.h"
-#include "grin/estimators/film.h"
+#include "grin/paths/film.h"
 
 namespace flatspeckle::grin {
 

@@ -2,7 +2,7 @@
 
 #include "core/error.h"
 #include "grin/connections/geometric_spreading.h"
-#include "grin/ends/light.h"
+#include "grin/lights/light.h"
 #include "tests/grin/path_ends.h"
 
 namespace flatspeckle::grin {

@@ -5,8 +5,8 @@
 
 #include "bench/scenes/random_fields.h"
 #include "grin/connections/connection_trial.h"
+#include "grin/curved/ray_field.h"
 #include "grin/rays/luneburg_orbit.h"
-#include "grin/space/ray_field.h"
 #include "tests/grin/ray_tests.h"
 
 using namespace flatspeckle;

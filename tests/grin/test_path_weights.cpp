@@ -5,8 +5,8 @@
 
 #include "bench/scenes/random_fields.h"
 #include "core/numbers/random.h"
-#include "grin/estimators/path_join.h"
-#include "grin/space/curved_space.h"
+#include "grin/curved/curved_space.h"
+#include "grin/paths/path_join.h"
 
 namespace flatspeckle::grin::tests {
 

@@ -3,7 +3,7 @@
 
 #include <doctest/doctest.h>
 
-#include "grin/estimators/picture_errors.h"
+#include "grin/render/picture_errors.h"
 
 namespace flatspeckle::grin::tests {
 

@@ -2,9 +2,9 @@
 
 #include <doctest/doctest.h>
 
+#include "grin/curved/ray_field.h"
 #include "grin/media/start_directions.h"
 #include "grin/scene/step_choice.h"
-#include "grin/space/ray_field.h"
 
 using namespace flatspeckle;
 using namespace flatspeckle::grin;

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <random>
 
-#include "mc/transport/slab_covariance.h"
+#include "mc/slab/slab_covariance.h"
 #include "tests/mc/estimates.h"
 
 namespace flatspeckle::mc::tests {

@@ -6,8 +6,8 @@
 
 #include "core/error.h"
 #include "mc/estimators/changed_fields.h"
-#include "mc/transport/frequency_shifts.h"
-#include "mc/transport/slab_covariance.h"
+#include "mc/slab/frequency_shifts.h"
+#include "mc/slab/slab_covariance.h"
 #include "tests/mc/transport/slabs.h"
 
 namespace flatspeckle::mc {

@@ -3,7 +3,7 @@
 #include <doctest/doctest.h>
 
 #include "bench/oracles/discrete_ordinates.h"
-#include "mc/transport/slab_flux.h"
+#include "mc/slab/slab_flux.h"
 #include "tests/mc/flux_runs.h"
 
 namespace flatspeckle::mc {

@@ -1,0 +1,165 @@
+#include "apps/command/command_line.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <iostream>
+#include <set>
+#include <sstream>
+
+#include <CLI/CLI.hpp>
+
+#include "apps/command/key_lists.h"
+#include "apps/command/scene_file.h"
+#include "core/error.h"
+#include "core/keys/number_text.h"
+
+namespace flatspeckle::apps {
+
+namespace {
+
+/// -.4 is a number; CLI11 would take it for the flag "." with a value.
+std::string with_figure(const std::string& argument) {
+  if (argument.starts_with("-.") && read_number(argument)) return "-0" + argument.substr(1);
+  return argument;
+}
+
+std::string line_of(const Arguments& arguments) {
+  std::string text;
+  for (const auto& argument : arguments) {
+    const bool plain =
+        argument.find_first_of(" \"'$\\*?[]") == std::string::npos && !argument.empty();
+    text += (text.empty() ? "" : " ") + (plain ? argument : "'" + argument + "'");
+  }
+  return text;
+}
+
+/// CLI11's message as one line in this program's words.
+std::string explain(const CLI::App& app, const CLI::ParseError& error) {
+  std::string message = error.what();
+  std::replace(message.begin(), message.end(), '\n', ' ');
+  const std::string unknown_in_file = "INI was not able to parse ";
+  if (message.starts_with(unknown_in_file))
+    return app.get_config_ptr()->as<std::string>() + ", " + message.substr(unknown_in_file.size()) +
+           ": unknown key (--help lists the known ones)";
+  if (dynamic_cast<const CLI::FileError*>(&error) != nullptr) return "config: " + message;
+  if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr) {
+    const bool many = message.find("At Most") != std::string::npos;
+    return message.substr(2, message.find(':') - 2) +
+           (many ? ": must have one value, and be given once" : ": must have a value");
+  }
+  return message;
+}
+
+void refuse_strays(const std::vector<std::string>& strays) {
+  if (strays.empty()) return;
+  const std::string& word = strays.front();
+  if (word.starts_with("--"))
+    throw InputError(word.substr(2, word.find('=') - 2) +
+                     ": unknown key (--help lists the known ones)");
+  throw InputError(word + ": stands alone; expected --key value" +
+                   (word.ends_with(".toml") ? " (of a scene file: --config FILE)"
+                                            : " (switches have none, most keys only one)"));
+}
+
+}  // namespace
+
+Subcommand::Subcommand(std::string name, std::string purpose)
+    : name_(std::move(name)),
+      purpose_(std::move(purpose)),
+      app_(std::make_unique<CLI::App>(purpose_, "flatspeckle " + name_)) {
+  app_->set_config("--config");
+  app_->allow_config_extras(CLI::config_extras_mode::error);
+  app_->config_formatter(std::make_shared<SceneFile>());
+  app_->allow_extras();  // refused below, in clearer words
+  app_->add_flag("--print-config", print_config_)->configurable(false);
+}
+
+Subcommand::~Subcommand() = default;
+
+/// Each name once, whatever the number of its rows.
+void Subcommand::add_flags() {
+  std::set<std::string> names;
+  for (const Key& key : keys_.rows()) {
+    if (!names.insert(key.name()).second) continue;
+    const std::string flag = "--" + key.name();
+    CLI::Option* const option =
+        key.is_switch() ? app_->add_flag(flag)
+                        : app_->add_option(flag, CLI::callback_t([](const auto&) { return true; }));
+    if (key.is_list())
+      option->expected(1, CLI::detail::expected_max_vector_size)->allow_extra_args();
+    option->configurable(key.is_in_files());
+  }
+}
+
+/// CLI11 lets an option without a value take the flag that follows it.
+void Subcommand::take_results() {
+  for (const Key& key : keys_.rows()) {
+    const CLI::Option* const option = app_->get_option("--" + key.name());
+    if (option->count() == 0) continue;
+    for (const std::string& value : option->results())
+      if (value.empty() || value.starts_with("--"))
+        throw InputError(key.name(), '"' + value + '"', "must have a value");
+    key.set(option->results());
+  }
+}
+
+/// Turns CLI11's complaints into ours; CallForHelp passes.
+template <typename Parser>
+void Subcommand::parse_by(const Parser& parser) {
+  add_flags();
+  try {
+    parser();
+  } catch (const CLI::CallForHelp&) {
+    throw;
+  } catch (const CLI::ParseError& error) {
+    throw InputError(explain(*app_, error));
+  }
+  take_results();
+  refuse_strays(app_->remaining());
+  keys_.check();
+}
+
+bool Subcommand::parse(const Arguments& arguments) {
+  if (print_keys(keys_, name_, arguments)) return false;
+  std::vector<std::string> own;
+  std::transform(arguments.rbegin(), arguments.rend() - 2, std::back_inserter(own), with_figure);
+  const auto parser = [&] {
+    try {
+      app_->parse(own);
+    } catch (const InputError& error) {  // from the scene file
+      throw InputError(app_->get_config_ptr()->as<std::string>() + ", " + error.what());
+    }
+  };
+  try {
+    parse_by(parser);
+  } catch (const CLI::CallForHelp&) {
+    print_help();
+    return false;
+  }
+  text_ = line_of(arguments);
+  return true;
+}
+
+void Subcommand::parse_config(const std::string& config) {
+  std::istringstream text(config);
+  parse_by([&] { app_->parse_from_stream(text); });
+}
+
+bool Subcommand::settle() const {
+  keys_.refuse_unread();
+  if (print_config_) std::cout << keys_.config();
+  return !print_config_;
+}
+
+void Subcommand::print_help() const {
+  std::printf("%s\nUsage: flatspeckle %s [--config SCENE.toml] [--key value ...]%s\n\n",
+              purpose_.c_str(), name_.c_str(), keys_.find("out") ? " --out FILE" : "");
+  print_help_lines(keys_);
+  std::puts(
+      "\nProgram:\n"
+      "  -h,--help                       Print this help and exit\n"
+      "  --config FILE                   Scene file: these flags as keys, one a line (TOML)\n"
+      "  --print-config                  Check all, print the resolved scene and exit");
+}
+
+}  // namespace flatspeckle::apps

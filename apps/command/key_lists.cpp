@@ -1,0 +1,131 @@
+#include "apps/command/key_lists.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <iostream>
+#include <map>
+#include <set>
+
+#include "core/keys/number_text.h"
+
+namespace flatspeckle::apps {
+
+namespace {
+
+const char* type_of(const Key& key) {
+  return key.is_switch()   ? "switch"
+         : key.is_whole()  ? "integer"
+         : key.is_number() ? "number"
+                           : "text";
+}
+
+/// "NUMBER ..." with the default.
+std::string shape_of(const Key& key) {
+  if (key.is_switch()) return "";
+  std::string shape = key.is_whole() ? " INT" : key.is_number() ? " FLOAT" : " TEXT";
+  if (!key.default_value().empty()) shape += '=' + joined(key.default_value(), ",");
+  return shape + (key.is_list() ? " ..." : "");
+}
+
+std::string quoted(const std::string& text) {
+  std::string all = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') all += '\\';
+    all += c;
+  }
+  return all + '"';
+}
+
+std::string quoted(const std::vector<std::string>& texts) {
+  std::vector<std::string> all;
+  for (const std::string& text : texts) all.push_back(quoted(text));
+  return '[' + joined(all, ", ") + ']';
+}
+
+/// One object for each row.
+void print_json(const Keys& keys, const std::string& subcommand) {
+  const char* between = "\n";
+  std::cout << quoted(subcommand) << ": [";
+  for (const Key& key : keys.rows()) {
+    std::cout << between << "  {\"name\": " << quoted(key.name())
+              << ", \"group\": " << quoted(key.group()) << ", \"type\": " << quoted(type_of(key))
+              << ", \"list\": " << (key.is_list() ? "true" : "false")
+              << ", \"default\": " << quoted(key.default_value())
+              << ", \"words\": " << quoted(key.words()) << ", \"unit\": " << quoted(key.unit())
+              << ", \"only_of\": " << quoted(key.only_of())
+              << ", \"accepted\": " << quoted(key.accepted())
+              << ", \"help\": " << quoted(key.help()) << '}';
+    between = ",\n";
+  }
+  std::cout << "\n]";
+}
+
+/// Groups whole, in the order in which they come first.
+std::vector<const Key*> in_groups(const Keys& keys) {
+  std::map<std::string, std::size_t> first;
+  std::vector<const Key*> rows;
+  for (const Key& key : keys.rows()) {
+    first.emplace(key.group(), first.size());
+    rows.push_back(&key);
+  }
+  std::stable_sort(rows.begin(), rows.end(), [&](const Key* a, const Key* b) {
+    return first[a->group()] < first[b->group()];
+  });
+  return rows;
+}
+
+void print_markdown(const Keys& keys, const std::string& subcommand) {
+  std::cout << "\n## " << subcommand << '\n';
+  std::string group;
+  for (const Key* row : in_groups(keys)) {
+    const Key& key = *row;
+    if (key.group() != group)
+      std::cout << "\n**" << key.group() << "**\n\n| key | default | meaning |\n|---|---|---|\n";
+    group = key.group();
+    std::string meaning;
+    for (const char c : key.help()) meaning += c == '|' ? std::string("\\|") : std::string(1, c);
+    std::cout << "| `" << key.name() << "` | " << joined(key.default_value(), " ") << " | "
+              << meaning << " |\n";
+  }
+}
+
+void print_completion(const Keys& keys, const std::string& subcommand) {
+  std::set<std::string> flags{"--config", "--help", "--print-config"};
+  for (const Key& key : keys.rows()) flags.insert("--" + key.name());
+  std::cout << "    " << subcommand << ") words=\"";
+  for (const std::string& flag : flags) std::cout << flag << ' ';
+  std::cout << "\" ;;\n";
+}
+
+void print_dictionary(const Keys& keys) {
+  for (const Key& key : keys.rows()) {
+    std::cout << quoted(key.name()) << '\n';
+    for (const std::string& word : key.words()) std::cout << quoted(word) << '\n';
+  }
+}
+
+}  // namespace
+
+void print_help_lines(const Keys& keys) {
+  std::string group;
+  for (const Key* row : in_groups(keys)) {
+    const Key& key = *row;
+    if (key.group() != group)
+      std::printf("%s%s:\n", group.empty() ? "" : "\n", key.group().c_str());
+    group = key.group();
+    std::printf("  %-31s %s\n", ("--" + key.name() + shape_of(key)).c_str(), key.help().c_str());
+  }
+}
+
+bool print_keys(const Keys& keys, const std::string& subcommand,
+                const std::vector<std::string>& arguments) {
+  if (arguments.size() != 3 || !arguments[2].starts_with("--keys=")) return false;
+  const std::string form = arguments[2].substr(sizeof "--keys=" - 1);
+  if (form == "json") print_json(keys, subcommand);
+  if (form == "markdown") print_markdown(keys, subcommand);
+  if (form == "completion") print_completion(keys, subcommand);
+  if (form == "dictionary") print_dictionary(keys);
+  return true;
+}
+
+}  // namespace flatspeckle::apps

@@ -1,0 +1,52 @@
+#include "apps/command/subcommands.h"
+
+namespace flatspeckle::apps {
+
+int place(const Arguments& arguments);
+int solve(const Arguments& arguments);
+int covariance(const Arguments& arguments);
+int validate(const Arguments& arguments);
+int flux(const Arguments& arguments);
+int sweep(const Arguments& arguments);
+int merge(const Arguments& arguments);
+int field(const Arguments& arguments);
+int image(const Arguments& arguments);
+int recover(const Arguments& arguments);
+int trace(const Arguments& arguments);
+int render(const Arguments& arguments);
+int bench(const Arguments& arguments);
+int list_keys(const Arguments& arguments);
+int datasets(const Arguments& arguments);
+
+std::span<const SubcommandEntry> subcommands() {
+  static constexpr SubcommandEntry entries[] = {
+      {"place", "a placement of scatterers, drawn and written as CSV", place},
+      {"solve", "exact fields of one placement of scatterers", solve},
+      {"covariance",
+       "covariance and intensity of the speckle of a scene, by Monte Carlo or exactly", covariance},
+      {"validate", "both methods on one scene, compared entry by entry", validate},
+      {"flux", "reflected, transmitted and absorbed power, intensity only", flux},
+      {"sweep",
+       "memory-effect curves over grids or lists of g, albedo, optical depth, radius, index",
+       sweep},
+      {"merge", "the points of a sweep that ran in shares, as one result", merge},
+      {"field", "speckle fields drawn with the covariance of a scene, also over tilts of the light",
+       field},
+      {"image",
+       "pictures of hidden points through a medium, and what the memory effect finds in them",
+       image},
+      {"recover", "points found in the autocorrelation of measured frames", recover},
+      {"trace", "rays and the curves between two points in a gradient-index field", trace},
+      {"render", "pictures of scattering media with a gradient index: 3D refractive path tracing",
+       render},
+#ifdef FLATSPECKLE_BENCH
+      {"bench",
+       "what accuracy costs, where it breaks, what plans leave out: error, stability, plan", bench},
+#endif
+      {"keys", "the keys of all subcommands, for programs: json, markdown, completion, dictionary",
+       list_keys},
+      {"datasets", "what result files hold, as in docs/format.md", datasets}};
+  return entries;
+}
+
+}  // namespace flatspeckle::apps

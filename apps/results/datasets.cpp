@@ -1,0 +1,132 @@
+#include "apps/results/datasets.h"
+
+#include <iostream>
+
+#include "apps/command/subcommands.h"
+#include "core/result/provenance.h"
+#include "core/result/run_state_file.h"
+#include "flatland/media/structure_factor.h"
+#include "flatland/scene/scene_datasets.h"
+#include "grin/render/energy_datasets.h"
+#include "grin/render/map_datasets.h"
+#include "grin/render/render_datasets.h"
+#include "grin/scene/trace_datasets.h"
+#include "mc/estimators/brownian.h"
+#include "mc/estimators/flux.h"
+#include "mc/estimators/gradient.h"
+#include "mc/imaging/imaging_datasets.h"
+#include "mc/imaging/recovery_datasets.h"
+#include "mc/slab/frequency_shifts.h"
+#include "mc/slab/refinement.h"
+#include "mc/speckle/field_datasets.h"
+#include "mc/theory/moments_datasets.h"
+#include "wave_solver/maps/map_datasets.h"
+
+namespace flatspeckle::apps {
+
+namespace {
+
+/// In the order of docs/format.md.
+std::vector<const DatasetTable*> all_tables() {
+  std::vector<const DatasetTable*> tables = {&provenance_table,
+                                             &scene_table,
+                                             &axes_table,
+                                             &beams_table,
+                                             &trace_table,
+                                             &mc::mean_table,
+                                             &mc::intensity_table,
+                                             &mc::full_table,
+                                             &mc::pairs_table,
+                                             &mc::moves_table,
+                                             &mc::gradient_table,
+                                             &mc::delays_table,
+                                             &mc::frequency_table,
+                                             &mc::numerical_table,
+                                             &validate_table,
+                                             &wave::solution_table,
+                                             &wave::map_table,
+                                             &mc::flux_table,
+                                             &mc::field_table,
+                                             &mc::imaging_table,
+                                             &mc::recovery_table,
+                                             &sweep_axes_table,
+                                             &sweep_table,
+                                             &placement_table,
+                                             &structure_factor_table,
+                                             &grin::rays_table,
+                                             &grin::trials_table,
+                                             &grin::camera_table,
+                                             &grin::area_table,
+                                             &grin::radial_table,
+                                             &grin::directional_table,
+                                             &grin::polar_table,
+                                             &grin::render_table,
+                                             &grin::energy_table,
+                                             &grin::box_map_table,
+                                             &grin::ring_map_table};
+#ifdef FLATSPECKLE_BENCH
+  for (const DatasetTable* table : bench_tables()) tables.push_back(table);
+#endif
+  tables.push_back(&state_table);
+  return tables;
+}
+
+/// A cell of a table; upright lines would end it.
+std::string cell(const std::string& text) {
+  std::string cell;
+  for (const char letter : text)
+    cell += letter == '|' ? std::string("\\|") : std::string(1, letter);
+  return cell;
+}
+
+std::string code(const std::string& text) {
+  return text.empty() ? "" : '`' + text + '`';
+}
+
+std::string axes_of(const DatasetRow& row) {
+  if (row.data == Data::scale) return "scale";
+  if (row.data == Data::numbers) return "0, 1, ...";
+  return row.axes.empty() ? "scalar" : code(row.axes);
+}
+
+void print(const DatasetTable& table) {
+  std::cout << "<!-- datasets: " << table.name << " -->\n";
+  if (!table.rows.empty())
+    std::cout << "| dataset | type | axes | units | long name |\n|---|---|---|---|---|\n";
+  for (const DatasetRow& row : table.rows)
+    std::cout << "| " << code(row.path) << (has_error(row.data) ? " ±" : "") << " | "
+              << type_name(row.data) << " | " << axes_of(row) << " | " << code(row.unit) << " | "
+              << cell(row.long_name) << " |\n";
+  if (!table.rows.empty() && !table.attributes.empty()) std::cout << '\n';
+  if (!table.attributes.empty())
+    std::cout << "| attribute | of | type | meaning |\n|---|---|---|---|\n";
+  for (const AttributeRow& row : table.attributes)
+    std::cout << "| " << code(row.name) << " | " << code(row.object) << " | " << row.type << " | "
+              << cell(row.meaning) << " |\n";
+  std::cout << "<!-- end -->\n";
+}
+
+void print_roles(const std::vector<const DatasetTable*>& tables) {
+  std::cout << "<!-- datasets: roles -->\n| word | stands for |\n|---|---|\n";
+  for (const DatasetTable* table : tables)
+    for (const Role& role : table->roles) {
+      std::cout << "| " << code(role.word) << " | ";
+      for (const std::string& meaning : role.meanings)
+        std::cout << (&meaning == &role.meanings.front() ? "" : " or ") << code(meaning);
+      std::cout << " |\n";
+    }
+  std::cout << "<!-- end -->\n";
+}
+
+}  // namespace
+
+int datasets(const Arguments& arguments) {
+  Subcommand command("datasets", "Tables of what result files hold, for docs/format.md");
+  if (!command.parse(arguments)) return ExitStatus::done;
+  const auto tables = all_tables();
+  print_roles(tables);
+  for (const DatasetTable* table : tables) print(*table);
+  return ExitStatus::done;
+}
+
+}  // namespace flatspeckle::apps

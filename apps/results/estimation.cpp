@@ -1,0 +1,147 @@
+#include "apps/results/estimation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+#include <sstream>
+
+#include "core/error.h"
+#include "core/numbers/blas.h"
+#include "mc/estimators/covariance_estimator.h"
+#include "mc/slab/slab_covariance.h"
+#include "mc/space/space_scene.h"
+#include "wave_solver/solutions/ensemble.h"
+
+namespace flatspeckle::apps {
+
+mc::ReversedPaths reversed_paths(const Keys& keys, const MethodSettings& settings) {
+  const std::string& word = keys.read(settings.reversed_paths);
+  return word == "yes"  ? mc::ReversedPaths::yes
+         : word == "no" ? mc::ReversedPaths::no
+                        : mc::ReversedPaths::automatic;
+}
+
+void add_mc_keys(Keys& keys, MethodSettings& settings) {
+  keys.group("Methods");
+  keys.add("reversed_paths", settings.reversed_paths,
+           "Coherent backscattering in Monte Carlo; auto: where a view may see it")
+      .one_of({"auto", "yes", "no"});
+}
+
+void add_wave_keys(Keys& keys, MethodSettings& settings) {
+  keys.group("Methods");
+  keys.add("wave_tolerance", settings.wave_tolerance, "Accuracy of each exact solution, relative")
+      .between(0, 1)
+      .only_of("the exact solver");
+  keys.add("wave_samples", settings.wave_samples,
+           "Placements of the exact solver, where samples counts light paths")
+      .positive()
+      .effort()
+      .only_of("the exact solver");
+}
+
+constexpr double least_tolerance = 1e-13;  // some roundings
+
+void add_transport_keys(Keys& keys, MethodSettings& settings) {
+  keys.group("Methods");
+  keys.add("tolerance", settings.tolerance,
+           "Of transport: relative difference from a solution with fewer ordinates")
+      .from(least_tolerance, 0.5)
+      .only_of("method = transport");
+}
+
+void choose_method(const Keys& keys, std::string& method, const SceneSpec& spec,
+                   const RunSettings& run) {
+  if (keys.read(method) != "auto") return;
+  const bool to_last = keys.given(run.samples) || keys.given(run.seconds);
+  method = spec.domain == "slab" && !to_last ? "transport" : "mc";
+}
+
+void disregard_unused(const Keys& keys, const SceneSpec& spec,
+                      const std::vector<std::string>& methods) {
+  const auto waves = std::ranges::count(methods, "wave");
+  if (waves == 0) keys.disregard(spec.placement);
+  if (waves == 0 && spec.structure == "none") keys.disregard(spec.min_gap);
+  if (waves == std::ssize(methods)) keys.disregard(spec.structure);
+}
+
+void read_transport(const Keys& keys, MethodSettings& settings, const SceneSpec& spec,
+                    const RunSettings& run) {
+  if (spec.domain != "slab")
+    throw InputError("method", "transport", "needs domain = slab; take another method");
+  const double asked = keys.read(run.target_error).value_or(1);
+  settings.tolerance = std::min(keys.read(settings.tolerance), std::max(asked, least_tolerance));
+}
+
+StopRule both_batches() {
+  return {.samples = 2, .seconds = {}, .target_error = {}};
+}
+
+void note_rounding(const Scene& scene) {
+  const double mean = scene.placement.mean_count, placed = std::round(mean);
+  if (scene.placement.kind == PlacementRule::Kind::poisson || std::abs(placed - mean) < 1e-9)
+    return;
+  std::cerr << "note: hard disks are placed in whole numbers: " << placed << " in each placement, "
+            << mean << " asked for\n";
+}
+
+void Neglected::add(const Scene& scene) {
+  const BulkMedium& medium = scene.medium;
+  k_mean_free_path = std::min(k_mean_free_path, scene.k * medium.mean_free_path());
+  if (medium.structure.independent()) packing = std::max(packing, medium.packing_fraction);
+}
+
+void note(const Neglected& neglected) {
+  constexpr double small = 10, dense = 0.02;
+  if (neglected.k_mean_free_path < small)
+    std::cerr << "note: k x mean free path is only " << neglected.k_mean_free_path
+              << "; the Monte Carlo method neglects terms of order 1 over that\n";
+  if (neglected.packing > dense)
+    std::cerr
+        << "note: disks fill " << neglected.packing
+        << " of the medium; the Monte Carlo method takes their positions as independent, which "
+           "neglects terms of that order (structure = hard_disks takes them in)\n";
+}
+
+Scene rounded_scene(const Keys& keys, const SceneSpec& spec) {
+  const Scene scene = make_scene(keys, spec);
+  if (scene.placement.kind == PlacementRule::Kind::poisson || spec.count) return scene;
+  SceneSpec rounded = spec;
+  rounded.density = rounded.mean_free_path = rounded.optical_depth = std::nullopt;
+  rounded.count = std::llround(scene.placement.mean_count);
+  return make_scene(rounded);
+}
+
+Scene with_dimension(const Scene& scene, const SceneSpec& spec) {
+  return spec.dimension == 3 ? mc::in_space(scene, spec) : scene;
+}
+
+Estimation mc_estimation(const Scene& scene, mc::ReversedPaths reversed, std::uint64_t seed) {
+  const auto plan = mc::make_plan(scene, reversed);
+  const auto& structure = scene.medium.structure;
+  return {mc::covariance_job(scene, plan, seed),
+          "mc: " + plan.describe() +
+              (structure.independent() ? "" : "; structure factor " + structure.origin())};
+}
+
+Estimation transport_estimation(const Scene& scene, mc::ReversedPaths reversed, double tolerance) {
+  const bool with_reversed = mc::make_plan(scene, reversed).reversed;
+  blas_single_thread();  // says now what it lacks
+  std::ostringstream plan;
+  const bool space = scene.medium.dimension == 3, near = has_near_ends(scene.request);
+  if (space && near) throw InputError("dimension", 3, "is of plane waves and far views");
+  plan << "transport: pairs at one transverse frequency" << (space ? " in space" : "")
+       << ", by doubling; " << (near ? "near ends as plane waves; " : "")
+       << (with_reversed ? "reversed paths" : "no reversed paths") << "; tolerance " << tolerance;
+  if (space) return {mc::space_covariance_job(scene, with_reversed, {tolerance}), plan.str()};
+  return {mc::slab_covariance_job(scene, with_reversed, {tolerance}), plan.str()};
+}
+
+Estimation wave_estimation(const Scene& scene, double tolerance, std::uint64_t seed) {
+  std::ostringstream plan;
+  plan << "wave: dense T-matrix solutions of " << placement_word(scene.placement.kind)
+       << " placements, tolerance " << tolerance << "; sample mean removed";
+  return {wave::wave_job(scene, seed, tolerance), plan.str()};
+}
+
+}  // namespace flatspeckle::apps

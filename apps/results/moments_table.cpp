@@ -1,0 +1,111 @@
+#include "apps/results/moments_table.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace flatspeckle::apps {
+
+std::string shown_value(Complex value) {
+  char text[48];
+  if (std::abs(value.imag()) < 5e-7 * std::abs(value))
+    std::snprintf(text, sizeof text, "%.5g", value.real());
+  else
+    std::snprintf(text, sizeof text, "%.5g%+.4gi", value.real(), value.imag());
+  return text;
+}
+
+std::string shown_channel(const CovarianceRequest& request, std::uint32_t channel) {
+  char light_text[24], view_text[24];
+  const auto [light, view] = request.channels[channel];
+  const Light& lit = request.lights[light];
+  const View& seen = request.views[view];
+  if (lit.kind == Light::Kind::plane)
+    std::snprintf(light_text, sizeof light_text, "%8.6g", lit.angle);
+  else
+    std::snprintf(light_text, sizeof light_text, "light %-3u", light);
+  if (seen.near)
+    std::snprintf(view_text, sizeof view_text, "sensor %-3u", view);
+  else
+    std::snprintf(view_text, sizeof view_text, "%8.6g", seen.angle);
+  return std::string(light_text) + ' ' + view_text;
+}
+
+std::size_t shown_entries(const CovarianceRequest& request) {
+  if (request.has_reference()) return request.reference_intensity(0);
+  return request.entries.size();
+}
+
+void print_entries(const CovarianceRequest& request, const Estimate& estimate,
+                   const std::string& name) {
+  const std::size_t entries = shown_entries(request);
+  std::printf("%-17s %-17s  %21s %9s\n", "light 1  view 1", "light 2  view 2", name.c_str(),
+              "error");
+  for (std::size_t e = 0; e < std::min(entries, most_rows); ++e) {
+    const auto [a, b] = request.entries[e];
+    std::printf("%s %s  %21s %9.2g\n", shown_channel(request, a).c_str(),
+                shown_channel(request, b).c_str(), shown_value(estimate.value[e]).c_str(),
+                estimate.error[e]);
+  }
+  if (entries > most_rows) std::printf("... and %zu more\n", entries - most_rows);
+}
+
+void print_ranges(const std::string& group, const std::vector<mc::WrittenRange>& ranges) {
+  for (const auto& [long_name, estimate, few_steps] : ranges) {
+    if (few_steps)
+      std::fputs(
+          "note: a range is read off a curve with fewer than four points below it; its error bar "
+          "does not know what the curve does between them\n",
+          stderr);
+    std::printf("%s%s%s: %s\n", group.c_str(), group.empty() ? "" : "/", long_name.c_str(),
+                range_text(estimate.range, estimate.error).c_str());
+  }
+}
+
+std::string range_text(const mc::Range& range, double error) {
+  using Censoring = mc::Range::Censoring;
+  char text[64];
+  if (range.censored == Censoring::above_value)
+    std::snprintf(text, sizeof text, "above %.4g, the largest step", range.value);
+  else if (range.censored == Censoring::below_value)
+    std::snprintf(text, sizeof text, "below %.4g, the smallest step", range.value);
+  else
+    std::snprintf(text, sizeof text, "%.4g +- %.2g", range.value, error);
+  return text;
+}
+
+void print_gradient(const CovarianceRequest& request, const mc::GradientJob& job,
+                    const mc::GradientEstimates& gradient) {
+  const auto& names = job.parameters;
+  const std::size_t entries = gradient.entries.value.size() / names.size();
+  for (std::size_t p = 0; p < names.size(); ++p)
+    print_entries(request, part(gradient.entries, p * entries, entries), "d/d " + names[p]);
+  const Estimate& range = gradient.effect.range;
+  if (std::ranges::all_of(range.value, [](Complex slope) { return slope == 0.0; })) return;
+  for (std::size_t p = 0; p < names.size(); ++p)
+    std::printf("d/d %-13s of the range q L at C_I = 1/2: %11.5g +- %.2g\n", names[p].c_str(),
+                range.value[p].real(), range.error[p]);
+}
+
+void print_changes(const CovarianceRequest& request, const char* change,
+                   const std::vector<double>& sizes, const Estimate& correlation) {
+  const bool tilts = request.has_reference();
+  const auto name = [&](std::size_t c) {
+    if (!tilts) return shown_channel(request, static_cast<std::uint32_t>(c));
+    char text[24];
+    std::snprintf(text, sizeof text, "%-17.6g", request.tilts[c]);
+    return std::string(text);
+  };
+  std::printf("%-17s %10s %21s %9s\n", tilts ? "tilt" : "light    view", change, "correlation",
+              "error");
+  const std::size_t channels = tilts ? request.moves : request.channels.size(),
+                    rows = channels * sizes.size();
+  for (std::size_t row = 0; row < std::min(rows, most_rows); ++row) {
+    const std::size_t c = row / sizes.size(), t = row % sizes.size(), i = t * channels + c;
+    std::printf("%s %10.4g %21s %9.2g\n", name(c).c_str(), sizes[t],
+                shown_value(correlation.value[i]).c_str(), correlation.error[i]);
+  }
+  if (rows > most_rows) std::printf("... and %zu more\n", rows - most_rows);
+}
+
+}  // namespace flatspeckle::apps

@@ -1,0 +1,149 @@
+#include <algorithm>
+#include <filesystem>
+#include <iostream>
+#include <numeric>
+
+#include "apps/command/subcommands.h"
+#include "apps/sweep/sweep_end.h"
+#include "apps/sweep/sweep_plan.h"
+#include "apps/sweep/sweep_work.h"
+#include "core/error.h"
+#include "core/run/interrupt.h"
+#include "core/run/ranks.h"
+#include "core/run/remote_batches.h"
+#include "core/session/output_lock.h"
+#include "core/session/shard_folder.h"
+
+namespace flatspeckle::apps {
+
+namespace {
+
+using Part = ShardFolder::Part;
+
+/// Whether the folder holds anything of this sweep.
+bool has_begun(const SweepPlan& plan, ShardFolder& folder) {
+  for (std::size_t run = 0; run < plan.runs(); ++run)
+    for (Part part : {Part::finished, Part::unfinished})
+      if (folder.has(plan.name(run), part) &&
+          !folder.read(plan.name(run), part, plan.identity(run), [](const ResultReader&) {}))
+        return true;
+  return false;
+}
+
+/// Whether the result is there. Throws InputError where another run's is, unless this sweep was
+/// begun to replace it.
+bool is_complete(const SweepPlan& plan, ShardFolder& folder) {
+  const std::string& out = plan.settings.out;
+  if (!plan.settings.resume || !std::filesystem::exists(out)) return false;
+  const ResultReader file(out);
+  if (file.has_attribute("/", "identity") &&
+      file.attribute<std::string>("/", "identity") == plan.identity())
+    return file.attribute<bool>("/", "complete");
+  if (!has_begun(plan, folder))
+    throw InputError("resume: " + out + " holds another run; name another result file");
+  return false;
+}
+
+/// The runs of this process's share, scattered over the grid, so that what has been done at any
+/// time says something about what is left.
+std::vector<std::size_t> share_of_runs(const SweepPlan& plan) {
+  const std::size_t count = plan.runs();
+  std::size_t stride = std::max<std::size_t>(1, count * 618 / 1000);
+  while (std::gcd(stride, count) != 1) ++stride;
+  const SweepShare share = plan.share.value_or(SweepShare{});
+  std::vector<std::size_t> runs;
+  for (std::size_t i = 0; i < count; ++i)
+    if (i % share.count == share.number) runs.push_back(i * stride % count);
+  return runs;
+}
+
+/// Throws InputError where the points that are there are all of another sweep: rather a slip in the
+/// keys than strays.
+void refuse_foreign_folder(const SweepPlan& plan, ShardFolder& folder,
+                           const std::vector<std::size_t>& runs) {
+  constexpr int few = 2, enough = 16;
+  int seen = 0;
+  std::string wrong;
+  for (std::size_t run : runs) {
+    if (seen == enough || !folder.has(plan.name(run), Part::finished)) continue;
+    const auto complaint =
+        folder.read(plan.name(run), Part::finished, plan.identity(run), [](const ResultReader&) {});
+    if (!complaint || !complaint->starts_with("belongs")) return;
+    wrong = *complaint;
+    ++seen;
+  }
+  if (seen > few)
+    throw InputError("resume: what " + folder.path().string() + " holds " + wrong +
+                     "; name another result file, or remove the folder");
+}
+
+/// Throws InputError where work of an earlier sweep would be overwritten.
+void refuse_leftovers(const SweepPlan& plan, const ShardFolder& folder,
+                      const std::vector<std::size_t>& runs) {
+  if (plan.settings.resume) return;
+  for (std::size_t run : runs)
+    if (folder.has(plan.name(run), Part::finished) || folder.has(plan.name(run), Part::unfinished))
+      throw InputError(folder.path().string() +
+                       " holds points of an earlier sweep: --resume goes on with them; remove the "
+                       "folder to begin again");
+}
+
+/// Of this process alone, or of rank 0.
+int lead(const SweepPlan& plan, RankServer* server) {
+  const std::string& out = plan.settings.out;
+  const OutputLock lock(plan.share ? out + ".shard-" + std::to_string(plan.share->number) : out);
+  ShardFolder folder(shards_of(out));
+  if (is_complete(plan, folder)) {
+    std::cout << out << " is complete; nothing to resume\n";
+    remove_points(plan, gather(plan, {shards_of(out)}, std::cerr), folder);
+    return ExitStatus::done;
+  }
+  const auto runs = share_of_runs(plan);
+  refuse_leftovers(plan, folder, runs);
+  refuse_foreign_folder(plan, folder, runs);
+  folder.make();
+  SweepWork work(plan, folder, runs);
+  const PoolEnd end = run_pool(
+      work.list(), {plan.settings.seconds, plan.session().threads(), "sweep", "points", server});
+  work.save_unfinished();
+  return end_sweep(plan, folder, end);
+}
+
+/// With rank 0, and for it.
+void follow(const SweepPlan& plan) {
+  ShardFolder none("");
+  SweepWork work(plan, none, share_of_runs(plan));
+  work_for_rank_0(work.list(), plan.session().threads());
+}
+
+int with_ranks(const SweepPlan& plan) {
+  RankServer server;
+  try {
+    const int status = lead(plan, &server);
+    server.dismiss();
+    return status;
+  } catch (...) {
+    server.dismiss();
+    leave_ranks();
+    throw;
+  }
+}
+
+}  // namespace
+
+int sweep(const Arguments& arguments) {
+  SweepPlan plan;
+  if (!plan.parse(arguments)) return ExitStatus::done;
+  if (!plan.share) join_ranks();
+  catch_interrupts();
+  if (ranks().size == 1) return lead(plan, nullptr);
+  int status = ExitStatus::done;
+  if (ranks().rank == 0)
+    status = with_ranks(plan);
+  else
+    follow(plan);
+  leave_ranks();
+  return status;
+}
+
+}  // namespace flatspeckle::apps

@@ -1,0 +1,143 @@
+#include "apps/sweep/sweep_points.h"
+
+#include <algorithm>
+#include <set>
+#include <span>
+
+#include "core/error.h"
+#include "core/keys/csv.h"
+#include "core/keys/number_text.h"
+
+namespace flatspeckle::apps {
+
+namespace {
+
+std::vector<std::string> texts_of(std::span<const double> values) {
+  std::vector<std::string> texts;
+  for (double value : values) texts.push_back(number_text(value));
+  return texts;
+}
+
+/// Axes that were given. One text for one number: points are known by their texts.
+std::vector<SweepAxis> given_axes(const Keys& keys, const SweepLists& lists) {
+  std::vector<SweepAxis> axes;
+  for (const std::string& key : lists.keys) {
+    SweepAxis axis{key, {}};
+    if (const auto numbers = lists.numbers.find(key); numbers != lists.numbers.end())
+      axis.values = texts_of(keys.read(numbers->second));
+    else
+      for (const std::string& text : keys.read(lists.texts.at(key)))
+        axis.values.push_back(number_text(parse_complex(key, text)));
+    if (!axis.values.empty()) axes.push_back(std::move(axis));
+  }
+  return axes;
+}
+
+/// A column of the table as an axis: one value for each point.
+SweepAxis column_axis(const Table& table, const std::string& key) {
+  SweepAxis axis{key, texts_of(table.column(key))};
+  if (key == "index" && table.has("index_imaginary")) {
+    const auto real = table.column("index"), imaginary = table.column("index_imaginary");
+    for (std::size_t row = 0; row < real.size(); ++row)
+      axis.values[row] = number_text(Complex(real[row], imaginary[row]));
+  }
+  return axis;
+}
+
+void check_columns(const Table& table, const SweepLists& lists) {
+  for (const std::string& name : table.names()) {
+    if (name == "index_imaginary" && table.has("index")) continue;
+    if (std::find(lists.keys.begin(), lists.keys.end(), name) == lists.keys.end())
+      throw InputError(
+          "points", lists.points,
+          "column " + name + ": must be one of index_imaginary " + joined(lists.keys, " "));
+  }
+}
+
+SweepPoints listed(const Keys& keys, const SweepLists& lists) {
+  const Table table = read_csv(lists.points);
+  check_columns(table, lists);
+  if (table.rows() == 0) throw InputError("points", lists.points, "must have at least one row");
+  SweepPoints list;
+  list.is_list = true;
+  const auto given = given_axes(keys, lists);
+  for (const std::string& key : lists.keys) {
+    const auto beside = std::find_if(given.begin(), given.end(),
+                                     [&](const SweepAxis& axis) { return axis.key == key; });
+    if (beside == given.end() && !table.has(key)) continue;
+    if (beside != given.end() && (table.has(key) || beside->values.size() > 1))
+      throw InputError(key, beside->values.back(),
+                       "must be one value, or a column of the table of points, not both");
+    list.axes.push_back(beside == given.end()
+                            ? column_axis(table, key)
+                            : SweepAxis{key, std::vector(table.rows(), beside->values.front())});
+  }
+  return list;
+}
+
+void refuse_twins(const SweepPoints& points) {
+  std::set<std::string> seen;
+  for (std::size_t point = 0; point < points.count(); ++point)
+    if (!seen.insert(points.name(point)).second)
+      throw InputError("the point " + points.name(point) + " is given twice");
+}
+
+}  // namespace
+
+std::size_t SweepPoints::count() const {
+  if (is_list) return axes.front().values.size();
+  std::size_t count = 1;
+  for (const SweepAxis& axis : axes) count *= axis.values.size();
+  return count;
+}
+
+const std::string& SweepPoints::value(std::size_t axis, std::size_t point) const {
+  if (!is_list)
+    for (std::size_t faster = axes.size() - 1; faster > axis; --faster)
+      point /= axes[faster].values.size();
+  const auto& values = axes[axis].values;
+  return values[point % values.size()];
+}
+
+std::string SweepPoints::name(std::size_t point) const {
+  std::vector<std::string> parts;
+  for (std::size_t i = 0; i < axes.size(); ++i)
+    parts.push_back(axes[i].key + '=' + value(i, point));
+  return joined(parts, "_");
+}
+
+void SweepPoints::set(std::size_t point, const Keys& keys) const {
+  for (std::size_t i = 0; i < axes.size(); ++i) keys.set(axes[i].key, {value(i, point)});
+}
+
+void add_sweep_keys(Keys& keys, SweepLists& lists) {
+  keys.group("Swept: lists of values");
+  const auto rows = keys.rows();
+  for (const Key& row : rows) {
+    const bool is_there = std::count(lists.keys.begin(), lists.keys.end(), row.name()) > 0;
+    if (!row.is_swept() || is_there) continue;
+    lists.keys.push_back(row.name());
+    keys.remove(row.name());
+    if (row.is_number())
+      keys.add(row.name(), lists.numbers[row.name()], row.help());
+    else
+      keys.add(row.name(), lists.texts[row.name()], row.help());
+  }
+  keys.add("points", lists.points,
+           "CSV with columns among these keys (and index_imaginary): a list of points in place of "
+           "all combinations");
+}
+
+SweepPoints sweep_points(const Keys& keys, const SweepLists& lists) {
+  const bool is_list = !keys.read(lists.points).empty();
+  SweepPoints points = is_list ? listed(keys, lists) : SweepPoints{given_axes(keys, lists)};
+  constexpr double most_points = 1e5;
+  double count = 1;
+  if (!is_list)
+    for (const SweepAxis& axis : points.axes) count *= static_cast<double>(axis.values.size());
+  if (count > most_points) throw InputError("points of the sweep", count, "must be at most 100000");
+  refuse_twins(points);
+  return points;
+}
+
+}  // namespace flatspeckle::apps

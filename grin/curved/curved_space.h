@@ -1,0 +1,160 @@
+#pragma once
+
+#include <memory>
+
+#include "grin/curved/ray_field.h"
+#include "grin/rays/step_curve.h"
+#include "grin/space/flight_log.h"
+#include "grin/space/space.h"
+#include "grin/space/stage.h"
+#include "grin/space/straight_stage.h"
+
+namespace flatspeckle::grin {
+
+/// Which flights tell |J|, about half of their cost; joins always do.
+enum class Spreading { none, to_boundary, all };
+
+struct CurvedSpaceOptions {
+  double step;        ///< of rays in sigma: length at index 1
+  double max_length;  ///< arc length of a flight or join; longer ones are lost
+  Spreading spreading = Spreading::all;
+  bool leapfrogs = false;  ///< make_ray_field()
+};
+
+/// Space where the index varies: straight ways where it is the same everywhere in a part, and those
+/// of a RayField in the part that the field fills.
+class CurvedSpace {
+ public:
+  /// Use make_curved_space.
+  CurvedSpace(const AnyIndexField& field, const Stage& stage, const CurvedSpaceOptions& options);
+
+  double index(const PathPoint& p) const {
+    return 1 + (is_curved(p.part) ? field_->excess(p.x) : setup_->stage.excess(p.part));
+  }
+  /// log: its legs are added to that.
+  Flight fly(const PathPoint& from, const Vec3& direction, RandomStream& random,
+             FlightLog* log = nullptr) const;
+  /// Of a leg of a flight (flight_log.h).
+  template <class Use>
+  void for_points(const FlightLeg& leg, double apart, RandomStream& random, const Use& use) const;
+  /// All ways of light between two points.
+  bool joins_all() const { return !setup_->stage.refracts(); }
+  /// Any, between points of these parts.
+  bool can_join(const PathPoint& p, const PathPoint& q) const {
+    return setup_->stage.are_alike(p.part, q.part) || joins_through();
+  }
+  double least_depth(const PathPoint& p, const PathPoint& q) const {
+    return setup_->stage.least_depth(p, q);
+  }
+  std::optional<Join> join(const PathPoint& p, const PathPoint& q, RandomStream& random,
+                           ConnectionStatistics& statistics) const;
+  /// In flights, roughly.
+  double cost_of_join() const { return field_->cost_of_curve(); }
+  bool joins_through() const { return setup_->stage.joins_through(); }
+  std::optional<Join> join_through(const PathPoint& p, const PathPoint& q, RandomStream& random,
+                                   ConnectionStatistics& statistics) const;
+
+  std::vector<BeamWay> ways_to_beam(const PathPoint& p, const ParallelLight& light,
+                                    std::span<const BeamSeed> seeds, RandomStream& random,
+                                    ConnectionStatistics& statistics) const;
+  std::optional<BeamWay> some_way_to_beam(const PathPoint& p, const ParallelLight& light,
+                                          RandomStream& random,
+                                          ConnectionStatistics& statistics) const;
+  std::optional<BeamWay> beam_way(const PathPoint& p, const ParallelLight& light,
+                                  const Vec3& direction, const Passages& passages,
+                                  RandomStream& random) const;
+
+  /// The same space as light meets it at this phase of the sound, from 0 to 2 pi: S = cos(phase)
+  /// of a standing wave (conventions, C28). Throws InputError for a field without sound.
+  std::unique_ptr<const CurvedSpace> frozen(double phase) const;
+
+ private:
+  /// What is the same at all phases.
+  struct Setup {
+    StraightStage<RenderPlan{}> stage;
+    Part field_part;
+    bool is_straight;
+    std::vector<double> sides;  ///< of the surfaces of the field's room
+    CurvedSpaceOptions options;
+    ConnectionOptions connection;
+  };
+  CurvedSpace(std::shared_ptr<const Setup> setup, std::shared_ptr<const RayField> field)
+      : setup_(std::move(setup)), field_(std::move(field)) {}
+
+  bool is_curved(Part part) const { return part == setup_->field_part && !setup_->is_straight; }
+  /// As stage has it, but in the field of this phase.
+  IndexGradient side(Part part, const Vec3& x) const {
+    if (is_curved(part)) return field_->gradient(x);
+    return {setup_->stage.excess(part), Vec3::Zero()};
+  }
+  /// That of the field.
+  Room room() const { return setup_->stage.regions().room(setup_->field_part); }
+  const PartMedium& medium() const { return setup_->stage.medium(setup_->field_part); }
+  LegRoom leg_room() const { return {room(), medium(), setup_->options.step}; }
+  /// The surface on which it ends at x.
+  LegEnd end_at(const Vec3& x) const {
+    return setup_->field_part + static_cast<Part>(room().nearest(x));
+  }
+
+  class Legs;
+  struct Neighbours;
+  class Curve;
+
+  ConnectionOptions search() const;
+  bool searches_for_beams() const { return joins_through() || is_curved(around); }
+  bool stays_inside(RayState ray, double sigma, int steps) const;
+  Flight fly(const PathPoint& from, const Vec3& direction, bool spreads, RandomStream& random,
+             FlightLog* log) const;
+  bool goes_outside(const Vec3& x, const Vec3& direction) const;
+  std::optional<LegEnd> leg(Flight& flight, Neighbours& neighbours, RandomStream& random) const;
+  std::optional<LegEnd> curved_leg(Flight& flight, Neighbours& neighbours,
+                                   RandomStream& random) const;
+  void cross(Flight& flight, LegEnd surface, Neighbours& neighbours, RandomStream& random) const;
+  double transmitted(const PathPoint& p, const Connection& curve, RandomStream& random) const;
+
+  std::shared_ptr<const Setup> setup_;
+  std::shared_ptr<const RayField> field_;
+};
+static_assert(Space<CurvedSpace>);
+
+/// Points of a leg, one after the other.
+class CurvedSpace::Curve {
+ public:
+  Curve(const CurvedSpace& space, const FlightLeg& leg)
+      : field_(*space.field_),
+        step_(space.setup_->options.step),
+        now_(start_ray(field_, leg.start.x, leg.direction)),
+        before_(now_) {}
+
+  /// Increasing arc lengths.
+  Vec3 operator()(double s) {
+    while (now_.arc_length < s) {
+      before_ = now_;
+      field_.advance(step_, 1, now_, nullptr);
+      if (!(now_.arc_length > before_.arc_length)) return before_.x;
+    }
+    const StepCurve curve(before_, now_, step_);
+    return curve.x(curve.theta_at(s));
+  }
+
+ private:
+  const RayField& field_;
+  double step_;
+  RayState now_, before_;
+};
+
+template <class Use>
+void CurvedSpace::for_points(const FlightLeg& leg, double apart, RandomStream& random,
+                             const Use& use) const {
+  const PartMedium& in = setup_->stage.medium(leg.start.part);
+  if (is_curved(leg.start.part))
+    return grin::for_points(leg, in, apart, random, Curve(*this, leg), use);
+  const auto x_at = [&](double s) -> Vec3 { return leg.start.x + s * leg.direction; };
+  grin::for_points(leg, in, apart, random, x_at, use);
+}
+
+/// Throws InputError for a bad stage.
+std::unique_ptr<const CurvedSpace> make_curved_space(const AnyIndexField& field, const Stage& stage,
+                                                     const CurvedSpaceOptions& options);
+
+}  // namespace flatspeckle::grin

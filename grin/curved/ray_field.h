@@ -1,0 +1,86 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "core/numbers/random.h"
+#include "grin/connections/connection.h"
+#include "grin/connections/sides.h"
+#include "grin/curved/leg_room.h"
+#include "grin/fields/any_index_field.h"
+#include "grin/rays/any_steps.h"
+#include "grin/rays/watch.h"
+
+namespace flatspeckle::grin {
+
+/// Two points to be joined, and where their curves may run.
+struct CurveEnds {
+  Vec3 from, to;
+  Sides region;
+};
+
+/// An index field as rays meet it: one virtual call for each ray, leg or curve, behind which every
+/// step knows the type of the field.
+class RayField {
+ public:
+  virtual ~RayField() = default;
+
+  // As of any IndexField.
+  virtual double excess(const Vec3& x) const = 0;
+  virtual IndexGradient gradient(const Vec3& x) const = 0;
+  virtual IndexHessian hessian(const Vec3& x) const = 0;
+
+  /// trace().
+  virtual TraceEnd follow(std::span<const Surface> surfaces, const TraceLimits& limits, RayLog& log,
+                          RayState& ray) const = 0;
+
+  /// CurvedLeg::go(), with a tangent where there is one.
+  virtual LegStop fly(const LegRoom& room, double longest, double& weight, RandomStream& random,
+                      RayState& ray, RayTangent* tangent) const = 0;
+  /// Equal steps, with a tangent where there is one.
+  virtual void advance(double sigma, int steps, RayState& ray, RayTangent* tangent) const = 0;
+  /// CurvedLeg::ratio_tracked().
+  virtual double ratio_tracked(const LegRoom& room, const RayState& ray, double sigma, int steps,
+                               RandomStream& random) const = 0;
+  /// The same of an arc, by the room's steps.
+  virtual double ratio_tracked(const LegRoom& room, const RayState& ray, double arc_length,
+                               RandomStream& random) const = 0;
+
+  /// In flights, roughly, what connect() costs.
+  virtual double cost_of_curve() const = 0;
+  /// connect_chord_first().
+  virtual ConnectionEstimate connect(const CurveEnds& ends, const ConnectionOptions& options,
+                                     RandomStream& random,
+                                     ConnectionStatistics& statistics) const = 0;
+  /// all_connections().
+  virtual std::vector<FoundConnection> connections(const CurveEnds& ends,
+                                                   const ConnectionOptions& options,
+                                                   std::uint64_t trials, RandomStream& random,
+                                                   ConnectionStatistics& statistics) const = 0;
+
+  /// The field as light meets it at this phase of the sound, from 0 to 2 pi (conventions, C28).
+  /// Throws InputError for a field without sound.
+  virtual std::unique_ptr<const RayField> frozen(double phase) const = 0;
+};
+
+/// Whose rays may go by Leapfrog, which is cheaper where it is exact enough: sound, weak and finely
+/// structured.
+template <class F>
+inline constexpr bool goes_by_leapfrog = requires(const F& field) {
+  at_phase(field, 0.0);
+};
+
+/// room: that the rays end at the surfaces of (Room), where they do. leapfrogs: by that, of a field
+/// that has it.
+std::unique_ptr<const RayField> make_ray_field(const AnyIndexField& field,
+                                               std::span<const Surface> room = {},
+                                               bool leapfrogs = false);
+
+/// Fields are compiled in so many files: ray_field_N.cpp has those whose number in the list has the
+/// remainder N, and makes nothing of others.
+inline constexpr std::size_t ray_field_files = 3;
+template <std::size_t file>
+std::unique_ptr<const RayField> ray_field_in(const AnyIndexField& field,
+                                             std::span<const Surface> room, bool leapfrogs);
+
+}  // namespace flatspeckle::grin

@@ -1,0 +1,110 @@
+#pragma once
+
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "mc/numbers/dense.h"
+#include "mc/numbers/dual.h"
+
+namespace flatspeckle::mc {
+
+/// The matrices of calculations with a Number.
+template <typename Number>
+struct DenseNumbers {
+  using RealMatrix = Matrix;
+  using ComplexRows = Rows;
+};
+template <>
+struct DenseNumbers<Complex> {
+  using RealMatrix = Rows;
+  using ComplexRows = Rows;
+};
+template <>
+struct DenseNumbers<Dual<double>> {
+  using RealMatrix = Dual<Matrix>;
+  using ComplexRows = Dual<Rows>;
+};
+template <typename Number>
+using MatrixOf = typename DenseNumbers<Number>::RealMatrix;
+template <typename Number>
+using RowsOf = typename DenseNumbers<Number>::ComplexRows;
+
+/// f of a matrix, where f is linear.
+template <typename F>
+auto linear(const F& f, const Matrix& a) {
+  return f(a);
+}
+template <typename F>
+Rows linear(const F& f, const Rows& a) {
+  return f(a);
+}
+template <typename F, typename T>
+Dual<T> linear(const F& f, const Dual<T>& a) {
+  return {f(a.value), f(a.slope)};
+}
+
+inline Matrix times(double factor, const Matrix& a) {
+  return factor * a;
+}
+inline Rows times(Complex factor, const Matrix& a) {
+  Rows b(a.rows(), a.cols());
+  b.real() = factor.real() * a;
+  b.imag() = factor.imag() * a;
+  return b;
+}
+inline Dual<Matrix> times(const Dual<double>& factor, const Matrix& a) {
+  return {factor.value * a, factor.slope * a};
+}
+
+inline Complex entry(const Rows& rows, Eigen::Index i, Eigen::Index j) {
+  return rows(i, j);
+}
+inline Dual<Complex> entry(const Dual<Rows>& rows, Eigen::Index i, Eigen::Index j) {
+  return {rows.value(i, j), rows.slope(i, j)};
+}
+
+inline Matrix identity_like(const Matrix& a) {
+  return Matrix::Identity(a.rows(), a.cols());
+}
+inline Rows identity_like(const Rows& a) {
+  return Rows::Identity(a.rows(), a.cols());
+}
+inline Dual<Matrix> identity_like(const Dual<Matrix>& a) {
+  return {identity_like(a.value), Matrix::Zero(a.value.rows(), a.value.cols())};
+}
+
+template <typename A, typename B>
+Dual<A> product(const Dual<A>& a, const Dual<B>& b) {
+  return {product(a.value, b.value), product(a.slope, b.value) + product(a.value, b.slope)};
+}
+inline Dual<Rows> product_transposed(const Dual<Rows>& a, const Dual<Rows>& b) {
+  return {product_transposed(a.value, b.value),
+          product_transposed(a.slope, b.value) + product_transposed(a.value, b.slope)};
+}
+inline Dual<Rows> scaled(const std::vector<Dual<Complex>>& factor, const Dual<Rows>& rows) {
+  const auto parts = flat(factor);
+  const auto value = std::span(parts).first(factor.size()),
+             slope = std::span(parts).last(factor.size());
+  return {scaled(value, rows.value), scaled(slope, rows.value) + scaled(value, rows.slope)};
+}
+
+template <>
+class FactorsOf<Dual<Matrix>> {
+ public:
+  explicit FactorsOf(Dual<Matrix> a) : of_value_(std::move(a.value)), slope_(std::move(a.slope)) {}
+  Dual<Matrix> before(const Dual<Matrix>& b) const {
+    const Matrix value = of_value_.before(b.value);
+    return {value, of_value_.before(b.slope - product(slope_, value))};
+  }
+  Dual<Rows> after(const Dual<Rows>& rows) const {
+    const Rows value = of_value_.after(rows.value);
+    return {value, of_value_.after(rows.slope - product(value, slope_))};
+  }
+
+ private:
+  FactorsOf<Matrix> of_value_;
+  Matrix slope_;
+};
+
+}  // namespace flatspeckle::mc

@@ -1,0 +1,43 @@
+#include "mc/numbers/gauss.h"
+
+#include <cmath>
+
+#include <Eigen/Eigenvalues>
+
+namespace flatspeckle::mc {
+
+namespace {
+
+/// Golub and Welsch (1969) for the weight (1 + x)^beta on [-1, 1], mapped to [0, 1]; `total`: of
+/// the weights.
+Quadrature gauss(int n, double beta, double total) {
+  Eigen::VectorXd diagonal(n), beside(std::max(n - 1, 1));
+  for (int j = 0; j < n; ++j) {
+    const double a = 2 * j + beta;
+    diagonal[j] = j == 0 ? beta / (beta + 2) : beta * beta / (a * (a + 2));
+    const double i = j + 1, s = 2 * i + beta;
+    if (j + 1 < n)
+      beside[j] = std::sqrt(4 * i * i * (i + beta) * (i + beta) / (s * s * (s * s - 1)));
+  }
+  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver;
+  solver.computeFromTridiagonal(diagonal, beside.head(n - 1));
+  Quadrature rule;
+  for (int j = 0; j < n; ++j) {
+    const double first = solver.eigenvectors()(0, j);
+    rule.node.push_back((1 + solver.eigenvalues()[j]) / 2);
+    rule.weight.push_back(total * first * first);
+  }
+  return rule;
+}
+
+}  // namespace
+
+Quadrature gauss_legendre(int n) {
+  return gauss(n, 0, 1);
+}
+
+Quadrature gauss_jacobi(int n) {
+  return gauss(n, 1, 0.5);
+}
+
+}  // namespace flatspeckle::mc

@@ -1,0 +1,94 @@
+#include "mc/slab/refinement.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <mutex>
+
+#include "core/result/result_group.h"
+
+namespace flatspeckle::mc {
+
+const DatasetTable numerical_table{
+    .name = "numerical",
+    .rows = {},
+    .attributes = {{"", "errors", "text", "what the errors are, where they are not statistical"}}};
+
+void Refined::append(const Refined& other) {
+  value.insert(value.end(), other.value.begin(), other.value.end());
+  difference.insert(difference.end(), other.difference.begin(), other.difference.end());
+  ordinates = std::max(ordinates, other.ordinates);
+}
+
+std::vector<double> scales(const std::vector<Entry>& entries, std::span<const Complex> values) {
+  std::map<std::size_t, double> intensity;
+  for (std::size_t e = 0; e < values.size(); ++e)
+    if (entries[e].a == entries[e].b) intensity[entries[e].a] = std::abs(values[e]);
+  std::vector<double> scale;
+  for (std::size_t e = 0; e < values.size(); ++e) {
+    const auto a = intensity.find(entries[e].a), b = intensity.find(entries[e].b);
+    double reference = 0;
+    if (a != intensity.end()) reference = a->second;
+    if (b != intensity.end())
+      reference = a != intensity.end() ? std::sqrt(reference * b->second) : b->second;
+    scale.push_back(std::max(std::abs(values[e]), reference));
+  }
+  return scale;
+}
+
+std::vector<double> scales_with_slopes(const std::vector<Entry>& entries,
+                                       std::span<const Complex> values) {
+  auto scale = scales(entries, values.first(entries.size()));
+  if (values.size() == entries.size()) return scale;
+  const auto slope = scales(entries, values.last(entries.size()));
+  for (std::size_t e = 0; e < entries.size(); ++e) scale.push_back(std::max(scale[e], slope[e]));
+  return scale;
+}
+
+Refined by_parameter(Refined all, double unit) {
+  for (auto* list : {&all.value, &all.difference})
+    for (std::size_t i = list->size() / 2; i < list->size(); ++i) (*list)[i] /= unit;
+  return all;
+}
+
+BatchJob two_batches(std::size_t size, const std::function<Refined()>& solve) {
+  struct Solution {
+    std::once_flag once;
+    Refined refined;
+  };
+  const auto solution = std::make_shared<Solution>();
+  BatchJob job;
+  job.size = size;
+  job.samples_per_batch = 1;
+  job.one_by_one = true;
+  job.run = [=](std::uint64_t number, std::span<Complex> sums) {
+    std::call_once(solution->once, [&] { solution->refined = solve(); });
+    const double sign = number % 2 == 0 ? 1 : -1;
+    for (std::size_t e = 0; e < sums.size(); ++e)
+      sums[e] += solution->refined.value[e] + sign * solution->refined.difference[e];
+  };
+  job.relative_error = [](const GroupedSums& sums) {
+    return relative_error(jackknife(sums, sample_mean));
+  };
+  return job;
+}
+
+PathJob two_batch_job(std::size_t entries, std::size_t quantities,
+                      const std::function<Refined()>& solve) {
+  PathJob job;
+  job.entries = entries;
+  job.all = sample_mean;
+  job.field.covariance = [entries](double samples, std::span<const Complex> sums) {
+    return sample_mean(samples, sums.first(entries));
+  };
+  job.field.batches = two_batches(quantities * entries, solve);
+  return job;
+}
+
+void write_numerical(ResultFile& file, const std::string& group) {
+  ResultGroup(file, numerical_table, group)
+      .attribute("errors", "numerical: differences from fewer ordinates");
+}
+
+}  // namespace flatspeckle::mc
