@@ -68,10 +68,13 @@ int covariance(const Arguments& arguments) {
           ? ExtendedEstimation{wave_estimation(scene, methods.wave_tolerance, session.seed()), {}}
           : extended_transport(scene, reversed, extras, methods.tolerance);
   disregard_unused(keys, spec, {method});
+  Neglected neglected;
+  if (method != "wave") {
+    neglected.add(scene);
+    refuse_absurd(methods, neglected);
+  }
   if (!command.settle()) return ExitStatus::done;
   if (method != "wave") {
-    Neglected neglected;
-    neglected.add(scene);
     note(neglected);
   } else {
     note_rounding(scene);

@@ -14,6 +14,15 @@ def add_options(parser):
     sweep_file.add_select(parser)
 
 
+def refuse_maps(result):
+    for prefix in ("", "mc/"):
+        name = f"{prefix}field_correlation"
+        if result.has(name) and any(scales and scales[0].name == "/shift"
+                                    for scales in list(result.dataset(name).dims)[1:]):
+            raise style.Unusable(f"{result.path}: a map over tilts and shifts; "
+                                 "plots/tilt_shift.py draws it")
+
+
 def is_sweep(result):
     return any(result.has(f"{prefix}field_correlation")
                and result.dataset(f"{prefix}field_correlation").ndim > 1 for prefix in ("", "mc/"))
@@ -88,6 +97,8 @@ def draw_sweep(sweep, arguments):
 
 
 def draw(results, arguments):
+    for result in results:
+        refuse_maps(result)
     if not any(is_sweep(result) for result in results):
         if arguments.select:
             raise style.Unusable(f"{results[0].path}: not a sweep, --select has nothing to select")

@@ -15,6 +15,7 @@
 namespace flatspeckle::apps {
 
 mc::ReversedPaths reversed_paths(const Keys& keys, const MethodSettings& settings) {
+  keys.read(settings.neglect_k_shift);
   const std::string& word = keys.read(settings.reversed_paths);
   return word == "yes"  ? mc::ReversedPaths::yes
          : word == "no" ? mc::ReversedPaths::no
@@ -26,6 +27,9 @@ void add_mc_keys(Keys& keys, MethodSettings& settings) {
   keys.add("reversed_paths", settings.reversed_paths,
            "Coherent backscattering in Monte Carlo; auto: where a view may see it")
       .one_of({"auto", "yes", "no"});
+  keys.add("neglect_k_shift", settings.neglect_k_shift,
+           "Monte Carlo and transport go on where the scatterers shift the wavenumber by more than "
+           "a fifth of it, which both neglect");
 }
 
 void add_wave_keys(Keys& keys, MethodSettings& settings) {
@@ -89,10 +93,22 @@ void Neglected::add(const Scene& scene) {
   const BulkMedium& medium = scene.medium;
   k_mean_free_path = std::min(k_mean_free_path, scene.k * medium.mean_free_path());
   if (medium.structure.independent()) packing = std::max(packing, medium.packing_fraction);
+  k_shift = std::max(k_shift, std::abs(medium.k_shift) / scene.k);
+  phase = std::max(phase, std::abs(medium.k_shift) * scene.domain.depth);
+}
+
+void refuse_absurd(const MethodSettings& settings, const Neglected& neglected) {
+  constexpr double absurd = 0.2;
+  if (settings.neglect_k_shift || !(neglected.k_shift > absurd)) return;
+  std::ostringstream text;
+  text << "neglect_k_shift = false: the scatterers shift the wavenumber by " << neglected.k_shift
+       << " of it, which Monte Carlo and transport neglect; take fewer or weaker ones, method = "
+          "wave, or neglect_k_shift = true";
+  throw InputError(text.str());
 }
 
 void note(const Neglected& neglected) {
-  constexpr double small = 10, dense = 0.02;
+  constexpr double small = 10, dense = 0.02, much_shift = 0.01;
   if (neglected.k_mean_free_path < small)
     std::cerr << "note: k x mean free path is only " << neglected.k_mean_free_path
               << "; the Monte Carlo method neglects terms of order 1 over that\n";
@@ -101,6 +117,11 @@ void note(const Neglected& neglected) {
         << "note: disks fill " << neglected.packing
         << " of the medium; the Monte Carlo method takes their positions as independent, which "
            "neglects terms of that order (structure = hard_disks takes them in)\n";
+  if (neglected.k_shift > much_shift)
+    std::cerr << "note: the scatterers shift the wavenumber by " << neglected.k_shift << " of it, "
+              << neglected.phase
+              << " rad over the depth, which the Monte Carlo method neglects (refraction at the "
+                 "edges; a box narrower than deep guides the mean field)\n";
 }
 
 Scene rounded_scene(const Keys& keys, const SceneSpec& spec) {

@@ -16,6 +16,7 @@ namespace flatspeckle::apps {
 /// How each method is to be run on a scene.
 struct MethodSettings {
   std::string reversed_paths = "auto";
+  bool neglect_k_shift = false;
   double wave_tolerance = 1e-6;
   std::optional<std::int64_t> wave_samples;
   double tolerance = 1e-6;
@@ -25,6 +26,7 @@ void add_mc_keys(Keys& keys, MethodSettings& settings);
 void add_wave_keys(Keys& keys, MethodSettings& settings);
 void add_transport_keys(Keys& keys, MethodSettings& settings);
 
+/// Reads what Monte Carlo and transport heed.
 mc::ReversedPaths reversed_paths(const Keys& keys, const MethodSettings& settings);
 
 /// A method applied to a scene: what the runner needs, and in words what was planned.
@@ -56,9 +58,14 @@ void note_rounding(const Scene& scene);
 struct Neglected {
   double k_mean_free_path = std::numeric_limits<double>::infinity();
   double packing = 0;  ///< of disks whose correlations are not taken in
+  double k_shift = 0;  ///< over k: shift of the wavenumber (conventions, C15)
+  double phase = 0;    ///< what that shift adds over the depth, radians
   void add(const Scene& scene);
 };
 
+/// Throws InputError where scatterers shift the wavenumber by so much that what neglects it is
+/// absurd, unless the key neglect_k_shift says to go on.
+void refuse_absurd(const MethodSettings& settings, const Neglected& neglected);
 /// Says so on standard error where that is much.
 void note(const Neglected& neglected);
 

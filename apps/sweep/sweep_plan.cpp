@@ -130,6 +130,7 @@ void SweepPlan::check_points() {
       mc::require_walks(scene, mc::make_plan(scene, reversed_).weighted);
     if (method(run) != "wave") neglected.add(scene);
   });
+  if (method_ != "wave") refuse_absurd(methods, neglected);
   note(neglected);
 }
 

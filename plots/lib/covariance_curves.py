@@ -1,4 +1,5 @@
-"""Memory-effect curves of any number of results of `covariance` and `validate` in one panel."""
+"""Memory-effect curves of any number of results of `covariance` and `validate` in one panel: over
+tilts, or over translations."""
 
 import pathlib
 import tomllib
@@ -17,7 +18,7 @@ class Series:
     """One method's field correlation [tilt], of one result file."""
 
     label: str
-    tilt: np.ndarray  # mrad
+    moves: np.ndarray  # tilts in mrad, or translations
     correlation: np.ndarray
     error: np.ndarray
     look: dict
@@ -37,13 +38,24 @@ def read_groups(result):
     return [(method, "")]
 
 
+def kind_of_moves(results):
+    """tilt or shift (a translation), whichever all results stand on."""
+    kinds = {result.dataset(f"{prefix}field_correlation").dims[0][0].name.strip("/"): result.path
+             for result in results for _, prefix in read_groups(result)}
+    if len(kinds) > 1:
+        raise style.Unusable(f"{kinds['shift']} is of translations, {kinds['tilt']} of tilts: "
+                             "draw them one by one")
+    return next(iter(kinds))
+
+
 def file_look(method, number):
     """A colour and symbol per file."""
     look = style.look(number)
     return {"marker": look["marker"], **method_look(method, look["color"])}
 
 
-def read_series(results):
+def read_series(results, unit):
+    """unit: what a move of 1 is drawn as."""
     series = []
     for number, result in enumerate(results):
         for method, prefix in read_groups(result):
@@ -51,7 +63,7 @@ def read_series(results):
             if result.dataset(name).ndim != 1:
                 raise style.Unusable(f"{result.path}: {name} is not a curve over tilts")
             series.append(Series(f"{pathlib.Path(result.path).stem}, {METHODS[method]}",
-                                 1000 * result.axis(name, 0), np.real(result.values(name)),
+                                 unit * result.axis(name, 0), np.real(result.values(name)),
                                  result.values(f"{name}_error"), file_look(method, number)))
     return series
 
@@ -101,19 +113,22 @@ def title(results):
 
 
 def draw(results, arguments):
-    series = read_series(results)
+    tilts = kind_of_moves(results) == "tilt"
+    series = read_series(results, 1000 if tilts else 1)
     figure, axis = plt.subplots(figsize=(style.COLUMN, 2.6))
     correlation_panel.prepare(
-        axis, np.concatenate([s.tilt for s in series]),
+        axis, np.concatenate([s.moves for s in series]),
         correlation_panel.lowest([s.correlation for s in series], [s.error for s in series]),
         arguments)
-    left_out = sum(correlation_panel.draw_curve(axis, s.tilt, s.correlation, s.error, s.look)
+    left_out = sum(correlation_panel.draw_curve(axis, s.moves, s.correlation, s.error, s.look)
                    for s in series)
     correlation_panel.write_title(axis, title(results), [s.correlation for s in series])
-    if share_q(results):
-        correlation_panel.add_q_axis(axis, results[0], series[0].tilt)
+    if not tilts:
+        axis.set_xlabel("translation (unit of length)")
+    elif share_q(results):
+        correlation_panel.add_q_axis(axis, results[0], series[0].moves)
     entries = [(plt.Line2D([], [], linestyle="none", **s.look), s.label) for s in series]
-    if draw_theory(axis, results):
+    if tilts and draw_theory(axis, results):
         entries.append((plt.Line2D([], [], color="black", linewidth=0.7),
                         "lines: diffusion theory"))
     page.legend_outside(figure, entries,

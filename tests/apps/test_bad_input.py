@@ -43,6 +43,12 @@ BOX_CASES = [
     ("covariance", BOX, {"albedo": "nan"}, ["albedo = nan", "from 0 to 1"]),
     ("covariance", BOX, {"albedo": 0.9, "phase_shift": 1}, ["phase_shift = 1", "absorbing"]),
     ("covariance", BOX, {"phase_shift": "inf"}, ["phase_shift = inf", "must be finite"]),
+    *((subcommand, BOX, {"count": None, "optical_depth": 1, "phase_shift": 1e-6},
+       ["neglect_k_shift", "shift the wavenumber by 7957", "method = wave"])
+      for subcommand in ("covariance", "validate", "field")),
+    ("sweep", BOX, {"count": None, "optical_depth": 1, "phase_shift": 1e-6, "tilts": [0, 0.1],
+                     "width": None, "scatterer": "point"},
+     ["neglect_k_shift", "shift the wavenumber by 7957", "method = wave"]),
     ("covariance", BOX, {"count": None, "optical_depth": 1, "phase_shift": 0},
      ["point", "does not scatter"]),
     ("covariance", BOX, {"light_angles": ["nan"]}, ["light_angles = nan", "radians"]),
