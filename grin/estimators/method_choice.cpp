@@ -188,15 +188,32 @@ Candidate* best_of(std::vector<Candidate>& all) {
   return best;
 }
 
+/// Whether enough paths carry each picture of every candidate: fewer have too small a variance, as
+/// the strongest are still missing. One that has next to no light by then is no match.
+bool is_settled(const std::vector<Candidate>& all) {
+  constexpr double enough = 0.75 * groups, next_to_none = 1.5;
+  const auto pending = [](const PictureMoments& picture) {
+    return picture.lit > next_to_none && picture.lit < enough;
+  };
+  return all.size() == 1 || std::none_of(all.begin(), all.end(), [&](const Candidate& candidate) {
+           const auto& pictures = candidate.trial.pictures;
+           return std::any_of(pictures.begin(), pictures.end(), pending);
+         });
+}
+
 }  // namespace
 
 Tracer best_tracer(const Tracers& tracers) {
-  for (const double effort : {1, 8}) {
+  std::optional<Tracer> best;
+  for (const double effort : {1, 8, 32}) {
     auto all = candidates(tracers, effort);
     if (all.empty()) break;
-    if (Candidate* const best = best_of(all)) return std::move(best->tracer);
+    Candidate* const found = best_of(all);
+    if (!found) continue;
+    best = std::move(found->tracer);
+    if (is_settled(all)) break;
   }
-  return tracers.make(RenderMethod::bidirectional);
+  return best ? std::move(*best) : tracers.make(RenderMethod::bidirectional);
 }
 
 }  // namespace flatspeckle::grin

@@ -89,6 +89,17 @@ TEST_CASE("methods without finite variance are not chosen, and say so") {
   CHECK(plan({}).starts_with("bidirectional (chosen by a pilot)"));
 }
 
+TEST_CASE("few strong paths do not mislead the choice") {
+  // The shipped fibre. A short trial finds light tracing cheap there, as it misses its strong
+  // joins.
+  RenderScene fibre =
+      box(0, ParabolicGuide({.axis_excess = 0.6, .alpha = 0.5}), FaceLight{Vec3(0, 0, 0), 0.1, 1},
+          AreaDetector{{0, 0, 50.265}, Vec3::UnitY(), 1.8, 1.8, {48, 48}, 0.5});
+  fibre.stage.boundary = Box{{-0.9, -0.9, 0}, {0.9, 0.9, 50.265}};
+  fibre.step = 0.59;
+  CHECK(chosen(fibre) == RenderMethod::path);
+}
+
 TEST_CASE("in the dark nothing is preferred") {
   const Light aside = BeamLight{{0, 0, 1}, Vec3::UnitX(), 0.01};
   CHECK(chosen(box(0, Homogeneous{}, aside, pinhole)) == RenderMethod::bidirectional);
