@@ -1,0 +1,113 @@
+#include "mc/fit/levenberg_marquardt.h"
+
+#include <algorithm>
+#include <limits>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+
+namespace flatspeckle::mc {
+
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// Normal equations, in which what a bound holds back has no say.
+struct NormalEquations {
+  MatrixXd matrix;
+  VectorXd descent;
+
+  NormalEquations(const LeastSquares& problem, const LeastSquaresFit& at)
+      : matrix(at.jacobian.transpose() * at.jacobian),
+        descent(-at.jacobian.transpose() * at.residuals) {
+    for (Index i = 0; i < descent.size(); ++i) {
+      const bool held = (at.parameters[i] <= problem.lower[i] && descent[i] < 0) ||
+                        (at.parameters[i] >= problem.upper[i] && descent[i] > 0);
+      if (held) leave_out(i);
+    }
+  }
+
+  VectorXd step(double damping) const {
+    MatrixXd damped = matrix;
+    damped.diagonal() *= 1 + damping;
+    return damped.ldlt().solve(descent);
+  }
+
+ private:
+  void leave_out(Index i) {
+    matrix.row(i).setZero();
+    matrix.col(i).setZero();
+    matrix(i, i) = 1;
+    descent[i] = 0;
+  }
+};
+
+VectorXd within(const LeastSquares& problem, const VectorXd& parameters) {
+  return parameters.cwiseMax(problem.lower).cwiseMin(problem.upper);
+}
+
+}  // namespace
+
+LeastSquaresFit levenberg_marquardt(const LeastSquares& problem, const VectorXd& start,
+                                    int most_iterations, double tolerance) {
+  constexpr double first_damping = 1e-3, most_damping = 1e12, factor = 10;
+  LeastSquaresFit at;
+  at.parameters = within(problem, start);
+  at.residuals = problem.residuals(at.parameters);
+  at.jacobian = problem.jacobian(at.parameters);
+  const VectorXd range = problem.upper - problem.lower;
+  double damping = first_damping;
+  for (; at.iterations < most_iterations && damping < most_damping; ++at.iterations) {
+    const VectorXd next =
+        within(problem, at.parameters + NormalEquations(problem, at).step(damping));
+    const double length = (next - at.parameters).cwiseQuotient(range).cwiseAbs().maxCoeff();
+    at.converged = length < tolerance && damping <= 1;
+    if (at.converged) return at;
+    const VectorXd residuals = problem.residuals(next);
+    const double gain = at.chi_squared() - residuals.squaredNorm();
+    if (!(gain >= 0)) {
+      damping *= factor;
+      continue;
+    }
+    at.parameters = next;
+    at.residuals = residuals;
+    at.jacobian = problem.jacobian(next);
+    at.converged = gain < tolerance && damping <= 1;
+    if (at.converged) return at;
+    damping = std::max(damping / factor, 1e-12);
+  }
+  return at;
+}
+
+LeastSquaresFit best_fit(const LeastSquares& problem, const std::vector<VectorXd>& starts) {
+  std::vector<LeastSquaresFit> fits;
+  for (const VectorXd& start : starts) fits.push_back(levenberg_marquardt(problem, start));
+  return *std::min_element(fits.begin(), fits.end(), [](const auto& a, const auto& b) {
+    return a.converged != b.converged ? a.converged : a.chi_squared() < b.chi_squared();
+  });
+}
+
+Information information(const LeastSquares& problem, const MatrixXd& jacobian) {
+  const VectorXd range = problem.upper - problem.lower;
+  const MatrixXd scaled = jacobian * range.asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(scaled.transpose() * scaled);
+  const VectorXd known = solver.eigenvalues();  // ascending
+  const MatrixXd& combinations = solver.eigenvectors();
+  const Index last = known.size() - 1;
+  Information found;
+  found.worst = combinations.col(0);
+  found.best = combinations.col(last);
+  found.condition = std::numeric_limits<double>::infinity();
+  if (!(known[0] > known[last] * std::numeric_limits<double>::epsilon())) return found;
+  found.condition = known[last] / known[0];
+  const MatrixXd root =
+      range.asDiagonal() * combinations * known.cwiseSqrt().cwiseInverse().asDiagonal();
+  found.covariance = root * root.transpose();
+  const VectorXd inverse = found.errors().cwiseInverse();
+  found.correlation = inverse.asDiagonal() * found.covariance * inverse.asDiagonal();
+  return found;
+}
+
+}  // namespace flatspeckle::mc

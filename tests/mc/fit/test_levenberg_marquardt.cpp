@@ -1,0 +1,121 @@
+#include <cmath>
+#include <random>
+
+#include <doctest/doctest.h>
+
+#include "mc/fit/levenberg_marquardt.h"
+
+namespace flatspeckle::mc {
+
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr int most_iterations = 60;
+constexpr double precise = 1e-12;
+
+/// A line through points of known errors: the straight-line fit in closed form.
+struct Line {
+  VectorXd x{{0, 1, 2, 3, 4}}, y{{1.1, 2.9, 5.2, 6.8, 9.1}}, error{{0.1, 0.2, 0.1, 0.3, 0.2}};
+
+  LeastSquares problem(const VectorXd& lower, const VectorXd& upper) const {
+    return {[this](const VectorXd& p) -> VectorXd {
+              return ((p[0] + p[1] * x.array()) - y.array()) / error.array();
+            },
+            [this](const VectorXd&) {
+              MatrixXd slopes(x.size(), 2);
+              slopes << error.cwiseInverse(), x.cwiseQuotient(error);
+              return slopes;
+            },
+            lower, upper};
+  }
+};
+
+/// y = a exp(-b x)
+LeastSquares decay(const VectorXd& x, const VectorXd& y, double error) {
+  return {[=](const VectorXd& p) -> VectorXd {
+            return (p[0] * (-p[1] * x.array()).exp() - y.array()) / error;
+          },
+          [=](const VectorXd& p) {
+            const VectorXd falling = (-p[1] * x.array()).exp() / error;
+            MatrixXd slopes(x.size(), 2);
+            slopes << falling, -p[0] * x.cwiseProduct(falling);
+            return slopes;
+          },
+          VectorXd{{0.1, 0.01}}, VectorXd{{10, 5}}};
+}
+
+}  // namespace
+
+TEST_CASE("least squares of a line are those of the closed form") {
+  const Line line;
+  const auto problem = line.problem(VectorXd{{-10, -10}}, VectorXd{{10, 10}});
+  const auto fit = levenberg_marquardt(problem, VectorXd{{5, -3}}, most_iterations, precise);
+  const Eigen::ArrayXd weight = line.error.array().square().inverse();
+  const double w = weight.sum(), wx = (weight * line.x.array()).sum(),
+               wxx = (weight * line.x.array().square()).sum(), wy = (weight * line.y.array()).sum(),
+               wxy = (weight * line.x.array() * line.y.array()).sum(), det = w * wxx - wx * wx;
+  REQUIRE(fit.converged);
+  CHECK(fit.parameters[0] == doctest::Approx((wxx * wy - wx * wxy) / det).epsilon(1e-6));
+  CHECK(fit.parameters[1] == doctest::Approx((w * wxy - wx * wy) / det).epsilon(1e-6));
+  const auto known = information(problem, fit.jacobian);
+  CHECK(known.covariance(0, 0) == doctest::Approx(wxx / det));
+  CHECK(known.covariance(1, 1) == doctest::Approx(w / det));
+  CHECK(known.correlation(0, 1) == doctest::Approx(-wx / std::sqrt(w * wxx)));
+}
+
+TEST_CASE("a bound holds a parameter back, and the others are best there") {
+  const Line line;
+  const auto problem = line.problem(VectorXd{{-10, -10}}, VectorXd{{10, 1.5}});
+  const auto fit = levenberg_marquardt(problem, VectorXd{{5, -3}}, most_iterations, precise);
+  const Eigen::ArrayXd weight = line.error.array().square().inverse();
+  REQUIRE(fit.converged);
+  CHECK(fit.parameters[1] == 1.5);
+  CHECK(fit.parameters[0] ==
+        doctest::Approx((weight * (line.y - 1.5 * line.x).array()).sum() / weight.sum())
+            .epsilon(1e-6));
+}
+
+TEST_CASE("pulls of an exponential's parameters are standard normal") {
+  constexpr double error = 0.01;
+  constexpr int runs = 400;
+  const VectorXd x = VectorXd::LinSpaced(20, 0, 3), truth{{2, 0.8}};
+  std::mt19937_64 random(7);
+  std::normal_distribution<double> noise(0, error);
+  VectorXd sum = VectorXd::Zero(2), squares = VectorXd::Zero(2);
+  for (int run = 0; run < runs; ++run) {
+    VectorXd y = truth[0] * (-truth[1] * x.array()).exp();
+    for (double& value : y) value += noise(random);
+    const auto problem = decay(x, y, error);
+    const auto fit = best_fit(problem, {VectorXd{{0.5, 3}}, VectorXd{{5, 0.1}}});
+    REQUIRE(fit.converged);
+    const VectorXd pull =
+        (fit.parameters - truth).cwiseQuotient(information(problem, fit.jacobian).errors());
+    sum += pull;
+    squares += pull.cwiseAbs2();
+  }
+  for (int i = 0; i < 2; ++i) {
+    CHECK(std::abs(sum[i] / runs) < 4 / std::sqrt(runs));
+    CHECK(std::abs(squares[i] / runs - 1) < 4 * std::sqrt(2.0 / runs));
+  }
+}
+
+TEST_CASE("what cannot be told apart is named, not hidden") {
+  const LeastSquares sum_alone{[](const VectorXd& p) {
+                                 return VectorXd{{p[0] + p[1] - 1, 0}};
+                               },
+                               [](const VectorXd&) {
+                                 return MatrixXd{{1, 1}, {0, 0}};
+                               },
+                               VectorXd{{0, 0}}, VectorXd{{1, 1}}};
+  const auto fit = levenberg_marquardt(sum_alone, VectorXd{{0.9, 0.8}});
+  CHECK(fit.chi_squared() < 1e-6);
+  const auto known = information(sum_alone, fit.jacobian);
+  CHECK(std::isinf(known.condition));
+  CHECK(known.covariance.size() == 0);
+  CHECK(known.best[0] == doctest::Approx(known.best[1]));
+  CHECK(known.worst[0] == doctest::Approx(-known.worst[1]));
+}
+
+}  // namespace flatspeckle::mc
