@@ -45,20 +45,32 @@ struct Pair {
   }
 };
 
-// Pairs beyond the range of double: m up to thousands.
-Pair<ScaledComplex> scaled_pair(double k, Vec2 d, int order) {
+// Of radial functions at one displacement, order 0 .. m.
+template <typename Radial>
+Pair<ScaledComplex> scaled_pair(const std::vector<Radial>& radial, ExtendedComplex turn) {
   Pair<ScaledComplex> pair;
-  pair.resize(order);
-  const long double x = d.x, z = d.z, r = std::sqrt(x * x + z * z);
-  const auto h = scaled_hankel(order, static_cast<double>(k * r));
-  const ExtendedComplex turn(z / r, x / r);
+  pair.resize(static_cast<int>(radial.size()) - 1);
   ExtendedComplex phase = 1;
-  for (int m = 0; m <= order; ++m) {
-    pair.cosine[m] = phase.real() * h[m];
-    pair.sine[m] = phase.imag() * h[m];
+  for (std::size_t m = 0; m < radial.size(); ++m) {
+    pair.cosine[m] = phase.real() * ScaledComplex(radial[m]);
+    pair.sine[m] = phase.imag() * ScaledComplex(radial[m]);
     phase = product(phase, turn);
   }
   return pair;
+}
+
+// Pairs beyond the range of double: m up to thousands.
+Pair<ScaledComplex> scaled_pair(double k, Vec2 d, int order) {
+  const long double x = d.x, z = d.z, r = std::sqrt(x * x + z * z);
+  return scaled_pair(scaled_hankel(order, static_cast<double>(k * r)), {z / r, x / r});
+}
+
+Pair<ScaledComplex> regular_pair(double k, Vec2 d, int order) {
+  const long double x = d.x, z = d.z, r = std::sqrt(x * x + z * z);
+  if (r > 0) return scaled_pair(scaled_bessel_j(order, static_cast<double>(k * r)), {z / r, x / r});
+  std::vector<ScaledComplex> at_centre(order + 1);
+  at_centre[0] = ScaledComplex(ExtendedComplex(1));
+  return scaled_pair(at_centre, 1);
 }
 
 // H_m, cos(m theta) and sin(m theta) of many displacements: [m][displacement].
@@ -198,6 +210,23 @@ void translate(double k, std::span<const ModeSet> receivers, const ModeSet& send
         *to++ = weighted(pair.translation(mode, from), mode.weight, from.weight);
     }
   });
+}
+
+void translate_regular(double k, std::span<const ModeSet> receivers, const ModeSet& sender,
+                       Target out) {
+  std::size_t row = 0;
+  for (const ModeSet& receiver : receivers) {
+    const auto pair =
+        regular_pair(k, receiver.centre - sender.centre, receiver.order + sender.order);
+    for (const Mode& to : receiver.modes) {
+      for (std::size_t column = 0; column < sender.modes.size(); ++column) {
+        const Mode& from = sender.modes[column];
+        out.data[row + out.ld * column] =
+            weighted(pair.translation(to, from), to.weight, from.weight);
+      }
+      ++row;
+    }
+  }
 }
 
 // The value of the field at a point is the coefficient of J_0 about it.

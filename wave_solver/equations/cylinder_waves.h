@@ -44,6 +44,11 @@ struct Target {
 /// Throws InputError where the result itself is out of range.
 void translate(double k, std::span<const ModeSet> receivers, const ModeSet& sender, Target out);
 
+/// The same for unit regular modes of the sender: J_m in place of H_m. Its transpose takes outgoing
+/// modes of the receivers to outgoing modes about the sender's centre, beyond the receivers.
+void translate_regular(double k, std::span<const ModeSet> receivers, const ModeSet& sender,
+                       Target out);
+
 /// The sender's outgoing modes at points: rows are points.
 void field_at(double k, std::span<const Vec2> points, const ModeSet& sender, Target out);
 

@@ -1,0 +1,105 @@
+// A cluster as one object against the exact solution of all its disks, and what must hold of any
+// T-matrix: energy and reciprocity.
+
+#include <cmath>
+
+#include <doctest/doctest.h>
+
+#include "core/error.h"
+#include "reference.h"
+#include "wave_solver/clusters/cluster_solution.h"
+#include "wave_solver/solutions/wave_solution.h"
+
+namespace flatspeckle::wave {
+
+namespace {
+
+constexpr double k = two_pi, gap = 0.5;
+
+Placement five_disks() {
+  const std::vector<Vec2> centres{{0, 0.1}, {0.7, 0.2}, {-0.6, 0.4}, {0.1, -0.7}, {-0.5, -0.4}};
+  Placement placement;
+  for (std::size_t j = 0; j < centres.size(); ++j) {
+    Scatterer disk = reference_scatterer(j % 2 == 0 ? "TM15" : "D");
+    disk.radius = 0.15 + 0.03 * static_cast<double>(j);
+    placement.push_back({centres[j], disk});
+  }
+  return placement;
+}
+
+std::vector<ClusterPlace> six_places(double pitch) {
+  std::vector<ClusterPlace> places;
+  for (int i = 0; i < 6; ++i) places.push_back({{pitch * (i % 3), 1 + pitch * (i / 3)}, 0.7 * i});
+  return places;
+}
+
+Placement copies(const Placement& cluster, const std::vector<ClusterPlace>& places) {
+  Placement all;
+  for (const auto& [centre, angle] : places)
+    for (std::size_t j = 0; j < cluster.size(); ++j) {
+      const auto [x, z] = cluster[j].position;
+      const double c = std::cos(angle), s = std::sin(angle);
+      all.push_back({centre + Vec2{c * x + s * z, c * z - s * x}, cluster[j].scatterer});
+    }
+  return all;
+}
+
+// w_n of ClusterTMatrix.
+double wave_size(const Mode& mode) {
+  return static_cast<double>(mode.weight) * (mode.order == 0 ? std::sqrt(2.0) : 1.0);
+}
+
+std::vector<Complex> full_far_fields(const Placement& placement, const std::vector<double>& lights,
+                                     const std::vector<double>& views) {
+  const auto solution = solve(placement, k, lights, {.sensors = {}, .diagnose = false});
+  std::vector<Complex> fields;
+  for (std::size_t light = 0; light < lights.size(); ++light)
+    for (const double view : views) fields.push_back(solution.far_field(view, light));
+  return fields;
+}
+
+}  // namespace
+
+TEST_CASE("a cluster's T-matrix keeps energy and reciprocity") {
+  const auto cluster = cluster_t_matrix(five_disks(), k, gap);
+  const std::size_t size = cluster.modes.size();
+  REQUIRE(size == 2 * static_cast<std::size_t>(cluster.order) + 1);
+  // T + T^H + 2 T^H T = 0 of lossless scatterers, in waves that are not scaled
+  std::vector<Complex> t = cluster.response;
+  double asymmetry = 0, loss = 0;
+  for (std::size_t j = 0; j < size; ++j)
+    for (std::size_t i = 0; i < size; ++i)
+      t[i + size * j] *= wave_size(cluster.modes[i]) * wave_size(cluster.modes[j]);
+  for (std::size_t j = 0; j < size; ++j)
+    for (std::size_t i = 0; i < size; ++i) {
+      asymmetry = std::max(asymmetry, std::abs(t[i + size * j] - t[j + size * i]));
+      Complex sum = t[i + size * j] + std::conj(t[j + size * i]);
+      for (std::size_t l = 0; l < size; ++l)
+        sum += 2.0 * std::conj(t[l + size * i]) * t[l + size * j];
+      loss = std::max(loss, std::abs(sum));
+    }
+  CHECK(asymmetry < 1e-12);
+  CHECK(loss < 1e-11);
+}
+
+TEST_CASE("copies of a cluster scatter as all their disks do") {
+  const auto disks = five_disks();
+  const auto cluster = cluster_t_matrix(disks, k, gap);
+  const std::vector<double> lights{0.3, -2.0}, views{0, 0.5, 1.9, -0.8, 3.0};
+  for (const auto& places :
+       {std::vector<ClusterPlace>{{{0.4, 2}, 1.1}}, six_places(2 * cluster.radius + gap)}) {
+    const auto expected = full_far_fields(copies(disks, places), lights, views);
+    const auto got = cluster_far_fields(cluster, places, lights, views);
+    CHECK(relative_distance(got, expected) < 1e-9);
+  }
+}
+
+TEST_CASE("clusters closer than the gap of their T-matrix are refused") {
+  const auto cluster = cluster_t_matrix(five_disks(), k, gap);
+  CHECK_THROWS_AS(cluster_far_fields(cluster, six_places(2 * cluster.radius + 0.9 * gap), {0}, {0}),
+                  InputError);
+  CHECK_THROWS_AS(cluster_t_matrix(five_disks(), k, 0), InputError);
+  CHECK_THROWS_AS(cluster_t_matrix(five_disks(), k, 1e-3), InputError);
+}
+
+}  // namespace flatspeckle::wave
