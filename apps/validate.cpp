@@ -203,9 +203,11 @@ int validate(const Arguments& arguments) {
         print_comparison(scene, comparison);
         write_medium(file, scene);
         write_axes(file, scene);
-        print_ranges("mc", mc::write_moments(file, "mc", mc.job, scene, mc_sums, mc_moments));
+        print_ranges("mc",
+                     mc::write_moments(file, "mc", mc.job, scene, mc_sums, mc_moments).ranges);
         print_ranges(name, mc::write_moments(file, name, reference.job, scene, reference_sums,
-                                             reference_moments));
+                                             reference_moments)
+                               .ranges);
         if (name == "transport") mc::write_numerical(file, name);
         write_comparison(file, comparison);
       });

@@ -24,7 +24,9 @@ std::string shown_channel(const CovarianceRequest& request, std::uint32_t channe
     std::snprintf(light_text, sizeof light_text, "%8.6g", lit.angle);
   else
     std::snprintf(light_text, sizeof light_text, "light %-3u", light);
-  if (seen.near)
+  if (seen.near && request.has_reference())
+    std::snprintf(view_text, sizeof view_text, "x %-8.5g", seen.point.x);
+  else if (seen.near)
     std::snprintf(view_text, sizeof view_text, "sensor %-3u", view);
   else
     std::snprintf(view_text, sizeof view_text, "%8.6g", seen.angle);
@@ -60,6 +62,23 @@ void print_ranges(const std::string& group, const std::vector<mc::WrittenRange>&
     std::printf("%s%s%s: %s\n", group.c_str(), group.empty() ? "" : "/", long_name.c_str(),
                 range_text(estimate.range, estimate.error).c_str());
   }
+}
+
+void print_moves(const CovarianceRequest& request, const mc::WrittenMoves& moves) {
+  const bool tilts = request.kind == CovarianceRequest::Kind::memory_effect;
+  if (tilts || request.kind == CovarianceRequest::Kind::translation) {
+    const auto& [value, error, rare] = moves.correlation;
+    std::printf("%-11s %11s %9s %11s %9s\n", tilts ? "tilt" : "translation", "C_E", "error", "C_I",
+                "error");
+    for (std::size_t m = 0; m < std::min(value.size(), most_rows); ++m) {
+      const double field = std::abs(value[m]);
+      std::printf("%-11.6g %11.5g %9.2g %11.5g %9.2g\n",
+                  (tilts ? request.tilts : request.shifts)[m], field, error[m], field * field,
+                  2 * field * error[m]);
+    }
+    if (value.size() > most_rows) std::printf("... and %zu more\n", value.size() - most_rows);
+  }
+  print_ranges("", moves.ranges);
 }
 
 std::string range_text(const mc::Range& range, double error) {

@@ -12,7 +12,8 @@ namespace flatspeckle::apps {
 
 /// A value to five digits; the imaginary part is left out where it is rounding.
 std::string shown_value(Complex value);
-/// Light and view angle of a channel; beams, sources and sensors by their numbers.
+/// Light and view angle of a channel; beams, sources and sensors by their numbers, sensors that
+/// move by their place.
 std::string shown_channel(const CovarianceRequest& request, std::uint32_t channel);
 
 /// How many of the entries to show: intensities of moved fields are only there for the
@@ -28,6 +29,9 @@ void print_entries(const CovarianceRequest& request, const Estimate& estimate,
 
 /// The ranges of a group (empty: the root), and on standard error which rest on too few steps.
 void print_ranges(const std::string& group, const std::vector<mc::WrittenRange>& ranges);
+/// C_E and C_I = C_E^2 of a curve of tilts or translations, then its range. Of a map over tilts and
+/// shifts the ranges alone.
+void print_moves(const CovarianceRequest& request, const mc::WrittenMoves& moves);
 /// "1.36 +- 0.01", or which steps are missing.
 std::string range_text(const mc::Range& range, double error);
 

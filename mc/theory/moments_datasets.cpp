@@ -201,9 +201,9 @@ Estimate unpack_full(const CovarianceRequest& request, const Estimate& triangle)
   return full;
 }
 
-std::vector<WrittenRange> write_moments(ResultFile& file, const std::string& group,
-                                        const FieldJob& job, const Scene& scene,
-                                        const GroupedSums& sums, const FieldMoments& moments) {
+WrittenMoves write_moments(ResultFile& file, const std::string& group, const FieldJob& job,
+                           const Scene& scene, const GroupedSums& sums,
+                           const FieldMoments& moments) {
   const CovarianceRequest& request = scene.request;
   write_mean({file, mean_table, group}, request, moments.mean);
   const ResultGroup out(file, request_table(request.kind), group);
@@ -216,7 +216,7 @@ std::vector<WrittenRange> write_moments(ResultFile& file, const std::string& gro
   MovesWriter writer(out, scene, moments.covariance);
   const Correlations found = correlations(request, sums, job.covariance);
   request.kind == Kind::tilt_shift ? writer.map(found) : writer.curve(found);
-  return writer.ranges();
+  return {found.moves, writer.ranges()};
 }
 
 }  // namespace flatspeckle::mc

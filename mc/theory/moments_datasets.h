@@ -30,11 +30,17 @@ struct WrittenRange {
   bool few_steps = false;
 };
 
+/// What a file has of moves: C_E of each, and ranges. Empty for other requests.
+struct WrittenMoves {
+  Estimate correlation;
+  std::vector<WrittenRange> ranges;
+};
+
 /// Writes mean field and covariance, each with its standard error, into a group (empty: the root),
 /// and for moves what follows: correlations, their ranges, theory. Axes must have been written
 /// (flatland/scene/scene_datasets.h); moments are those of job and sums.
-std::vector<WrittenRange> write_moments(ResultFile& file, const std::string& group,
-                                        const FieldJob& job, const Scene& scene,
-                                        const GroupedSums& sums, const FieldMoments& moments);
+WrittenMoves write_moments(ResultFile& file, const std::string& group, const FieldJob& job,
+                           const Scene& scene, const GroupedSums& sums,
+                           const FieldMoments& moments);
 
 }  // namespace flatspeckle::mc

@@ -98,6 +98,18 @@ class Moves(ProgramTest):
                   out="wave.h5")
         self.check_shapes(self.open("wave.h5"), {"covariance": (3, 1)})
 
+    def test_printed_curves(self):
+        done = self.call("covariance", **{**BOX, "covariance": "memory_effect", "tilts": [0, 0.5],
+                                          "view_angles": [0.3], "samples": 4000}, out="result.h5")
+        file = self.open()
+        field, error = file["field_correlation"][1], file["field_correlation_error"][1]
+        row = done.stdout.split("C_I     error\n")[1].splitlines()[1].split()
+        for shown, value in zip(row, (0.5, field, error, field**2, 2 * field * error)):
+            self.assertAlmostEqual(float(shown), value, delta=0.05 * abs(value))
+        done = self.call("covariance", **MAP, out="map.h5")
+        self.assertNotIn("light 1", done.stdout)
+        self.assertIn("q L at C_I = 1/2", done.stdout)
+
     def test_other_sources_are_another_run(self):
         keys = {**BOX, "near_sources": "source.csv", "samples": 2000}
         self.call("covariance", **keys, out="result.h5")
