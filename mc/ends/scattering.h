@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <numbers>
@@ -81,7 +83,13 @@ struct HenyeyGreensteinScattering {
   }
   double amplitude(Vec2 from, Vec2 to) const { return std::sqrt(density(from, to)); }
   void towards(Vec2 from, const Directions& to, std::span<Complex> out) const {
-    for (std::size_t j = 0; j < out.size(); ++j) out[j] *= amplitude(from, to[j]);
+    constexpr std::size_t most = 128;  // amplitudes alone are a loop of vectors
+    std::array<double, most> amplitudes;
+    for (std::size_t begin = 0; begin < out.size(); begin += most) {
+      const std::size_t count = std::min(most, out.size() - begin);
+      for (std::size_t j = 0; j < count; ++j) amplitudes[j] = amplitude(from, to[begin + j]);
+      for (std::size_t j = 0; j < count; ++j) out[begin + j] *= amplitudes[j];
+    }
   }
   /// tan(theta/2) = (1-g)/(1+g) tan(half) of a uniform half angle (C22).
   Vec2 sample(Vec2 from, RandomStream& random) const {

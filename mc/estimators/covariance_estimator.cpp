@@ -8,6 +8,14 @@ namespace flatspeckle::mc {
 
 namespace {
 
+/// Whether channels are every light in every view, [light][view].
+bool is_grid(const std::vector<Channel>& channels, std::size_t lights, std::size_t views) {
+  if (channels.size() != lights * views) return false;
+  for (std::size_t c = 0; c < channels.size(); ++c)
+    if (channels[c].light != c / views || channels[c].view != c % views) return false;
+  return true;
+}
+
 /// The field f of every channel (C14), for an accumulator.
 template <typename Scattering, bool reversed, bool phases>
 class PathFields {
@@ -19,6 +27,7 @@ class PathFields {
         channels_(scene.request.channels),
         accumulator_(accumulator),
         ends_(scene, [](std::size_t ends) { return std::vector<Complex>(ends); }),
+        is_grid_(is_grid(channels_, ends_.lights.size(), ends_.views.size())),
         field_(channels_.size()) {}
 
   /// B = 1 at x.
@@ -26,7 +35,12 @@ class PathFields {
     auto& [lights, views, light_first, light, view_first, view] = ends_;
     lights.attenuate(x, light);
     views.attenuate(x, view);
-    for (std::size_t c = 0; c < channels_.size(); ++c) {
+    for (std::size_t i = 0; is_grid_ && i < light.size(); ++i) {
+      const std::span<Complex> row(&field_[i * view.size()], view.size());
+      for (std::size_t v = 0; v < row.size(); ++v) row[v] = product(light[i], view[v]);
+      scattering_.towards(-lights.direction(i), views.directions(), row);
+    }
+    for (std::size_t c = 0; !is_grid_ && c < channels_.size(); ++c) {
       const auto [i, v] = channels_[c];
       field_[c] = product(product(light[i], view[v]),
                           scattering_.amplitude(-lights.direction(i), views.direction(v)));
@@ -51,6 +65,7 @@ class PathFields {
   const std::vector<Channel>& channels_;
   Accumulator& accumulator_;
   PathEnds<std::vector<Complex>, reversed, phases> ends_;  ///< A e of every end
+  bool is_grid_;                                           ///< rows of views, a light each
   std::vector<Complex> field_;                             ///< per channel
 };
 
