@@ -68,11 +68,8 @@ int covariance(const Arguments& arguments) {
           ? ExtendedEstimation{wave_estimation(scene, methods.wave_tolerance, session.seed()), {}}
           : extended_transport(scene, reversed, extras, methods.tolerance);
   disregard_unused(keys, spec, {method});
-  Neglected neglected;
-  if (method != "wave") {
-    neglected.add(scene);
-    refuse_absurd(methods, neglected);
-  }
+  const Neglected neglected(scene);
+  if (method != "wave") refuse_absurd(methods, neglected);
   if (!command.settle()) return ExitStatus::done;
   if (method != "wave") {
     note(neglected);

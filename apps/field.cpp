@@ -144,9 +144,7 @@ int field(const Arguments& arguments) {
   const mc::DrawingSettings settings{reversed_paths(keys, values.estimation), session.seed(),
                                      session.threads()};
   const Scene scene = field_scene(keys, values.spec);
-  Neglected neglected;
-  neglected.add(scene);
-  refuse_absurd(values.estimation, neglected);
+  refuse_absurd(values.estimation, Neglected(scene));
   check_memory(scene, demand);
   if (!command.settle()) return ExitStatus::done;
   catch_interrupts();

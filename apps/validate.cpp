@@ -183,9 +183,7 @@ int validate(const Arguments& arguments) {
   if (scene.medium.mu_s == 0)
     throw InputError("scatterer", spec.scatterer,
                      "this scene does not scatter, there is nothing to compare");
-  Neglected neglected;
-  neglected.add(scene);
-  refuse_absurd(methods, neglected);
+  refuse_absurd(methods, Neglected(scene));
   const auto chosen = refer(scene);
   const std::string& name = chosen.name;
   const Estimation& reference = chosen.estimation;

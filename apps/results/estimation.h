@@ -60,6 +60,9 @@ struct Neglected {
   double packing = 0;  ///< of disks whose correlations are not taken in
   double k_shift = 0;  ///< over k: shift of the wavenumber (conventions, C15)
   double phase = 0;    ///< what that shift adds over the depth, radians
+
+  Neglected() = default;
+  explicit Neglected(const Scene& scene) { add(scene); }
   void add(const Scene& scene);
 };
 
