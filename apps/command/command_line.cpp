@@ -9,6 +9,7 @@
 #include <CLI/CLI.hpp>
 
 #include "apps/command/key_lists.h"
+#include "apps/command/nearest_key.h"
 #include "apps/command/scene_file.h"
 #include "core/error.h"
 #include "core/keys/number_text.h"
@@ -33,14 +34,20 @@ std::string line_of(const Arguments& arguments) {
   return text;
 }
 
+std::string unknown_key(const Keys& keys, const std::string& name) {
+  const std::string nearest = nearest_key(keys, name);
+  return name + ": unknown key" + (nearest.empty() ? "" : "; did you mean " + nearest + '?') +
+         " (--help lists the known ones)";
+}
+
 /// CLI11's message as one line in this program's words.
-std::string explain(const CLI::App& app, const CLI::ParseError& error) {
+std::string explain(const Keys& keys, const CLI::App& app, const CLI::ParseError& error) {
   std::string message = error.what();
   std::replace(message.begin(), message.end(), '\n', ' ');
   const std::string unknown_in_file = "INI was not able to parse ";
   if (message.starts_with(unknown_in_file))
-    return app.get_config_ptr()->as<std::string>() + ", " + message.substr(unknown_in_file.size()) +
-           ": unknown key (--help lists the known ones)";
+    return app.get_config_ptr()->as<std::string>() + ", " +
+           unknown_key(keys, message.substr(unknown_in_file.size()));
   if (dynamic_cast<const CLI::FileError*>(&error) != nullptr) return "config: " + message;
   if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr) {
     const bool many = message.find("At Most") != std::string::npos;
@@ -50,12 +57,11 @@ std::string explain(const CLI::App& app, const CLI::ParseError& error) {
   return message;
 }
 
-void refuse_strays(const std::vector<std::string>& strays) {
+void refuse_strays(const Keys& keys, const std::vector<std::string>& strays) {
   if (strays.empty()) return;
   const std::string& word = strays.front();
   if (word.starts_with("--"))
-    throw InputError(word.substr(2, word.find('=') - 2) +
-                     ": unknown key (--help lists the known ones)");
+    throw InputError(unknown_key(keys, word.substr(2, word.find('=') - 2)));
   throw InputError(word + ": stands alone; expected --key value" +
                    (word.ends_with(".toml") ? " (of a scene file: --config FILE)"
                                             : " (switches have none, most keys only one)"));
@@ -112,10 +118,10 @@ void Subcommand::parse_by(const Parser& parser) {
   } catch (const CLI::CallForHelp&) {
     throw;
   } catch (const CLI::ParseError& error) {
-    throw InputError(explain(*app_, error));
+    throw InputError(explain(keys_, *app_, error));
   }
   take_results();
-  refuse_strays(app_->remaining());
+  refuse_strays(keys_, app_->remaining());
   keys_.check();
 }
 

@@ -15,8 +15,10 @@ PAIRS = {"covariance": "pairs", "pairs": [0, 0.1, 0.04, 0.14]}
 
 # subcommand, scene, changed keys, words of the message
 BOX_CASES = [
-    ("covariance", BOX, {"widht": 3}, ["widht", "unknown"]),
+    ("covariance", BOX, {"widht": 3}, ["widht", "unknown", "did you mean width?"]),
     ("covariance", BOX, {"wave_sample": 3}, ["wave_sample", "unknown"]),
+    ("covariance", BOX, {"view_angle": 3}, ["view_angle: unknown", "did you mean view_angles?"]),
+    ("covariance", BOX, {"quark": 3}, ["quark: unknown key (--help"]),
     ("covariance", BOX, {"density": 1.0}, ["count, density", "exactly one"]),
     ("covariance", BOX, {"density": 1.0, "mean_free_path": 3, "optical_depth": 1},
      ["count, density, mean_free_path, optical_depth", "exactly one"]),
