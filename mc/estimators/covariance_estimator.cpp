@@ -32,19 +32,9 @@ class PathFields {
 
   /// B = 1 at x.
   void single(Vec2 x, double weight) {
-    auto& [lights, views, light_first, light, view_first, view] = ends_;
-    lights.attenuate(x, light);
-    views.attenuate(x, view);
-    for (std::size_t i = 0; is_grid_ && i < light.size(); ++i) {
-      const std::span<Complex> row(&field_[i * view.size()], view.size());
-      for (std::size_t v = 0; v < row.size(); ++v) row[v] = product(light[i], view[v]);
-      scattering_.towards(-lights.direction(i), views.directions(), row);
-    }
-    for (std::size_t c = 0; !is_grid_ && c < channels_.size(); ++c) {
-      const auto [i, v] = channels_[c];
-      field_[c] = product(product(light[i], view[v]),
-                          scattering_.amplitude(-lights.direction(i), views.direction(v)));
-    }
+    ends_.lights.attenuate(x, ends_.light_last);
+    ends_.views.attenuate(x, ends_.view_last);
+    is_grid_ ? find_rows() : find_listed();
     accumulator_.add(weight, field_);
   }
 
@@ -61,6 +51,24 @@ class PathFields {
   }
 
  private:
+  /// Of single scattering: each light into all views, a loop of vectors.
+  void find_rows() {
+    const auto& view = ends_.view_last;
+    for (std::size_t i = 0; i < ends_.lights.size(); ++i) {
+      const std::span<Complex> row(&field_[i * view.size()], view.size());
+      for (std::size_t v = 0; v < row.size(); ++v) row[v] = product(ends_.light_last[i], view[v]);
+      scattering_.towards(-ends_.lights.direction(i), ends_.views.directions(), row);
+    }
+  }
+  void find_listed() {
+    for (std::size_t c = 0; c < channels_.size(); ++c) {
+      const auto [i, v] = channels_[c];
+      field_[c] =
+          product(product(ends_.light_last[i], ends_.view_last[v]),
+                  scattering_.amplitude(-ends_.lights.direction(i), ends_.views.direction(v)));
+    }
+  }
+
   const Scattering& scattering_;
   const std::vector<Channel>& channels_;
   Accumulator& accumulator_;

@@ -24,17 +24,11 @@ void require_apart(const ClusterTMatrix& cluster, const std::vector<ClusterPlace
     }
 }
 
-// i^n e^{i k w.r} {1, sqrt(2) cos, sqrt(2) sin}(n angle) times the weights: a plane wave in regular
-// modes (C6). Its conjugate takes outgoing modes to the far field.
-std::vector<Complex> plane_wave(const ClusterTMatrix& cluster, Vec2 centre, double angle) {
-  std::vector<Complex> wave;
-  const Complex phase = std::polar(1.0, cluster.k * dot(direction(angle), centre));
-  const Complex power[] = {1, {0, 1}, -1, {0, -1}};
-  for (const Mode& mode : cluster.modes) {
-    const double turn = mode.order * angle;
-    wave.push_back(std::numbers::sqrt2 * static_cast<double>(mode.weight) *
-                   (mode.odd ? std::sin(turn) : std::cos(turn)) * power[mode.order % 4] * phase);
-  }
+std::vector<Complex> plane_wave_at(const ClusterTMatrix& cluster, Vec2 centre, Vec2 w,
+                                   Complex factor) {
+  std::vector<Complex> wave(cluster.modes.size());
+  const ModeSet receiver = cluster.modes_at(centre);
+  expand_plane_wave(cluster.k, {&receiver, 1}, w, factor, wave);
   return wave;
 }
 
@@ -65,7 +59,7 @@ std::vector<Complex> driven(const ClusterTMatrix& cluster, const std::vector<Clu
   Complex* column = columns.data();
   for (const double angle : light_angles)
     for (std::size_t j = 0; j < places.size(); ++j, column += size) {
-      const auto wave = plane_wave(cluster, places[j].centre, angle);
+      const auto wave = plane_wave_at(cluster, places[j].centre, direction(angle), 1);
       multiply(CblasNoTrans, CblasNoTrans, size, 1, size, 1, responses[j].data(), size, wave.data(),
                size, 0, column, size);
     }
@@ -94,11 +88,12 @@ std::vector<Complex> cluster_far_fields(const ClusterTMatrix& cluster,
   std::vector<Complex> fields(light_angles.size() * view_angles.size());
   for (std::size_t v = 0; v < view_angles.size(); ++v)
     for (std::size_t j = 0; j < places.size(); ++j) {
-      const auto wave = plane_wave(cluster, places[j].centre, view_angles[v]);
+      const auto wave =
+          plane_wave_at(cluster, places[j].centre, -direction(view_angles[v]), factor);
       for (std::size_t light = 0; light < light_angles.size(); ++light)
         for (std::size_t i = 0; i < size; ++i)
           fields[light * view_angles.size() + v] +=
-              factor * std::conj(wave[i]) * solution[light * unknowns + j * size + i];
+              wave[i] * solution[light * unknowns + j * size + i];
     }
   return fields;
 }

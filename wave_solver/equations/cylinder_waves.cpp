@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "core/error.h"
 #include "core/numbers/hankel_array.h"
+#include "core/numbers/phasor.h"
 #include "core/numbers/scaled_bessel.h"
 
 namespace flatspeckle::wave {
@@ -225,6 +227,35 @@ void translate_regular(double k, std::span<const ModeSet> receivers, const ModeS
             weighted(pair.translation(to, from), to.weight, from.weight);
       }
       ++row;
+    }
+  }
+}
+
+void expand_plane_wave(double k, std::span<const ModeSet> receivers, Vec2 w, Complex factor,
+                       std::span<Complex> out) {
+  int highest = 0;
+  std::vector<double> phases;
+  for (const ModeSet& receiver : receivers) {
+    highest = std::max(highest, receiver.order);
+    phases.push_back(k * dot(w, receiver.centre));
+  }
+  std::vector<Complex> cosines, sines;  // times i^n
+  const ExtendedComplex turn(w.z, w.x);
+  ExtendedComplex phase = 1, power = 1;
+  for (int n = 0; n <= highest; ++n) {
+    cosines.push_back(Complex(phase.real() * power));
+    sines.push_back(Complex(phase.imag() * power));
+    phase = product(phase, turn);
+    power = {-power.imag(), power.real()};
+  }
+  std::vector<Complex> waves(phases.size());
+  damped_phasors(phases, std::vector<double>(phases.size()), waves);
+  std::size_t row = 0;
+  for (std::size_t j = 0; j < receivers.size(); ++j) {
+    const Complex there = product(waves[j], std::numbers::sqrt2 * factor);
+    for (const Mode& mode : receivers[j].modes) {
+      const Complex turned = mode.odd ? sines[mode.order] : cosines[mode.order];
+      out[row++] = product(turned, there) * static_cast<double>(mode.weight);
     }
   }
 }

@@ -49,6 +49,12 @@ void translate(double k, std::span<const ModeSet> receivers, const ModeSet& send
 void translate_regular(double k, std::span<const ModeSet> receivers, const ModeSet& sender,
                        Target out);
 
+/// The coefficients of `factor` times the plane wave along the unit vector w in unit regular modes
+/// of the receivers (C6): sqrt(2) weight i^n {cos, sin}(n angle) e^{i k w.r}, one after the other.
+/// With -w they take outgoing modes to the far field along w.
+void expand_plane_wave(double k, std::span<const ModeSet> receivers, Vec2 w, Complex factor,
+                       std::span<Complex> out);
+
 /// The sender's outgoing modes at points: rows are points.
 void field_at(double k, std::span<const Vec2> points, const ModeSet& sender, Target out);
 

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "core/numbers/hankel_array.h"
-#include "core/numbers/phasor.h"
 #include "core/run/parallel.h"
 #include "wave_solver/dense/blas.h"
 #include "wave_solver/equations/basis_order.h"
@@ -187,31 +186,10 @@ std::vector<Complex> TMatrixSystem::apply(std::span<const Complex> x) const {
   return y;
 }
 
-// factor sqrt(2) sigma_n i^n {cos, sin}(n angle) e^{i k w.r_j}, w = (sin, cos)(angle); without the
-// root for n = 0
 void TMatrixSystem::plane_wave(Vec2 w, Complex factor, std::span<Complex> column) const {
-  int highest = 0;
-  for (std::size_t j = 0; j < placement_.size(); ++j) highest = std::max(highest, order(j));
-  std::vector<Complex> cosines, sines;  // times i^n
-  const ExtendedComplex turn(w.z, w.x);
-  ExtendedComplex phase = 1, power = 1;
-  for (int n = 0; n <= highest; ++n) {
-    cosines.push_back(Complex(phase.real() * power));
-    sines.push_back(Complex(phase.imag() * power));
-    phase = product(phase, turn);
-    power = {-power.imag(), power.real()};
-  }
-  std::vector<double> phases;
-  for (const auto& placed : placement_) phases.push_back(k_ * dot(w, placed.position));
-  std::vector<Complex> waves(phases.size());
-  damped_phasors(phases, std::vector<double>(phases.size()), waves);
-  for (std::size_t j = 0; j < placement_.size(); ++j) {
-    const Complex there = product(waves[j], std::numbers::sqrt2 * factor);
-    for (std::size_t i = first_[j]; i < first_[j + 1]; ++i) {
-      const Complex turned = modes_[i].odd ? sines[modes_[i].order] : cosines[modes_[i].order];
-      column[i] = product(turned, there) * static_cast<double>(modes_[i].weight);
-    }
-  }
+  std::vector<ModeSet> receivers;
+  for (std::size_t j = 0; j < placement_.size(); ++j) receivers.push_back(modes(j));
+  expand_plane_wave(k_, receivers, w, factor, column);
 }
 
 std::vector<Complex> TMatrixSystem::right_sides(std::span<const double> light_angles) const {
