@@ -2,16 +2,31 @@
 """Diffusing-wave spectroscopy: field correlation against delay in transmission through slabs, from
 any number of `covariance --delays` results."""
 
-from lib import style
+from lib import style, theory
 
 import matplotlib.pyplot as plt
 import numpy as np
 
 
+STEPS = 300  # of a line
+LABELS = {2: r"$x = 2\,k\sqrt{D\tau}\,L/\ell^*$", 3: r"$x = \sqrt{6}\,k\sqrt{D\tau}\,L/\ell^*$",
+          None: r"$x = \sqrt{2d}\,k\sqrt{D\tau}\,L/\ell^*$"}  # by dimension d
+
+
 def scaled_delay(result, delay):
-    """Q L of diffusion theory without absorption: Q l* = 2 sqrt(t) in flatland."""
+    """Q L of diffusion theory without absorption: Q l* = sqrt(2 dimension t)."""
     transport = result.attribute("transport_mean_free_path")
-    return 2 * np.sqrt(delay) * result.attribute("depth") / transport
+    return np.sqrt(2 * theory.dimension(result) * delay) * result.attribute("depth") / transport
+
+
+def diffusion_line(result, delay, stored):
+    """(delays, g_1) of diffusion theory between the delays too."""
+    medium = [result.attribute(name) for name in ("depth", "optical_depth", "g", "albedo")]
+    space = theory.dimension(result)
+    if not np.allclose(theory.delayed_diffusion(*medium, delay, space), stored, rtol=1e-4):
+        return delay, stored
+    fine = np.linspace(0, np.sqrt(delay[-1]), STEPS)**2
+    return fine, theory.delayed_diffusion(*medium, fine, space)
 
 
 def label(result):
@@ -43,14 +58,16 @@ def draw(results):
                       marker=look["marker"], markersize=3, label=label(result))
         if result.has("diffusion_theory"):
             with_theory = True
-            axis.plot(x, result.values("diffusion_theory")[order], color=look["color"],
-                      linewidth=0.7, linestyle=look["linestyle"], zorder=1)
-    x = np.linspace(1e-3, longest, 200)
+            fine, line = diffusion_line(result, delay, result.values("diffusion_theory")[order])
+            axis.plot(scaled_delay(result, fine), line, color=look["color"], linewidth=0.7,
+                      linestyle=look["linestyle"], zorder=1)
+    x = np.linspace(1e-3, longest, STEPS)
     axis.plot(x, x / np.sinh(x), color=style.GREY, linewidth=0.7, zorder=0,
               label=r"$x/\sinh x$")
+    spaces = {theory.dimension(result) for result in results}
     axis.set_yscale("log")
     axis.set_xlim(left=0)
-    axis.set_xlabel(r"$x = 2\,k\sqrt{D\tau}\,L/\ell^*$")
+    axis.set_xlabel(LABELS[spaces.pop() if len(spaces) == 1 else None])
     axis.set_ylabel(r"field correlation $g_1$")
     axis.legend(title="lines: diffusion theory" if with_theory else None, title_fontsize=7)
     return figure

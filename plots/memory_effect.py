@@ -92,7 +92,8 @@ def draw_sweep(sweep, arguments):
         page.outer_labels(deviations, count)
     for axis in axes[0]:
         correlation_panel.add_q_axis(axis, sweep.result, drawing.tilt)
-    page.legend_outside(figure, list(drawing.entries()), drawing.notes())
+    page.legend_outside(figure, list(drawing.entries()), sweep.notes())
+    style.caption(figure, drawing.unseen.notes(arguments))
     return figure
 
 

@@ -3,7 +3,7 @@
 curves, a third as panels. A list of points that differ in several parameters at once: a row for
 each. Arrows: bounds, where a curve does not cross 1/2 within the tilts."""
 
-from lib import curve_looks, page, range_axes, range_list, style, sweep_file
+from lib import curve_looks, page, range_axes, range_list, style, sweep_file, theory
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -12,6 +12,7 @@ from matplotlib.transforms import offset_copy
 MOST_CURVES, MOST_PANELS, ACROSS = 8, 12, 3
 ASIDE = {None: 0, "mc": -2.5, "wave": 2.5, "transport": 2.5}  # points of print
 DASH = {"marker": "_", "markersize": 9, "markeredgewidth": 0.7}  # diffusion theory of one point
+STEPS = 300  # of a line
 ABOVE = 1  # in range_censored: the curve stays above 1/2
 
 
@@ -121,34 +122,54 @@ def entries(sweep, curves, panels, single):
         yield plt.Line2D([], [], color="0.55", linewidth=1.6), "single scattering"
 
 
+def diffusion_line(axis, sweep, part, against, x):
+    """(x, range) of diffusion theory between the points too, where the axis is a parameter of it and
+    the others of it are the same at all of these points."""
+    medium = {name: sweep.columns[name][part] for name in ("optical_depth", "g", "albedo")}
+    stored = x[part], sweep.optional("diffusion_range")[part]
+    space = theory.dimension(sweep.result)
+    if len(part) == 1 or any(len(np.unique(values)) > 1 for name, values in medium.items()
+                             if name != against):
+        return stored
+    known = theory.diffusion_range(1, **medium, dimension=space)
+    if against not in medium or not np.allclose(known, stored[1], rtol=1e-3):
+        return stored
+    scale = axis.xaxis.get_transform()
+    fine = scale.inverted().transform(np.linspace(*scale.transform(x[part][[0, -1]]), STEPS))
+    medium = {name: values[0] for name, values in medium.items()}
+    medium[against] = 1 - fine if against == "albedo" else fine
+    return fine, theory.diffusion_range(1, **medium, dimension=space)
+
+
 def draw_panel(axis, sweep, rows, against, curves, single):
     x = range_axes.horizontal(sweep, against)
     for limit in single:
         axis.axhline(limit, color="0.55", linewidth=1.6, zorder=0.5)
-    diffusion, numbers = sweep.optional("diffusion_range"), {}
+    diffusion, numbers, lines = sweep.optional("diffusion_range"), {}, []
     for curve, part in sweep.groups(curves, rows):
         number = list(sweep.values(curves)).index(curve) if curves else 0
         numbers.update({row: number for row in part})
         part = part[np.argsort(x[part], kind="stable")]
         if diffusion is not None:
             look = {name: style.look(number)[name] for name in ("color", "linestyle")}
-            axis.plot(x[part], diffusion[part], linewidth=0.7, zorder=1, **look,
-                      **(DASH if len(part) == 1 else {}))
+            lines.append((look, part))
         for method in sweep.prefixes:
             draw_curve(axis, sweep, method, part, x, number)
     for method in sweep.prefixes:
         draw_bounds(axis, sweep, method, rows, x, numbers)
     range_axes.scale_axis(axis, against, x[sweep.rows], sweep.result.attribute("wavelength", 1))
     range_axes.scale_range(axis, sweep, single)
+    for look, part in lines:
+        axis.plot(*diffusion_line(axis, sweep, part, against, x), linewidth=0.7, zorder=1, **look,
+                  **(DASH if len(part) == 1 else {}))
     axis.set_ylabel(range_axes.RANGE)
 
 
 def draw(results, arguments):
     sweep = sweep_file.read(results, arguments)
     single = sweep.single_scattering_range()
-    notes = [*sweep.notes(), *range_axes.notes(sweep, single)]
     if sweep.is_list and len(sweep.varying()) > 1 and not (arguments.against or arguments.curves):
-        return range_list.draw(sweep, single or [], notes)
+        return range_list.draw(sweep, single)
     against, curves, panels = arrange(sweep, arguments)
     check_size(sweep, curves, panels)
     parts = sweep.groups(panels, sweep.rows)
@@ -159,7 +180,8 @@ def draw(results, arguments):
         if panels:
             axis.set_title(sweep_file.text(panels, value), fontsize=7.5, pad=3)
     page.outer_labels(axes, len(parts))
-    page.legend_outside(figure, list(entries(sweep, curves, panels, single or [])), notes)
+    page.legend_outside(figure, list(entries(sweep, curves, panels, single or [])), sweep.notes())
+    style.caption(figure, range_axes.notes(sweep, single))
     return figure
 
 

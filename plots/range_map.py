@@ -162,8 +162,8 @@ def draw(results, arguments):
         axis.set_title(", ".join(words), fontsize=7.5, pad=3)
     page.outer_labels(axes, len(shown))
     colour_bar(figure, axes, image, levels)
-    page.legend_outside(figure, list(entries(sweep, holes)),
-                        [*sweep.notes(), worst_error(sweep)])
+    page.legend_outside(figure, list(entries(sweep, holes)), sweep.notes())
+    style.caption(figure, [worst_error(sweep)])
     return figure
 
 

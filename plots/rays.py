@@ -12,7 +12,8 @@ from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.ticker import MaxNLocator
 
 MOST_DRAWN = 60
-SAME = 1e-9  # relative spread of optical paths below which they count as equal
+SAME = 1e-9  # relative difference below which values count as equal
+ROUNDING = 1e-16
 INDEX = LinearSegmentedColormap.from_list("index", ["white", "#56B4E9", "#00456b"])
 
 
@@ -71,13 +72,11 @@ def draw_spread(axis, result, up):
     mean = paths.mean()
     where, label = start(result, up)
     spread = np.ptp(paths) / mean
-    decade = int(np.floor(np.log10(max(spread, SAME))))
+    decade = int(np.floor(np.log10(max(spread, ROUNDING))))
     axis.set_xlabel(label)
     power = f" / 10^{{{decade}}}" if decade else ""
     axis.set_ylabel(f"(optical path$/$mean $-\\ 1){power}$")
     axis.plot(where[shown], (paths / mean - 1) / 10.0**decade, "o", color=style.COLOURS[0])
-    if spread < SAME:
-        axis.set_ylim(-1, 1)
     axis.set_title(f"relative spread {spread:.2g}, mean {mean:.6g}", loc="right")
     axis.margins(y=0.1)
     axis.xaxis.set_major_locator(MaxNLocator(4))

@@ -17,10 +17,9 @@ MOST = 1.0  # of relative errors
 
 
 def relative_error(result):
-    """1 where there is no light."""
+    """Masked where there is no light."""
     value, error = result.values("image"), result.values("image_error")
-    lit = value > 0
-    return np.where(lit, np.divide(error, value, where=lit, out=np.ones_like(value)), 1.0)
+    return np.ma.masked_where(value <= 0, error) / np.ma.masked_where(value <= 0, value)
 
 
 def panel(figure, axis, result, picture, label, extend, **look):
@@ -52,11 +51,19 @@ def draw_image(figure, axis, result, norm):
 
 def error_norm(results):
     """From the decade of the best pixels of any of them."""
-    best = min(np.quantile(relative_error(result), 0.01) for result in results)
+    best = min(np.quantile(relative_error(result).compressed(), 0.01) for result in results)
     return LogNorm(min(10 ** np.floor(np.log10(best)), MOST / 10), MOST, clip=True)
 
 
+def mark_unlit(axis, error):
+    """Hatches show through where the picture is masked."""
+    if np.ma.is_masked(error):
+        axis.patch.set(hatch="xxxx", facecolor="white", edgecolor="0.6")
+        axis.set_title("hatched: no light yet", fontsize=7, loc="right", pad=2)
+
+
 def draw_error(figure, axis, result, norm):
+    mark_unlit(axis, relative_error(result))
     bar = panel(figure, axis, result, relative_error(result), "relative standard error", "both", cmap="cividis",
                 norm=norm)
     bar.ax.yaxis.set_major_formatter(FuncFormatter(lambda share, _: f"{100 * share:g} %"))
@@ -103,4 +110,4 @@ def draw(results, arguments):
 
 if __name__ == "__main__":
     style.main(draw, __doc__, several=True,
-               add_options=lambda parser: pictures.add_tone_options(parser, "root"))
+               add_options=pictures.add_tone_options)

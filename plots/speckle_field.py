@@ -11,6 +11,8 @@ import numpy as np
 from matplotlib.ticker import MaxNLocator
 
 BRIGHTEST = 5  # times the mean: 0.7 % of a Gaussian field's intensities are above
+UNEVEN = 1.5  # widest over narrowest step from which on cells stand side by side by number
+MOST_NAMES = 9  # of values along an axis by number
 FEWEST_EXPECTED = 10  # in a bin, for its error bar to mean something
 plt.rcParams["savefig.dpi"] = 150
 
@@ -20,6 +22,27 @@ def edges(centres):
     middle = (centres[1:] + centres[:-1]) / 2
     first, last = 2 * centres[0] - middle[0], 2 * centres[-1] - middle[-1]
     return np.concatenate([[first], middle, [last]])
+
+
+def is_even(centres):
+    steps = np.abs(np.diff(centres))
+    return len(steps) == 0 or steps.max() < UNEVEN * steps.min()
+
+
+class Cells:
+    """Cells along one axis: at their values where these are about equally far apart; else of one
+    width side by side, named by their values, so that no cell looks wider than what was computed."""
+
+    def __init__(self, values):
+        self.values, self.even = values, is_even(values)
+        self.edges = edges(values if self.even else np.arange(len(values)))
+
+    def mark(self, side):
+        """Ticks of a matplotlib axis."""
+        if self.even:
+            return side.set_major_locator(MaxNLocator(5))
+        named = np.unique(np.linspace(0, len(self.values) - 1, MOST_NAMES).round().astype(int))
+        side.set_ticks(named, style.short(self.values[named]))
 
 
 def views(result):
@@ -57,14 +80,18 @@ def draw_picture(figure, axis, result):
     x, y, intensity = x[order_x], y[order_y], intensity[np.ix_(order_y, order_x)]
     if len(x) < 2 or len(np.unique(y)) < len(y) or len(np.unique(x)) < len(x):
         raise style.Unusable(f"{result.path}: needs two views or more, and none twice")
-    mesh = axis.pcolormesh(edges(x), edges(y), intensity, cmap="inferno", vmin=0, vmax=BRIGHTEST,
-                           rasterized=True)
-    if y_label == r"$\sin i$" and result.has("view_angle"):
+    across, up = Cells(x), Cells(y)
+    mesh = axis.pcolormesh(across.edges, up.edges, intensity, cmap="inferno", vmin=0,
+                           vmax=BRIGHTEST, rasterized=True)
+    if y_label == r"$\sin i$" and result.has("view_angle") and across.even and up.even:
         draw_shear(axis, x, y)
-    axis.set(xlabel=x_label, ylabel=y_label, xlim=edges(x)[[0, -1]], ylim=edges(y)[[0, -1]])
+    axis.set(xlabel=x_label, ylabel=y_label, xlim=across.edges[[0, -1]], ylim=up.edges[[0, -1]])
     axis.tick_params(direction="out", top=False, right=False)
-    axis.xaxis.set_major_locator(MaxNLocator(5))
-    axis.yaxis.set_major_locator(MaxNLocator(5))
+    across.mark(axis.xaxis)
+    up.mark(axis.yaxis)
+    if not (across.even and up.even):
+        style.caption(figure, ["rows or columns that are not equally spaced stand side by side, named "
+                               "by their values"])
     figure.colorbar(mesh, ax=axis, label=r"$|u|^2/\langle |u|^2\rangle$", extend="max", pad=0.02)
 
 
@@ -76,7 +103,7 @@ def draw_histogram(axis, result):
     shown = (expected >= FEWEST_EXPECTED) & (counts > 0)
     shown[-1] = False  # open
     unit = expected.sum() * width
-    x = np.linspace(0, low[shown].max() + width, 200)
+    x = np.linspace(0, np.max(low[shown], initial=width) + width, 200)
     axis.semilogy(x, np.exp(-x), color=style.COLOURS[1], label=r"$\exp(-I/\langle I\rangle)$")
     axis.errorbar(low[shown] + width / 2, counts[shown] / unit, error[shown] / unit,
                   color=style.COLOURS[0], marker="o", markersize=2.5, linestyle="none",

@@ -3,8 +3,6 @@
 with covariance = "tilt_shift", say transmission beside reflection, above its matched line and axes
 with theory."""
 
-import pathlib
-
 from lib import style
 
 import matplotlib.pyplot as plt
@@ -25,7 +23,8 @@ def is_far(result):
 
 def title(result):
     if not is_far(result):
-        return pathlib.Path(result.path).stem
+        depths = np.unique(result.values("sensor_z"))
+        return f"sensors at $z$ = {', '.join(style.short(depths))}"
     views = np.atleast_1d(result.values("view_angle"))
     sides = {"transmission" if np.cos(view) > 0 else "reflection" for view in views}
     return " and ".join(sorted(sides)) + ", view " + ", ".join(style.angle(view) for view in views)

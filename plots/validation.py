@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Validation: Monte Carlo against the exact wave solver, or of a slab against transport, entry by
-entry, and their residual."""
+entry: values, relative deviations, and these in standard errors."""
 
 from dataclasses import dataclass
 
@@ -13,6 +13,8 @@ from matplotlib.ticker import MaxNLocator
 
 SIGMAS = 4  # agreement is judged at so many combined standard errors
 BAND = "0.92"
+PEAKED = 8  # highest over lowest value from which on a logarithmic axis shows more
+MOST_RELATIVE = 100  # % of deviation that are drawn: beyond, values are all noise
 ENTRIES = "number of the entry"
 
 
@@ -39,6 +41,13 @@ class Comparison:
         # Entries that are exactly 0 for both have no errors and agree.
         return np.divide(difference, combined, out=np.zeros(combined.shape),
                          where=combined > 0), combined
+
+    def relative(self):
+        """Monte Carlo over the reference, less 1, and its standard error, in %; of complex values
+        the magnitudes'. nan where the reference is 0."""
+        size = np.where(self.exact == 0, np.nan, np.abs(self.exact))
+        ratio = np.abs(self.mc) / size
+        return 100 * (ratio - 1), 100 * np.hypot(self.mc_error, ratio * self.exact_error) / size
 
 
 def reference_of(result):
@@ -102,8 +111,32 @@ def draw_values(axis, data, allowance):
                       markerfacecolor="white", markersize=5)
         axis.errorbar(x, exact, data.exact_error[number][order], linestyle="none", **common,
                       markersize=2.5, label=label)
-    axis.set_ylim(bottom=-0.03 * axis.get_ylim()[1])
     axis.set_ylabel(data.y_label)
+    scale_values(axis, np.abs(np.concatenate([data.mc, data.exact])))
+
+
+def scale_values(axis, values):
+    """A logarithm where a peak stands high over the rest."""
+    if values.min() > 0 and values.max() > PEAKED * values.min():
+        axis.set_yscale("log")
+        axis.set_ylim(values.min() / 1.3, values.max() * 1.3)
+    else:
+        axis.set_ylim(bottom=-0.03 * axis.get_ylim()[1])
+
+
+def draw_relative(axis, data, allowance):
+    deviation, error = data.relative()
+    axis.axhspan(-100 * allowance, 100 * allowance, color="black", alpha=0.12, linewidth=0, zorder=0)
+    axis.axhline(0, color="black", linewidth=0.5, zorder=1)
+    for number in range(len(deviation)):
+        look = style.look(number)
+        axis.errorbar(shifted(data.x, number, len(deviation)), deviation[number], error[number],
+                      color=look["color"], marker=look["marker"], linestyle="none", markersize=2.5,
+                      elinewidth=0.7)
+    reach = np.nanmax(np.abs(deviation) + error, initial=100 * allowance)
+    limit = 1.1 * min(reach, MOST_RELATIVE)
+    axis.set_ylim(-limit, limit)
+    axis.set_ylabel("deviation (%)")
 
 
 def draw_residual(axis, data, allowance):
@@ -144,9 +177,10 @@ def add_legend(figure, axis, data, allowance):
 def draw(results):
     data = read_comparison(results[0])
     allowance = float(results[0].attribute("bias_allowance", 0))
-    figure, (values, residual) = plt.subplots(2, 1, sharex=True, figsize=(1.3 * style.COLUMN, 4),
-                                              gridspec_kw={"height_ratios": [2.2, 1]})
+    figure, (values, relative, residual) = plt.subplots(
+        3, 1, sharex=True, figsize=(1.3 * style.COLUMN, 5), height_ratios=[2.2, 1, 1])
     draw_values(values, data, allowance)
+    draw_relative(relative, data, allowance)
     draw_residual(residual, data, allowance)
     if data.x_label == ENTRIES:
         residual.set_xlabel(ENTRIES)
@@ -154,6 +188,8 @@ def draw(results):
     else:
         style.angle_axis(residual, data.x, data.x_label)
     add_legend(figure, values, data, allowance)
+    if len(data.curve_labels) > 1:
+        style.caption(figure, ["symbols of one place stand a little apart, side by side"])
     return figure
 
 

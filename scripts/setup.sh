@@ -42,9 +42,10 @@ install_bench_packages() {
   install_missing libboost-dev
 }
 
-# For the tests; MPI and xarray are tested where they are there.
+# For the tests; MPI, xarray and plots are tested where they are there.
 install_test_packages() {
   install_bench_packages
+  install_plot_packages
   install_missing doctest-dev python3-h5py libopenmpi-dev openmpi-bin python3-xarray \
     python3-h5netcdf
 }

@@ -71,23 +71,39 @@ def apart(axis, x, y, size):
     return kept
 
 
-def draw_curve(axis, tilt, field, error, look):
-    """C_I = C_E^2 with its error bars; returns how many symbols were left out for room."""
+class Unseen:
+    """What a reader of the panels does not see: symbols left out for room, error bars that no
+    symbol shows."""
+
+    def __init__(self):
+        self.symbols, self.bars = 0, True
+
+    def notes(self, arguments):
+        if self.symbols:
+            yield "symbols that would cover each other are left out"
+        if self.bars:
+            yield "error bars are smaller than the symbols"
+        if arguments.log_correlation:
+            yield f"$C_E$ below {BELIEVED} standard errors is left out"
+
+
+def bars_show(axis, y, error, size):
+    """Whether an error bar reaches beyond its symbol."""
+    low, high = (axis.transData.transform(np.column_stack([0 * y + 1, y + side * error]))[:, 1]
+                 for side in (-1, 1))
+    return np.any((high - low) * 72 / axis.figure.dpi > size)
+
+
+def draw_curve(axis, tilt, field, error, look, unseen):
+    """C_I = C_E^2 with its error bars; counts in `unseen` what is not seen of it."""
     order = np.argsort(tilt)
     tilt, field, error = (values[order] for values in (tilt, field, error))
     shown = np.flatnonzero(in_scale(axis, tilt, field, error))
     kept = shown[apart(axis, tilt[shown], field[shown]**2, look["markersize"])]
-    axis.errorbar(tilt[kept], field[kept]**2, 2 * np.abs(field[kept]) * error[kept],
-                  linestyle="none", elinewidth=0.7, **look)
-    return len(shown) - len(kept)
-
-
-def notes(left_out, arguments):
-    """What is to be said of points that are not drawn."""
-    if left_out:
-        yield "symbols that would cover each other are left out"
-    if arguments.log_correlation:
-        yield f"$C_E$ below {BELIEVED} standard errors is left out"
+    correlation, spread = field[kept]**2, 2 * np.abs(field[kept]) * error[kept]
+    axis.errorbar(tilt[kept], correlation, spread, linestyle="none", elinewidth=0.7, **look)
+    unseen.symbols += len(shown) - len(kept)
+    unseen.bars &= not bars_show(axis, correlation, spread, look["markersize"])
 
 
 def add_q_axis(axis, result, tilt):

@@ -120,8 +120,9 @@ def draw(results, arguments):
         axis, np.concatenate([s.moves for s in series]),
         correlation_panel.lowest([s.correlation for s in series], [s.error for s in series]),
         arguments)
-    left_out = sum(correlation_panel.draw_curve(axis, s.moves, s.correlation, s.error, s.look)
-                   for s in series)
+    unseen = correlation_panel.Unseen()
+    for s in series:
+        correlation_panel.draw_curve(axis, s.moves, s.correlation, s.error, s.look, unseen)
     correlation_panel.write_title(axis, title(results), [s.correlation for s in series])
     if not tilts:
         axis.set_xlabel("translation (unit of length)")
@@ -131,6 +132,6 @@ def draw(results, arguments):
     if tilts and draw_theory(axis, results):
         entries.append((plt.Line2D([], [], color="black", linewidth=0.7),
                         "lines: diffusion theory"))
-    page.legend_outside(figure, entries,
-                        list(correlation_panel.notes(left_out, arguments)))
+    page.legend_outside(figure, entries)
+    style.caption(figure, unseen.notes(arguments))
     return figure

@@ -10,6 +10,9 @@ BRIGHTEST = 0.999  # of the pixels; those above share one colour
 UNITS = {"1/(length^2 sr)": "{}$^{{-2}}$ sr$^{{-1}}$", "1/length^2": "{}$^{{-2}}$",
          "1/sr": "sr$^{{-1}}$", "1": ""}
 TONES = ("linear", "root", "log")
+DARK = 0.01  # of the brightest: where half of the lit pixels are below, a logarithm shows more
+FAINTEST = 0.02  # of the lit pixels: those below need no room on a logarithm
+MOST_DECADES = 6
 
 
 class Sensor(Result):
@@ -83,21 +86,24 @@ def extent(result):
 
 
 def tone(pictures, kind, decades):
-    """A norm for all of the pictures."""
+    """A norm for all of the pictures; kind and decades of what they hold, where they are None."""
     values = np.concatenate([np.ravel(picture) for picture in pictures])
     lit = values[values > 0]
     if len(lit) == 0:
         raise Unusable("nothing but dark pixels")
     high = np.quantile(lit, BRIGHTEST)
+    kind = kind or ("log" if np.median(lit) < DARK * high else "root")
     if kind == "log":
-        return LogNorm(high * 10.0**-decades, high, clip=True)
+        span = np.log10(high / np.quantile(lit, FAINTEST))
+        return LogNorm(high * 10.0**-(decades or np.clip(span, 1, MOST_DECADES)), high, clip=True)
     return Normalize(0, high, clip=True) if kind == "linear" else PowerNorm(0.5, 0, high, clip=True)
 
 
-def add_tone_options(parser, default):
+def add_tone_options(parser, default=None):
+    words = default or "root, or log where most of the picture is dark"
     parser.add_argument("--tone", choices=TONES, default=default,
-                        help=f"how brightness becomes colour (default: {default})")
-    parser.add_argument("--decades", type=float, default=3, help="of log (default: 3)")
+                        help=f"how brightness becomes colour (default: {words})")
+    parser.add_argument("--decades", type=float, help="of log (default: as many as there is light)")
 
 
 def show(axis, result, picture, **look):

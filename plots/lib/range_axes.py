@@ -44,7 +44,6 @@ def scale_axis(axis, against, x, wavelength):
         axis.set_xscale("log")
     else:
         axis.margins(x=0.1)
-        return
     if len(values) <= MOST_TICKS:
         axis.set_xticks(values, numbers_apart(axis, values))
     axis.xaxis.set_minor_locator(NullLocator())

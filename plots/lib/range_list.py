@@ -45,25 +45,28 @@ def entries(sweep, single):
         yield plt.Line2D([], [], color="0.55", linewidth=1.6), "single scattering"
 
 
-def draw(sweep, single, notes):
+def draw(sweep, single):
+    """single: as Sweep.single_scattering_range gives it."""
     if len(sweep.rows) > MOST_POINTS:
         raise style.Unusable(f"{sweep.path}: {len(sweep.rows)} points, at most {MOST_POINTS} rows "
                              f"are legible; try --select {sweep.example(sweep.varying()[0], 3)}")
     places = np.arange(len(sweep.rows))
     figure, axis = plt.subplots(figsize=(style.COLUMN + 1.4, 0.6 + STEP * (len(places) + 1)))
-    for limit in single:
+    limits = single or []
+    for limit in limits:
         axis.axvline(limit, color="0.55", linewidth=1.6, zorder=0.5)
     diffusion = sweep.optional("diffusion_range")
     if diffusion is not None:
         axis.plot(diffusion[sweep.rows], places, zorder=1, **THEORY)
     for method in sweep.prefixes:
         draw_method(axis, sweep, method, places)
-    range_axes.scale_range(axis, sweep, single, vertical=False)
+    range_axes.scale_range(axis, sweep, limits, vertical=False)
     axis.set_xlabel(range_axes.RANGE)
     axis.set_yticks(places, [sweep.label(sweep.varying(), row) for row in sweep.rows])
     axis.set_ylim(len(places) - 0.4, -0.6)
     axis.tick_params(axis="y", length=0)
     axis.grid(axis="y", color="0.9", linewidth=0.5)
     axis.set_axisbelow(True)
-    page.legend_outside(figure, list(entries(sweep, single)), notes)
+    page.legend_outside(figure, list(entries(sweep, limits)), sweep.notes())
+    style.caption(figure, range_axes.notes(sweep, single))
     return figure

@@ -3,6 +3,7 @@ it looks for."""
 
 import argparse
 import importlib
+import logging
 import pathlib
 import sys
 
@@ -17,6 +18,7 @@ for package in ("matplotlib", "h5py", "numpy"):
 import matplotlib
 
 matplotlib.use("Agg")
+logging.getLogger("fontTools").setLevel(logging.ERROR)  # of the ages of fonts
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
@@ -92,10 +94,18 @@ def few_decades(side):
     side.set_minor_formatter(NullFormatter())
 
 
+def caption(figure, sentences):
+    """Keeps what a figure's caption has to say: it is printed, and stands in both files' metadata."""
+    figure.caption = "; ".join([*filter(None, [getattr(figure, "caption", "")]), *sentences])
+
+
 def save(figure, prefix):
-    for ending in ("png", "pdf"):
-        dates = {"CreationDate": None} if ending == "pdf" else None
-        figure.savefig(f"{prefix}.{ending}", metadata=dates)
+    text = getattr(figure, "caption", "").replace("$", "")
+    if text:
+        print(f"caption: {text}")
+    for ending, metadata in (("png", {"Description": text} if text else {}),
+                             ("pdf", {"CreationDate": None, "Subject": text or None})):
+        figure.savefig(f"{prefix}.{ending}", metadata=metadata)
         print(f"wrote {prefix}.{ending}")
 
 

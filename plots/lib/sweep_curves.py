@@ -20,7 +20,7 @@ class Drawing:
                       sweep.of(method, "field_correlation_error")) for method in sweep.prefixes]
         self.lowest = min(correlation_panel.lowest(field[sweep.rows], error[sweep.rows])
                           for _, field, error in self.data)
-        self.left_out = 0
+        self.unseen = correlation_panel.Unseen()
 
     def numbered(self, rows):
         """[(number of its curve, row)]."""
@@ -43,8 +43,8 @@ class Drawing:
         self.theories(axis, rows)
         for method, field, error in self.data:
             for number, row in self.numbered(rows):
-                self.left_out += correlation_panel.draw_curve(
-                    axis, self.tilt, field[row], error[row], curve_looks.curve_look(number, method))
+                correlation_panel.draw_curve(axis, self.tilt, field[row], error[row],
+                                             curve_looks.curve_look(number, method), self.unseen)
 
     def fine_tilts(self):
         """Tilts of a line, in rad."""
@@ -108,7 +108,3 @@ class Drawing:
         if result.has("deviation"):
             yield plt.Rectangle((0, 0), 1, 1, color="0.9"), \
                 f"deviation of $C_E$: $\\pm${BAND} standard errors"
-
-    def notes(self):
-        return [*self.sweep.notes(),
-                *correlation_panel.notes(self.left_out, self.arguments)]

@@ -1,5 +1,7 @@
 """Theories of the memory effect of a slab, as curves: result files hold them at the tilts alone."""
 
+import tomllib
+
 import numpy as np
 
 
@@ -7,25 +9,51 @@ def log_sinh(a):
     return a + np.log(-np.expm1(-2 * a) / 2)
 
 
-def slab_diffusion(depth, optical_depth, g, albedo, q):
+EXTRAPOLATION = {2: 0.818, 3: 0.7104}  # in transport mean free paths, by dimension
+
+
+def slab_diffusion(depth, optical_depth, g, albedo, q, dimension=2):
     """C_E at transverse wavenumbers q in diffusion theory (conventions, C20)."""
     mu_t = optical_depth / depth
     mu_a = mu_t * (1 - albedo)
     transport = 1 / (mu_a + mu_t * albedo * (1 - g))
-    source, extrapolation = min(transport, depth), 0.818 * transport
+    source, extrapolation = np.minimum(transport, depth), EXTRAPOLATION[dimension] * transport
 
     def log_f(q2):
         rate = np.maximum(np.sqrt(q2), 1e-5 / depth)  # below, f has its limit at 0 to rounding
         return (log_sinh(rate * extrapolation) + log_sinh(rate * (source + extrapolation))
                 - np.log(rate) - log_sinh(rate * (depth + 2 * extrapolation)))
 
-    kappa2 = 2 * mu_a / transport
+    kappa2 = dimension * mu_a / transport
     return np.exp(log_f(q**2 + kappa2) - log_f(kappa2))
+
+
+def diffusion_range(depth, optical_depth, g, albedo, dimension=2):
+    """q L where C_I = C_E^2 of that is 1/2; arrays of one shape, or numbers."""
+    low, high = np.broadcast_arrays(1e-3, 1e4, optical_depth, g, albedo)[:2]
+    for _ in range(60):
+        middle = np.sqrt(low * high)
+        above = slab_diffusion(depth, optical_depth, g, albedo, middle / depth, dimension)**2 > 0.5
+        low, high = np.where(above, middle, low), np.where(above, high, middle)
+    return np.sqrt(low * high)
+
+
+def delayed_diffusion(depth, optical_depth, g, albedo, delay, dimension=2):
+    """Field correlation after delays t = k^2 D tau: what they take acts like a tilt's q^2."""
+    mu_s = optical_depth / depth * albedo
+    transport = 1 / (optical_depth / depth - g * mu_s)
+    q = np.sqrt(2 * dimension * delay * (1 - g) * mu_s / transport)
+    return slab_diffusion(depth, optical_depth, g, albedo, q, dimension)
+
+
+def dimension(result):
+    """Of the space that light travels in."""
+    return tomllib.loads(result.attribute("config", "")).get("dimension", 2)
 
 
 def diffusion(sweep, row, q):
     point = (sweep.columns[name][row] for name in ("optical_depth", "g", "albedo"))
-    return slab_diffusion(sweep.result.attribute("depth"), *point, q)
+    return slab_diffusion(sweep.result.attribute("depth"), *point, q, dimension(sweep.result))
 
 
 def single_scattering(sweep, row, q):

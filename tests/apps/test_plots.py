@@ -1,0 +1,136 @@
+"""The plot scripts, each as a user runs it: it draws the results that are its own and refuses all
+others in one line. Lines of theory agree with what the program stores, between its points too."""
+
+import contextlib
+import io
+import pathlib
+import runpy
+import sys
+import unittest
+from unittest import mock
+
+from program import BOX, DATA, PROGRAM, SLAB, ProgramTest, TILTS
+
+try:
+    import matplotlib
+    import matplotlib.figure
+except ImportError:
+    print("no matplotlib (Debian: python3-matplotlib)")
+    sys.exit(77)
+import numpy as np
+
+PLOTS = DATA.parent / "plots"
+sys.path.insert(0, str(PLOTS))
+
+FEW = {"samples": 2000, "threads": 1}
+SPACE = {"stage_box": [-1, -1, -1, 1, 1, 1], "mu_s": 1, "point_light": [0, 0, -0.5, 1],
+         "sensor": "area", "sensor_at": [0, 0, 1], "sensor_size": [2, 2], "samples": 500}
+RAYS = {"config": DATA / "scenes/trace_luneburg.toml", "path_points": 10}
+SHIFTS = {"tilts": [-0.05, 0, 0.05], "shifts": [-0.1, 0, 0.1], "covariance": "tilt_shift"}
+# Kinds of results: subcommand and keys.
+KINDS = {
+    "grid": ("sweep", {**SLAB, "tilts": [0, 0.04, 0.16], "g": [0, 0.5], "albedo": [0.9, 1]}),
+    "points": ("sweep", {**SLAB, "tilts": [0, 0.04], "g": None, "optical_depth": None,
+                         "points": "points.csv"}),
+    "curve": ("covariance", {**SLAB, **TILTS}),
+    "moves": ("covariance", {**BOX, "covariance": "translation", "shifts": [0, 1, 2],
+                             "beam_waist": 4, **FEW}),
+    "map": ("covariance", {**BOX, **SHIFTS, **FEW}),
+    "intensity": ("covariance", {**BOX, "view_angles": [0.1, 0.3], **FEW}),
+    "delays": ("covariance", {**SLAB, "delays": [0, 0.01, 0.02]}),
+    "both": ("validate", {**BOX, "view_angles": [0.1, 0.3], "wave_samples": 40, **FEW}),
+    "fields": ("field", {**BOX, "view_angles": [0.1, 0.2, 0.3], "light_angles": [0, 0.01, 0.2],
+                         "fields": 4, "threads": 1}),
+    "frames": ("image", {**BOX, "count": None, "scatterer": "hg", "optical_depth": 1,
+                         "object_x": [0, 3], "object_depth": -30, "camera": [-0.5, 0.5], "pixels": 512, "repeats": 2, "threads": 1}),
+    "power": ("flux", {**SLAB}),
+    "rays": ("trace", RAYS),
+    "picture": ("render", {**SPACE, "pixels": [4, 4]}),
+    "pulse": ("render", {**SPACE, "pixels": [4, 4], "path_bins": [1, 3, 4]}),
+    "light": ("render", {**SPACE, "pixels": [1, 1], "map_cylinder": [0, 0, -1, 0, 0, 1, 1],
+                         "map_cells": [3, 4]}),
+    "near": ("solve", {"placement": DATA / "reference/g10/placement.csv", "scatterer": "soft",
+                       "map": [-2, 2, -2, 2], "map_pixels": [6, 5]}),
+}
+# What each script draws.
+OWN = {"memory_effect": {"grid", "points", "curve", "moves"}, "memory_range": {"grid", "points"},
+       "range_map": {"grid"}, "convergence": {"grid", "points"}, "tilt_shift": {"map"},
+       "dws": {"delays"}, "validation": {"both"}, "speckle_field": {"fields"}, "image": {"frames"},
+       "rays": {"rays"}, "render": {"picture", "pulse"}, "render_time": {"pulse"},
+       "light_map": {"light"}, "field_map": {"near"}}
+
+
+def run_script(name, *words):
+    """(exit status, standard output, standard error) of a script, which draws coarse pictures."""
+    save, heard, said = matplotlib.figure.Figure.savefig, io.StringIO(), io.StringIO()
+
+    def coarse(figure, place, **looks):
+        if place.endswith(".png"):  # the other format takes as long again
+            save(figure, place, **{**looks, "dpi": 72})
+
+    with mock.patch.object(sys, "argv", [str(PLOTS / f"{name}.py"), *map(str, words)]), \
+            mock.patch.object(matplotlib.figure.Figure, "savefig", coarse), \
+            contextlib.redirect_stdout(said), contextlib.redirect_stderr(heard):
+        try:
+            runpy.run_path(sys.argv[0], run_name="__main__")
+            status = 0
+        except SystemExit as end:
+            status = end.code
+    matplotlib.pyplot.close("all")
+    return status, said.getvalue(), heard.getvalue()
+
+
+class Plots(ProgramTest):
+    def make(self, kind):
+        subcommand, keys = KINDS[kind]
+        self.write("points.csv", "g,optical_depth\n0,1\n0.5,3\n")
+        self.call(subcommand, out=f"{kind}.h5", **keys)
+        return self.folder / f"{kind}.h5"
+
+    def test_each_draws_its_own_and_refuses_the_others_in_one_line(self):
+        files = {kind: self.make(kind) for kind in KINDS}
+        for script, own in OWN.items():
+            for kind, file in files.items():
+                with self.subTest(script=script, kind=kind):
+                    out = self.folder / f"{script}_{kind}"
+                    status, _, heard = run_script(script, file, "--out", out)
+                    if kind in own:
+                        self.assertEqual((status, heard), (0, ""))
+                        self.assertTrue(out.with_suffix(".png").is_file())
+                    else:
+                        self.assertEqual((status, heard.count("\n")), (2, 1), heard)
+                        self.assertIn(str(file), heard)
+
+    def test_captions_say_what_a_reader_does_not_see(self):
+        said = run_script("memory_effect", self.make("grid"), "--out", self.folder / "a")[1]
+        self.assertIn("error bars are smaller than the symbols", said)
+        said = run_script("speckle_field", self.make("fields"), "--out", self.folder / "b")[1]
+        self.assertIn("not equally spaced", said)
+
+
+class Theory(ProgramTest):
+    """Formulas of the plots against the program's."""
+
+    def test_diffusion_ranges_and_delays(self):
+        from lib import theory
+        from lib.result_file import Result
+        for dimension in (2, 3):
+            keys = {**SLAB, "dimension": dimension, "g": [0, 0.6], "albedo": [0.9, 1],
+                    "tilts": [0, 0.001]}
+            self.call("sweep", out="s.h5", **keys)
+            sweep = Result(self.folder / "s.h5")
+            g, albedo = np.meshgrid(sweep.values("g"), sweep.values("albedo"), indexing="ij")
+            found = theory.diffusion_range(1, SLAB["optical_depth"], g, albedo, dimension)
+            stored = sweep.values("diffusion_range")
+            np.testing.assert_allclose(found, stored.reshape(found.shape), rtol=1e-5)
+            delays = [0, 0.01, 0.1]
+            self.call("covariance", out="d.h5", dimension=dimension, delays=delays, **SLAB)
+            medium = [Result(self.folder / "d.h5").attribute(name)
+                      for name in ("depth", "optical_depth", "g", "albedo")]
+            np.testing.assert_allclose(
+                theory.delayed_diffusion(*medium, np.array(delays), dimension),
+                Result(self.folder / "d.h5").values("diffusion_theory"), rtol=1e-9)
+
+
+if __name__ == "__main__":
+    unittest.main()
