@@ -12,16 +12,17 @@
 #include "apps/command/nearest_key.h"
 #include "apps/command/scene_file.h"
 #include "core/error.h"
-#include "core/keys/number_text.h"
+#include "core/keys/written_number.h"
 
 namespace flatspeckle::apps {
 
 namespace {
 
-/// -.4 is a number; CLI11 would take it for the flag "." with a value.
+/// -.4 and -pi are numbers; CLI11 would take them for the flags "." and "p" with a value.
 std::string with_figure(const std::string& argument) {
-  if (argument.starts_with("-.") && read_number(argument)) return "-0" + argument.substr(1);
-  return argument;
+  const bool number = argument.starts_with("-.") || argument.starts_with("-pi");
+  const std::string first = argument.substr(0, argument.find_first_of(",:"));
+  return number && written_number(first, Written::angle) ? "0" + argument : argument;
 }
 
 std::string line_of(const Arguments& arguments) {

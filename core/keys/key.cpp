@@ -9,6 +9,7 @@
 
 #include "core/error.h"
 #include "core/keys/number_text.h"
+#include "core/keys/written_number.h"
 
 namespace flatspeckle {
 
@@ -47,8 +48,8 @@ std::vector<std::string> texts_of(const std::vector<Value>& values) {
 /// Reads texts into members.
 class Setter {
  public:
-  Setter(const std::string& name, const std::vector<std::string>& texts)
-      : name_(name), texts_(texts) {}
+  Setter(const std::string& name, Written kind, const std::vector<std::string>& texts)
+      : name_(name), kind_(kind), texts_(texts) {}
 
   template <typename Value>
   void operator()(Value* member) const {
@@ -66,6 +67,11 @@ class Setter {
     member->clear();
     for (const std::string& text : texts_) read(text, member->emplace_back());
   }
+  void operator()(std::vector<double>* member) const {
+    member->clear();
+    for (const std::string& text : texts_)
+      for (const double value : written_numbers(name_, text, kind_)) member->push_back(value);
+  }
 
  private:
   void read(const std::string& text, bool& value) const {
@@ -78,8 +84,8 @@ class Setter {
     value = *number;
   }
   void read(const std::string& text, double& value) const {
-    const auto number = read_number(text);
-    if (!number) throw InputError(name_, text, "must be a number");
+    const auto number = written_number(text, kind_);
+    if (!number) throw InputError(name_, text, must_be_number(kind_));
     value = *number;
   }
   void read(const std::string& text, std::string& value) const {
@@ -90,6 +96,7 @@ class Setter {
   }
 
   const std::string& name_;
+  Written kind_;
   const std::vector<std::string>& texts_;
 };
 
@@ -180,7 +187,7 @@ std::string Key::line() const {
 }
 
 void Key::set(const std::vector<std::string>& texts) const {
-  std::visit(Setter(name_, texts), member_);
+  std::visit(Setter(name_, unit_ == "rad" ? Written::angle : Written::number, texts), member_);
 }
 
 void Key::check() const {

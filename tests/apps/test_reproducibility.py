@@ -109,6 +109,16 @@ class PrintedConfiguration(ProgramTest):
                 keys = {**disks, "width": width, "min_gap": gap}
                 self.assertEqual(self.call("covariance", "--print-config", **keys).stdout, plain)
 
+    def test_numbers_as_people_write_them(self):
+        keys = {**BOX, "covariance": "memory_effect"}
+        plain = self.call("covariance", "--print-config", light_angles=-0.7853981633974483,
+                          view_angles=[-0.1, 2.941592653589793], tilts=[0, 0.001, 0.01, 0.1],
+                          **keys).stdout
+        self.write("written.toml", 'tilts = ["0", "1e-3:0.1:3:log"]\nview_angles = "-.1, pi - 0.2"\n')
+        written = self.call("covariance", "--print-config", "--light_angles", "-pi/4",
+                            config="written.toml", **keys).stdout
+        self.assertEqual(written, plain)
+
 
 if __name__ == "__main__":
     unittest.main()

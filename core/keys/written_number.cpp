@@ -1,0 +1,133 @@
+#include "core/keys/written_number.h"
+
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <numbers>
+#include <string_view>
+#include <utility>
+
+#include "core/error.h"
+#include "core/keys/number_text.h"
+
+namespace flatspeckle {
+
+namespace {
+
+constexpr std::int64_t most_steps = 1'000'000;
+constexpr const char* range_form =
+    "must be first:last:count, or first:last:count:log of numbers with one sign; "
+    "0:1:11 is in steps of 0.1";
+
+std::optional<double> plain(std::string_view text) {
+  return read_number(std::string(trimmed(text)));
+}
+
+/// What stands for a factor behind a number, longest first where one ends like another.
+std::optional<std::pair<std::string_view, double>> unit_of(std::string_view text, Written kind) {
+  constexpr double pi = std::numbers::pi;
+  constexpr std::array<std::pair<std::string_view, double>, 4> units = {
+      {{"pi", pi}, {"deg", pi / 180}, {"mrad", 1e-3}, {"rad", 1}}};
+  for (const auto& unit : units)
+    if (text.ends_with(unit.first) && (kind == Written::angle || unit.first == "pi")) return unit;
+  return std::nullopt;
+}
+
+/// "2pi/3", "30deg", "0.1".
+std::optional<double> term(std::string_view text, Written kind) {
+  text = trimmed(text);
+  double divisor = 1;
+  if (const auto slash = text.find('/'); slash != text.npos) {
+    const auto below = plain(text.substr(slash + 1));
+    if (!below || *below == 0) return std::nullopt;
+    divisor = *below;
+    text = trimmed(text.substr(0, slash));
+  }
+  const auto unit = unit_of(text, kind);
+  if (!unit) return plain(text) ? std::optional(*plain(text) / divisor) : std::nullopt;
+  text = trimmed(text.substr(0, text.size() - unit->first.size()));
+  if (text.empty() && unit->first == "pi") return unit->second / divisor;
+  const auto factor = plain(text);
+  return factor ? std::optional(*factor * unit->second / divisor) : std::nullopt;
+}
+
+/// Where the last sum or difference stands: no sign of a number and none of its exponent.
+std::size_t last_sign(std::string_view text) {
+  for (std::size_t at = text.size(); at-- > 1;) {
+    if (text[at] != '+' && text[at] != '-') continue;
+    const char before =
+        trimmed(text.substr(0, at)).empty() ? '+' : trimmed(text.substr(0, at)).back();
+    if (before != '+' && before != '-' && before != '/' && std::tolower(before) != 'e') return at;
+  }
+  return text.npos;
+}
+
+std::vector<std::string> parts_of(const std::string& text, char between) {
+  std::vector<std::string> parts(1);
+  for (const char letter : text)
+    if (letter == between)
+      parts.emplace_back();
+    else
+      parts.back() += letter;
+  return parts;
+}
+
+std::vector<double> range(const std::string& key, const std::string& text, Written kind) {
+  const auto parts = parts_of(text, ':');
+  const bool ratios = parts.size() == 4 && trimmed(parts[3]) == "log";
+  const auto refuse = [&] { return InputError(key, text, range_form); };
+  if (parts.size() != 3 && !ratios) throw refuse();
+  const auto first = written_number(parts[0], kind), last = written_number(parts[1], kind);
+  const auto count = read_whole_number(std::string(trimmed(parts[2])));
+  if (!first || !last || !count || !std::isfinite(*first) || !std::isfinite(*last)) throw refuse();
+  if (*count < 2 || *count > most_steps)
+    throw InputError(key, text, "a range has from 2 to " + std::to_string(most_steps) + " values");
+  if (ratios && !(*first * *last > 0)) throw refuse();
+  std::vector<double> values;
+  for (std::int64_t i = 0; i < *count; ++i) {
+    const double share = static_cast<double>(i) / static_cast<double>(*count - 1);
+    values.push_back(ratios ? *first * std::pow(*last / *first, share)
+                            : *first * (1 - share) + *last * share);
+  }
+  values.back() = *last;
+  return values;
+}
+
+}  // namespace
+
+std::optional<double> written_number(const std::string& text, Written kind) {
+  const std::string_view whole = trimmed(text);
+  if (const auto number = read_number(std::string(whole))) return number;
+  const auto sign = last_sign(whole);
+  if (sign == whole.npos) {
+    const bool minus = whole.starts_with('-') && !whole.starts_with("--");
+    const auto value = term(minus ? whole.substr(1) : whole, kind);
+    return value ? std::optional(minus ? -*value : *value) : std::nullopt;
+  }
+  const auto left = written_number(std::string(whole.substr(0, sign)), kind);
+  const auto right = term(whole.substr(sign + 1), kind);
+  if (!left || !right) return std::nullopt;
+  return whole[sign] == '-' ? *left - *right : *left + *right;
+}
+
+const char* must_be_number(Written kind) {
+  return kind == Written::angle ? "must be a number such as 0.1, pi/2 or 30deg"
+                                : "must be a number";
+}
+
+std::vector<double> written_numbers(const std::string& key, const std::string& text, Written kind) {
+  std::vector<double> values;
+  for (const std::string& part : parts_of(text, ',')) {
+    if (part.find(':') != part.npos) {
+      const auto steps = range(key, part, kind);
+      values.insert(values.end(), steps.begin(), steps.end());
+      continue;
+    }
+    const auto value = written_number(part, kind);
+    if (!value) throw InputError(key, text, must_be_number(kind));
+    values.push_back(*value);
+  }
+  return values;
+}
+
+}  // namespace flatspeckle

@@ -1,0 +1,65 @@
+#include <numbers>
+
+#include <doctest/doctest.h>
+
+#include "core/error.h"
+#include "core/keys/written_number.h"
+
+using namespace flatspeckle;
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+std::string refusal(const std::string& text) {
+  try {
+    written_numbers("tilts", text, Written::angle);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+}  // namespace
+
+TEST_CASE("numbers as people write them") {
+  const auto angle = [](const char* text) { return written_number(text, Written::angle); };
+  CHECK(angle("pi") == pi);
+  CHECK(angle("-pi") == -pi);
+  CHECK(angle("pi/2") == pi / 2);
+  CHECK(angle("-0.25pi") == -0.25 * pi);
+  CHECK(angle("2 pi / 3") == 2 * pi / 3);
+  CHECK(angle("pi - 0.2") == pi - 0.2);
+  CHECK(angle("pi-1e-3") == pi - 1e-3);
+  CHECK(angle("0-.4") == -0.4);
+  CHECK(angle("-.4") == -0.4);
+  CHECK(angle("1/8") == 0.125);
+  CHECK(angle("30deg") == doctest::Approx(pi / 6).epsilon(1e-15));
+  CHECK(angle("180deg - 0.2") == doctest::Approx(pi - 0.2).epsilon(1e-15));
+  CHECK(angle("5mrad") == 0.005);
+  CHECK(angle("2rad") == 2);
+  for (const char* text :
+       {"", "deg", "pie", "2x", "1//2", "1/0", "1+", "+-1", "--1", "1e", "pi pi"})
+    CHECK_FALSE(angle(text).has_value());
+  CHECK_FALSE(written_number("30deg", Written::number).has_value());
+  CHECK(written_number("2pi", Written::number) == 2 * pi);
+}
+
+TEST_CASE("lists and ranges of numbers") {
+  const auto numbers = [](const char* text) {
+    return written_numbers("tilts", text, Written::angle);
+  };
+  CHECK(numbers("0,0.1, pi") == std::vector<double>{0, 0.1, pi});
+  CHECK(numbers("0:1:5") == std::vector<double>{0, 0.25, 0.5, 0.75, 1});
+  CHECK(numbers("-1:1:3,2") == std::vector<double>{-1, 0, 1, 2});
+  const auto steps = numbers("1e-4:0.1:4:log");
+  REQUIRE(steps.size() == 4);
+  for (int i = 0; i < 4; ++i)
+    CHECK(steps[i] == doctest::Approx(std::pow(10, i - 4)).epsilon(1e-14));
+  CHECK(numbers("0:10deg:11").back() == doctest::Approx(pi / 18).epsilon(1e-15));
+  CHECK(refusal("0:0.1:1") == "tilts = 0:0.1:1: a range has from 2 to 1000000 values");
+  for (const char* text :
+       {"0:1", "0:1:2:3", "0:1:5:log", "-1:1:5:log", "a:1:5", "0:1:2.5", "0:inf:3"})
+    CHECK(refusal(text).find("must be first:last:count") != std::string::npos);
+  CHECK(refusal("0,,1") == "tilts = 0,,1: must be a number such as 0.1, pi/2 or 30deg");
+}
