@@ -40,6 +40,22 @@ void print_row(const char* name, const Estimate& estimate, std::size_t entry,
               estimate.error[entry], units.c_str());
 }
 
+/// A few strong paths, whose error may be as large as the value, are no estimate of it: what others
+/// bring may be any multiple of that.
+bool is_found(const Estimate& one) {
+  const bool is_rare = !one.rare.empty() && one.rare[0];
+  return !is_rare || one.error[0] < one.value[0].real() / 2;
+}
+
+/// Of one entry.
+void print_found(const char* name, const Estimate& one, const std::string& units) {
+  if (is_found(one)) return print_row(name, one, 0, units);
+  std::printf(
+      "%-16s not found: a few strong paths bring %.2g +- %.2g; take another method or more "
+      "samples\n",
+      name, one.value[0].real(), one.error[0]);
+}
+
 std::size_t largest_of(const Estimate& estimate) {
   const auto largest =
       std::max_element(estimate.value.begin(), estimate.value.end(),
@@ -52,8 +68,8 @@ bool print_sensor(const grin::Sensor& sensor, const grin::SensorResult& result) 
   const std::string& units = row_of(grin::table_of(sensor), "image").unit;
   const auto& image = result.picture.steady;
   const std::size_t brightest = largest_of(image);
-  if (result.total) print_row("total power", *result.total, 0, "");
-  print_row("mean of pixels", result.mean, 0, units);
+  if (result.total) print_found("total power", *result.total, "");
+  print_found("mean of pixels", result.mean, units);
   print_row("brightest pixel", image, brightest, units);
   const bool is_lit = image.value[brightest].real() > 0;
   if (is_lit) std::printf("pixels: relative error %.2g %%\n", 100 * relative_error(image));

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numeric>
 #include <optional>
@@ -11,12 +12,13 @@ namespace flatspeckle::grin {
 
 namespace {
 
-constexpr int groups = 32;
+constexpr int groups = 64;
 
 /// Of one sensor's picture, by a group of paths.
 struct PictureMoments {
   double total = 0, variance = 0;  ///< mean of the sum over the pixels; sum of the variances
   double lit = 0;                  ///< how many groups have the light, at equal shares
+  double doubt = 1;  ///< relative standard error of the variance; too small where it is near 1
 };
 struct Trial {
   std::vector<PictureMoments> pictures;  ///< by sensor
@@ -35,35 +37,38 @@ double work(const TransportCounts& counts, const Tracers& tracers, RenderMethod 
          0.1 * static_cast<double>(counts.joins);
 }
 
-/// Of the groups of one sensor's picture.
+/// Of the groups of one sensor's picture: the variance is that of the differences between a group
+/// and the next, pair by pair.
 class PictureSums {
  public:
   explicit PictureSums(const SensorEnd& sensor)
-      : sums_(static_cast<std::size_t>(sensor.pixels().count())), squares_(sums_.size()) {}
+      : last_(static_cast<std::size_t>(sensor.pixels().count())) {}
 
-  std::size_t pixels() const { return sums_.size(); }
+  std::size_t pixels() const { return last_.size(); }
   void add(std::span<const double> group) {
-    for (std::size_t pixel = 0; pixel < group.size(); ++pixel) {
-      sums_[pixel] += group[pixel];
-      squares_[pixel] += group[pixel] * group[pixel];
-    }
     const double light = std::reduce(group.begin(), group.end());
     light_ += light;
     light_square_ += light * light;
+    if (++count_ % 2 == 0) {
+      const double apart = std::transform_reduce(
+          group.begin(), group.end(), last_.begin(), 0.0, std::plus(),
+          [](double now, double before) { return (now - before) * (now - before) / 2; });
+      apart_ += apart;
+      apart_square_ += apart * apart;
+    }
+    last_.assign(group.begin(), group.end());
   }
   PictureMoments moments() const {
-    PictureMoments picture{.total = light_ / groups,
-                           .lit = light_ > 0 ? light_ * light_ / light_square_ : 0};
-    for (std::size_t pixel = 0; pixel < sums_.size(); ++pixel) {
-      const double mean = sums_[pixel] / groups;
-      picture.variance += squares_[pixel] / groups - mean * mean;
-    }
-    return picture;
+    return {.total = light_ / groups,
+            .variance = apart_ / (groups / 2),
+            .lit = light_ > 0 ? light_ * light_ / light_square_ : 0,
+            .doubt = apart_ > 0 ? std::sqrt(apart_square_) / apart_ : 0};
   }
 
  private:
-  std::vector<double> sums_, squares_;
-  double light_ = 0, light_square_ = 0;
+  std::vector<double> last_;
+  int count_ = 0;
+  double light_ = 0, light_square_ = 0, apart_ = 0, apart_square_ = 0;
 };
 
 /// Nothing where the work is beyond all measure.
@@ -107,12 +112,9 @@ std::optional<Trial> tried(const Tracers& tracers, const Tracer& tracer, double 
   return pairs > 1 ? tried(tracers, tracer, pairs, 8 * effort * usual) : few;
 }
 
-/// Fewer groups with the light tell nothing of the variance.
-constexpr double fewest_lit = groups / 4.0;
-
 struct Candidate {
   Tracer tracer;
-  Trial trial;
+  Trial trial = {};
 };
 
 /// That of each picture, as the trial has it whose paths share it most evenly.
@@ -126,18 +128,28 @@ std::vector<double> light_of_pictures(const std::vector<Candidate>& candidates) 
   return light;
 }
 
-/// Work to a given error, of the sensor for which it is most. Infinite where light was missed, or a
-/// few paths have it.
-double work_to_error(const Trial& trial, const std::vector<double>& light) {
-  double most = 0;
+/// Fewer groups with the light tell nothing of the variance.
+constexpr double fewest_lit = groups / 4.0;
+/// With more doubt the strongest paths are likely still missing.
+constexpr double most_doubt = 0.4;
+
+/// Work to a given error, of the sensor for which it is most, and whether the trial knows it well.
+struct Needed {
+  double work = 0;
+  bool is_known = true;
+};
+Needed needed(const Trial& trial, const std::vector<double>& light) {
+  Needed most;
   for (std::size_t i = 0; i < light.size(); ++i) {
     const PictureMoments& picture = trial.pictures[i];
     if (!(light[i] > 0)) continue;
-    if (!(picture.total > light[i] / 2 && picture.lit > fewest_lit))
-      return std::numeric_limits<double>::infinity();
-    most = std::max(most, picture.variance / (light[i] * light[i]));
+    most.is_known &= picture.lit > fewest_lit && picture.doubt < most_doubt;
+    const bool is_missing = !(picture.total > light[i] / 2 && picture.lit > fewest_lit);
+    most.work =
+        std::max(most.work, is_missing ? std::numeric_limits<double>::infinity()
+                                       : trial.work * picture.variance / (light[i] * light[i]));
   }
-  return most * trial.work;
+  return most;
 }
 
 bool is_pinhole(const Sensor& sensor) {
@@ -160,60 +172,62 @@ bool has_finite_variance(const RenderScene& scene, RenderMethod method) {
 namespace {
 
 /// Bidirectional tracing first, if it can be tried; then so can the others.
-std::vector<Candidate> candidates(const Tracers& tracers, double effort) {
+std::vector<Candidate> candidates(const Tracers& tracers) {
   std::vector<Candidate> found;
   for (const RenderMethod method :
-       {RenderMethod::bidirectional, RenderMethod::path, RenderMethod::light}) {
-    if (!has_finite_variance(tracers.scene(), method)) continue;
-    Tracer tracer = tracers.make(method);
-    auto trial = tried(tracers, tracer, effort);
-    if (trial) found.push_back({std::move(tracer), std::move(*trial)});
-    if (found.empty()) break;
-  }
+       {RenderMethod::bidirectional, RenderMethod::path, RenderMethod::light})
+    if (has_finite_variance(tracers.scene(), method)) found.push_back({tracers.make(method)});
   return found;
 }
 
-/// Nothing where no trial tells.
-Candidate* best_of(std::vector<Candidate>& all) {
-  constexpr double clearly = 0.8;  // bidirectional misses least where the trial is too short
-  Candidate* best = nullptr;
-  double least = std::numeric_limits<double>::infinity();
+/// Leaves out those that cannot be tried: all where the first cannot.
+void try_all(const Tracers& tracers, double effort, std::vector<Candidate>& all) {
+  const auto is_beyond = [&](Candidate& candidate) {
+    auto trial = tried(tracers, candidate.tracer, effort);
+    if (trial) candidate.trial = std::move(*trial);
+    return !trial;
+  };
+  if (all.empty() || is_beyond(all.front())) return all.clear();
+  all.erase(std::remove_if(all.begin() + 1, all.end(), is_beyond), all.end());
+}
+
+/// With the least work, known or not; bidirectional where that is nearly the same, as it misses
+/// least where the trial is too short. Nothing where no trial tells.
+struct Best {
+  const Candidate* candidate = nullptr;
+  Needed needed = {std::numeric_limits<double>::infinity(), false};
+};
+Best best_of(const std::vector<Candidate>& all, bool of_known) {
+  constexpr double clearly = 0.8;
+  Best best;
   const auto light = light_of_pictures(all);
-  for (Candidate& candidate : all) {
-    const double needed = work_to_error(candidate.trial, light);
-    if (!(needed < least)) continue;
-    least = candidate.tracer.method == RenderMethod::bidirectional ? clearly * needed : needed;
-    best = &candidate;
+  for (const Candidate& candidate : all) {
+    Needed own = needed(candidate.trial, light);
+    if (of_known && !own.is_known) continue;
+    if (!(own.work < best.needed.work)) continue;
+    if (candidate.tracer.method == RenderMethod::bidirectional) own.work *= clearly;
+    best = {&candidate, own};
   }
   return best;
 }
 
-/// Whether enough paths carry each picture of every candidate: fewer have too small a variance, as
-/// the strongest are still missing. One that has next to no light by then is no match.
-bool is_settled(const std::vector<Candidate>& all) {
-  constexpr double enough = 0.75 * groups, next_to_none = 1.5;
-  const auto pending = [](const PictureMoments& picture) {
-    return picture.lit > next_to_none && picture.lit < enough;
-  };
-  return all.size() == 1 || std::none_of(all.begin(), all.end(), [&](const Candidate& candidate) {
-           const auto& pictures = candidate.trial.pictures;
-           return std::any_of(pictures.begin(), pictures.end(), pending);
-         });
-}
-
 }  // namespace
 
+/// Trials go on, longer and longer, until what seems best is known well: an estimate that still
+/// lacks the strongest paths is too good. After the last, one that is known goes before others.
 Tracer best_tracer(const Tracers& tracers) {
-  std::optional<Tracer> best;
+  auto all = candidates(tracers);
+  Best best;
   for (const double effort : {1, 8, 32}) {
-    auto all = candidates(tracers, effort);
+    try_all(tracers, effort, all);
     if (all.empty()) break;
-    Candidate* const found = best_of(all);
-    if (!found) continue;
-    best = std::move(found->tracer);
-    if (is_settled(all)) break;
+    best = best_of(all, false);
+    if (all.size() == 1 || best.needed.is_known) break;
   }
-  return best ? std::move(*best) : tracers.make(RenderMethod::bidirectional);
+  if (all.empty()) return tracers.make(RenderMethod::bidirectional);
+  if (!best.needed.is_known)
+    if (const Best known = best_of(all, true); known.candidate) best = known;
+  return best.candidate ? best.candidate->tracer : all.front().tracer;
 }
 
 }  // namespace flatspeckle::grin

@@ -7,6 +7,7 @@
 #include "core/numbers/random.h"
 #include "grin/curved/curved_space.h"
 #include "grin/paths/film.h"
+#include "grin/paths/join_promises.h"
 #include "grin/paths/transport.h"
 #include "grin/space/render_plan.h"
 
@@ -15,7 +16,7 @@ namespace flatspeckle::grin {
 /// Light paths and as many sensor paths, added to a film; with `promises`, what each pair promised
 /// to add (Bidirectional) is collected too.
 using PathKernel = std::function<void(int paths, RandomStream& random, Film& film,
-                                      TransportCounts& counts, std::vector<double>* promises)>;
+                                      TransportCounts& counts, JoinPromises* promises)>;
 
 /// Estimators compiled for a plan. The transport may still change before they are called.
 

@@ -11,7 +11,7 @@ template <RenderPlan plan>
 PathKernel kernel_of(std::shared_ptr<const Transport> transport,
                      std::shared_ptr<const CurvedSpace> space, bool random_phase) {
   return [=](int paths, RandomStream& random, Film& film, TransportCounts& counts,
-             std::vector<double>* promises) {
+             JoinPromises* promises) {
     const auto add = [&](const CurvedSpace& met, int first, int last) {
       Bidirectional<plan, CurvedSpace> estimator(*transport, met, random, film, counts);
       for (int path = first; path < last; ++path) {

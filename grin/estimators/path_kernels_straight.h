@@ -21,7 +21,7 @@ template <RenderPlan plan>
 PathKernel straight_kernel_of(std::shared_ptr<const Transport> transport, double excess) {
   auto space = std::make_shared<const StraightSpace<plan>>(transport->stage, excess);
   return [=](int paths, RandomStream& random, Film& film, TransportCounts& counts,
-             std::vector<double>* promises) {
+             JoinPromises* promises) {
     Bidirectional<plan, StraightSpace<plan>> estimator(*transport, *space, random, film, counts);
     for (int path = 0; path < paths; ++path) {
       estimator.add(stratum(path, paths, random));

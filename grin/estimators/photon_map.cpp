@@ -189,7 +189,7 @@ PathKernel straight_kernel_timed(std::shared_ptr<const Transport> transport, dou
                                  double radius) {
   auto space = std::make_shared<const AnyStraightSpace>(transport->stage, excess);
   return [=](int paths, RandomStream& random, Film& film, TransportCounts& counts,
-             std::vector<double>*) {
+             JoinPromises*) {
     PhotonMap<timed, AnyStraightSpace>(*transport, *space, radius, random, film, counts).add(paths);
   };
 }
@@ -199,7 +199,7 @@ PathKernel curved_kernel_timed(std::shared_ptr<const Transport> transport,
                                std::shared_ptr<const CurvedSpace> space, bool random_phase,
                                double radius) {
   return [=](int paths, RandomStream& random, Film& film, TransportCounts& counts,
-             std::vector<double>*) {
+             JoinPromises*) {
     const auto add = [&](const CurvedSpace& met, int count) {
       PhotonMap<timed, CurvedSpace>(*transport, met, radius, random, film, counts).add(count);
     };

@@ -17,14 +17,24 @@ struct Pilot {
   int pairs = 0;
   bool is_cut = false;  // some path may have been longer
   TransportCounts counts;
-  std::vector<double> promises;  ///< [pair][sensor]
+  JoinPromises promises;  ///< [pair][sensor]
 
   double flights_per_pair() const {
     return std::max(static_cast<double>(counts.flights) / pairs, 1.0);
   }
+  /// Sum over the pairs, of one sensor.
+  JoinPromise sum(std::size_t at, std::size_t sensors) const {
+    JoinPromise all;
+    for (std::size_t i = at; i < promises.size(); i += sensors) {
+      all.joins += promises[i].joins;
+      all.made += promises[i].made;
+      all.brought += promises[i].brought;
+    }
+    return all;
+  }
 };
 
-/// Pairs that join nothing; the same pairs each time.
+/// The same pairs each time, with the levels of joins that the transport has.
 Pilot pilot(Transport& transport, const PathKernel& kernel, const TimeBins& bins) {
   constexpr auto no_batch = std::numeric_limits<std::uint64_t>::max();
   const int pixels = transport.pixels();
@@ -33,7 +43,6 @@ Pilot pilot(Transport& transport, const PathKernel& kernel, const TimeBins& bins
   RandomStream random(0, static_cast<std::uint64_t>(Stream::render), no_batch);
   const int limit = transport.max_scatterings;
   transport.max_scatterings = std::min(limit, pilot_scatterings);
-  for (double& level : transport.join_levels) level = std::numeric_limits<double>::infinity();
   Pilot found;
   for (; found.pairs < most_pairs; ++found.pairs) {
     if (found.pairs >= fewest_pairs && found.counts.flights >= enough_flights) break;
@@ -43,6 +52,29 @@ Pilot pilot(Transport& transport, const PathKernel& kernel, const TimeBins& bins
   }
   transport.max_scatterings = limit;
   return found;
+}
+
+Pilot pilot_without_joins(Transport& transport, const PathKernel& kernel, const TimeBins& bins) {
+  for (double& level : transport.join_levels) level = std::numeric_limits<double>::infinity();
+  return pilot(transport, kernel, bins);
+}
+
+/// What joins to each sensor bring over what they promise, by some tens of them; never less than 1,
+/// as few joins bring most.
+std::vector<double> returns_of_joins(Transport& transport, const PathKernel& kernel,
+                                     const TimeBins& bins, const Pilot& without) {
+  constexpr double joins = 64, most = 1e6;
+  const std::size_t sensors = transport.sensors.size();
+  for (std::size_t at = 0; at < sensors; ++at)
+    transport.join_levels[at] = without.sum(at, sensors).joins / joins;
+  const Pilot with = pilot(transport, kernel, bins);
+  std::vector<double> returns;
+  for (std::size_t at = 0; at < sensors; ++at) {
+    const JoinPromise sum = with.sum(at, sensors);
+    const double brings = sum.brought / sum.made;
+    returns.push_back(brings > 1 ? std::min(brings, most) : 1);
+  }
+  return returns;
 }
 
 double known_flights(const Pilot& pilot) {
@@ -63,29 +95,31 @@ double trimmed_variance(std::vector<double> promises) {
 }  // namespace
 
 double flights_per_pair(Transport& transport, const PathKernel& kernel, const TimeBins& bins) {
-  return known_flights(pilot(transport, kernel, bins));
+  return known_flights(pilot_without_joins(transport, kernel, bins));
 }
 
 /// One vertex of a light path stands for all in a join: their mean number sets the share, and twice
 /// that how many are kept for joins. With more, bidirectional meets rare long paths that change its
 /// picture (white furnace of optical depth 200); with fewer, a pinhole in thick fog under a beam
-/// gains little from joins. A pair costs F flights and varies by V. Joins of the promise S at a
-/// level L add L S to V and cost c S/L flights; variance times cost is least at L^2 = c V / F, both
-/// without joins.
+/// gains little from joins. A pair costs F flights and varies by V. Joins of the promise S, which
+/// bring r S, at a level L add r^2 L S to V and cost c S/L flights; variance times cost is least at
+/// (r L)^2 = c V / F, both without joins.
 double tune_joins(Transport& transport, const PathKernel& kernel, const TimeBins& bins,
                   double flights_per_join) {
-  const Pilot first = pilot(transport, kernel, bins);
+  const Pilot first = pilot_without_joins(transport, kernel, bins);
   const double collisions = static_cast<double>(first.counts.light_collisions) / first.pairs;
   transport.strategies.joined_share = std::min(1.0, 1 / collisions);
   transport.strategies.kept = 1 - 1 / (2 + 2 * collisions);
-  const Pilot second = pilot(transport, kernel, bins);
+  const Pilot second = pilot_without_joins(transport, kernel, bins);
+  const auto returns = returns_of_joins(transport, kernel, bins, second);
   const std::size_t sensors = transport.sensors.size();
   for (std::size_t at = 0; at < sensors; ++at) {
-    std::vector<double> promises;
+    std::vector<double> expected;
     for (std::size_t i = at; i < second.promises.size(); i += sensors)
-      promises.push_back(second.promises[i]);
+      expected.push_back(returns[at] * second.promises[i].joins + second.promises[i].hits);
     transport.join_levels[at] =
-        std::sqrt(flights_per_join * trimmed_variance(promises) / second.flights_per_pair());
+        std::sqrt(flights_per_join * trimmed_variance(expected) / second.flights_per_pair()) /
+        returns[at];
   }
   return known_flights(second);
 }

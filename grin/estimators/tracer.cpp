@@ -69,6 +69,7 @@ void Tracer::add(int paths, RandomStream& random, Film& film, TransportCounts& c
 Tracers::Tracers(const RenderScene& scene, const RenderRequest& request)
     : scene_(scene), request_(request), plan_(render_plan(scene)) {
   if (!plan_.curved && plan_.scatters) find_depth();
+  if (!scene.sensors.empty() && request.method != RenderMethod::photon_map) find_beams();
 }
 
 void Tracers::find_depth() {
@@ -78,8 +79,22 @@ void Tracers::find_depth() {
   plan_.deep = depth.has_value();
 }
 
+/// The same for all methods: a search for ways to them may take longer than a pilot.
+void Tracers::find_beams() {
+  const auto transport = transport_of(scene_, request_, RenderMethod::bidirectional);
+  if (!(transport->lights.beam_power() > 0)) return;
+  if (const auto* homogeneous = std::get_if<Homogeneous>(&scene_.field))
+    unscattered_beams_ = beams_kernel(plan_.timed, transport, homogeneous->n_excess);
+  else
+    unscattered_beams_ = beams_kernel(
+        plan_.timed, transport,
+        make_curved_space(scene_.field, without_scattering(scene_.stage), options(Spreading::none)),
+        scene_.random_phase);
+}
+
 Tracer Tracers::make(RenderMethod method) const {
   Tracer tracer = plan_.curved ? curved(method) : straight(method);
+  if (method != RenderMethod::photon_map) tracer.unscattered_beams = unscattered_beams_;
   tracer.flights_per_pair =
       method == RenderMethod::photon_map
           ? flights_per_pair(*tracer.transport, tracer.kernel, scene_.bins)
@@ -117,10 +132,7 @@ Tracer Tracers::straight(RenderMethod method) const {
   if (method == RenderMethod::photon_map)
     return {method, transport,
             photon_kernel(plan_.timed, transport, excess, photon_radius(scene_, request_))};
-  Tracer tracer{method, transport, straight_kernel(plan_, transport, excess)};
-  if (transport->lights.beam_power() > 0)
-    tracer.unscattered_beams = beams_kernel(plan_.timed, transport, excess);
-  return tracer;
+  return {method, transport, straight_kernel(plan_, transport, excess)};
 }
 
 CurvedSpaceOptions Tracers::options(Spreading spreading) const {
@@ -148,11 +160,6 @@ Tracer Tracers::curved(RenderMethod method) const {
                           photon_radius(scene_, request_))};
   Tracer tracer{method, transport, curved_kernel(plan_, transport, space, scene_.random_phase)};
   tracer.flights_per_join = space->cost_of_join();
-  if (transport->lights.beam_power() > 0)
-    tracer.unscattered_beams = beams_kernel(
-        plan_.timed, transport,
-        make_curved_space(scene_.field, without_scattering(scene_.stage), options(Spreading::none)),
-        scene_.random_phase);
   return tracer;
 }
 

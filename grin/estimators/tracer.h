@@ -53,6 +53,7 @@ class Tracers {
 
  private:
   void find_depth();
+  void find_beams();
   Tracer straight(RenderMethod method) const;
   Tracer curved(RenderMethod method) const;
   CurvedSpaceOptions options(Spreading spreading) const;
@@ -61,6 +62,7 @@ class Tracers {
   const RenderRequest& request_;
   RenderPlan plan_;
   std::shared_ptr<const DepthImportance> depth_;  ///< where the plan is deep
+  PathKernel unscattered_beams_ = {};             ///< where there are beams
 };
 
 }  // namespace flatspeckle::grin

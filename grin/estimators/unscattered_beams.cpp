@@ -204,7 +204,7 @@ PathKernel kernel(std::shared_ptr<const Transport> transport, const BeamSeeds& s
                   const WithSpace& with_space) {
   const double ways_per_ray = share_of_ways(seeds.is_any_seen);
   return [=](int rays, RandomStream& random, Film& film, TransportCounts& counts,
-             std::vector<double>*) {
+             JoinPromises*) {
     const EvenSquare even(random);
     const double beam = random.uniform(), beam_of_way = random.uniform();
     const double first_way = random.uniform();

@@ -3,6 +3,7 @@
 #include <numbers>
 
 #include "grin/paths/film.h"
+#include "grin/paths/join_promises.h"
 #include "grin/paths/light_vertices.h"
 #include "grin/paths/path_join.h"
 #include "grin/paths/subpath.h"
@@ -30,13 +31,13 @@ class Bidirectional {
 
   /// One light path and one path from each sensor; `stratum` in (0, 1) says through which pixel.
   void add(double stratum) {
-    std::fill(promised_.begin(), promised_.end(), 0);
+    std::fill(promised_.begin(), promised_.end(), JoinPromise());
     walk_from_light();
     for_each_sensor([&] { walk_from_sensor(stratum); });
   }
 
-  /// Appends what the last paths promised to each sensor: joins, made or not, and what was hit.
-  void append_promises(std::vector<double>& promises) const {
+  /// Appends what the last paths promised to each sensor, and kept of it.
+  void append_promises(JoinPromises& promises) const {
     promises.insert(promises.end(), promised_.begin(), promised_.end());
   }
 
@@ -138,7 +139,7 @@ class Bidirectional {
       const double others = rivals_of_hit(
           transport_.strategies, here, hit.position.position_density, hit.direction.density, more);
       const double value = here.weight * hit.value / (1 + others);
-      promised_[at_] += value;
+      promised_[at_].hits += value;
       add(pixel(hit), value, here.optical_path);
     });
   }
@@ -228,10 +229,12 @@ class Bidirectional {
   }
 
   void join(const PathVertex& y, const PathVertex& z, double promised) {
-    promised_[at_] += promised;
+    promised_[at_].joins += promised;
     const double level = transport_.join_levels[at_];
-    if (const double chance = chance_to_join(promised, level); chance > 0)
+    if (const double chance = chance_to_join(promised, level); chance > 0) {
+      promised_[at_].made += promised / chance;
       add_joined(y, z, space_.join(y.point, z.point, random_, counts_.connections), chance);
+    }
     if constexpr (plan.body) {
       if (!space_.joins_through()) return;
       if (const double chance = chance_to_join(promised, search_cost * level); chance > 0)
@@ -256,9 +259,10 @@ class Bidirectional {
     const JoiningCurve as_weighed{curve->start_direction, curve->end_direction, curve->spreading,
                                   curve->optical_depth,   curve->passes,        curve->fresnel};
     const JoinedPath path = joined_path(transport_.strategies, y, from_y, z, from_z, as_weighed);
-    add(z.end ? path.pixel : pixel_,
-        path.value * path.weight * curve->transmittance * curve->multiplicity / chance,
-        y.optical_path + curve->optical_path + z.optical_path);
+    const double value =
+        path.value * path.weight * curve->transmittance * curve->multiplicity / chance;
+    promised_[at_].brought += value;
+    add(z.end ? path.pixel : pixel_, value, y.optical_path + curve->optical_path + z.optical_path);
   }
 
   void add(int pixel, double value, double optical_path) {
@@ -273,9 +277,9 @@ class Bidirectional {
   Family family_;
   LightVertices vertices_;  ///< that are kept for joins
   std::array<double, LightVertices::capacity> of_each_{};
-  std::vector<double> promised_;  ///< to each sensor
-  std::size_t at_ = 0;            ///< the sensor at hand
-  int pixel_ = -1;                ///< of its path
+  JoinPromises promised_;  ///< by the paths at hand, to each sensor
+  std::size_t at_ = 0;     ///< the sensor at hand
+  int pixel_ = -1;         ///< of its path
 };
 
 }  // namespace flatspeckle::grin

@@ -70,6 +70,16 @@ class Scenes(RenderTest):
                     self.assertIn(words, self.output)
                 self.assertEqual(attributes(self.folder / "render.h5")["length_unit"], 1e-3)
 
+    def test_what_few_paths_bring_is_no_estimate(self):
+        """Path tracing would have to join through a hundred mean free paths: no number is better than
+        one of 39 orders too little."""
+        found = self.scene("slab", samples=2000, method="path")
+        self.assertTrue(np.all(found["total_rare"] == 1))
+        for name in ("total power", "mean of pixels"):
+            self.assertRegex(self.output, name + " +not found")
+        self.scene("slab", samples=2000, method="light")
+        self.assertNotIn("not found", self.output)
+
     def test_methods(self):
         """All of them run on a curved and on a straight scene, and say which they are."""
         for scene in ("luneburg", "glass_ball"):

@@ -89,15 +89,39 @@ TEST_CASE("methods without finite variance are not chosen, and say so") {
   CHECK(plan({}).starts_with("bidirectional (chosen by a pilot)"));
 }
 
-TEST_CASE("few strong paths do not mislead the choice") {
-  // The shipped fibre. A short trial finds light tracing cheap there, as it misses its strong
-  // joins.
-  RenderScene fibre =
-      box(0, ParabolicGuide({.axis_excess = 0.6, .alpha = 0.5}), FaceLight{Vec3(0, 0, 0), 0.1, 1},
+namespace {
+
+/// The shipped one, lit by another spot: its rays meet again and again, so that joins bring much
+/// more than straight lines promise.
+RenderScene fibre(double spot) {
+  RenderScene scene =
+      box(0, ParabolicGuide({.axis_excess = 0.6, .alpha = 0.5}), FaceLight{Vec3(0, 0, 0), spot, 1},
           AreaDetector{{0, 0, 50.265}, Vec3::UnitY(), 1.8, 1.8, {48, 48}, 0.5});
-  fibre.stage.boundary = Box{{-0.9, -0.9, 0}, {0.9, 0.9, 50.265}};
-  fibre.step = 0.59;
-  CHECK(chosen(fibre) == RenderMethod::path);
+  scene.stage.boundary = Box{{-0.9, -0.9, 0}, {0.9, 0.9, 50.265}};
+  scene.step = 0.59;
+  return scene;
+}
+
+}  // namespace
+
+TEST_CASE("joins are made for what they bring, not for what the straight line promises") {
+  for (const double spot : {0.08, 0.1, 0.4}) {
+    CAPTURE(spot);
+    const RenderScene scene = fibre(spot);
+    for (const RenderMethod method : {RenderMethod::light, RenderMethod::bidirectional}) {
+      CAPTURE(method_word(method));
+      const RenderJob job = render_job(scene, {method}, 3);
+      run_render(job, 2000, 1);
+      CHECK(static_cast<double>(job.counts->joins) > 200);
+    }
+  }
+}
+
+TEST_CASE("few strong paths do not mislead the choice") {
+  for (const double spot : {0.08, 0.1, 0.4}) {
+    CAPTURE(spot);
+    CHECK(chosen(fibre(spot)) == RenderMethod::bidirectional);
+  }
 }
 
 TEST_CASE("in the dark nothing is preferred") {
