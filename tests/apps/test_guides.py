@@ -1,0 +1,81 @@
+"""Every command of the README and the guides. Here: its keys are known and its values accepted. By
+night, with the argument Run: each guide's blocks run one after the other, as a reader would."""
+
+import os
+import pathlib
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+import unittest
+
+from program import DATA, PROGRAM, ProgramTest
+
+ROOT = DATA.parent
+PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+BLOCK = re.compile(r"```sh\n(.*?)```", re.DOTALL)
+INDENTED = re.compile(r"(?:^    \S.*\n)+", re.MULTILINE)
+RESOLVE = ("solve", "place", "covariance", "validate", "field", "image", "recover", "flux", "sweep", "trace",
+           "render")
+# What is not run: it prepares the machine, or needs several of them, or hours.
+APART = re.compile(r"^\s*(scripts/|cmake|ctest|cpack|mpirun|#SBATCH|build/|bench_|export )|--method mc|merge |bench |"
+                   r"--frames frames.csv|forward.csv", re.MULTILINE)
+
+
+def blocks(page):
+    text = page.read_text()
+    yield from BLOCK.findall(text)
+    for block in INDENTED.findall(re.sub(r"```.*?```", "", text, flags=re.DOTALL)):
+        if block.lstrip().startswith("flatspeckle "):
+            yield block
+
+
+def commands(block):
+    """Words after `flatspeckle`, of each line of it."""
+    for line in block.replace("\\\n", " ").splitlines():
+        if line.strip().startswith("flatspeckle "):
+            line = re.sub(r"\s#.*", "", re.sub(r'"?\$\w+"?', "0", line))
+            yield shlex.split(line)[1:]
+
+
+class Written(ProgramTest):
+    def test_every_command_is_accepted(self):
+        (self.folder / "data").symlink_to(DATA)
+        for page in PAGES:
+            for words in (words for block in blocks(page) for words in commands(block)):
+                if words[0] in RESOLVE:
+                    with self.subTest(page=page.name, command=words):
+                        self.check(words)
+
+    def check(self, words):
+        done = subprocess.run([PROGRAM, *words, "--print-config"], cwd=self.folder, capture_output=True,
+                              text=True, timeout=60)
+        missing = re.search("no such file|cannot read", done.stderr) and "data/" not in done.stderr
+        if not missing:  # a file that another command or the reader makes
+            self.assertEqual(done.returncode, 0, done.stderr)
+
+
+class Run(ProgramTest):
+    def test_every_block_runs(self):
+        for page in PAGES:
+            with self.subTest(page=page.name):
+                self.run_page(page)
+
+    def run_page(self, page):
+        folder = self.folder / page.stem
+        folder.mkdir()
+        for name in ("data", "plots"):
+            (folder / name).symlink_to(ROOT / name)
+        path = f"{pathlib.Path(PROGRAM).parent}:{os.environ['PATH']}"
+        for block in blocks(page):
+            lines = block.replace("\\\n", " ").splitlines()
+            script = "\n".join(line.strip() for line in lines if not APART.search(line))
+            done = subprocess.run(["bash", "-euc", script], cwd=folder, capture_output=True, text=True,
+                                  env={**os.environ, "PATH": path})
+            self.assertEqual(done.returncode, 0, f"{script}\n{done.stderr}")
+        shutil.rmtree(folder)
+
+
+if __name__ == "__main__":
+    unittest.main(defaultTest="Written" if len(sys.argv) < 2 else None)
