@@ -14,6 +14,7 @@
 #include "core/session/session.h"
 #include "flatland/scene/scene_datasets.h"
 #include "mc/imaging/imaging_datasets.h"
+#include "mc/imaging/media_statistics.h"
 
 namespace flatspeckle::apps {
 
@@ -213,13 +214,14 @@ std::optional<Fields> fields_of(const mc::LineScene& line, const mc::ImagingTask
 void print_summary(const mc::LineScene& line, const mc::ImagingTask& task,
                    const std::vector<mc::ImagedMedium>& media,
                    const mc::ImagingPrediction& prediction) {
-  double contrast = 0;
-  for (const mc::ImagedMedium& medium : media)
-    contrast += medium.statistics.contrast / static_cast<double>(media.size());
+  const mc::Measured contrast = mc::mean_contrast(line.object, media),
+                     fourth = mc::mean_fourth_moment(media);
   const double grains = mc::mean_grains(media);
-  const double n = static_cast<double>(line.object.x.size());
-  std::printf("contrast %.3f (equal points, Gaussian: %.3f), %.0f grains in a frame\n", contrast,
-              1 / std::sqrt(n), grains);
+  std::printf(
+      "contrast %.4f +- %.2g (Gaussian: %.4f), E|u|^4/(E|u|^2)^2 %.3f +- %.2g, %.0f grains\n",
+      contrast.value, contrast.error,
+      mc::gaussian_contrast(line.object, task.recovery.noise.background), fourth.value,
+      fourth.error, grains);
   if (const auto correlation = real_parts(prediction.correlation.value); !correlation.empty()) {
     const auto signals = mc::peaks_over_noise(line.object, correlation, grains);
     std::printf("pairs of points: C_I down to %.3f, peaks down to %.1f times the noise\n",

@@ -9,7 +9,7 @@
 #include "core/error.h"
 #include "core/keys/csv.h"
 #include "core/session/session.h"
-#include "mc/imaging/recovery_datasets.h"
+#include "mc/recovery/recovery_datasets.h"
 
 namespace flatspeckle::apps {
 

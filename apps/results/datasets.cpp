@@ -15,7 +15,7 @@
 #include "mc/estimators/flux.h"
 #include "mc/estimators/gradient.h"
 #include "mc/imaging/imaging_datasets.h"
-#include "mc/imaging/recovery_datasets.h"
+#include "mc/recovery/recovery_datasets.h"
 #include "mc/slab/frequency_shifts.h"
 #include "mc/slab/refinement.h"
 #include "mc/speckle/field_datasets.h"

@@ -20,12 +20,6 @@ struct Bits {
 
 }  // namespace
 
-double noise_variance(const CameraNoise& noise) {
-  if (noise.photons == 0) return 0;
-  const double mean = (1 + noise.background) * noise.photons;
-  return (mean + noise.read_noise * noise.read_noise) / (mean * mean);
-}
-
 std::vector<double> incoherent_sum(std::span<const Complex> field,
                                    std::span<const double> brightness) {
   const std::size_t pixels = field.size() / brightness.size();

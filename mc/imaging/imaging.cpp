@@ -25,6 +25,18 @@ LineObject scaled(LineObject object, double factor) {
   return object;
 }
 
+/// Of |u|^2 over its smooth envelope, all points together.
+double fourth_moment(std::span<const Complex> field, std::size_t points) {
+  const std::size_t pixels = field.size() / points;
+  std::vector<double> intensity(pixels);
+  double sum = 0;
+  for (std::size_t n = 0; n < points; ++n) {
+    for (std::size_t p = 0; p < pixels; ++p) intensity[p] = std::norm(field[n * pixels + p]);
+    sum += squared_contrast(intensity);
+  }
+  return 1 + sum / static_cast<double>(points);
+}
+
 ImagedMedium imaged_one(const LineScene& line, const ImagingTask& task, const FieldDraw& draw,
                         std::uint64_t number) {
   const std::size_t channels = line.scene.request.channels.size();
@@ -33,6 +45,7 @@ ImagedMedium imaged_one(const LineScene& line, const ImagingTask& task, const Fi
   draw(number, field, intensity);
   ImagedMedium medium;
   medium.frame = incoherent_sum(field, line.object.brightness);
+  medium.fourth_moment = fourth_moment(field, line.object.x.size());
   RandomStream random(task.seed, static_cast<std::uint64_t>(Stream::camera), number);
   expose(medium.frame, task.recovery.noise, random);
   static_cast<Recovered&>(medium) = recovered(medium.frame, task.recovery);
@@ -97,12 +110,6 @@ std::optional<std::vector<ImagedMedium>> imaged(const LineScene& line, const Ima
   RunState state;
   if (!run(job, task.repeats, task.threads, "frames", state)) return std::nullopt;
   return media;
-}
-
-double mean_grains(const std::vector<ImagedMedium>& media) {
-  double sum = 0;
-  for (const ImagedMedium& medium : media) sum += medium.statistics.grains;
-  return sum / static_cast<double>(media.size());
 }
 
 std::optional<ImagingPrediction> predicted(const LineScene& line, std::uint64_t paths,

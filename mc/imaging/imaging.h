@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "core/numbers/statistics.h"
-#include "mc/imaging/image_score.h"
 #include "mc/imaging/line_camera.h"
-#include "mc/imaging/recovery.h"
+#include "mc/recovery/image_score.h"
+#include "mc/recovery/recovery.h"
 #include "mc/speckle/speckle_field.h"
 
 namespace flatspeckle::mc {
@@ -24,15 +24,13 @@ struct ImagingTask {
 struct ImagedMedium : Recovered {
   std::vector<double> frame;
   ImageScore score;
+  double fourth_moment = 0;  ///< of the points' fields, E|u|^4 / (E|u|^2)^2: Gaussian, 2
 };
 
 /// All frames, one of each medium: number, seed and scene make them, no thread does. Nothing where
 /// a signal came (catch_interrupts). draw: fields of line.scene, [point][pixel].
 std::optional<std::vector<ImagedMedium>> imaged(const LineScene& line, const ImagingTask& task,
                                                 const FieldDraw& draw);
-
-/// Grains of a frame, averaged over all.
-double mean_grains(const std::vector<ImagedMedium>& media);
 
 /// What to expect without a picture. C_I of two points: |C|^2/(I I') of the one's light and of the
 /// other's, at places of the camera that differ by how far the picture moves.

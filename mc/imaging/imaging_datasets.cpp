@@ -4,7 +4,8 @@
 #include <cmath>
 
 #include "core/result/result_group.h"
-#include "mc/imaging/recovery_datasets.h"
+#include "mc/imaging/media_statistics.h"
+#include "mc/recovery/recovery_datasets.h"
 
 namespace flatspeckle::mc {
 
@@ -24,6 +25,11 @@ const DatasetTable imaging_table{
              {"mean_autocorrelation", Data::estimate, "distance", "1", "mean over the media"},
              {"contrast", Data::real, "repeat", "1",
               "standard deviation over mean, without envelope"},
+             {"mean_contrast", Data::estimate, "", "1", "root of its mean square over the media"},
+             {"gaussian_contrast", Data::real, "", "1",
+              "of the object's Gaussian speckle: 1/sqrt(N) for N equal points without background"},
+             {"fourth_moment", Data::estimate, "", "1",
+              "E|u|^4 / (E|u|^2)^2 of the points' fields; Gaussian: 2"},
              {"grains", Data::real, "repeat", "1", "independent speckle grains in the frame"},
              {"noise", Data::real, "repeat", "1", "standard deviation of the autocorrelation"},
              {"found_x", Data::real, "repeat sought", "length", "from the first, mirrored or not"},
@@ -75,6 +81,14 @@ void write_axes(ResultFile& file, const ResultGroup& root, const LineScene& line
   root.put("distance", distances);
 }
 
+void write_moments(const ResultGroup& root, const LineScene& line, double background,
+                   const std::vector<ImagedMedium>& media) {
+  const Measured contrast = mean_contrast(line.object, media), fourth = mean_fourth_moment(media);
+  root.put("mean_contrast", contrast.value, contrast.error);
+  root.put("gaussian_contrast", gaussian_contrast(line.object, background));
+  root.put("fourth_moment", fourth.value, fourth.error);
+}
+
 void write_fits(const ResultGroup& root, const ImagingTask& task,
                 const std::vector<ImagedMedium>& media, double length_of_pixel) {
   write_points(root, media, task.recovery.points, length_of_pixel);
@@ -97,14 +111,6 @@ void write_prediction(const ResultGroup& root, const LineScene& line,
 
 }  // namespace
 
-SuccessRate success_rate(const std::vector<ImagedMedium>& media) {
-  double found = 0;
-  for (const ImagedMedium& medium : media) found += medium.score.found == 1;
-  const auto n = static_cast<double>(media.size());
-  const double likely = (found + 1) / (n + 2);
-  return {found / n, std::sqrt(likely * (1 - likely) / (n + 3))};
-}
-
 void write_imaging(ResultFile& file, const LineScene& line, const ImagingTask& task,
                    const std::vector<ImagedMedium>& media, const ImagingPrediction& prediction) {
   const double moved = magnification(line), length_of_pixel = 1 / std::abs(moved);
@@ -117,6 +123,7 @@ void write_imaging(ResultFile& file, const LineScene& line, const ImagingTask& t
   root.attribute("frame", "magnification", moved);
   root.put("mean_autocorrelation", mean_autocorrelation(media));
   write_statistics(root, media);
+  write_moments(root, line, task.recovery.noise.background, media);
   if (task.recovery.points > 0) write_fits(root, task, media, length_of_pixel);
   if (!prediction.distance.empty()) write_prediction(root, line, media, prediction);
 }

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "flatland/scene/scene.h"
-#include "mc/imaging/line_object.h"
+#include "mc/recovery/line_object.h"
 
 namespace flatspeckle::mc {
 

@@ -44,11 +44,27 @@ class Image(ProgramTest):
         np.testing.assert_array_equal(frames["one"], frames["two"])
         self.assertGreater(np.abs(frames["one"] - frames["other"]).max(), 0.1)
 
-    def test_more_points_less_contrast(self):
-        one = self.image(**{**IMAGE, "object_x": [0], "object_extent": 150})["contrast"].mean()
-        three = self.image(**IMAGE)["contrast"].mean()
-        self.assertAlmostEqual(one, 1, delta=0.15)
-        self.assertAlmostEqual(three, 3**-0.5, delta=0.12)
+    def test_gaussian(self):
+        """Contrast 1/sqrt(N), E|u|^4 = 2 (E|u|^2)^2: less by a hundredth where paths are few."""
+        media = {**IMAGE, "points": 0, "object_extent": 150, "repeats": 20, "pixels": 1024,
+                 "paths_per_field": 3000}
+        for brightness in [1], [1, 1, 1], [1, 2, 3]:
+            expected = np.linalg.norm(brightness) / sum(brightness) / 1.5
+            found = self.image(**{**media, "object_x": IMAGE["object_x"][:len(brightness)]},
+                               object_brightness=brightness, background=0.5)
+            self.assertAlmostEqual(float(found["gaussian_contrast"]), expected)
+            contrast, error = found["mean_contrast"], found["mean_contrast_error"]
+            self.assertLess(abs(contrast - expected), 4 * error + 0.01 * expected)
+            self.assertLess(error, 0.05 * expected)
+            self.assertLess(abs(found["fourth_moment"] - 2),
+                            4 * found["fourth_moment_error"] + 0.01)
+
+    def test_one_medium_has_errors(self):
+        found = self.image(**{**IMAGE, "repeats": 1})
+        grains = found["grains"][0]
+        self.assertAlmostEqual(float(found["fourth_moment_error"]), (8 / grains)**0.5)
+        self.assertAlmostEqual(float(found["mean_contrast_error"]),
+                               found["contrast"][0] * (4 / grains)**0.5 / 2)
 
     def test_noise(self):
         dark = self.image(**IMAGE, photons=3, read_noise=2, background=1)

@@ -1,4 +1,4 @@
-#include "mc/imaging/recovery.h"
+#include "mc/recovery/recovery.h"
 
 namespace flatspeckle::mc {
 

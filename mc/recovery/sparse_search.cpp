@@ -1,4 +1,4 @@
-#include "mc/imaging/sparse_search.h"
+#include "mc/recovery/sparse_search.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "mc/imaging/recovery_datasets.h"
+#include "mc/recovery/recovery_datasets.h"
 
 namespace flatspeckle::mc {
 

@@ -1,4 +1,4 @@
-#include "mc/imaging/image_score.h"
+#include "mc/recovery/image_score.h"
 
 #include <cmath>
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/result/result_group.h"
-#include "mc/imaging/recovery.h"
+#include "mc/recovery/recovery.h"
 
 namespace flatspeckle::mc {
 

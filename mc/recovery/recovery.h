@@ -2,9 +2,9 @@
 
 #include <span>
 
-#include "mc/imaging/camera_frame.h"
-#include "mc/imaging/frame_statistics.h"
-#include "mc/imaging/sparse_search.h"
+#include "mc/recovery/camera_noise.h"
+#include "mc/recovery/frame_statistics.h"
+#include "mc/recovery/sparse_search.h"
 
 namespace flatspeckle::mc {
 

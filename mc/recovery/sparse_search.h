@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <span>
 
-#include "mc/imaging/line_object.h"
+#include "mc/recovery/line_object.h"
 
 namespace flatspeckle::mc {
 

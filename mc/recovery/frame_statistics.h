@@ -19,6 +19,11 @@ struct FrameStatistics {
 /// deviation of a Gaussian average). Throws InputError for a frame whose envelope is not positive.
 std::vector<double> without_envelope(std::span<const double> frame, double width);
 
+/// Variance over the square of the mean of what is left of the envelope, in the inner three
+/// quarters of at least 64 pixels. An envelope that is taken from the speckle itself follows it a
+/// little: the variance lacks a part as 1/width, which is seen in two widths and put back.
+double squared_contrast(std::span<const double> frame);
+
 /// lags: so many of the autocorrelation, at most half of the pixels; the noise is that of as many
 /// beyond. noise_variance: of the camera, over the square of the mean: without correlation, it
 /// stands in the first value alone, and is taken off there.

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "mc/imaging/line_object.h"
+#include "mc/recovery/line_object.h"
 
 namespace flatspeckle::mc {
 

@@ -1,0 +1,64 @@
+#include "mc/imaging/media_statistics.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace flatspeckle::mc {
+
+namespace {
+
+/// of: a number of each medium. error_of_one: where there is but one.
+template <class Number>
+Measured mean_of(const std::vector<ImagedMedium>& media, double error_of_one, const Number& of) {
+  const auto n = static_cast<double>(media.size());
+  double sum = 0, squares = 0;
+  for (const ImagedMedium& medium : media) {
+    sum += of(medium) / n;
+    squares += of(medium) * of(medium) / n;
+  }
+  if (media.size() == 1) return {sum, error_of_one};
+  return {sum, std::sqrt(std::max(squares - sum * sum, 0.0) / (n - 1))};
+}
+
+double power_sum(const LineObject& object, int power) {
+  double sum = 0;
+  for (const double b : object.brightness) sum += std::pow(b, power);
+  return sum;
+}
+
+}  // namespace
+
+double mean_grains(const std::vector<ImagedMedium>& media) {
+  return mean_of(media, 0, [](const ImagedMedium& m) { return m.statistics.grains; }).value;
+}
+
+double gaussian_contrast(const LineObject& object, double background) {
+  return std::sqrt(power_sum(object, 2)) / power_sum(object, 1) / (1 + background);
+}
+
+Measured mean_contrast(const LineObject& object, const std::vector<ImagedMedium>& media) {
+  const double two = power_sum(object, 2), four = 6 * power_sum(object, 4);
+  const double relative = std::sqrt((2 + four / (two * two)) / mean_grains(media));
+  const Measured square = mean_of(media, 0, [](const ImagedMedium& m) {
+    return m.statistics.contrast * m.statistics.contrast;
+  });
+  const double contrast = std::sqrt(square.value);
+  if (media.size() == 1) return {contrast, contrast * relative / 2};
+  return {contrast, contrast > 0 ? square.error / (2 * contrast) : 0};
+}
+
+Measured mean_fourth_moment(const std::vector<ImagedMedium>& media) {
+  constexpr double eight = 2 + 6;  // 2 kappa_2^2 + kappa_4 of one point
+  return mean_of(media, std::sqrt(eight / mean_grains(media)),
+                 [](const ImagedMedium& m) { return m.fourth_moment; });
+}
+
+Measured success_rate(const std::vector<ImagedMedium>& media) {
+  double found = 0;
+  for (const ImagedMedium& medium : media) found += medium.score.found == 1;
+  const auto n = static_cast<double>(media.size());
+  const double likely = (found + 1) / (n + 2);
+  return {found / n, std::sqrt(likely * (1 - likely) / (n + 3))};
+}
+
+}  // namespace flatspeckle::mc

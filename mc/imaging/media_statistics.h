@@ -1,0 +1,34 @@
+#pragma once
+
+#include <vector>
+
+#include "mc/imaging/imaging.h"
+
+namespace flatspeckle::mc {
+
+/// A number that chance has made, and its standard error.
+struct Measured {
+  double value = 0, error = 0;
+};
+
+/// Grains of a frame, averaged over all media.
+double mean_grains(const std::vector<ImagedMedium>& media);
+
+/// Contrast of an object's Gaussian speckle: sqrt(sum of b^2) / sum of b, 1/sqrt(N) for N equal
+/// points; less by 1 + background.
+double gaussian_contrast(const LineObject& object, double background);
+
+/// The root of the mean square of the media's contrast. Of one medium the error is that of Gaussian
+/// speckle: its squared contrast has the variance (2 kappa_2^2 + kappa_4) / grains, kappa_2 = sum
+/// of b^2 and kappa_4 = 6 sum of b^4, where the sum of b is 1.
+Measured mean_contrast(const LineObject& object, const std::vector<ImagedMedium>& media);
+
+/// E|u|^4 / (E|u|^2)^2 of the points' fields: Gaussian, 2. Of one medium the error is that of one
+/// point's Gaussian speckle.
+Measured mean_fourth_moment(const std::vector<ImagedMedium>& media);
+
+/// Of media in which all points were found. The error is the standard deviation of what so many
+/// trials leave open, which is not 0 where all succeed (Beta distribution with a uniform prior).
+Measured success_rate(const std::vector<ImagedMedium>& media);
+
+}  // namespace flatspeckle::mc
