@@ -2,8 +2,10 @@
 #include <cstring>
 #include <iostream>
 
+#include "apps/command/key_owners.h"
 #include "apps/command/subcommands.h"
 #include "core/error.h"
+#include "core/keys/number_text.h"
 
 namespace flatspeckle::apps {
 
@@ -33,6 +35,12 @@ const Frame& frame_named(const std::string& form) {
   throw InputError("keys", form, "must be one of json markdown dictionary completion");
 }
 
+void print_owners() {
+  std::cout << "\n## Which key belongs to which subcommand\n\n| key | of |\n|---|---|\n";
+  for (const auto& [key, owners] : key_owners())
+    std::cout << "| `" << key << "` | " << joined(owners, ", ") << " |\n";
+}
+
 }  // namespace
 
 /// Each subcommand prints its own.
@@ -40,6 +48,7 @@ int list_keys(const Arguments& arguments) {
   const std::string form = arguments.size() > 2 ? arguments[2] : "json";
   const Frame& frame = frame_named(form);
   std::cout << frame.before;
+  if (form == "markdown") print_owners();
   const char* between = "";
   for (const SubcommandEntry& entry : subcommands()) {
     if (entry.run == list_keys) continue;

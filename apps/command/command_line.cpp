@@ -9,9 +9,11 @@
 #include <CLI/CLI.hpp>
 
 #include "apps/command/key_lists.h"
+#include "apps/command/key_owners.h"
 #include "apps/command/nearest_key.h"
 #include "apps/command/scene_file.h"
 #include "core/error.h"
+#include "core/keys/number_text.h"
 #include "core/keys/written_number.h"
 
 namespace flatspeckle::apps {
@@ -36,9 +38,13 @@ std::string line_of(const Arguments& arguments) {
 }
 
 std::string unknown_key(const Keys& keys, const std::string& name) {
-  const std::string nearest = nearest_key(keys, name);
-  return name + ": unknown key" + (nearest.empty() ? "" : "; did you mean " + nearest + '?') +
-         " (--help lists the known ones)";
+  const auto owners = key_owners();
+  std::string advice;
+  if (const auto owner = owners.find(name); owner != owners.end())
+    advice = "; a key of " + joined(owner->second, ", ");
+  else if (const std::string nearest = nearest_key(keys, name); !nearest.empty())
+    advice = "; did you mean " + nearest + '?';
+  return name + ": unknown key" + advice + " (--help lists the known ones)";
 }
 
 /// CLI11's message as one line in this program's words.

@@ -97,6 +97,12 @@ void print_completion(const Keys& keys, const std::string& subcommand) {
   std::cout << "\" ;;\n";
 }
 
+void print_names(const Keys& keys) {
+  std::set<std::string> names;
+  for (const Key& key : keys.rows())
+    if (names.insert(key.name()).second) std::cout << key.name() << '\n';
+}
+
 void print_dictionary(const Keys& keys) {
   for (const Key& key : keys.rows()) {
     std::cout << quoted(key.name()) << '\n';
@@ -125,6 +131,7 @@ bool print_keys(const Keys& keys, const std::string& subcommand,
   if (form == "markdown") print_markdown(keys, subcommand);
   if (form == "completion") print_completion(keys, subcommand);
   if (form == "dictionary") print_dictionary(keys);
+  if (form == "names") print_names(keys);
   return true;
 }
 

@@ -13,7 +13,7 @@ namespace flatspeckle::apps {
 void print_help_lines(const Keys& keys);
 
 /// Prints the keys of a subcommand where its only argument asks for that: --keys=json, =markdown,
-/// =completion or =dictionary (of fuzzers). False where it does not.
+/// =completion, =dictionary (of fuzzers) or =names. False where it does not.
 bool print_keys(const Keys& keys, const std::string& subcommand,
                 const std::vector<std::string>& arguments);
 

@@ -51,7 +51,7 @@ class Flux(ProgramTest):
         for keys, words in (({"angle_bins": 0}, "angle_bins = 0"),
                             ({"view_angles": [0.1]}, "view_angles: unknown key"),
                             ({"covariance": "full"}, "covariance: unknown key"),
-                            ({"tilts": [0.1]}, "tilts: unknown key"),
+                            ({"tilts": [0.1]}, "tilts: unknown key; a key of covariance, "),
                             ({"method": "wave"}, "must be one of mc transport auto"),
                             ({"light_angles": [2]}, "light_angles = 2")):
             done = self.call("flux", **(SLAB | keys), out="x.h5", status=2)
