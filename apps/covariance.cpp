@@ -3,6 +3,7 @@
 #include "apps/command/subcommands.h"
 #include "apps/results/extras.h"
 #include "apps/results/moments_table.h"
+#include "core/session/identity.h"
 #include "core/session/session.h"
 #include "flatland/scene/scene_datasets.h"
 #include "mc/slab/refinement.h"
@@ -76,20 +77,21 @@ int covariance(const Arguments& arguments) {
   } else {
     note_rounding(scene);
   }
-  return session.run(
-      estimation.plan, {{"", "covariance", estimation.job.batches, stop}}, inputs_text(scene),
-      [&, &job = estimation.job, &write = write_extras](ResultFile& file) {
-        const GroupedSums& sums = session.sums("");
-        const FieldMoments moments = field_moments(job, sums);
-        print_medium(scene);
-        if (scene.request.kind != CovarianceRequest::Kind::tilt_shift)
-          print_entries(scene.request, moments.covariance);
-        write_medium(file, scene);
-        write_axes(file, scene);
-        print_moves(scene.request, mc::write_moments(file, "", job, scene, sums, moments));
-        if (write) write(file, sums);
-        if (method == "transport") mc::write_numerical(file);
-      });
+  return session.run(estimation.plan, {{"", "covariance", estimation.job.batches, stop}},
+                     inputs_text(scene) + inputs_text(keys),
+                     [&, &job = estimation.job, &write = write_extras](ResultFile& file) {
+                       const GroupedSums& sums = session.sums("");
+                       const FieldMoments moments = field_moments(job, sums);
+                       print_medium(scene);
+                       if (scene.request.kind != CovarianceRequest::Kind::tilt_shift)
+                         print_entries(scene.request, moments.covariance);
+                       write_medium(file, scene);
+                       write_axes(file, scene);
+                       print_moves(scene.request,
+                                   mc::write_moments(file, "", job, scene, sums, moments));
+                       if (write) write(file, sums);
+                       if (method == "transport") mc::write_numerical(file);
+                     });
 }
 
 }  // namespace flatspeckle::apps

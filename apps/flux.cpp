@@ -4,6 +4,7 @@
 
 #include "apps/command/subcommands.h"
 #include "apps/results/estimation.h"
+#include "core/session/identity.h"
 #include "core/session/session.h"
 #include "flatland/scene/scene_datasets.h"
 #include "mc/slab/refinement.h"
@@ -47,6 +48,7 @@ int flux(const Arguments& arguments) {
   add_scatterer_keys(keys, spec);
   add_bulk_keys(keys, spec);
   add_medium_keys(keys, spec);
+  add_profile_keys(keys, spec);
   keys.group("Lights and views");
   keys.add("light_angles", spec.light_angles, "Directions of the plane waves, from +z").angle();
   keys.add("angle_bins", angle_bins,
@@ -77,7 +79,7 @@ int flux(const Arguments& arguments) {
                                 : by_transport(scene, bins, {methods.tolerance});
   if (!command.settle()) return ExitStatus::done;
   return session.run((by_mc ? "mc: " : "transport: ") + job.plan, {{"", "flux", job.batches, stop}},
-                     "", [&](ResultFile& file) {
+                     inputs_text(scene) + inputs_text(keys), [&](ResultFile& file) {
                        const auto estimates = mc::flux_estimates(job, session.sums(""));
                        print_table(scene, estimates);
                        write_medium(file, scene);

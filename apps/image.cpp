@@ -62,6 +62,7 @@ void add_keys(Keys& keys, ImageKeys& values) {
   add_scatterer_keys(keys, values.spec);
   add_bulk_keys(keys, values.spec);
   add_medium_keys(keys, values.spec);
+  add_profile_keys(keys, values.spec);
   add_structure_key(keys, values.spec);
   add_object_keys(keys, values);
   keys.group("Pictures");

@@ -38,6 +38,7 @@ void add_keys(Keys& keys, SolveKeys& values) {
   add_scatterer_keys(keys, values.spec);
   add_bulk_keys(keys, values.spec);
   add_medium_keys(keys, values.spec);
+  add_profile_keys(keys, values.spec);
   keys.remove("placement");
   keys.add("placement", values.spec.placement,
            "CSV with columns x, z [, radius [, index_re, index_im]]; or poisson, hard_disk or "
@@ -87,7 +88,7 @@ Placement drawn_placement(const SceneSpec& spec, const Scene& scene, std::uint64
     throw InputError("domain", spec.domain, "the exact solver needs a box");
   if (!scene.medium.has_scatterers) refuse_bulk(spec);
   RandomStream random(seed, static_cast<std::uint64_t>(Stream::placement), 0);
-  return draw_placement(scene.domain, scene.scatterer, scene.placement, random);
+  return draw_placement(scene, random);
 }
 
 std::string plan_of(const wave::WaveSolution& solution, const std::string& map) {

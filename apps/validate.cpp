@@ -10,6 +10,7 @@
 #include "apps/results/moments_table.h"
 #include "core/error.h"
 #include "core/result/result_group.h"
+#include "core/session/identity.h"
 #include "core/session/session.h"
 #include "flatland/scene/scene_datasets.h"
 #include "mc/slab/refinement.h"
@@ -192,7 +193,7 @@ int validate(const Arguments& arguments) {
   return session.run(
       mc.plan + "\n" + reference.plan,
       {{"mc", "mc", mc.job.batches, stop}, {name, name, reference.job.batches, chosen.stop}},
-      inputs_text(scene), [&](ResultFile& file) {
+      inputs_text(scene) + inputs_text(keys), [&](ResultFile& file) {
         const GroupedSums &mc_sums = session.sums("mc"), &reference_sums = session.sums(name);
         const FieldMoments mc_moments = field_moments(mc.job, mc_sums),
                            reference_moments = field_moments(reference.job, reference_sums);

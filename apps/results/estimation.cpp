@@ -58,7 +58,7 @@ void choose_method(const Keys& keys, std::string& method, const SceneSpec& spec,
                    const RunSettings& run) {
   if (keys.read(method) != "auto") return;
   const bool to_last = keys.given(run.samples) || keys.given(run.seconds);
-  method = spec.domain == "slab" && !to_last ? "transport" : "mc";
+  method = spec.domain == "slab" && spec.layers.empty() && !to_last ? "transport" : "mc";
 }
 
 void disregard_unused(const Keys& keys, const SceneSpec& spec,
@@ -73,6 +73,8 @@ void read_transport(const Keys& keys, MethodSettings& settings, const SceneSpec&
                     const RunSettings& run) {
   if (spec.domain != "slab")
     throw InputError("method", "transport", "needs domain = slab; take another method");
+  if (!spec.layers.empty())
+    throw InputError("layers", spec.layers, "are of Monte Carlo and the exact solver");
   const double asked = keys.read(run.target_error).value_or(1);
   settings.tolerance = std::min(keys.read(settings.tolerance), std::max(asked, least_tolerance));
 }
@@ -90,11 +92,15 @@ void note_rounding(const Scene& scene) {
 }
 
 void Neglected::add(const Scene& scene) {
-  const BulkMedium& medium = scene.medium;
-  k_mean_free_path = std::min(k_mean_free_path, scene.k * medium.mean_free_path());
+  phase = std::max(phase, std::abs(scene.medium.k_shift) * scene.domain.depth);
+  if (!scene.profile) return add(scene.medium, scene.k);
+  for (const Material& material : scene.profile->materials()) add(material.medium, scene.k);
+}
+
+void Neglected::add(const BulkMedium& medium, double k) {
+  k_mean_free_path = std::min(k_mean_free_path, k * medium.mean_free_path());
   if (medium.structure.independent()) packing = std::max(packing, medium.packing_fraction);
-  k_shift = std::max(k_shift, std::abs(medium.k_shift) / scene.k);
-  phase = std::max(phase, std::abs(medium.k_shift) * scene.domain.depth);
+  k_shift = std::max(k_shift, std::abs(medium.k_shift) / k);
 }
 
 void refuse_absurd(const MethodSettings& settings, const Neglected& neglected) {

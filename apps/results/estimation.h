@@ -64,6 +64,9 @@ struct Neglected {
   Neglected() = default;
   explicit Neglected(const Scene& scene) { add(scene); }
   void add(const Scene& scene);
+
+ private:
+  void add(const BulkMedium& medium, double k);
 };
 
 /// Throws InputError where scatterers shift the wavenumber by so much that what neglects it is

@@ -88,8 +88,8 @@ std::function<double(double)> henyey_greenstein(double g) {
   };
 }
 
-SlabTransport::SlabTransport(const Medium& medium, const std::vector<double>& angles, int nodes)
-    : medium_(medium) {
+SlabTransport::SlabTransport(const std::vector<Medium>& layers, const std::vector<double>& angles,
+                             int nodes) {
   openblas_set_num_threads(1);  // the matrices are small, and tests run beside each other
   std::vector<double> y, weight;
   gauss_legendre(nodes, y, weight);
@@ -99,9 +99,17 @@ SlabTransport::SlabTransport(const Medium& medium, const std::vector<double>& an
   }
   for (const double angle : angles)
     if (!find(angle)) add_node(folded(angle), pi / 2 - folded(angle), 0);
-  scale_phase();
-  even_ = slab(1);
-  odd_ = slab(-1);
+  for (std::size_t i = 0; i < layers.size(); ++i) {
+    medium_ = layers[i];
+    scale_phase();
+    const auto add = [&](Stack& stack, int parity) {
+      const Layer layer = slab(parity);
+      const Stack own{medium_.optical_depth, layer, layer};
+      stack = i == 0 ? own : added(stack, own);
+    };
+    add(even_, 1);
+    add(odd_, -1);
+  }
 }
 
 void SlabTransport::add_node(double angle, double complement, double weight) {
@@ -157,8 +165,7 @@ SlabTransport::Layer SlabTransport::thin_layer(double optical_depth, int parity)
 /// Two layers of equal optical depth on top of each other.
 SlabTransport::Layer SlabTransport::doubled(const Layer& half, double optical_depth) const {
   const std::size_t n = angle_.size();
-  std::vector<double> direct;
-  for (const double cosine : cosine_) direct.push_back(std::exp(-optical_depth / cosine));
+  const auto direct = this->direct(optical_depth);
   const auto& [r, t] = half;
   const Matrix rw = columns_times(r, weight_), tw = columns_times(t, weight_);
   const Matrix there_and_back = solve_one_minus(product(rw, rw, n), product(rw, r, n), n);
@@ -167,6 +174,35 @@ SlabTransport::Layer SlabTransport::doubled(const Layer& half, double optical_de
   const Matrix up = columns_times(r, direct) + product(rw, down, n);
   return {r + rows_times(direct, up) + product(tw, up, n),
           rows_times(direct, down) + columns_times(t, direct) + product(tw, down, n)};
+}
+
+std::vector<double> SlabTransport::direct(double optical_depth) const {
+  std::vector<double> direct;
+  for (const double cosine : cosine_) direct.push_back(std::exp(-optical_depth / cosine));
+  return direct;
+}
+
+/// Different layers: radiance between them goes down as through the upper one and by what that
+/// reflects from below.
+SlabTransport::Stack SlabTransport::added(const Stack& upper, const Stack& lower) const {
+  const std::size_t n = angle_.size();
+  const auto from = [&](const Layer& first, const Layer& first_behind, double first_depth,
+                        const Layer& second, double second_depth) {
+    const auto through_first = direct(first_depth), through_second = direct(second_depth);
+    const Matrix back = columns_times(first_behind.reflected, weight_),
+                 forth = columns_times(second.reflected, weight_);
+    const Matrix on = solve_one_minus(
+        product(back, forth, n),
+        first.transmitted + product(back, columns_times(second.reflected, through_first), n), n);
+    const Matrix returned = columns_times(second.reflected, through_first) + product(forth, on, n);
+    return Layer{first.reflected + rows_times(through_first, returned) +
+                     product(columns_times(first_behind.transmitted, weight_), returned, n),
+                 rows_times(through_second, on) + columns_times(second.transmitted, through_first) +
+                     product(columns_times(second.transmitted, weight_), on, n)};
+  };
+  return {upper.optical_depth + lower.optical_depth,
+          from(upper.above, upper.below, upper.optical_depth, lower.above, lower.optical_depth),
+          from(lower.below, lower.above, lower.optical_depth, upper.below, upper.optical_depth)};
 }
 
 SlabTransport::Layer SlabTransport::slab(int parity) const {
@@ -193,22 +229,22 @@ double SlabTransport::flux(const Matrix& radiance, double light) const {
 }
 
 double SlabTransport::reflectance(double light) const {
-  return flux(even_.reflected, light);
+  return flux(even_.above.reflected, light);
 }
 
 double SlabTransport::transmittance(double light) const {
-  return flux(even_.transmitted, light);
+  return flux(even_.above.transmitted, light);
 }
 
 double SlabTransport::direct_transmittance(double light) const {
-  return std::exp(-medium_.optical_depth / std::cos(light));
+  return std::exp(-even_.optical_depth / std::cos(light));
 }
 
 double SlabTransport::radiance(double light, double view) const {
   const std::size_t at = find(view).value() * angle_.size() + find(light).value();
   const bool through = std::cos(view) > 0;
-  const double even = through ? even_.transmitted[at] : even_.reflected[at];
-  const double odd = through ? odd_.transmitted[at] : odd_.reflected[at];
+  const double even = through ? even_.above.transmitted[at] : even_.above.reflected[at];
+  const double odd = through ? odd_.above.transmitted[at] : odd_.above.reflected[at];
   const double same_side = std::sin(light) * std::sin(view) >= 0 ? 1 : -1;
   return (even + same_side * odd) / 2;
 }

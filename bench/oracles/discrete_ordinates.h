@@ -6,7 +6,8 @@
 
 namespace flatspeckle::oracles {
 
-/// Transport of intensity through an infinite slab without random numbers, for any phase function:
+/// Transport of intensity through an infinite slab, or layers on top of each other, without random
+/// numbers, for any phase function:
 ///   cos(theta) dI/dtau = -I + albedo int p(theta - theta') I(theta') dtheta'
 /// on discrete ordinates over the circle, by adding and doubling from a layer so thin that it
 /// scatters once (van de Hulst 1980, ch. 4). Light and views are ordinates of weight 0, so that
@@ -21,7 +22,10 @@ class SlabTransport {
   };
   /// angles: every light and view that will be asked for (C2), none along the slab. `nodes` per
   /// quadrant: 50 give 1e-5 up to g = 0.8, forward peaks of width 1 - g want 6 / (1 - g) of them.
-  SlabTransport(const Medium& medium, const std::vector<double>& angles, int nodes);
+  SlabTransport(const Medium& medium, const std::vector<double>& angles, int nodes)
+      : SlabTransport(std::vector{medium}, angles, nodes) {}
+  /// Of layers, from z = 0 on.
+  SlabTransport(const std::vector<Medium>& layers, const std::vector<double>& angles, int nodes);
 
   /// Shares of the light that enters from an angle, |light| < pi/2; transmittance without what was
   /// never scattered.
@@ -39,19 +43,26 @@ class SlabTransport {
   struct Layer {
     std::vector<double> reflected, transmitted;
   };
+  /// Of light that comes from above, and from below.
+  struct Stack {
+    double optical_depth;
+    Layer above, below;
+  };
   void add_node(double angle, double complement, double weight);
   void scale_phase();
   double phase_element(std::size_t i, std::size_t j, bool backward, int parity) const;
   Layer thin_layer(double optical_depth, int parity) const;
   Layer doubled(const Layer& half, double optical_depth) const;
   Layer slab(int parity) const;
+  std::vector<double> direct(double optical_depth) const;
+  Stack added(const Stack& upper, const Stack& lower) const;
   std::optional<std::size_t> find(double angle) const;
   double flux(const std::vector<double>& radiance, double light) const;
   double radiance(double light, double view) const;
 
-  Medium medium_;
+  Medium medium_;  ///< the layer that is being made
   std::vector<double> angle_, cosine_, weight_, scale_;
-  Layer even_, odd_;  ///< for radiance even and odd in theta; both on 0 < theta < pi/2
+  Stack even_, odd_;  ///< for radiance even and odd in theta; both on 0 < theta < pi/2
 };
 
 /// 2D Henyey-Greenstein (C22).

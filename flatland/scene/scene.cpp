@@ -7,15 +7,18 @@
 #include "core/error.h"
 #include "core/keys/chosen.h"
 #include "core/keys/number_text.h"
+#include "flatland/scene/layer_table.h"
 
 namespace flatspeckle {
 
 namespace {
 
-Domain make_domain(const Keys& keys, const SceneSpec& spec) {
+/// layers: whose depth it has then.
+Domain make_domain(const Keys& keys, const SceneSpec& spec,
+                   const std::optional<LayerTable>& layers) {
   Domain domain;
   domain.kind = keys.read(spec.domain) == "box" ? Domain::Kind::box : Domain::Kind::slab;
-  domain.depth = keys.required(spec.depth);
+  domain.depth = layers ? layers->depth() : keys.required(spec.depth);
   if (domain.kind == Domain::Kind::slab) return domain;
   domain.width = keys.required(spec.width);
   const double most = 1e8 * spec.wavelength;  // along which phases are integrated
@@ -138,27 +141,39 @@ void check_reach(const Scene& scene) {
   }
 }
 
+/// Of a medium that is the same everywhere: its phase function, if it has no scatterers.
+void make_phase_of_bulk(const Keys& keys, const SceneSpec& spec, Scene& scene) {
+  check_density_keys(keys, spec);
+  if (!scene.scatterer.is_bulk()) return;
+  const auto mu_t = stated_extinction(spec, scene.domain);
+  if (!mu_t) throw InputError("scatterer", spec.scatterer, "give mean_free_path or optical_depth");
+  scene.medium = bulk_medium(scene.scatterer, make_phase(keys, spec.bulk, spec.scatterer), *mu_t);
+}
+
+/// Keys that all layers share.
+void read_layer_keys(const Keys& keys, const SceneSpec& spec, const Scatterer& scatterer) {
+  if (scatterer.is_bulk()) make_phase(keys, spec.bulk, spec.scatterer);
+  if (spec.dimension == 3) throw InputError("dimension", 3, "is of slabs without layers");
+}
+
 /// Where nearly all is refused that can be, before the bulk is derived.
-Scene without_bulk(const Keys& keys, const SceneSpec& spec) {
+Scene without_bulk(const Keys& keys, const SceneSpec& spec,
+                   const std::optional<LayerTable>& layers) {
   Scene scene;
   scene.scatterer = make_scatterer(keys, spec);
-  if (scene.scatterer.is_disk()) keys.required(spec.radius);
+  if (scene.scatterer.is_disk() && !layers) keys.required(spec.radius);
   if (scene.scatterer.kind == Scatterer::Kind::mie && spec.dimension != 3)
     throw InputError("scatterer", spec.scatterer, "spheres are of slabs in space: dimension = 3");
   scene.wavelength = spec.wavelength;
   scene.k = 2 * std::numbers::pi / spec.wavelength;
-  scene.domain = make_domain(keys, spec);
-  check_density_keys(keys, spec);
-  if (scene.scatterer.is_bulk()) {
-    const auto mu_t = stated_extinction(spec, scene.domain);
-    if (!mu_t)
-      throw InputError("scatterer", spec.scatterer, "give mean_free_path or optical_depth");
-    scene.medium = bulk_medium(scene.scatterer, make_phase(keys, spec.bulk, spec.scatterer), *mu_t);
-  }
+  scene.domain = make_domain(keys, spec, layers);
+  layers ? read_layer_keys(keys, spec, scene.scatterer) : make_phase_of_bulk(keys, spec, scene);
   if (spec.count && scene.domain.kind == Domain::Kind::slab)
     throw InputError("count", *spec.count, "an infinite slab has no count; give a density");
   scene.placement = make_placement_rule(keys, spec, scene.scatterer);
   check_structure(keys, spec, scene.scatterer);
+  if (layers && spec.structure != "none")
+    throw InputError("structure", spec.structure, "is of media without layers");
   scene.request = make_request(keys, spec);
   check_reach(scene);
   if (scene.domain.kind == Domain::Kind::slab)
@@ -166,12 +181,23 @@ Scene without_bulk(const Keys& keys, const SceneSpec& spec) {
   return scene;
 }
 
+void make_layered(Scene& scene, std::shared_ptr<const Layers> layers) {
+  scene.medium = layers->mean();
+  for (const Material& material : layers->materials())
+    scene.scatterer.radius = std::max(scene.scatterer.radius, material.scatterer.radius);
+  scene.profile = std::move(layers);
+}
+
 }  // namespace
 
 Scene make_scene(const Keys& keys, const SceneSpec& spec) {
-  Scene scene = without_bulk(keys, spec);
+  std::optional<LayerTable> layers;
+  if (!keys.read(spec.layers).empty()) layers.emplace(keys, spec);
+  Scene scene = without_bulk(keys, spec, layers);
   keys.refuse_unread();
-  if (!scene.scatterer.is_bulk())
+  if (layers)
+    make_layered(scene, layers->layers(spec));
+  else if (!scene.scatterer.is_bulk())
     scene.medium = medium_of_scatterers(spec, scene.scatterer, scene.domain, scene.k);
   check_extinction(scene.medium);
   scene.placement.mean_count = scene.medium.density * scene.domain.area();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -8,6 +9,7 @@
 #include "core/keys/keys.h"
 #include "flatland/media/domain.h"
 #include "flatland/media/medium.h"
+#include "flatland/media/medium_profile.h"
 #include "flatland/placement/placement.h"
 #include "flatland/request/request.h"
 #include "flatland/scatterers/scatterer_kinds.h"
@@ -25,6 +27,7 @@ struct SceneSpec : ScattererValues {
   std::optional<std::string> placement;
   std::optional<double> min_gap;
   std::string structure = "none";
+  std::string layers;
   std::vector<double> light_angles{0};
   std::string near_sources;
   std::optional<double> beam_waist, beam_depth;
@@ -41,7 +44,8 @@ struct Scene {
   double wavelength = 1, k = 0;
   Domain domain;
   Scatterer scatterer;
-  BulkMedium medium;
+  BulkMedium medium;                               ///< where it varies, in the mean
+  std::shared_ptr<const MediumProfile> profile{};  ///< null where it is the same everywhere
   PlacementRule placement;
   CovarianceRequest request;
 };
@@ -55,6 +59,8 @@ void add_medium_keys(Keys& keys, SceneSpec& spec);
 void add_dimension_key(Keys& keys, SceneSpec& spec);
 /// The structure factor that Monte Carlo takes positions to have.
 void add_structure_key(Keys& keys, SceneSpec& spec);
+/// Of media that vary.
+void add_profile_keys(Keys& keys, SceneSpec& spec);
 void add_view_keys(Keys& keys, SceneSpec& spec);
 /// Near sources and beams.
 void add_light_keys(Keys& keys, SceneSpec& spec);
@@ -81,5 +87,8 @@ void check_slab_request(const CovarianceRequest& request, double depth);
 
 /// What a scene took from other files, exactly: near sensors and sources, and the structure factor.
 std::string inputs_text(const Scene& scene);
+
+/// Draws a realization of a scene in a box.
+Placement draw_placement(const Scene& scene, RandomStream& random);
 
 }  // namespace flatspeckle

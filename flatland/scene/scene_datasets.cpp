@@ -127,12 +127,14 @@ void write_medium(ResultFile& file, const Scene& scene) {
     root.attribute("transport_mean_free_path", medium.transport_mean_free_path());
     root.attribute("k_mean_free_path", scene.k * medium.mean_free_path());
   }
+  if (scene.profile) scene.profile->write(file);
   if (!medium.has_scatterers) return;
-  root.attribute("sigma_s", medium.cross_sections.scattering);
-  root.attribute("sigma_e", medium.cross_sections.extinction);
   root.attribute("density", medium.density);
   root.attribute("packing_fraction", medium.packing_fraction);
   root.attribute("k_shift", medium.k_shift);
+  if (scene.profile) return;
+  root.attribute("sigma_s", medium.cross_sections.scattering);
+  root.attribute("sigma_e", medium.cross_sections.extinction);
 }
 
 void bind_units(ResultFile& file, const Scene& scene) {

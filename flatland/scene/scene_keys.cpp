@@ -78,6 +78,15 @@ void add_structure_key(Keys& keys, SceneSpec& spec) {
            "place --structure wrote");
 }
 
+void add_profile_keys(Keys& keys, SceneSpec& spec) {
+  keys.group("Medium");
+  keys.add("layers", spec.layers,
+           "CSV of layers from z = 0 on: thickness, one of optical_depth, mean_free_path and "
+           "density, and what of g, albedo, radius, index_re, index_im, phase_shift varies")
+      .file()
+      .only_of("layered media, in place of depth and density");
+}
+
 void add_view_keys(Keys& keys, SceneSpec& spec) {
   keys.group("Lights and views");
   keys.add("light_angles", spec.light_angles, "Directions of plane waves and beams, from +z")
@@ -131,6 +140,7 @@ void add_keys(Keys& keys, SceneSpec& spec) {
   add_scatterer_keys(keys, spec);
   add_bulk_keys(keys, spec);
   add_structure_key(keys, spec);
+  add_profile_keys(keys, spec);
   add_view_keys(keys, spec);
   add_light_keys(keys, spec);
   add_request_keys(keys, spec);

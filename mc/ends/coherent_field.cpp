@@ -68,7 +68,7 @@ Complex mean_field(const Scene& scene, double light, double view) {
 }  // namespace
 
 bool has_coherent_field(const Scene& scene) {
-  return scene.domain.kind == Domain::Kind::box && scene.medium.has_scatterers &&
+  return scene.domain.kind == Domain::Kind::box && scene.medium.has_scatterers && !scene.profile &&
          scene.request.lights.all(Light::Kind::plane) &&
          std::none_of(scene.request.views.begin(), scene.request.views.end(),
                       [](const View& view) { return view.near; });

@@ -65,7 +65,7 @@ std::vector<End> view_ends(const Scene& scene) {
 
 template <bool phases>
 EndFactors<phases>::EndFactors(const Scene& scene, const std::vector<End>& ends)
-    : domain_(scene.domain), k_(scene.k), mu_t_(scene.medium.mu_t), directions_(ends.size()) {
+    : domain_(scene.domain), k_(scene.k), extinction_(scene), directions_(ends.size()) {
   const bool box = domain_.kind == Domain::Kind::box;
   for (std::size_t j = 0; j < ends.size(); ++j) {
     const Vec2 w = ends[j].towards;
@@ -92,11 +92,18 @@ EndFactors<phases>::EndFactors(const Scene& scene, const std::vector<End>& ends)
 }
 
 template <bool phases>
+double EndFactors<phases>::log_attenuation(Vec2 x, Vec2 w, double inside) const {
+  return std::max(-extinction_.optical_depth(x, w, inside) / 2, log_of_nothing);
+}
+
+template <bool phases>
 void EndFactors<phases>::attenuate(Vec2 x, std::span<Complex> out) {
-  for (std::size_t j = 0; j < size(); ++j) {
-    const double inside =
-        std::min((edge_x_[j] - x.x) * per_cosine_x_[j], (edge_z_[j] - x.z) * per_cosine_z_[j]);
-    log_magnitude_[j] = std::max(-mu_t_ * std::max(inside, 0.0) / 2, log_of_nothing);
+  if (extinction_.profile == nullptr) {
+    for (std::size_t j = 0; j < size(); ++j)
+      log_magnitude_[j] = std::max(-extinction_.mu_t * distance_to_edge(j, x) / 2, log_of_nothing);
+  } else {
+    for (std::size_t j = 0; j < size(); ++j)
+      log_magnitude_[j] = log_attenuation(x, directions_[j], distance_to_edge(j, x));
   }
   if constexpr (phases) {
     for (std::size_t j = 0; j < size(); ++j)
@@ -121,7 +128,7 @@ void EndFactors<phases>::attenuate_points(Vec2 x, std::span<Complex> out) {
     point_r_[i] = r;
     point_phase_[i] = k_ * r;
     const double inside = std::min(domain_.distance_to_edge(x, w), r);
-    point_log_[i] = std::max(-mu_t_ * inside / 2, log_of_nothing);
+    point_log_[i] = log_attenuation(x, w, inside);
     log_magnitude_[points_[i].number] = point_log_[i];
   }
   damped_phasors(point_phase_, point_log_, point_wave_);
@@ -140,7 +147,7 @@ void EndFactors<phases>::attenuate_beams(Vec2 x, std::span<Complex> out) {
   for (const auto& [j, beam] : beams_) {
     const Vec2 w = -beam.ray(x);
     directions_.set(j, w, angle_of(w));
-    log_magnitude_[j] = -mu_t_ * domain_.distance_to_edge(x, w) / 2;
+    log_magnitude_[j] = log_attenuation(x, w, domain_.distance_to_edge(x, w));
     out[j] = std::exp(log_magnitude_[j]) * beam.field(x);
     if constexpr (!phases) out[j] = std::abs(out[j]);
   }

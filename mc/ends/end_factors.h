@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <optional>
 #include <span>
@@ -7,8 +8,9 @@
 
 #include "core/numbers/complex.h"
 #include "flatland/scene/scene.h"
+#include "mc/ends/extinction.h"
 #include "mc/ends/gaussian_beam.h"
-#include "mc/ends/scattering.h"
+#include "mc/ends/varying_scattering.h"
 
 namespace flatspeckle::mc {
 
@@ -43,7 +45,7 @@ class EndFactors {
   void at(Vec2 x, const typename Scattering::Direction& arrival, const Scattering& scattering,
           std::span<Complex> out) {
     attenuate(x, out);
-    scattering.towards(arrival, directions_, out);
+    local(scattering, x).towards(arrival, directions_, out);
   }
 
   /// out[j] = e_j(x) alone.
@@ -56,11 +58,18 @@ class EndFactors {
   double log_attenuation(std::size_t j) const { return log_magnitude_[j]; }
 
  private:
+  double distance_to_edge(std::size_t j, Vec2 x) const {
+    return std::max(0.0, std::min((edge_x_[j] - x.x) * per_cosine_x_[j],
+                                  (edge_z_[j] - x.z) * per_cosine_z_[j]));
+  }
+  /// Of the field on the way to an edge or a near end, but for what exp makes 0 of anyway.
+  double log_attenuation(Vec2 x, Vec2 w, double inside) const;
   void attenuate_points(Vec2 x, std::span<Complex> out);
   void attenuate_beams(Vec2 x, std::span<Complex> out);
 
   Domain domain_;
-  double k_, mu_t_;
+  double k_;
+  Extinction extinction_;
   struct PointEnd {
     std::size_t number;
     Vec2 point;

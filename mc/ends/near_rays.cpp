@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "core/error.h"
-#include "grin/media/free_flight.h"
 
 namespace flatspeckle::mc {
 
@@ -31,10 +30,11 @@ Vec2 kept_inside(const Domain& box, Vec2 x) {
   return {std::clamp(x.x, -box.width / 2, box.width / 2), std::clamp(x.z, 0.0, box.depth)};
 }
 
-Vec2 flown(const Domain& box, double mu_t, Vec2 origin, Vec2 w, const Chord& chord,
+Vec2 flown(const Domain& box, const Extinction& extinction, Vec2 origin, Vec2 w, const Chord& chord,
            RandomStream& random) {
-  const grin::BoundedFlight flight{mu_t, chord.length()};
-  return kept_inside(box, origin + (chord.enter + flight.sample(random.uniform())) * w);
+  const double flight =
+      extinction.sample_flight(origin + chord.enter * w, w, chord.length(), random.uniform());
+  return kept_inside(box, origin + (chord.enter + flight) * w);
 }
 
 /// Half the box's extent along a unit vector; its middle is the box's.
@@ -61,8 +61,8 @@ Chord chord_through(const Domain& box, Vec2 origin, Vec2 w, double least) {
   return chord;
 }
 
-PointRays::PointRays(const Domain& box, double mu_t, Vec2 source)
-    : box_(box), mu_t_(mu_t), source_(source), first_angle_(-pi), wedge_(2 * pi) {
+PointRays::PointRays(const Domain& box, const Extinction& extinction, Vec2 source)
+    : box_(box), extinction_(extinction), source_(source), first_angle_(-pi), wedge_(2 * pi) {
   const double half = box.width / 2;
   const bool inside = std::abs(source.x) < half && source.z > 0 && source.z < box.depth;
   if (inside) return;
@@ -83,15 +83,17 @@ Vec2 PointRays::sample(RandomStream& random) const {
   while (true) {  // rounding may let a ray along the wedge's rim miss the box
     const Vec2 w = direction(first_angle_ + wedge_ * random.uniform());
     const Chord chord = chord_through(box_, source_, w, 0);
-    if (chord.length() > 0) return flown(box_, mu_t_, source_, w, chord, random);
+    if (chord.length() > 0) return flown(box_, extinction_, source_, w, chord, random);
   }
 }
 
 double PointRays::density(Vec2 x) const {
   const double r = length(x - source_);
-  const Chord chord = chord_through(box_, source_, arrival(x), 0);
+  const Vec2 w = arrival(x);
+  const Chord chord = chord_through(box_, source_, w, 0);
   if (!(chord.length() > 0)) return 0;
-  return grin::BoundedFlight{mu_t_, chord.length()}.density(r - chord.enter) / (r * wedge_);
+  return extinction_.flight_density(source_ + chord.enter * w, w, chord.length(), r - chord.enter) /
+         (r * wedge_);
 }
 
 Vec2 PointRays::arrival(Vec2 x) const {
@@ -99,8 +101,9 @@ Vec2 PointRays::arrival(Vec2 x) const {
   return 1 / length(way) * way;
 }
 
-BeamRays::BeamRays(const Domain& box, double mu_t, const GaussianBeam& beam, double width)
-    : box_(box), mu_t_(mu_t), beam_(beam), sigma_(width / 2) {
+BeamRays::BeamRays(const Domain& box, const Extinction& extinction, const GaussianBeam& beam,
+                   double width)
+    : box_(box), extinction_(extinction), beam_(beam), sigma_(width / 2) {
   const double middle = beam.across({0, box.depth / 2}),
                half = half_extent(box, beam.across_axis());
   low_ = middle - half;
@@ -131,7 +134,7 @@ Vec2 BeamRays::sample(RandomStream& random) const {
     const double across = sample_across(random);
     const Vec2 origin = beam_.focus() + across * beam_.across_axis();
     const Chord chord = chord_through(box_, origin, beam_.axis(), anywhere);
-    if (chord.length() > 0) return flown(box_, mu_t_, origin, beam_.axis(), chord, random);
+    if (chord.length() > 0) return flown(box_, extinction_, origin, beam_.axis(), chord, random);
   }
 }
 
@@ -144,16 +147,18 @@ double BeamRays::density(Vec2 x) const {
   const double deviation = across / sigma_;
   const double gaussian = std::exp(-deviation * deviation / 2) / (std::sqrt(2 * pi) * sigma_);
   return gaussian / share_ *
-         grin::BoundedFlight{mu_t_, chord.length()}.density(beam_.along(x) - chord.enter);
+         extinction_.flight_density(origin + chord.enter * beam_.axis(), beam_.axis(),
+                                    chord.length(), beam_.along(x) - chord.enter);
 }
 
-std::vector<BeamRays> beam_rays(const Domain& box, double mu_t, const GaussianBeam& beam) {
+std::vector<BeamRays> beam_rays(const Domain& box, const Extinction& extinction,
+                                const GaussianBeam& beam) {
   const double middle = beam.along({0, box.depth / 2}), half = half_extent(box, beam.axis());
   const double narrowest = beam.width(std::max(0.0, std::abs(middle) - half)),
                widest = beam.width(std::abs(middle) + half);
   constexpr double alike = 1.3;
-  std::vector<BeamRays> rays{{box, mu_t, beam, widest}};
-  if (widest > alike * narrowest) rays.emplace_back(box, mu_t, beam, narrowest);
+  std::vector<BeamRays> rays{{box, extinction, beam, widest}};
+  if (widest > alike * narrowest) rays.emplace_back(box, extinction, beam, narrowest);
   std::erase_if(rays, [](const BeamRays& some) { return some.misses(); });
   if (rays.empty())
     throw InputError("beam focused at x", beam.focus().x, "misses the medium; move it there");

@@ -5,6 +5,7 @@
 #include "core/numbers/random.h"
 #include "flatland/media/domain.h"
 #include "flatland/request/light.h"
+#include "mc/ends/extinction.h"
 #include "mc/ends/gaussian_beam.h"
 
 namespace flatspeckle::mc {
@@ -21,7 +22,7 @@ Chord chord_through(const Domain& box, Vec2 origin, Vec2 w, double least);
 /// subtends, attenuated along the ray.
 class PointRays {
  public:
-  PointRays(const Domain& box, double mu_t, Vec2 source);
+  PointRays(const Domain& box, const Extinction& extinction, Vec2 source);
 
   Vec2 sample(RandomStream& random) const;
   double density(Vec2 x) const;  ///< per area
@@ -29,7 +30,7 @@ class PointRays {
 
  private:
   Domain box_;
-  double mu_t_;
+  Extinction extinction_;
   Vec2 source_;
   double first_angle_, wedge_;
 };
@@ -38,7 +39,7 @@ class PointRays {
 /// from the focus, attenuated along the axis.
 class BeamRays {
  public:
-  BeamRays(const Domain& box, double mu_t, const GaussianBeam& beam, double width);
+  BeamRays(const Domain& box, const Extinction& extinction, const GaussianBeam& beam, double width);
 
   /// Whether the box lies beyond two widths.
   bool misses() const { return nearest_ > 4 * sigma_; }
@@ -50,7 +51,7 @@ class BeamRays {
   double sample_across(RandomStream& random) const;
 
   Domain box_;
-  double mu_t_;
+  Extinction extinction_;
   GaussianBeam beam_;
   double sigma_, low_, high_;  ///< of the coordinate across; between them it meets the box
   double nearest_;             ///< the least |coordinate across| of them
@@ -59,6 +60,7 @@ class BeamRays {
 
 /// Of the narrowest and the widest that the beam is in the box: together they cover it. Throws
 /// InputError for a beam that misses the box.
-std::vector<BeamRays> beam_rays(const Domain& box, double mu_t, const GaussianBeam& beam);
+std::vector<BeamRays> beam_rays(const Domain& box, const Extinction& extinction,
+                                const GaussianBeam& beam);
 
 }  // namespace flatspeckle::mc

@@ -61,7 +61,7 @@ class DelayScorer {
       const auto [i, v] = channels_[c];
       const Vec2 from = -lights.direction(i), to = views.direction(v);
       const double square =
-          std::norm(light.value[i] * view.value[v] * scattering_.amplitude(from, to));
+          std::norm(light.value[i] * view.value[v] * local(scattering_, x).amplitude(from, to));
       sums_[c] += weight * square;
       inner_.turn[0] = one_minus_cosine(from, to);
       decay(inner_);
@@ -192,7 +192,8 @@ void write_delays(ResultFile& file, const Scene& scene, const std::vector<double
   }
   root.put("covariance", found.covariance);
   root.put("field_correlation", found.correlation);
-  if (scene.domain.kind != Domain::Kind::slab || !scene.request.transmission_only()) return;
+  const bool uniform_slab = scene.domain.kind == Domain::Kind::slab && !scene.profile;
+  if (!uniform_slab || !scene.request.transmission_only()) return;
   root.put("diffusion_theory", column(delays, [&](double delay) {
              return diffusion_delay_correlation(scene.medium, scene.domain.depth, delay);
            }));

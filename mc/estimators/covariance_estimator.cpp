@@ -34,7 +34,7 @@ class PathFields {
   void single(Vec2 x, double weight) {
     ends_.lights.attenuate(x, ends_.light_last);
     ends_.views.attenuate(x, ends_.view_last);
-    is_grid_ ? find_rows() : find_listed();
+    is_grid_ ? find_rows(local(scattering_, x)) : find_listed(local(scattering_, x));
     accumulator_.add(weight, field_);
   }
 
@@ -52,20 +52,22 @@ class PathFields {
 
  private:
   /// Of single scattering: each light into all views, a loop of vectors.
-  void find_rows() {
+  template <typename Local>
+  void find_rows(const Local& scattering) {
     const auto& view = ends_.view_last;
     for (std::size_t i = 0; i < ends_.lights.size(); ++i) {
       const std::span<Complex> row(&field_[i * view.size()], view.size());
       for (std::size_t v = 0; v < row.size(); ++v) row[v] = product(ends_.light_last[i], view[v]);
-      scattering_.towards(-ends_.lights.direction(i), ends_.views.directions(), row);
+      scattering.towards(-ends_.lights.direction(i), ends_.views.directions(), row);
     }
   }
-  void find_listed() {
+  template <typename Local>
+  void find_listed(const Local& scattering) {
     for (std::size_t c = 0; c < channels_.size(); ++c) {
       const auto [i, v] = channels_[c];
       field_[c] =
           product(product(ends_.light_last[i], ends_.view_last[v]),
-                  scattering_.amplitude(-ends_.lights.direction(i), ends_.views.direction(v)));
+                  scattering.amplitude(-ends_.lights.direction(i), ends_.views.direction(v)));
     }
   }
 

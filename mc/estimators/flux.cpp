@@ -11,6 +11,7 @@
 #include "grin/media/diffusion_rate.h"
 #include "mc/ends/scattering.h"
 #include "mc/estimators/flux_walk.h"
+#include "mc/estimators/varying_flux_walk.h"
 #include "mc/walk/importance.h"
 #include "mc/walk/plan.h"
 #include "mc/walk/walks.h"
@@ -21,7 +22,7 @@ namespace {
 
 constexpr std::uint64_t walks_per_batch = 200;
 
-template <typename Scattering>
+template <typename Walk, typename Scattering>
 SummedBatches walks(const std::shared_ptr<const Scene>& scene, const Scattering& scattering,
                     double kappa, std::uint64_t seed) {
   return [=](std::uint64_t number, std::span<Complex> sums) {
@@ -30,7 +31,7 @@ SummedBatches walks(const std::shared_ptr<const Scene>& scene, const Scattering&
     const std::size_t size = sums.size() / lights.size();
     for (std::size_t light = 0; light < lights.size(); ++light) {
       const LightEntry entry(scene->domain, lights[light], kappa);
-      FluxWalk walk(*scene, scattering, entry, random, sums.subspan(light * size, size));
+      Walk walk(*scene, scattering, entry, random, sums.subspan(light * size, size));
       // stratified depths of the first collision: errors a tenth smaller
       for (std::uint64_t path = 0; path < walks_per_batch; ++path)
         walk.walk((static_cast<double>(path) + random.uniform()) / walks_per_batch);
@@ -51,15 +52,20 @@ SummedBatches absorption(const std::shared_ptr<const Scene>& scene) {
 SummedBatches batches(const std::shared_ptr<const Scene>& scene, double kappa, std::uint64_t seed) {
   if (scene->medium.mu_s == 0) return absorption(scene);
   SummedBatches chosen;
+  if (scene->profile) return walks<VaryingFluxWalk>(scene, varying_scattering(*scene), kappa, seed);
   with_scattering(*scene, phase_of(scene->scatterer),
-                  [&](const auto& scattering) { chosen = walks(scene, scattering, kappa, seed); });
+                  [&]<typename Scattering>(const Scattering& scattering) {
+                    chosen = walks<FluxWalk<Scattering>>(scene, scattering, kappa, seed);
+                  });
   return chosen;
 }
 
-std::string describe(const BulkMedium& medium, double kappa) {
+std::string describe(const Scene& scene, double kappa) {
   std::ostringstream text;
   text << "intensity without phases; ";
-  if (medium.mu_s == 0)
+  if (scene.profile)
+    text << scene.profile->describe();
+  else if (scene.medium.mu_s == 0)
     text << "nothing scatters";
   else if (kappa > 0)
     text << "absorbing, decay length of diffuse light " << 1 / kappa;
@@ -87,9 +93,10 @@ FluxJob flux_job(const Scene& original, std::size_t angle_bins, std::uint64_t se
   require_walks(original, false);
   const auto scene = std::make_shared<const Scene>(original);
   const BulkMedium& medium = scene->medium;
-  const double kappa =
-      medium.mu_s > 0 ? medium.mu_t * grin::diffusion_rate(medium.albedo, medium.g, 2) : 0;
-  FluxJob job{{}, scene->request.lights.size(), angle_bins, describe(medium, kappa)};
+  const double kappa = medium.mu_s > 0 && !scene->profile
+                           ? medium.mu_t * grin::diffusion_rate(medium.albedo, medium.g, 2)
+                           : 0;
+  FluxJob job{{}, scene->request.lights.size(), angle_bins, describe(*scene, kappa)};
   job.batches.size = job.lights * (flux_shares + angle_bins);
   job.batches.samples_per_batch = static_cast<double>(walks_per_batch);
   job.batches.relative_error = [shape = job](const GroupedSums& sums) {
@@ -117,9 +124,28 @@ FluxEstimates flux_estimates(const FluxJob& job, const GroupedSums& sums) {
   return flux;
 }
 
+namespace {
+
+/// Over the rays of a light that meet a medium that varies.
+double mean_transmittance(const Scene& scene, double light) {
+  const LightEntry entry(scene.domain, light, 0);
+  const Vec2 w = entry.light();
+  const int rays = scene.domain.kind == Domain::Kind::slab ? 1 : 4096;
+  double sum = 0;
+  for (int ray = 0; ray < rays; ++ray) {
+    const Vec2 start = entry.at((ray + 0.5) / rays);
+    sum +=
+        std::exp(-scene.profile->optical_depth(start, w, scene.domain.distance_to_edge(start, w)));
+  }
+  return sum / rays;
+}
+
+}  // namespace
+
 double direct_transmittance(const Scene& scene, double light) {
   const Domain& domain = scene.domain;
   const double sine = std::abs(std::sin(light)), cosine = std::abs(std::cos(light));
+  if (scene.profile) return mean_transmittance(scene, light);
   if (domain.kind == Domain::Kind::slab)
     return std::exp(-scene.medium.mu_t * domain.depth / cosine);
   // Seen along the light, chords rise from 0 to the longest, stay, and fall again.

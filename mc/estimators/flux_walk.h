@@ -17,6 +17,30 @@ namespace flatspeckle::mc {
 /// The sums of one light in a FluxJob: these shares, then the bins of the exit angle.
 enum FluxShare : std::size_t { reflected, transmitted, through_sides, absorbed, flux_shares };
 
+/// Where light ends, by share and exit angle: the sums of one light.
+class FluxTally {
+ public:
+  FluxTally(const Domain& domain, std::span<Complex> sums) : domain_(domain), sums_(sums) {}
+
+  void absorb(double power) const { sums_[absorbed] += power; }
+  /// At the edge.
+  void leave(Vec2 x, Vec2 w, double power) const {
+    constexpr double rounding = 1e-12;
+    const double to_side = domain_.width / 2 - std::abs(x.x);
+    const bool side = domain_.kind == Domain::Kind::box && to_side < rounding * domain_.width;
+    const FluxShare through = side ? through_sides : w.z > 0 ? transmitted : reflected;
+    const double turn = angle_of(w) / (2 * std::numbers::pi) + 0.5;
+    const std::size_t bins = sums_.size() - flux_shares;
+    const auto bin = std::min(static_cast<std::size_t>(turn * static_cast<double>(bins)), bins - 1);
+    sums_[through] += power;
+    sums_[flux_shares + bin] += power;
+  }
+
+ private:
+  Domain domain_;
+  std::span<Complex> sums_;
+};
+
 /// Where a light comes in, and how light that got deep is favoured. The importance of a place grows
 /// as exp(kappa depth), kappa the rate at which diffuse light dies out, from the depth on to which
 /// only a small share of the light comes: the number of walkers first falls, then stays, and deep
@@ -44,9 +68,13 @@ class LightEntry {
 
   /// A point of the outline, uniform across the light.
   Vec2 sample(RandomStream& random) const {
+    return at(domain_.kind == Domain::Kind::slab ? 0 : random.uniform());
+  }
+  /// The same at a share of the way across; of a slab one stands for all.
+  Vec2 at(double share) const {
     const double z = light_.z > 0 ? 0 : domain_.depth;
     if (domain_.kind == Domain::Kind::slab) return {0, z};
-    const double across = random.uniform() * (face_ + side_);
+    const double across = share * (face_ + side_);
     if (across < face_) return {across / std::abs(light_.z) - domain_.width / 2, z};
     return {std::copysign(domain_.width / 2, -light_.x), (across - face_) / std::abs(light_.x)};
   }
@@ -86,6 +114,7 @@ class FluxWalk {
         scattering_(scattering),
         entry_(entry),
         random_(random),
+        tally_(scene.domain, sums),
         sums_(sums) {}
 
   /// u: uniform in (0, 1), picks the depth of the first collision.
@@ -122,7 +151,7 @@ class FluxWalk {
 
   /// Absorption by weight; roulette and splitting keep the weight near 1 / importance.
   void collide(Particle particle) {
-    sums_[absorbed] += power_ * particle.weight * (1 - albedo_);
+    tally_.absorb(power_ * particle.weight * (1 - albedo_));
     drift_ += particle.weight * outlook(particle);
     particle.weight *= albedo_;
     const double expected = particle.weight * entry_.importance(particle.x);
@@ -161,15 +190,7 @@ class FluxWalk {
   }
 
   void leave(const Particle& particle) {
-    constexpr double rounding = 1e-12;
-    const double to_side = domain_.width / 2 - std::abs(particle.x.x);
-    const bool side = domain_.kind == Domain::Kind::box && to_side < rounding * domain_.width;
-    const FluxShare through = side ? through_sides : particle.w.z > 0 ? transmitted : reflected;
-    const double turn = angle_of(particle.w) / (2 * std::numbers::pi) + 0.5;
-    const std::size_t bins = sums_.size() - flux_shares;
-    const auto bin = std::min(static_cast<std::size_t>(turn * static_cast<double>(bins)), bins - 1);
-    sums_[through] += power_ * particle.weight;
-    sums_[flux_shares + bin] += power_ * particle.weight;
+    tally_.leave(particle.x, particle.w, power_ * particle.weight);
     drift_ += particle.weight * (entry_.depth(particle.x) + reach_ * entry_.cosine(particle.w));
   }
 
@@ -197,6 +218,7 @@ class FluxWalk {
   const Scattering& scattering_;
   const LightEntry& entry_;
   RandomStream& random_;
+  FluxTally tally_;
   std::span<Complex> sums_;
   double power_ = 0;  ///< share of the light along this ray that collides
   double drift_ = 0;

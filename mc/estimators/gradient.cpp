@@ -153,6 +153,7 @@ GradientJob gradient_job(const PathJob& paths, const std::vector<BulkParameter>&
 }
 
 void check_gradient(const Scene& scene) {
+  if (scene.profile) throw InputError("gradient: is of media that are the same everywhere");
   if (scene.medium.mu_s == 0)
     throw InputError("gradient: a medium that does not scatter has no derivatives");
   if (scene.domain.kind == Domain::Kind::slab && has_near_ends(scene.request))

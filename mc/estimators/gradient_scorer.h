@@ -57,7 +57,7 @@ class GradientScorer {
       const Vec2 from = -lights.direction(i), to = views.direction(v);
       GradientTally tally{medium_.g, medium_.dimension};
       tally.scattering(from, to);
-      add_term(c, half_slopes(tally), light, view, scattering_.amplitude(from, to));
+      add_term(c, half_slopes(tally), light, view, local(scattering_, x).amplitude(from, to));
     }
     accumulate(weight);
   }
@@ -97,7 +97,7 @@ class GradientScorer {
 
   void at(Ends& ends, Vec2 x, const Direction& arrival, EndValues& out) const {
     attenuate(ends, x, out);
-    scattering_.towards(arrival, ends.directions(), out.value);
+    local(scattering_, x).towards(arrival, ends.directions(), out.value);
     for (std::size_t p = 0; p < parameters_.size(); ++p) {
       if (parameters_[p] != BulkParameter::g) continue;
       for (std::size_t j = 0; j < ends.size(); ++j)

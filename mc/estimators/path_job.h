@@ -28,8 +28,9 @@ template <typename Kind>
 std::vector<Complex> unsampled(const Kind& kind, const Scene& scene, const Plan& plan) {
   std::vector<Complex> single;
   if (plan.sampled_single || scene.medium.mu_s == 0) return single;
-  with_any_scattering(scene, plan.phase,
-                      [&](const auto& scattering) { single = kind.single(scene, scattering); });
+  with_any_scattering(scene, plan.phase, [&]<typename Scattering>(const Scattering& scattering) {
+    if constexpr (!varies<Scattering>) single = kind.single(scene, scattering);
+  });
   return single;
 }
 

@@ -149,7 +149,7 @@ class MovesWriter {
   void theory() const {
     const auto views = request_.reference_angles();
     const double depth = scene_.domain.depth, light = request_.lights.front().angle;
-    if (request_.transmission_only())
+    if (request_.transmission_only() && !scene_.profile)
       out_.put("diffusion_theory", column(request_.tilt_q, [&](double q) {
                  return diffusion_field_correlation(scene_.medium, depth, q);
                }));

@@ -46,17 +46,21 @@ Lights representative_lights(const Scene& scene) {
 }
 
 FirstScatterer::FirstScatterer(const Scene& scene, double rise)
-    : domain_(scene.domain), mu_t_(scene.medium.mu_t), pull_(rise / scene.medium.mu_t) {
+    : domain_(scene.domain),
+      profile_(scene.profile.get()),
+      mu_t_(scene.medium.mu_t),
+      pull_(rise / scene.medium.mu_t) {
+  const Extinction extinction(scene);
   for (const Light& light : representative_lights(scene)) {
     switch (light.kind) {
       case Light::Kind::plane:
         plane_.push_back(direction(light.angle));
         break;
       case Light::Kind::point:
-        point_.emplace_back(domain_, mu_t_, light.point);
+        point_.emplace_back(domain_, extinction, light.point);
         break;
       case Light::Kind::beam:
-        for (const auto& rays : beam_rays(domain_, mu_t_, GaussianBeam(light, scene.k)))
+        for (const auto& rays : beam_rays(domain_, extinction, GaussianBeam(light, scene.k)))
           beam_.push_back(rays);
         break;
     }

@@ -6,7 +6,8 @@
 #include "core/numbers/random.h"
 #include "flatland/scene/scene.h"
 #include "mc/ends/near_rays.h"
-#include "mc/ends/scattering.h"
+#include "mc/ends/profile_flight.h"
+#include "mc/ends/varying_scattering.h"
 #include "mc/walk/stretched_flight.h"
 
 namespace flatspeckle::mc {
@@ -34,6 +35,8 @@ class FirstScatterer {
     const Vec2 w = plane_[number];
     const Vec2 entry = sample_entry(w, random);
     const double chord = domain_.distance_to_edge(entry, w);
+    if (profile_ != nullptr) [[unlikely]]
+      return {entry + ProfileFlight(*profile_, entry, w, chord).sample(random.uniform()) * w, w};
     return {entry + flight(w, chord).sample(random.uniform()) * w, w};
   }
 
@@ -51,9 +54,10 @@ class FirstScatterer {
   double density(Vec2 x, const typename Scattering::Direction& start,
                  const Scattering& scattering) const {
     double sum = 0;
-    for (Vec2 w : plane_) sum += density(x, w) * scattering.density(w, start);
+    const auto& here = local(scattering, x);
+    for (Vec2 w : plane_) sum += density(x, w) * here.density(w, start);
     if (has_near()) [[unlikely]]
-      sum += near_sum(x, [&](Vec2 arrival) { return scattering.density(arrival, start); });
+      sum += near_sum(x, [&](Vec2 arrival) { return here.density(arrival, start); });
     return sum / count_;
   }
 
@@ -61,6 +65,8 @@ class FirstScatterer {
   double density(Vec2 x, Vec2 w) const {
     const double behind = domain_.distance_to_edge(x, -w);
     const double chord = behind + domain_.distance_to_edge(x, w);
+    if (profile_ != nullptr) [[unlikely]]
+      return ProfileFlight(*profile_, x - behind * w, w, chord).density(behind) / aperture(w);
     return flight(w, chord).density(behind) / aperture(w);
   }
 
@@ -102,6 +108,7 @@ class FirstScatterer {
   }
 
   Domain domain_;
+  const MediumProfile* profile_;  ///< null where the medium is the same everywhere
   double mu_t_, pull_;
   std::vector<Vec2> plane_;
   std::vector<PointRays> point_;

@@ -137,7 +137,7 @@ std::size_t DepthImportance::interval(double z) const {
 }
 
 ExpectedContribution::ExpectedContribution(const Scene& scene, const std::vector<End>& ends)
-    : domain_(scene.domain), mu_t_(scene.medium.mu_t), g_(scene.medium.g) {
+    : domain_(scene.domain), extinction_(scene), g_(scene.medium.g) {
   always_ = std::any_of(ends.begin(), ends.end(), [](const End& end) { return end.near; });
   if (always_) return;
   constexpr std::size_t few = 16;
@@ -163,7 +163,7 @@ double ExpectedContribution::operator()(Vec2 x, const Direction& arrival) const 
   const grin::HenyeyGreenstein<dimension> lobe{g_};
   double largest = 0.01;  // what no representative sees must not wait for one in a million
   for (Vec2 w : towards_) {
-    double value = about_exp(mu_t_ * domain_.distance_to_edge(x, w));
+    double value = about_exp(extinction_.optical_depth(x, w, domain_.distance_to_edge(x, w)));
     if (g_ != 0)
       value *= lobe.density_beside(one_minus_cosine(arrival, Direction(w))) /
                grin::Isotropic<dimension>::value;

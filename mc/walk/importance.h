@@ -52,7 +52,8 @@ class ExpectedContribution {
 
  private:
   Domain domain_;
-  double mu_t_, g_;
+  Extinction extinction_;
+  double g_;
   std::vector<Vec2> towards_;
   bool always_ = false;  ///< near ends: no guess
 };

@@ -3,13 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "core/numbers/random.h"
 #include "core/run/interrupt.h"
 #include "flatland/scene/scene.h"
 #include "grin/media/free_flight.h"
-#include "mc/ends/scattering.h"
+#include "mc/ends/profile_flight.h"
+#include "mc/ends/varying_scattering.h"
 #include "mc/walk/first_scatterer.h"
 #include "mc/walk/importance.h"
 #include "mc/walk/plan.h"
@@ -61,6 +63,7 @@ class PathWalk {
       : plan_(plan),
         domain_(scene.domain),
         medium_(scene.medium),
+        profile_(scene.profile.get()),
         scattering_(scattering),
         importance_(scene),
         first_(scene, weighted ? importance_.rise() : 0),
@@ -78,19 +81,18 @@ class PathWalk {
   void walk(RandomStream& random, Scorer& scorer) {
     const auto [x, light] = first_.sample(random);
     const Direction arrival = light;
-    if (plan_.sampled_single) scorer.single(x, medium_.mu_s / first_.density(x));
-    path_ = {{x, scattering_.sample(arrival, random), {}, {}, 0, true}, tally_};
+    if constexpr (varies<Scattering>) {
+      if (mu_s(x) == 0) return;
+    }
+    if (plan_.sampled_single) scorer.single(x, mu_s(x) / first_.density(x));
+    path_ = {{x, local(scattering_, x).sample(arrival, random), {}, {}, 0, true}, tally_};
     start_density_ = -1;
     log_worth_first_ = std::max(importance_.log_worth(x.z), 0.0);
     if constexpr (reversed) expected_first_ = expected(x, -path_.start);
-    // The first flight stays inside: else most walks of a thin medium would find nothing.
-    const StretchedFlight flight{medium_.mu_t, domain_.distance_to_edge(x, path_.start),
-                                 pull(x, path_.start)};
-    const double length = flight.sample(random.uniform());
+    const auto [length, weight] = first_flight(x, path_.start, random);
     Tally tally = tally_;
     tally.flight(length);
-    follow({x + length * path_.start, path_.start, flight.weight(length), 1, tally}, random,
-           scorer);
+    follow({x + length * path_.start, path_.start, weight, 1, tally}, random, scorer);
     while (!waiting_.empty()) {
       Walker walker = waiting_.back();
       if (--waiting_.back().copies == 0) waiting_.pop_back();
@@ -108,6 +110,29 @@ class PathWalk {
     [[no_unique_address]] Tally tally;
   };
 
+  // Of the medium at a place.
+  double mu_s(Vec2 x) const {
+    if constexpr (varies<Scattering>) return profile_->mu_s(x);
+    return medium_.mu_s;
+  }
+  double albedo(Vec2 x) const {
+    if constexpr (varies<Scattering>) return profile_->albedo(x);
+    return medium_.albedo;
+  }
+
+  /// Its length and its weight. It stays inside: else most walks of a thin medium would find
+  /// nothing.
+  std::pair<double, double> first_flight(Vec2 x, Vec2 w, RandomStream& random) const {
+    const double edge = domain_.distance_to_edge(x, w);
+    if constexpr (varies<Scattering>) {
+      const ProfileFlight flight(*profile_, x, w, edge);
+      return {flight.sample(random.uniform()), flight.probability()};
+    }
+    const StretchedFlight flight{medium_.mu_t, edge, pull(x, w)};
+    const double length = flight.sample(random.uniform());
+    return {length, flight.weight(length)};
+  }
+
   /// From where a walker has arrived, until it leaves, dies or splits.
   template <typename Scorer>
   void follow(Walker walker, RandomStream& random, Scorer& scorer) {
@@ -123,9 +148,10 @@ class PathWalk {
   bool step(Walker& walker, RandomStream& random) {
     constexpr std::uint64_t between_looks = 4096;
     if (++steps_ % between_looks == 0) stop_if_interrupted();
-    const Direction w = scattering_.sample(walker.arrival, random);
-    const double flight = sample_flight(walker, w, random);
-    if (flight >= domain_.distance_to_edge(walker.x, w)) return false;
+    const Direction w = local(scattering_, walker.x).sample(walker.arrival, random);
+    const double edge = domain_.distance_to_edge(walker.x, w),
+                 flight = sample_flight(walker, w, edge, random);
+    if (flight >= edge) return false;
     walker.tally.scattering(walker.arrival, w);
     walker.tally.flight(flight);
     walker.x = walker.x + flight * w;
@@ -135,7 +161,9 @@ class PathWalk {
 
   /// Where light dies out with depth, half of the flights towards what is worth more are stretched
   /// (Dwivedi 1982): else rare long ones would carry most of the result.
-  double sample_flight(Walker& walker, Vec2 w, RandomStream& random) const {
+  double sample_flight(Walker& walker, Vec2 w, double edge, RandomStream& random) const {
+    if constexpr (varies<Scattering>)
+      return profile_->reach(walker.x, w, -std::log(random.uniform()), edge);
     const double mu_t = medium_.mu_t;
     if constexpr (weighted) {
       if (const double gain = pull(walker.x, w); gain > 0) {
@@ -160,7 +188,7 @@ class PathWalk {
   /// than it gives, walkers would multiply for ever: splitting ends for the rest of the batch,
   /// which depends on the past alone and so changes no mean.
   bool reweigh(Walker& walker, RandomStream& random) {
-    walker.weight *= medium_.albedo;
+    walker.weight *= albedo(walker.x);
     const double worth = walker.weight * importance(walker.x);
     if (worth < 0.5) {
       walker.weight /= worth;
@@ -182,6 +210,8 @@ class PathWalk {
     double promise = expected(walker.x, walker.arrival), backward_density = 0;
     if constexpr (reversed) {
       backward_density = first_.density(walker.x, -walker.arrival, scattering_);
+      if constexpr (varies<Scattering>)  // flights end in the first scatterer, not in the last
+        backward_density *= profile_->mu_t(path_.first) / profile_->mu_t(walker.x);
       const double forward = start_density();
       promise =
           (forward * promise + backward_density * expected_first_) / (forward + backward_density);
@@ -197,7 +227,8 @@ class PathWalk {
     path_.last = walker.x;
     path_.arrival = walker.arrival;
     path_.tally = walker.tally;
-    path_.weight = medium_.mu_s * medium_.albedo * weight / (start_density() + backward_density);
+    path_.weight =
+        mu_s(path_.first) * albedo(walker.x) * weight / (start_density() + backward_density);
     scorer.multiple(path_);
     path_.new_start = false;
   }
@@ -224,6 +255,7 @@ class PathWalk {
   const Plan& plan_;
   Domain domain_;
   const BulkMedium& medium_;
+  const MediumProfile* profile_;  ///< of a medium that varies
   const Scattering& scattering_;
   DepthImportance importance_;
   FirstScatterer first_;

@@ -37,13 +37,28 @@ void with_scattering(const Scene& scene, Plan::Phase phase, F f) {
     case Plan::Phase::tabulated:
       return f(TabulatedScattering(scene.medium, scene.k));
     case Plan::Phase::space:
+    case Plan::Phase::varying:
       assert(false);
   }
+}
+
+/// Of a medium that varies: of each material in its form.
+inline VaryingScattering varying_scattering(const Scene& scene) {
+  std::vector<AnyScattering> forms;
+  for (const Material& material : scene.profile->materials()) {
+    Scene own = scene;
+    own.scatterer = material.scatterer;
+    own.medium = material.medium;
+    with_scattering(own, phase_of(own.scatterer),
+                    [&](const auto& scattering) { forms.emplace_back(scattering); });
+  }
+  return {*scene.profile, std::move(forms)};
 }
 
 /// The same of any scene.
 template <typename F>
 void with_any_scattering(const Scene& scene, Plan::Phase phase, F f) {
+  if (phase == Plan::Phase::varying) return f(varying_scattering(scene));
   if (phase == Plan::Phase::space) return f(SpaceScattering(scene.medium.space_phase));
   with_scattering(scene, phase, f);
 }

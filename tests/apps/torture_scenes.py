@@ -37,6 +37,7 @@ SCENES = [
                     "tilts": [0, 0.1], "shifts": [0, 0.2], "samples": 4000}),
     ("covariance", {**SLAB, "g": None, "scatterer": "phase_table", "phase_table": "phase.csv",
                     "samples": 4000}),
+    ("covariance", {"domain": "box", "width": 20, "layers": "layers.csv", "samples": 4000}),
     ("flux", {**BOX, "samples": 4000}),
     ("flux", {**SLAB, "light_angles": [0, 0.8], "albedo": 0.9, "tolerance": 1e-3}),
     ("field", {**BOX, **VIEWS, "fields": 4}),
@@ -97,6 +98,7 @@ def write_files(folder):
     (folder / "sources.csv").write_text("x,z\n0,-5\n1,-5\n")
     (folder / "rays.csv").write_text("x,y,z,dx,dy,dz\n0,0,-0.5,0,0,1\n0.1,0,-0.5,0.1,0,1\n")
     (folder / "phase.csv").write_text("angle,value\n0,3\n1,1\n3.141592653589793,0.5\n")
+    (folder / "layers.csv").write_text("thickness,density\n3,0.05\n3,0.25\n4,0.15\n")
     (folder / "disks.csv").write_text("x,z,radius\n0,0,0.3\n1,0,0.2\n0,1,0.4\n-2,3,0.1\n")
     for name, dataset in (("grid.h5", "excess"), ("density.h5", "density")):
         with h5py.File(folder / name, "w") as file:

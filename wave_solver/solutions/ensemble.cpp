@@ -22,8 +22,7 @@ namespace {
 std::vector<Complex> channel_fields(const Scene& scene, const FieldPlan& plan,
                                     const SolveOptions& options, RandomStream random) {
   const CovarianceRequest& request = scene.request;
-  const Placement placement =
-      draw_placement(scene.domain, scene.scatterer, scene.placement, random);
+  const Placement placement = draw_placement(scene, random);
   const auto fields = scattered_fields(placement, scene.k, plan, options);
   std::vector<Complex> channels;
   channels.reserve(request.channels.size());
@@ -76,6 +75,8 @@ void require_uncovered(const Scene& scene, const std::string& key, Vec2 point) {
 void require_solvable(const Scene& scene) {
   if (scene.domain.kind == Domain::Kind::slab)
     throw InputError("domain", "slab", "the wave solver needs a box");
+  if (scene.profile && scene.scatterer.is_disk())
+    throw InputError("layers: the exact solver needs points there");
   if (scene.scatterer.is_bulk())
     throw InputError("scatterer", "hg", "the wave solver needs point, soft, hard, tm or te");
   for (const View& view : scene.request.views)

@@ -1,0 +1,88 @@
+"""Media of layers, from a CSV file."""
+
+import unittest
+
+import h5py
+import numpy as np
+
+from program import ProgramTest
+from refusing import RefusingTest
+
+POINTS = "thickness,density\n3,0.05\n3,0.25\n4,0.15\n"
+TISSUE = "thickness,optical_depth,g,albedo\n20,2,0.9,0.99\n30,3,0.7,0.9\n10,1,0,1\n"
+BOX = {"domain": "box", "width": 20, "layers": "layers.csv", "light_angles": 0}
+SLAB = {"domain": "slab", "layers": "layers.csv", "scatterer": "hg", "samples": 4000}
+
+
+class Layers(ProgramTest):
+    def test_layers_of_points_agree_with_exact_placements(self):
+        self.write("layers.csv", POINTS)
+        self.call("validate", **BOX, view_angles=[0.4, 0.8, 1.3, 2, 2.6, 3.14159], samples=100000,
+                  wave_samples=6000, wave_tolerance=1e-3, out="result.h5")
+        with h5py.File(self.folder / "result.h5") as file:
+            mc, exact = file["mc/intensity"], file["wave/intensity"]
+            error = np.hypot(file["mc/intensity_error"], file["wave/intensity_error"])
+            allowed = 4 * error + file.attrs["bias_allowance"] * exact[()]
+            self.assertTrue(np.all(np.abs(mc[()] - exact[()]) < allowed))
+            self.assertTrue(np.all(error < 0.03 * exact[()]))
+
+    def test_what_is_in_the_file(self):
+        self.write("layers.csv", TISSUE)
+        self.call("flux", **SLAB, out="result.h5")
+        with h5py.File(self.folder / "result.h5") as file:
+            np.testing.assert_allclose(file["layer_thickness"], [20, 30, 10])
+            np.testing.assert_allclose(file["layer_optical_depth"], [2, 3, 1])
+            np.testing.assert_allclose(file["layer_g"], [0.9, 0.7, 0])
+            np.testing.assert_allclose(file["layer_albedo"], [0.99, 0.9, 1])
+            self.assertEqual(file.attrs["depth"], 60)
+            self.assertAlmostEqual(file.attrs["optical_depth"], 6)
+            total = sum(file[name][0] for name in
+                        ("reflectance", "transmittance", "absorptance", "direct_transmittance"))
+            self.assertAlmostEqual(total, 1, delta=0.03)
+
+    def test_a_changed_file_is_another_scene(self):
+        self.write("layers.csv", TISSUE)
+        self.call("covariance", **SLAB, keep_state=True, out="result.h5")
+        self.write("layers.csv", TISSUE.replace("0.99", "0.98"))
+        self.call("covariance", **{**SLAB, "samples": 8000}, resume=True, out="result.h5", status=2)
+
+
+class Refused(RefusingTest):
+    def check(self, words, table=TISSUE, command="covariance", **changes):
+        self.write("layers.csv", table)
+        keys = {**SLAB, **changes}
+        with self.subTest(table=table, **changes):
+            self.assert_refused(words, command, **keys)
+
+    def test_keys_that_the_table_replaces(self):
+        self.check(["depth"], depth=5)
+        self.check(["optical_depth"], optical_depth=5)
+        self.check(["column g", "leave out the key g"], g=0.5)
+        self.check(["layer 1", "g"], scatterer="point")
+
+    def test_tables_that_cannot_be(self):
+        for table, words in {
+                "thickness,optical_depth\n4,-2\n": ["layer 1", "optical_depth", "positive"],
+                "thickness,optical_depth\n0,2\n": ["thickness = 0", "positive"],
+                "thickness,optical_depth,density\n1,2,3\n": ["exactly one of"],
+                "optical_depth\n1\n": ["column thickness is missing"],
+                "thickness,optical_depth\n": ["layers", "1 to 1000"],
+                "thickness,optical_depth,g\n1,2,0\n1,2,1.5\n": ["layer 2", "g = 1.5"],
+                "thickness,optical_depth,wrong\n1,2,1.5\n": ["wrong", "must be one of"]}.items():
+            self.check(words, table)
+        self.check(["no such file"], layers="none.csv")
+
+    def test_what_layers_have_not(self):
+        self.check(["gradient"], gradient=True)
+        self.check(["dimension"], dimension=3)
+        self.check(["layers", "Monte Carlo"], method="transport", samples=None)
+        self.check(["layers", "Monte Carlo"], command="validate")
+        points = "thickness,density\n3,0.05\n3,0.25\n"
+        disks = {**BOX, "scatterer": "tm", "radius": 0.2}
+        self.check(["points"], points, method="wave", **disks)
+        self.check(["structure"], points, structure="hard_disks", **disks)
+        self.check(["count"], points, **{**BOX, "scatterer": "point", "count": 5})
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,119 @@
+// Layers against adding and doubling of discrete ordinates, and equal ones against one slab.
+#include <cmath>
+#include <memory>
+
+#include "flatland/media/layers.h"
+#include "tests/mc/flux_runs.h"
+
+namespace flatspeckle::mc {
+
+namespace {
+
+using tests::pi;
+
+struct Layer {
+  double thickness, optical_depth, g, albedo;
+};
+const std::vector<Layer> three = {{20, 2, 0.9, 0.99}, {30, 3, 0.7, 0.9}, {10, 1, 0, 1}};
+
+Scene layered(const std::vector<Layer>& layers, const CovarianceRequest& request) {
+  std::vector<Material> materials;
+  std::vector<double> thicknesses;
+  double depth = 0;
+  for (const auto& [thickness, optical_depth, g, albedo] : layers) {
+    const Scene alone = tests::hg_slab(thickness, {thickness / optical_depth, g, albedo}, request);
+    materials.push_back({alone.scatterer, alone.medium});
+    thicknesses.push_back(thickness);
+    depth += thickness;
+  }
+  Scene scene = tests::hg_slab(depth, {1, 0, 1}, request);
+  scene.profile = std::make_shared<const Layers>(materials, thicknesses);
+  scene.medium = scene.profile->mean();
+  return scene;
+}
+
+oracles::SlabTransport theory_of(const std::vector<Layer>& layers,
+                                 const std::vector<double>& angles) {
+  std::vector<oracles::SlabTransport::Medium> media;
+  for (const auto& [thickness, optical_depth, g, albedo] : layers)
+    media.push_back({optical_depth, albedo, oracles::henyey_greenstein(g)});
+  return {media, angles, 60};
+}
+
+}  // namespace
+
+TEST_CASE("a way through layers and how far an optical depth reaches are inverse") {
+  const Scene scene = layered(three, intensity_request({0}, tests::far_views({0})));
+  const MediumProfile& profile = *scene.profile;
+  for (const Vec2 x : {Vec2{0, 0}, {0, 19.999}, {3, 35}, {0, 60}})
+    for (const double angle : {0.0, 0.7, pi / 2, 2.0, pi, 4.0}) {
+      const Vec2 w = direction(angle);
+      const double edge = std::min(100.0, scene.domain.distance_to_edge(x, w));
+      for (const double share : {0.01, 0.4, 0.99}) {
+        const double depth = profile.optical_depth(x, w, share * edge);
+        CHECK(profile.reach(x, w, depth, edge) == doctest::Approx(share * edge).epsilon(1e-9));
+      }
+      CHECK(profile.reach(x, w, 1e3, edge) == edge);
+    }
+  CHECK(profile.optical_depth({0, 10}, {0, 1}, 45) == doctest::Approx(1 + 3 + 0.5));
+}
+
+TEST_CASE("adding unequal parts of one medium gives the whole") {
+  const std::vector<double> angles = {0.3, 1.0};
+  const auto whole = theory_of({{0, 5, 0.5, 0.95}}, angles),
+             parts =
+                 theory_of({{0, 2, 0.5, 0.95}, {0, 0.3, 0.5, 0.95}, {0, 2.7, 0.5, 0.95}}, angles);
+  for (const double light : angles) {
+    CHECK(parts.reflectance(light) == doctest::Approx(whole.reflectance(light)).epsilon(1e-11));
+    CHECK(parts.transmittance(light) == doctest::Approx(whole.transmittance(light)).epsilon(1e-11));
+    CHECK(parts.covariance_without_reversed(light, -0.3) ==
+          doctest::Approx(whole.covariance_without_reversed(light, -0.3)).epsilon(1e-11));
+  }
+}
+
+TEST_CASE("flux of three layers agrees with adding and doubling") {
+  const std::vector<double> lights = {0, 1.0};
+  const Scene scene = layered(three, intensity_request(lights, tests::far_views({0})));
+  const FluxEstimates flux = tests::run_flux(scene, tests::paths(400'000), 5).flux;
+  const auto theory = theory_of(three, lights);
+  for (std::size_t light = 0; light < lights.size(); ++light) {
+    const double back = theory.reflectance(lights[light]),
+                 through = theory.transmittance(lights[light]),
+                 direct = theory.direct_transmittance(lights[light]);
+    tests::check_share(flux.reflectance, light, back);
+    tests::check_share(flux.transmittance, light, through);
+    tests::check_share(flux.absorptance, light, 1 - back - through - direct);
+    CHECK(flux.transmittance.error[light] < 0.004 * through);
+    CHECK(direct_transmittance(scene, lights[light]) == doctest::Approx(direct).epsilon(1e-13));
+  }
+}
+
+TEST_CASE("intensities of three layers agree with adding and doubling") {
+  // Reversed paths: in transmission they only change how paths are weighed.
+  const std::vector<double> views = {0.1, -0.8, 1.2};
+  for (const auto reversed : {ReversedPaths::no, ReversedPaths::yes}) {
+    auto layers = three;
+    if (reversed == ReversedPaths::yes) std::swap(layers.front(), layers.back());
+    const auto theory = theory_of(layers, {0.3, 0.1, -0.8, 1.2});
+    const Scene scene = layered(layers, intensity_request({0.3}, tests::far_views(views)));
+    const auto found = tests::run(scene, reversed, 300'000, 11).entries();
+    for (std::size_t v = 0; v < views.size(); ++v) {
+      const Complex expected = theory.covariance_without_reversed(0.3, views[v]);
+      CHECK_WITHIN_4_SIGMA(found.value[v], found.error[v], expected, 0);
+      CHECK(found.error[v] < 0.01 * std::abs(expected));
+    }
+  }
+}
+
+TEST_CASE("equal layers give the undivided slab's covariance") {
+  const auto request = memory_effect_request(2 * pi, 0.2, {0.1, pi - 0.3}, {0, 0.01, 0.05});
+  const Scene parts =
+                  layered({{2, 1, 0.5, 0.95}, {1, 0.5, 0.5, 0.95}, {7, 3.5, 0.5, 0.95}}, request),
+              whole = tests::hg_slab(10, {2, 0.5, 0.95}, request);
+  const auto a = tests::run(parts, ReversedPaths::yes, 200'000, 1).entries(),
+             b = tests::run(whole, ReversedPaths::yes, 200'000, 2).entries();
+  for (std::size_t e = 0; e < a.value.size(); ++e)
+    CHECK_WITHIN_4_SIGMA(a.value[e], std::hypot(a.error[e], b.error[e]), b.value[e], 0);
+}
+
+}  // namespace flatspeckle::mc
