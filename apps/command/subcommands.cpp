@@ -11,6 +11,7 @@ int sweep(const Arguments& arguments);
 int merge(const Arguments& arguments);
 int field(const Arguments& arguments);
 int image(const Arguments& arguments);
+int fit(const Arguments& arguments);
 int recover(const Arguments& arguments);
 int trace(const Arguments& arguments);
 int render(const Arguments& arguments);
@@ -36,6 +37,7 @@ std::span<const SubcommandEntry> subcommands() {
        "pictures of hidden points through a medium, and what the memory effect finds in them",
        image},
       {"recover", "points found in the autocorrelation of measured frames", recover},
+      {"fit", "the medium that gave measured curves and fluxes, with errors", fit},
       {"trace", "rays and the curves between two points in a gradient-index field", trace},
       {"render", "pictures of scattering media with a gradient index: 3D refractive path tracing",
        render},

@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
+
+#include "core/run/stopwatch.h"
 
 namespace flatspeckle::mc {
 
@@ -56,8 +59,12 @@ LeastSquaresFit levenberg_marquardt(const LeastSquares& problem, const VectorXd&
   LeastSquaresFit at;
   at.parameters = within(problem, start);
   at.residuals = problem.residuals(at.parameters);
-  at.jacobian = problem.jacobian(at.parameters);
+  at.jacobian = problem.jacobian(at.parameters, at.residuals);
   const VectorXd range = problem.upper - problem.lower;
+  const auto note = [&] {
+    at.trace.push_back({at.parameters, at.chi_squared(), process_cpu_seconds()});
+  };
+  note();
   double damping = first_damping;
   for (; at.iterations < most_iterations && damping < most_damping; ++at.iterations) {
     const VectorXd next =
@@ -73,7 +80,8 @@ LeastSquaresFit levenberg_marquardt(const LeastSquares& problem, const VectorXd&
     }
     at.parameters = next;
     at.residuals = residuals;
-    at.jacobian = problem.jacobian(next);
+    at.jacobian = problem.jacobian(next, residuals);
+    note();
     at.converged = gain < tolerance && damping <= 1;
     if (at.converged) return at;
     damping = std::max(damping / factor, 1e-12);
@@ -81,9 +89,22 @@ LeastSquaresFit levenberg_marquardt(const LeastSquares& problem, const VectorXd&
   return at;
 }
 
-LeastSquaresFit best_fit(const LeastSquares& problem, const std::vector<VectorXd>& starts) {
+std::vector<VectorXd> best_starts(const LeastSquares& problem, const std::vector<VectorXd>& starts,
+                                  std::size_t most) {
+  std::multimap<double, VectorXd> by_chi_squared;
+  for (const VectorXd& start : starts)
+    by_chi_squared.emplace(problem.residuals(within(problem, start)).squaredNorm(), start);
+  std::vector<VectorXd> best;
+  for (const auto& [chi_squared, start] : by_chi_squared)
+    if (best.size() < most) best.push_back(start);
+  return best;
+}
+
+LeastSquaresFit best_fit(const LeastSquares& problem, const std::vector<VectorXd>& starts,
+                         int most_iterations, double tolerance) {
   std::vector<LeastSquaresFit> fits;
-  for (const VectorXd& start : starts) fits.push_back(levenberg_marquardt(problem, start));
+  for (const VectorXd& start : starts)
+    fits.push_back(levenberg_marquardt(problem, start, most_iterations, tolerance));
   return *std::min_element(fits.begin(), fits.end(), [](const auto& a, const auto& b) {
     return a.converged != b.converged ? a.converged : a.chi_squared() < b.chi_squared();
   });
@@ -99,11 +120,10 @@ Information information(const LeastSquares& problem, const MatrixXd& jacobian) {
   Information found;
   found.worst = combinations.col(0);
   found.best = combinations.col(last);
-  found.condition = std::numeric_limits<double>::infinity();
-  if (!(known[0] > known[last] * std::numeric_limits<double>::epsilon())) return found;
-  found.condition = known[last] / known[0];
-  const MatrixXd root =
-      range.asDiagonal() * combinations * known.cwiseSqrt().cwiseInverse().asDiagonal();
+  const bool all_known = known[0] > known[last] * std::numeric_limits<double>::epsilon();
+  found.condition = all_known ? known[last] / known[0] : std::numeric_limits<double>::infinity();
+  const VectorXd at_least = known.cwiseMax(1).cwiseSqrt().cwiseInverse();
+  const MatrixXd root = range.asDiagonal() * combinations * at_least.asDiagonal();
   found.covariance = root * root.transpose();
   const VectorXd inverse = found.errors().cwiseInverse();
   found.correlation = inverse.asDiagonal() * found.covariance * inverse.asDiagonal();

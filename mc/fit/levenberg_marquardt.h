@@ -10,16 +10,23 @@ namespace flatspeckle::mc {
 /// A least-squares problem within bounds. Residuals are in standard errors.
 struct LeastSquares {
   std::function<Eigen::VectorXd(const Eigen::VectorXd&)> residuals;
-  /// Derivatives of the residuals, [residual][parameter]; asked for at accepted points alone.
-  std::function<Eigen::MatrixXd(const Eigen::VectorXd&)> jacobian;
+  /// Derivatives of the residuals, [residual][parameter], at a point of known residuals; asked for
+  /// at accepted points alone.
+  std::function<Eigen::MatrixXd(const Eigen::VectorXd&, const Eigen::VectorXd& residuals)> jacobian;
   Eigen::VectorXd lower, upper;
 };
 
 struct LeastSquaresFit {
+  /// An accepted point.
+  struct Step {
+    Eigen::VectorXd parameters;
+    double chi_squared, cpu_s;  ///< of this process, so far
+  };
   Eigen::VectorXd parameters, residuals;
   Eigen::MatrixXd jacobian;
   int iterations = 0;
   bool converged = false;
+  std::vector<Step> trace;
 
   double chi_squared() const { return residuals.squaredNorm(); }
 };
@@ -30,11 +37,18 @@ struct LeastSquaresFit {
 LeastSquaresFit levenberg_marquardt(const LeastSquares& problem, const Eigen::VectorXd& start,
                                     int most_iterations = 60, double tolerance = 1e-6);
 
+/// Of all starts, those of the least chi^2.
+std::vector<Eigen::VectorXd> best_starts(const LeastSquares& problem,
+                                         const std::vector<Eigen::VectorXd>& starts,
+                                         std::size_t most);
+
 /// The least chi^2 of all starts, of those that converged if any did.
-LeastSquaresFit best_fit(const LeastSquares& problem, const std::vector<Eigen::VectorXd>& starts);
+LeastSquaresFit best_fit(const LeastSquares& problem, const std::vector<Eigen::VectorXd>& starts,
+                         int most_iterations = 60, double tolerance = 1e-6);
 
 /// What measurements say of the parameters, linear about a point: of the Fisher information J^T J
-/// of residuals in standard errors.
+/// of residuals in standard errors. What they tell less of than the bounds counts as known to the
+/// distance of those.
 struct Information {
   Eigen::MatrixXd covariance, correlation;
   double condition = 0;  ///< of the information of parameters in units of the distance of bounds
@@ -43,7 +57,7 @@ struct Information {
   Eigen::VectorXd errors() const { return covariance.diagonal().cwiseSqrt(); }
 };
 
-/// An infinite condition, and no covariance, where a combination is not known at all.
+/// An infinite condition where a combination is not known at all.
 Information information(const LeastSquares& problem, const Eigen::MatrixXd& jacobian);
 
 }  // namespace flatspeckle::mc

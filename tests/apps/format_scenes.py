@@ -25,6 +25,7 @@ STAGE = {"field": "parabolic", "index": 1.5, "alpha": 0.5, "stage_box": [-1, -1,
          "pixels": [30, 20]}
 
 FILES = {
+    "curve.csv": "tilt,field_correlation,error\n0.002,0.8,0.05\n0.004,0.6,0.05\n",
     "frames.csv": "a,b\n" + "".join(f"{1 + i * i % 7},{1 + i * i % 11}\n" for i in range(80)),
     "sensors.csv": "x,z\n0,13\n3,15\n",
     "sources.csv": "x,z\n1,-3\n2,-4\n",
@@ -39,6 +40,8 @@ IMAGE = {"domain": "box", "width": 60, "depth": 10, "scatterer": "hg", "g": 0.5,
          "object_x": [0, 20], "object_depth": -500, "camera": [-0.3, 0.3], "pixels": 128,
          "repeats": 2, "paths_per_field": 20, "prediction_paths": 500, "samples": None}
 
+FIT = {"free": ["g=0:0.8"], "depth": 100, "optical_depth": 2, "measurement": "curve.csv"}
+
 RUNS = {
     "intensity": ("covariance", {**BOX, **FAR}),
     "intensity_near": ("covariance", {**BOX, **NEAR}),
@@ -46,6 +49,7 @@ RUNS = {
     "full": ("covariance", {**BOX, **FAR, **FULL}),
     "image": ("image", IMAGE),
     "recover": ("recover", {"frames": "frames.csv", "points": 2, "samples": None, "threads": None}),
+    "fit": ("fit", {**FIT, "samples": None}),
     "image_near": ("image", {**IMAGE, "camera_depth": 200, "camera": [-50, 50]}),
     "full_near": ("covariance", {**BOX, **NEAR, **FULL}),
     "full_beams": ("covariance", {**BOX, "beam_waist": 2, "beam_positions": [0, 3], **FULL}),

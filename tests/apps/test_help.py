@@ -25,6 +25,8 @@ KEYS = {
     "covariance": SCENE + REQUEST + ["structure", "method", "gradient", "delays",
                                      "frequency_shifts", "wave_samples"] + RUN,
     "flux": SCATTERER + MEDIUM + ["light_angles", "angle_bins"] + RUN,
+    "fit": SCATTERER + ["free", "measurement", "starts", "most_iterations", "depth",
+                        "density", "mean_free_path", "optical_depth", "threads"],
     "validate": SCENE + REQUEST + ["structure", "wave_samples"] + RUN,
     "field": SCENE + ["structure", "tilts", "method", "fields", "paths_per_field", "target_error", "seed",
                       "threads"],

@@ -59,7 +59,7 @@ LeastSquares slab(const Views& views, const VectorXd& truth) {
               residual[e] = (found[static_cast<std::size_t>(e)].real() - data[e]) / error[e];
             return residual;
           },
-          [=](const VectorXd& p) -> MatrixXd {
+          [=](const VectorXd& p, const VectorXd&) -> MatrixXd {
             return error.cwiseInverse().asDiagonal() * views.slopes(p);
           },
           VectorXd{{0.3, 0.9, 2}}, VectorXd{{0.95, 1, 60}}};
@@ -67,7 +67,7 @@ LeastSquares slab(const Views& views, const VectorXd& truth) {
 
 Information known(const Views& views, const VectorXd& truth) {
   const auto problem = slab(views, truth);
-  return information(problem, problem.jacobian(truth));
+  return information(problem, problem.jacobian(truth, problem.residuals(truth)));
 }
 
 }  // namespace

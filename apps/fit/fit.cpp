@@ -1,0 +1,110 @@
+#include <algorithm>
+#include <set>
+
+#include "apps/command/subcommands.h"
+#include "apps/fit/fit_summary.h"
+#include "apps/fit/measurement_file.h"
+#include "core/error.h"
+#include "core/session/session.h"
+#include "mc/fit/fit_datasets.h"
+
+namespace flatspeckle::apps {
+
+namespace {
+
+/// What the user asks.
+struct FitKeys {
+  SceneSpec medium;
+  std::vector<std::string> free, measurements;
+  std::int64_t starts = 2, most_iterations = 60;
+  RunSettings run;
+};
+
+void add_keys(Keys& keys, FitKeys& values) {
+  values.medium.domain = "slab";
+  values.medium.scatterer = "hg";
+  keys.group("Fit");
+  keys.add(
+      "free", values.free,
+      "Keys that are fitted and their bounds, as g=0.5:0.99; what the scene gives one is where "
+      "it starts");
+  keys.add("measurement", values.measurements,
+           "Files that are fitted together: results of covariance, flux and sweep (.h5), tables");
+  keys.add("starts", values.starts,
+           "Of each free key without a start: values of a grid, the best of which is gone on from, "
+           "and two more where it ends in no likely medium")
+      .from(1, 100);
+  keys.add("most_iterations", values.most_iterations, "Steps after which a fit gives up")
+      .from(1, 10000);
+  add_scatterer_keys(keys, values.medium);
+  add_bulk_keys(keys, values.medium);
+  add_medium_keys(keys, values.medium);
+  for (const char* of_boxes : {"domain", "width", "count", "placement"}) keys.remove(of_boxes);
+  add_structure_key(keys, values.medium);
+  add_dimension_key(keys, values.medium);
+  add_output_key(keys, values.run);
+  add_thread_key(keys, values.run);
+}
+
+/// An optical depth is that of one thickness.
+void check_depths(const mc::FitTask& task) {
+  const auto has = [&](const char* key) {
+    return std::ranges::any_of(task.free, [&](const auto& free) { return free.key == key; });
+  };
+  std::set<double> depths;
+  for (const auto& measurement : task.measurements)
+    for (const auto& curve : measurement.curves) depths.insert(curve.scene.depth.value_or(0));
+  if (depths.size() > 1 && has("optical_depth"))
+    throw InputError("free", "optical_depth",
+                     "is of one thickness; measurements of several share mean_free_path");
+}
+
+/// Reads what the scenes of all measurements make use of.
+void check_scenes(const Keys& keys, const mc::FitTask& task) {
+  const Eigen::VectorXd middle = (lower_coordinates(task.free) + upper_coordinates(task.free)) / 2;
+  for (const auto& measurement : task.measurements)
+    for (const auto& curve : measurement.curves) {
+      const Keyed<SceneSpec> keyed(mc::with_parameters(curve.scene, task.free, middle));
+      make_scene(keyed.keys, keyed.values);
+      keys.join_reads(keyed.keys);
+    }
+}
+
+mc::FitTask task_of(const Keys& keys, const FitKeys& values) {
+  mc::FitTask task;
+  keys.read(values.medium.dimension);
+  task.starts = static_cast<int>(keys.read(values.starts));
+  task.most_iterations = static_cast<int>(keys.read(values.most_iterations));
+  task.free = mc::read_free_parameters(keys.required(values.free), values.medium);
+  for (const std::string& path : keys.required(values.measurements))
+    task.measurements.push_back(read_measurement(path, keys, values.medium));
+  check_depths(task);
+  check_scenes(keys, task);
+  mc::check(task);
+  return task;
+}
+
+}  // namespace
+
+int fit(const Arguments& arguments) {
+  FitKeys values;
+  Subcommand command("fit", "The medium that gave these measurements, with errors");
+  Keys& keys = command.keys();
+  add_keys(keys, values);
+  if (!command.parse(arguments)) return ExitStatus::done;
+
+  const Session session(command.text(), keys, values.run, command.only_prints());
+  const mc::FitTask task = task_of(keys, values);
+  if (!command.settle()) return ExitStatus::done;
+  return session.once(ResultFile(session.out()), [&](ResultFile& file) -> std::optional<Made> {
+    const mc::MediumFit fit = mc::fit_medium(task);
+    mc::write_fit(file, task, fit);
+    print_fit(task, fit);
+    return Made{std::string("least squares; transport through slabs, ") +
+                    (fit.reversed ? "reversed paths" : "no reversed paths"),
+                static_cast<double>(fit.residuals.size()),
+                fit.converged ? ExitStatus::done : ExitStatus::error_not_reached};
+  });
+}
+
+}  // namespace flatspeckle::apps

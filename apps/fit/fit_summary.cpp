@@ -1,0 +1,49 @@
+#include "apps/fit/fit_summary.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "mc/fit/fit_datasets.h"
+
+namespace flatspeckle::apps {
+
+namespace {
+
+void print_correlations(const mc::FitTask& task, const mc::MediumFit& fit) {
+  constexpr double strong = 0.9;
+  for (std::size_t i = 0; i < task.free.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j) {
+      const double r = fit.correlation(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
+      if (std::abs(r) > strong)
+        std::printf("errors of %s and %s are correlated: %.3f\n", task.free[j].key.c_str(),
+                    task.free[i].key.c_str(), r);
+    }
+}
+
+void print_parameters(const mc::FitTask& task, const mc::MediumFit& fit) {
+  std::printf("%-26s %12s %10s\n", "parameter", "value", "error");
+  for (std::size_t i = 0; i < task.free.size(); ++i) {
+    const auto j = static_cast<Eigen::Index>(i);
+    std::printf("%-26s %12.6g %10.2g%s\n", task.free[i].key.c_str(), fit.estimates[j],
+                fit.errors[j], fit.known[i] ? "" : "  not known better than by its bounds");
+  }
+  for (const mc::Derived& one : fit.derived)
+    if (std::ranges::find(task.free, one.name, &mc::FreeParameter::key) == task.free.end())
+      std::printf("%-26s %12.6g %10.2g\n", one.name.c_str(), one.value, one.error);
+}
+
+}  // namespace
+
+void print_fit(const mc::FitTask& task, const mc::MediumFit& fit) {
+  print_parameters(task, fit);
+  print_correlations(task, fit);
+  std::printf("chi^2 %.4g of %td values less %zu parameters; condition %.3g\n", fit.chi_squared,
+              fit.residuals.size(), task.free.size(), fit.condition);
+  if (const std::string words = mc::degeneracy(task, fit); !words.empty())
+    std::printf("%s\n", words.c_str());
+  if (!fit.converged)
+    std::printf("not converged after %zu steps: this is the best point so far\n", fit.trace.size());
+}
+
+}  // namespace flatspeckle::apps

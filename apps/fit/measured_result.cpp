@@ -1,0 +1,163 @@
+#include <algorithm>
+#include <set>
+#include <sstream>
+
+#include "apps/command/command_line.h"
+#include "apps/fit/measurement_file.h"
+#include "core/error.h"
+#include "core/result/guarded_read.h"
+#include "core/result/result_reader.h"
+
+namespace flatspeckle::apps {
+
+namespace {
+
+using Eigen::Index;
+using mc::Curve;
+using mc::Observable;
+
+/// What a measurement fixes, not the medium.
+const std::set<std::string> arrangement = {
+    "wavelength",   "domain",         "width",      "depth",        "dimension",  "light_angles",
+    "near_sources", "beam_waist",     "beam_depth", "view_angles",  "covariance", "tilts",
+    "shifts",       "beam_positions", "pairs",      "near_sensors",
+};
+
+/// A dataset and what it is beside.
+struct Observed {
+  Observable observable;
+  std::vector<double> values, errors, abscissa;
+};
+
+struct Contents {
+  std::string config;
+  bool numerical = false;
+  std::vector<Observed> observed;
+};
+
+Observed observed(const ResultReader& file, Observable observable, const std::string& axis) {
+  const std::string& name = mc::observable_words[static_cast<std::size_t>(observable)];
+  Observed found{observable, file.dataset<double>(name), {}, file.dataset<double>(axis)};
+  if (!file.has(name + "_error"))
+    throw InputError("measurement", file.path().string(), "has no " + name + "_error");
+  found.errors = file.dataset<double>(name + "_error");
+  const std::size_t size = found.values.size();
+  const bool fits = observable == Observable::intensity ? size % found.abscissa.size() == 0
+                                                        : size == found.abscissa.size();
+  if (!fits || found.errors.size() != size)
+    throw InputError("measurement", file.path().string(),
+                     name + " has " + std::to_string(size) + " values for " +
+                         std::to_string(found.abscissa.size()) + " of " + axis +
+                         ": must be of one medium");
+  return found;
+}
+
+Contents contents_of(const ResultReader& file) {
+  Contents found;
+  found.config = file.attribute<std::string>("/", "config");
+  found.numerical = file.has_attribute("/", "errors");
+  if (file.has("field_correlation") && file.has("tilt"))
+    found.observed.push_back(observed(file, Observable::field_correlation, "tilt"));
+  if (file.has("intensity") && file.has("view_angle") && file.has("light_angle"))
+    found.observed.push_back(observed(file, Observable::intensity, "view_angle"));
+  if (file.has("reflectance")) {
+    found.observed.push_back(observed(file, Observable::reflectance, "light_angle"));
+    found.observed.push_back(observed(file, Observable::transmittance, "light_angle"));
+  }
+  if (found.observed.empty())
+    throw InputError("measurement", file.path().string(),
+                     "has none of field_correlation over tilts, intensity of far views, "
+                     "reflectance and transmittance");
+  return found;
+}
+
+/// The lines of a configuration that tell the arrangement.
+std::string arrangement_of(const std::string& config) {
+  std::istringstream lines(config);
+  std::string kept, line;
+  while (std::getline(lines, line))
+    if (arrangement.contains(line.substr(0, line.find(" = ")))) kept += line + '\n';
+  return kept;
+}
+
+/// What the fit states of the arrangement too must be the same there.
+void check_same(const std::string& path, const Keys& asked, const Keys& there) {
+  for (const Key& row : there.rows()) {
+    if (!arrangement.contains(row.name())) continue;
+    const Key* const here = asked.find(row.name());
+    if (here != nullptr && here->given() && here->value() != row.value())
+      throw InputError(row.name(), here->shown(),
+                       path + " has " + row.shown() + ": leave the key out");
+  }
+}
+
+/// The medium as it was arranged for the measurement.
+SceneSpec arranged(const std::string& path, const std::string& config, const Keys& asked,
+                   const SceneSpec& medium) {
+  Subcommand there("measurement", "");
+  SceneSpec measured;
+  add_keys(there.keys(), measured);
+  add_dimension_key(there.keys(), measured);
+  there.parse_config(arrangement_of(config));
+  check_same(path, asked, there.keys());
+  Keyed<SceneSpec> keyed(medium);
+  for (const Key& row : there.keys().rows())
+    if (arrangement.contains(row.name()) && row.given()) keyed.keys.set(row.name(), row.value());
+  keyed.values.domain = measured.domain;
+  keyed.values.dimension = measured.dimension;
+  return keyed.values;
+}
+
+/// A correlation at no tilt is 1, which tells nothing.
+bool tells(const Observed& of, std::size_t entry) {
+  return of.observable != Observable::field_correlation || of.abscissa[entry] != 0;
+}
+
+}  // namespace
+
+Eigen::MatrixXd independent_errors(const std::string& path, const std::vector<double>& errors) {
+  Eigen::VectorXd variances(static_cast<Index>(errors.size()));
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    if (!(errors[i] > 0))
+      throw InputError("measurement", path,
+                       "the error of value " + std::to_string(i + 1) + " must be positive");
+    variances[static_cast<Index>(i)] = errors[i] * errors[i];
+  }
+  return variances.asDiagonal();
+}
+
+mc::Measurement measurement_of_result(const std::string& path, const Keys& asked,
+                                      const SceneSpec& medium) {
+  const Contents there = guarded_read(path, [&] { return contents_of(ResultReader(path)); });
+  if (there.numerical)
+    throw InputError("measurement", path,
+                     "has numerical errors, not those of a measurement: make it by --method mc, "
+                     "or give a table with errors");
+  SceneSpec scene = arranged(path, there.config, asked, medium);
+  mc::Measurement found;
+  found.name = path;
+  std::vector<double> values, errors;
+  for (const Observed& of : there.observed) {
+    if (of.observable == Observable::field_correlation) scene.covariance = "memory_effect";
+    Curve curve{scene, of.observable, {}, {}};
+    for (std::size_t entry = 0; entry < of.values.size(); ++entry) {
+      if (!tells(of, entry)) continue;
+      curve.entries.push_back(entry);
+      curve.abscissa.push_back(of.abscissa[entry % of.abscissa.size()]);
+      values.push_back(of.values[entry]);
+      errors.push_back(of.errors[entry]);
+    }
+    found.curves.push_back(std::move(curve));
+  }
+  found.values = Eigen::Map<Eigen::VectorXd>(values.data(), static_cast<Index>(values.size()));
+  found.covariance = independent_errors(path, errors);
+  return found;
+}
+
+mc::Measurement read_measurement(const std::string& path, const Keys& asked,
+                                 const SceneSpec& medium) {
+  return path.ends_with(".h5") ? measurement_of_result(path, asked, medium)
+                               : measurement_of_table(path, medium);
+}
+
+}  // namespace flatspeckle::apps

@@ -1,0 +1,165 @@
+#include "mc/fit/fit_datasets.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "core/result/result_group.h"
+
+namespace flatspeckle::mc {
+
+const DatasetTable fit_table{
+    .name = "fit",
+    .rows =
+        {{"parameter", Data::numbers, "", "1", "number of the free key"},
+         {"parameter_2", Data::numbers, "", "1", "number of the second free key"},
+         {"parameter_name", Data::text, "parameter", "", "its name"},
+         {"estimate", Data::estimate, "parameter", "", "the value that fits best"},
+         {"lower_bound", Data::real, "parameter", "", "least value that is accepted"},
+         {"upper_bound", Data::real, "parameter", "", "largest value that is accepted"},
+         {"known", Data::count, "parameter", "1",
+          "0 where the error is a quarter of the distance of the bounds or more"},
+         {"parameter_covariance", Data::real, "parameter parameter_2", "",
+          "covariance of the estimates' errors"},
+         {"parameter_correlation", Data::real, "parameter parameter_2", "1",
+          "correlation of the estimates' errors"},
+         {"worst_combination", Data::real, "parameter", "1",
+          "the combination that is known least, of length 1, in distances of the bounds' "
+          "coordinates"},
+         {"derived", Data::numbers, "", "1", "number of what follows from the parameters"},
+         {"derived_name", Data::text, "derived", "", "its name"},
+         {"derived_value", Data::estimate, "derived", "", "its value"},
+         {"measurement", Data::numbers, "", "1", "number of the measurement"},
+         {"measurement_name", Data::text, "measurement", "", "its file"},
+         {"datum", Data::numbers, "", "1", "number of the measured value"},
+         {"datum_measurement", Data::count, "datum", "1", "number of its measurement"},
+         {"datum_curve", Data::count, "datum", "1", "number of its curve, over all"},
+         {"datum_observable", Data::text, "datum", "", "what was measured"},
+         {"datum_angle", Data::real, "datum", "rad", "tilt, of an intensity view, else light"},
+         {"measured", Data::estimate, "datum", "", "measured value"},
+         {"model", Data::real, "datum", "", "the same of the medium that fits best"},
+         {"pull", Data::real, "datum", "1", "measured less model, in standard errors"},
+         {"residual", Data::real, "datum", "1",
+          "model less measured in standard errors, made independent: chi^2 is the sum of squares"},
+         {"iteration", Data::numbers, "", "1", "number of the accepted step"},
+         {"trace_parameter", Data::real, "iteration parameter", "", "value there"},
+         {"trace_chi_squared", Data::real, "iteration", "1", "chi^2 there"},
+         {"trace_cpu_s", Data::real, "iteration", "s", "processor time until there"}},
+    .attributes = {{"", "chi_squared", "float64", "sum of the squared residuals"},
+                   {"", "degrees_of_freedom", "int64", "values less parameters"},
+                   {"", "condition", "float64",
+                    "largest over least eigenvalue of the information, parameters in distances of "
+                    "their bounds; absent where a combination is not known at all"},
+                   {"", "numerical_error", "float64",
+                    "largest numerical error of the model, in standard errors"},
+                   {"", "degeneracy", "text", "what is known well, and what is not"}}};
+
+namespace {
+
+std::vector<double> list(const Eigen::MatrixXd& values) {
+  std::vector<double> rows;
+  for (Eigen::Index i = 0; i < values.rows(); ++i)
+    for (Eigen::Index j = 0; j < values.cols(); ++j) rows.push_back(values(i, j));
+  return rows;
+}
+
+void write_parameters(const ResultGroup& root, const FitTask& task, const MediumFit& fit) {
+  root.number("parameter", task.free.size());
+  root.number("parameter_2", task.free.size());
+  root.put("parameter_name", column(task.free, &FreeParameter::key));
+  root.put("estimate", list(fit.estimates), list(fit.errors));
+  root.put("lower_bound", column(task.free, &FreeParameter::lower));
+  root.put("upper_bound", column(task.free, &FreeParameter::upper));
+  root.put("known", std::vector<std::uint64_t>(fit.known.begin(), fit.known.end()));
+  root.put("parameter_covariance", list(fit.covariance));
+  root.put("parameter_correlation", list(fit.correlation));
+  root.put("worst_combination", list(fit.worst));
+  root.number("derived", fit.derived.size());
+  root.put("derived_name", column(fit.derived, &Derived::name));
+  root.put("derived_value", column(fit.derived, &Derived::value),
+           column(fit.derived, &Derived::error));
+}
+
+void write_data(const ResultGroup& root, const FitTask& task, const MediumFit& fit) {
+  std::vector<std::uint64_t> measurements, curves;
+  std::vector<std::string> observables;
+  std::vector<double> angles, values, errors;
+  std::uint64_t measurement = 0, number = 0;
+  for (const Measurement& one : task.measurements) {
+    for (const Curve& curve : one.curves) {
+      for (const double angle : curve.abscissa) {
+        measurements.push_back(measurement);
+        curves.push_back(number);
+        observables.push_back(observable_words[static_cast<std::size_t>(curve.observable)]);
+        angles.push_back(angle);
+      }
+      ++number;
+    }
+    const auto more = list(one.values), uncertain = list(one.covariance.diagonal().cwiseSqrt());
+    values.insert(values.end(), more.begin(), more.end());
+    errors.insert(errors.end(), uncertain.begin(), uncertain.end());
+    ++measurement;
+  }
+  root.number("measurement", task.measurements.size());
+  root.put("measurement_name", column(task.measurements, &Measurement::name));
+  root.number("datum", values.size());
+  root.put("datum_measurement", measurements);
+  root.put("datum_curve", curves);
+  root.put("datum_observable", observables);
+  root.put("datum_angle", angles);
+  root.put("measured", values, errors);
+  root.put("model", list(fit.model));
+  root.put("pull", list(fit.pulls));
+  root.put("residual", list(fit.residuals));
+}
+
+void write_trace(const ResultGroup& root, const MediumFit& fit) {
+  std::vector<double> parameters;
+  for (const auto& step : fit.trace)
+    parameters.insert(parameters.end(), step.parameters.begin(), step.parameters.end());
+  root.number("iteration", fit.trace.size());
+  root.put("trace_parameter", parameters);
+  root.put("trace_chi_squared", column(fit.trace, &LeastSquaresFit::Step::chi_squared));
+  root.put("trace_cpu_s", column(fit.trace, &LeastSquaresFit::Step::cpu_s));
+}
+
+std::string percent(double share) {
+  std::ostringstream text;
+  text.precision(2);
+  text << 100 * share << " %";
+  return text.str();
+}
+
+}  // namespace
+
+std::string degeneracy(const FitTask& task, const MediumFit& fit) {
+  constexpr double much = 3;
+  const Derived& joint = fit.derived.front();
+  const double known = joint.error / std::abs(joint.value);
+  std::string worst;
+  double least = 0;
+  for (std::size_t i = 0; i < task.free.size(); ++i) {
+    const auto j = static_cast<Eigen::Index>(i);
+    const double error = fit.errors[j] / std::abs(fit.estimates[j]);
+    if (!(error > least)) continue;
+    worst = task.free[i].key;
+    least = error;
+  }
+  if (!(least > much * known)) return "";
+  return "mu_s (1 - g) is known to " + percent(known) + ", " + worst + " alone to " +
+         percent(least);
+}
+
+void write_fit(ResultFile& file, const FitTask& task, const MediumFit& fit) {
+  const ResultGroup root(file, fit_table);
+  write_parameters(root, task, fit);
+  write_data(root, task, fit);
+  write_trace(root, fit);
+  root.attribute("chi_squared", fit.chi_squared);
+  root.attribute("degrees_of_freedom", static_cast<std::int64_t>(fit.degrees_of_freedom()));
+  if (std::isfinite(fit.condition)) root.attribute("condition", fit.condition);
+  root.attribute("numerical_error", fit.numerical);
+  root.attribute("degeneracy", degeneracy(task, fit));
+}
+
+}  // namespace flatspeckle::mc

@@ -1,0 +1,139 @@
+#include "mc/fit/free_parameter.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "core/error.h"
+#include "core/keys/number_text.h"
+
+namespace flatspeckle::mc {
+
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+using Scale = FreeParameter::Scale;
+
+constexpr const char* form = "must be key=lower:upper, as g=0.5:0.99";
+
+/// Positive and without an upper bound of their own.
+const std::set<std::string> of_any_size = {"optical_depth", "mean_free_path", "density", "radius",
+                                           "depth"};
+
+bool is_one_number(const Key* key) {
+  return key != nullptr && !key->is_list() && !key->is_whole() &&
+         (key->is_number() || key->name() == "index");
+}
+
+double number_in(const std::string& given, const std::string& text) {
+  const auto number = read_number(text);
+  if (!number || !std::isfinite(*number)) throw InputError("free", given, form);
+  return *number;
+}
+
+/// Sets a number, or the real part of a complex one.
+void set(const Keys& keys, const std::string& name, double value) {
+  const Key& key = *keys.find(name);
+  if (key.is_number()) return keys.set(name, {number_text(value)});
+  const std::string now = key.shown();
+  const double absorbing = now.empty() ? 0 : parse_complex(name, now).imag();
+  keys.set(name, {number_text(Complex(value, absorbing))});
+}
+
+std::optional<double> start_of(const Key& key) {
+  if (!key.given()) return std::nullopt;
+  return parse_complex(key.name(), key.shown()).real();
+}
+
+FreeParameter parsed(const std::string& text) {
+  const auto equals = text.find('='), colon = text.find(':');
+  if (equals == std::string::npos || colon == std::string::npos || colon < equals)
+    throw InputError("free", text, form);
+  FreeParameter free;
+  free.key = trimmed(text.substr(0, equals));
+  free.lower = number_in(text, text.substr(equals + 1, colon - equals - 1));
+  free.upper = number_in(text, text.substr(colon + 1));
+  if (!(free.lower < free.upper))
+    throw InputError("free", text, "the lower bound must be below the upper one");
+  return free;
+}
+
+void check_bounds(const FreeParameter& free, const std::string& text, const SceneSpec& scene) {
+  const Keyed<SceneSpec> keyed(scene);
+  if (!is_one_number(keyed.keys.find(free.key)))
+    throw InputError("free", text, free.key + " is no key of the scene that holds one number");
+  for (const double bound : {free.lower, free.upper}) {
+    set(keyed.keys, free.key, bound);
+    keyed.keys.check();
+  }
+}
+
+FreeParameter read_one(const std::string& text, const SceneSpec& scene) {
+  FreeParameter free = parsed(text);
+  check_bounds(free, text, scene);
+  const Keyed<SceneSpec> keyed(scene);
+  free.start = start_of(*keyed.keys.find(free.key));
+  if (free.start && !(free.lower <= *free.start && *free.start <= free.upper))
+    throw InputError(free.key, *free.start,
+                     "starts the fit: must be within its bounds, free " + text);
+  if (free.key == "g") free.scale = Scale::to_one;
+  if (of_any_size.contains(free.key)) free.scale = Scale::logarithmic;
+  return free;
+}
+
+VectorXd coordinates_of(const std::vector<FreeParameter>& free, double FreeParameter::*value) {
+  VectorXd found(static_cast<Index>(free.size()));
+  for (std::size_t i = 0; i < free.size(); ++i)
+    found[static_cast<Index>(i)] = free[i].coordinate(free[i].*value);
+  return found;
+}
+
+}  // namespace
+
+double FreeParameter::coordinate(double value) const {
+  if (scale == Scale::linear) return value;
+  return scale == Scale::logarithmic ? std::log(value) : -std::log1p(-value);
+}
+
+double FreeParameter::value(double coordinate) const {
+  double found = coordinate;
+  if (scale == Scale::logarithmic) found = std::exp(coordinate);
+  if (scale == Scale::to_one) found = -std::expm1(-coordinate);
+  return std::clamp(found, lower, upper);
+}
+
+double FreeParameter::slope(double coordinate) const {
+  if (scale == Scale::linear) return 1;
+  return scale == Scale::logarithmic ? std::exp(coordinate) : std::exp(-coordinate);
+}
+
+std::vector<FreeParameter> read_free_parameters(const std::vector<std::string>& texts,
+                                                const SceneSpec& scene) {
+  std::vector<FreeParameter> free;
+  std::set<std::string> seen;
+  for (const std::string& text : texts) {
+    free.push_back(read_one(text, scene));
+    if (!seen.insert(free.back().key).second)
+      throw InputError("free", text, free.back().key + " is given twice");
+  }
+  return free;
+}
+
+SceneSpec with_parameters(const SceneSpec& scene, const std::vector<FreeParameter>& free,
+                          const VectorXd& coordinates) {
+  Keyed<SceneSpec> keyed(scene);
+  for (std::size_t i = 0; i < free.size(); ++i)
+    set(keyed.keys, free[i].key, free[i].value(coordinates[static_cast<Index>(i)]));
+  return keyed.values;
+}
+
+VectorXd lower_coordinates(const std::vector<FreeParameter>& free) {
+  return coordinates_of(free, &FreeParameter::lower);
+}
+
+VectorXd upper_coordinates(const std::vector<FreeParameter>& free) {
+  return coordinates_of(free, &FreeParameter::upper);
+}
+
+}  // namespace flatspeckle::mc

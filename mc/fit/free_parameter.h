@@ -1,0 +1,41 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "flatland/scene/scene.h"
+
+namespace flatspeckle::mc {
+
+/// A key of the scene that is fitted, within bounds. Steps are taken in a coordinate that makes a
+/// straight line of what thick media alone tell, mu_s (1 - g): the logarithm of 1 - g and of what
+/// is positive without bound.
+struct FreeParameter {
+  enum class Scale { linear, logarithmic, to_one };
+  std::string key;
+  double lower = 0, upper = 0;
+  std::optional<double> start;  ///< without one a grid of starts
+  Scale scale = Scale::linear;
+
+  double coordinate(double value) const;
+  double value(double coordinate) const;
+  double slope(double coordinate) const;  ///< of the value by the coordinate
+};
+
+/// Of texts such as "g=0.5:0.99"; the value that the scene gives a key is where it starts. Throws
+/// InputError for what is no such text, for keys that are no number, for bounds that the key does
+/// not accept, and for starts beyond them.
+std::vector<FreeParameter> read_free_parameters(const std::vector<std::string>& texts,
+                                                const SceneSpec& scene);
+
+/// The scene with the values of the parameters at these coordinates.
+SceneSpec with_parameters(const SceneSpec& scene, const std::vector<FreeParameter>& free,
+                          const Eigen::VectorXd& coordinates);
+
+Eigen::VectorXd lower_coordinates(const std::vector<FreeParameter>& free);
+Eigen::VectorXd upper_coordinates(const std::vector<FreeParameter>& free);
+
+}  // namespace flatspeckle::mc

@@ -1,0 +1,177 @@
+#include "mc/fit/slab_model.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.h"
+#include "mc/estimators/flux_walk.h"
+#include "mc/slab/slab_covariance.h"
+#include "mc/slab/slab_flux.h"
+#include "mc/space/space_flux.h"
+#include "mc/space/space_scene.h"
+#include "mc/theory/memory_effect.h"
+
+namespace flatspeckle::mc {
+
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+bool is_flux(Observable observable) {
+  return observable == Observable::reflectance || observable == Observable::transmittance;
+}
+
+/// Reversed paths add about 1 / (k l* angle) of what is seen at this angle from backscattering.
+bool needs_reversed(const Scene& scene) {
+  constexpr double negligible = 1e-3;
+  const double width = 1 / (scene.k * scene.medium.transport_mean_free_path());
+  for (const Channel& channel : scene.request.channels) {
+    const View& view = scene.request.views[channel.view];
+    const Light& light = scene.request.lights[channel.light];
+    if (view.near || light.kind != Light::Kind::plane) return true;
+    if (std::cos(view.angle) > 0) continue;
+    const double angle = std::abs(std::sin(light.angle) + std::sin(view.angle));
+    if (angle * negligible < width) return true;
+  }
+  return false;
+}
+
+/// Adds the channels and entries of another request, as pairs.
+void join(CovarianceRequest& all, const CovarianceRequest& more) {
+  const auto lights = static_cast<std::uint32_t>(all.lights.size()),
+             views = static_cast<std::uint32_t>(all.views.size()),
+             channels = static_cast<std::uint32_t>(all.channels.size());
+  all.kind = CovarianceRequest::Kind::pairs;
+  all.lights.insert(all.lights.end(), more.lights.begin(), more.lights.end());
+  all.views.insert(all.views.end(), more.views.begin(), more.views.end());
+  for (const Channel& channel : more.channels)
+    all.channels.push_back({channel.light + lights, channel.view + views});
+  for (const Entry& entry : more.entries)
+    all.entries.push_back({entry.a + channels, entry.b + channels});
+}
+
+/// Those of a curve, of the covariance entries of its request.
+std::vector<double> observed(const Curve& curve, const CovarianceRequest& request,
+                             std::span<const Complex> entries) {
+  const bool intensity = curve.observable == Observable::intensity;
+  const auto all = intensity ? std::vector<Complex>(entries.begin(), entries.end())
+                             : field_correlation(request, entries);
+  std::vector<double> values;
+  for (const std::size_t entry : curve.entries) {
+    const double value = all[entry].real();
+    values.push_back(curve.observable == Observable::intensity_correlation ? value * value : value);
+  }
+  return values;
+}
+
+void put(VectorXd& all, Index first, const std::vector<double>& values) {
+  std::copy(values.begin(), values.end(), all.data() + first);
+}
+
+}  // namespace
+
+Scene scene_of(const SceneSpec& spec) {
+  const Scene scene = make_scene(spec);
+  return spec.dimension == 3 ? in_space(scene, spec) : scene;
+}
+
+SlabModel::SlabModel(std::vector<Curve> curves, const std::vector<Scene>& scenes)
+    : curves_(std::move(curves)) {
+  for (std::size_t i = 0; i < curves_.size(); ++i) {
+    if (scenes[i].domain.kind != Domain::Kind::slab)
+      throw InputError("domain", "box", "measurements are compared with slabs");
+    first_.push_back(size_);
+    size_ += static_cast<Index>(curves_[i].entries.size());
+    const auto group =
+        std::ranges::find_if(groups_, [&](const Group& one) { return joins(one, scenes, i); });
+    const bool flux = is_flux(curves_[i].observable);
+    if (group == groups_.end())
+      groups_.push_back({flux, !flux && needs_reversed(scenes[i]), {i}});
+    else
+      group->curves.push_back(i);
+  }
+}
+
+bool SlabModel::joins(const Group& group, const std::vector<Scene>& scenes,
+                      std::size_t curve) const {
+  const Scene &first = scenes[group.curves.front()], &scene = scenes[curve];
+  const bool flux = is_flux(curves_[curve].observable);
+  return first.domain.depth == scene.domain.depth && first.k == scene.k && group.flux == flux &&
+         (flux || (!has_near_ends(first.request) && !has_near_ends(scene.request) &&
+                   group.reversed == needs_reversed(scene)));
+}
+
+bool SlabModel::reversed() const {
+  return std::ranges::any_of(groups_, &Group::reversed);
+}
+
+double SlabModel::refine(const std::vector<Scene>& scenes, const VectorXd& errors, double share) {
+  constexpr int most = 100;
+  while (true) {
+    const Solved found = solved(scenes);
+    const double change = (found.fine - found.coarse).cwiseQuotient(errors).cwiseAbs().maxCoeff();
+    if (change < share || order_ > most) return change;
+    order_ = Refinement::next_order(order_);
+  }
+}
+
+SlabModel::Solved SlabModel::solved(const std::vector<Scene>& scenes) const {
+  Solved all{VectorXd(size_), VectorXd(size_)};
+  for (const Group& group : groups_)
+    group.flux ? solve_flux(group, scenes, all) : solve_fields(group, scenes, all);
+  return all;
+}
+
+void SlabModel::solve_fields(const Group& group, const std::vector<Scene>& scenes,
+                             Solved& all) const {
+  constexpr double tolerance = 1e-4;  // of paths of two scatterings, a hundredth of it
+  Scene joint = scenes[group.curves.front()];
+  joint.request = {};
+  for (const std::size_t i : group.curves) join(joint.request, scenes[i].request);
+  const Refinement two_orders{tolerance, order_, 1};
+  const Refined found = joint.medium.dimension == 3
+                            ? space_covariance(joint, group.reversed, two_orders)
+                            : slab_covariance(joint, group.reversed, two_orders);
+  auto before = found.value;
+  for (std::size_t e = 0; e < before.size(); ++e) before[e] -= found.difference[e];
+  std::size_t entry = 0;
+  for (const std::size_t i : group.curves) {
+    const CovarianceRequest& request = scenes[i].request;
+    const std::size_t count = request.entries.size();
+    put(all.fine, first_[i],
+        observed(curves_[i], request, std::span(found.value).subspan(entry, count)));
+    put(all.coarse, first_[i],
+        observed(curves_[i], request, std::span(before).subspan(entry, count)));
+    entry += count;
+  }
+}
+
+void SlabModel::solve_flux(const Group& group, const std::vector<Scene>& scenes,
+                           Solved& all) const {
+  constexpr Refinement precise{1e-6};
+  constexpr std::size_t bins = 1, shares = flux_shares + bins;
+  Scene joint = scenes[group.curves.front()];
+  Lights& lights = joint.request.lights;
+  lights.clear();
+  const auto place = [&](const Light& light) {
+    const auto found = std::ranges::find(lights, light);
+    if (found != lights.end()) return found - lights.begin();
+    lights.push_back(light);
+    return std::ssize(lights) - 1;
+  };
+  std::vector<std::size_t> places;
+  for (const std::size_t i : group.curves)
+    for (const std::size_t entry : curves_[i].entries)
+      places.push_back(
+          shares * static_cast<std::size_t>(place(scenes[i].request.lights[entry])) +
+          (curves_[i].observable == Observable::reflectance ? reflected : transmitted));
+  const Refined found = joint.medium.dimension == 3 ? space_flux(joint, bins, precise)
+                                                    : slab_flux(joint, bins, precise);
+  auto next = places.begin();
+  for (const std::size_t i : group.curves)
+    for (Index j = 0; j < std::ssize(curves_[i].entries); ++j, ++next)
+      all.fine[first_[i] + j] = all.coarse[first_[i] + j] = found.value[*next].real();
+}
+
+}  // namespace flatspeckle::mc

@@ -1,0 +1,86 @@
+#!/usr/bin/env python3
+"""A fit: data and fitted curves, what is left of them in standard errors, and the ellipses of pairs of
+parameters (1 and 2 standard errors)."""
+
+from lib import style
+
+import matplotlib.pyplot as plt
+import numpy as np
+
+NAMES = {"field_correlation": r"$C_E$", "intensity_correlation": r"$C_I$", "intensity": "intensity",
+         "reflectance": "reflectance", "transmittance": "transmittance"}
+
+
+def texts(result, name):
+    return [text.decode() for text in result.values(name)]
+
+
+def draw_data(axis, pulls, result):
+    observable = np.array(texts(result, "datum_observable"))
+    curve, angle = result.values("datum_curve"), result.values("datum_angle")
+    single = []
+    for number in np.unique(curve):
+        rows = np.flatnonzero(curve == number)
+        look = style.look(int(number))
+        name = observable[rows[0]]
+        if len(rows) == 1:
+            single.append((name, rows[0], look))
+            continue
+        rows = rows[np.argsort(angle[rows])]
+        axis.errorbar(angle[rows], result.values("measured")[rows], result.values("measured_error")[rows],
+                      linestyle="none", color=look["color"], marker=look["marker"], label=NAMES[name])
+        axis.plot(angle[rows], result.values("model")[rows], color=look["color"], linestyle=look["linestyle"])
+        pulls.plot(angle[rows], result.values("pull")[rows], color=look["color"], marker=look["marker"],
+                   linestyle="none")
+    for place, (name, row, look) in enumerate(single):
+        text = f"{NAMES[name]} {result.values('measured')[row]:.3g}, {result.values('pull')[row]:+.1f} errors"
+        axis.text(0.97, 0.97 - 0.08 * place, text, transform=axis.transAxes, ha="right", va="top", fontsize=7)
+    axis.set(ylabel="measured")
+    axis.tick_params(labelbottom=False)
+    pulls.axhspan(-1, 1, color="0.9")
+    pulls.set(xlabel="tilt or angle (rad)", ylabel="pull")
+    most = 1.2 * max(2, np.abs(result.values("pull")).max())
+    pulls.set_ylim(-most, most)
+
+
+def ellipse(covariance, size):
+    """Points of an ellipse of so many standard errors."""
+    turn = np.linspace(0, 2 * np.pi, 200)
+    values, vectors = np.linalg.eigh(covariance)
+    return vectors @ (size * np.sqrt(np.maximum(values, 0))[:, None] * [np.cos(turn), np.sin(turn)])
+
+
+def draw_pair(axis, result, i, j):
+    names, estimate = texts(result, "parameter_name"), result.values("estimate")
+    covariance = result.values("parameter_covariance")[np.ix_([j, i], [j, i])]
+    for size, line in ((1, "-"), (2, "--")):
+        x, y = ellipse(covariance, size)
+        axis.plot(estimate[j] + x, estimate[i] + y, line, color=style.COLOURS[0])
+    axis.plot(estimate[j], estimate[i], "+", color="k")
+    axis.set(xlabel=names[j], ylabel=names[i])
+    axis.locator_params(nbins=4)
+
+
+def draw(results):
+    result = results[0]
+    count = len(result.values("estimate"))
+    pairs = [(i, j) for i in range(count) for j in range(i)]
+    columns = max(1, -(-len(pairs) // 3))
+    figure = plt.figure(figsize=(style.PAGE, 3.6))
+    left, right = figure.subfigures(1, 2, width_ratios=[1.6, columns])
+    data, pulls = left.subplots(2, 1, sharex=True, height_ratios=[3, 1])
+    draw_data(data, pulls, result)
+    if not pairs:
+        right.text(0.5, 0.5, f"{texts(result, 'parameter_name')[0]}\n{result.values('estimate')[0]:.4g} "
+                   f"± {result.values('estimate_error')[0]:.2g}", ha="center")
+        return figure
+    axes = np.atleast_1d(right.subplots(min(3, len(pairs)), columns)).ravel()
+    for axis, (i, j) in zip(axes, pairs):
+        draw_pair(axis, result, i, j)
+    for axis in axes[len(pairs):]:
+        axis.remove()
+    return figure
+
+
+if __name__ == "__main__":
+    style.main(draw, __doc__)

@@ -1,0 +1,84 @@
+"""Fits that are refused: one line, status 2, nothing written."""
+
+import unittest
+
+from refusing import RefusingTest
+
+GOOD = "tilt,field_correlation,error\n0.0001,0.9,0.01\n0.0002,0.8,0.01\n0.0004,0.7,0.01\n"
+FREE = ["g=0.5:0.95"]
+SLAB = {"depth": 2000, "optical_depth": 4}
+
+
+class BadFit(RefusingTest):
+    def refused(self, words, table=GOOD, free=None, **keys):
+        path = self.write("m.csv", table)
+        self.assert_refused(words, "fit", "--free", *(free or FREE), "--measurement", path.name,
+                            **{**SLAB, **keys})
+
+    def test_free_keys(self):
+        for free in ("g", "g=", "g=0.5", "g=0.5:", "g=a:b", "g=0.5:inf", "0.5:0.9"):
+            self.refused(["free = ", "key=lower:upper"], free=[free])
+        self.refused(["lower bound must be below"], free=["g=0.9:0.5"])
+        self.refused(["g = 1:", "(-1, 1)"], free=["g=0.5:1"])
+        self.refused(["no key of the scene"], free=["gg=0.5:0.9"])
+        self.refused(["no key of the scene"], free=["scatterer=0.5:0.9"])
+        self.refused(["no key of the scene"], free=["tilts=0.5:0.9"])
+        self.refused(["given twice"], free=["g=0.5:0.9", "g=0.1:0.2"])
+        self.refused(["g = 0.2", "within its bounds"], g=0.2)
+        self.refused(["radius", "is a key of"], free=["radius=0.1:0.2"])
+        self.refused(["density is given more than once"], free=["mean_free_path=1:100"])
+        self.refused(["free = 4", "more than these"], optical_depth=None,
+                     free=["g=0.5:0.9", "albedo=0.5:1", "optical_depth=1:10", "wavelength=0.9:1.1"])
+
+    def test_errors(self):
+        self.refused(["m.csv", "has no errors"], "tilt,field_correlation\n0.1,0.5\n")
+        self.refused(["error of value 1 must be positive"],
+                     "tilt,field_correlation,error\n0.1,0.5,0\n0.2,0.5,0\n")
+        self.refused(["error of value 2 must be positive"],
+                     "tilt,field_correlation,error\n0.1,0.5,1\n0.2,0.5,-1\n")
+        self.refused(["covariance_2"], "tilt,field_correlation,covariance_1\n0.1,0.5,1\n0.2,0.5,1\n")
+        self.refused(["symmetric"], "tilt,field_correlation,covariance_1,covariance_2\n"
+                                    "0.1,0.5,1,0.5\n0.2,0.5,0.4,1\n")
+        self.refused(["positive definite"], "tilt,field_correlation,covariance_1,covariance_2\n"
+                                            "0.1,0.5,1,2\n0.2,0.5,2,1\n")
+        self.refused(["leave one out"], "tilt,field_correlation,error,covariance_1\n0.1,0.5,1,1\n")
+
+    def test_shapes(self):
+        self.refused(["one column among"], "tilt,error\n0.1,0.1\n")
+        self.refused(["one column among"], "tilt,field_correlation,intensity,error\n0.1,1,1,1\n")
+        self.refused(["tilt"], "field_correlation,error\n0.5,0.1\n")
+        self.refused(["column depth"], "depth,transmittance,error\n5,0.5,0.1\n")
+        self.refused(["column tilt"], "tilt,transmittance,error\n5,0.5,0.1\n")
+        self.refused(["at least one row"], "transmittance,error\n")
+        self.refused(["given twice"], "tilt,field_correlation,error\n0.1,0.5,1\n0.1,0.5,1\n")
+        self.refused(["light_angles", "pi/2"], "light_angle,transmittance,error\n3,0.5,0.1\n")
+        self.refused(["finite number"], "transmittance,error\nhalf,0.1\n")
+
+    def test_scene(self):
+        self.refused(["depth"], depth=None)
+        self.refused(["domain"], domain="box")
+        self.assert_refused(["free is not given"], "fit", measurement="m.csv")
+        self.assert_refused(["measurement is not given"], "fit", free="g=0:0.5")
+        self.assert_refused(["no.csv"], "fit", free="g=0:0.5", measurement="no.csv", **SLAB)
+        self.write("damaged.h5", "no result")
+        self.assert_refused(["damaged.h5"], "fit", free="g=0:0.5", measurement="damaged.h5", **SLAB)
+
+    def test_results(self):
+        slab = {"domain": "slab", "scatterer": "hg", "optical_depth": 2, "depth": 100}
+        self.call("flux", **slab, method="transport", out="transport.h5")
+        self.call("flux", **slab, samples=1000, out="mc.h5")
+        self.call("covariance", **slab, covariance="pairs", pairs=[0, 0.1, 0, 0.1], samples=1000,
+                  out="pairs.h5")
+        free = {"free": "g=0:0.5"}
+        self.assert_refused(["numerical errors"], "fit", **free, optical_depth=2,
+                            measurement="transport.h5")
+        self.assert_refused(["has none of"], "fit", **free, optical_depth=2, measurement="pairs.h5")
+        self.assert_refused(["depth = 50", "has 100"], "fit", **free, optical_depth=2, depth=50,
+                            measurement="mc.h5")
+        self.call("flux", **{**slab, "depth": 50}, samples=1000, out="thin.h5")
+        self.assert_refused(["share mean_free_path"], "fit", free="optical_depth=1:3", g=0.2,
+                            measurement=["mc.h5", "thin.h5"])
+
+
+if __name__ == "__main__":
+    unittest.main()

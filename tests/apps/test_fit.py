@@ -1,0 +1,85 @@
+"""A slab's parameters from measured tables and from results of the program itself."""
+
+import unittest
+
+import numpy as np
+
+from program import DATA, ProgramTest, attributes, datasets
+
+MEASURED = DATA / "measurements"
+FREE = ["g=0.5:0.95", "albedo=0.9:1", "optical_depth=1:20"]
+TRUTH = [0.8, 0.98, 4]
+
+
+class Fit(ProgramTest):
+    def fit(self, *measurements, status=0, **keys):
+        done = self.call("fit", "--free", *keys.pop("free", FREE), status=status, depth=2000, threads=1,
+                         measurement=[str(one) for one in measurements], out="fit.h5", **keys)
+        return done, datasets(self.folder / "fit.h5")
+
+    def test_tables(self):
+        done, found = self.fit(MEASURED / "slab_transmission.csv", MEASURED / "slab_reflection.csv",
+                               MEASURED / "slab_transmittance.csv")
+        pulls = (found["estimate"] - TRUTH) / found["estimate_error"]
+        self.assertLess(np.abs(pulls).max(), 3)
+        self.assertEqual([name.decode() for name in found["parameter_name"]],
+                         ["g", "albedo", "optical_depth"])
+        chi_squared = attributes(self.folder / "fit.h5")["chi_squared"]
+        self.assertAlmostEqual(chi_squared, np.sum(found["pull"]**2), delta=1e-6)
+        self.assertLess(chi_squared, 14 + 4 * 28**0.5)
+        self.assertIn("mu_s (1 - g) is known to", done.stdout)
+
+    def test_start(self):
+        """The same end from another start, and one that the scene states."""
+        files = [MEASURED / "slab_transmission.csv", MEASURED / "slab_reflection.csv",
+                 MEASURED / "slab_transmittance.csv"]
+        _, grid = self.fit(*files)
+        _, stated = self.fit(*files, g=0.55, albedo=0.91, optical_depth=15)
+        off = np.abs(grid["estimate"] - stated["estimate"]) / grid["estimate_error"]
+        self.assertLess(off.max(), 0.1)
+
+    def test_covariance_in_place_of_errors(self):
+        rows = np.loadtxt(MEASURED / "slab_transmission.csv", delimiter=",", skiprows=2)
+        columns = np.hstack([rows[:, :3], np.diag(rows[:, 3]**2)])
+        names = ["view_angle", "tilt", "field_correlation"] + [f"covariance_{i}" for i in range(1, 9)]
+        np.savetxt(self.folder / "t.csv", columns, delimiter=",", header=",".join(names), comments="")
+        free = ["g=0.5:0.95", "optical_depth=1:20"]
+        _, errors = self.fit(MEASURED / "slab_transmission.csv", free=free, albedo=0.98)
+        _, covariance = self.fit("t.csv", free=free, albedo=0.98)
+        np.testing.assert_allclose(errors["estimate"], covariance["estimate"], rtol=1e-6)
+
+    def test_squares(self):
+        """C_I with the errors of C_E^2 tells the same."""
+        rows = np.loadtxt(MEASURED / "slab_transmission.csv", delimiter=",", skiprows=2)
+        rows[:, 3] *= 2 * rows[:, 2]
+        rows[:, 2] **= 2
+        np.savetxt(self.folder / "t.csv", rows, delimiter=",", comments="",
+                   header="view_angle,tilt,intensity_correlation,error")
+        free = ["g=0.5:0.95", "optical_depth=1:20"]
+        _, field = self.fit(MEASURED / "slab_transmission.csv", free=free, albedo=0.98)
+        _, squares = self.fit("t.csv", free=free, albedo=0.98)
+        off = np.abs(field["estimate"] - squares["estimate"]) / field["estimate_error"]
+        self.assertLess(off.max(), 0.3)
+
+    def test_results(self):
+        """Power through two thicknesses of one medium, by Monte Carlo."""
+        medium = {"domain": "slab", "scatterer": "hg", "g": 0.5, "albedo": 0.9,
+                  "mean_free_path": 50, "samples": 20000}
+        for depth in (50, 200):
+            self.call("flux", **medium, depth=depth, out=f"{depth}.h5")
+        self.call("fit", "--free", "albedo=0.5:1", "mean_free_path=10:200", g=0.5,
+                  measurement=["50.h5", "200.h5"], out="fit.h5")
+        found = datasets(self.folder / "fit.h5")
+        pulls = (found["estimate"] - [0.9, 50]) / found["estimate_error"]
+        self.assertLess(np.abs(pulls).max(), 4)
+
+    def test_not_converged(self):
+        done, found = self.fit(MEASURED / "slab_transmission.csv", MEASURED / "slab_reflection.csv",
+                               MEASURED / "slab_transmittance.csv", status=3, most_iterations=1)
+        self.assertIn("not converged", done.stdout)
+        self.assertEqual(attributes(self.folder / "fit.h5")["converged"], 0)
+        self.assertEqual(len(found["estimate"]), 3)
+
+
+if __name__ == "__main__":
+    unittest.main()
