@@ -44,6 +44,7 @@ KINDS = {
     "frames": ("image", {**BOX, "count": None, "scatterer": "hg", "optical_depth": 1,
                          "object_x": [0, 3], "object_depth": -30, "camera": [-0.5, 0.5], "pixels": 512, "repeats": 2, "threads": 1}),
     "power": ("flux", {**SLAB}),
+    "fitted": ("fit", {"free": ["g=0.5:0.95", "optical_depth=1:20"], "depth": 2000, "measurement": DATA / "measurements/slab_transmission.csv"}),
     "rays": ("trace", RAYS),
     "picture": ("render", {**SPACE, "pixels": [4, 4]}),
     "pulse": ("render", {**SPACE, "pixels": [4, 4], "path_bins": [1, 3, 4]}),
@@ -55,7 +56,7 @@ KINDS = {
 # What each script draws.
 OWN = {"memory_effect": {"grid", "points", "curve", "moves"}, "memory_range": {"grid", "points"},
        "range_map": {"grid"}, "convergence": {"grid", "points"}, "tilt_shift": {"map"},
-       "dws": {"delays"}, "validation": {"both"}, "speckle_field": {"fields"}, "image": {"frames"},
+       "dws": {"delays"}, "validation": {"both"}, "speckle_field": {"fields"}, "image": {"frames"}, "fit": {"fitted"},
        "rays": {"rays"}, "render": {"picture", "pulse"}, "render_time": {"pulse"},
        "light_map": {"light"}, "field_map": {"near"}}
 
