@@ -120,9 +120,11 @@ Information information(const LeastSquares& problem, const MatrixXd& jacobian) {
   Information found;
   found.worst = combinations.col(0);
   found.best = combinations.col(last);
-  const bool all_known = known[0] > known[last] * std::numeric_limits<double>::epsilon();
+  constexpr double nothing = 1e-12;  // known to a million times the distance of the bounds
+  const double least = std::max(nothing, known[last] * std::numeric_limits<double>::epsilon());
+  const bool all_known = known[0] > least;
   found.condition = all_known ? known[last] / known[0] : std::numeric_limits<double>::infinity();
-  const VectorXd at_least = known.cwiseMax(1).cwiseSqrt().cwiseInverse();
+  const VectorXd at_least = known.cwiseMax(least).cwiseSqrt().cwiseInverse();
   const MatrixXd root = range.asDiagonal() * combinations * at_least.asDiagonal();
   found.covariance = root * root.transpose();
   const VectorXd inverse = found.errors().cwiseInverse();

@@ -113,7 +113,7 @@ TEST_CASE("what cannot be told apart is named, not hidden") {
   CHECK(fit.chi_squared() < 1e-6);
   const auto known = information(sum_alone, fit.jacobian);
   CHECK(std::isinf(known.condition));
-  CHECK(known.covariance(0, 0) == doctest::Approx(0.75));  // of sum and difference, 1/2 and 1
+  CHECK(known.covariance(0, 0) > 1e6);
   CHECK(known.best[0] == doctest::Approx(known.best[1]));
   CHECK(known.worst[0] == doctest::Approx(-known.worst[1]));
 }

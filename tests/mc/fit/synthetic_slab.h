@@ -1,0 +1,112 @@
+#pragma once
+
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "mc/estimators/flux_walk.h"
+#include "mc/fit/medium_fit.h"
+#include "mc/slab/slab_covariance.h"
+#include "mc/slab/slab_flux.h"
+#include "mc/theory/memory_effect.h"
+#include "tests/mc/estimates.h"
+
+namespace flatspeckle::mc::tests {
+
+/// A slab that measurements are made of, by transport that is refined to a part in a million, and
+/// noise that is a share of each value.
+class SyntheticSlab {
+ public:
+  SyntheticSlab(double depth, double g, double albedo, double optical_depth)
+      : depth_(depth), share_(0.01) {
+    slab_.domain = "slab";
+    slab_.depth = depth;
+    slab_.scatterer = "hg";
+    truth_ = slab_;
+    truth_.g = g;
+    truth_.albedo = albedo;
+    truth_.optical_depth = optical_depth;
+  }
+
+  /// C_E of a view, tilts in 1/depth of the transverse wavenumber.
+  void add_curve(double view, const std::vector<double>& tilts) {
+    Curve curve{slab_, Observable::field_correlation, {}, {}};
+    curve.scene.covariance = "memory_effect";
+    curve.scene.view_angles = {view};
+    for (const double tilt : tilts)
+      add(curve, std::asin(tilt / depth_ / (2 * pi)), curve.scene.tilts);
+    const Scene scene = at_truth(curve.scene);
+    const auto values =
+        field_correlation(scene.request, slab_covariance(scene, false, {1e-6}).value);
+    put(curve, real_parts(values));
+  }
+
+  void add_transmittance() {
+    Curve curve{slab_, Observable::transmittance, {0}, {0}};
+    put(curve, {slab_flux(at_truth(curve.scene), 1, {1e-6}).value[transmitted].real()});
+  }
+
+  /// With noise of a seed.
+  std::vector<Measurement> measured(unsigned seed) const {
+    std::mt19937_64 random(seed);
+    std::normal_distribution<double> normal;
+    auto all = exact_;
+    for (Measurement& one : all) {
+      const Eigen::VectorXd error = share_ * one.values.cwiseAbs();
+      one.covariance = error.cwiseAbs2().asDiagonal();
+      for (Eigen::Index i = 0; i < error.size(); ++i) one.values[i] += error[i] * normal(random);
+    }
+    return all;
+  }
+  /// Without noise.
+  std::vector<Measurement> exact() const {
+    auto all = exact_;
+    for (Measurement& one : all) one.covariance = (share_ * one.values).cwiseAbs2().asDiagonal();
+    return all;
+  }
+
+ private:
+  Scene at_truth(SceneSpec spec) const {
+    spec.g = truth_.g;
+    spec.albedo = truth_.albedo;
+    spec.optical_depth = truth_.optical_depth;
+    return make_scene(spec);
+  }
+  static void add(Curve& curve, double x, std::vector<double>& axis) {
+    curve.entries.push_back(axis.size());
+    curve.abscissa.push_back(x);
+    axis.push_back(x);
+  }
+  void put(const Curve& curve, const std::vector<double>& values) {
+    Measurement one{"synthetic", {curve}, {}, {}};
+    one.values =
+        Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+    exact_.push_back(one);
+  }
+
+  double depth_, share_;
+  SceneSpec slab_, truth_;
+  std::vector<Measurement> exact_;
+};
+
+/// The three that describe a slab; from grids of starts.
+inline FitTask slab_task(std::vector<Measurement> measurements, double thickest = 20) {
+  SceneSpec none;
+  none.scatterer = "hg";
+  FitTask task;
+  task.free = read_free_parameters(
+      {"g=0.5:0.95", "albedo=0.9:1", "optical_depth=1:" + std::to_string(thickest)}, none);
+  task.measurements = std::move(measurements);
+  return task;
+}
+
+/// Two views in transmission and two in reflection, and the transmittance.
+inline SyntheticSlab standard_slab() {
+  SyntheticSlab slab(2000, 0.8, 0.98, 4);
+  for (const double view : {0.0, 0.3, pi - 0.44, pi - 0.84})
+    slab.add_curve(view, {1.25, 2.5, 5, 10});
+  slab.add_transmittance();
+  return slab;
+}
+
+}  // namespace flatspeckle::mc::tests
