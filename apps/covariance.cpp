@@ -61,13 +61,12 @@ int covariance(const Arguments& arguments) {
   const auto reversed = method == "wave" ? mc::ReversedPaths::no : reversed_paths(keys, methods);
   if (method == "wave") keys.read(methods.wave_tolerance);
   if (method != "wave") keys.read(spec.dimension);
-  if (method != "wave") read_extras(keys, extras, method == "transport");
+  read_extras(keys, extras, method);
   const Scene scene = with_dimension(make_scene(keys, spec), spec);
   const auto [estimation, write_extras] =
-      method == "mc" ? extended_estimation(scene, reversed, extras, session.seed())
-      : method == "wave"
-          ? ExtendedEstimation{wave_estimation(scene, methods.wave_tolerance, session.seed()), {}}
-          : extended_transport(scene, reversed, extras, methods.tolerance);
+      method == "mc"     ? extended_estimation(scene, reversed, extras, session.seed())
+      : method == "wave" ? extended_waves(scene, extras, methods.wave_tolerance, session.seed())
+                         : extended_transport(scene, reversed, extras, methods.tolerance);
   disregard_unused(keys, spec, {method});
   const Neglected neglected(scene);
   if (method != "wave") refuse_absurd(methods, neglected);

@@ -5,14 +5,16 @@
 #include <numbers>
 
 #include "apps/command/subcommands.h"
+#include "apps/results/comparison.h"
 #include "apps/results/datasets.h"
-#include "apps/results/estimation.h"
+#include "apps/results/extras.h"
 #include "apps/results/moments_table.h"
 #include "core/error.h"
 #include "core/result/result_group.h"
 #include "core/session/identity.h"
 #include "core/session/session.h"
 #include "flatland/scene/scene_datasets.h"
+#include "mc/changes/frequency_shifts.h"
 #include "mc/slab/refinement.h"
 #include "mc/theory/moments_datasets.h"
 
@@ -23,7 +25,11 @@ const DatasetTable validate_table{
     .rows = {{"entry", Data::numbers, "", "1", "number of the entry"},
              {"deviation", Data::real, "entry", "1",
               "|mc - reference| in combined standard errors, per entry in the order of the "
-              "request"}},
+              "request"},
+             {"frequency_deviation", Data::real, "frequency_shift LIGHT VIEW", "1",
+              "the same of mc/frequency_correlation"},
+             {"frequency_tilt_deviation", Data::real, "frequency_shift tilt", "1",
+              "the same of mc/frequency_tilt_correlation"}},
     .attributes = {
         {"", "bias_allowance", "float64",
          "relative size of a difference without chance: what Monte Carlo neglects of exact "
@@ -58,59 +64,34 @@ bool misses_forward_lobe(const Scene& scene) {
 /// What Monte Carlo is held against: placements solved exactly, or a slab's transport.
 struct Reference {
   std::string name;
-  Estimation estimation;
+  ChangeEstimation estimation;
   StopRule stop;
   double bias;
 };
 
-struct Comparison {
-  std::string name;
-  Estimate reference, mc;
-  double bias = 0;
-
-  /// Not below what rounding leaves.
-  double error(std::size_t e) const {
-    const double largest = std::max(std::abs(reference.value[e]), std::abs(mc.value[e]));
-    return std::hypot(reference.error[e], mc.error[e], 1e-13 * largest);
-  }
-  double difference(std::size_t e) const { return std::abs(mc.value[e] - reference.value[e]); }
-  double deviation(std::size_t e) const {
-    return difference(e) == 0 ? 0 : difference(e) / error(e);
-  }
-  bool within_errors(std::size_t e) const { return deviation(e) <= 4; }
-  bool within_bias(std::size_t e) const {
-    return difference(e) <= bias * std::abs(reference.value[e]);
-  }
-};
-
-void print_row(const CovarianceRequest& request, const Comparison& comparison, std::size_t e) {
-  const auto [a, b] = request.entries[e];
-  const double scale = std::max(std::abs(comparison.reference.value[e]), 1e-300);
-  std::printf("%s %s  %21s %8.2g  %21s %8.2g  %6.1f %%  %5.1f%s\n",
-              shown_channel(request, a).c_str(), shown_channel(request, b).c_str(),
-              shown_value(comparison.mc.value[e]).c_str(), comparison.mc.error[e],
-              shown_value(comparison.reference.value[e]).c_str(), comparison.reference.error[e],
-              100 * comparison.difference(e) / scale, comparison.deviation(e),
-              comparison.within_errors(e) ? ""
-              : comparison.within_bias(e) ? "  within"
-                                          : "  *");
+RowNames entry_names(const CovarianceRequest& request) {
+  return {"light 1  view 1   light 2  view 2  ", [&request](std::size_t e) {
+            const auto [a, b] = request.entries[e];
+            return shown_channel(request, a) + ' ' + shown_channel(request, b);
+          }};
 }
 
-void print_comparison(const Scene& scene, const Comparison& comparison) {
-  const auto& request = scene.request;
-  const std::size_t entries = shown_entries(request);
-  std::printf("%-17s %-17s  %21s %8s  %21s %8s  %8s  %s\n", "light 1  view 1", "light 2  view 2",
-              "mc", "error", comparison.name.c_str(), "error", "|diff|", "sigma");
-  std::size_t in_errors = 0, in_bias = 0;
-  for (std::size_t e = 0; e < entries; ++e) {
-    if (e < most_rows) print_row(request, comparison, e);
-    if (comparison.within_errors(e))
-      ++in_errors;
-    else if (comparison.within_bias(e))
-      ++in_bias;
-  }
-  if (entries > most_rows) std::printf("... and %zu more\n", entries - most_rows);
-  std::printf("%zu entries: %zu within 4 combined standard errors, ", entries, in_errors);
+RowNames shift_names(const CovarianceRequest& request, const std::vector<double>& shifts) {
+  return {request.has_reference() ? "tilt                   shift" : "light    view          shift",
+          [&](std::size_t row) {
+            const std::size_t count =
+                request.has_reference() ? request.moves : request.channels.size();
+            char shift[16];
+            std::snprintf(shift, sizeof shift, " %10.4g", shifts[row / count]);
+            return shown_change(request, row % count) + shift;
+          }};
+}
+
+void print_agreement(const Scene& scene, const Comparison& comparison, const RowNames& names,
+                     std::size_t values) {
+  const auto [in_errors, in_bias] = print_comparison(comparison, values, names);
+  std::printf("%zu %s: %zu within 4 combined standard errors, ", values,
+              comparison.correlations ? "correlations" : "entries", in_errors);
   if (comparison.name == "transport")
     std::printf("%zu more within its tolerance, ", in_bias);
   else if (comparison.bias > 0)
@@ -119,7 +100,11 @@ void print_comparison(const Scene& scene, const Comparison& comparison) {
         "method neglects at k mfp = %.1f, packing %.3f, k_shift / k = %.3f; ",
         in_bias, 100 * comparison.bias, scene.k * scene.medium.mean_free_path(),
         scene.medium.packing_fraction, scene.medium.k_shift / scene.k);
-  std::printf("%zu beyond (*)\n", entries - in_errors - in_bias);
+  std::printf("%zu beyond (*)\n", values - in_errors - in_bias);
+}
+
+void print_entries(const Scene& scene, const Comparison& comparison) {
+  print_agreement(scene, comparison, entry_names(scene.request), shown_entries(scene.request));
   if (misses_forward_lobe(scene))
     std::puts(
         "with a fixed count the exact covariance lacks the forward lobe's number fluctuation; "
@@ -128,30 +113,55 @@ void print_comparison(const Scene& scene, const Comparison& comparison) {
 
 void write_comparison(ResultFile& file, const Comparison& comparison) {
   const ResultGroup root(file, validate_table);
-  std::vector<double> deviation;
-  for (std::size_t e = 0; e < comparison.mc.value.size(); ++e)
-    deviation.push_back(comparison.deviation(e));
-  root.number("entry", deviation.size());
-  root.put("deviation", deviation);
+  const auto deviations = comparison.deviations();
+  root.number("entry", deviations.size());
+  root.put("deviation", deviations);
   root.attribute("bias_allowance", comparison.bias);
 }
 
-using Refer = std::function<Reference(const Scene&)>;
+/// Both methods' correlations with shifted frequencies.
+void compare_frequencies(ResultFile& file, const Scene& scene, const std::vector<double>& shifts,
+                         const std::string& name, const mc::ChangeEstimates& mc,
+                         const mc::ChangeEstimates& reference, double bias) {
+  const Comparison comparison{name, reference.correlation, mc.correlation, bias, true};
+  print_agreement(scene, comparison, shift_names(scene.request, shifts),
+                  mc.correlation.value.size());
+  mc::write_shift_axis(file, shifts);
+  mc::write_frequency_shifts(file, "mc", scene, shifts, mc);
+  mc::write_frequency_shifts(file, name, scene, shifts, reference);
+  ResultGroup(file, validate_table)
+      .put(scene.request.has_reference() ? "frequency_tilt_deviation" : "frequency_deviation",
+           comparison.deviations());
+}
+
+using Shifts = std::vector<double>;
+using Refer = std::function<Reference(const Scene&, const Shifts&)>;
+
+ChangeEstimation without_change(const Estimation& estimation) {
+  return {{estimation.job, {}, 0}, estimation.plan};
+}
 
 Refer by_waves(const Keys& keys, const MethodSettings& methods, const RunSettings& run,
                std::uint64_t seed) {
   const StopRule stop = stop_rule(keys, run, methods.wave_samples);
-  return [stop, seed, tolerance = keys.read(methods.wave_tolerance)](const Scene& scene) {
-    return Reference{"wave", wave_estimation(scene, tolerance, seed), stop, bias_allowance(scene)};
+  return [stop, seed, tolerance = keys.read(methods.wave_tolerance)](const Scene& scene,
+                                                                     const Shifts& shifts) {
+    return Reference{"wave",
+                     shifts.empty() ? without_change(wave_estimation(scene, tolerance, seed))
+                                    : wave_frequencies(scene, shifts, tolerance, seed),
+                     stop, bias_allowance(scene)};
   };
 }
 
 Refer by_transport(const Keys& keys, MethodSettings& methods, const SceneSpec& spec,
                    const RunSettings& run, mc::ReversedPaths reversed) {
   read_transport(keys, methods, spec, run);
-  return [reversed, tolerance = methods.tolerance](const Scene& scene) {
-    return Reference{"transport", transport_estimation(scene, reversed, tolerance), both_batches(),
-                     tolerance};
+  return [reversed, tolerance = methods.tolerance](const Scene& scene, const Shifts& shifts) {
+    return Reference{"transport",
+                     shifts.empty()
+                         ? without_change(transport_estimation(scene, reversed, tolerance))
+                         : transport_frequencies(scene, reversed, shifts, tolerance),
+                     both_batches(), tolerance};
   };
 }
 
@@ -161,12 +171,14 @@ int validate(const Arguments& arguments) {
   SceneSpec spec;
   RunSettings run;
   MethodSettings methods;
+  Shifts shifts;
   Subcommand command(
       "validate",
       "Monte Carlo held against exact solutions, or in a slab against transport, entry by "
       "entry");
   Keys& keys = command.keys();
   add_keys(keys, spec);
+  add_frequency_key(keys, shifts);
   add_mc_keys(keys, methods);
   add_wave_keys(keys, methods);
   add_transport_keys(keys, methods);
@@ -180,35 +192,43 @@ int validate(const Arguments& arguments) {
   const auto refer = spec.domain == "slab" ? by_transport(keys, methods, spec, run, reversed)
                                            : by_waves(keys, methods, run, session.seed());
   if (spec.domain == "slab") keys.read(spec.dimension);
+  keys.read(shifts);
   const Scene scene = with_dimension(rounded_scene(keys, spec), spec);
   if (scene.medium.mu_s == 0)
     throw InputError("scatterer", spec.scatterer,
                      "this scene does not scatter, there is nothing to compare");
   refuse_absurd(methods, Neglected(scene));
-  const auto chosen = refer(scene);
+  const auto chosen = refer(scene, shifts);
   const std::string& name = chosen.name;
-  const Estimation& reference = chosen.estimation;
-  const Estimation mc = mc_estimation(scene, reversed, session.seed());
+  const ChangeEstimation& reference = chosen.estimation;
+  const ChangeEstimation mc = shifts.empty()
+                                  ? without_change(mc_estimation(scene, reversed, session.seed()))
+                                  : mc_frequencies(scene, reversed, shifts, session.seed());
   if (!command.settle()) return ExitStatus::done;
   return session.run(
       mc.plan + "\n" + reference.plan,
-      {{"mc", "mc", mc.job.batches, stop}, {name, name, reference.job.batches, chosen.stop}},
+      {{"mc", "mc", mc.job.field.batches, stop},
+       {name, name, reference.job.field.batches, chosen.stop}},
       inputs_text(scene) + inputs_text(keys), [&](ResultFile& file) {
         const GroupedSums &mc_sums = session.sums("mc"), &reference_sums = session.sums(name);
-        const FieldMoments mc_moments = field_moments(mc.job, mc_sums),
-                           reference_moments = field_moments(reference.job, reference_sums);
+        const FieldMoments mc_moments = field_moments(mc.job.field, mc_sums),
+                           reference_moments = field_moments(reference.job.field, reference_sums);
         const Comparison comparison{name, reference_moments.covariance, mc_moments.covariance,
                                     chosen.bias};
-        print_comparison(scene, comparison);
+        print_entries(scene, comparison);
         write_medium(file, scene);
         write_axes(file, scene);
-        print_ranges("mc",
-                     mc::write_moments(file, "mc", mc.job, scene, mc_sums, mc_moments).ranges);
-        print_ranges(name, mc::write_moments(file, name, reference.job, scene, reference_sums,
+        print_ranges(
+            "mc", mc::write_moments(file, "mc", mc.job.field, scene, mc_sums, mc_moments).ranges);
+        print_ranges(name, mc::write_moments(file, name, reference.job.field, scene, reference_sums,
                                              reference_moments)
                                .ranges);
         if (name == "transport") mc::write_numerical(file, name);
         write_comparison(file, comparison);
+        if (shifts.empty()) return;
+        compare_frequencies(
+            file, scene, shifts, name, mc::change_estimates(scene.request, mc.job, mc_sums),
+            mc::change_estimates(scene.request, reference.job, reference_sums), chosen.bias);
       });
 }
 

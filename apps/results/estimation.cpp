@@ -164,11 +164,15 @@ Estimation transport_estimation(const Scene& scene, mc::ReversedPaths reversed, 
   return {mc::slab_covariance_job(scene, with_reversed, {tolerance}), plan.str()};
 }
 
-Estimation wave_estimation(const Scene& scene, double tolerance, std::uint64_t seed) {
+std::string wave_plan(const Scene& scene, double tolerance) {
   std::ostringstream plan;
   plan << "wave: dense T-matrix solutions of " << placement_word(scene.placement.kind)
        << " placements, tolerance " << tolerance << "; sample mean removed";
-  return {wave::wave_job(scene, seed, tolerance), plan.str()};
+  return plan.str();
+}
+
+Estimation wave_estimation(const Scene& scene, double tolerance, std::uint64_t seed) {
+  return {wave::wave_job(scene, seed, tolerance), wave_plan(scene, tolerance)};
 }
 
 }  // namespace flatspeckle::apps

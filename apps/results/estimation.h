@@ -85,6 +85,8 @@ Scene with_dimension(const Scene& scene, const SceneSpec& spec);
 Estimation mc_estimation(const Scene& scene, mc::ReversedPaths reversed, std::uint64_t seed);
 /// Of a slab, of the plane or in space.
 Estimation transport_estimation(const Scene& scene, mc::ReversedPaths reversed, double tolerance);
+/// What exact solutions are planned to be.
+std::string wave_plan(const Scene& scene, double tolerance);
 /// Throws InputError.
 Estimation wave_estimation(const Scene& scene, double tolerance, std::uint64_t seed);
 

@@ -2,9 +2,11 @@
 
 #include "apps/results/moments_table.h"
 #include "core/error.h"
-#include "mc/slab/frequency_shifts.h"
+#include "flatland/scene/frequency_shift.h"
+#include "mc/changes/frequency_shifts.h"
 #include "mc/slab/slab_covariance.h"
 #include "mc/space/space_scene.h"
+#include "wave_solver/solutions/ensemble.h"
 
 namespace flatspeckle::apps {
 
@@ -60,13 +62,6 @@ ExtendedEstimation mc_delays(const Scene& scene, mc::ReversedPaths reversed,
                      "mc: " + plan.describe());
 }
 
-/// Changes are of these alone.
-void require_intensity_or_tilts(const std::string& key, const CovarianceRequest& request) {
-  using Kind = CovarianceRequest::Kind;
-  if (request.kind != Kind::intensity && request.kind != Kind::memory_effect)
-    throw InputError(key + ": needs covariance = intensity or memory_effect");
-}
-
 mc::PathJob change_job(const Scene& scene, mc::ReversedPaths reversed,
                        const std::vector<mc::FieldChange>& changes, double tolerance) {
   const bool with_reversed = mc::make_plan(scene, reversed).reversed;
@@ -77,29 +72,31 @@ mc::PathJob change_job(const Scene& scene, mc::ReversedPaths reversed,
 ExtendedEstimation transport_delays(const Scene& scene, mc::ReversedPaths reversed,
                                     const std::vector<double>& delays, double tolerance) {
   mc::check_delays(scene, delays);
-  require_intensity_or_tilts("delays", scene.request);
+  require_changing("delays", scene.request);
   std::vector<mc::FieldChange> changes;
   for (const double delay : delays) changes.push_back({.delay = delay});
   return with_delays(scene, change_job(scene, reversed, changes, tolerance), delays,
                      transport_estimation(scene, reversed, tolerance).plan);
 }
 
-ExtendedEstimation transport_frequency_shifts(const Scene& scene, mc::ReversedPaths reversed,
-                                              const std::vector<double>& shifts, double tolerance) {
-  mc::check_frequency_shifts(scene, shifts);
-  require_intensity_or_tilts("frequency_shifts", scene.request);
-  std::vector<mc::FieldChange> changes;
-  for (const double shift : shifts) changes.push_back({.shift = shift});
-  const auto job = change_job(scene, reversed, changes, tolerance);
-  return {{job.field, transport_estimation(scene, reversed, tolerance).plan + "; two frequencies"},
-          [scene, job, shifts](ResultFile& file, const GroupedSums& sums) {
-            const auto found = mc::change_estimates(scene.request, job, sums);
+ExtendedEstimation with_frequency_shifts(const Scene& scene, const std::vector<double>& shifts,
+                                         const ChangeEstimation& changes) {
+  return {{changes.job.field, changes.plan + "; two frequencies"},
+          [=](ResultFile& file, const GroupedSums& sums) {
+            const auto found = mc::change_estimates(scene.request, changes.job, sums);
             print_changes(scene.request, "shift", shifts, found.correlation);
-            mc::write_frequency_shifts(file, scene.request, shifts, found);
+            mc::write_shift_axis(file, shifts);
+            mc::write_frequency_shifts(file, "", scene, shifts, found);
           }};
 }
 
 }  // namespace
+
+void add_frequency_key(Keys& keys, std::vector<double>& shifts) {
+  keys.group("Methods");
+  keys.add("frequency_shifts", shifts,
+           "Also the field's correlation with that at shifted frequencies, relative to its own");
+}
 
 void add_extra_keys(Keys& keys, Extras& extras) {
   keys.group("Methods");
@@ -111,23 +108,47 @@ void add_extra_keys(Keys& keys, Extras& extras) {
            "Also the field's correlation after delays, as the scatterers diffuse: k^2 D tau")
       .not_negative()
       .only_of("method = mc or transport");
-  keys.add("frequency_shifts", extras.frequency_shifts,
-           "Also the field's correlation with that at shifted frequencies, relative to its own")
-      .only_of("method = transport");
+  add_frequency_key(keys, extras.frequency_shifts);
 }
 
-void read_extras(const Keys& keys, const Extras& extras, bool of_transport) {
-  const bool delays = !keys.read(extras.delays).empty(), gradient = keys.read(extras.gradient),
-             shifts = of_transport && !keys.read(extras.frequency_shifts).empty();
+void read_extras(const Keys& keys, const Extras& extras, const std::string& method) {
+  const bool shifts = !keys.read(extras.frequency_shifts).empty();
+  if (method == "wave") return;
+  const bool delays = !keys.read(extras.delays).empty(), gradient = keys.read(extras.gradient);
   if (gradient && delays) throw InputError("gradient, delays: give one of them");
   if (shifts && (gradient || delays))
     throw InputError("gradient, delays, frequency_shifts: give one of them");
+}
+
+ChangeEstimation mc_frequencies(const Scene& scene, mc::ReversedPaths reversed,
+                                const std::vector<double>& shifts, std::uint64_t seed) {
+  check_frequency_shifts(scene.request, shifts);
+  const auto plan = mc::frequency_plan(scene, reversed);
+  return {mc::frequency_job(scene, plan, shifts, seed), "mc: " + plan.describe()};
+}
+
+ChangeEstimation transport_frequencies(const Scene& scene, mc::ReversedPaths reversed,
+                                       const std::vector<double>& shifts, double tolerance) {
+  check_frequency_shifts(scene.request, shifts);
+  std::vector<mc::FieldChange> changes;
+  for (const double shift : shifts) changes.push_back({.shift = shift});
+  return {change_job(scene, reversed, changes, tolerance),
+          transport_estimation(scene, reversed, tolerance).plan};
+}
+
+ChangeEstimation wave_frequencies(const Scene& scene, const std::vector<double>& shifts,
+                                  double tolerance, std::uint64_t seed) {
+  check_frequency_shifts(scene.request, shifts);
+  const auto [field, all] = wave::frequency_job(scene, shifts, seed, tolerance);
+  return {{field, all, scene.request.entries.size()}, wave_plan(scene, tolerance)};
 }
 
 ExtendedEstimation extended_estimation(const Scene& scene, mc::ReversedPaths reversed,
                                        const Extras& extras, std::uint64_t seed) {
   if (extras.gradient) return mc_gradient(scene, reversed, seed);
   if (!extras.delays.empty()) return mc_delays(scene, reversed, extras.delays, seed);
+  if (const auto& shifts = extras.frequency_shifts; !shifts.empty())
+    return with_frequency_shifts(scene, shifts, mc_frequencies(scene, reversed, shifts, seed));
   return {mc_estimation(scene, reversed, seed), {}};
 }
 
@@ -135,9 +156,17 @@ ExtendedEstimation extended_transport(const Scene& scene, mc::ReversedPaths reve
                                       const Extras& extras, double tolerance) {
   if (extras.gradient) return transport_gradient(scene, reversed, tolerance);
   if (!extras.delays.empty()) return transport_delays(scene, reversed, extras.delays, tolerance);
-  if (!extras.frequency_shifts.empty())
-    return transport_frequency_shifts(scene, reversed, extras.frequency_shifts, tolerance);
+  if (const auto& shifts = extras.frequency_shifts; !shifts.empty())
+    return with_frequency_shifts(scene, shifts,
+                                 transport_frequencies(scene, reversed, shifts, tolerance));
   return {transport_estimation(scene, reversed, tolerance), {}};
+}
+
+ExtendedEstimation extended_waves(const Scene& scene, const Extras& extras, double tolerance,
+                                  std::uint64_t seed) {
+  if (const auto& shifts = extras.frequency_shifts; !shifts.empty())
+    return with_frequency_shifts(scene, shifts, wave_frequencies(scene, shifts, tolerance, seed));
+  return {wave_estimation(scene, tolerance, seed), {}};
 }
 
 }  // namespace flatspeckle::apps

@@ -5,14 +5,16 @@
 
 #include "apps/results/estimation.h"
 #include "core/result/result_file.h"
+#include "mc/estimators/path_job.h"
 
 namespace flatspeckle::apps {
 
-/// What Monte Carlo and transport tell of a scene besides its covariance.
+/// What methods tell of a scene besides its covariance.
 struct Extras {
   bool gradient = false;
   std::vector<double> delays, frequency_shifts;
 };
+void add_frequency_key(Keys& keys, std::vector<double>& shifts);
 void add_extra_keys(Keys& keys, Extras& extras);
 
 /// An estimation and how its extra results are printed and written; write is empty without extras.
@@ -21,9 +23,21 @@ struct ExtendedEstimation {
   std::function<void(ResultFile&, const GroupedSums&)> write;
 };
 
-/// Reads the keys, those of transport alone too if asked for. Throws InputError for extras that
-/// exclude each other.
-void read_extras(const Keys& keys, const Extras& extras, bool of_transport);
+/// Reads the keys that a method heeds. Throws InputError for extras that exclude each other.
+void read_extras(const Keys& keys, const Extras& extras, const std::string& method);
+
+/// What estimates the covariance of fields, and that of changed ones (changed_fields.h).
+struct ChangeEstimation {
+  mc::PathJob job;
+  std::string plan;
+};
+// Fields at shifted frequencies. Throw InputError.
+ChangeEstimation mc_frequencies(const Scene& scene, mc::ReversedPaths reversed,
+                                const std::vector<double>& shifts, std::uint64_t seed);
+ChangeEstimation transport_frequencies(const Scene& scene, mc::ReversedPaths reversed,
+                                       const std::vector<double>& shifts, double tolerance);
+ChangeEstimation wave_frequencies(const Scene& scene, const std::vector<double>& shifts,
+                                  double tolerance, std::uint64_t seed);
 
 /// By Monte Carlo. Throws InputError for extras that the scene cannot have.
 ExtendedEstimation extended_estimation(const Scene& scene, mc::ReversedPaths reversed,
@@ -31,5 +45,8 @@ ExtendedEstimation extended_estimation(const Scene& scene, mc::ReversedPaths rev
 /// The same of a slab by transport.
 ExtendedEstimation extended_transport(const Scene& scene, mc::ReversedPaths reversed,
                                       const Extras& extras, double tolerance);
+/// The same of a box by exact solutions.
+ExtendedEstimation extended_waves(const Scene& scene, const Extras& extras, double tolerance,
+                                  std::uint64_t seed);
 
 }  // namespace flatspeckle::apps

@@ -106,22 +106,23 @@ void print_gradient(const CovarianceRequest& request, const mc::GradientJob& job
                 range.value[p].real(), range.error[p]);
 }
 
+std::string shown_change(const CovarianceRequest& request, std::size_t number) {
+  if (!request.has_reference()) return shown_channel(request, static_cast<std::uint32_t>(number));
+  char text[24];
+  std::snprintf(text, sizeof text, "%-17.6g", request.tilts[number]);
+  return text;
+}
+
 void print_changes(const CovarianceRequest& request, const char* change,
                    const std::vector<double>& sizes, const Estimate& correlation) {
   const bool tilts = request.has_reference();
-  const auto name = [&](std::size_t c) {
-    if (!tilts) return shown_channel(request, static_cast<std::uint32_t>(c));
-    char text[24];
-    std::snprintf(text, sizeof text, "%-17.6g", request.tilts[c]);
-    return std::string(text);
-  };
   std::printf("%-17s %10s %21s %9s\n", tilts ? "tilt" : "light    view", change, "correlation",
               "error");
   const std::size_t channels = tilts ? request.moves : request.channels.size(),
                     rows = channels * sizes.size();
   for (std::size_t row = 0; row < std::min(rows, most_rows); ++row) {
     const std::size_t c = row / sizes.size(), t = row % sizes.size(), i = t * channels + c;
-    std::printf("%s %10.4g %21s %9.2g\n", name(c).c_str(), sizes[t],
+    std::printf("%s %10.4g %21s %9.2g\n", shown_change(request, c).c_str(), sizes[t],
                 shown_value(correlation.value[i]).c_str(), correlation.error[i]);
   }
   if (rows > most_rows) std::printf("... and %zu more\n", rows - most_rows);

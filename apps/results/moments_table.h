@@ -4,7 +4,7 @@
 
 #include "core/numbers/statistics.h"
 #include "flatland/request/request.h"
-#include "mc/estimators/brownian.h"
+#include "mc/changes/brownian.h"
 #include "mc/estimators/gradient.h"
 #include "mc/theory/moments_datasets.h"
 
@@ -39,6 +39,8 @@ std::string range_text(const mc::Range& range, double error);
 void print_gradient(const CovarianceRequest& request, const mc::GradientJob& job,
                     const mc::GradientEstimates& gradient);
 
+/// A channel that changes, or a tilt, of a request for changes.
+std::string shown_change(const CovarianceRequest& request, std::size_t number);
 /// The correlation after each change (a delay, a shift), of channels or of tilts.
 void print_changes(const CovarianceRequest& request, const char* change,
                    const std::vector<double>& sizes, const Estimate& correlation);

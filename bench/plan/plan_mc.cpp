@@ -6,7 +6,8 @@
 #include "bench/plan/plan_rooms.h"
 #include "bench/plan/plan_timing.h"
 #include "bench/scenes/standard_scenes.h"
-#include "mc/estimators/brownian.h"
+#include "mc/changes/brownian.h"
+#include "mc/changes/frequency_shifts.h"
 #include "mc/estimators/covariance_estimator.h"
 #include "mc/estimators/gradient.h"
 
@@ -123,6 +124,15 @@ PlanCase delays(const NamedScene& on) {
   });
 }
 
+PlanCase frequencies(const NamedScene& on) {
+  return case_of("8 frequency shifts", on.name, Numbers::same, Measure::sample, [scene = on.scene] {
+    const std::vector<double> shifts = {1e-4, 2e-4, 5e-4, 1e-3, 2e-3, 5e-3, 1e-2, 2e-2};
+    const Plan plan = mc::frequency_plan(scene, mc::ReversedPaths::automatic);
+    return std::pair{kernel_of(mc::frequency_job(scene, plan, shifts, seed).field),
+                     kernel_of(mc::covariance_job(scene, plan, seed))};
+  });
+}
+
 Scene with_request(Scene scene, CovarianceRequest request) {
   scene.request = std::move(request);
   return scene;
@@ -164,6 +174,7 @@ std::vector<PlanCase> mc_plan_cases() {
       bulk_table(forward),
       derivatives(forward),
       delays(around),
+      frequencies(around),
   };
 }
 

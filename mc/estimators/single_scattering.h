@@ -15,26 +15,50 @@ namespace flatspeckle::mc {
 Complex attenuated_wave_integral(const Domain& domain, double mu_t, Vec2 kappa,
                                  const std::array<Vec2, 4>& towards);
 
-/// The part B = 1 of the covariance, per entry of the request: far lights and views only. What no
-/// path has to sample (conventions, C14).
+/// A plane wave seen in a far view, at a wavenumber; unit vectors.
+struct FarField {
+  double k = 0;
+  Vec2 light, view;
+
+  FarField() = default;
+  /// Of a channel of the scene.
+  FarField(const Scene& scene, std::size_t channel) : k(scene.k) {
+    const Channel c = scene.request.channels[channel];
+    light = direction(scene.request.lights[c.light].angle);
+    view = direction(scene.request.views[c.view].angle);
+  }
+};
+
+/// The part B = 1 of the covariance of two fields (conventions, C14).
+template <typename Scattering>
+Complex single_scattering(const Scene& scene, const Scattering& scattering, const FarField& a,
+                          const FarField& b) {
+  const Complex amplitudes = product_with_conjugate(scattering.amplitude(a.light, a.view),
+                                                    scattering.amplitude(b.light, b.view));
+  // Exactly 0 of equal fields.
+  const Vec2 kappa =
+      a.k * ((a.light - b.light) - (a.view - b.view)) + (a.k - b.k) * (b.light - b.view);
+  return scene.medium.mu_s * amplitudes *
+         attenuated_wave_integral(scene.domain, scene.medium.mu_t, kappa,
+                                  {-a.light, a.view, -b.light, b.view});
+}
+
+/// Calls f with the number of each entry, in parallel where there are many: of some ten
+/// microseconds to a millisecond each.
+template <typename F>
+void for_entries(std::size_t entries, F f) {
+  constexpr std::size_t many = 100;
+  parallel_for(entries, entries > many, f);
+}
+
+/// The same per entry of the request: far lights and views only. What no path has to sample.
 template <typename Scattering>
 std::vector<Complex> single_scattering(const Scene& scene, const Scattering& scattering) {
   const auto& request = scene.request;
   std::vector<Complex> entries(request.entries.size());
-  constexpr std::size_t many = 100;  // of some ten microseconds to a millisecond each
-  parallel_for(entries.size(), entries.size() > many, [&](std::size_t e) {
-    const auto end = [&](std::size_t channel) {
-      const Channel c = request.channels[channel];
-      return std::array{direction(request.lights[c.light].angle),
-                        direction(request.views[c.view].angle)};
-    };
-    const auto [i1, v1] = end(request.entries[e].a);
-    const auto [i2, v2] = end(request.entries[e].b);
-    const Complex amplitudes =
-        product_with_conjugate(scattering.amplitude(i1, v1), scattering.amplitude(i2, v2));
-    entries[e] = scene.medium.mu_s * amplitudes *
-                 attenuated_wave_integral(scene.domain, scene.medium.mu_t,
-                                          scene.k * ((i1 - i2) - (v1 - v2)), {-i1, v1, -i2, v2});
+  for_entries(entries.size(), [&](std::size_t e) {
+    entries[e] = single_scattering(scene, scattering, FarField(scene, request.entries[e].a),
+                                   FarField(scene, request.entries[e].b));
   });
   return entries;
 }

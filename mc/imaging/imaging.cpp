@@ -7,6 +7,7 @@
 
 #include "core/run/interrupt.h"
 #include "mc/estimators/covariance_estimator.h"
+#include "mc/imaging/camera_frame.h"
 #include "mc/speckle/field_plan.h"
 
 namespace flatspeckle::mc {

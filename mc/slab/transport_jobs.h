@@ -3,9 +3,9 @@
 #include <functional>
 #include <vector>
 
+#include "mc/changes/field_change.h"
 #include "mc/estimators/gradient.h"
 #include "mc/estimators/path_job.h"
-#include "mc/slab/field_change.h"
 #include "mc/slab/refinement.h"
 
 namespace flatspeckle::mc {

@@ -8,9 +8,9 @@ namespace flatspeckle::mc {
 
 namespace {
 
-/// log sinh(a) without overflow.
-double log_sinh(double a) {
-  return a + std::log(-std::expm1(-2 * a) / 2);
+/// log sinh(a), Re a >= 0, without overflow.
+Complex log_sinh(Complex a) {
+  return a.real() < 1 ? std::log(std::sinh(a)) : a + std::log((1.0 - std::exp(-2.0 * a)) / 2.0);
 }
 
 }  // namespace
@@ -19,19 +19,24 @@ double extrapolation_length(const BulkMedium& medium) {
   return (medium.dimension == 3 ? 0.7104 : 0.818) * medium.transport_mean_free_path();
 }
 
-double diffusion_field_correlation(const BulkMedium& medium, double thickness, double q) {
+Complex diffusion_loss_correlation(const BulkMedium& medium, double thickness, Complex loss) {
   const double transport_length = medium.transport_mean_free_path();
   const double source = std::min(transport_length, thickness),
                extrapolation = extrapolation_length(medium);
   const double mu_a = medium.mu_t - medium.mu_s;
   const double kappa2 = medium.dimension * mu_a / transport_length;
   // f of C20; below the least Q it has its limit at 0 to rounding.
-  const auto log_f = [&](double q2) {
-    const double rate = std::max(std::sqrt(q2), 1e-5 / thickness);
+  const auto log_f = [&](Complex q2) {
+    const Complex root = std::sqrt(q2), least = 1e-5 / thickness,
+                  rate = std::abs(root) > least.real() ? root : least;
     return log_sinh(rate * extrapolation) + log_sinh(rate * (source + extrapolation)) -
            std::log(rate) - log_sinh(rate * (thickness + 2 * extrapolation));
   };
-  return std::exp(log_f(q * q + kappa2) - log_f(kappa2));
+  return std::exp(log_f(loss + kappa2) - log_f(kappa2));
+}
+
+double diffusion_field_correlation(const BulkMedium& medium, double thickness, double q) {
+  return diffusion_loss_correlation(medium, thickness, q * q).real();
 }
 
 double diffusion_range(const BulkMedium& medium, double thickness) {

@@ -13,6 +13,10 @@ namespace flatspeckle::mc {
 /// mean free paths. A limit for thick slabs and small q, not a reference for thin ones.
 double diffusion_field_correlation(const BulkMedium& medium, double thickness, double q);
 
+/// The same for any addition to its kappa^2, the square of a tilt's wavenumber among them. Complex:
+/// a difference of frequencies.
+Complex diffusion_loss_correlation(const BulkMedium& medium, double thickness, Complex loss);
+
 /// By how much diffuse light extends beyond a face.
 double extrapolation_length(const BulkMedium& medium);
 

@@ -5,6 +5,8 @@
 #include <map>
 #include <numbers>
 
+#include "flatland/scene/frequency_shift.h"
+
 namespace flatspeckle::mc {
 
 namespace {
@@ -69,17 +71,6 @@ std::vector<Focus> light_foci(Pair lights, double width) {
   std::vector<Focus> found;
   for (const double angle : {lights.first, lights.second}) add(found, folded(angle), width);
   return found;
-}
-
-double matched_view(const CovarianceRequest& request, const Entry& entry, double shift) {
-  const auto sine = [&](const auto& end) { return std::sin(end.angle); };
-  const Channel a = request.channels[entry.a], b = request.channels[entry.b];
-  const double view = request.views[b.view].angle;
-  if (shift == 0) return view;
-  const double turned =
-      std::asin(sine(request.lights[b.light]) -
-                (sine(request.lights[a.light]) - sine(request.views[a.view])) / (1 + shift));
-  return std::cos(view) > 0 ? turned : std::numbers::pi - turned;
 }
 
 std::vector<Chain> chains(const CovarianceRequest& request, bool reversed, double shift) {

@@ -30,10 +30,6 @@ struct ChainGroup {
 /// Of two lights, where a phase function changes within an angle of `width`; none if that is wide.
 std::vector<Focus> light_foci(Pair lights, double width);
 
-/// The second view of an entry, turned so that transverse momenta match where the wavenumber of the
-/// second field is larger by a share `shift`; nan past the horizon.
-double matched_view(const CovarianceRequest& request, const Entry& entry, double shift);
-
 /// Ladders of all entries, and with `reversed` their reversed paths (C38); second views matched.
 std::vector<Chain> chains(const CovarianceRequest& request, bool reversed, double shift = 0);
 

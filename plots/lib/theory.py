@@ -12,20 +12,27 @@ def log_sinh(a):
 EXTRAPOLATION = {2: 0.818, 3: 0.7104}  # in transport mean free paths, by dimension
 
 
-def slab_diffusion(depth, optical_depth, g, albedo, q, dimension=2):
-    """C_E at transverse wavenumbers q in diffusion theory (conventions, C20)."""
+def slab_losses(depth, optical_depth, g, albedo, loss, dimension=2):
+    """What is left in diffusion theory (conventions, C20) where its kappa^2 grows by `loss`, which
+    may be complex."""
     mu_t = optical_depth / depth
     mu_a = mu_t * (1 - albedo)
     transport = 1 / (mu_a + mu_t * albedo * (1 - g))
     source, extrapolation = np.minimum(transport, depth), EXTRAPOLATION[dimension] * transport
 
     def log_f(q2):
-        rate = np.maximum(np.sqrt(q2), 1e-5 / depth)  # below, f has its limit at 0 to rounding
+        root = np.sqrt(q2)  # close to 0 f has its limit there to rounding
+        rate = np.where(np.abs(root) > 1e-5 / depth, root, 1e-5 / depth)
         return (log_sinh(rate * extrapolation) + log_sinh(rate * (source + extrapolation))
                 - np.log(rate) - log_sinh(rate * (depth + 2 * extrapolation)))
 
     kappa2 = dimension * mu_a / transport
-    return np.exp(log_f(q**2 + kappa2) - log_f(kappa2))
+    return np.exp(log_f(loss + kappa2) - log_f(kappa2))
+
+
+def slab_diffusion(depth, optical_depth, g, albedo, q, dimension=2):
+    """C_E at transverse wavenumbers q."""
+    return slab_losses(depth, optical_depth, g, albedo, q**2, dimension)
 
 
 def diffusion_range(depth, optical_depth, g, albedo, dimension=2):
@@ -44,6 +51,13 @@ def delayed_diffusion(depth, optical_depth, g, albedo, delay, dimension=2):
     transport = 1 / (optical_depth / depth - g * mu_s)
     q = np.sqrt(2 * dimension * delay * (1 - g) * mu_s / transport)
     return slab_diffusion(depth, optical_depth, g, albedo, q, dimension)
+
+
+def shifted_diffusion(depth, optical_depth, g, albedo, lag, dimension=2):
+    """Magnitude of the correlation with a wavenumber larger by `lag`, which acts like i lag of
+    absorption."""
+    per_loss = dimension * optical_depth / depth * (1 - g * albedo)
+    return np.abs(slab_losses(depth, optical_depth, g, albedo, 1j * per_loss * lag, dimension))
 
 
 def dimension(result):

@@ -159,8 +159,6 @@ class Refused(RefusingTest):
         for keys, words in (({"gradient": True, "delays": [0.1]}, ["gradient, delays"]),
                             ({"gradient": True, "method": "wave"}, ["gradient", "method = mc"]),
                             ({"delays": [0.1], "method": "wave"}, ["delays", "method = mc"]),
-                            ({"frequency_shifts": [0.1]},
-                             ["frequency_shifts", "method = transport"]),
                             ({**POINTS, "frequency_shifts": [0.3]},
                              ["frequency_shifts = 0.3", "-0.1 to 0.1"]),
                             ({**POINTS, "frequency_shifts": [0.01], "delays": [0.1]},

@@ -27,7 +27,7 @@ KEYS = {
     "flux": SCATTERER + MEDIUM + ["light_angles", "angle_bins"] + RUN,
     "fit": SCATTERER + ["free", "measurement", "starts", "most_iterations", "depth",
                         "density", "mean_free_path", "optical_depth", "threads"],
-    "validate": SCENE + REQUEST + ["structure", "wave_samples"] + RUN,
+    "validate": SCENE + REQUEST + ["structure", "frequency_shifts", "wave_samples"] + RUN,
     "field": SCENE + ["structure", "tilts", "method", "fields", "paths_per_field", "target_error", "seed",
                       "threads"],
     "trace": FIELD + ["rays", "light", "ray_count", "origin", "direction", "across", "beam_radius",

@@ -38,6 +38,7 @@ KINDS = {
     "map": ("covariance", {**BOX, **SHIFTS, **FEW}),
     "intensity": ("covariance", {**BOX, "view_angles": [0.1, 0.3], **FEW}),
     "delays": ("covariance", {**SLAB, "delays": [0, 0.01, 0.02]}),
+    "frequencies": ("covariance", {**SLAB, "frequency_shifts": [0, 1e-4, 3e-4]}),
     "both": ("validate", {**BOX, "view_angles": [0.1, 0.3], "wave_samples": 40, **FEW}),
     "fields": ("field", {**BOX, "view_angles": [0.1, 0.2, 0.3], "light_angles": [0, 0.01, 0.2],
                          "fields": 4, "threads": 1}),
@@ -57,7 +58,7 @@ KINDS = {
 # What each script draws.
 OWN = {"memory_effect": {"grid", "points", "curve", "moves"}, "memory_range": {"grid", "points"},
        "range_map": {"grid"}, "convergence": {"grid", "points"}, "tilt_shift": {"map"},
-       "dws": {"delays"}, "validation": {"both"}, "speckle_field": {"fields"}, "image": {"frames"}, "fit": {"fitted"},
+       "dws": {"delays"}, "frequency": {"frequencies"}, "validation": {"both"}, "speckle_field": {"fields"}, "image": {"frames"}, "fit": {"fitted"},
        "rays": {"rays"}, "render": {"picture", "pulse"}, "render_time": {"pulse"},
        "light_map": {"light"}, "field_map": {"near"}}
 
@@ -113,7 +114,7 @@ class Plots(ProgramTest):
 class Theory(ProgramTest):
     """Formulas of the plots against the program's."""
 
-    def test_diffusion_ranges_and_delays(self):
+    def test_diffusion_ranges_delays_and_frequencies(self):
         from lib import theory
         from lib.result_file import Result
         for dimension in (2, 3):
@@ -132,6 +133,11 @@ class Theory(ProgramTest):
             np.testing.assert_allclose(
                 theory.delayed_diffusion(*medium, np.array(delays), dimension),
                 Result(self.folder / "d.h5").values("diffusion_theory"), rtol=1e-9)
+            shifts = [0, 1e-4, 1e-3]
+            self.call("covariance", out="f.h5", dimension=dimension, frequency_shifts=shifts, **SLAB)
+            np.testing.assert_allclose(
+                theory.shifted_diffusion(*medium, 2 * np.pi * np.array(shifts), dimension),
+                Result(self.folder / "f.h5").values("frequency_diffusion_theory"), rtol=1e-9)
 
 
 if __name__ == "__main__":

@@ -31,6 +31,8 @@ SCENES = [
     ("covariance", {**BOX, **TILTS, "method": "wave", "samples": 20}),
     ("covariance", {**SLAB, **TILTS, "samples": 4000, "gradient": True}),
     ("covariance", {**SLAB, **TILTS, "tolerance": 1e-3, "frequency_shifts": [0, 0.01]}),
+    ("covariance", {**BOX, "method": "wave", "frequency_shifts": [0, 0.01], "samples": 20}),
+    ("validate", {**BOX, "samples": 4000, "wave_samples": 20, "frequency_shifts": [0, 0.01]}),
     ("covariance", {**SLAB, "dimension": 3, "delays": [0, 0.01], "samples": 4000}),
     ("covariance", {**BOX, "scatterer": "two_term_hg", "count": None, "optical_depth": 2, "g": 0.8,
                     "g_back": -0.3, "forward_share": 0.9, "covariance": "tilt_shift",

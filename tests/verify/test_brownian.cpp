@@ -7,7 +7,7 @@
 #include <doctest/doctest.h>
 
 #include "flatland/scene/scene.h"
-#include "mc/estimators/brownian.h"
+#include "mc/changes/brownian.h"
 #include "wave_solver/solutions/wave_solution.h"
 
 using namespace flatspeckle;

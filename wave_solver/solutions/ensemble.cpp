@@ -11,25 +11,13 @@
 #include "core/keys/number_text.h"
 #include "core/numbers/blas.h"
 #include "core/numbers/random.h"
+#include "flatland/scene/frequency_shift.h"
 #include "wave_solver/equations/system_memory.h"
 #include "wave_solver/solutions/wave_solution.h"
 
 namespace flatspeckle::wave {
 
 namespace {
-
-// Fields of one placement in every channel of the request.
-std::vector<Complex> channel_fields(const Scene& scene, const FieldPlan& plan,
-                                    const SolveOptions& options, RandomStream random) {
-  const CovarianceRequest& request = scene.request;
-  const Placement placement = draw_placement(scene, random);
-  const auto fields = scattered_fields(placement, scene.k, plan, options);
-  std::vector<Complex> channels;
-  channels.reserve(request.channels.size());
-  for (const Channel& channel : request.channels)
-    channels.push_back(fields[channel.light * request.views.size() + channel.view]);
-  return channels;
-}
 
 SolveOptions batch_options(const Scene& scene, double tolerance) {
   SolveOptions options{.tolerance = tolerance, .sensors = {}, .diagnose = false};
@@ -47,18 +35,96 @@ FieldPlan field_plan(const Scene& scene, double tolerance) {
                          {{0, box.depth / 2}, radius}, tolerance);
 }
 
-// (sum u_a u_b* - sum u_a sum u_b* / n) / (n - 1); 0 while one sample shows no spread.
-std::vector<Complex> sample_covariance(const CovarianceRequest& request, double samples,
-                                       std::span<const Complex> sums) {
-  std::vector<Complex> covariance(request.entries.size());
-  if (samples < 2) return covariance;
-  const auto products = sums.subspan(request.channels.size());
-  for (std::size_t i = 0; i < covariance.size(); ++i) {
-    const auto [a, b] = request.entries[i];
-    covariance[i] = (products[i] - sums[a] * std::conj(sums[b]) / samples) / (samples - 1);
+// Solves placements for what a scene asks for.
+struct Fields {
+  Scene scene;
+  FieldPlan plan;
+  SolveOptions options;
+
+  Fields(const Scene& of, double tolerance)
+      : scene(of), plan(field_plan(of, tolerance)), options(batch_options(of, tolerance)) {}
+
+  // In every channel of the request.
+  std::vector<Complex> of(const Placement& placement) const {
+    const CovarianceRequest& request = scene.request;
+    const auto fields = scattered_fields(placement, scene.k, plan, options);
+    std::vector<Complex> channels;
+    channels.reserve(request.channels.size());
+    for (const Channel& channel : request.channels)
+      channels.push_back(fields[channel.light * request.views.size() + channel.view]);
+    return channels;
   }
-  return covariance;
-}
+};
+
+// Of one placement at all frequencies: u per channel, u_a u_b* per entry, then for each shift and
+// changing entry, with u_b at that frequency, u_b and u_a u_b*.
+class Ensemble {
+ public:
+  Ensemble(const Scene& scene, const std::vector<double>& shifts, double tolerance)
+      : first_(scene, tolerance), changing_(changing_entries(scene.request)) {
+    for (const double shift : shifts) others_.emplace_back(at_frequency(scene, shift), tolerance);
+  }
+
+  std::size_t channels() const { return request().channels.size(); }
+  std::size_t entries() const { return request().entries.size(); }
+  std::size_t size() const { return channels() + entries() + 2 * changing_ * others_.size(); }
+
+  void add(RandomStream random, std::span<Complex> sums) const {
+    const Scene& scene = first_.scene;
+    const auto placement = draw_placement(scene, random);
+    const auto u = first_.of(placement);
+    for (std::size_t c = 0; c < u.size(); ++c) sums[c] += u[c];
+    for (std::size_t e = 0; e < entries(); ++e) {
+      const auto [a, b] = request().entries[e];
+      sums[u.size() + e] += u[a] * std::conj(u[b]);
+    }
+    for (std::size_t s = 0; s < others_.size(); ++s) {
+      const auto second = others_[s].of(placement);
+      for (std::size_t e = 0; e < changing_; ++e) {
+        sums[at(s) + e] += second[e];
+        sums[at(s) + changing_ + e] += u[request().entries[e].a] * std::conj(second[e]);
+      }
+    }
+  }
+
+  std::vector<Complex> mean(double samples, std::span<const Complex> sums) const {
+    return sample_mean(samples, sums.first(channels()));
+  }
+
+  std::vector<Complex> covariance(double samples, std::span<const Complex> sums) const {
+    std::vector<Complex> values;
+    for (std::size_t e = 0; e < entries(); ++e) {
+      const auto [a, b] = request().entries[e];
+      values.push_back(sample_covariance(samples, sums[channels() + e], sums[a], sums[b]));
+    }
+    return values;
+  }
+
+  // [1 + shift][entry]
+  std::vector<Complex> all(double samples, std::span<const Complex> sums) const {
+    auto values = covariance(samples, sums);
+    for (std::size_t s = 0; s < others_.size(); ++s) {
+      for (std::size_t e = 0; e < changing_; ++e)
+        values.push_back(sample_covariance(samples, sums[at(s) + changing_ + e],
+                                           sums[request().entries[e].a], sums[at(s) + e]));
+      values.resize((2 + s) * entries());
+    }
+    return values;
+  }
+
+ private:
+  const CovarianceRequest& request() const { return first_.scene.request; }
+  std::size_t at(std::size_t shift) const { return channels() + entries() + 2 * changing_ * shift; }
+
+  // (sum u_a u_b* - sum u_a sum u_b* / n) / (n - 1); 0 while one sample shows no spread.
+  static Complex sample_covariance(double samples, Complex products, Complex a, Complex b) {
+    return samples < 2 ? 0 : (products - a * std::conj(b) / samples) / (samples - 1);
+  }
+
+  Fields first_;
+  std::size_t changing_;
+  std::vector<Fields> others_;
+};
 
 // Centres of disks are anywhere in the box; some placement would cover what is within a radius.
 void require_uncovered(const Scene& scene, const std::string& key, Vec2 point) {
@@ -97,31 +163,30 @@ void require_memory(const Scene& scene, double tolerance) {
 }  // namespace
 
 FieldJob wave_job(const Scene& scene, std::uint64_t seed, double tolerance) {
+  return frequency_job(scene, {}, seed, tolerance).field;
+}
+
+FrequencyJob frequency_job(const Scene& scene, const std::vector<double>& shifts,
+                           std::uint64_t seed, double tolerance) {
   require_solvable(scene);
   require_placeable(scene.placement);
   require_memory(scene, tolerance);
   blas_single_thread();  // says now what it lacks
-  const auto shared = std::make_shared<const Scene>(scene);
-  const SolveOptions options = batch_options(scene, tolerance);
-  const auto plan = std::make_shared<const FieldPlan>(field_plan(scene, tolerance));
-  FieldJob job;
-  job.mean = [shared](double samples, std::span<const Complex> sums) {
-    return sample_mean(samples, sums.first(shared->request.channels.size()));
+  const auto ensemble = std::make_shared<const Ensemble>(scene, shifts, tolerance);
+  const auto estimator = [&](auto of) -> Estimator {
+    return [=](double samples, std::span<const Complex> sums) {
+      return ((*ensemble).*of)(samples, sums);
+    };
   };
-  job.covariance = [shared](double samples, std::span<const Complex> sums) {
-    return sample_covariance(shared->request, samples, sums);
+  FrequencyJob job;
+  job.all = estimator(&Ensemble::all);
+  job.field.mean = estimator(&Ensemble::mean);
+  job.field.covariance = estimator(&Ensemble::covariance);
+  job.field.batches.size = ensemble->size();
+  job.field.batches.run = [=](std::uint64_t number, std::span<Complex> sums) {
+    ensemble->add(RandomStream(seed, static_cast<std::uint64_t>(Stream::placement), number), sums);
   };
-  job.batches.size = scene.request.channels.size() + scene.request.entries.size();
-  job.batches.run = [shared, plan, options, seed](std::uint64_t number, std::span<Complex> sums) {
-    const RandomStream random(seed, static_cast<std::uint64_t>(Stream::placement), number);
-    const auto u = channel_fields(*shared, *plan, options, random);
-    for (std::size_t i = 0; i < u.size(); ++i) sums[i] += u[i];
-    for (std::size_t i = 0; i < shared->request.entries.size(); ++i) {
-      const auto [a, b] = shared->request.entries[i];
-      sums[u.size() + i] += u[a] * std::conj(u[b]);
-    }
-  };
-  job.batches.relative_error = relative_error_of(job.covariance);
+  job.field.batches.relative_error = relative_error_of(job.all);
   return job;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "flatland/request/field_moments.h"
 #include "flatland/scene/scene.h"
@@ -15,5 +16,16 @@ namespace flatspeckle::wave {
 /// for near sensors and sources that a cylinder may cover, and where the matrices of all threads
 /// surely need more memory than there is.
 FieldJob wave_job(const Scene& scene, std::uint64_t seed, double tolerance);
+
+/// The same, each placement solved at shifted frequencies too (conventions, C39; checked by
+/// check_frequency_shifts()). all: the entries, then those with the second field at each shifted
+/// frequency, [1 + shift][entry], 0 where entries do not change. Disks and points keep radius,
+/// index and phase shift.
+struct FrequencyJob {
+  FieldJob field;
+  Estimator all;
+};
+FrequencyJob frequency_job(const Scene& scene, const std::vector<double>& shifts,
+                           std::uint64_t seed, double tolerance);
 
 }  // namespace flatspeckle::wave

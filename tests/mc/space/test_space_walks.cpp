@@ -5,7 +5,7 @@
 
 #include "core/error.h"
 #include "grin/media/mie_sphere.h"
-#include "mc/estimators/brownian.h"
+#include "mc/changes/brownian.h"
 #include "mc/estimators/gradient.h"
 #include "tests/mc/space/scenes_in_space.h"
 

@@ -5,8 +5,8 @@
 #include <doctest/doctest.h>
 
 #include "core/error.h"
-#include "mc/estimators/changed_fields.h"
-#include "mc/slab/frequency_shifts.h"
+#include "flatland/scene/frequency_shift.h"
+#include "mc/changes/changed_fields.h"
 #include "mc/slab/slab_covariance.h"
 #include "tests/mc/transport/slabs.h"
 
@@ -150,9 +150,9 @@ TEST_CASE("a thick slab: paths as long as diffusion has them") {
 
 TEST_CASE("the second view turns to keep transverse momenta, as far as there is one") {
   const Scene scene = seen(100, {20}, 0.9, -1.5);
-  CHECK_THROWS_AS(check_frequency_shifts(scene, {-0.05}), InputError);
-  CHECK_THROWS_AS(check_frequency_shifts(scene, {0.2}), InputError);
-  check_frequency_shifts(scene, {0.05});
+  CHECK_THROWS_AS(check_frequency_shifts(scene.request, {-0.05}), InputError);
+  CHECK_THROWS_AS(check_frequency_shifts(scene.request, {0.2}), InputError);
+  check_frequency_shifts(scene.request, {0.05});
   const auto job = slab_change_job(scene, true, {}, {{.shift = 1e-4}});
   const auto found = change_estimates(scene.request, job, tests::summed(job.field.batches, 2));
   const Complex covariance = shifted(scene, 1e-4, true);

@@ -5,7 +5,7 @@
 
 #include "bench/oracles/pair_transport.h"
 #include "bench/oracles/slab_theory.h"
-#include "mc/estimators/brownian.h"
+#include "mc/changes/brownian.h"
 #include "mc/slab/slab_covariance.h"
 #include "mc/theory/diffusion.h"
 #include "mc/theory/memory_effect.h"

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/result/dataset_row.h"
-#include "mc/estimators/changed_fields.h"
+#include "mc/changes/changed_fields.h"
 
 namespace flatspeckle::mc {
 

@@ -1,4 +1,4 @@
-#include "mc/estimators/brownian.h"
+#include "mc/changes/brownian.h"
 
 #include <algorithm>
 #include <cmath>

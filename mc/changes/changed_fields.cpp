@@ -1,7 +1,8 @@
-#include "mc/estimators/changed_fields.h"
+#include "mc/changes/changed_fields.h"
 
 #include <algorithm>
 
+#include "flatland/scene/frequency_shift.h"
 #include "mc/theory/memory_effect.h"
 
 namespace flatspeckle::mc {
@@ -9,11 +10,6 @@ namespace flatspeckle::mc {
 namespace {
 
 using Values = std::vector<Complex>;
-
-/// Entries that change: all, or those of reference and tilted field.
-std::size_t changing_entries(const CovarianceRequest& request) {
-  return request.has_reference() ? request.reference_intensity(0) : request.entries.size();
-}
 
 /// Of [1 + change][entry], without change first: [change][changing entry].
 Values changed(const CovarianceRequest& request, const Values& all) {

@@ -1,0 +1,87 @@
+// Fields at two frequencies: placements solved at both, against Monte Carlo, on absolute scale.
+#include <cmath>
+#include <numbers>
+
+#include <doctest/doctest.h>
+
+#include "flatland/scene/frequency_shift.h"
+#include "mc/changes/frequency_shifts.h"
+#include "wave_solver/solutions/ensemble.h"
+
+using namespace flatspeckle;
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+const std::vector<double> shifts = {1e-3, 5e-3, 0.02, -0.05};
+
+Scene box_of_points(const std::string& covariance) {
+  SceneSpec spec;
+  spec.width = 20;
+  spec.depth = 10;
+  spec.density = 31.0 / 200;
+  spec.covariance = covariance;
+  if (covariance == "intensity") {
+    spec.light_angles = {0.2};
+    spec.view_angles = {0.5, 1.2, pi - 0.7, pi + 0.2};
+  } else {
+    spec.view_angles = {0.3, pi - 0.4};
+    spec.tilts = {0, 0.02};
+  }
+  return make_scene(spec);
+}
+
+mc::ChangeEstimates estimates(const Scene& scene, const mc::PathJob& job, std::uint64_t samples) {
+  RunOptions options;
+  options.stop.samples = samples;
+  RunState state;
+  run_batches(job.field.batches, options, state);
+  return mc::change_estimates(scene.request, job, state.sums);
+}
+
+void check(const Scene& scene, std::uint64_t placements) {
+  const auto [field, all] = wave::frequency_job(scene, shifts, 1, 1e-6);
+  const auto exact =
+      estimates(scene, {field, all, scene.request.entries.size()}, placements).correlation;
+  const auto plan = mc::frequency_plan(scene, mc::ReversedPaths::automatic);
+  REQUIRE(plan.reversed);
+  const auto mc = estimates(scene, mc::frequency_job(scene, plan, shifts, 1), 200'000).correlation;
+
+  const double bias = 2 / (scene.k * scene.medium.mean_free_path());  // what the method neglects
+  for (std::size_t i = 0; i < mc.value.size(); ++i) {
+    const double error = std::hypot(mc.error[i], exact.error[i]);
+    INFO("correlation ", i, ": exact ", exact.value[i].real(), " ", exact.value[i].imag(),
+         " i, Monte Carlo ", mc.value[i].real(), " ", mc.value[i].imag(), " i +- ", error);
+    CHECK(std::abs(mc.value[i] - exact.value[i]) < 4 * error + bias);
+    CHECK(error < 0.015);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("exact fields at two frequencies correlate as Monte Carlo says (k mfp = 63)") {
+  const Scene scene = box_of_points("intensity");
+  CHECK(scene.k * scene.medium.mean_free_path() == doctest::Approx(63.7).epsilon(0.01));
+  check(scene, 10'000);
+}
+
+TEST_CASE("and so they do in tilted light") {
+  check(box_of_points("memory_effect"), 5'000);
+}
+
+TEST_CASE("without shifts an ensemble is that of one frequency") {
+  const Scene scene = box_of_points("intensity");
+  const auto sums = [&](const FieldJob& job) {
+    std::vector<Complex> values(job.batches.size);
+    job.batches.run(3, values);
+    return values;
+  };
+  const auto alone = sums(wave::wave_job(scene, 1, 1e-6)),
+             same = sums(wave::frequency_job(scene, {0}, 1, 1e-6).field);
+  const std::size_t channels = scene.request.channels.size();
+  REQUIRE(alone.size() == 2 * channels);
+  for (std::size_t i = 0; i < alone.size(); ++i) {
+    CHECK(same[i] == alone[i]);
+    CHECK(std::abs(same[2 * channels + i] - alone[i]) < 1e-12 * std::abs(alone[i]));
+  }
+}
