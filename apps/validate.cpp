@@ -41,12 +41,17 @@ namespace {
 /// the shift of the wavenumber (refraction at the faces, local fields); and correlations, of order
 /// the packing fraction where they are not taken in, of its square where they are (C16). As
 /// data/bias_map.csv has it; a size, not a bound.
-double bias_allowance(const Scene& scene) {
-  const auto& medium = scene.medium;
-  const double packing = medium.packing_fraction;
-  return 2 / (scene.k * medium.mean_free_path()) + 2 * std::abs(medium.k_shift) / scene.k +
-         (medium.structure.independent() ? packing : packing * packing);
-}
+struct Allowance {
+  double crossed_paths, k_shift, correlations;
+
+  explicit Allowance(const Scene& scene)
+      : crossed_paths(2 / (scene.k * scene.medium.mean_free_path())),
+        k_shift(2 * std::abs(scene.medium.k_shift) / scene.k) {
+    const double packing = scene.medium.packing_fraction;
+    correlations = scene.medium.structure.independent() ? packing : packing * packing;
+  }
+  double total() const { return crossed_paths + k_shift + correlations; }
+};
 
 /// Where a fixed number of points lacks a part of the covariance that Monte Carlo has (C12).
 bool misses_forward_lobe(const Scene& scene) {
@@ -87,6 +92,17 @@ RowNames shift_names(const CovarianceRequest& request, const std::vector<double>
           }};
 }
 
+void print_allowance(const Scene& scene, std::size_t entries) {
+  const Allowance part(scene);
+  std::printf(
+      "%zu more within the %.1f %% that the method\n"
+      "neglects (%.1f %% crossed paths: 2/(k mfp), k mfp = %.1f; %.1f %% refraction: 2 "
+      "|k_shift|/k, k_shift/k = %.3f; %.1f %% correlated positions, packing %.3f); ",
+      entries, 100 * part.total(), 100 * part.crossed_paths,
+      scene.k * scene.medium.mean_free_path(), 100 * part.k_shift, scene.medium.k_shift / scene.k,
+      100 * part.correlations, scene.medium.packing_fraction);
+}
+
 void print_agreement(const Scene& scene, const Comparison& comparison, const RowNames& names,
                      std::size_t values) {
   const auto [in_errors, in_bias] = print_comparison(comparison, values, names);
@@ -95,11 +111,7 @@ void print_agreement(const Scene& scene, const Comparison& comparison, const Row
   if (comparison.name == "transport")
     std::printf("%zu more within its tolerance, ", in_bias);
   else if (comparison.bias > 0)
-    std::printf(
-        "%zu more within the %.1f %% that the\n"
-        "method neglects at k mfp = %.1f, packing %.3f, k_shift / k = %.3f; ",
-        in_bias, 100 * comparison.bias, scene.k * scene.medium.mean_free_path(),
-        scene.medium.packing_fraction, scene.medium.k_shift / scene.k);
+    print_allowance(scene, in_bias);
   std::printf("%zu beyond (*)\n", values - in_errors - in_bias);
 }
 
@@ -141,15 +153,24 @@ ChangeEstimation without_change(const Estimation& estimation) {
   return {{estimation.job, {}, 0}, estimation.plan};
 }
 
+/// A budget of time is one of both methods: errors of a difference cost least where time goes as
+/// the spread of a method's samples a second, and Monte Carlo's is a tenth of placements' or less.
+constexpr double mc_share = 0.1;
+
+StopRule with_share(StopRule stop, double share) {
+  if (stop.seconds) *stop.seconds *= share;
+  return stop;
+}
+
 Refer by_waves(const Keys& keys, const MethodSettings& methods, const RunSettings& run,
                std::uint64_t seed) {
-  const StopRule stop = stop_rule(keys, run, methods.wave_samples);
+  const StopRule stop = with_share(stop_rule(keys, run, methods.wave_samples), 1 - mc_share);
   return [stop, seed, tolerance = keys.read(methods.wave_tolerance)](const Scene& scene,
                                                                      const Shifts& shifts) {
     return Reference{"wave",
                      shifts.empty() ? without_change(wave_estimation(scene, tolerance, seed))
                                     : wave_frequencies(scene, shifts, tolerance, seed),
-                     stop, bias_allowance(scene)};
+                     stop, Allowance(scene).total()};
   };
 }
 
@@ -187,11 +208,12 @@ int validate(const Arguments& arguments) {
   if (!command.parse(arguments)) return ExitStatus::done;
 
   Session session(command.text(), keys, run, command.only_prints());
-  const StopRule stop = stop_rule(keys, run);
+  const bool slab = spec.domain == "slab";
+  const StopRule stop = with_share(stop_rule(keys, run), slab ? 1 : mc_share);
   const auto reversed = reversed_paths(keys, methods);
-  const auto refer = spec.domain == "slab" ? by_transport(keys, methods, spec, run, reversed)
-                                           : by_waves(keys, methods, run, session.seed());
-  if (spec.domain == "slab") keys.read(spec.dimension);
+  const auto refer = slab ? by_transport(keys, methods, spec, run, reversed)
+                          : by_waves(keys, methods, run, session.seed());
+  if (slab) keys.read(spec.dimension);
   keys.read(shifts);
   const Scene scene = with_dimension(rounded_scene(keys, spec), spec);
   if (scene.medium.mu_s == 0)

@@ -8,9 +8,6 @@ namespace flatspeckle {
 
 namespace {
 
-/// A target error is believed from here on: fewer batches miss the tail of rare strong paths.
-constexpr std::uint64_t trusted_batches = 256;
-
 /// Batches at which the error is looked at: 8, 10, 12, ... growing by a seventh each time. They
 /// depend on nothing but the number of batches, so a run that stops at a target is reproducible.
 std::uint64_t checkpoint_after(std::uint64_t batches) {

@@ -29,6 +29,9 @@ struct BatchJob {
   bool one_by_one = false;
 };
 
+/// A target error is believed from here on: fewer batches miss the tail of rare strong paths.
+inline constexpr std::uint64_t trusted_batches = 256;
+
 /// When to stop; any that is set may. At least one must be. Samples are rounded up to whole
 /// batches, of which there are always two.
 struct StopRule {

@@ -28,6 +28,14 @@ std::string state_group(const std::string& run) {
   return "state/" + (run.empty() ? "run" : run);
 }
 
+/// Placements that a time allowed: who asks for a number knows it.
+void tell_few_placements(const PlannedRun& run, std::uint64_t placements) {
+  if (run.job.samples_per_batch == 1 && run.stop.seconds && placements < trusted_batches)
+    std::cerr << "note: " << run.label << " has only " << placements
+              << " placements: its errors are rough themselves, fewer than " << trusted_batches
+              << " miss rare strong ones\n";
+}
+
 void tell_few_batches(const std::string& label, std::uint64_t batches) {
   constexpr std::uint64_t enough = 10;  // of Student's t with 9 degrees 7.7 % lie beyond 2
   if (batches < enough)
@@ -177,7 +185,10 @@ void Session::run_one(const PlannedRun& run) {
                            [this](const RunState&) { save_resumable(); }};
   const StopReason reason = run_batches(run.job, options, state);
   interrupted_ = reason == StopReason::interrupted;
-  if (!interrupted_ && !run.job.one_by_one) tell_few_batches(run.label, state.sums.batches());
+  if (!interrupted_ && !run.job.one_by_one) {
+    tell_few_batches(run.label, state.sums.batches());
+    tell_few_placements(run, state.sums.batches());
+  }
   const bool reached = !run.stop.target_error || reason == StopReason::target_error ||
                        state.trace.relative_error.back() <= *run.stop.target_error;
   converged_ = converged_ && reached && !interrupted_;

@@ -15,7 +15,7 @@ from program import DATA, PROGRAM, ProgramTest
 ROOT = DATA.parent
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
 BLOCK = re.compile(r"```sh\n(.*?)```", re.DOTALL)
-INDENTED = re.compile(r"(?:^    \S.*\n)+", re.MULTILINE)
+INDENTED = re.compile(r"(?:^    .*\S.*\n)+", re.MULTILINE)
 RESOLVE = ("solve", "place", "covariance", "validate", "field", "image", "recover", "fit", "flux", "sweep", "trace",
            "render")
 # What is not run: it prepares the machine, or needs several of them, or hours.

@@ -58,6 +58,16 @@ class Method(ProgramTest):
             mc, transport = (file[f"{name}/field_correlation"][:] for name in ("mc", "transport"))
             self.assertLess(np.max(np.abs(mc - transport)), 0.05)
 
+    def test_one_budget_of_time_for_both(self):
+        keys = {**BOX, "width": 60, "depth": 30, "count": 300}
+        done = self.call("validate", **keys, seconds=1, threads=1, out="x.h5")
+        with h5py.File(self.folder / "x.h5") as file:
+            taken = {name: file[f"{name}/trace/wall_s"][-1] for name in ("mc", "wave")}
+        self.assertLess(taken["mc"], taken["wave"])
+        self.assertIn("placements: its errors are rough", done.stderr)
+        for words in ("crossed paths", "refraction", "correlated positions"):
+            self.assertIn(words, done.stdout)
+
     def test_near_ends_beside_a_slab(self):
         (self.folder / "sensors.csv").write_text("x,z\n0,105\n")
         (self.folder / "inside.csv").write_text("x,z\n0,20\n")
