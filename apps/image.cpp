@@ -15,6 +15,8 @@
 #include "flatland/scene/scene_datasets.h"
 #include "mc/imaging/imaging_datasets.h"
 #include "mc/imaging/media_statistics.h"
+#include "mc/imaging/picture_datasets.h"
+#include "mc/recovery/recovery_keys.h"
 
 namespace flatspeckle::apps {
 
@@ -24,12 +26,13 @@ namespace {
 struct ImageKeys {
   SceneSpec spec;
   std::vector<double> object_x, object_brightness;
-  std::optional<double> object_depth, object_extent, camera_depth;
+  std::optional<double> object_depth, object_extent, camera_depth, reference_x;
   std::vector<double> camera;
   std::int64_t pixels = 4096, repeats = 16;
   std::optional<std::int64_t> points, paths_per_field;
   double resolution = 1;
   mc::CameraNoise noise;
+  mc::DeconvolutionKeys deconvolution;
   std::string method = "paths";
   std::int64_t prediction_paths = 20000;
   MethodSettings estimation;
@@ -50,12 +53,17 @@ void add_object_keys(Keys& keys, ImageKeys& values) {
            "First and last pixel: x, or without camera_depth the sine of the direction")
       .exactly(2, "first last");
   keys.add("pixels", values.pixels, "Of the camera").from(64, 1 << 20);
-  keys.add("photons", values.noise.photons,
-           "Detected per pixel, mean of the light (default 0: no shot noise)")
-      .not_negative();
-  keys.add("read_noise", values.noise.read_noise, "Standard deviation, photons").not_negative();
+  add_camera_keys(keys, values.noise);
   keys.add("background", values.noise.background, "Even light besides, over the mean of the light")
       .not_negative();
+}
+
+void add_reference_keys(Keys& keys, ImageKeys& values) {
+  keys.group("Reference");
+  keys.add("reference_x", values.reference_x,
+           "A point on the object's line that has a frame of its own, by which others are divided")
+      .unit("length");
+  add_keys(keys, values.deconvolution);
 }
 
 void add_keys(Keys& keys, ImageKeys& values) {
@@ -65,6 +73,7 @@ void add_keys(Keys& keys, ImageKeys& values) {
   add_profile_keys(keys, values.spec);
   add_structure_key(keys, values.spec);
   add_object_keys(keys, values);
+  add_reference_keys(keys, values);
   keys.group("Pictures");
   keys.add("repeats", values.repeats, "Media, with a frame of each")
       .from(1, std::numeric_limits<double>::infinity());
@@ -115,7 +124,9 @@ mc::LineCamera camera_of(const Keys& keys, const ImageKeys& values) {
 
 /// Pixels of the longest distance that is looked for.
 std::size_t lags_of(const mc::LineScene& line, const std::optional<double>& object_extent) {
-  const auto [first, last] = std::minmax_element(line.object.x.begin(), line.object.x.end());
+  std::vector<double> x = line.object.x;
+  if (line.reference) x.push_back(*line.reference);
+  const auto [first, last] = std::minmax_element(x.begin(), x.end());
   const double extent = object_extent.value_or(1.25 * (*last - *first)),
                lags = std::ceil(extent * std::abs(magnification(line))) + 16,
                most = static_cast<double>(line.camera.pixels) / 4;
@@ -130,10 +141,10 @@ std::size_t lags_of(const mc::LineScene& line, const std::optional<double>& obje
 mc::ImagingTask task_of(const Keys& keys, const ImageKeys& values, std::size_t points) {
   mc::ImagingTask task;
   task.repeats = static_cast<std::uint64_t>(keys.read(values.repeats));
-  task.recovery.noise.photons = keys.read(values.noise.photons);
+  read_camera_keys(keys, values.noise, task.recovery.noise);
   task.recovery.noise.background = keys.read(values.noise.background);
-  if (task.recovery.noise.photons > 0)
-    task.recovery.noise.read_noise = keys.read(values.noise.read_noise);
+  if (keys.read(values.reference_x))
+    task.deconvolution = deconvolution_task(keys, values.deconvolution);
   if (const auto& sought = keys.read(values.points)) points = static_cast<std::size_t>(*sought);
   if (points > 1) task.recovery.points = points;  // one point has no distances
   if (task.recovery.points > 0) task.recovery.resolution_grains = keys.read(values.resolution);
@@ -212,6 +223,16 @@ std::optional<Fields> fields_of(const mc::LineScene& line, const mc::ImagingTask
                 "mc: fields of " + std::to_string(*paths) + " light paths; " + plan.describe()};
 }
 
+void print_pictures(const mc::LineScene& line, const mc::ImagingTask& task,
+                    const std::vector<mc::ImagedMedium>& media,
+                    const mc::ImagingPrediction& prediction) {
+  const mc::Measured mean = mc::mean_psnr(media);
+  std::printf("frames divided by the reference: PSNR %.1f +- %.2g dB", mean.value, mean.error);
+  if (task.deconvolution.method == mc::DeconvolutionTask::Method::wiener)
+    std::printf(", expected %.1f dB", mc::expected_psnr(line, task, prediction));
+  std::puts("");
+}
+
 void print_summary(const mc::LineScene& line, const mc::ImagingTask& task,
                    const std::vector<mc::ImagedMedium>& media,
                    const mc::ImagingPrediction& prediction) {
@@ -229,6 +250,7 @@ void print_summary(const mc::LineScene& line, const mc::ImagingTask& task,
                 *std::min_element(correlation.begin(), correlation.end()),
                 *std::min_element(signals.begin(), signals.end()));
   }
+  if (line.reference) print_pictures(line, task, media, prediction);
   if (task.recovery.points == 0) return;
   const auto [rate, error] = mc::success_rate(media);
   std::printf("all %zu points found in %.3g +- %.2g of the media\n", line.object.x.size(), rate,
@@ -253,6 +275,7 @@ int image(const Arguments& arguments) {
   mc::LineObject object = object_of(keys, values);
   const double object_depth = keys.required(values.object_depth);
   const mc::LineCamera camera = camera_of(keys, values);
+  const std::optional<double> reference = keys.read(values.reference_x);
   const auto prediction_paths = static_cast<std::uint64_t>(keys.read(values.prediction_paths));
   mc::ImagingTask task = task_of(keys, values, object.x.size());
   if (method == "wave" && task.repeats < 2)
@@ -264,7 +287,7 @@ int image(const Arguments& arguments) {
   if (medium.domain.kind == Domain::Kind::slab)
     throw InputError("domain", "slab", "pictures need a box");
   const mc::LineScene line =
-      mc::line_scene(std::move(medium), std::move(object), object_depth, camera);
+      mc::line_scene(std::move(medium), std::move(object), object_depth, camera, reference);
   task.recovery.lags = lags_of(line, object_extent);
   check_memory(line, task, method == "wave");
   if (!command.settle()) return ExitStatus::done;

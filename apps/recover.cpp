@@ -10,6 +10,7 @@
 #include "core/keys/csv.h"
 #include "core/session/session.h"
 #include "mc/recovery/recovery_datasets.h"
+#include "mc/recovery/recovery_keys.h"
 
 namespace flatspeckle::apps {
 
@@ -17,11 +18,12 @@ namespace {
 
 /// What the user asks.
 struct RecoverKeys {
-  std::string frames;
+  std::string frames, reference;
   std::optional<std::int64_t> points;
   std::optional<double> longest;
   double resolution = 1;
   mc::CameraNoise noise;
+  mc::DeconvolutionKeys deconvolution;
   RunSettings run;
 };
 
@@ -35,10 +37,12 @@ void add_keys(Keys& keys, RecoverKeys& values) {
       .from(8, std::numeric_limits<double>::infinity());
   keys.add("resolution", values.resolution, "Least distance of points, in grains of the speckle")
       .positive();
-  keys.add("photons", values.noise.photons,
-           "Of the camera: detected per pixel, mean (default 0: no shot noise)")
-      .not_negative();
-  keys.add("read_noise", values.noise.read_noise, "Standard deviation, photons").not_negative();
+  add_camera_keys(keys, values.noise);
+  keys.add("reference", values.reference,
+           "CSV file of a reference point's frame: one column, or one for each frame; frames are "
+           "divided by it")
+      .file();
+  add_keys(keys, values.deconvolution);
   add_output_key(keys, values.run);
 }
 
@@ -46,8 +50,7 @@ mc::RecoveryTask task_of(const Keys& keys, const RecoverKeys& values, std::size_
   mc::RecoveryTask task;
   task.points = static_cast<std::size_t>(keys.required(values.points));
   task.resolution_grains = keys.read(values.resolution);
-  task.noise.photons = keys.read(values.noise.photons);
-  if (task.noise.photons > 0) task.noise.read_noise = keys.read(values.noise.read_noise);
+  read_camera_keys(keys, values.noise, task.noise);
   if (pixels < 64) throw InputError("frames", pixels, "pixels: a frame has at least 64");
   const auto most = static_cast<double>(pixels) / 4;
   const double longest = keys.read(values.longest).value_or(std::floor(most / 2));
@@ -57,6 +60,32 @@ mc::RecoveryTask task_of(const Keys& keys, const RecoverKeys& values, std::size_
         "must be less than a quarter of the frame's " + std::to_string(pixels) + " pixels");
   task.lags = static_cast<std::size_t>(longest) + 1;
   return task;
+}
+
+/// Of each frame; nothing without a reference.
+struct References {
+  std::vector<std::vector<double>> of_frame;
+  mc::DeconvolutionTask task;
+};
+
+References references_of(const Keys& keys, const RecoverKeys& values, const Table& frames) {
+  References references;
+  if (keys.read(values.reference).empty()) return references;
+  references.task = deconvolution_task(keys, values.deconvolution);
+  const Table table = read_csv(values.reference);
+  const std::size_t columns = table.names().size(), count = frames.names().size();
+  if (table.rows() != frames.rows())
+    throw InputError("reference", table.rows(),
+                     "pixels, but the frames have " + std::to_string(frames.rows()));
+  if (columns != 1 && columns != count)
+    throw InputError(
+        "reference", columns,
+        "columns: must be one, or one for each of " + std::to_string(count) + " frames");
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto column = table.column(table.names()[columns == 1 ? 0 : i]);
+    references.of_frame.emplace_back(column.begin(), column.end());
+  }
+  return references;
 }
 
 void print_summary(const std::vector<mc::Recovered>& all) {
@@ -82,13 +111,21 @@ int recover(const Arguments& arguments) {
   const Session session(command.text(), keys, values.run, command.only_prints());
   const Table table = read_csv(keys.required(values.frames));
   const mc::RecoveryTask task = task_of(keys, values, table.rows());
+  const References references = references_of(keys, values, table);
   keys.refuse_unread();
   if (!command.settle()) return ExitStatus::done;
   return session.once(ResultFile(session.out()), [&](ResultFile& file) -> std::optional<Made> {
     std::vector<mc::Recovered> all;
-    for (const std::string& name : table.names())
-      all.push_back(mc::recovered(table.column(name), task));
+    std::vector<mc::Deconvolved> pictures;
+    for (const std::string& name : table.names()) {
+      const auto frame = table.column(name);
+      if (!references.of_frame.empty())
+        pictures.push_back(
+            mc::deconvolved(frame, references.of_frame[all.size()], task.lags, references.task));
+      all.push_back(mc::recovered(frame, task));
+    }
     mc::write_recovery(file, table.names(), task, all);
+    if (!pictures.empty()) mc::write_deconvolved(file, task, pictures);
     print_summary(all);
     return Made{"autocorrelation of each frame, sparse search", static_cast<double>(all.size())};
   });

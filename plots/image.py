@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Pictures of `flatspeckle image`: a part of the first frame, its autocorrelation beside the peaks
-that are expected of each pair of points, and the points found in all frames beside the object."""
+that are expected of each pair of points, and the points found in all frames, or the first frame
+divided by a reference, beside the object."""
 
 from lib import style
 
@@ -66,6 +67,16 @@ def draw_object(axis, result):
     axis.legend(loc="lower left")
 
 
+def draw_pictures(axis, result):
+    x, truth, pictures = (result.values(name) for name in ("picture_x", "true_picture", "picture"))
+    axis.plot(x, truth / truth.max(), color="0.3", linewidth=2.2, alpha=0.5, label="object")
+    scale = pictures @ truth / np.sum(pictures**2, axis=1) / truth.max()
+    axis.plot(x, scale[0] * pictures[0], linewidth=0.8, color="C3",
+              label=f"one frame, {result.values('psnr')[0]:.1f} dB")
+    axis.set(xlabel="x of the object", ylabel="frame divided by the reference", xlim=x[[0, -1]])
+    axis.legend()
+
+
 def draw(results):
     result = results[0]
     if not result.has("camera_place"):
@@ -73,7 +84,10 @@ def draw(results):
     figure, axes = plt.subplots(1, 3, figsize=(1.4 * style.PAGE, 2.9), layout="constrained")
     draw_frame(axes[0], result)
     draw_autocorrelation(axes[1], result)
-    draw_object(axes[2], result)
+    if result.has("picture"):
+        draw_pictures(axes[2], result)
+    else:
+        draw_object(axes[2], result)
     return figure
 
 

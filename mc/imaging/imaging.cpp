@@ -21,11 +21,6 @@ bool run(const BatchJob& job, std::uint64_t samples, int threads, const char* la
   return !interrupted();
 }
 
-LineObject scaled(LineObject object, double factor) {
-  for (double& x : object.x) x *= factor;
-  return object;
-}
-
 /// Of |u|^2 over its smooth envelope, all points together.
 double fourth_moment(std::span<const Complex> field, std::size_t points) {
   const std::size_t pixels = field.size() / points;
@@ -38,6 +33,17 @@ double fourth_moment(std::span<const Complex> field, std::size_t points) {
   return 1 + sum / static_cast<double>(points);
 }
 
+void divide_by_reference(ImagedMedium& medium, const LineScene& line, const ImagingTask& task,
+                         std::span<const Complex> field, RandomStream& random) {
+  const std::vector<double> one{1};
+  medium.reference = incoherent_sum(field, one);
+  expose(medium.reference, task.recovery.noise, random);
+  const std::size_t lags = task.recovery.lags;
+  medium.deconvolved = deconvolved(medium.frame, medium.reference, lags, task.deconvolution);
+  medium.psnr =
+      psnr(point_picture(shifts(line), lags, medium.deconvolved.grain), medium.deconvolved.picture);
+}
+
 ImagedMedium imaged_one(const LineScene& line, const ImagingTask& task, const FieldDraw& draw,
                         std::uint64_t number) {
   const std::size_t channels = line.scene.request.channels.size();
@@ -45,19 +51,41 @@ ImagedMedium imaged_one(const LineScene& line, const ImagingTask& task, const Fi
   std::vector<double> intensity(channels);
   draw(number, field, intensity);
   ImagedMedium medium;
-  medium.frame = incoherent_sum(field, line.object.brightness);
-  medium.fourth_moment = fourth_moment(field, line.object.x.size());
+  const std::size_t of_object = line.object.x.size() * line.camera.pixels;
+  medium.frame = incoherent_sum(std::span(field).first(of_object), line.object.brightness);
+  medium.fourth_moment = fourth_moment(field, line.scene.request.lights.size());
   RandomStream random(task.seed, static_cast<std::uint64_t>(Stream::camera), number);
   expose(medium.frame, task.recovery.noise, random);
+  if (line.reference)
+    divide_by_reference(medium, line, task, std::span(field).subspan(of_object), random);
   static_cast<Recovered&>(medium) = recovered(medium.frame, task.recovery);
   if (task.recovery.points > 0)
-    medium.score = score(scaled(line.object, magnification(line)), medium.fit.object,
+    medium.score = score(shifts(line), medium.fit.object,
                          task.recovery.resolution_grains * medium.statistics.grain);
   return medium;
 }
 
+/// Pairs of points (0, 1), (0, 2), ..., then each point and the reference.
+using Pairs = std::vector<std::pair<std::size_t, std::size_t>>;
+Pairs pairs_of(const LineScene& line) {
+  const std::size_t points = line.object.x.size();
+  Pairs pairs;
+  for (std::size_t i = 0; i < points; ++i)
+    for (std::size_t j = i + 1; j < points; ++j) pairs.emplace_back(i, j);
+  if (line.reference)
+    for (std::size_t i = 0; i < points; ++i) pairs.emplace_back(i, points);
+  return pairs;
+}
+
+double distance_of(const LineScene& line, std::pair<std::size_t, std::size_t> pair) {
+  std::vector<double> x = line.object.x;
+  if (line.reference) x.push_back(*line.reference);
+  return x[pair.second] - x[pair.first];
+}
+
 /// Pairs of channels, then the intensities of either, for each place and pair.
-CovarianceRequest pair_request(const LineScene& line, const std::vector<double>& places) {
+CovarianceRequest pair_request(const LineScene& line, const Pairs& pairs,
+                               const std::vector<double>& places) {
   CovarianceRequest request;
   request.kind = CovarianceRequest::Kind::pairs;
   request.lights = line.scene.request.lights;
@@ -69,12 +97,12 @@ CovarianceRequest pair_request(const LineScene& line, const std::vector<double>&
     return static_cast<std::uint32_t>(request.channels.size() - 1);
   };
   for (const double place : places)
-    for (std::size_t i = 0; i < line.object.x.size(); ++i)
-      for (std::size_t j = i + 1; j < line.object.x.size(); ++j) {
-        const double shift = moved * (line.object.x[j] - line.object.x[i]);
-        const std::uint32_t a = channel(i, place - shift / 2), b = channel(j, place + shift / 2);
-        request.entries.insert(request.entries.end(), {{a, b}, {a, a}, {b, b}});
-      }
+    for (const auto& pair : pairs) {
+      const double shift = moved * distance_of(line, pair);
+      const std::uint32_t a = channel(pair.first, place - shift / 2),
+                          b = channel(pair.second, place + shift / 2);
+      request.entries.insert(request.entries.end(), {{a, b}, {a, a}, {b, b}});
+    }
   return request;
 }
 
@@ -94,7 +122,8 @@ std::vector<Complex> mean_correlations(std::span<const Complex> entries, std::si
 /// Some pixels of the camera.
 LineScene with_fewer_pixels(LineScene line, std::size_t most) {
   line.camera.pixels = std::min(line.camera.pixels, most);
-  return line_scene(std::move(line.scene), std::move(line.object), line.object_depth, line.camera);
+  return line_scene(std::move(line.scene), std::move(line.object), line.object_depth, line.camera,
+                    line.reference);
 }
 
 }  // namespace
@@ -118,20 +147,23 @@ std::optional<ImagingPrediction> predicted(const LineScene& line, std::uint64_t 
   const auto middle = static_cast<double>(line.camera.pixels - 1) / 2;
   const std::vector<double> places{0.8 * middle, middle, 1.2 * middle};
   Scene scene = line.scene;
-  scene.request = pair_request(line, places);
+  const Pairs pairs = pairs_of(line);
+  scene.request = pair_request(line, pairs, places);
   if (scene.request.entries.empty()) return ImagingPrediction{};
   const FieldJob field = covariance_job(scene, make_plan(scene, ReversedPaths::automatic), seed);
   RunState state;
   if (!run(field.batches, paths, threads, "correlations", state)) return std::nullopt;
+  const std::size_t of_object = pairs.size() - (line.reference ? line.object.x.size() : 0);
   ImagingPrediction prediction;
-  for (std::size_t i = 0; i < line.object.x.size(); ++i)
-    for (std::size_t j = i + 1; j < line.object.x.size(); ++j)
-      prediction.distance.push_back(std::abs(line.object.x[j] - line.object.x[i]));
-  prediction.correlation =
+  for (std::size_t i = 0; i < of_object; ++i)
+    prediction.distance.push_back(std::abs(distance_of(line, pairs[i])));
+  const Estimate all =
       jackknife(state.sums, [&, covariance = field.covariance, count = places.size()](
                                 double samples, std::span<const Complex> sums) {
         return mean_correlations(covariance(samples, sums), count);
       });
+  prediction.correlation = part(all, 0, of_object);
+  prediction.to_reference = part(all, of_object, pairs.size() - of_object);
   return prediction;
 }
 

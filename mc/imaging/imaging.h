@@ -6,6 +6,7 @@
 
 #include "core/numbers/statistics.h"
 #include "mc/imaging/line_camera.h"
+#include "mc/recovery/deconvolution.h"
 #include "mc/recovery/image_score.h"
 #include "mc/recovery/recovery.h"
 #include "mc/speckle/speckle_field.h"
@@ -14,7 +15,8 @@ namespace flatspeckle::mc {
 
 /// What is done with each of the media that a scene stands for.
 struct ImagingTask {
-  RecoveryTask recovery;  ///< its resolution is also what counts as found
+  RecoveryTask recovery;            ///< its resolution is also what counts as found
+  DeconvolutionTask deconvolution;  ///< where the scene has a reference
   std::uint64_t repeats = 1;
   std::uint64_t seed = 1;
   int threads = 1;
@@ -22,7 +24,9 @@ struct ImagingTask {
 
 /// One medium: its frame, and what that tells.
 struct ImagedMedium : Recovered {
-  std::vector<double> frame;
+  std::vector<double> frame, reference;  ///< of the reference alone, where there is one
+  Deconvolved deconvolved;
+  double psnr = 0;  ///< of its picture
   ImageScore score;
   double fourth_moment = 0;  ///< of the points' fields, E|u|^4 / (E|u|^2)^2: Gaussian, 2
 };
@@ -37,6 +41,7 @@ std::optional<std::vector<ImagedMedium>> imaged(const LineScene& line, const Ima
 struct ImagingPrediction {
   std::vector<double> distance;  ///< of pairs of points, in the order (0, 1), (0, 2), ...
   Estimate correlation;          ///< C_I
+  Estimate to_reference;         ///< C_I of each point and the reference
 };
 
 /// By so many light paths. Averaged over a few places of the camera.

@@ -5,6 +5,7 @@
 
 #include "core/result/result_group.h"
 #include "mc/imaging/media_statistics.h"
+#include "mc/imaging/picture_datasets.h"
 #include "mc/recovery/recovery_datasets.h"
 
 namespace flatspeckle::mc {
@@ -126,6 +127,7 @@ void write_imaging(ResultFile& file, const LineScene& line, const ImagingTask& t
   write_moments(root, line, task.recovery.noise.background, media);
   if (task.recovery.points > 0) write_fits(root, task, media, length_of_pixel);
   if (!prediction.distance.empty()) write_prediction(root, line, media, prediction);
+  if (line.reference) write_pictures(file, line, task, media, prediction);
 }
 
 }  // namespace flatspeckle::mc

@@ -36,17 +36,18 @@ View view_at(const LineCamera& camera, double pixel) {
   return camera.depth ? near_sensor({place, *camera.depth}) : far_view(std::asin(place));
 }
 
-LineScene line_scene(Scene medium, LineObject object, double object_depth,
-                     const LineCamera& camera) {
+LineScene line_scene(Scene medium, LineObject object, double object_depth, const LineCamera& camera,
+                     std::optional<double> reference) {
   require_outside(medium, "object_depth", object_depth);
   if (camera.depth) require_outside(medium, "camera_depth", *camera.depth);
   Lights lights;
   for (const double x : object.x) lights.push_back(point_source({x, object_depth}));
+  if (reference) lights.push_back(point_source({*reference, object_depth}));
   std::vector<View> views;
   for (std::size_t p = 0; p < camera.pixels; ++p)
     views.push_back(view_at(camera, static_cast<double>(p)));
   medium.request = field_request(std::move(lights), std::move(views));
-  return {std::move(medium), std::move(object), object_depth, camera};
+  return {std::move(medium), std::move(object), object_depth, camera, reference};
 }
 
 double most_grains(const LineScene& line) {
@@ -57,6 +58,12 @@ double most_grains(const LineScene& line) {
 double magnification(const LineScene& line) {
   const double tilt = -1 / distance_to(line.scene.domain, line.object_depth);
   return tilt * length_of_sine(line) / line.camera.step();
+}
+
+LineObject shifts(const LineScene& line) {
+  LineObject object = line.object;
+  for (double& x : object.x) x = magnification(line) * (x - line.reference.value_or(0));
+  return object;
 }
 
 }  // namespace flatspeckle::mc

@@ -21,21 +21,26 @@ struct LineCamera {
 
 /// An object on a line outside the box, its camera, and the medium between or beside them.
 struct LineScene {
-  Scene scene;  ///< lights: the points; views: the pixels; channels [light][view], no entries
+  Scene scene;  ///< lights: the points, and the reference; views: the pixels; channels
+                ///< [light][view], no entries
   LineObject object;
   double object_depth = 0;
   LineCamera camera;
+  std::optional<double> reference = std::nullopt;  ///< x of a point that has a frame of its own
 };
 
 /// Throws InputError for what is inside the box, or nearer to it than scatterers reach.
-LineScene line_scene(Scene medium, LineObject object, double object_depth,
-                     const LineCamera& camera);
+LineScene line_scene(Scene medium, LineObject object, double object_depth, const LineCamera& camera,
+                     std::optional<double> reference = std::nullopt);
 
 /// Pixels that the speckle of a point moves by where the point moves by 1; the sign is that of a
 /// picture. A source that moves by s at the distance d from the box tilts its light there by -s/d,
 /// and light that leaves the box tilts alike (the memory effect): by -s/d in the sine, by -s c/d on
 /// a line at the distance c.
 double magnification(const LineScene& line);
+
+/// The object in pixels by which its points' speckle is shifted against the reference's.
+LineObject shifts(const LineScene& line);
 
 /// Speckle grains that the camera can see: its range of sines times the box's width, in
 /// wavelengths.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace flatspeckle::mc {
 
@@ -59,6 +60,11 @@ Measured success_rate(const std::vector<ImagedMedium>& media) {
   const auto n = static_cast<double>(media.size());
   const double likely = (found + 1) / (n + 2);
   return {found / n, std::sqrt(likely * (1 - likely) / (n + 3))};
+}
+
+Measured mean_psnr(const std::vector<ImagedMedium>& media) {
+  constexpr double unknown = std::numeric_limits<double>::infinity();
+  return mean_of(media, unknown, [](const ImagedMedium& m) { return m.psnr; });
 }
 
 }  // namespace flatspeckle::mc

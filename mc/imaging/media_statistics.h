@@ -31,4 +31,7 @@ Measured mean_fourth_moment(const std::vector<ImagedMedium>& media);
 /// trials leave open, which is not 0 where all succeed (Beta distribution with a uniform prior).
 Measured success_rate(const std::vector<ImagedMedium>& media);
 
+/// dB.
+Measured mean_psnr(const std::vector<ImagedMedium>& media);
+
 }  // namespace flatspeckle::mc

@@ -2,11 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 
 #include "core/error.h"
-#include "core/numbers/fourier.h"
+#include "mc/recovery/line_spectrum.h"
 #include "mc/speckle/field_statistics.h"
 
 namespace flatspeckle::mc {
@@ -17,46 +16,24 @@ namespace {
 /// may even be negative.
 enum class Envelope { gaussian, cubics };
 
-/// Averages of lines with a Gaussian of this standard deviation; nothing comes from beyond the
-/// ends.
-class SmoothAverage {
- public:
-  SmoothAverage(std::size_t pixels, double width, Envelope kind)
-      : size_(transform_size(static_cast<double>(pixels) + 6 * width)),
-        forward_(size_, LineTransform::Direction::forward),
-        backward_(size_, LineTransform::Direction::backward),
-        width_(width),
-        kind_(kind) {}
-
-  std::vector<double> operator()(std::span<const double> line) const {
-    std::vector<Complex> padded(size_);
-    std::copy(line.begin(), line.end(), padded.begin());
-    forward_(padded.data());
-    for (std::size_t m = 0; m < size_; ++m) {
-      const double cycles =
-          static_cast<double>(std::min(m, size_ - m)) / static_cast<double>(size_);
-      const double turns = 2 * std::numbers::pi * cycles * width_;
-      const double decay = turns * turns / 2;
-      padded[m] *= std::exp(-decay) * (kind_ == Envelope::cubics ? 1 + decay : 1) /
-                   static_cast<double>(size_);
-    }
-    backward_(padded.data());
-    std::vector<double> averaged(line.size());
-    for (std::size_t p = 0; p < line.size(); ++p) averaged[p] = padded[p].real();
-    return averaged;
+/// Averages of a line; nothing comes from beyond the ends.
+std::vector<double> averaged(const LineSpectrum& spectra, std::span<const double> line,
+                             double width, Envelope kind) {
+  auto spectrum = spectra.of(line);
+  for (std::size_t m = 0; m < spectrum.size(); ++m) {
+    const double gaussian = gaussian_spectrum(spectra.frequency(m), width);
+    spectrum[m] *=
+        kind == Envelope::cubics && gaussian > 0 ? gaussian * (1 - std::log(gaussian)) : gaussian;
   }
-
- private:
-  std::size_t size_;
-  LineTransform forward_, backward_;
-  double width_;
-  Envelope kind_;
-};
+  auto average = spectra.line(std::move(spectrum));
+  average.resize(line.size());
+  return average;
+}
 
 std::vector<double> envelope_of(std::span<const double> frame, double width, Envelope kind) {
-  const SmoothAverage average(frame.size(), width, kind);
-  auto envelope = average(frame);
-  const auto whole = average(std::vector<double>(frame.size(), 1.0));
+  const LineSpectrum spectra(transform_size(static_cast<double>(frame.size()) + 6 * width));
+  auto envelope = averaged(spectra, frame, width, kind);
+  const auto whole = averaged(spectra, std::vector<double>(frame.size(), 1.0), width, kind);
   for (std::size_t p = 0; p < frame.size(); ++p) envelope[p] /= whole[p];
   return envelope;
 }

@@ -18,7 +18,12 @@ const DatasetTable recovery_table{
         {"found_brightness", Data::real, "frame sought", "1",
          "relative, mean 1; 0 where nothing was found"},
         {"explained", Data::real, "frame", "1",
-         "how well the brightness fits the peaks of all pairs, at most 1"}}};
+         "how well the brightness fits the peaks of all pairs, at most 1"},
+        {"shift", Data::scale, "", "1", "pixels from the reference"},
+        {"picture", Data::real, "frame shift", "1", "frames divided by their reference"},
+        {"iteration", Data::numbers, "", "1", "number of the step (richardson_lucy)"},
+        {"residual", Data::real, "frame iteration", "1",
+         "rms of what the frame differs by from picture and reference, over its mean"}}};
 
 void write_recovery(ResultFile& file, const std::vector<std::string>& names,
                     const RecoveryTask& task, const std::vector<Recovered>& all) {
@@ -30,6 +35,21 @@ void write_recovery(ResultFile& file, const std::vector<std::string>& names,
   constexpr double in_pixels = 1;
   write_points(root, all, task.points, in_pixels);
   root.put("explained", column(all, [](const Recovered& one) { return one.fit.explained; }));
+}
+
+void write_deconvolved(ResultFile& file, const RecoveryTask& task,
+                       const std::vector<Deconvolved>& all) {
+  const ResultGroup root(file, recovery_table);
+  std::vector<double> shifts;
+  for (std::size_t p = 0; p < 2 * task.lags - 1; ++p)
+    shifts.push_back(static_cast<double>(p) - static_cast<double>(task.lags - 1));
+  root.put("shift", shifts);
+  root.put("picture",
+           of_each(all, shifts.size(), [](const Deconvolved& one) { return one.picture; }));
+  const std::size_t steps = all.front().residual.size();
+  if (steps == 0) return;
+  root.number("iteration", steps);
+  root.put("residual", of_each(all, steps, [](const Deconvolved& one) { return one.residual; }));
 }
 
 }  // namespace flatspeckle::mc

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/result/result_group.h"
+#include "mc/recovery/deconvolution.h"
 #include "mc/recovery/recovery.h"
 
 namespace flatspeckle::mc {
@@ -49,5 +50,9 @@ void write_points(const ResultGroup& root, const All& all, std::size_t points,
 
 void write_recovery(ResultFile& file, const std::vector<std::string>& names,
                     const RecoveryTask& task, const std::vector<Recovered>& all);
+
+/// Of frames that were divided by a reference, beside what write_recovery() has written.
+void write_deconvolved(ResultFile& file, const RecoveryTask& task,
+                       const std::vector<Deconvolved>& all);
 
 }  // namespace flatspeckle::mc

@@ -59,6 +59,30 @@ class Image(ProgramTest):
             self.assertLess(abs(found["fourth_moment"] - 2),
                             4 * found["fourth_moment_error"] + 0.01)
 
+    def test_reference(self):
+        """Frames divided by that of a point: a picture, worse behind more, as predicted."""
+        scene = {**IMAGE, "width": 600, "object_x": [-120, 30, 160], "object_depth": -8000,
+                 "object_brightness": [1, 3, 2], "reference_x": 10, "pixels": 1024, "repeats": 8,
+                 "points": 0}
+        del scene["paths_per_field"]
+        psnr = []
+        for optical_depth in 2, 12:
+            found = self.image(**{**scene, "optical_depth": optical_depth})
+            expected = found["predicted_psnr"]
+            self.assertLess(abs(found["mean_psnr"] - expected),
+                            1.5 + 4 * found["mean_psnr_error"])
+            self.assertIn(f"expected {float(expected):.1f} dB", self.output)
+            psnr.append(float(found["mean_psnr"]))
+            self.assertTrue(np.all(np.diff(found["reference_correlation"][[1, 0]]) < 0))
+        self.assertGreater(psnr[0], psnr[1] + 4)
+        lucy = self.image(**{**scene, "optical_depth": 2}, deconvolution="richardson_lucy",
+                          iterations=40)
+        self.assertEqual(lucy["residual"].shape, (8, 40))
+        self.assertNotIn("predicted_psnr", lucy)
+        for found in lucy, self.image(**{**scene, "optical_depth": 2}):
+            brightest = found["picture_x"][found["picture"].mean(axis=0).argmax()]
+            self.assertAlmostEqual(brightest, 30, delta=2 * np.diff(found["picture_x"])[0])
+
     def test_one_medium_has_errors(self):
         found = self.image(**{**IMAGE, "repeats": 1})
         grains = found["grains"][0]
@@ -105,6 +129,9 @@ class Image(ProgramTest):
                      **other(object_brightness=[1, 2]))
         self.refused("object_brightness", **other(object_brightness=[1, 2, -1]))
         self.refused("object_extent = 1000: takes", **other(object_extent=1000))
+        self.refused("regularisation = 1: nothing here has use for it", **other(regularisation=1))
+        self.refused("iterations = 9: nothing", **other(reference_x=3, iterations=9))
+        self.refused("object_extent", **other(reference_x=5000))
         self.refused("slab", **other(domain="slab", width=None))
         self.refused("photons", **other(photons=-1))
         self.refused("pixels", **other(pixels=3))

@@ -37,6 +37,35 @@ class Recover(ProgramTest):
             self.assertAlmostEqual(found["contrast"][number], 3**-0.5, delta=0.05)
         self.assertIn("points (pixels; mirrored or not)", output)
 
+    def test_reference(self):
+        """The object as it is, neither shifted nor mirrored."""
+        random = np.random.default_rng(2)
+        speckle = random.exponential(size=6100)
+        columns = [sum(b * speckle[50 - x:6050 - x] for x, b in points.items())
+                   for points in ({-20: 1, 5: 3}, {30: 2, 12: 3})]
+        np.savetxt(self.folder / "two.csv", np.transpose(columns), delimiter=",", header="a,b",
+                   comments="")
+        np.savetxt(self.folder / "one.csv", speckle[50:6050], header="speckle", comments="")
+        for extra in {}, {"deconvolution": "richardson_lucy", "iterations": 30}:
+            self.call("recover", frames="two.csv", reference="one.csv", points=2, longest=60,
+                      out="r.h5", **extra)
+            found = datasets(self.folder / "r.h5")
+            for number, (bright, dim) in enumerate(((5, -20), (12, 30))):
+                shift, picture = found["shift"], found["picture"][number]
+                self.assertEqual(shift[picture.argmax()], bright)
+                self.assertEqual(shift[np.where(abs(shift - bright) > 4, picture, 0).argmax()], dim)
+        self.assertEqual(found["residual"].shape, (2, 30))
+        (self.folder / "r.h5").unlink()
+        both = {"frames": "two.csv", "points": 2, "longest": 60}
+        self.write("short.csv", "a\n1\n2\n")
+        self.refused("reference = 2: pixels, but the frames have 6000", **both,
+                     reference="short.csv")
+        np.savetxt(self.folder / "three.csv", np.ones((6000, 3)), delimiter=",", header="a,b,c",
+                   comments="")
+        self.refused("reference = 3: columns", **both, reference="three.csv")
+        self.refused("deconvolution = richardson_lucy: nothing", **both,
+                     deconvolution="richardson_lucy")
+
     def refused(self, words, status=2, **keys):
         line = self.call("recover", **keys, out="r.h5", status=status).stderr
         self.assertIn(words, line)
