@@ -3,7 +3,7 @@
 #include <numbers>
 
 #include "grin/curved/ray_field_of.h"
-#include "grin/rays/luneburg_orbit.h"
+#include "grin/curved/luneburg_orbit.h"
 
 namespace flatspeckle::grin {
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "grin/curved/fisheye_rays.h"
 #include "grin/curved/luneburg_rays.h"
 
 namespace flatspeckle::grin {

@@ -21,6 +21,11 @@ struct FisheyeProfile {
 };
 using Fisheye = RadialField<FisheyeProfile, 3>;
 
+/// Smooth everywhere.
+inline Fisheye smooth_within(const Fisheye& field, const Sphere& /*end*/) {
+  return field;
+}
+
 inline FieldFacts facts(const Fisheye& field) {
   return {.scale = field.profile().radius, .symmetry = Symmetry::sphere, .centre = field.centre()};
 }

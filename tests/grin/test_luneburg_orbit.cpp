@@ -6,7 +6,7 @@
 #include "bench/scenes/random_fields.h"
 #include "grin/connections/connection_trial.h"
 #include "grin/curved/ray_field.h"
-#include "grin/rays/luneburg_orbit.h"
+#include "grin/curved/luneburg_orbit.h"
 #include "tests/grin/ray_tests.h"
 
 using namespace flatspeckle;

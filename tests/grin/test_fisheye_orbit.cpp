@@ -1,0 +1,179 @@
+#include <cmath>
+#include <numbers>
+
+#include <doctest/doctest.h>
+
+#include "bench/scenes/random_fields.h"
+#include "grin/connections/connection_trial.h"
+#include "grin/connections/geometric_spreading.h"
+#include "grin/curved/fisheye_orbit.h"
+#include "grin/curved/ray_field.h"
+#include "grin/rays/ray_step.h"
+
+using namespace flatspeckle;
+using namespace flatspeckle::grin;
+using bench::random_direction;
+using bench::random_point;
+
+namespace {
+
+const Vec3 centre(0.3, -0.2, 0.5);
+constexpr double radius = 1.7, wide = 2.1;  // of the fisheye, of the sphere where rays end
+const Fisheye fisheye({1.6, radius}, centre);
+const Surface rim = Sphere{centre, wide};
+constexpr double inside = 1;
+
+/// By so small steps that they are exact to 1e-11.
+struct Stepped {
+  RayState ray;
+  RayTangent tangent = {};
+  void go(double sigma) {
+    constexpr int steps = 4000;
+    for (int i = 0; i < steps; ++i) Sharma::step(fisheye, ray, tangent, sigma / steps);
+  }
+};
+
+CurveEnds ends(const Vec3& from, const Vec3& to) {
+  return {from, to, {{&rim, 1}, {&inside, 1}}};
+}
+
+}  // namespace
+
+TEST_CASE("rays of Maxwell's fisheye go where small steps lead") {
+  RandomStream random(3, 1, 0);
+  for (int i = 0; i < 60; ++i) {
+    const Vec3 x = wide / radius * random_point(random, 1);
+    Vec3 w = random_direction(random);
+    if (i % 5 == 0) w = (x + 1e-5 * i * w).normalized();  // next to straight
+    Stepped exact{start_ray(fisheye, centre + radius * x, w)};
+    exact.go(radius * 0.4 * random.uniform());
+    const auto place = FisheyeOrbit(x, w).at(exact.ray.arc_length / radius);
+    CHECK((centre + radius * place.x - exact.ray.x).norm() < 1e-9);
+    CHECK((place.w - exact.ray.v.normalized()).norm() < 1e-9);
+    CHECK(radius * 1.3 * place.angle == doctest::Approx(exact.ray.optical_path).epsilon(1e-9));
+  }
+}
+
+TEST_CASE("rays of the fisheye that are followed around count their rounds") {
+  const FisheyeOrbit orbit(Vec3(0.3, 0, 0.1), Vec3(0, 0.6, 0.8));
+  const double around = orbit.circumference();
+  const auto once = orbit.at(0.3 * around), again = orbit.at(2.3 * around);
+  CHECK((once.x - again.x).norm() < 1e-12);
+  CHECK((once.w - again.w).norm() < 1e-12);
+  CHECK(again.angle == doctest::Approx(once.angle + 4 * std::numbers::pi));
+  CHECK(again.sigma > once.sigma);
+}
+
+TEST_CASE("rays of the fisheye end on a sphere, or never") {
+  RandomStream random(4, 1, 0);
+  int kept = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const Vec3 x = random_point(random, 1);
+    const Vec3 w = i % 7 == 0 ? x.normalized() : random_direction(random);
+    const double end = x.norm() + 0.7 * random.uniform();
+    const FisheyeOrbit orbit(x, w);
+    const double s = orbit.way_out(end);
+    REQUIRE(s >= 0);
+    const double far = std::isfinite(s) ? s : orbit.circumference();
+    kept += !std::isfinite(s);
+    for (const double part : {0.1, 0.5, 0.9, 0.999})
+      CHECK(orbit.at(part * far).x.norm() < end * (1 + 1e-12));
+    if (!std::isfinite(s)) continue;
+    const auto last = orbit.at(s);
+    CHECK(last.x.norm() == doctest::Approx(end).epsilon(1e-10));
+    CHECK(last.x.dot(last.w) > -1e-10);
+  }
+  CHECK(kept > 100);
+}
+
+TEST_CASE("flights in the fisheye and their neighbours are those of small steps") {
+  const auto closed = make_ray_field(fisheye, {&rim, 1});
+  static const PartMedium clear;
+  RandomStream random(5, 1, 0);
+  for (int i = 0; i < 40; ++i) {
+    const Vec3 x = centre + 0.9 * wide * random_point(random, 1);
+    RayState ray = start_ray(fisheye, x, random_direction(random));
+    RayTangent tangent;
+    Stepped exact{ray};
+    double weight = 1;
+    const LegRoom room{Room({&rim, 1}), clear, 0.05};
+    const double n = ray.v.norm();
+    const Vec3 first = ray.v.normalized();
+    if (closed->fly(room, 100, weight, random, ray, &tangent) != LegStop::surface) continue;
+    CHECK((ray.x - centre).norm() == doctest::Approx(wide).epsilon(1e-9));
+    // sigma from the optical path: steps of equal sigma, so that the last is found by bisection
+    double low = 0, high = 100;
+    for (int k = 0; k < 50; ++k) {
+      Stepped tried{exact.ray};
+      for (int step = 0; step < 400; ++step) Sharma::step(fisheye, tried.ray, (low + high) / 800);
+      (tried.ray.arc_length < ray.arc_length ? low : high) = (low + high) / 2;
+    }
+    exact.go((low + high) / 2);
+    CHECK((exact.ray.x - ray.x).norm() < 1e-6);
+    CHECK((exact.ray.v - ray.v).norm() < 1e-6);
+    CHECK(signed_spreading(tangent, n, first, ray.v.normalized()) ==
+          doctest::Approx(signed_spreading(exact.tangent, n, first, exact.ray.v.normalized()))
+              .epsilon(1e-5));
+  }
+}
+
+TEST_CASE("ways between two points of the fisheye, as the solver of curves has them") {
+  const auto closed = make_ray_field(fisheye, {&rim, 1});
+  ConnectionStatistics statistics;
+  RandomStream random(6, 1, 0);
+  const ConnectionOptions options{.step = 0.02, .max_length = 40};
+  int compared = 0;
+  for (int i = 0; i < 100; ++i) {
+    const Vec3 from = centre + 0.9 * wide * random_point(random, 1);
+    const Vec3 to = i % 4 == 0 ? Vec3(from + 1e-3 * random_point(random, 1))
+                               : Vec3(centre + 0.9 * wide * random_point(random, 1));
+    const ConnectionTrial trial(fisheye, ends(from, to).region, from, to, options);
+    const auto by_steps = trial.along_chord(statistics);
+    if (by_steps.outcome != TrialOutcome::converged) continue;
+    for (int draw = 0; draw < 40; ++draw) {
+      const auto found = closed->connect(ends(from, to), options, random, statistics);
+      if (!found.curve || std::abs(found.curve->sigma - by_steps.curve.sigma) > 1e-4) continue;
+      ++compared;
+      CHECK((found.curve->start_direction - by_steps.curve.start_direction).norm() < 1e-6);
+      CHECK((found.curve->end_direction - by_steps.curve.end_direction).norm() < 1e-6);
+      CHECK(found.curve->arc_length == doctest::Approx(by_steps.curve.arc_length).epsilon(1e-7));
+      CHECK(found.curve->optical_path ==
+            doctest::Approx(by_steps.curve.optical_path).epsilon(1e-7));
+      CHECK(found.curve->spreading == doctest::Approx(by_steps.curve.spreading).epsilon(1e-5));
+      CHECK(found.curve->orientation == by_steps.curve.orientation);
+      break;
+    }
+  }
+  CHECK(compared > 60);
+}
+
+TEST_CASE("all ways between two points of the fisheye are found as often as their weight says") {
+  // sums over ways of exp(-arc): a circle all inside, one that is cut by the rim, and one of which
+  // the longer part alone is inside
+  const auto closed = make_ray_field(fisheye, {&rim, 1});
+  RandomStream random(7, 1, 0);
+  ConnectionStatistics statistics;
+  const ConnectionOptions options{.step = 0.02, .max_length = 60};
+  const auto at = [](double x, double y, double z) {
+    return Vec3(centre + radius * Vec3(x, y, z));
+  };
+  const std::pair<Vec3, Vec3> pairs[] = {{at(0.9, 0, 0), at(0, 0.9, 0.2)},
+                                         {at(0.2, 0.1, 0), at(-0.3, 0.1, 0.4)},
+                                         {at(1.1, 0.4, 0), at(1.1, -0.4, 0)}};
+  for (const auto& [from, to] : pairs) {
+    double sum = 0, square = 0;
+    constexpr int draws = 20000;
+    for (int i = 0; i < draws; ++i) {
+      const auto found = closed->connect(ends(from, to), options, random, statistics);
+      const double value =
+          found.curve ? found.multiplicity * std::exp(-found.curve->arc_length) : 0;
+      sum += value / draws;
+      square += value * value / draws;
+    }
+    double expected = 0;
+    const auto all = closed->connections(ends(from, to), options, 3000, random, statistics);
+    for (const auto& found : all) expected += std::exp(-found.curve.arc_length);
+    CAPTURE(all.size());
+    CHECK(std::abs(sum - expected) < 4 * std::sqrt((square - sum * sum) / draws) + 1e-3 * expected);
+  }
+}
