@@ -44,22 +44,38 @@ ExtendedEstimation transport_gradient(const Scene& scene, mc::ReversedPaths reve
                        transport_estimation(scene, reversed, tolerance).plan);
 }
 
-ExtendedEstimation with_delays(const Scene& scene, const mc::PathJob& job,
-                               const std::vector<double>& delays, const std::string& plan) {
-  return {{job.field, plan + "; scatterers diffuse"},
-          [scene, job, delays](ResultFile& file, const GroupedSums& sums) {
+mc::Motion motion_of(const Extras& extras) {
+  mc::Motion motion;
+  if (!extras.velocity.empty()) motion.velocity = {extras.velocity[0], extras.velocity[1]};
+  motion.diffusion = extras.diffusion.value_or(1);
+  motion.shear = extras.shear.value_or(0);
+  return motion;
+}
+
+ExtendedEstimation with_delays(const Scene& scene, const mc::PathJob& job, const Extras& extras,
+                               const std::string& plan) {
+  const mc::Motion motion = motion_of(extras);
+  const std::string moves = motion.only_diffuses(scene) ? "diffuse" : "diffuse and flow";
+  return {{job.field, plan + "; scatterers " + moves},
+          [scene, job, extras, motion](ResultFile& file, const GroupedSums& sums) {
             const auto found = mc::change_estimates(scene.request, job, sums);
-            print_changes(scene.request, "delay", delays, found.correlation);
-            mc::write_delays(file, scene, delays, found);
+            print_changes(scene.request, "delay", extras.delays, found.correlation);
+            mc::write_delays(file, scene, extras.delays, found, motion);
+            if (extras.exposure.times.empty()) return;
+            const auto contrast =
+                mc::squared_contrast(scene.request, job, sums, extras.delays, extras.exposure);
+            print_changes(scene.request, "exposure", extras.exposure.times, contrast, "K^2");
+            mc::write_contrast(file, extras.exposure, contrast);
           }};
 }
 
-ExtendedEstimation mc_delays(const Scene& scene, mc::ReversedPaths reversed,
-                             const std::vector<double>& delays, std::uint64_t seed) {
+ExtendedEstimation mc_delays(const Scene& scene, mc::ReversedPaths reversed, const Extras& extras,
+                             std::uint64_t seed) {
   require_plane_waves("delays", scene.request);
+  mc::check_exposure(extras.exposure, extras.delays);
   const auto plan = mc::make_plan(scene, reversed);
-  return with_delays(scene, mc::delay_job(scene, plan, delays, seed), delays,
-                     "mc: " + plan.describe());
+  return with_delays(scene, mc::delay_job(scene, plan, extras.delays, seed, motion_of(extras)),
+                     extras, "mc: " + plan.describe());
 }
 
 mc::PathJob change_job(const Scene& scene, mc::ReversedPaths reversed,
@@ -70,12 +86,17 @@ mc::PathJob change_job(const Scene& scene, mc::ReversedPaths reversed,
 }
 
 ExtendedEstimation transport_delays(const Scene& scene, mc::ReversedPaths reversed,
-                                    const std::vector<double>& delays, double tolerance) {
-  mc::check_delays(scene, delays);
+                                    const Extras& extras, double tolerance) {
+  mc::check_delays(scene, extras.delays);
   require_changing("delays", scene.request);
+  if (!motion_of(extras).only_diffuses(scene))
+    throw InputError("velocity, shear, diffusion: are of method = mc");
+  if (scene.request.has_reference() && !extras.exposure.times.empty())
+    throw InputError("exposures: need covariance = intensity");
+  mc::check_exposure(extras.exposure, extras.delays);
   std::vector<mc::FieldChange> changes;
-  for (const double delay : delays) changes.push_back({.delay = delay});
-  return with_delays(scene, change_job(scene, reversed, changes, tolerance), delays,
+  for (const double delay : extras.delays) changes.push_back({.delay = delay});
+  return with_delays(scene, change_job(scene, reversed, changes, tolerance), extras,
                      transport_estimation(scene, reversed, tolerance).plan);
 }
 
@@ -108,13 +129,45 @@ void add_extra_keys(Keys& keys, Extras& extras) {
            "Also the field's correlation after delays, as the scatterers diffuse: k^2 D tau")
       .not_negative()
       .only_of("method = mc or transport");
+  keys.add("diffusion", extras.diffusion,
+           "k^2 D of the scatterers per unit of the delays (default 1)")
+      .not_negative()
+      .only_of("delays");
+  keys.add("velocity", extras.velocity,
+           "Of the scatterers, v_x and v_z, length per unit of the delays")
+      .exactly(2, "v_x, v_z")
+      .unit("length")
+      .only_of("delays by method = mc");
+  keys.add("shear", extras.shear, "Of the velocity: v_x grows so much per depth")
+      .only_of("delays by method = mc");
+  keys.add(
+          "exposures", extras.exposure.times,
+          "Also the squared contrast K^2 of speckle exposed so long, in units of the delays, up to "
+          "the longest of them")
+      .positive()
+      .only_of("delays");
+  keys.add("beta", extras.exposure.beta, "K^2 of still scatterers")
+      .positive_to(1)
+      .only_of("exposures");
   add_frequency_key(keys, extras.frequency_shifts);
 }
+
+namespace {
+
+void read_motion(const Keys& keys, const Extras& extras) {
+  keys.read(extras.diffusion);
+  keys.read(extras.velocity);
+  keys.read(extras.shear);
+  if (!keys.read(extras.exposure.times).empty()) keys.read(extras.exposure.beta);
+}
+
+}  // namespace
 
 void read_extras(const Keys& keys, const Extras& extras, const std::string& method) {
   const bool shifts = !keys.read(extras.frequency_shifts).empty();
   if (method == "wave") return;
-  const bool delays = !keys.read(extras.delays).empty(), gradient = keys.read(extras.gradient);
+  if (!keys.read(extras.delays).empty()) read_motion(keys, extras);
+  const bool delays = !extras.delays.empty(), gradient = keys.read(extras.gradient);
   if (gradient && delays) throw InputError("gradient, delays: give one of them");
   if (shifts && (gradient || delays))
     throw InputError("gradient, delays, frequency_shifts: give one of them");
@@ -146,7 +199,7 @@ ChangeEstimation wave_frequencies(const Scene& scene, const std::vector<double>&
 ExtendedEstimation extended_estimation(const Scene& scene, mc::ReversedPaths reversed,
                                        const Extras& extras, std::uint64_t seed) {
   if (extras.gradient) return mc_gradient(scene, reversed, seed);
-  if (!extras.delays.empty()) return mc_delays(scene, reversed, extras.delays, seed);
+  if (!extras.delays.empty()) return mc_delays(scene, reversed, extras, seed);
   if (const auto& shifts = extras.frequency_shifts; !shifts.empty())
     return with_frequency_shifts(scene, shifts, mc_frequencies(scene, reversed, shifts, seed));
   return {mc_estimation(scene, reversed, seed), {}};
@@ -155,7 +208,7 @@ ExtendedEstimation extended_estimation(const Scene& scene, mc::ReversedPaths rev
 ExtendedEstimation extended_transport(const Scene& scene, mc::ReversedPaths reversed,
                                       const Extras& extras, double tolerance) {
   if (extras.gradient) return transport_gradient(scene, reversed, tolerance);
-  if (!extras.delays.empty()) return transport_delays(scene, reversed, extras.delays, tolerance);
+  if (!extras.delays.empty()) return transport_delays(scene, reversed, extras, tolerance);
   if (const auto& shifts = extras.frequency_shifts; !shifts.empty())
     return with_frequency_shifts(scene, shifts,
                                  transport_frequencies(scene, reversed, shifts, tolerance));

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "apps/results/estimation.h"
 #include "core/result/result_file.h"
+#include "mc/changes/contrast.h"
 #include "mc/estimators/path_job.h"
 
 namespace flatspeckle::apps {
@@ -13,6 +15,9 @@ namespace flatspeckle::apps {
 struct Extras {
   bool gradient = false;
   std::vector<double> delays, frequency_shifts;
+  std::vector<double> velocity;
+  std::optional<double> diffusion, shear;
+  mc::Exposure exposure;
 };
 void add_frequency_key(Keys& keys, std::vector<double>& shifts);
 void add_extra_keys(Keys& keys, Extras& extras);

@@ -114,10 +114,10 @@ std::string shown_change(const CovarianceRequest& request, std::size_t number) {
 }
 
 void print_changes(const CovarianceRequest& request, const char* change,
-                   const std::vector<double>& sizes, const Estimate& correlation) {
+                   const std::vector<double>& sizes, const Estimate& correlation,
+                   const char* what) {
   const bool tilts = request.has_reference();
-  std::printf("%-17s %10s %21s %9s\n", tilts ? "tilt" : "light    view", change, "correlation",
-              "error");
+  std::printf("%-17s %10s %21s %9s\n", tilts ? "tilt" : "light    view", change, what, "error");
   const std::size_t channels = tilts ? request.moves : request.channels.size(),
                     rows = channels * sizes.size();
   for (std::size_t row = 0; row < std::min(rows, most_rows); ++row) {

@@ -43,6 +43,7 @@ void print_gradient(const CovarianceRequest& request, const mc::GradientJob& job
 std::string shown_change(const CovarianceRequest& request, std::size_t number);
 /// The correlation after each change (a delay, a shift), of channels or of tilts.
 void print_changes(const CovarianceRequest& request, const char* change,
-                   const std::vector<double>& sizes, const Estimate& correlation);
+                   const std::vector<double>& sizes, const Estimate& correlation,
+                   const char* what = "correlation");
 
 }  // namespace flatspeckle::apps

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <memory>
 #include <numbers>
 #include <utility>
 
@@ -6,6 +7,7 @@
 #include "bench/plan/plan_rooms.h"
 #include "bench/plan/plan_timing.h"
 #include "bench/scenes/standard_scenes.h"
+#include "flatland/media/layers.h"
 #include "mc/changes/brownian.h"
 #include "mc/changes/frequency_shifts.h"
 #include "mc/estimators/covariance_estimator.h"
@@ -107,6 +109,22 @@ PlanCase bulk_table(const NamedScene& on) {
       });
 }
 
+/// The same medium as two layers, with single scattering by paths in both.
+PlanCase equal_layers(const NamedScene& on) {
+  return case_of("what varies with depth", on.name, Numbers::other, Measure::sample,
+                 [scene = on.scene] {
+                   Scene layered = scene;
+                   const double half = scene.domain.depth / 2;
+                   layered.profile = std::make_shared<const Layers>(
+                       std::vector<Material>(2, {scene.scatterer, scene.medium}),
+                       std::vector<double>{half, half});
+                   Plan special = plan_of(scene);
+                   special.sampled_single = true;
+                   return std::pair{kernel_of(mc::covariance_job(layered, plan_of(layered), seed)),
+                                    kernel_of(mc::covariance_job(scene, special, seed + 1))};
+                 });
+}
+
 PlanCase derivatives(const NamedScene& on) {
   return case_of("derivatives", on.name, Numbers::same, Measure::sample, [scene = on.scene] {
     const Plan plan = mc::gradient_plan(scene, mc::ReversedPaths::no);
@@ -172,6 +190,8 @@ std::vector<PlanCase> mc_plan_cases() {
       flag("scores that promise little", forward, other, error,
            [](Plan& plan) { plan.score_level = 0; }),
       bulk_table(forward),
+      equal_layers(points),
+      equal_layers(forward),
       derivatives(forward),
       delays(around),
       frequencies(around),

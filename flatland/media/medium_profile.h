@@ -12,10 +12,16 @@ namespace flatspeckle {
 
 class ResultFile;
 
+/// Shares of the motion that a scene states (delays).
+struct MaterialMotion {
+  double diffusion = 1, velocity = 1;
+};
+
 /// What a part of a medium is made of.
 struct Material {
   Scatterer scatterer;
   BulkMedium medium;
+  MaterialMotion motion{};
 };
 
 /// A medium that varies from place to place within a domain: which material is where, and how dense

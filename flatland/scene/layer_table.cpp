@@ -24,7 +24,7 @@ const std::vector<Column> scatterer_columns = {{"g", &SceneSpec::g},
                                                {"phase_shift", &SceneSpec::phase_shift}};
 
 std::vector<std::string> all_columns() {
-  std::vector<std::string> names = {"thickness", "index_re", "index_im"};
+  std::vector<std::string> names = {"thickness", "index_re", "index_im", "diffusion", "flow"};
   for (const auto* columns : {&densities, &scatterer_columns})
     for (const Column& column : *columns) names.emplace_back(column.name);
   return names;
@@ -83,7 +83,12 @@ Material LayerTable::material(const SceneSpec& spec, std::size_t layer) const {
         number_text(Complex(table_.column("index_re")[layer],
                             table_.has("index_im") ? table_.column("index_im")[layer] : 0.0));
   const Scene scene = make_scene(own);
-  return {scene.scatterer, scene.medium};
+  const auto share = [&](const char* name) {
+    return table_.has(name) ? table_.column(name)[layer] : 1.0;
+  };
+  const MaterialMotion motion{share("diffusion"), share("flow")};
+  if (motion.diffusion < 0) throw InputError("diffusion", motion.diffusion, "must not be negative");
+  return {scene.scatterer, scene.medium, motion};
 }
 
 std::shared_ptr<const Layers> LayerTable::layers(const SceneSpec& spec) const {

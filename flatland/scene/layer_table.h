@@ -11,7 +11,8 @@ namespace flatspeckle {
 
 /// The file of the key `layers`: a line for each layer, from z = 0 on, with its thickness, one of
 /// optical_depth, mean_free_path and density, and whatever keys of the scatterers differ between
-/// layers (g, albedo, radius, index_re and index_im, phase_shift).
+/// layers (g, albedo, radius, index_re and index_im, phase_shift); and of motion shares of the
+/// scene's, diffusion and flow.
 class LayerTable {
  public:
   /// Reads the key and the file. Throws InputError.

@@ -7,6 +7,7 @@
 #include "core/error.h"
 #include "core/keys/chosen.h"
 #include "core/keys/number_text.h"
+#include "flatland/scene/density_maps.h"
 #include "flatland/scene/layer_table.h"
 
 namespace flatspeckle {
@@ -193,12 +194,17 @@ void make_layered(Scene& scene, std::shared_ptr<const Layers> layers) {
 Scene make_scene(const Keys& keys, const SceneSpec& spec) {
   std::optional<LayerTable> layers;
   if (!keys.read(spec.layers).empty()) layers.emplace(keys, spec);
+  const MakeDensityMap map = density_map(keys, spec);
   Scene scene = without_bulk(keys, spec, layers);
   keys.refuse_unread();
   if (layers)
     make_layered(scene, layers->layers(spec));
   else if (!scene.scatterer.is_bulk())
     scene.medium = medium_of_scatterers(spec, scene.scatterer, scene.domain, scene.k);
+  if (map) {
+    scene.profile = map(scene.domain, {scene.scatterer, scene.medium});
+    scene.medium = scene.profile->mean();
+  }
   check_extinction(scene.medium);
   scene.placement.mean_count = scene.medium.density * scene.domain.area();
   check_packing(scene);

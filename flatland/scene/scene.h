@@ -27,7 +27,7 @@ struct SceneSpec : ScattererValues {
   std::optional<std::string> placement;
   std::optional<double> min_gap;
   std::string structure = "none";
-  std::string layers;
+  std::string layers, density_blobs, density_map;
   std::vector<double> light_angles{0};
   std::string near_sources;
   std::optional<double> beam_waist, beam_depth;

@@ -85,6 +85,15 @@ void add_profile_keys(Keys& keys, SceneSpec& spec) {
            "density, and what of g, albedo, radius, index_re, index_im, phase_shift varies")
       .file()
       .only_of("layered media, in place of depth and density");
+  keys.add("density_blobs", spec.density_blobs,
+           "CSV with columns x, z, radius, amplitude: Gaussians that the relative density has "
+           "beside 1")
+      .file()
+      .only_of("a box");
+  keys.add("density_map", spec.density_map,
+           "HDF5 file with relative_density [z][x]: of equal cells that fill the box")
+      .file()
+      .only_of("a box");
 }
 
 void add_view_keys(Keys& keys, SceneSpec& spec) {

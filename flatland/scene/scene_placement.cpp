@@ -23,7 +23,8 @@ Placement thinned(const Scene& scene, RandomStream& random) {
 
 Placement draw_placement(const Scene& scene, RandomStream& random) {
   if (!scene.profile) return draw_placement(scene.domain, scene.scatterer, scene.placement, random);
-  if (scene.scatterer.is_disk()) throw InputError("layers: the exact solver needs points there");
+  if (scene.scatterer.is_disk())
+    throw InputError("scatterer: of a medium that varies the exact solver takes points alone");
   return thinned(scene, random);
 }
 

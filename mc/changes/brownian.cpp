@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
+#include <memory>
+#include <type_traits>
 
 #include "core/error.h"
 #include "core/numbers/phasor.h"
@@ -18,39 +21,91 @@ using Values = std::vector<Complex>;
 
 /// Sum of 1 - cos over the inner scatterers of a path.
 struct TurnTally {
+  using Factor = double;  ///< what motion leaves of a covariance
   double turn = 0;
 
   void flight(double) {}
   template <typename Direction>
-  void scattering(const Direction& from, const Direction& to) {
+  void scattering(Vec2, const Direction& from, const Direction& to) {
     turn += one_minus_cosine(from, to);
   }
 };
 
-/// A e of some ends and how they decay, [delay][end].
-struct Decaying {
-  Values value;
-  std::vector<double> turn, decay;
+/// The same times the diffusion there, and sum of (from - to).velocity.
+struct FlowTally {
+  using Factor = Complex;
+  const LocalMotion* motion = nullptr;
+  double turn = 0, slip = 0;
 
-  Decaying(std::size_t ends, std::size_t delays) : value(ends), turn(ends), decay(ends * delays) {}
+  void flight(double) {}
+  template <typename Direction>
+  void scattering(Vec2 x, const Direction& from, const Direction& to) {
+    turn += motion->diffusion(x) * one_minus_cosine(from, to);
+    slip += dot(Vec2(from) - Vec2(to), motion->velocity(x));
+  }
 };
 
-/// Adds weight |f|^2 of every channel, then weight Re f(0) conj(f(t)) for every delay. C14's F and
-/// R turn by other angles at the path's ends, so each has its own decay.
-template <typename Scattering, bool reversed, bool phases>
+/// A e of some ends, what a turn towards each adds to a path's tally and how it decays,
+/// [delay][end].
+template <typename Tally>
+struct Decaying {
+  Values value;
+  std::vector<Tally> tally;
+  std::vector<typename Tally::Factor> decay;
+
+  Decaying(std::size_t ends, std::size_t delays, const Tally& none)
+      : value(ends), tally(ends, none), decay(ends * delays) {}
+};
+
+/// exp(-2 turn t - i k slip t) for every delay t, [delay][tally].
+class Decay {
+ public:
+  Decay(std::span<const double> delays, double k, std::size_t most)
+      : delays_(delays), k_(k), exponent_(delays.size() * most), phase_(exponent_.size()) {}
+
+  void find(const std::vector<TurnTally>& tallies, std::vector<double>& decay) {
+    fill(tallies, exponent_, [](const TurnTally& tally) { return -2 * tally.turn; });
+    damping(std::span(exponent_).first(decay.size()), decay);
+  }
+  void find(const std::vector<FlowTally>& tallies, std::vector<Complex>& decay) {
+    fill(tallies, exponent_, [](const FlowTally& tally) { return -2 * tally.turn; });
+    fill(tallies, phase_, [this](const FlowTally& tally) { return -k_ * tally.slip; });
+    damped_phasors(std::span(phase_).first(decay.size()), std::span(exponent_).first(decay.size()),
+                   decay);
+  }
+
+ private:
+  template <typename Tally, typename Rate>
+  void fill(const std::vector<Tally>& tallies, std::vector<double>& out, const Rate& rate) const {
+    for (std::size_t t = 0; t < delays_.size(); ++t)
+      for (std::size_t j = 0; j < tallies.size(); ++j)
+        out[t * tallies.size() + j] = delays_[t] * rate(tallies[j]);
+  }
+
+  std::span<const double> delays_;
+  double k_;
+  std::vector<double> exponent_, phase_;
+};
+
+/// Adds weight |f|^2 of every channel, then weight f(0) conj(f(t)) for every delay, of which
+/// without flow only the real part is not 0 in the mean. C14's F and R turn by other angles at the
+/// path's ends, so each has its own decay.
+template <typename Scattering, bool reversed, bool phases, typename Tally>
 class DelayScorer {
   using Direction = typename Scattering::Direction;
+  using Factor = typename Tally::Factor;
 
  public:
   DelayScorer(const Scene& scene, const Scattering& scattering, std::span<const double> delays,
-              std::span<Complex> sums)
+              const Tally& none, std::span<Complex> sums)
       : channels_(scene.request.channels),
         scattering_(scattering),
         delays_(delays),
         sums_(sums),
-        ends_(scene, [&](std::size_t ends) { return Decaying(ends, delays.size()); }),
-        inner_(1, delays.size()),
-        exponent_(delays.size() * std::max(ends_.lights.size(), ends_.views.size())) {}
+        none_(none),
+        ends_(scene, [&](std::size_t ends) { return Decaying<Tally>(ends, delays.size(), none); }),
+        inner_(1, delays.size(), none),
+        decay_(delays, scene.k, std::max(ends_.lights.size(), ends_.views.size())) {}
 
   /// B = 1 at x.
   void single(Vec2 x, double weight) {
@@ -63,32 +118,44 @@ class DelayScorer {
       const double square =
           std::norm(light.value[i] * view.value[v] * local(scattering_, x).amplitude(from, to));
       sums_[c] += weight * square;
-      inner_.turn[0] = one_minus_cosine(from, to);
-      decay(inner_);
+      find_inner(turned(x, from, to));
       for (std::size_t t = 0; t < delays_.size(); ++t)
         sums_[(1 + t) * channels_.size() + c] += weight * square * inner_.decay[t];
     }
   }
 
-  void multiple(const TalliedPath<Direction, TurnTally>& path) {
-    ends_.find(path, [this](auto& ends, Vec2 x, const Direction& arrival, Decaying& out) {
+  void multiple(const TalliedPath<Direction, Tally>& path) {
+    ends_.find(path, [this](auto& ends, Vec2 x, const Direction& arrival, Decaying<Tally>& out) {
       ends.at(x, arrival, scattering_, out.value);
       for (std::size_t j = 0; j < ends.size(); ++j)
-        out.turn[j] = one_minus_cosine(arrival, Direction(ends.direction(j)));
-      decay(out);
+        out.tally[j] = turned(x, arrival, Direction(ends.direction(j)));
+      decay_.find(out.tally, out.decay);
     });
-    inner_.turn[0] = path.tally.turn;
-    decay(inner_);
+    find_inner(path.tally);
     for (std::size_t c = 0; c < channels_.size(); ++c) score(c, path.weight);
   }
 
  private:
-  void decay(Decaying& ends) {
-    const std::size_t count = ends.turn.size();
-    for (std::size_t t = 0; t < delays_.size(); ++t)
-      for (std::size_t j = 0; j < count; ++j)
-        exponent_[t * count + j] = -2 * delays_[t] * ends.turn[j];
-    damping(std::span(exponent_).first(ends.decay.size()), ends.decay);
+  /// What one scatterer adds.
+  template <typename Any>
+  Tally turned(Vec2 x, const Any& from, const Any& to) const {
+    Tally tally = none_;
+    tally.scattering(x, from, to);
+    return tally;
+  }
+
+  void find_inner(const Tally& tally) {
+    inner_.tally[0] = tally;
+    decay_.find(inner_.tally, inner_.decay);
+  }
+
+  /// weight f conj(term), or its real part where that is all that counts.
+  static Factor with_field(double weight, Complex field, Complex term) {
+    const Complex both = weight * product_with_conjugate(field, term);
+    if constexpr (std::is_same_v<Factor, double>)
+      return both.real();
+    else
+      return both;
   }
 
   void score(std::size_t c, double weight) {
@@ -98,12 +165,12 @@ class DelayScorer {
     Complex backward = 0;
     if constexpr (reversed) backward = product(light_last.value[i], view_first.value[v]);
     const Complex field = forward + backward;
-    const double with_forward = weight * product_with_conjugate(field, forward).real(),
-                 with_backward = weight * product_with_conjugate(field, backward).real();
-    sums_[c] += with_forward + with_backward;
+    const Factor with_forward = with_field(weight, field, forward),
+                 with_backward = with_field(weight, field, backward);
+    sums_[c] += std::real(with_forward + with_backward);
     for (std::size_t t = 0; t < delays_.size(); ++t) {
       const std::size_t light = t * lights.size() + i, view = t * views.size() + v;
-      double sum = with_forward * light_first.decay[light] * view_last.decay[view];
+      Factor sum = with_forward * light_first.decay[light] * view_last.decay[view];
       if constexpr (reversed)
         sum += with_backward * light_last.decay[light] * view_first.decay[view];
       sums_[(1 + t) * channels_.size() + c] += inner_.decay[t] * sum;
@@ -114,34 +181,52 @@ class DelayScorer {
   const Scattering& scattering_;
   std::span<const double> delays_;
   std::span<Complex> sums_;
-  PathEnds<Decaying, reversed, phases> ends_;
-  Decaying inner_;  ///< of the inner scatterers, or the only one
-  std::vector<double> exponent_;
+  Tally none_;
+  PathEnds<Decaying<Tally>, reversed, phases> ends_;
+  Decaying<Tally> inner_;  ///< of the inner scatterers, or the only one
+  Decay decay_;
 };
 
+/// Of scatterers that only diffuse, and of all others.
+template <typename Tally>
 struct DelayKind {
   using Sums = std::span<Complex>;
   std::vector<double> delays;
+  Motion motion;
+  std::shared_ptr<const LocalMotion> local;  ///< of FlowTally
 
   std::size_t quantities() const { return 1 + delays.size(); }
 
-  TurnTally tally(const Scene&) const { return {}; }
+  Tally tally(const Scene&) const {
+    if constexpr (std::is_same_v<Tally, FlowTally>) return {local.get()};
+    return {};
+  }
 
   template <bool reversed, bool phases, typename Scattering>
   auto scorer(const Scene& scene, const Scattering& scattering, Sums sums) const {
-    return DelayScorer<Scattering, reversed, phases>(scene, scattering, delays, sums);
+    return DelayScorer<Scattering, reversed, phases, Tally>(scene, scattering, delays, tally(scene),
+                                                            sums);
   }
 
+  /// Of a medium that is the same everywhere; shear is a slope of the phase along z.
   template <typename Scattering>
   Values single(const Scene& scene, const Scattering& scattering) const {
     Values all = single_scattering(scene, scattering);
-    const auto lights = light_ends(scene), views = view_ends(scene);
     const std::size_t channels = all.size();
     for (const double delay : delays) {
       for (std::size_t c = 0; c < channels; ++c) {
-        const auto [i, v] = scene.request.channels[c];
-        const double turn = one_minus_cosine(-lights[i].towards, views[v].towards);
-        all.push_back(all[c] * std::exp(-2 * delay * turn));
+        const auto [light, view] = scene.request.channels[c];
+        const Vec2 from = direction(scene.request.lights[light].angle),
+                   to = direction(scene.request.views[view].angle), turn = from - to;
+        const double slope = -scene.k * delay * turn.x * motion.shear;
+        const Complex value =
+            slope == 0 ? all[c]
+                       : scene.medium.mu_s * std::norm(scattering.amplitude(from, to)) *
+                             attenuated_wave_integral(scene.domain, scene.medium.mu_t, {0, slope},
+                                                      {-from, to, -from, to});
+        all.push_back(value *
+                      std::polar(std::exp(-2 * delay * motion.diffusion * dot(turn, turn) / 2),
+                                 -scene.k * delay * dot(turn, motion.velocity)));
       }
     }
     return all;
@@ -159,13 +244,22 @@ void check_delays(const Scene& scene, const std::vector<double>& delays) {
 }
 
 PathJob delay_job(const Scene& scene, const Plan& plan, const std::vector<double>& delays,
-                  std::uint64_t seed) {
+                  std::uint64_t seed, const Motion& motion) {
   if (scene.request.kind != CovarianceRequest::Kind::intensity)
     throw InputError("delays: needs covariance = intensity");
   check_delays(scene, delays);
-  PathJob job = path_job(DelayKind{delays}, scene, plan, seed);
+  const auto job_of = [&](const auto& kind) { return path_job(kind, scene, plan, seed); };
+  PathJob job = motion.only_diffuses(scene)
+                    ? job_of(DelayKind<TurnTally>{delays, motion, {}})
+                    : job_of(DelayKind<FlowTally>{
+                          delays, motion, std::make_shared<const LocalMotion>(scene, motion)});
   job.field.batches.relative_error = relative_error_of(job.all);
   return job;
+}
+
+Estimate magnitude(Estimate estimate) {
+  for (Complex& value : estimate.value) value = std::abs(value);
+  return estimate;
 }
 
 const DatasetTable delays_table{
@@ -174,7 +268,11 @@ const DatasetTable delays_table{
      {"covariance", Data::estimate, "delay LIGHT VIEW", "COVARIANCE",
       "covariance of the field with itself after a delay"},
      {"field_correlation", Data::estimate, "delay LIGHT VIEW", "1",
-      "field correlation after a delay"},
+      "field correlation after a delay, |g1|"},
+     {"complex_covariance", Data::complex_estimate, "delay LIGHT VIEW", "COVARIANCE",
+      "covariance of the field with itself after a delay, where scatterers flow"},
+     {"complex_correlation", Data::complex_estimate, "delay LIGHT VIEW", "1",
+      "field correlation after a delay, g1, where scatterers flow"},
      {"diffusion_theory", Data::real, "delay", "1",
       "field correlation of transmitted light in diffusion theory"},
      {"delayed_covariance", Data::complex_estimate, "delay tilt VIEW", "COVARIANCE",
@@ -183,17 +281,21 @@ const DatasetTable delays_table{
       "C_E of reference and moved field after a delay"}}};
 
 void write_delays(ResultFile& file, const Scene& scene, const std::vector<double>& delays,
-                  const ChangeEstimates& found) {
+                  const ChangeEstimates& found, const Motion& motion) {
   const ResultGroup root(file, delays_table);
   root.put("delay", delays);
   if (scene.request.has_reference()) {
     root.put("delayed_covariance", found.covariance);
     return root.put("delayed_correlation", found.correlation);
   }
+  if (!motion.only_diffuses(scene)) {
+    root.put("complex_covariance", found.covariance);
+    root.put("complex_correlation", found.correlation);
+    return root.put("field_correlation", magnitude(found.correlation));
+  }
   root.put("covariance", found.covariance);
   root.put("field_correlation", found.correlation);
-  const bool uniform_slab = scene.domain.kind == Domain::Kind::slab && !scene.profile;
-  if (!uniform_slab || !scene.request.transmission_only()) return;
+  if (scene.domain.kind != Domain::Kind::slab || !scene.request.transmission_only()) return;
   root.put("diffusion_theory", column(delays, [&](double delay) {
              return diffusion_delay_correlation(scene.medium, scene.domain.depth, delay);
            }));

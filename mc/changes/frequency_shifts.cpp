@@ -18,9 +18,12 @@ using Values = std::vector<Complex>;
 struct LengthTally {
   double length = 0;
 
-  void flight(double r) { length += r; }
   template <typename Direction>
-  void scattering(const Direction& /*from*/, const Direction& /*to*/) {}
+  void flight(Vec2 /*from*/, const Direction& /*w*/, double r) {
+    length += r;
+  }
+  template <typename Direction>
+  void scattering(Vec2 /*x*/, const Direction& /*from*/, const Direction& /*to*/) {}
 };
 
 std::vector<Scene> shifted_scenes(const Scene& scene, const std::vector<double>& shifts) {
@@ -150,7 +153,7 @@ void write_frequency_shifts(ResultFile& file, const std::string& group, const Sc
   const std::string name = request.has_reference() ? "frequency_tilt_" : "frequency_";
   results.put(name + "covariance", found.covariance);
   results.put(name + "correlation", found.correlation);
-  if (request.has_reference() || scene.domain.kind != Domain::Kind::slab ||
+  if (request.has_reference() || scene.domain.kind != Domain::Kind::slab || scene.profile ||
       !request.transmission_only())
     return;
   results.put("frequency_diffusion_theory", column(shifts, [&](double shift) {

@@ -23,7 +23,7 @@ struct GradientTally {
     ++scatterers;
   }
   template <typename Direction>
-  void scattering(const Direction& from, const Direction& to) {
+  void scattering(Vec2, const Direction& from, const Direction& to) {
     phase_slope += henyey_greenstein_slope(g, one_minus_cosine(from, to), dimension);
   }
 };
@@ -56,7 +56,7 @@ class GradientScorer {
       const auto [i, v] = request_.channels[c];
       const Vec2 from = -lights.direction(i), to = views.direction(v);
       GradientTally tally{medium_.g, medium_.dimension};
-      tally.scattering(from, to);
+      tally.scattering(x, from, to);
       add_term(c, half_slopes(tally), light, view, local(scattering_, x).amplitude(from, to));
     }
     accumulate(weight);

@@ -36,7 +36,7 @@ struct Path {
 struct NoTally {
   void flight(double /*length*/) {}
   template <typename Direction>
-  void scattering(const Direction& /*from*/, const Direction& /*to*/) {}
+  void scattering(Vec2 /*x*/, const Direction& /*from*/, const Direction& /*to*/) {}
 };
 
 template <typename Direction, typename Tally>
@@ -152,7 +152,7 @@ class PathWalk {
     const double edge = domain_.distance_to_edge(walker.x, w),
                  flight = sample_flight(walker, w, edge, random);
     if (flight >= edge) return false;
-    walker.tally.scattering(walker.arrival, w);
+    walker.tally.scattering(walker.x, walker.arrival, w);
     walker.tally.flight(flight);
     walker.x = walker.x + flight * w;
     walker.arrival = w;
@@ -210,8 +210,10 @@ class PathWalk {
     double promise = expected(walker.x, walker.arrival), backward_density = 0;
     if constexpr (reversed) {
       backward_density = first_.density(walker.x, -walker.arrival, scattering_);
-      if constexpr (varies<Scattering>)  // flights end in the first scatterer, not in the last
-        backward_density *= profile_->mu_t(path_.first) / profile_->mu_t(walker.x);
+      if constexpr (varies<Scattering>) {  // flights end in the first scatterer, not in the last
+        const double mu_t = profile_->mu_t(walker.x);
+        backward_density *= mu_t > 0 ? profile_->mu_t(path_.first) / mu_t : 0;
+      }
       const double forward = start_density();
       promise =
           (forward * promise + backward_density * expected_first_) / (forward + backward_density);

@@ -31,6 +31,7 @@ FILES = {
     "sources.csv": "x,z\n1,-3\n2,-4\n",
     "line.csv": "x,z\n" + "".join(f"{0.5 * i},14\n" for i in range(10)),
     "layers.csv": "thickness,density\n3,0.05\n3,0.25\n4,0.15\n",
+    "blobs.csv": "x,z,radius,amplitude\n-2,4,2,-1\n5,7,1.5,2\n",
     "disks.csv": "x,z,radius\n0,0,0.3\n1,2,0.2\n",
     "disk_points.csv": "density,radius,index,index_imaginary\n0.1,0.2,1.5,0\n0.2,0.1,1.4,0.01\n",
 }
@@ -46,6 +47,9 @@ RUNS = {
     "intensity": ("covariance", {**BOX, **FAR}),
     "intensity_near": ("covariance", {**BOX, **NEAR}),
     "layers": ("covariance", {"domain": "box", "width": 20, "layers": "layers.csv"}),
+    "density": ("covariance", {"width": 20, "depth": 10, "density": 0.155, "density_blobs": "blobs.csv"}),
+    "flow": ("covariance", {**SLAB, "delays": [0, 0.1, 0.2, 0.4, 0.6, 1], "velocity": [1, 0], "method": "mc",
+                            "exposures": [0.5, 1]}),
     "full": ("covariance", {**BOX, **FAR, **FULL}),
     "image": ("image", IMAGE),
     "recover": ("recover", {"frames": "frames.csv", "points": 2, "samples": None, "threads": None}),

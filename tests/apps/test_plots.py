@@ -39,6 +39,8 @@ KINDS = {
     "intensity": ("covariance", {**BOX, "view_angles": [0.1, 0.3], **FEW}),
     "delays": ("covariance", {**SLAB, "delays": [0, 0.01, 0.02]}),
     "frequencies": ("covariance", {**SLAB, "frequency_shifts": [0, 1e-4, 3e-4]}),
+    "exposed": ("covariance", {**SLAB, "view_angles": 2.5, "delays": [0, 0.1, 0.3, 1, 3, 10, 30], "exposures": [5, 30]}),
+    "layers": ("covariance", {"domain": "slab", "layers": "rows.csv", "scatterer": "hg", **TILTS, **FEW}),
     "both": ("validate", {**BOX, "view_angles": [0.1, 0.3], "wave_samples": 40, **FEW}),
     "fields": ("field", {**BOX, "view_angles": [0.1, 0.2, 0.3], "light_angles": [0, 0.01, 0.2],
                          "fields": 4, "threads": 1}),
@@ -56,9 +58,9 @@ KINDS = {
                        "map": [-2, 2, -2, 2], "map_pixels": [6, 5]}),
 }
 # What each script draws.
-OWN = {"memory_effect": {"grid", "points", "curve", "moves"}, "memory_range": {"grid", "points"},
+OWN = {"memory_effect": {"grid", "points", "curve", "moves", "layers"}, "memory_range": {"grid", "points"},
        "range_map": {"grid"}, "convergence": {"grid", "points"}, "tilt_shift": {"map"},
-       "dws": {"delays"}, "frequency": {"frequencies"}, "validation": {"both"}, "speckle_field": {"fields"}, "image": {"frames"}, "fit": {"fitted"},
+       "dws": {"delays", "exposed"}, "contrast": {"exposed"}, "layer_range": {"layers"}, "frequency": {"frequencies"}, "validation": {"both"}, "speckle_field": {"fields"}, "image": {"frames"}, "fit": {"fitted"},
        "rays": {"rays"}, "render": {"picture", "pulse"}, "render_time": {"pulse"},
        "light_map": {"light"}, "field_map": {"near"}}
 
@@ -87,6 +89,7 @@ class Plots(ProgramTest):
     def make(self, kind):
         subcommand, keys = KINDS[kind]
         self.write("points.csv", "g,optical_depth\n0,1\n0.5,3\n")
+        self.write("rows.csv", "thickness,optical_depth\n4,1\n6,2\n")
         self.call(subcommand, out=f"{kind}.h5", **keys)
         return self.folder / f"{kind}.h5"
 

@@ -40,6 +40,10 @@ SCENES = [
     ("covariance", {**SLAB, "g": None, "scatterer": "phase_table", "phase_table": "phase.csv",
                     "samples": 4000}),
     ("covariance", {"domain": "box", "width": 20, "layers": "layers.csv", "samples": 4000}),
+    ("covariance", {**BOX, "count": None, "density": 0.1, "density_blobs": "blobs.csv",
+                    "samples": 4000}),
+    ("covariance", {**SLAB, "delays": [0, 0.1, 0.2, 0.4, 0.6, 1], "velocity": [1, 0],
+                    "exposures": [0.5, 1], "samples": 4000}),
     ("flux", {**BOX, "samples": 4000}),
     ("flux", {**SLAB, "light_angles": [0, 0.8], "albedo": 0.9, "tolerance": 1e-3}),
     ("field", {**BOX, **VIEWS, "fields": 4}),
@@ -101,6 +105,7 @@ def write_files(folder):
     (folder / "rays.csv").write_text("x,y,z,dx,dy,dz\n0,0,-0.5,0,0,1\n0.1,0,-0.5,0.1,0,1\n")
     (folder / "phase.csv").write_text("angle,value\n0,3\n1,1\n3.141592653589793,0.5\n")
     (folder / "layers.csv").write_text("thickness,density\n3,0.05\n3,0.25\n4,0.15\n")
+    (folder / "blobs.csv").write_text("x,z,radius,amplitude\n-2,4,2,-1\n5,7,1.5,2\n")
     (folder / "disks.csv").write_text("x,z,radius\n0,0,0.3\n1,0,0.2\n0,1,0.4\n-2,3,0.1\n")
     for name, dataset in (("grid.h5", "excess"), ("density.h5", "density")):
         with h5py.File(folder / name, "w") as file:

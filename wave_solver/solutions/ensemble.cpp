@@ -142,7 +142,7 @@ void require_solvable(const Scene& scene) {
   if (scene.domain.kind == Domain::Kind::slab)
     throw InputError("domain", "slab", "the wave solver needs a box");
   if (scene.profile && scene.scatterer.is_disk())
-    throw InputError("layers: the exact solver needs points there");
+    throw InputError("scatterer: of a medium that varies the exact solver takes points alone");
   if (scene.scatterer.is_bulk())
     throw InputError("scatterer", "hg", "the wave solver needs point, soft, hard, tm or te");
   for (const View& view : scene.request.views)

@@ -1,0 +1,114 @@
+#include "mc/changes/contrast.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "core/error.h"
+#include "core/result/result_group.h"
+#include "mc/numbers/gauss.h"
+
+namespace flatspeckle::mc {
+
+namespace {
+
+using Values = std::vector<Complex>;
+
+constexpr std::size_t stencil = 4;  ///< nodes of a cubic
+
+/// Through the nodes around an interval, in Lagrange's form.
+class Cubic {
+ public:
+  Cubic(const std::vector<double>& x, const std::vector<double>& y, std::size_t interval) {
+    const std::size_t count = std::min(stencil, x.size()),
+                      first = std::min(interval == 0 ? 0 : interval - 1, x.size() - count);
+    x_.assign(x.begin() + static_cast<std::ptrdiff_t>(first),
+              x.begin() + static_cast<std::ptrdiff_t>(first + count));
+    y_.assign(y.begin() + static_cast<std::ptrdiff_t>(first),
+              y.begin() + static_cast<std::ptrdiff_t>(first + count));
+  }
+
+  double operator()(double at) const {
+    double sum = 0;
+    for (std::size_t i = 0; i < x_.size(); ++i) {
+      double basis = y_[i];
+      for (std::size_t j = 0; j < x_.size(); ++j)
+        if (j != i) basis *= (at - x_[j]) / (x_[i] - x_[j]);
+      sum += basis;
+    }
+    return sum;
+  }
+
+ private:
+  std::vector<double> x_, y_;
+};
+
+}  // namespace
+
+double exposed(const std::vector<double>& delays, const std::vector<double>& squares, double time) {
+  std::map<double, double> curve{{0, 1}};
+  for (std::size_t i = 0; i < delays.size(); ++i)
+    if (delays[i] > 0) curve[delays[i]] = squares[i];
+  std::vector<double> x, y;
+  for (const auto& [delay, square] : curve) {
+    x.push_back(delay);
+    y.push_back(square);
+  }
+  static const Quadrature rule = gauss_legendre(4);
+  double sum = 0;
+  for (std::size_t i = 0; i + 1 < x.size() && x[i] < time; ++i) {
+    const Cubic cubic(x, y, i);
+    const double width = std::min(x[i + 1], time) - x[i];
+    for (std::size_t n = 0; n < rule.node.size(); ++n) {
+      const double at = x[i] + width * rule.node[n];
+      sum += width * rule.weight[n] * cubic(at) * (1 - at / time);
+    }
+  }
+  return 2 * sum / time;
+}
+
+void check_exposure(const Exposure& exposure, const std::vector<double>& delays) {
+  for (const double time : exposure.times) {
+    const auto reaching =
+        std::ranges::count_if(delays, [&](double delay) { return delay > 0 && delay < time; });
+    const bool covered = std::ranges::any_of(delays, [&](double delay) { return delay >= time; });
+    if (!covered || reaching < 4)
+      throw InputError("exposures", time,
+                       "must not exceed the longest of the delays, and have four of them below");
+  }
+}
+
+Estimate squared_contrast(const CovarianceRequest& request, const PathJob& job,
+                          const GroupedSums& sums, const std::vector<double>& delays,
+                          const Exposure& exposure) {
+  const std::size_t channels = request.entries.size();
+  return jackknife(sums, [&](double samples, std::span<const Complex> total) {
+    const Values all = job.all(samples, total);
+    Values contrast;
+    for (const double time : exposure.times)
+      for (std::size_t c = 0; c < channels; ++c) {
+        const double now = all[c].real();
+        std::vector<double> squares;
+        for (std::size_t t = 0; t < delays.size(); ++t)
+          squares.push_back(now > 0 ? std::norm(all[(1 + t) * channels + c] / now) : 0);
+        contrast.emplace_back(exposure.beta * exposed(delays, squares, time));
+      }
+    return contrast;
+  });
+}
+
+const DatasetTable contrast_table{
+    "contrast",
+    {{"exposure", Data::scale, "", "1", "time of exposure, in units of the delays"},
+     {"squared_contrast", Data::estimate, "exposure LIGHT VIEW", "1",
+      "squared contrast K^2 of the speckle after an exposure"}},
+    {{"squared_contrast", "beta", "float64", "K^2 of still scatterers"}}};
+
+void write_contrast(ResultFile& file, const Exposure& exposure, const Estimate& contrast) {
+  const ResultGroup root(file, contrast_table);
+  root.put("exposure", exposure.times);
+  root.put("squared_contrast", contrast);
+  root.attribute("squared_contrast", "beta", exposure.beta);
+}
+
+}  // namespace flatspeckle::mc
