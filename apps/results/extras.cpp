@@ -6,6 +6,7 @@
 #include "mc/changes/frequency_shifts.h"
 #include "mc/slab/slab_covariance.h"
 #include "mc/space/space_scene.h"
+#include "mc/varying/layer_gradient.h"
 #include "wave_solver/solutions/ensemble.h"
 
 namespace flatspeckle::apps {
@@ -32,7 +33,9 @@ ExtendedEstimation with_gradient(const Scene& scene, const mc::GradientJob& job,
 ExtendedEstimation mc_gradient(const Scene& scene, mc::ReversedPaths reversed, std::uint64_t seed) {
   require_plane_waves("gradient", scene.request);
   const auto plan = mc::gradient_plan(scene, reversed);
-  return with_gradient(scene, mc::gradient_job(scene, plan, seed), "mc: " + plan.describe());
+  const auto job = scene.profile ? mc::layer_gradient_job(scene, plan, seed)
+                                 : mc::gradient_job(scene, plan, seed);
+  return with_gradient(scene, job, "mc: " + plan.describe());
 }
 
 ExtendedEstimation transport_gradient(const Scene& scene, mc::ReversedPaths reversed,

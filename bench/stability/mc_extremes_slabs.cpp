@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iomanip>
+#include <memory>
 #include <numbers>
 
 #include <boost/math/quadrature/gauss.hpp>
@@ -13,6 +14,7 @@
 #include "bench/oracles/slab_theory.h"
 #include "bench/stability/extreme_rows.h"
 #include "bench/stability/mc_extremes.h"
+#include "flatland/media/layers.h"
 #include "mc/estimators/flux.h"
 #include "mc/theory/memory_effect.h"
 
@@ -23,12 +25,22 @@ namespace {
 using mc::ReversedPaths;
 constexpr double pi = std::numbers::pi, k = 2 * pi;
 
+/// The same slab as layers on top of each other.
+Scene in_layers(Scene slab, std::size_t layers) {
+  const double thickness = slab.domain.depth / static_cast<double>(layers);
+  slab.profile =
+      std::make_shared<const Layers>(std::vector<Material>(layers, {slab.scatterer, slab.medium}),
+                                     std::vector<double>(layers, thickness));
+  return slab;
+}
+
 /// Every intensity against the integral equation of isotropic slabs, which is good to 1e-3.
 Finding isotropic_slab(const Bulk& bulk, const std::vector<double>& lights,
                        const std::vector<double>& views, ReversedPaths reversed,
-                       std::uint64_t paths) {
+                       std::uint64_t paths, std::size_t layers = 1) {
   const auto request = intensity_request(lights, far_views(views));
-  const Estimate found = covariance(hg_slab(bulk, request), reversed, paths);
+  const Scene slab = hg_slab(bulk, request);
+  const Estimate found = covariance(layers == 1 ? slab : in_layers(slab, layers), reversed, paths);
   const oracles::IsotropicSlab theory(k, bulk.depth, bulk.optical_depth / bulk.depth, bulk.albedo);
   Finding worst{0, 4};
   for (std::size_t c = 0; c < request.channels.size(); ++c) {
@@ -226,6 +238,9 @@ void add_intensities(ExtremeRows& rows) {
   });
   rows.add_slow("slab of OD 100", theory, [] {
     return isotropic_slab({100}, {0}, {0.1, -1, 2.2}, ReversedPaths::no, 32000);
+  });
+  rows.add("slab of OD 5 of a thousand layers, with reversed paths", theory, [] {
+    return isotropic_slab({5}, {0, 1.5}, {0.1, -1.5, 2.2}, ReversedPaths::yes, 160000, 1000);
   });
   rows.add("slab of OD 5, albedo 1 - 1e-9", theory, [] {
     return isotropic_slab({5, 0, 1 - 1e-9}, {0}, {0.1, pi}, ReversedPaths::no, 16000);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+
 #include "core/result/dataset_row.h"
 #include "flatland/media/medium_profile.h"
 
@@ -14,6 +16,20 @@ class Layers : public MediumProfile {
   /// Of the layers' faces, from 0 on.
   const std::vector<double>& faces() const { return faces_; }
   double thickness(std::size_t layer) const { return faces_[layer + 1] - faces_[layer]; }
+
+  /// f(layer, length) of each part of a way.
+  template <typename F>
+  void each_part(Vec2 x, Vec2 w, double length, const F& f) const {
+    double gone = 0;
+    for (auto layer = material_at(x);; w.z > 0 ? ++layer : --layer) {
+      const double face = w.z > 0 ? faces_[layer + 1] : faces_[layer],
+                   to_face = w.z == 0 ? length : std::min(length, (face - x.z) / w.z);
+      const bool last = w.z > 0 ? layer + 2 == faces_.size() : layer == 0;
+      f(layer, std::max(0.0, (last ? length : to_face) - gone));
+      gone = std::max(gone, to_face);
+      if (last || gone >= length) return;
+    }
+  }
 
   std::size_t material_at(Vec2 x) const override;
   double relative_density(Vec2) const override { return 1; }

@@ -24,7 +24,8 @@ struct TurnTally {
   using Factor = double;  ///< what motion leaves of a covariance
   double turn = 0;
 
-  void flight(double) {}
+  template <typename Direction>
+  void flight(Vec2, const Direction&, double) {}
   template <typename Direction>
   void scattering(Vec2, const Direction& from, const Direction& to) {
     turn += one_minus_cosine(from, to);
@@ -37,7 +38,8 @@ struct FlowTally {
   const LocalMotion* motion = nullptr;
   double turn = 0, slip = 0;
 
-  void flight(double) {}
+  template <typename Direction>
+  void flight(Vec2, const Direction&, double) {}
   template <typename Direction>
   void scattering(Vec2 x, const Direction& from, const Direction& to) {
     turn += motion->diffusion(x) * one_minus_cosine(from, to);

@@ -1,6 +1,7 @@
 #include "mc/estimators/gradient.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "core/error.h"
@@ -15,11 +16,6 @@ namespace flatspeckle::mc {
 namespace {
 
 using Values = std::vector<Complex>;
-
-std::string name_of(BulkParameter parameter) {
-  constexpr const char* names[] = {"mu_t", "g", "albedo", "radius", "index"};
-  return names[static_cast<std::size_t>(parameter)];
-}
 
 /// Central differences in mu_t of the closed form, of fourth order. It varies over a mean free path
 /// or the whole medium, whichever is less.
@@ -132,6 +128,11 @@ Estimate each(const Estimate& all, std::size_t parameters,
 
 }  // namespace
 
+std::string name_of(BulkParameter parameter) {
+  constexpr const char* names[] = {"mu_t", "g", "albedo", "radius", "index"};
+  return names[static_cast<std::size_t>(parameter)];
+}
+
 std::vector<BulkParameter> bulk_parameters(const Scene& scene) {
   switch (scene.scatterer.kind) {
     case Scatterer::Kind::hg:
@@ -153,7 +154,6 @@ GradientJob gradient_job(const PathJob& paths, const std::vector<BulkParameter>&
 }
 
 void check_gradient(const Scene& scene) {
-  if (scene.profile) throw InputError("gradient: is of media that are the same everywhere");
   if (scene.medium.mu_s == 0)
     throw InputError("gradient: a medium that does not scatter has no derivatives");
   if (scene.domain.kind == Domain::Kind::slab && has_near_ends(scene.request))
@@ -174,6 +174,7 @@ Plan gradient_plan(const Scene& scene, ReversedPaths reversed) {
 }
 
 GradientJob gradient_job(const Scene& scene, const Plan& plan, std::uint64_t seed) {
+  assert(!scene.profile);
   const auto parameters = bulk_parameters(scene);
   return gradient_job(path_job(GradientKind{parameters}, scene, plan, seed), parameters, scene);
 }

@@ -19,6 +19,9 @@ struct GradientJob : PathJob {
   Estimator gradient;  ///< [parameter][entry]
 };
 
+/// As results call it.
+std::string name_of(BulkParameter parameter);
+
 /// What a scene's paths are differentiated by; the optical depth follows from mu_t.
 std::vector<BulkParameter> bulk_parameters(const Scene& scene);
 

@@ -7,6 +7,7 @@
 #include "flatland/scene/scene.h"
 #include "mc/estimators/bulk_parameter.h"
 #include "mc/estimators/path_ends.h"
+#include "mc/estimators/slope_sums.h"
 
 namespace flatspeckle::mc {
 
@@ -18,7 +19,8 @@ struct GradientTally {
   double length = 0;
   double phase_slope = 0;  ///< sum of d log p / d g over the inner scatterers
 
-  void flight(double r) {
+  template <typename Direction>
+  void flight(Vec2, const Direction&, double r) {
     length += r;
     ++scatterers;
   }
@@ -41,25 +43,23 @@ class GradientScorer {
         medium_(scene.medium),
         scattering_(scattering),
         parameters_(parameters),
-        sums_(sums),
-        ends_(scene, [](std::size_t ends) { return EndValues(ends); }),
-        field_(request_.channels.size()),
-        field_slope_(field_.size() * parameters.size()) {}
+        sums_(scene.request, parameters.size(), sums),
+        ends_(scene, [](std::size_t ends) { return EndValues(ends); }) {}
 
   /// B = 1 at x.
   void single(Vec2 x, double weight) {
     auto& [lights, views, light_first, light, view_first, view] = ends_;
     attenuate(lights, x, light);
     attenuate(views, x, view);
-    clear();
-    for (std::size_t c = 0; c < field_.size(); ++c) {
+    sums_.clear();
+    for (std::size_t c = 0; c < sums_.channels(); ++c) {
       const auto [i, v] = request_.channels[c];
       const Vec2 from = -lights.direction(i), to = views.direction(v);
       GradientTally tally{medium_.g, medium_.dimension};
       tally.scattering(x, from, to);
       add_term(c, half_slopes(tally), light, view, local(scattering_, x).amplitude(from, to));
     }
-    accumulate(weight);
+    sums_.accumulate(weight);
   }
 
   void multiple(const TalliedPath<Direction, GradientTally>& path) {
@@ -67,12 +67,12 @@ class GradientScorer {
       at(ends, x, arrival, out);
     });
     const Slopes half = half_slopes(path.tally);
-    clear();
-    for (std::size_t c = 0; c < field_.size(); ++c) {
+    sums_.clear();
+    for (std::size_t c = 0; c < sums_.channels(); ++c) {
       add_term(c, half, ends_.light_first, ends_.view_last, 1.0);
       if constexpr (reversed) add_term(c, half, ends_.light_last, ends_.view_first, 1.0);
     }
-    accumulate(path.weight);
+    sums_.accumulate(path.weight);
   }
 
  private:
@@ -129,43 +129,22 @@ class GradientScorer {
     return half;
   }
 
-  void clear() {
-    std::fill(field_.begin(), field_.end(), 0);
-    std::fill(field_slope_.begin(), field_slope_.end(), 0);
-  }
-
   template <typename Amplitude>
   void add_term(std::size_t c, const Slopes& half, const EndValues& lights, const EndValues& views,
                 Amplitude amplitude) {
     const auto [i, v] = request_.channels[c];
-    const Complex term = product(product(lights.value[i], views.value[v]), amplitude);
-    field_[c] += term;
-    for (std::size_t p = 0; p < parameters_.size(); ++p)
-      field_slope_[p * field_.size() + c] +=
-          (half[p] + lights.slopes[i][p] + views.slopes[v][p]) * term;
-  }
-
-  void accumulate(double weight) {
-    const std::size_t entries = request_.entries.size();
-    for (std::size_t e = 0; e < entries; ++e) {
-      const auto [a, b] = request_.entries[e];
-      sums_[e] += weight * product_with_conjugate(field_[a], field_[b]);
-      for (std::size_t p = 0; p < parameters_.size(); ++p) {
-        const Complex* slope = &field_slope_[p * field_.size()];
-        sums_[(1 + p) * entries + e] += weight * (product_with_conjugate(slope[a], field_[b]) +
-                                                  product_with_conjugate(field_[a], slope[b]));
-      }
-    }
+    sums_.add_term(c, product(product(lights.value[i], views.value[v]), amplitude),
+                   [&, light = i, view = v](std::size_t p) {
+                     return half[p] + lights.slopes[light][p] + views.slopes[view][p];
+                   });
   }
 
   const CovarianceRequest& request_;
   const BulkMedium& medium_;
   const Scattering& scattering_;
   std::span<const BulkParameter> parameters_;
-  std::span<Complex> sums_;
+  SlopeSums sums_;
   PathEnds<EndValues, reversed, phases> ends_;
-  std::vector<Complex> field_;        ///< per channel
-  std::vector<Complex> field_slope_;  ///< its derivatives, [parameter][channel]
 };
 
 }  // namespace flatspeckle::mc

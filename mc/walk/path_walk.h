@@ -34,7 +34,8 @@ struct Path {
 /// What a walk notes of a path's flights and inner scatterings (not those of the first and last
 /// scatterer): here nothing, at no cost.
 struct NoTally {
-  void flight(double /*length*/) {}
+  template <typename Direction>
+  void flight(Vec2 /*from*/, const Direction& /*w*/, double /*length*/) {}
   template <typename Direction>
   void scattering(Vec2 /*x*/, const Direction& /*from*/, const Direction& /*to*/) {}
 };
@@ -91,7 +92,7 @@ class PathWalk {
     if constexpr (reversed) expected_first_ = expected(x, -path_.start);
     const auto [length, weight] = first_flight(x, path_.start, random);
     Tally tally = tally_;
-    tally.flight(length);
+    tally.flight(x, path_.start, length);
     follow({x + length * path_.start, path_.start, weight, 1, tally}, random, scorer);
     while (!waiting_.empty()) {
       Walker walker = waiting_.back();
@@ -153,7 +154,7 @@ class PathWalk {
                  flight = sample_flight(walker, w, edge, random);
     if (flight >= edge) return false;
     walker.tally.scattering(walker.x, walker.arrival, w);
-    walker.tally.flight(flight);
+    walker.tally.flight(walker.x, w, flight);
     walker.x = walker.x + flight * w;
     walker.arrival = w;
     return true;

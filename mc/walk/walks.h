@@ -98,6 +98,7 @@ class Walks {
 ///   Sums                            what a batch adds to
 ///   tally(scene)                    what every path starts with
 ///   scorer<reversed, phases>(scene, scattering, sums)
+/// and only_varying, if it is of media that vary alone.
 template <typename Kind>
 auto walks(const Kind& kind, const Scene& scene, const Plan& plan, std::uint64_t seed) {
   using Sums = typename Kind::Sums;
@@ -110,12 +111,13 @@ auto walks(const Kind& kind, const Scene& scene, const Plan& plan, std::uint64_t
         kind, scene, plan, scattering);
     batches = [=](std::uint64_t number, Sums sums) { shared->batch(seed, number, sums); };
   };
-  with_any_scattering(scene, plan.phase, [&](const auto& scattering) {
-    with_flag(plan.weighted, [&](auto weighted) {
-      if (plan.reversed) return choose(scattering, weighted, std::true_type{}, std::true_type{});
-      with_flag(plan.phases,
-                [&](auto phases) { choose(scattering, weighted, std::false_type{}, phases); });
-    });
+  with_any_scattering(scene, plan.phase, [&]<typename Scattering>(const Scattering& scattering) {
+    if constexpr (varies<Scattering> || !requires { Kind::only_varying; })
+      with_flag(plan.weighted, [&](auto weighted) {
+        if (plan.reversed) return choose(scattering, weighted, std::true_type{}, std::true_type{});
+        with_flag(plan.phases,
+                  [&](auto phases) { choose(scattering, weighted, std::false_type{}, phases); });
+      });
   });
   return batches;
 }

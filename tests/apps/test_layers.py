@@ -73,7 +73,6 @@ class Refused(RefusingTest):
         self.check(["no such file"], layers="none.csv")
 
     def test_what_layers_have_not(self):
-        self.check(["gradient"], gradient=True)
         self.check(["dimension"], dimension=3)
         self.check(["layers", "Monte Carlo"], method="transport", samples=None)
         self.check(["layers", "Monte Carlo"], command="validate")

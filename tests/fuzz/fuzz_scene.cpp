@@ -123,6 +123,8 @@ void write_files() {
   fuzz::write_file("rays.csv", "x,y,z,dx,dy,dz\n0,0,0,0,0,1\n0.1,0,0,0,0.1,1\n");
   fuzz::write_file("blobs.csv", "x,y,z,height,width\n0,0,0,0.1,1\n1,0,2,-0.05,0.5\n");
   fuzz::write_file("points.csv", "optical_depth,g\n1,0\n2,0.5\n");
+  fuzz::write_file("layers.csv", "thickness,density,flow,diffusion\n3,0.05,0,1\n7,0.2,1,0.5\n");
+  fuzz::write_file("holes.csv", "x,z,radius,amplitude\n-2,4,2,-1\n5,7,1.5,2\n");
   ResultFile structure("structure.h5");  // of 31 disks in a box of 20 by 10
   structure.scale("q", std::vector{0.5, 1.0, 2.0}, "1/length", "");
   structure.dataset("structure_factor", std::vector{0.8, 0.9, 1.0}, {"q"}, "1", "");

@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "flatland/media/layers.h"
+#include "mc/varying/layer_gradient.h"
 #include "tests/mc/flux_runs.h"
 
 namespace flatspeckle::mc {
@@ -114,6 +115,32 @@ TEST_CASE("equal layers give the undivided slab's covariance") {
              b = tests::run(whole, ReversedPaths::yes, 200'000, 2).entries();
   for (std::size_t e = 0; e < a.value.size(); ++e)
     CHECK_WITHIN_4_SIGMA(a.value[e], std::hypot(a.error[e], b.error[e]), b.value[e], 0);
+}
+
+TEST_CASE("derivatives by each layer agree with those of adding and doubling") {
+  const double light = 0.3;
+  const std::vector<double> views = {0.1, -0.8};
+  const Scene scene = layered(three, intensity_request({light}, tests::far_views(views)));
+  const Plan plan = gradient_plan(scene, ReversedPaths::no);
+  const GradientJob job = layer_gradient_job(scene, plan, 7);
+  const auto found = jackknife(tests::summed(job.field.batches, 200'000), job.gradient);
+  const std::vector<double Layer::*> members = {&Layer::optical_depth, &Layer::g, &Layer::albedo};
+  REQUIRE(job.parameters.size() == 9);
+  CHECK(job.parameters[3] == "mu_t of layer 2");
+  for (std::size_t p = 0; p < 9; ++p)
+    for (std::size_t v = 0; v < views.size(); ++v) {
+      const auto moved = [&](double step) {
+        auto layers = three;
+        layers[p / 3].*members[p % 3] += step;
+        return theory_of(layers, {light, 0.1, -0.8}).covariance_without_reversed(light, views[v]);
+      };
+      constexpr double step = 1e-4;
+      double expected = (moved(step) - moved(-step)) / (2 * step);
+      if (p % 3 == 0) expected *= three[p / 3].thickness;  // by mu_t
+      const std::size_t e = p * views.size() + v;
+      CAPTURE(job.parameters[p]);
+      CHECK_WITHIN_4_SIGMA(found.value[e], found.error[e], Complex(expected), 1e-4);
+    }
 }
 
 }  // namespace flatspeckle::mc
