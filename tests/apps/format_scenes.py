@@ -49,7 +49,7 @@ RUNS = {
     "layers": ("covariance", {"domain": "box", "width": 20, "layers": "layers.csv"}),
     "density": ("covariance", {"width": 20, "depth": 10, "density": 0.155, "density_blobs": "blobs.csv"}),
     "flow": ("covariance", {**SLAB, "delays": [0, 0.1, 0.2, 0.4, 0.6, 1], "velocity": [1, 0], "method": "mc",
-                            "exposures": [0.5, 1]}),
+                            "exposures": [0.9, 1]}),
     "full": ("covariance", {**BOX, **FAR, **FULL}),
     "image": ("image", IMAGE),
     "recover": ("recover", {"frames": "frames.csv", "points": 2, "samples": None, "threads": None}),

@@ -43,7 +43,7 @@ SCENES = [
     ("covariance", {**BOX, "count": None, "density": 0.1, "density_blobs": "blobs.csv",
                     "samples": 4000}),
     ("covariance", {**SLAB, "delays": [0, 0.1, 0.2, 0.4, 0.6, 1], "velocity": [1, 0],
-                    "exposures": [0.5, 1], "samples": 4000}),
+                    "exposures": [0.9, 1], "samples": 4000}),
     ("flux", {**BOX, "samples": 4000}),
     ("flux", {**SLAB, "light_angles": [0, 0.8], "albedo": 0.9, "tolerance": 1e-3}),
     ("field", {**BOX, **VIEWS, "fields": 4}),
