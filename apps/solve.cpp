@@ -6,14 +6,18 @@
 
 #include "apps/command/subcommands.h"
 #include "apps/results/field_map_output.h"
+#include "apps/results/wavelengths.h"
 #include "core/error.h"
 #include "core/keys/csv.h"
 #include "core/numbers/blas.h"
 #include "core/result/result_group.h"
 #include "core/run/interrupt.h"
+#include "core/run/progress.h"
+#include "core/run/stopwatch.h"
 #include "core/session/session.h"
 #include "flatland/scene/scene_datasets.h"
 #include "wave_solver/maps/map_datasets.h"
+#include "wave_solver/solutions/spectrum.h"
 #include "wave_solver/solutions/wave_solution.h"
 
 namespace flatspeckle::apps {
@@ -25,6 +29,7 @@ struct SolveKeys {
   SceneSpec spec;
   RunSettings run;
   MapSettings map;
+  SpectrumSettings spectrum;
   double tolerance = wave::SolveOptions().tolerance;
   std::string solver = "auto";
 };
@@ -45,6 +50,7 @@ void add_keys(Keys& keys, SolveKeys& values) {
            "equilibrium, to draw one");
   add_view_keys(keys, values.spec);
   add_map_keys(keys, values.map);
+  add_spectrum_keys(keys, values.spectrum);
   keys.group("Solver");
   keys.add("tolerance", values.tolerance, "Relative accuracy of the fields").between(0, 1);
   keys.add("solver", values.solver,
@@ -123,16 +129,55 @@ Sensors sensors_of(const Keys& keys, const SceneSpec& spec) {
   return sensors;
 }
 
-wave::WaveSolution solved(const SolveKeys& values, const Placement& placement,
+/// Columns of a placement's file and the key `index` say the same thing as the table.
+void require_index_from_table(const SceneSpec& spec, const Placement& placement) {
+  if (spec.index) throw InputError("index_table, index: give one of them");
+  if (spec.placement && !is_placement_rule(spec) && read_csv(*spec.placement).has("index_re"))
+    throw InputError("index_table: " + *spec.placement + " has indices of its own (index_re)");
+  if (std::ranges::none_of(placement, &Scatterer::is_penetrable, &PlacedScatterer::scatterer))
+    throw InputError("index_table: is of tm and te cylinders");
+}
+
+wave::WaveSolution solved(const SolveKeys& values, const Placement& placement, double wavelength,
                           const std::optional<wave::MapGrid>& grid,
                           const std::vector<Vec2>& sensors) {
-  for (const Vec2& sensor : sensors) require_outside(placement, sensor);
   wave::SolveOptions options{.tolerance = values.tolerance, .sensors = sensors};
   options.method = solvers.at(values.solver);
   if (grid)
     for (const Vec2& point : wave::map_sensors(*grid, placement)) options.sensors.push_back(point);
-  return wave::solve(placement, 2 * std::numbers::pi / values.spec.wavelength,
-                     values.spec.light_angles, options);
+  return wave::solve(placement, 2 * std::numbers::pi / wavelength, values.spec.light_angles,
+                     options);
+}
+
+/// One wavelength after the other; nothing where a signal came.
+std::optional<wave::Spectrum> spectrum(const SolveKeys& values, const Placement& placement,
+                                       const WavelengthList& wavelengths, const Sensors& sensors) {
+  wave::Spectrum spectrum(sensors.angles, sensors.points);
+  Progress progress("solve", "wavelengths");
+  const Stopwatch watch;
+  Progress::Figures figures;
+  for (const double wavelength : wavelengths.values) {
+    spectrum.add(wavelength, solved(values, wavelengths.at(wavelength, placement), wavelength, {},
+                                    sensors.points));
+    if (interrupted()) return std::nullopt;
+    figures.samples += 1;
+    figures.rate = figures.samples / watch.seconds();
+    figures.seconds_left =
+        (static_cast<double>(wavelengths.values.size()) - figures.samples) / figures.rate;
+    progress.update(watch.seconds(), figures);
+  }
+  progress.finish(watch.seconds(), figures);
+  return spectrum;
+}
+
+Made spectrum_made(const wave::Spectrum& spectrum, const WavelengthList& wavelengths,
+                   const Placement& placement) {
+  std::ostringstream plan;
+  plan << placement.size() << " scatterers at " << wavelengths.values.size()
+       << " wavelengths, up to " << spectrum.unknowns() << " unknowns: ";
+  std::printf("%sresidual at most %.1e\n", plan.str().c_str(), spectrum.residual());
+  plan << "one solution after the other";
+  return {plan.str(), 1};
 }
 
 }  // namespace
@@ -147,16 +192,36 @@ int solve(const Arguments& arguments) {
   const Session session(command.text(), keys, values.run, command.only_prints());
   const SceneSpec& spec = values.spec;
   const Sensors sensors = sensors_of(keys, spec);
-  const auto grid = map_grid(keys, values.map, keys.read(spec.wavelength));
+  const auto wavelengths = wavelength_list(keys, values.spectrum);
+  std::optional<wave::MapGrid> grid;
+  if (wavelengths.values.empty()) grid = map_grid(keys, values.map, keys.read(spec.wavelength));
   keys.read(values.tolerance);
   keys.read(values.solver);
   std::optional<Scene> scene;
   if (is_placement_rule(spec)) scene = make_scene(keys, spec);
   const Placement placement = scene ? drawn_placement(spec, *scene, session.seed())
                                     : placement_of_file(keys, spec, values.run);
+  for (const Vec2& sensor : sensors.points) require_outside(placement, sensor);
+  if (wavelengths.index) require_index_from_table(spec, placement);
   if (!command.settle()) return ExitStatus::done;
   blas_single_thread();  // says now what it lacks
-  const auto solution = solved(values, placement, grid, sensors.points);
+  const auto write_scene = [&](ResultFile& file) {
+    if (scene)
+      write_medium(file, *scene);
+    else
+      ResultGroup(file, scene_table).attribute("wavelength", spec.wavelength);
+  };
+  if (!wavelengths.values.empty()) {
+    catch_interrupts();
+    return session.once(ResultFile(session.out()), [&](ResultFile& file) -> std::optional<Made> {
+      const auto found = spectrum(values, placement, wavelengths, sensors);
+      if (!found) return std::nullopt;
+      found->write(file);
+      write_scene(file);
+      return spectrum_made(*found, wavelengths, placement);
+    });
+  }
+  const auto solution = solved(values, placement, spec.wavelength, grid, sensors.points);
   if (grid) catch_interrupts();  // which must not leave the file that a map is written to
   ResultFile result(session.out(), grid ? ResultFile::Storage::disk : ResultFile::Storage::memory);
   return session.once(std::move(result), [&](ResultFile& file) -> std::optional<Made> {
@@ -167,10 +232,7 @@ int solve(const Arguments& arguments) {
       if (!method) return std::nullopt;
       map_method = *method;
     }
-    if (scene)
-      write_medium(file, *scene);
-    else
-      ResultGroup(file, scene_table).attribute("wavelength", spec.wavelength);
+    write_scene(file);
     print_summary(solution);
     if (grid) std::printf("%s\n", map_method.c_str());
     return Made{plan_of(solution, map_method), 1};

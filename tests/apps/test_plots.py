@@ -54,6 +54,7 @@ KINDS = {
     "pulse": ("render", {**SPACE, "pixels": [4, 4], "path_bins": [1, 3, 4]}),
     "light": ("render", {**SPACE, "pixels": [1, 1], "map_cylinder": [0, 0, -1, 0, 0, 1, 1],
                          "map_cells": [3, 4]}),
+    "spectrum": ("solve", {**BOX, "wavelengths": [0.9, 1.1], "view_angles": [3.0, 3.1]}),
     "near": ("solve", {"placement": DATA / "reference/g10/placement.csv", "scatterer": "soft",
                        "map": [-2, 2, -2, 2], "map_pixels": [6, 5]}),
 }
@@ -62,7 +63,7 @@ OWN = {"memory_effect": {"grid", "points", "curve", "moves", "layers"}, "memory_
        "range_map": {"grid"}, "convergence": {"grid", "points"}, "tilt_shift": {"map"},
        "dws": {"delays", "exposed"}, "contrast": {"exposed"}, "layer_range": {"layers"}, "frequency": {"frequencies"}, "validation": {"both"}, "speckle_field": {"fields"}, "image": {"frames"}, "fit": {"fitted"},
        "rays": {"rays"}, "render": {"picture", "pulse"}, "render_time": {"pulse"},
-       "light_map": {"light"}, "field_map": {"near"}}
+       "light_map": {"light"}, "reflection_image": {"spectrum"}, "field_map": {"near"}}
 
 
 def run_script(name, *words):

@@ -50,6 +50,7 @@ SCENES = [
     ("field", {**BOX, "near_sensors": "sensors.csv", "fields": 4, "method": "covariance",
                "target_error": 0.1}),
     ("solve", {**BOX, "map": [-10, 10, 0, 10], "map_pixels": [20, 10]}),
+    ("solve", {**BOX, "wavelengths": [0.9, 1.1], "wavelength_count": 3}),
     ("solve", {"placement": "disks.csv", "scatterer": "tm", "index": "1.5+0.1i", **VIEWS}),
     ("validate", {**BOX, **TILTS, "samples": 4000, "wave_samples": 20}),
     ("validate", {**SLAB, **TILTS, "samples": 4000, "tolerance": 1e-3}),

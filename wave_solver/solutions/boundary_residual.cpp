@@ -6,6 +6,7 @@
 #include <numbers>
 #include <vector>
 
+#include "wave_solver/dense/blas.h"
 #include "wave_solver/equations/neighbours.h"
 #include "wave_solver/solutions/interior_field.h"
 #include "wave_solver/solutions/wave_solution.h"
@@ -54,24 +55,42 @@ struct Trace {
 };
 
 // Scattered field and slope of all lights at points on a rim: [light][point].
-std::vector<Trace> scattered_traces(const WaveSolution& solution, std::span<const Vec2> points,
-                                    std::span<const Vec2> normals) {
+struct Traces {
+  std::vector<Complex> field, slope;
+};
+
+// Of scatterers whose unknowns stand side by side: a product of matrices for all lights.
+void add_traces(const WaveSolution& solution, std::size_t begin, std::size_t end,
+                std::span<const Vec2> points, std::span<const Vec2> normals, Traces& traces) {
   const TMatrixSystem& system = solution.system();
-  const std::size_t lights = solution.light_angles().size(), count = points.size();
-  std::vector<Trace> traces(lights * count);
-  for (std::size_t j = 0; j < system.placement().size(); ++j) {
+  const std::size_t count = points.size(), first = system.first(begin),
+                    unknowns = system.first(end) - first;
+  std::vector<Complex> values(count * unknowns), derivatives(values.size());
+  for (std::size_t j = begin; j < end; ++j) {
     const ModeSet sender = system.modes(j);
-    std::vector<Complex> values(count * sender.modes.size()), derivatives(values.size());
-    field_at(system.k(), points, sender, {values.data(), count});
-    slopes(system.k(), points, normals, sender, {derivatives.data(), count});
-    for (std::size_t light = 0; light < lights; ++light) {
-      const auto beta = solution.coefficients(light).subspan(system.first(j));
-      for (std::size_t n = 0; n < sender.modes.size(); ++n)
-        for (std::size_t i = 0; i < count; ++i) {
-          traces[light * count + i].field += beta[n] * values[n * count + i];
-          traces[light * count + i].slope += beta[n] * derivatives[n * count + i];
-        }
-    }
+    const std::size_t at = (system.first(j) - first) * count;
+    field_at(system.k(), points, sender, {&values[at], count});
+    slopes(system.k(), points, normals, sender, {&derivatives[at], count});
+  }
+  const Complex* beta = &solution.coefficients(0)[first];
+  const auto add = [&](const std::vector<Complex>& rows, std::vector<Complex>& sums) {
+    multiply(CblasNoTrans, CblasNoTrans, count, solution.light_angles().size(), unknowns, 1,
+             rows.data(), count, beta, system.unknowns(), 1, sums.data(), count);
+  };
+  add(values, traces.field);
+  add(derivatives, traces.slope);
+}
+
+Traces scattered_traces(const WaveSolution& solution, std::span<const Vec2> points,
+                        std::span<const Vec2> normals) {
+  constexpr std::size_t block = 2000;  // unknowns
+  const TMatrixSystem& system = solution.system();
+  const std::size_t disks = system.placement().size();
+  const std::vector<Complex> nothing(solution.light_angles().size() * points.size());
+  Traces traces{nothing, nothing};
+  for (std::size_t begin = 0, end = 1; begin < disks; begin = end++) {
+    while (end < disks && system.first(end + 1) - system.first(begin) <= block) ++end;
+    add_traces(solution, begin, end, points, normals, traces);
   }
   return traces;
 }
@@ -122,8 +141,8 @@ double residual_on(const WaveSolution& solution, const Rim& rim) {
     const auto beta = solution.coefficients(light).subspan(system.first(rim.disk));
     for (int i = 0; i < count; ++i) {
       Trace outside = incident(system.k(), solution.light_angles()[light], points[i], normals[i]);
-      outside.field += scattered[light * count + i].field;
-      outside.slope += scattered[light * count + i].slope;
+      outside.field += scattered.field[light * count + i];
+      outside.slope += scattered.slope[light * count + i];
       const Trace inside = penetrable
                                ? total_inside(beta, system.modes(rim.disk), inside_waves, angles[i])
                                : Trace{};
@@ -136,6 +155,7 @@ double residual_on(const WaveSolution& solution, const Rim& rim) {
 }  // namespace
 
 double boundary_residual(const WaveSolution& solution) {
+  if (solution.light_angles().empty()) return 0;
   double worst = 0;
   for (const Rim& rim : narrowest(solution.system().placement()))
     worst = std::max(worst, residual_on(solution, rim));

@@ -48,7 +48,7 @@ EquationSolver::EquationSolver(const TMatrixSystem& system, Method method, doubl
   }
   product_ = std::make_unique<FastProduct>(system, std::max(tolerance_ / 10, best_product));
   if (method == Method::fast)
-    fast_ = std::make_unique<FastDirect>(system, std::max(tolerance_, rough_factor));
+    fast_ = std::make_unique<FastDirect>(system, std::max(tolerance_ / 10, rough_factor));
 }
 
 EquationSolver::~EquationSolver() = default;

@@ -224,15 +224,19 @@ void write_solution(ResultFile& file, const WaveSolution& solution,
   write_light_axis(file, solution.light_angles());
   write_views(file, "far_field", solution, column(view_angles, far_view));
   write_views(file, "near_field", solution, column(sensors, near_sensor));
+  write_placement(file, solution.system().placement());
   const ResultGroup root(file, solution_table);
-  const Placement& placement = solution.system().placement();
+  root.put("solve/basis_order", column(solution.basis_order(), std::identity()));
+  write_diagnosis(root, solution.diagnosis());
+}
+
+void write_placement(ResultFile& file, const Placement& placement) {
+  const ResultGroup root(file, solution_table);
   root.number("scatterer", placement.size());
   root.put("placement/x", column(placement, [](const auto& placed) { return placed.position.x; }));
   root.put("placement/z", column(placement, [](const auto& placed) { return placed.position.z; }));
   root.put("placement/radius",
            column(placement, [](const auto& placed) { return placed.scatterer.disk_radius(); }));
-  root.put("solve/basis_order", column(solution.basis_order(), std::identity()));
-  write_diagnosis(root, solution.diagnosis());
 }
 
 }  // namespace flatspeckle::wave

@@ -75,6 +75,9 @@ extern const DatasetTable solution_table;
 void write_solution(ResultFile& file, const WaveSolution& solution,
                     const std::vector<double>& view_angles, const std::vector<Vec2>& sensors);
 
+/// Positions and radii.
+void write_placement(ResultFile& file, const Placement& placement);
+
 /// What lights and views need of a placement within a circle, found once for a whole ensemble: the
 /// few of many lights, or of many far views, that stand for all (light_basis.h).
 struct FieldPlan {
