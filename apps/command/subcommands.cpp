@@ -15,6 +15,7 @@ int fit(const Arguments& arguments);
 int recover(const Arguments& arguments);
 int trace(const Arguments& arguments);
 int render(const Arguments& arguments);
+int design(const Arguments& arguments);
 int bench(const Arguments& arguments);
 int list_keys(const Arguments& arguments);
 int datasets(const Arguments& arguments);
@@ -41,6 +42,7 @@ std::span<const SubcommandEntry> subcommands() {
       {"trace", "rays and the curves between two points in a gradient-index field", trace},
       {"render", "pictures of scattering media with a gradient index: 3D refractive path tracing",
        render},
+      {"design", "an index field from what its light should do: inverse design by rays", design},
 #ifdef FLATSPECKLE_BENCH
       {"bench",
        "what accuracy costs, where it breaks, what plans leave out: error, stability, plan", bench},

@@ -9,6 +9,7 @@
 #include "flatland/media/layers.h"
 #include "flatland/media/structure_factor.h"
 #include "flatland/scene/scene_datasets.h"
+#include "grin/design/design_datasets.h"
 #include "grin/render/energy_datasets.h"
 #include "grin/render/map_datasets.h"
 #include "grin/render/render_datasets.h"
@@ -75,7 +76,8 @@ std::vector<const DatasetTable*> all_tables() {
                                              &grin::render_table,
                                              &grin::energy_table,
                                              &grin::box_map_table,
-                                             &grin::ring_map_table};
+                                             &grin::ring_map_table,
+                                             &grin::design::design_table};
 #ifdef FLATSPECKLE_BENCH
   for (const DatasetTable* table : bench_tables()) tables.push_back(table);
 #endif

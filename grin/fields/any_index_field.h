@@ -3,6 +3,7 @@
 #include <tuple>
 #include <variant>
 
+#include "grin/fields/ball_spline.h"
 #include "grin/fields/fisheye.h"
 #include "grin/fields/focused_sound.h"
 #include "grin/fields/gaussian_blobs.h"
@@ -10,6 +11,7 @@
 #include "grin/fields/linear_ramp.h"
 #include "grin/fields/luneburg.h"
 #include "grin/fields/parabolic.h"
+#include "grin/fields/radial_spline.h"
 #include "grin/fields/sech.h"
 #include "grin/fields/spline_field.h"
 #include "grin/fields/tanh_ramp.h"
@@ -21,7 +23,8 @@ namespace flatspeckle::grin {
 /// All kinds of index fields (field_kind.h); the one list of them.
 using IndexFieldKinds = std::tuple<HomogeneousValues, LuneburgValues, FisheyeValues,
                                    ParabolicValues, SechValues, LinearValues, TanhValues,
-                                   BlobsValues, UltrasoundValues, FocusedSoundValues, GridValues>;
+                                   BlobsValues, UltrasoundValues, FocusedSoundValues, GridValues,
+                                   BallValues, RadialSplineValues>;
 
 template <class Kinds>
 struct FieldsOf;

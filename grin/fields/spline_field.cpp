@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <utility>
 
 namespace flatspeckle::grin {
 
@@ -42,11 +42,25 @@ void interpolate(std::vector<double>& c, std::vector<double>& pivot) {
 
 }  // namespace
 
-SplineField::SplineField(const FieldGrid& grid, std::span<const double> excess) : grid_(grid) {
-  check(grid, excess.size(), 4);
-  check_samples(excess);
+SplineField::SplineField(const FieldGrid& grid, std::size_t samples, int least_nodes)
+    : grid_(grid) {
+  check(grid, samples, least_nodes);
   for (int a = 0; a < 3; ++a) extent_[a] = grid.nodes[a] + 2;
   coefficients_.resize(static_cast<std::size_t>(extent_[0]) * extent_[1] * extent_[2]);
+}
+
+SplineField SplineField::of_coefficients(const FieldGrid& grid, std::vector<double> coefficients) {
+  SplineField field(grid, grid.size(), 2);
+  if (coefficients.size() != field.coefficients_.size())
+    throw InputError("coefficients of a grid", coefficients.size(),
+                     "must be two more along each axis than nodes");
+  field.coefficients_ = std::move(coefficients);
+  return field;
+}
+
+SplineField::SplineField(const FieldGrid& grid, std::span<const double> excess)
+    : SplineField(grid, excess.size(), 4) {
+  check_samples(excess);
   const auto [nx, ny, nz] = grid.nodes;
   for (int i = 0; i < nx; ++i)
     for (int j = 0; j < ny; ++j)
@@ -76,63 +90,78 @@ SplineField::Axis SplineField::axis(const Vec3& x, int which) const {
   const bool inside = position == held;
   const double cell = held > 0 ? std::min(std::floor(held), cells - 1) : 0;  // 0 also for NaN
   const double t = held - cell, s = 1 - t;
-  Axis result{static_cast<int>(cell), {}, {}, {}};
+  Axis result;
+  result.cell = static_cast<int>(cell);
   result.w = {s * s * s / 6, 2 / 3. - t * t * (2 - t) / 2, 2 / 3. - s * s * (2 - s) / 2,
               t * t * t / 6};
-  if (!inside) return result;
+  const double slope = inside ? scale : 0, turn = slope * slope;
   if constexpr (Derivatives >= 1)
-    result.d = {-scale * s * s / 2, scale * t * (3 * t - 4) / 2, -scale * s * (3 * s - 4) / 2,
-                scale * t * t / 2};
-  if constexpr (Derivatives >= 2) {
-    const double q = scale * scale;
-    result.dd = {q * s, q * (3 * t - 2), q * (3 * s - 2), q * t};
-  }
+    result.d = {-slope * s * s / 2, slope * t * (3 * t - 4) / 2, -slope * s * (3 * s - 4) / 2,
+                slope * t * t / 2};
+  if constexpr (Derivatives >= 2)
+    result.dd = {turn * s, turn * (3 * t - 2), turn * (3 * s - 2), turn * t};
   return result;
 }
 
+// Sums over x and y are of four splines along z at a time.
+
 double SplineField::excess(const Vec3& x) const {
   const Axis a = axis<0>(x, 0), b = axis<0>(x, 1), c = axis<0>(x, 2);
-  double sum = 0;
+  Axis::Four sum = Axis::Four::Zero();
   for (int i = 0; i < 4; ++i)
-    for (int j = 0; j < 4; ++j)
-      sum += a.w[i] * b.w[j] *
-             std::inner_product(c.w.begin(), c.w.end(), row(a.cell + i, b.cell + j, c.cell), 0.0);
-  return sum;
+    for (int j = 0; j < 4; ++j) sum += a.w[i] * b.w[j] * four(a.cell + i, b.cell + j, c.cell);
+  return (sum * c.w).sum();
 }
 
 IndexGradient SplineField::gradient(const Vec3& x) const {
   const Axis a = axis<1>(x, 0), b = axis<1>(x, 1), c = axis<1>(x, 2);
-  IndexGradient sum{0, Vec3::Zero()};
+  Axis::Four f = Axis::Four::Zero(), fx = f, fy = f;
   for (int i = 0; i < 4; ++i) {
+    Axis::Four g = Axis::Four::Zero(), gy = g;
     for (int j = 0; j < 4; ++j) {
-      const double* values = row(a.cell + i, b.cell + j, c.cell);
-      const double f = std::inner_product(c.w.begin(), c.w.end(), values, 0.0);
-      const double fz = std::inner_product(c.d.begin(), c.d.end(), values, 0.0);
-      sum.excess += a.w[i] * b.w[j] * f;
-      sum.gradient += Vec3(a.d[i] * b.w[j] * f, a.w[i] * b.d[j] * f, a.w[i] * b.w[j] * fz);
+      const auto values = four(a.cell + i, b.cell + j, c.cell);
+      g += b.w[j] * values;
+      gy += b.d[j] * values;
     }
+    f += a.w[i] * g;
+    fx += a.d[i] * g;
+    fy += a.w[i] * gy;
   }
-  return sum;
+  return {(f * c.w).sum(), {(fx * c.w).sum(), (fy * c.w).sum(), (f * c.d).sum()}};
+}
+
+IndexHessian SplineField::hessian(const std::array<Axis, 3>& axes) const {
+  const auto& [a, b, c] = axes;
+  Axis::Four f = Axis::Four::Zero(), fx = f, fy = f, fxx = f, fxy = f, fyy = f;
+  for (int i = 0; i < 4; ++i) {
+    Axis::Four g = Axis::Four::Zero(), gy = g, gyy = g;
+    for (int j = 0; j < 4; ++j) {
+      const auto values = four(a.cell + i, b.cell + j, c.cell);
+      g += b.w[j] * values;
+      gy += b.d[j] * values;
+      gyy += b.dd[j] * values;
+    }
+    f += a.w[i] * g;
+    fx += a.d[i] * g;
+    fy += a.w[i] * gy;
+    fxx += a.dd[i] * g;
+    fxy += a.d[i] * gy;
+    fyy += a.w[i] * gyy;
+  }
+  const double xy = (fxy * c.w).sum(), xz = (fx * c.d).sum(), yz = (fy * c.d).sum();
+  return {
+      (f * c.w).sum(),
+      {(fx * c.w).sum(), (fy * c.w).sum(), (f * c.d).sum()},
+      Mat3{{(fxx * c.w).sum(), xy, xz}, {xy, (fyy * c.w).sum(), yz}, {xz, yz, (f * c.dd).sum()}}};
 }
 
 IndexHessian SplineField::hessian(const Vec3& x) const {
-  const Axis a = axis<2>(x, 0), b = axis<2>(x, 1), c = axis<2>(x, 2);
-  IndexHessian sum{0, Vec3::Zero(), Mat3::Zero()};
-  for (int i = 0; i < 4; ++i) {
-    for (int j = 0; j < 4; ++j) {
-      const double* values = row(a.cell + i, b.cell + j, c.cell);
-      const double f = std::inner_product(c.w.begin(), c.w.end(), values, 0.0);
-      const double fz = std::inner_product(c.d.begin(), c.d.end(), values, 0.0);
-      const double fzz = std::inner_product(c.dd.begin(), c.dd.end(), values, 0.0);
-      sum.excess += a.w[i] * b.w[j] * f;
-      sum.gradient += Vec3(a.d[i] * b.w[j] * f, a.w[i] * b.d[j] * f, a.w[i] * b.w[j] * fz);
-      const double xy = a.d[i] * b.d[j] * f, xz = a.d[i] * b.w[j] * fz, yz = a.w[i] * b.d[j] * fz;
-      sum.hessian += Mat3{{a.dd[i] * b.w[j] * f, xy, xz},
-                          {xy, a.w[i] * b.dd[j] * f, yz},
-                          {xz, yz, a.w[i] * b.w[j] * fzz}};
-    }
-  }
-  return sum;
+  return hessian({axis<2>(x, 0), axis<2>(x, 1), axis<2>(x, 2)});
+}
+
+SplineField::Look SplineField::look(const Vec3& x) const {
+  const std::array<Axis, 3> axes{axis<2>(x, 0), axis<2>(x, 1), axis<2>(x, 2)};
+  return {axes, hessian(axes)};
 }
 
 /// A spline is a mean of its coefficients.

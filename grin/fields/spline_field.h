@@ -19,7 +19,14 @@ class SplineField {
   /// samples than nodes, or a sample that is not a finite number > -1.
   SplineField(const FieldGrid& grid, std::span<const double> excess);
 
+  /// Of the coefficients of its B-splines themselves, those about nodes -1 .. nodes along each
+  /// axis. Throws InputError for fewer than 2 nodes along an axis, or another number of
+  /// coefficients.
+  static SplineField of_coefficients(const FieldGrid& grid, std::vector<double> coefficients);
+
   const FieldGrid& grid() const { return grid_; }
+  const std::vector<double>& coefficients() const { return coefficients_; }
+  const std::array<int, 3>& extent() const { return extent_; }  ///< of the coefficients
 
   double excess(const Vec3& x) const;
   IndexGradient gradient(const Vec3& x) const;
@@ -28,14 +35,41 @@ class SplineField {
   /// No two places have indices farther apart.
   double range() const;
 
- private:
-  /// Cell and weights of the four splines there, and of their derivatives by x.
+  /// The four splines that are there along an axis: the first, their values and derivatives by x.
   struct Axis {
+    using Four = Eigen::Array4d;
     int cell;
-    std::array<double, 4> w, d, dd;
+    Four w, d, dd;
   };
+  /// A place, and the field there.
+  struct Look {
+    std::array<Axis, 3> axes;
+    IndexHessian jet;
+  };
+  Look look(const Vec3& x) const;
+  /// Adds the derivatives of a excess + b . gradient there by the coefficients, to rows of them
+  /// along z: that of the i-th along x and the j-th along y begins at row_of(i extent[1] + j).
+  template <class Rows>
+  static void add_derivative(const Look& at, const std::array<int, 3>& extent, double a,
+                             const Vec3& b, const Rows& row_of) {
+    const auto& [x, y, z] = at.axes;
+    for (int i = 0; i < 4; ++i)
+      for (int j = 0; j < 4; ++j) {
+        const double along = b[2] * x.w[i] * y.w[j];
+        const double value = (a * x.w[i] + b[0] * x.d[i]) * y.w[j] + b[1] * x.w[i] * y.d[j];
+        Eigen::Map<Axis::Four> row(row_of((x.cell + i) * extent[1] + y.cell + j) + z.cell);
+        row += value * z.w + along * z.d;
+      }
+  }
+
+ private:
+  SplineField(const FieldGrid& grid, std::size_t samples, int least_nodes);
   template <int Derivatives>
   Axis axis(const Vec3& x, int which) const;
+  IndexHessian hessian(const std::array<Axis, 3>& axes) const;
+  Eigen::Map<const Axis::Four> four(int i, int j, int k) const {
+    return Eigen::Map<const Axis::Four>(row(i, j, k));
+  }
   const double* row(int i, int j, int k) const {
     return &coefficients_[(static_cast<std::size_t>(i) * extent_[1] + j) * extent_[2] + k];
   }

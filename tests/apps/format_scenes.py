@@ -129,6 +129,8 @@ RUNS = {
     "polar": ("render", {**STAGE, "pixels": None, "sensor": "polar", "rings": 4}),
     "ball_power": ("render", {**STAGE, "field": None, "alpha": None, "index": None, "sensor": "directional",
                               "body_sphere": [0, 0, 2, 0.5], "index_around": 1.3, "max_scatterings": 9}),
+    "lens": ("design", {"nodes": [2], "directions": 4, "rays_per_direction": 5}),
+    "lens_radial": ("design", {"design": "radial", "directions": 1, "rays_per_direction": 9}),
     **{f"bench_{kind}": (f"bench {kind}", {"quick": True})
        for kind in ("error", "stability", "plan")},
 }
@@ -136,7 +138,7 @@ RUNS = {
 
 def cost(subcommand, keys):
     """Light paths by the thousand, placements by the dozen."""
-    if subcommand.split()[0] in ("solve", "place", "trace", "bench"):
+    if subcommand.split()[0] in ("solve", "place", "trace", "design", "bench"):
         return {"threads": None if subcommand == "place" else 2}
     if subcommand == "field":
         return {"fields": 4, "threads": 2}

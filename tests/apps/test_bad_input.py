@@ -416,6 +416,7 @@ class AcceptedScenes(ProgramTest):
                                ("render",) if "\nsensor = " in text else
                                ("image",) if "\nobject_x = " in text else
                                ("trace",) if "\nmax_length = " in text else
+                               ("design",) if "\ndesign = " in text else
                                ("covariance",) if '"hg"' in text else ("validate", "covariance")):
                 with self.subTest(scene=scene.name, subcommand=subcommand):
                     text = self.call(subcommand, "--config", scene, "--print-config").stdout

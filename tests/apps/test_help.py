@@ -15,7 +15,7 @@ PROGRAM = ["config", "print-config", "out", "help"]
 SCENE = SCATTERER + MEDIUM + VIEWS
 FIELD = ["field", "index", "radius", "alpha", "centre", "slope", "index_low", "index_high",
          "ramp_width", "ramp_axis", "blobs", "amplitude", "sound_wavenumber", "sound_order",
-         "sound_phase", "emitters", "aperture", "focusing", "grid"]
+         "sound_phase", "emitters", "aperture", "focusing", "grid", "ball_spline", "radial_spline"]
 SPACE_MEDIUM = ["mu_s", "mu_a", "phase", "g", "density"]
 KEYS = {
     "bench": ["quick", "threads"],
@@ -34,6 +34,9 @@ KEYS = {
                       "half_angle", "stop_plane", "stop_sphere", "stop_box", "max_length",
                       "integrator", "step", "tolerance", "connect", "trials", "path_points",
                       "length_unit", "seed", "threads"],
+    "design": ["design", "radius", "nodes", "coefficients", "start_excess", "least_index",
+               "most_index", "focus", "directions", "rays_per_direction", "aperture", "step",
+               "iterations", "target", "roughness", "threads"],
     "render": FIELD + SPACE_MEDIUM + ["body_" + key for key in SPACE_MEDIUM] + RUN + [
         "stage_box", "stage_sphere", "body_box", "body_sphere", "index_around", "ball", "block", "point_light",
         "beam_light", "face_light", "environment", "sensor", "sensor_at", "sensor_direction",

@@ -50,6 +50,7 @@ KINDS = {
     "fitted": ("fit", {"free": ["g=0.5:0.95", "optical_depth=1:20"], "depth": 2000, "threads": 1,
                        "measurement": DATA / "measurements/slab_transmission.csv"}),
     "rays": ("trace", RAYS),
+    "lens": ("design", {"nodes": [3], "directions": 6, "rays_per_direction": 8, "threads": 1}),
     "picture": ("render", {**SPACE, "pixels": [4, 4]}),
     "pulse": ("render", {**SPACE, "pixels": [4, 4], "path_bins": [1, 3, 4]}),
     "light": ("render", {**SPACE, "pixels": [1, 1], "map_cylinder": [0, 0, -1, 0, 0, 1, 1],
@@ -62,7 +63,7 @@ KINDS = {
 OWN = {"memory_effect": {"grid", "points", "curve", "moves", "layers"}, "memory_range": {"grid", "points"},
        "range_map": {"grid"}, "convergence": {"grid", "points"}, "tilt_shift": {"map"},
        "dws": {"delays", "exposed"}, "contrast": {"exposed"}, "layer_range": {"layers"}, "frequency": {"frequencies"}, "validation": {"both"}, "speckle_field": {"fields"}, "image": {"frames"}, "fit": {"fitted"},
-       "rays": {"rays"}, "render": {"picture", "pulse"}, "render_time": {"pulse"},
+       "rays": {"rays"}, "design": {"lens"}, "render": {"picture", "pulse"}, "render_time": {"pulse"},
        "light_map": {"light"}, "reflection_image": {"spectrum"}, "field_map": {"near"}}
 
 

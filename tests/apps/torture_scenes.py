@@ -66,6 +66,8 @@ SCENES = [
                "sound_wavenumber": 4, **PLANE}),
     ("trace", {"field": "grid", "grid": "grid.h5", "rays": "rays.csv", "max_length": 5,
                "stop_sphere": [0, 0, 0, 0.9]}),
+    ("design", {"nodes": [3, 5], "directions": 4, "rays_per_direction": 9, "iterations": 4}),
+    ("design", {"design": "radial", "directions": 1, "rays_per_direction": 20, "focus": 0.8}),
     ("render", {**STAGE, **AREA, "samples": 2000}),
     ("render", {**STAGE, **CAMERA, **FIBRE, "samples": 500, "path_bins": [3, 8, 5]}),
     ("render", {**STAGE, **AREA, "samples": 2000, "density": "density.h5", "phase":

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace flatspeckle::grin::design {
+
+/// What is asked of the readings of all rays: residuals whose squares are to be as small as can be,
+/// and their derivative by the readings where they were looked at last.
+class Goal {
+ public:
+  virtual ~Goal() = default;
+
+  virtual std::vector<double> residuals(std::span<const double> readings) = 0;
+  virtual std::vector<double> times(std::span<const double> readings) const = 0;
+  virtual std::vector<double> transposed(std::span<const double> residuals) const = 0;
+  /// By how much a reading counts, roughly.
+  virtual std::vector<double> weights() const = 0;
+};
+
+/// Readings are to be what they are told to be.
+std::unique_ptr<Goal> make_target_goal(std::vector<double> targets);
+
+}  // namespace flatspeckle::grin::design
