@@ -81,7 +81,7 @@ void add_keys(Keys& keys, ImageKeys& values) {
            "Fields by light paths, or of placements by the exact solver (wave)")
       .one_of({"paths", "wave"});
   keys.add("paths_per_field", values.paths_per_field,
-           "Light paths of each medium (default: so many that the excess kurtosis is 0.01, and two "
+           "Light paths of each medium (default: so many that the excess kurtosis is 0.01, and four "
            "for each grain that can be seen)")
       .positive();
   add_wave_keys(keys, values.estimation);
@@ -245,7 +245,8 @@ void print_summary(const mc::LineScene& line, const mc::ImagingTask& task,
       mc::gaussian_contrast(line.object, task.recovery.noise.background), fourth.value,
       fourth.error, grains);
   if (const auto correlation = real_parts(prediction.correlation.value); !correlation.empty()) {
-    const auto signals = mc::peaks_over_noise(line.object, correlation, grains);
+    const auto signals =
+        mc::peaks_over_noise(line.object, correlation, mc::frame_grains(line, task, media));
     std::printf("pairs of points: C_I down to %.3f, peaks down to %.1f times the noise\n",
                 *std::min_element(correlation.begin(), correlation.end()),
                 *std::min_element(signals.begin(), signals.end()));

@@ -100,10 +100,10 @@ void write_fits(const ResultGroup& root, const ImagingTask& task,
   root.put("success", rate, error);
 }
 
-void write_prediction(const ResultGroup& root, const LineScene& line,
+void write_prediction(const ResultGroup& root, const LineScene& line, const ImagingTask& task,
                       const std::vector<ImagedMedium>& media, const ImagingPrediction& prediction) {
-  const auto signal =
-      peaks_over_noise(line.object, real_parts(prediction.correlation.value), mean_grains(media));
+  const auto signal = peaks_over_noise(line.object, real_parts(prediction.correlation.value),
+                                       frame_grains(line, task, media));
   root.number("pair", signal.size());
   root.put("pair_distance", prediction.distance);
   root.put("pair_correlation", prediction.correlation);
@@ -126,7 +126,7 @@ void write_imaging(ResultFile& file, const LineScene& line, const ImagingTask& t
   write_statistics(root, media);
   write_moments(root, line, task.recovery.noise.background, media);
   if (task.recovery.points > 0) write_fits(root, task, media, length_of_pixel);
-  if (!prediction.distance.empty()) write_prediction(root, line, media, prediction);
+  if (!prediction.distance.empty()) write_prediction(root, line, task, media, prediction);
   if (line.reference) write_pictures(file, line, task, media, prediction);
 }
 

@@ -33,6 +33,11 @@ double mean_grains(const std::vector<ImagedMedium>& media) {
   return mean_of(media, 0, [](const ImagedMedium& m) { return m.statistics.grains; }).value;
 }
 
+FrameGrains frame_grains(const LineScene& line, const ImagingTask& task,
+                         const std::vector<ImagedMedium>& media) {
+  return {mean_grains(media), task.recovery.noise, static_cast<double>(line.camera.pixels)};
+}
+
 double gaussian_contrast(const LineObject& object, double background) {
   return std::sqrt(power_sum(object, 2)) / power_sum(object, 1) / (1 + background);
 }

@@ -14,6 +14,10 @@ struct Measured {
 /// Grains of a frame, averaged over all media.
 double mean_grains(const std::vector<ImagedMedium>& media);
 
+/// Of the mean frame.
+FrameGrains frame_grains(const LineScene& line, const ImagingTask& task,
+                         const std::vector<ImagedMedium>& media);
+
 /// Contrast of an object's Gaussian speckle: sqrt(sum of b^2) / sum of b, 1/sqrt(N) for N equal
 /// points; less by 1 + background.
 double gaussian_contrast(const LineObject& object, double background);

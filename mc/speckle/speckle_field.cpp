@@ -31,7 +31,7 @@ CovarianceRequest field_request(Lights lights, std::vector<View> views) {
 
 Plan plan_for_fields(Plan plan) {
   plan.phases = true;
-  plan.sampled_single = true;
+  plan.sampled_single = plan.single_roulette = true;
   return plan;
 }
 

@@ -85,7 +85,7 @@ class PathWalk {
     if constexpr (varies<Scattering>) {
       if (mu_s(x) == 0) return;
     }
-    if (plan_.sampled_single) scorer.single(x, mu_s(x) / first_.density(x));
+    if (plan_.sampled_single) score_single(x, arrival, scorer);
     path_ = {{x, local(scattering_, x).sample(arrival, random), {}, {}, 0, true}, tally_};
     start_density_ = -1;
     log_worth_first_ = std::max(importance_.log_worth(x.z), 0.0);
@@ -220,13 +220,7 @@ class PathWalk {
           (forward * promise + backward_density * expected_first_) / (forward + backward_density);
     }
     double weight = walker.weight;
-    const double chance = promise * weight / plan_.score_level;
-    if (chance < 1) {
-      ticket_ += chance;
-      if (ticket_ < 1) return;
-      ticket_ -= 1;
-      weight /= chance;
-    }
+    if (!survives(promise * weight / plan_.score_level, weight)) return;
     path_.last = walker.x;
     path_.arrival = walker.arrival;
     path_.tally = walker.tally;
@@ -234,6 +228,26 @@ class PathWalk {
         mu_s(path_.first) * albedo(walker.x) * weight / (start_density() + backward_density);
     scorer.multiple(path_);
     path_.new_start = false;
+  }
+
+  /// A path of one scatterer, in the same units.
+  template <typename Scorer>
+  void score_single(Vec2 x, const Direction& light, Scorer& scorer) {
+    double weight = mu_s(x) / first_.density(x);
+    if (plan_.single_roulette && albedo(x) > 0 &&
+        !survives(expected_view_(x, light) / (albedo(x) * plan_.score_level), weight))
+      return;
+    scorer.single(x, weight);
+  }
+
+  /// Systematic roulette.
+  bool survives(double chance, double& weight) {
+    if (chance >= 1) return true;
+    ticket_ += chance;
+    if (ticket_ < 1) return false;
+    ticket_ -= 1;
+    weight /= chance;
+    return true;
   }
 
   /// Of x relative to where the walk began, so that a deep beginning is not split at once.

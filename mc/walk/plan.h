@@ -17,12 +17,13 @@ struct Plan {
   enum class Phase { isotropic, henyey_greenstein, tabulated, space, varying };
   Domain::Kind domain = Domain::Kind::box;
   Phase phase = Phase::isotropic;
-  bool phases = true;          ///< false: magnitudes alone, which is all that intensities need
-  bool reversed = false;       ///< paths count walked backwards too
-  bool near = false;           ///< some lights or views are points, or beams
-  bool weighted = false;       ///< walkers split and play roulette: absorption, depth
-  bool rank_k = false;         ///< the full covariance by Hermitian rank-k updates
-  bool sampled_single = true;  ///< false: paths of one scatterer by quadrature
+  bool phases = true;            ///< false: magnitudes alone, which is all that intensities need
+  bool reversed = false;         ///< paths count walked backwards too
+  bool near = false;             ///< some lights or views are points, or beams
+  bool weighted = false;         ///< walkers split and play roulette: absorption, depth
+  bool rank_k = false;           ///< the full covariance by Hermitian rank-k updates
+  bool sampled_single = true;    ///< false: paths of one scatterer by quadrature
+  bool single_roulette = false;  ///< those of one scatterer play it, too
   /// Expected contribution, in units of that of an isotropic scatterer next to a view, below which
   /// scoring is left to chance; 0: never.
   double score_level = 0;

@@ -149,8 +149,33 @@ TEST_CASE("peaks of pairs stand above the noise as predicted") {
       noise += found.noise * found.noise / runs;
     }
     const std::vector<double> all(static_cast<std::size_t>(points * (points - 1) / 2), correlation);
-    const double expected = peaks_over_noise(object_of(x), all, static_cast<double>(grains))[0];
+    const double expected = peaks_over_noise(object_of(x), all, {static_cast<double>(grains)})[0];
     CHECK(peak / std::sqrt(noise) == doctest::Approx(expected).epsilon(0.1));
+  }
+}
+
+TEST_CASE("a camera's noise lowers peaks as predicted") {
+  std::mt19937 random(5);
+  constexpr std::size_t pixels = 10000, lags = 128;
+  const Positions x{0, 5, 600, 1325};
+  const std::vector<double> all(6, 0.8);
+  for (const CameraNoise& noise : {CameraNoise{.photons = 3}, CameraNoise{.photons = 0.3},
+                                   CameraNoise{.photons = 2, .read_noise = 3, .background = 0.5}}) {
+    CAPTURE(noise.photons);
+    constexpr int runs = 100;
+    double peak = 0, square = 0;
+    for (int run = 0; run < runs; ++run) {
+      auto frame = shifted_speckle(x, pixels, 0.8, random);
+      RandomStream stream(1, static_cast<std::uint64_t>(Stream::camera),
+                          static_cast<std::uint64_t>(run));
+      expose(frame, noise, stream);
+      const auto found = frame_statistics(frame, lags, noise_variance(noise));
+      peak += found.autocorrelation[5] / runs;
+      square += found.noise * found.noise / runs;
+    }
+    const double expected = peaks_over_noise(object_of(x), all, {pixels, noise, pixels})[0],
+                 chance = 4 / std::sqrt(runs);  // noise of the mean peak
+    CHECK(std::abs(peak / std::sqrt(square) - expected) < 0.1 * expected + chance);
   }
 }
 
