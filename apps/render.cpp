@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <cstdio>
+#include <optional>
 
-#include "apps/command/subcommands.h"
+#include "apps/experiments/single_run.h"
 #include "core/session/identity.h"
-#include "core/session/session.h"
 #include "grin/render/energy_datasets.h"
 #include "grin/render/map_datasets.h"
 #include "grin/render/render_datasets.h"
@@ -116,40 +116,62 @@ void print_energy(const Estimate& energy) {
   std::puts("");
 }
 
+class RenderExperiment : public Experiment {
+ public:
+  void add_keys(Keys& keys) override {
+    grin::add_keys(keys, values_);
+    grin::add_keys(keys, request_values_);
+    add_run_keys(keys, run_);
+  }
+
+  void read(const Keys& keys) override {
+    stop_ = stop_rule(keys, run_);
+    request_ = make_render_request(keys, request_values_);
+    scene_ = make_render_scene(keys, values_);
+    check(*scene_, request_);
+    inputs_ = inputs_text(keys);
+  }
+
+  PlannedExperiment plan() const override {
+    const grin::RenderJob job = render_job(*scene_, request_, seed());
+    grin::RenderJob uncounted = job;
+    uncounted.counts = nullptr;
+    return {
+        .plan = "render: " + job.plan,
+        .batches = job.batches,
+        .write = [this, job = uncounted](
+                     ResultFile& file, const GroupedSums& sums) { write(file, job, sums, false); },
+        .write_and_tell = [this, job](ResultFile& file,
+                                      const GroupedSums& sums) { write(file, job, sums, true); }};
+  }
+
+ private:
+  void write(ResultFile& file, const grin::RenderJob& job, const GroupedSums& sums,
+             bool tells) const {
+    const grin::RenderResult result = render_result(*scene_, job, sums);
+    if (tells) print_render(*scene_, job, sums, result);
+    write_render(file, *scene_, job, result, scene_->length_unit);
+    if (const auto energy = energy_result(job, sums)) {
+      if (tells) print_energy(*energy);
+      write_energy(file, *scene_, request_, *energy);
+    }
+    if (scene_->map) write_map(file, *scene_, job, sums);
+  }
+
+  grin::RenderValues values_;
+  grin::RenderRequestValues request_values_;
+  grin::RenderRequest request_;
+  std::optional<grin::RenderScene> scene_;
+};
+
 }  // namespace
 
-int render(const Arguments& arguments) {
-  grin::RenderValues values;
-  grin::RenderRequestValues request_values;
-  RunSettings run;
-  Subcommand command("render",
-                     "Pictures of scattering media with a gradient index, in space: radiance that "
-                     "curves and scatters");
-  Keys& keys = command.keys();
-  add_keys(keys, values);
-  add_keys(keys, request_values);
-  add_run_keys(keys, run);
-  if (!command.parse(arguments)) return ExitStatus::done;
+std::unique_ptr<Experiment> render_experiment() {
+  return std::make_unique<RenderExperiment>();
+}
 
-  Session session(command.text(), keys, run, command.only_prints());
-  const StopRule stop = stop_rule(keys, run);
-  const grin::RenderRequest request = make_render_request(keys, request_values);
-  const grin::RenderScene scene = make_render_scene(keys, values);
-  check(scene, request);
-  if (!command.settle()) return ExitStatus::done;
-  const grin::RenderJob job = render_job(scene, request, session.seed());
-  return session.run("render: " + job.plan, {{"", "render", job.batches, stop}}, inputs_text(keys),
-                     [&](ResultFile& file) {
-                       const grin::RenderResult result =
-                           render_result(scene, job, session.sums(""));
-                       print_render(scene, job, session.sums(""), result);
-                       write_render(file, scene, job, result, scene.length_unit);
-                       if (const auto energy = energy_result(job, session.sums(""))) {
-                         print_energy(*energy);
-                         write_energy(file, scene, request, *energy);
-                       }
-                       if (scene.map) write_map(file, scene, job, session.sums(""));
-                     });
+int render(const Arguments& arguments) {
+  return single_run("render", arguments);
 }
 
 }  // namespace flatspeckle::apps

@@ -1,7 +1,6 @@
 #include "apps/sweep/sweep_plan.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 #include "core/error.h"
@@ -14,17 +13,6 @@ namespace {
 
 std::string header() {
   return "flatspeckle " + version() + ", sweep, format 2\n";
-}
-
-SweepShare share_of(const std::string& text) {
-  SweepShare share;
-  const char* const end = text.data() + text.size();
-  const auto number = std::from_chars(text.data(), end, share.number);
-  const bool slash = number.ec == std::errc{} && number.ptr != end && *number.ptr == '/';
-  const auto count = slash ? std::from_chars(number.ptr + 1, end, share.count) : number;
-  if (!slash || count.ec != std::errc{} || count.ptr != end || share.number >= share.count)
-    throw InputError("shard", text, "must be i/n with 0 <= i < n");
-  return share;
 }
 
 /// Both transmission and reflection: their sum says nothing.
@@ -72,6 +60,13 @@ SweepPlan::SweepPlan()
   add_dimension_key(keys, base);
   add_run_keys(keys, settings);
   keys.remove("keep_state");  // of one run
+  keys.group("Sweep of another subcommand");
+  keys.add("of", of_,
+           "Its name, as render: results of it over keys that vary or points name, in place of "
+           "memory-effect curves (then --help --of NAME has its keys)")
+      .only_of("sweeps of another subcommand");
+  add_vary_key(keys, vary_);
+  keys.group("Run");
   keys.add("shard", share_,
            "i/n: work on every nth point only, from number i = 0 .. n - 1 on; then merge")
       .no_file();

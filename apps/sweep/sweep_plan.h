@@ -10,14 +10,11 @@
 #include "apps/command/command_line.h"
 #include "apps/results/estimation.h"
 #include "apps/sweep/sweep_points.h"
+#include "apps/sweep/sweep_share.h"
+#include "apps/sweep/varied_points.h"
 #include "core/session/session.h"
 
 namespace flatspeckle::apps {
-
-/// Part `number` of `count` parts of a sweep that run apart.
-struct SweepShare {
-  std::size_t number = 0, count = 1;
-};
 
 /// Keys that change no number of any run of a sweep.
 inline const std::set<std::string> keys_of_the_work{"threads", "resume", "seconds"};
@@ -64,7 +61,8 @@ class SweepPlan {
   Scene scene_of(const Keyed<SceneSpec>& point) const;
 
   SweepLists lists_;
-  std::string method_ = "auto", share_;
+  std::string method_ = "auto", share_, of_;
+  VaryValues vary_;  ///< of another subcommand (sweep_experiments.h)
   mc::ReversedPaths reversed_ = mc::ReversedPaths::automatic;
   StopRule mc_stop_, wave_stop_;
   Subcommand command_;

@@ -16,6 +16,7 @@
 #include <hdf5_hl.h>
 
 #include "core/error.h"
+#include "core/result/collected_result.h"
 #include "core/result/hdf5_handle.h"
 #include "core/result/sealed_file.h"
 
@@ -245,6 +246,22 @@ std::size_t bytes_of(const Values& values) {
   return std::visit(Either{of_texts, of_numbers}, values);
 }
 
+/// A copy, all finite.
+CollectedDataset::Held held(const std::string& name, const Values& values) {
+  return std::visit(
+      [&]<typename Value>(std::span<const Value> given) -> CollectedDataset::Held {
+        if constexpr (!std::is_same_v<Value, std::string>)
+          if (!all_finite(given)) throw std::logic_error(name + ": a value is not finite");
+        return std::vector<Value>(given.begin(), given.end());
+      },
+      values);
+}
+
+void collect(CollectedResult& all, CollectedDataset set) {
+  if (all.find(set.name) != nullptr) throw std::logic_error(set.name + ": written twice");
+  all.datasets.push_back(std::move(set));
+}
+
 /// An empty HDF5 file in memory: a full disk can then only show where we write it ourselves, in
 /// commit(), and not while HDF5 closes its objects.
 std::unique_ptr<Hdf5Handle> file_in_memory() {
@@ -277,6 +294,8 @@ ResultFile::ResultFile(std::filesystem::path path, Storage storage) : path_(std:
   make_room(0);
 }
 
+ResultFile::ResultFile(CollectedResult& collected) : collected_(&collected) {}
+
 ResultFile::ResultFile(ResultFile&&) noexcept = default;
 ResultFile& ResultFile::operator=(ResultFile&&) noexcept = default;
 ResultFile::~ResultFile() = default;
@@ -291,6 +310,8 @@ void ResultFile::make_room(std::size_t bytes) {
 }
 
 bool ResultFile::has(const std::string& name) const {
+  if (collected_ != nullptr)
+    return collected_->find(name) != nullptr || collected_->has_group(name);
   return exists(file_->get(), name);
 }
 
@@ -302,12 +323,18 @@ const std::vector<Axis>& ResultFile::bound(const std::string& role) const {
 
 void ResultFile::attribute(const std::string& object, const std::string& name,
                            const Attribute& value) {
+  if (collected_ != nullptr) {
+    collected_->attributes.push_back({object, name, value});
+    return;
+  }
   make_room(0);
   Writer(file_.get(), path_.string(), object).attribute(name, value);
 }
 
 void ResultFile::scale(const std::string& name, std::span<const double> values,
                        const std::string& units, const std::string& long_name) {
+  if (collected_ != nullptr)
+    return collect(*collected_, {name, true, {}, units, long_name, held(name, values)});
   make_room(values.size_bytes());
   const Writer writer(file_.get(), path_.string(), name);
   writer.scale(values);
@@ -317,6 +344,8 @@ void ResultFile::scale(const std::string& name, std::span<const double> values,
 void ResultFile::dataset(const std::string& name, const Values& values,
                          const std::vector<Axis>& axes, const std::string& units,
                          const std::string& long_name) {
+  if (collected_ != nullptr)
+    return collect(*collected_, {name, false, axes, units, long_name, held(name, values)});
   make_room(bytes_of(values));
   const Writer writer(file_.get(), path_.string(), name);
   std::visit([&](const auto& given) { writer.dataset(raw(name, given), axes); }, values);
@@ -326,6 +355,7 @@ void ResultFile::dataset(const std::string& name, const Values& values,
 void ResultFile::begin_dataset(const std::string& name, const std::vector<std::string>& axes,
                                const std::vector<std::size_t>& chunk, const std::string& units,
                                const std::string& long_name) {
+  if (collected_ != nullptr) throw std::logic_error(name + ": in blocks, which need a file");
   make_room(0);
   const Writer writer(file_.get(), path_.string(), name);
   writer.begin(axes, chunk);

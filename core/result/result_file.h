@@ -15,6 +15,7 @@
 namespace flatspeckle {
 
 class Hdf5Handle;
+struct CollectedResult;
 
 /// One axis of a dataset: the name of a scale written before, or a plain extent.
 using Axis = std::variant<std::size_t, std::string>;
@@ -42,6 +43,8 @@ class ResultFile {
 
   /// Throws IoError. Where a path may be wrong, check_result_path says so before long work.
   explicit ResultFile(std::filesystem::path path, Storage storage = Storage::memory);
+  /// No file: what is put here goes there, and there is nothing to commit. Not in blocks.
+  explicit ResultFile(CollectedResult& collected);
   ResultFile(ResultFile&&) noexcept;
   ResultFile& operator=(ResultFile&&) noexcept;
   ~ResultFile();
@@ -94,6 +97,7 @@ class ResultFile {
   std::filesystem::path path_;
   std::unique_ptr<FileBeside> beside_;  // outlives file_
   std::unique_ptr<Hdf5Handle> file_;
+  CollectedResult* collected_ = nullptr;  ///< in place of a file
   std::map<std::string, std::vector<Axis>> roles_;
   std::vector<std::string> rare_;
 };

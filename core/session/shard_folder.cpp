@@ -82,6 +82,11 @@ void ShardFolder::write(const std::string& name, Part part, const std::string& i
   if (part == Part::finished) fs::remove(file(name, Part::unfinished));
 }
 
+void ShardFolder::remove_unfinished(const std::string& name) const {
+  std::error_code none;
+  fs::remove(file(name, Part::unfinished), none);
+}
+
 void ShardFolder::remove(const std::set<std::string>& names) const {
   if (!fs::is_directory(folder_)) return;
   std::vector<fs::path> ours;

@@ -110,6 +110,8 @@ RUNS = {
                              "target_error": 0.9}),
     "sweep_both": ("sweep", {**BOX, "albedo": [1, 0.8], "tilts": [0, 0.001], "domain": "box",
                              "scatterer": "point", "method": "both"}),
+    "sweep_of": ("sweep", {**STAGE, "of": "render", "vary": ["method=light,path", "mu_a=0,0.1"],
+                           "sensor": "area", "sensor_at": [0, 0, 4], "sensor_size": [1, 1]}),
     "ball": ("trace", {**RAYS, "field": "luneburg", "origin": [0, 0, -2], "beam_radius": 0.5}),
     "guide": ("trace", {**RAYS, "field": "sech", "alpha": 1, "light": "fan", "across": [0, 1, 0]}),
     "ramp": ("trace", {**RAYS, "field": "linear", "slope": [0, 0, 0.1],

@@ -1,10 +1,11 @@
+#include "apps/sweep/merge_points.h"
+
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
 #include <set>
 #include <sstream>
 
-#include "apps/command/subcommands.h"
 #include "apps/sweep/sweep_end.h"
 #include "core/error.h"
 #include "core/result/sealed_file.h"
@@ -86,14 +87,6 @@ void tell_of_strangers(const SweepPlan& plan, const std::vector<std::string>& fo
   }
 }
 
-/// A part must not take the place of a whole.
-void refuse_to_shrink(const std::string& out) {
-  if (!fs::exists(out)) return;
-  const ResultReader file(out);
-  if (file.has_attribute("/", "complete") && file.attribute<bool>("/", "complete"))
-    throw InputError("out", out, "holds a complete sweep; --partial does not replace one");
-}
-
 void require_all(const SweepPlan& plan, const SweepResults& results) {
   std::size_t missing = 0, first = 0;
   for (std::size_t run = results.size(); run-- > 0;)
@@ -106,29 +99,14 @@ void require_all(const SweepPlan& plan, const SweepResults& results) {
 
 }  // namespace
 
-int merge(const Arguments& arguments) {
+int merge_points(const std::vector<std::string>& folders, const std::string& out, bool partial,
+                 const std::string& command_line) {
   const Stopwatch clock;
-  RunSettings run;
-  std::vector<std::string> folders;
-  bool partial = false;
-  Subcommand command("merge", "The points of a sweep, from one or several folders, as one result");
-  Keys& keys = command.keys();
-  keys.group("Points");
-  keys.add("shards", folders, "Folders of points (default OUT.shards)");
-  keys.add("partial", partial, "Take the points that are there, as a list");
-  add_output_key(keys, run);
-  if (!command.parse(arguments)) return ExitStatus::done;
-  const Session session(command.text(), keys, run, command.only_prints());
-  if (keys.read(partial)) refuse_to_shrink(run.out);
-  keys.read(folders);
-  if (!command.settle()) return ExitStatus::done;
-  if (folders.empty()) folders = {shards_of(run.out)};
-
-  auto [owned, results, warnings] = most_of(folders, command.text());
+  auto [owned, results, warnings] = most_of(folders, command_line);
   SweepPlan& plan = *owned;
   std::cerr << warnings;
   tell_of_strangers(plan, folders);
-  plan.settings.out = run.out;
+  plan.settings.out = out;
   if (!partial) require_all(plan, results);
   if (finished_points(plan, results).empty())
     throw InputError("shards", folders.front(), "no point is finished by every method");

@@ -1,14 +1,13 @@
-#include <algorithm>
+#include "apps/sweep/curve_sweep.h"
+
 #include <filesystem>
 #include <iostream>
-#include <numeric>
 
-#include "apps/command/subcommands.h"
 #include "apps/sweep/sweep_end.h"
 #include "apps/sweep/sweep_plan.h"
+#include "apps/sweep/sweep_ranks.h"
 #include "apps/sweep/sweep_work.h"
 #include "core/error.h"
-#include "core/run/interrupt.h"
 #include "core/run/ranks.h"
 #include "core/run/remote_batches.h"
 #include "core/session/output_lock.h"
@@ -44,17 +43,8 @@ bool is_complete(const SweepPlan& plan, ShardFolder& folder) {
   return false;
 }
 
-/// The runs of this process's share, scattered over the grid, so that what has been done at any
-/// time says something about what is left.
 std::vector<std::size_t> share_of_runs(const SweepPlan& plan) {
-  const std::size_t count = plan.runs();
-  std::size_t stride = std::max<std::size_t>(1, count * 618 / 1000);
-  while (std::gcd(stride, count) != 1) ++stride;
-  const SweepShare share = plan.share.value_or(SweepShare{});
-  std::vector<std::size_t> runs;
-  for (std::size_t i = 0; i < count; ++i)
-    if (i % share.count == share.number) runs.push_back(i * stride % count);
-  return runs;
+  return scattered(plan.runs(), plan.share.value_or(SweepShare{}));
 }
 
 /// Throws InputError where the points that are there are all of another sweep: rather a slip in the
@@ -116,34 +106,14 @@ void follow(const SweepPlan& plan) {
   work_for_rank_0(work.list(), plan.session().threads());
 }
 
-int with_ranks(const SweepPlan& plan) {
-  RankServer server;
-  try {
-    const int status = lead(plan, &server);
-    server.dismiss();
-    return status;
-  } catch (...) {
-    server.dismiss();
-    leave_ranks();
-    throw;
-  }
-}
-
 }  // namespace
 
-int sweep(const Arguments& arguments) {
+int curve_sweep(const Arguments& arguments) {
   SweepPlan plan;
   if (!plan.parse(arguments)) return ExitStatus::done;
   if (!plan.share) join_ranks();
-  catch_interrupts();
-  if (ranks().size == 1) return lead(plan, nullptr);
-  int status = ExitStatus::done;
-  if (ranks().rank == 0)
-    status = with_ranks(plan);
-  else
-    follow(plan);
-  leave_ranks();
-  return status;
+  return on_all_ranks([&](RankServer* server) { return lead(plan, server); },
+                      [&] { follow(plan); });
 }
 
 }  // namespace flatspeckle::apps

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "core/keys/keys.h"
+#include "core/result/result_file.h"
+#include "core/run/runner.h"
+#include "core/session/run_settings.h"
+
+namespace flatspeckle::apps {
+
+/// Work that is planned, and what becomes of its sums.
+struct PlannedExperiment {
+  std::string plan;  ///< how the numbers are found
+  BatchJob batches;
+  /// The result of all batches, all that the file has but provenance, traces and states.
+  std::function<void(ResultFile&, const GroupedSums&)> write;
+  /// The same with what a run of its own also tells: tables on standard output, notes, and counts
+  /// of the work that depend on threads and interruptions. Empty: nothing.
+  std::function<void(ResultFile&, const GroupedSums&)> write_and_tell = {};
+};
+
+/// What a subcommand makes of its keys: one result. An object is one run of it, which a subcommand
+/// does alone and a sweep many times with other values.
+class Experiment {
+ public:
+  virtual ~Experiment() = default;
+
+  /// Keys of all it reads, those of the run too; they are bound to this object.
+  virtual void add_keys(Keys& keys) = 0;
+  /// Makes the scene. All that can be refused is refused here: throws InputError.
+  virtual void read(const Keys& keys) = 0;
+  /// After read(). May take some time, as a pilot does.
+  virtual PlannedExperiment plan() const = 0;
+
+  const RunSettings& run() const { return run_; }
+  const StopRule& stop() const { return stop_; }
+  /// What the scene takes from other files, as text.
+  const std::string& inputs() const { return inputs_; }
+
+ protected:
+  std::uint64_t seed() const { return static_cast<std::uint64_t>(run_.seed); }
+
+  RunSettings run_;
+  StopRule stop_;
+  std::string inputs_;
+};
+
+/// A subcommand that makes one result.
+struct ExperimentEntry {
+  const char *name, *purpose;
+  std::unique_ptr<Experiment> (*make)();
+};
+/// nullptr where there is none of this name.
+const ExperimentEntry* experiment_entry(const std::string& name);
+std::vector<std::string> experiment_names();
+
+}  // namespace flatspeckle::apps

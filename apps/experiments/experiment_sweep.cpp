@@ -1,0 +1,161 @@
+#include "apps/experiments/experiment_sweep.h"
+
+#include <algorithm>
+
+#include "core/error.h"
+#include "core/keys/number_text.h"
+#include "core/result/version.h"
+
+namespace flatspeckle::apps {
+
+namespace {
+
+const ExperimentEntry& entry_of(const std::string& of) {
+  const ExperimentEntry* const entry = experiment_entry(of);
+  if (entry == nullptr)
+    throw InputError("of", of, "must be one of " + joined(experiment_names(), " "));
+  return *entry;
+}
+
+/// Of the sweep as a whole, not of its points.
+const std::set<std::string> keys_of_the_sweep{"of",  "vary",    "points",  "shard",
+                                              "out", "threads", "seconds", "resume"};
+
+std::string line(const std::string& key, const std::vector<std::string>& values) {
+  return key + " = " + joined(values, " ") + '\n';
+}
+
+/// By the rows of its key alone.
+void check_values(const SweepPoints& points, std::size_t number, const Keys& keys) {
+  const SweepAxis& axis = points.axes[number];
+  SweepPoints alone{{axis}, points.is_list};
+  for (std::size_t i = 0; i < axis.values.size(); ++i) {
+    set_point(alone, i, keys);
+    for (const Key& key : keys.rows())
+      if (key.name() == key_of(axis)) key.check();
+  }
+}
+
+/// The first and the last values of all axes.
+bool is_corner(const SweepPoints& points, std::size_t point) {
+  for (std::size_t axis = 0; axis < points.axes.size(); ++axis) {
+    const auto& values = points.axes[axis].values;
+    const std::string& value = points.value(axis, point);
+    if (value != values.front() && value != values.back()) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+ExperimentSweep::ExperimentSweep(const std::string& of)
+    : of_(of),
+      base_(entry_of(of).make()),
+      command_("sweep", std::string("A sweep of: ") + entry_of(of).purpose) {
+  Keys& keys = command_.keys();
+  base_->add_keys(keys);
+  keys.remove("keep_state");  // of one run
+  keys.group("Sweep");
+  keys.add("of", of_, "The subcommand whose results these are");
+  add_keys(keys, vary_);
+  keys.add("shard", share_text_,
+           "i/n: work on every nth point only, from number i = 0 .. n - 1 on; then merge")
+      .no_file();
+}
+
+bool ExperimentSweep::parse(const Arguments& arguments) {
+  if (!command_.parse(arguments)) return false;
+  out_ = settings().out;
+  session_.emplace(command_.text(), command_.keys(), settings(), command_.only_prints(),
+                   Session::Out::shared);
+  check();
+  return command_.settle();
+}
+
+void ExperimentSweep::parse_config(const std::string& config, const std::string& command_line) {
+  command_.parse_config(config);
+  session_.emplace(command_line, command_.keys(), settings(), true);
+  check();
+}
+
+void ExperimentSweep::check() {
+  const Keys& keys = command_.keys();
+  keys.read(of_);
+  keys.read(settings().seconds);
+  has_share_ = !keys.read(share_text_).empty();
+  if (has_share_) share_ = share_of(share_text_);
+  points_ = varied_points(keys, vary_, keys);
+  note_given();
+  check_points();
+}
+
+/// What all points have: of a key that is varied as a whole, nothing.
+void ExperimentSweep::note_given() {
+  std::set<std::string> noted = keys_of_the_sweep;
+  for (const SweepAxis& axis : points_.axes) noted.insert(axis.key);
+  for (const Key& key : command_.keys().rows())
+    if (key.given() && noted.insert(key.name()).second)
+      given_.emplace_back(key.name(), key.value());
+}
+
+/// Values one by one, and scenes of as many points as can soon be made.
+void ExperimentSweep::check_points() {
+  const auto scratch = entry_of(of_).make();
+  Keys all;
+  scratch->add_keys(all);
+  for (const auto& [name, values] : given_) all.set(name, values);
+  for (std::size_t axis = 0; axis < points_.axes.size(); ++axis) check_values(points_, axis, all);
+  set_point(points_, points_.count() - 1, all);
+  for (const std::size_t point : points_to_check()) checked(point, &all);
+  all.refuse_unread();
+  inputs_ = checked(0, nullptr)->inputs();
+}
+
+std::vector<std::size_t> ExperimentSweep::points_to_check() const {
+  constexpr std::size_t few = 64, scattered_few = 48;
+  std::vector<std::size_t> some = scattered(points_.count(), {});
+  if (some.size() <= few) return some;
+  some.resize(scattered_few);
+  if (points_.is_list) return some;
+  for (std::size_t point = 0; point < points_.count() && some.size() < few; ++point)
+    if (is_corner(points_, point)) some.push_back(point);
+  return some;
+}
+
+std::unique_ptr<Experiment> ExperimentSweep::checked(std::size_t point, const Keys* joined) const {
+  auto experiment = entry_of(of_).make();
+  Keys keys;
+  experiment->add_keys(keys);
+  for (const auto& [name, values] : given_) keys.set(name, values);
+  try {
+    set_point(points_, point, keys);
+    keys.check();
+    experiment->read(keys);
+  } catch (const InputError& error) {
+    throw InputError("point " + points_.name(point) + ": " + error.what());
+  }
+  if (joined == nullptr) return experiment;
+  joined->join_reads(keys);
+  command_.keys().join_reads(keys);
+  return experiment;
+}
+
+std::unique_ptr<Experiment> ExperimentSweep::experiment(std::size_t point) const {
+  return checked(point, nullptr);
+}
+
+std::string ExperimentSweep::identity_of_points() const {
+  std::string text = "flatspeckle " + version() + ", sweep of " + of_ + ", format 1\n";
+  for (const auto& [name, values] : given_) text += line(name, values);
+  std::vector<std::string> axes;
+  for (const SweepAxis& axis : points_.axes) axes.push_back(axis.key);
+  return text + line("varied", axes) + inputs_;
+}
+
+std::string ExperimentSweep::identity() const {
+  std::string text = identity_of_points() + (points_.is_list ? "a list\n" : "");
+  for (const SweepAxis& axis : points_.axes) text += line(axis.key, axis.values);
+  return text;
+}
+
+}  // namespace flatspeckle::apps

@@ -1,0 +1,145 @@
+#include "apps/experiments/point_store.h"
+
+#include <algorithm>
+#include <iostream>
+
+#include "core/error.h"
+#include "core/result/provenance.h"
+#include "core/result/run_state_file.h"
+#include "core/session/identity.h"
+
+namespace flatspeckle::apps {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+using Part = ShardFolder::Part;
+
+constexpr const char* ending = ".points";
+
+fs::path own_journal(const std::string& folder, const SweepShare& share) {
+  return fs::path(folder) /
+         ("share-" + std::to_string(share.number) + "-of-" + std::to_string(share.count) + ending);
+}
+
+/// As the name of a file, which may not be too long.
+std::string file_name(const std::string& name) {
+  constexpr std::size_t longest = 150;
+  if (name.size() <= longest) return name;
+  return name.substr(0, longest) + "-" + std::to_string(std::hash<std::string>{}(name));
+}
+
+}  // namespace
+
+std::vector<fs::path> journals_in(const std::string& folder) {
+  std::vector<fs::path> found;
+  if (std::error_code none; !fs::is_directory(folder, none)) return found;
+  for (const auto& entry : fs::directory_iterator(folder))
+    if (entry.path().extension() == ending) found.push_back(entry.path());
+  std::ranges::sort(found);
+  return found;
+}
+
+PointStore::PointStore(const ExperimentSweep& sweep, const std::vector<std::string>& folders)
+    : sweep_(sweep), identity_(sweep.identity_of_points()), folders_(folders) {
+  for (const std::string& folder : folders) open_others(folder, {});
+}
+
+PointStore::PointStore(const ExperimentSweep& sweep, const std::string& folder)
+    : sweep_(sweep),
+      identity_(sweep.identity_of_points()),
+      folders_{folder},
+      folder_(std::make_unique<ShardFolder>(folder)) {
+  const fs::path own = own_journal(folder, sweep.share());
+  const auto there = journals_in(folder);
+  const bool has_begun = sweep.is_share() ? std::ranges::count(there, own) > 0 : !there.empty();
+  if (has_begun && !sweep.settings().resume)
+    throw InputError(folder +
+                     " holds points of an earlier sweep: --resume goes on with them; remove the "
+                     "folder to begin again");
+  folder_->make();
+  own_ = std::make_unique<PointJournal>(own, SweepHead{identity_, sweep.config()});
+  paths_.push_back(own);
+  open_others(folder, own);
+}
+
+void PointStore::open_others(const std::string& folder, const fs::path& own) {
+  for (const fs::path& path : journals_in(folder)) {
+    if (path == own) continue;
+    try {
+      auto journal = std::make_unique<PointJournal>(path);
+      if (journal->head().identity != identity_)
+        throw InputError(path.string() + " belongs to another sweep (" +
+                         first_difference(journal->head().identity, identity_) + ')');
+      others_.push_back(std::move(journal));
+      paths_.push_back(path);
+    } catch (const InputError& error) {
+      std::cerr << "warning: " + std::string(error.what()) + "; it is left out\n";
+    }
+  }
+}
+
+const PointJournal* PointStore::find(const std::string& name) const {
+  if (own_ && own_->has(name)) return own_.get();
+  const auto found =
+      std::ranges::find_if(others_, [&](const auto& journal) { return journal->has(name); });
+  return found == others_.end() ? nullptr : found->get();
+}
+
+std::vector<std::size_t> PointStore::finished() const {
+  std::vector<std::size_t> points;
+  for (std::size_t point = 0; point < sweep_.points().count(); ++point)
+    if (has(sweep_.points().name(point))) points.push_back(point);
+  return points;
+}
+
+void PointStore::add(const std::string& name, const FinishedPoint& point) {
+  own_->add(name, point);
+  folder_->remove_unfinished(file_name(name));
+  constexpr double seconds_between_syncs = 2;
+  if (const double now = clock_.seconds(); now > synced_ + seconds_between_syncs) {
+    synced_ = now;
+    sync();
+  }
+}
+
+std::string PointStore::identity_of(const std::string& name) const {
+  return identity_ + name + '\n';
+}
+
+RunState PointStore::unfinished(const std::string& name, std::size_t size) {
+  RunState state;
+  const std::string file = file_name(name);
+  if (!folder_->has(file, Part::unfinished)) return state;
+  const auto wrong =
+      folder_->read(file, Part::unfinished, identity_of(name),
+                    [&](const ResultReader& from) { state = read_state(from, "state", size); });
+  if (wrong) folder_->set_aside(file, Part::unfinished, *wrong);
+  return wrong ? RunState{} : std::move(state);
+}
+
+void PointStore::save_unfinished(const std::string& name, const Provenance& made,
+                                 const RunState& state) {
+  folder_->write(file_name(name), Part::unfinished, identity_of(name), Durable::yes,
+                 [&](ResultFile& file) {
+                   write_provenance(file, made);
+                   write_state(file, "state", state);
+                 });
+}
+
+void PointStore::remove() {
+  std::set<std::string> names;
+  for (std::size_t point = 0; point < sweep_.points().count(); ++point)
+    names.insert(file_name(sweep_.points().name(point)));
+  own_.reset();
+  others_.clear();
+  for (const fs::path& path : paths_) {
+    std::error_code failed;
+    if (!fs::remove(path, failed) && failed)
+      throw IoError("removing " + path.string() + " failed: " + failed.message());
+  }
+  for (const std::string& folder : folders_) ShardFolder(folder).remove(names);
+}
+
+}  // namespace flatspeckle::apps

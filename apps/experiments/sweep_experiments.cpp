@@ -1,0 +1,192 @@
+#include "apps/experiments/sweep_experiments.h"
+
+#include <algorithm>
+#include <fstream>
+#include <iostream>
+#include <set>
+
+#include "apps/command/scene_file.h"
+#include "apps/experiments/experiment_work.h"
+#include "apps/experiments/stacked_result.h"
+#include "apps/results/datasets.h"
+#include "apps/sweep/sweep_end.h"
+#include "apps/sweep/sweep_ranks.h"
+#include "core/error.h"
+#include "core/result/result_group.h"
+#include "core/run/interrupt.h"
+#include "core/run/ranks.h"
+#include "core/run/remote_batches.h"
+#include "core/run/stopwatch.h"
+
+namespace flatspeckle::apps {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The value of a flag, as --flag value or --flag=value; empty where it is not given.
+std::string value_of(const Arguments& arguments, const std::string& flag) {
+  for (std::size_t i = 2; i < arguments.size(); ++i) {
+    if (arguments[i] == flag && i + 1 < arguments.size()) return arguments[i + 1];
+    if (arguments[i].starts_with(flag + '=')) return arguments[i].substr(flag.size() + 1);
+  }
+  return "";
+}
+
+/// The key `of` of a scene file; whatever is wrong with the file shows when it is parsed.
+std::string of_in_file(const std::string& path) try {
+  std::ifstream file(path);
+  for (const CLI::ConfigItem& item : SceneFile().from_config(file))
+    if (item.name == "of" && item.inputs.size() == 1) return item.inputs.front();
+  return "";
+} catch (const InputError&) {
+  return "";
+}
+
+std::string count_text(const ExperimentSweep& sweep, const std::vector<std::size_t>& finished) {
+  return std::to_string(finished.size()) + " of " + std::to_string(sweep.points().count()) +
+         " points";
+}
+
+/// Each plan once, if there are not too many.
+std::string plans_text(const std::set<std::string>& plans) {
+  constexpr std::size_t most = 16;
+  std::string text;
+  std::size_t count = 0;
+  for (const std::string& plan : plans)
+    if (++count <= most) text += (text.empty() ? "" : "\n") + plan;
+  return count > most ? text + "\nand " + std::to_string(count - most) + " more" : text;
+}
+
+Provenance made_of(const ExperimentSweep& sweep, const PointStore& store,
+                   const std::vector<std::size_t>& finished, double wall_s) {
+  Provenance made = sweep.session().provenance();
+  made.identity = sweep.identity();
+  made.wall_s = wall_s;
+  made.converged = finished.size() == sweep.points().count();
+  std::set<std::string> plans;
+  for (const std::size_t number : finished) {
+    const FinishedPoint point = store.read(sweep.points().name(number));
+    made.converged = made.converged && point.reached;
+    made.started = std::min(made.started, point.started);
+    made.cpu_s += point.cpu_s;
+    made.samples += point.samples;
+    plans.insert(point.plan);
+  }
+  made.plan = plans_text(plans);
+  return made;
+}
+
+int write_result(const ExperimentSweep& sweep, const PointStore& store,
+                 const std::vector<std::size_t>& finished, double wall_s) {
+  const Provenance made = made_of(sweep, store, finished, wall_s);
+  ResultFile file(sweep.out(), ResultFile::Storage::disk);
+  const ResultGroup root(file, stacked_table);
+  root.attribute("of", sweep.of());
+  root.attribute("complete", finished.size() == sweep.points().count());
+  root.attribute("ranks", std::int64_t{ranks().size});
+  write_stacked(file, sweep, store, finished);
+  std::cout << count_text(sweep, finished) << '\n';
+  Session::commit(file, made);
+  if (!made.converged) std::cout << "not every point has reached its target error\n";
+  return made.converged ? ExitStatus::done : ExitStatus::error_not_reached;
+}
+
+int end_sweep(const ExperimentSweep& sweep, PointStore& store, const PoolEnd& end) {
+  const std::string place = shards_of(sweep.out());
+  const auto finished = store.finished();
+  const bool is_whole = finished.size() == sweep.points().count();
+  const bool interrupted = end.reason == StopReason::interrupted;
+  if (sweep.is_share() || interrupted) {
+    std::cout << (interrupted ? "interrupted; " : "") << place << " holds "
+              << count_text(sweep, finished)
+              << (is_whole                            ? "; `flatspeckle merge` makes the result\n"
+                  : end.reason == StopReason::samples ? "; this share is done\n"
+                                                      : "; --resume goes on\n");
+    if (interrupted) return ExitStatus::interrupted_resumable;
+    return end.reason == StopReason::samples ? ExitStatus::done : ExitStatus::error_not_reached;
+  }
+  int status = ExitStatus::error_not_reached;
+  if (!finished.empty()) status = write_result(sweep, store, finished, end.wall_s);
+  if (is_whole)
+    store.remove();
+  else
+    std::cout << place << " holds " << count_text(sweep, finished) << "; --resume goes on\n";
+  return status;
+}
+
+/// Whether the result is there. Throws InputError where another run's is, unless this sweep was
+/// begun to replace it.
+bool is_complete(const ExperimentSweep& sweep) {
+  const std::string& out = sweep.out();
+  if (!sweep.settings().resume || !fs::exists(out)) return false;
+  const ResultReader file(out);
+  if (file.has_attribute("/", "identity") &&
+      file.attribute<std::string>("/", "identity") == sweep.identity())
+    return file.attribute<bool>("/", "complete");
+  if (journals_in(shards_of(out)).empty())
+    throw InputError("resume: " + out + " holds another run; name another result file");
+  return false;
+}
+
+/// Of this process alone, or of rank 0.
+int lead(const ExperimentSweep& sweep, RankServer* server) {
+  const std::string& out = sweep.out();
+  const OutputLock lock(sweep.is_share() ? out + ".shard-" + std::to_string(sweep.share().number)
+                                         : out);
+  if (is_complete(sweep)) {
+    std::cout << out << " is complete; nothing to resume\n";
+    PointStore(sweep, std::vector{shards_of(out)}).remove();
+    return ExitStatus::done;
+  }
+  PointStore store(sweep, shards_of(out));
+  ExperimentWork work(sweep, &store, scattered(sweep.points().count(), sweep.share()));
+  const PoolEnd end = run_pool(work.list(), {sweep.settings().seconds, sweep.session().threads(),
+                                             "sweep", "points", server});
+  work.save_unfinished();
+  store.sync();
+  return end_sweep(sweep, store, end);
+}
+
+/// With rank 0, and for it.
+void follow(const ExperimentSweep& sweep) {
+  ExperimentWork work(sweep, nullptr, scattered(sweep.points().count(), sweep.share()));
+  work_for_rank_0(work.list(), sweep.session().threads());
+}
+
+}  // namespace
+
+std::string swept_subcommand(const Arguments& arguments) {
+  const std::string given = value_of(arguments, "--of");
+  if (!given.empty()) return given;
+  const std::string config = value_of(arguments, "--config");
+  return config.empty() ? "" : of_in_file(config);
+}
+
+int sweep_experiments(const std::string& of, const Arguments& arguments) {
+  ExperimentSweep sweep(of);
+  if (!sweep.parse(arguments)) return ExitStatus::done;
+  if (!sweep.is_share()) join_ranks();
+  return on_all_ranks([&](RankServer* server) { return lead(sweep, server); },
+                      [&] { follow(sweep); });
+}
+
+int merge_experiments(const std::vector<std::string>& folders, const std::string& out, bool partial,
+                      const std::string& command_line) {
+  const Stopwatch clock;
+  const SweepHead head = PointJournal(journals_in(folders.front()).front()).head();
+  const auto of_line = head.config.find("of = \"");
+  const auto of_end = head.config.find('"', of_line + 6);
+  ExperimentSweep sweep(head.config.substr(of_line + 6, of_end - of_line - 6));
+  sweep.parse_config(head.config, command_line);
+  sweep.set_out(out);
+  const PointStore store(sweep, folders);
+  const auto finished = store.finished();
+  if (finished.empty() || (!partial && finished.size() < sweep.points().count()))
+    throw InputError(std::to_string(sweep.points().count() - finished.size()) + " of " +
+                     std::to_string(sweep.points().count()) +
+                     " points are missing; --partial takes what there is");
+  return write_result(sweep, store, finished, clock.seconds());
+}
+
+}  // namespace flatspeckle::apps

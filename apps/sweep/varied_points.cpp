@@ -1,0 +1,161 @@
+#include "apps/sweep/varied_points.h"
+
+#include <algorithm>
+#include <set>
+#include <sstream>
+
+#include "core/error.h"
+#include "core/keys/csv.h"
+#include "core/keys/number_text.h"
+#include "core/keys/written_number.h"
+
+namespace flatspeckle::apps {
+
+namespace {
+
+constexpr double most_points = 1e6;
+
+[[noreturn]] void refuse(const std::string& text, const std::string& accepted) {
+  throw InputError("vary", text, accepted);
+}
+
+/// One text for one number: points are known by their texts.
+std::vector<std::string> values_of(const Key& key, const std::string& values) {
+  std::vector<std::string> texts;
+  if (key.is_number()) {
+    const Written kind = key.unit() == "rad" ? Written::angle : Written::number;
+    for (const double value : written_numbers("vary " + key.name(), values, kind))
+      texts.push_back(number_text(value));
+    return texts;
+  }
+  std::istringstream words(values);
+  for (std::string word; std::getline(words, word, ',');) texts.push_back(word);
+  if (texts.empty()) refuse(key.name() + "=", "must have a value or more");
+  return texts;
+}
+
+const Key& varied_key(const Keys& of, const std::string& name, const std::string& text) {
+  const Key* const key = of.find(key_of({name, {}}));
+  if (key == nullptr) refuse(text, name + " is no key of what is swept");
+  if (key->is_effort() || !key->is_in_files())
+    refuse(text, name + " says how to run, not what, and cannot be swept");
+  if (key->is_file()) refuse(text, name + " names a file, and cannot be swept");
+  return *key;
+}
+
+SweepAxis axis_of(const Keys& of, const std::string& text) {
+  const auto equals = text.find('=');
+  if (equals == std::string::npos || equals == 0)
+    refuse(text, "must be key=values: 1,2,3 or first:last:count or first:last:count:log");
+  const std::string name = text.substr(0, equals);
+  return {name, values_of(varied_key(of, name, text), text.substr(equals + 1))};
+}
+
+void refuse_twins(const SweepAxis& axis) {
+  std::set<std::string> seen;
+  for (const std::string& value : axis.values)
+    if (!seen.insert(value).second) refuse(axis.key, "has the value " + value + " twice");
+}
+
+SweepPoints grid_of(const VaryValues& values, const Keys& of) {
+  SweepPoints points;
+  double count = 1;
+  for (const std::string& text : values.vary) {
+    points.axes.push_back(axis_of(of, text));
+    const SweepAxis& axis = points.axes.back();
+    for (std::size_t i = 0; i + 1 < points.axes.size(); ++i)
+      if (points.axes[i].key == axis.key) refuse(text, axis.key + " is varied already");
+    refuse_twins(axis);
+    count *= static_cast<double>(axis.values.size());
+  }
+  if (count > most_points)
+    throw InputError("points of the sweep", count, "must be at most 1000000");
+  return points;
+}
+
+SweepPoints list_of(const std::string& path, const Keys& of) {
+  const Table table = read_csv(path);
+  if (table.rows() == 0) throw InputError("points", path, "must have at least one row");
+  if (static_cast<double>(table.rows()) > most_points)
+    throw InputError("points of the sweep", table.rows(), "must be at most 1000000");
+  SweepPoints points;
+  points.is_list = true;
+  for (const std::string& name : table.names()) {
+    if (!varied_key(of, name, name).is_number()) refuse(name, "has no numbers, as a table has");
+    SweepAxis axis{name, {}};
+    for (const double value : table.column(name)) axis.values.push_back(number_text(value));
+    points.axes.push_back(std::move(axis));
+  }
+  std::set<std::string> seen;
+  for (std::size_t point = 0; point < points.count(); ++point)
+    if (!seen.insert(points.name(point)).second)
+      throw InputError("the point " + points.name(point) + " is given twice");
+  return points;
+}
+
+/// What follows the key's name: a number from 0 on, "all", or nothing.
+std::string component_of(const SweepAxis& axis) {
+  const auto dot = axis.key.find('.');
+  return dot == std::string::npos ? "" : axis.key.substr(dot + 1);
+}
+
+/// All the numbers of a key, of which the axis sets one or all.
+std::vector<std::string> with_component(const Keys& keys, const SweepAxis& axis,
+                                        const std::string& value) {
+  std::vector<std::string> texts = keys.find(key_of(axis))->value();
+  const std::string component = component_of(axis);
+  if (component.empty()) {
+    if (texts.size() > 1)
+      refuse(axis.key, "has " + std::to_string(texts.size()) + " values: vary " + axis.key +
+                           ".0, the first, another, or " + axis.key + ".all");
+    return {value};
+  }
+  if (component == "all") return std::vector(texts.size(), value);
+  const auto number = read_whole_number(component);
+  if (!number || *number < 0 || static_cast<std::size_t>(*number) >= texts.size())
+    refuse(axis.key, "must be .all or a number below the " + std::to_string(texts.size()) +
+                         " values that the key is given");
+  texts[static_cast<std::size_t>(*number)] = value;
+  return texts;
+}
+
+}  // namespace
+
+void add_vary_key(Keys& keys, VaryValues& values) {
+  keys.add("vary", values.vary,
+           "What to sweep, all combinations: key=1,2,3 or key=first:last:count or "
+           "key=first:last:count:log; key.0 is the first value of a key of several, key.all all")
+      .only_of("sweeps of another subcommand");
+}
+
+void add_keys(Keys& keys, VaryValues& values) {
+  add_vary_key(keys, values);
+  keys.add("points", values.points, "CSV with columns named by keys: a list of points instead");
+}
+
+SweepPoints varied_points(const Keys& keys, const VaryValues& values, const Keys& of) {
+  const bool is_list = !keys.read(values.points).empty(), is_grid = !keys.read(values.vary).empty();
+  if (is_list == is_grid)
+    throw InputError(is_list ? "vary, points: give one"
+                             : "vary is not given: key=values to sweep, or points, a table");
+  return is_list ? list_of(values.points, of) : grid_of(values, of);
+}
+
+void set_point(const SweepPoints& points, std::size_t point, const Keys& keys) {
+  for (std::size_t i = 0; i < points.axes.size(); ++i) {
+    const SweepAxis& axis = points.axes[i];
+    keys.set(key_of(axis), with_component(keys, axis, points.value(i, point)));
+  }
+}
+
+std::string key_of(const SweepAxis& axis) {
+  return axis.key.substr(0, axis.key.find('.'));
+}
+
+std::string axis_name(const SweepAxis& axis) {
+  std::string name = axis.key;
+  std::ranges::replace(name, '.', '_');
+  return name;
+}
+
+}  // namespace flatspeckle::apps

@@ -1,0 +1,151 @@
+#include "core/result/collected_result.h"
+
+#include <algorithm>
+
+#include "core/result/byte_stream.h"
+
+namespace flatspeckle {
+
+namespace {
+
+/// A scalar number: differs from point to point, as values do.
+bool is_value(const Attribute& attribute) {
+  constexpr std::size_t numbers = 4;  // bool, int64, uint64, double
+  return attribute.index() < numbers;
+}
+
+template <typename Variant>
+void put_variant(ByteWriter& bytes, const Variant& value) {
+  std::visit([&](const auto& held) { bytes.put(held); }, value);
+}
+
+/// The alternative of that number, with its value if it is told.
+template <typename Variant, std::size_t... number>
+Variant of_index(std::size_t index, std::index_sequence<number...>) {
+  Variant made;
+  if (!((index == number && (made.template emplace<number>(), true)) || ...))
+    throw InputError("a result in bytes has values of an unknown kind");
+  return made;
+}
+template <typename Variant>
+Variant of_index(std::size_t index) {
+  return of_index<Variant>(index, std::make_index_sequence<std::variant_size_v<Variant>>());
+}
+
+template <typename Variant>
+void get_variant(ByteReader& bytes, Variant& value) {
+  std::visit([&](auto& held) { bytes.get(held); }, value);
+}
+
+void put_layout(ByteWriter& bytes, const CollectedDataset& set) {
+  bytes.put(set.name);
+  bytes.put(set.is_scale);
+  bytes.put(std::uint64_t{set.axes.size()});
+  for (const Axis& axis : set.axes) {
+    bytes.put(std::uint64_t{axis.index()});
+    put_variant(bytes, axis);
+  }
+  bytes.put(set.units);
+  bytes.put(set.long_name);
+  bytes.put(std::uint64_t{set.values.index()});
+  bytes.put(std::uint64_t{set.count()});
+}
+
+CollectedDataset dataset_of(ByteReader& bytes) {
+  CollectedDataset set;
+  bytes.get(set.name);
+  bytes.get(set.is_scale);
+  for (auto axes = bytes.get<std::uint64_t>(); axes > 0; --axes) {
+    set.axes.push_back(of_index<Axis>(bytes.get<std::uint64_t>()));
+    get_variant(bytes, set.axes.back());
+  }
+  bytes.get(set.units);
+  bytes.get(set.long_name);
+  set.values = of_index<CollectedDataset::Held>(bytes.get<std::uint64_t>());
+  const auto count = bytes.believable(bytes.get<std::uint64_t>());
+  std::visit([&](auto& held) { held.resize(count); }, set.values);
+  return set;
+}
+
+void put_layout(ByteWriter& bytes, const CollectedAttribute& attribute) {
+  bytes.put(attribute.object);
+  bytes.put(attribute.name);
+  bytes.put(std::uint64_t{attribute.value.index()});
+  if (!is_value(attribute.value)) put_variant(bytes, attribute.value);
+}
+
+CollectedAttribute attribute_of(ByteReader& bytes) {
+  CollectedAttribute attribute;
+  bytes.get(attribute.object);
+  bytes.get(attribute.name);
+  attribute.value = of_index<Attribute>(bytes.get<std::uint64_t>());
+  if (!is_value(attribute.value)) get_variant(bytes, attribute.value);
+  return attribute;
+}
+
+}  // namespace
+
+std::size_t CollectedDataset::count() const {
+  return std::visit([](const auto& held) { return held.size(); }, values);
+}
+
+const CollectedDataset* CollectedResult::find(const std::string& name) const {
+  const auto found = std::ranges::find(datasets, name, &CollectedDataset::name);
+  return found == datasets.end() ? nullptr : &*found;
+}
+
+bool CollectedResult::has_group(const std::string& name) const {
+  return std::ranges::any_of(datasets, [group = name + '/'](const CollectedDataset& set) {
+    return set.name.starts_with(group);
+  });
+}
+
+std::vector<std::byte> layout_of(const CollectedResult& result) {
+  ByteWriter bytes;
+  bytes.put(std::uint64_t{result.datasets.size()});
+  for (const CollectedDataset& set : result.datasets) put_layout(bytes, set);
+  bytes.put(std::uint64_t{result.attributes.size()});
+  for (const CollectedAttribute& attribute : result.attributes) put_layout(bytes, attribute);
+  return bytes.take();
+}
+
+std::vector<std::byte> values_of(const CollectedResult& result) {
+  ByteWriter bytes;
+  for (const CollectedDataset& set : result.datasets)
+    std::visit(
+        [&](const auto& held) {
+          for (const auto& value : held) bytes.put(value);
+        },
+        set.values);
+  for (const CollectedAttribute& attribute : result.attributes)
+    if (is_value(attribute.value)) put_variant(bytes, attribute.value);
+  return bytes.take();
+}
+
+CollectedResult result_of(std::span<const std::byte> layout) {
+  ByteReader bytes(layout);
+  CollectedResult result;
+  for (auto sets = bytes.get<std::uint64_t>(); sets > 0; --sets)
+    result.datasets.push_back(dataset_of(bytes));
+  for (auto attributes = bytes.get<std::uint64_t>(); attributes > 0; --attributes)
+    result.attributes.push_back(attribute_of(bytes));
+  bytes.require_end();
+  return result;
+}
+
+CollectedResult result_of(std::span<const std::byte> layout, std::span<const std::byte> values) {
+  CollectedResult result = result_of(layout);
+  ByteReader bytes(values);
+  for (CollectedDataset& set : result.datasets)
+    std::visit(
+        [&](auto& held) {
+          for (auto& value : held) bytes.get(value);
+        },
+        set.values);
+  for (CollectedAttribute& attribute : result.attributes)
+    if (is_value(attribute.value)) get_variant(bytes, attribute.value);
+  bytes.require_end();
+  return result;
+}
+
+}  // namespace flatspeckle

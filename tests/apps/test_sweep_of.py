@@ -1,0 +1,245 @@
+"""`sweep --of`: its points are runs of the subcommand, nothing is lost, and parts make the whole."""
+
+import os
+import shutil
+import signal
+import time
+import unittest
+
+import h5py
+import numpy as np
+
+from program import PROGRAM, datasets
+from sweeps import SweepTest
+
+GUIDE = {"field": "ultrasound", "index": 1.33, "sound_wavenumber": 3.4, "stage_box": [-5, -5, 0, 5, 5, 10],
+         "mu_s": 0.2, "phase": "henyey_greenstein", "g": 0.8, "beam_light": [0, 0, 0, 0, 0, 1, 0.5, 1],
+         "sensor": "area", "sensor_at": [0, 0, 10], "sensor_size": [1, 1], "pixels": [1, 1],
+         "samples": 512, "method": "light"}
+GRID = {**GUIDE, "of": "render", "vary": ["amplitude=0:0.004:3", "mu_s=0.1,0.3"], "threads": 2}
+MANY = {**GRID, "samples": 2048, "vary": ["amplitude=0:0.004:6", "g=0:0.9:5"]}
+SLOW = {**GRID, "vary": ["amplitude=0:0.004:3", "mu_s=0.1,0.3"], "samples": 100_000}
+COSTS = ("wall_s", "cpu_s")
+
+
+class SweepOf(SweepTest):
+    def assert_same(self, a, b):
+        a, b = (datasets(self.folder / path) for path in (a, b))
+        self.assertEqual(a.keys(), b.keys())
+        for name, values in a.items():
+            np.testing.assert_array_equal(values, b[name], name)
+
+    def test_points_are_runs_of_their_own(self):
+        self.call("sweep", **GRID, out="sweep.h5")
+        swept = datasets(self.folder / "sweep.h5")
+        np.testing.assert_array_equal(swept["amplitude"], [0, 0.002, 0.004])
+        np.testing.assert_array_equal(swept["mu_s"], [0.1, 0.3])
+        self.assertFalse(self.points().exists())
+        for i, amplitude in enumerate(swept["amplitude"]):
+            for j, mu_s in enumerate(swept["mu_s"]):
+                point = {**GUIDE, "amplitude": amplitude, "mu_s": mu_s}
+                self.call("render", **point, out="one.h5")
+                one = datasets(self.folder / "one.h5", ("wall_s", "cpu_s", "state", "trace", "transport",
+                                                        "trials"))
+                for name, values in one.items():
+                    found = swept[name] if name in ("row", "column") else swept[name][i, j]
+                    np.testing.assert_array_equal(found, values, name)
+
+    def test_axes(self):
+        self.call("sweep", **GRID, out="sweep.h5")
+        with h5py.File(self.folder / "sweep.h5") as file:
+            self.assertEqual([axis[0].name for axis in file["image"].dims],
+                             ["/amplitude", "/mu_s", "/row", "/column"])
+            self.assertEqual(file["sound_wavenumber" if "sound_wavenumber" in file else "mu_s"]
+                             .attrs["units"], "1/length")
+            self.assertEqual(list(file.attrs["swept"]), ["amplitude", "mu_s"])
+            self.assertEqual(file.attrs["of"], "render")
+            self.assertEqual(file.attrs["complete"], 1)
+
+    def test_ranges(self):
+        vary = ["amplitude=1e-4:1e-2:3:log"]
+        self.call("sweep", **{**GRID, "vary": vary, "samples": 64}, out="log.h5")
+        np.testing.assert_allclose(datasets(self.folder / "log.h5")["amplitude"], [1e-4, 1e-3, 1e-2])
+
+    def test_table_and_components(self):
+        self.write("points.csv", "amplitude,sensor_size.0,sensor_size.1\n0,1,2\n0.002,0.5,0.5\n")
+        table = {**GRID, "vary": None, "points": "points.csv"}
+        self.call("sweep", **table, out="list.h5")
+        swept = datasets(self.folder / "list.h5")
+        np.testing.assert_array_equal(swept["sensor_size_1"], [2, 0.5])
+        for i in range(2):
+            point = {**GUIDE, "amplitude": swept["amplitude"][i],
+                     "sensor_size": [swept["sensor_size_0"][i], swept["sensor_size_1"][i]]}
+            self.call("render", **point, out="one.h5")
+            self.assertEqual(datasets(self.folder / "one.h5")["total"], swept["total"][i])
+        self.call("sweep", **{**GRID, "vary": ["sensor_size.all=0.5,1"]}, amplitude=0.002, out="all.h5")
+        self.assertEqual(datasets(self.folder / "all.h5")["total"][0], swept["total"][1])
+
+    def test_scales_that_differ(self):
+        """Where pixels lie depends on the size of the sensor: their axes only count."""
+        keys = {**GRID, "vary": ["sensor_size.0=1,2"], "amplitude": 0.001, "pixels": [2, 1]}
+        self.call("sweep", **keys, out="sweep.h5")
+        swept = datasets(self.folder / "sweep.h5")
+        np.testing.assert_array_equal(swept["column"], [0, 1])
+        np.testing.assert_array_equal(swept["column_of_point"], [[-0.25, 0.25], [-0.5, 0.5]])
+        np.testing.assert_array_equal(swept["row"], [0])
+
+    def test_words(self):
+        keys = {**GRID, "vary": ["method=light,path"], "amplitude": 0.001, "method": None}
+        self.call("sweep", **keys, out="sweep.h5")
+        with h5py.File(self.folder / "sweep.h5") as file:
+            self.assertEqual(list(file["method_word"].asstr()), ["light", "path"])
+            self.assertIn("energy/emitted", file.attrs["left_out"])  # of light paths alone
+            self.assertEqual(file["total"].shape, (2,))
+
+    def test_threads(self):
+        self.call("sweep", **{**GRID, "threads": 1}, out="one.h5")
+        self.call("sweep", **{**GRID, "threads": 2}, out="two.h5")
+        self.assert_same("one.h5", "two.h5")
+
+    def test_interruption(self):
+        self.call("sweep", **SLOW, out="whole.h5")
+        self.interrupted(**SLOW, out="sweep.h5")
+        self.call("sweep", **SLOW, out="sweep.h5", resume=True)
+        self.assert_same("sweep.h5", "whole.h5")
+        self.assertFalse(self.points().exists())
+
+    def test_killed_again_and_again(self):
+        self.call("sweep", **MANY, out="whole.h5")
+        for _ in range(5):
+            process = self.start("sweep", **MANY, out="sweep.h5", resume=True)
+            time.sleep(0.15)
+            process.send_signal(signal.SIGKILL)
+            process.wait()
+        self.call("sweep", **MANY, out="sweep.h5", resume=True)
+        self.assert_same("sweep.h5", "whole.h5")
+
+    def journal(self, number=0, of=1):
+        return self.points() / f"share-{number}-of-{of}.points"
+
+    def test_damage(self):
+        self.call("sweep", **MANY, out="whole.h5")
+        for damage in ("cut", "changed", "zeros"):
+            with self.subTest(damage=damage):
+                self.call("sweep", **MANY, out="sweep.h5", shard="0/1")
+                data = bytearray(self.journal().read_bytes())
+                if damage == "cut":
+                    del data[-7:]
+                elif damage == "changed":
+                    data[len(data) // 2] ^= 1
+                else:
+                    data += bytes(100)
+                self.journal().write_bytes(data)
+                done = self.call("sweep", **MANY, out="sweep.h5", resume=True)
+                self.assertEqual("damaged" in done.stderr, damage != "cut", done.stderr)
+                self.assert_same("sweep.h5", "whole.h5")
+                (self.folder / "sweep.h5").unlink()
+                shutil.rmtree(self.points(), ignore_errors=True)
+
+    def test_shares_and_merge(self):
+        self.call("sweep", **MANY, out="whole.h5")
+        for i in range(3):
+            self.call("sweep", **MANY, out="sweep.h5", shard=f"{i}/3")
+            if i < 2:
+                self.assertIn("missing", self.call("merge", out="sweep.h5", status=2).stderr)
+        self.call("merge", out="sweep.h5")
+        self.assert_same("sweep.h5", "whole.h5")
+
+    def test_part_as_a_list(self):
+        self.call("sweep", **MANY, out="whole.h5")
+        self.call("sweep", **MANY, out="sweep.h5", shard="1/3")
+        self.call("merge", out="sweep.h5", partial=True, status=3)
+        part, whole = (datasets(self.folder / path) for path in ("sweep.h5", "whole.h5"))
+        self.assertEqual(len(part["point"]), 10)
+        for i in range(10):
+            at = (int(np.flatnonzero(whole["amplitude"] == part["amplitude"][i])[0]),
+                  int(np.flatnonzero(whole["g"] == part["g"][i])[0]))
+            self.assertEqual(part["total"][i], whole["total"][at])
+
+    def test_larger_grid_takes_over(self):
+        self.call("sweep", **{**MANY, "vary": ["amplitude=0,0.0008", "g=0,0.45"]}, out="sweep.h5",
+                  shard="0/1")
+        before = self.journal().stat().st_size
+        done = self.call("sweep", **MANY, out="sweep.h5", resume=True)
+        self.assertIn("30 of 30 points", done.stderr + done.stdout)
+        self.call("sweep", **MANY, out="whole.h5")
+        self.assert_same("sweep.h5", "whole.h5")
+        self.assertGreater(before, 0)
+
+    def test_complete(self):
+        self.call("sweep", **GRID, out="sweep.h5")
+        self.call("sweep", **GRID, out="sweep.h5", shard="0/1")
+        done = self.call("sweep", **GRID, out="sweep.h5", resume=True)
+        self.assertIn("nothing to resume", done.stdout)
+        self.assertFalse(self.points().exists())
+
+    def test_config_makes_it_again(self):
+        self.call("sweep", **GRID, out="sweep.h5")
+        with h5py.File(self.folder / "sweep.h5") as file:
+            self.write("again.toml", file.attrs["config"])
+        self.call("sweep", config="again.toml", out="again.h5")
+        self.assert_same("again.h5", "sweep.h5")
+
+    def check(self, *words, status=2, **changes):
+        keys = {**GRID, "out": "sweep.h5", **changes}
+        before = self.listing()
+        done = self.call("sweep", **keys, status=status)
+        self.assert_one_line(done.stderr, *words)
+        self.assertEqual(self.listing(), before)
+
+    def test_refused(self):
+        self.check("of = place", "render", of="place")
+        self.check("vary is not given", vary=None)
+        for text, *words in (
+                ["amplitude", "key=values"], ["=1,2", "key=values"], ["colour=1,2", "colour is no key"],
+                ["amplitude=", "number"], ["amplitude=1,x", "number"], ["amplitude=1,,2", "number"],
+                ["method=", "a value or more"], ["method=light,fast", "method = fast"],
+                ["amplitude=1:2", "first:last:count"], ["amplitude=1:2:3:lin", "first:last:count"],
+                ["amplitude=0:1:3:log", "first:last"], ["amplitude=0:1:1", "from 2"],
+                ["amplitude=0:1:1e9", "from 2"], ["amplitude=0:inf:3", "first:last"],
+                ["amplitude=0.1,0.10", "twice"], ["samples=10,20", "says how to run"],
+                ["out=1,2", "says how to run"], ["density=1,2", "file"],
+                ["sensor_size=1,2", "2 numbers"], ["sensor_size.2=1,2", "below the 2"],
+                ["sensor_size.x=1,2", ".all"], ["mu_s=-1,1", "mu_s = -1"],
+                ["alpha=1,2", "alpha = 2", "parabolic"]):
+            with self.subTest(text=text):
+                self.check(*words, vary=[text], amplitude=None if "amplitude" in text else 0.001)
+        self.check("varied already", vary=["g=0,0.5", "g=0.1,0.2"])
+        self.check("at most 1000000", vary=["g=0:0.9:2000", "amplitude=0:0.1:2000"])
+        self.check("alpha = 2", alpha=2)
+        self.check("sensor_colour", "unknown key", sensor_colour=2)
+        self.check("point sensor_at.2=20", "stage", vary=["sensor_at.2=10,20"], amplitude=0)
+        self.check("shard = 3/3", shard="3/3")
+        self.check("vary = ", "sweeps of another subcommand", of=None, **dict.fromkeys(
+            key for key in GUIDE if key not in ("g", "samples")), depth=10, optical_depth=1, tilts=[0, 0.1])
+
+    def test_refused_tables(self):
+        for text, *words in (["amplitude\n", "row"], ["colour\n1\n", "colour"],
+                             ["amplitude\n0\n0.0\n", "twice"], ["method\n1\n", "no numbers"]):
+            self.write("points.csv", text)
+            self.check(*words, vary=None, points="points.csv")
+            self.check("give one", points="points.csv")
+
+    def test_refuses_what_is_of_another_sweep(self):
+        self.call("sweep", **GRID, out="sweep.h5", shard="0/1")
+        before = self.shards()
+        self.check("earlier sweep", "--resume", out="sweep.h5", shard="0/1")
+        self.check("another sweep", "g = 0.8", out="sweep.h5", g=0.5, resume=True)
+        self.assertEqual({name: data for name, data in self.shards().items()}, before)
+        self.call("sweep", **GRID, out="done.h5")
+        self.check("another run", out="done.h5", mu_a=0.1, resume=True)
+
+    def test_full_disk(self):
+        """Ends with 4, keeps what was written, and goes on."""
+        limit = f"ulimit -f 2; trap '' XFSZ; exec {PROGRAM} sweep " + " ".join(
+            f"--{key} " + " ".join(map(str, value if isinstance(value, list) else [value]))
+            for key, value in {**MANY, "shard": "0/1", "out": "sweep.h5"}.items())
+        status = os.waitstatus_to_exitcode(os.system(f"cd {self.folder}; bash -c '{limit}' 2>/dev/null >/dev/null"))
+        self.assertEqual(status, 4)
+        self.call("sweep", **MANY, out="sweep.h5", resume=True)
+        self.call("sweep", **MANY, out="whole.h5")
+        self.assert_same("sweep.h5", "whole.h5")
+
+
+if __name__ == "__main__":
+    unittest.main()
