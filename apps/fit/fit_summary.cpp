@@ -42,6 +42,9 @@ void print_fit(const mc::FitTask& task, const mc::MediumFit& fit) {
               fit.residuals.size(), task.free.size(), fit.condition);
   if (const std::string words = mc::degeneracy(task, fit); !words.empty())
     std::printf("%s\n", words.c_str());
+  constexpr double small = 0.1;
+  if (fit.numerical > small)
+    std::printf("the model's numerical error is up to %.2g standard errors\n", fit.numerical);
   if (!fit.converged)
     std::printf("not converged after %zu steps: this is the best point so far\n", fit.trace.size());
 }

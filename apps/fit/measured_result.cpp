@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <iostream>
+#include <optional>
 #include <set>
 #include <sstream>
 
@@ -7,6 +9,10 @@
 #include "core/error.h"
 #include "core/result/guarded_read.h"
 #include "core/result/result_reader.h"
+#include "core/result/run_state_file.h"
+#include "mc/estimators/flux_walk.h"
+#include "mc/fit/correlated_errors.h"
+#include "mc/theory/memory_effect.h"
 
 namespace flatspeckle::apps {
 
@@ -33,6 +39,8 @@ struct Contents {
   std::string config;
   bool numerical = false;
   std::vector<Observed> observed;
+  std::vector<Complex> entries;  ///< of the request
+  std::optional<GroupedSums> sums;
 };
 
 Observed observed(const ResultReader& file, Observable observable, const std::string& axis) {
@@ -52,6 +60,29 @@ Observed observed(const ResultReader& file, Observable observable, const std::st
   return found;
 }
 
+/// The sums that a run of Monte Carlo keeps.
+std::optional<GroupedSums> sums_of(const ResultReader& file) {
+  const std::string group = "state/run";
+  if (!file.has(group)) return std::nullopt;
+  const auto shape = file.shape(group + "/group_sums");
+  if (shape.size() != 2) return std::nullopt;
+  return read_state(file, group, shape[1]).sums;
+}
+
+/// In the order of the request.
+std::vector<Complex> entries_of(const ResultReader& file, Observable observable) {
+  if (observable == Observable::intensity) {
+    const auto values = file.dataset<double>("intensity");
+    return {values.begin(), values.end()};
+  }
+  std::vector<Complex> entries;
+  if (!file.has("reference_intensity")) return entries;
+  entries = file.dataset<Complex>("covariance");
+  for (const char* name : {"reference_intensity", "tilted_intensity"})
+    for (const double value : file.dataset<double>(name)) entries.emplace_back(value);
+  return entries;
+}
+
 Contents contents_of(const ResultReader& file) {
   Contents found;
   found.config = file.attribute<std::string>("/", "config");
@@ -68,6 +99,9 @@ Contents contents_of(const ResultReader& file) {
     throw InputError("measurement", file.path().string(),
                      "has none of field_correlation over tilts, intensity of far views, "
                      "reflectance and transmittance");
+  const Observable first = found.observed.front().observable;
+  if (first <= Observable::intensity) found.entries = entries_of(file, first);
+  found.sums = sums_of(file);
   return found;
 }
 
@@ -113,6 +147,56 @@ bool tells(const Observed& of, std::size_t entry) {
   return of.observable != Observable::field_correlation || of.abscissa[entry] != 0;
 }
 
+/// Of sums of paths, whose closed part is what is missing in them.
+Estimator covariance_estimator(const Contents& there) {
+  auto closed = sample_mean(there.sums->total_samples(), there.sums->total());
+  closed.resize(there.entries.size());
+  for (std::size_t e = 0; e < closed.size(); ++e) closed[e] = there.entries[e] - closed[e];
+  return [closed](double samples, std::span<const Complex> sums) {
+    auto entries = sample_mean(samples, sums.first(closed.size()));
+    for (std::size_t e = 0; e < closed.size(); ++e) entries[e] += closed[e];
+    return entries;
+  };
+}
+
+/// All values of a curve from the sums.
+Estimator estimator_of(const Contents& there, const Curve& curve) {
+  if (curve.observable == Observable::intensity) return covariance_estimator(there);
+  if (curve.observable == Observable::field_correlation)
+    return [request = make_request(curve.scene), covariance = covariance_estimator(there)](
+               double samples, std::span<const Complex> sums) {
+      return mc::field_correlation(request, covariance(samples, sums));
+    };
+  const std::size_t lights = curve.scene.light_angles.size(),
+                    per_light = there.sums->size() / lights,
+                    share = curve.observable == Observable::reflectance ? mc::reflected
+                                                                        : mc::transmitted;
+  return [=](double samples, std::span<const Complex> sums) {
+    std::vector<Complex> shares;
+    for (std::size_t light = 0; light < lights; ++light)
+      shares.push_back(sums[light * per_light + share] / samples);
+    return shares;
+  };
+}
+
+/// The covariance of what was measured, from the sums; empty where they do not tell.
+Eigen::MatrixXd errors_of(const Contents& there, const std::vector<Curve>& curves) {
+  const bool of_paths = curves.front().observable <= Observable::intensity;
+  if (!there.sums ||
+      (of_paths && (there.entries.empty() || there.sums->size() < there.entries.size())))
+    return {};
+  std::vector<Estimator> each;
+  for (const Curve& curve : curves) each.push_back(estimator_of(there, curve));
+  return mc::correlated_errors(*there.sums, [&](double samples, std::span<const Complex> sums) {
+    std::vector<Complex> values;
+    for (std::size_t i = 0; i < curves.size(); ++i) {
+      const auto all = each[i](samples, sums);
+      for (const std::size_t entry : curves[i].entries) values.push_back(all[entry]);
+    }
+    return values;
+  });
+}
+
 }  // namespace
 
 Eigen::MatrixXd independent_errors(const std::string& path, const std::vector<double>& errors) {
@@ -151,6 +235,11 @@ mc::Measurement measurement_of_result(const std::string& path, const Keys& asked
   }
   found.values = Eigen::Map<Eigen::VectorXd>(values.data(), static_cast<Index>(values.size()));
   found.covariance = independent_errors(path, errors);
+  if (const Eigen::MatrixXd known = errors_of(there, found.curves); known.size() > 0)
+    found.covariance = known;
+  else
+    std::cerr << "note: " << path << " does not tell how its errors are correlated: they count as "
+              << "independent\n";
   return found;
 }
 

@@ -33,7 +33,8 @@ bool has_tilts(Observable observable) {
 void check_columns(const std::string& path, const Table& table, Observable observable) {
   const std::string covariance = "covariance_";
   for (const std::string& name : table.names()) {
-    const bool known = name == "error" || name == "light_angle" || name.starts_with(covariance) ||
+    const bool known = name == "error" || name == "light_angle" || name == "depth" ||
+                       name.starts_with(covariance) ||
                        name == mc::observable_words[static_cast<std::size_t>(observable)] ||
                        (name == "view_angle" && observable <= Observable::intensity) ||
                        (name == "tilt" && has_tilts(observable));
@@ -42,8 +43,8 @@ void check_columns(const std::string& path, const Table& table, Observable obser
   }
 }
 
-std::vector<double> column_or_zero(const Table& table, const std::string& name) {
-  if (!table.has(name)) return std::vector<double>(table.rows(), 0.0);
+std::vector<double> column_or(const Table& table, const std::string& name, double value) {
+  if (!table.has(name)) return std::vector<double>(table.rows(), value);
   const auto values = table.column(name);
   return {values.begin(), values.end()};
 }
@@ -71,15 +72,16 @@ Eigen::MatrixXd covariance_of(const std::string& path, const Table& table) {
   return covariance;
 }
 
-/// Adds curves of rows that follow each other and have the same light and, of tilts, view.
+/// Curves of rows that follow each other and have the same depth and light and, of tilts, view.
 class CurvesOfRows {
  public:
   CurvesOfRows(const Table& table, Observable observable, const SceneSpec& medium)
       : observable_(observable),
         medium_(medium),
-        lights_(column_or_zero(table, "light_angle")),
-        views_(column_or_zero(table, "view_angle")),
-        tilts_(column_or_zero(table, "tilt")) {}
+        lights_(column_or(table, "light_angle", 0)),
+        views_(column_or(table, "view_angle", 0)),
+        tilts_(column_or(table, "tilt", 0)),
+        depths_(column_or(table, "depth", medium.depth.value_or(0))) {}
 
   std::vector<Curve> curves() const {
     std::vector<Curve> found;
@@ -92,6 +94,7 @@ class CurvesOfRows {
 
  private:
   bool joins(std::size_t row) const {
+    if (depths_[row] != depths_[row - 1]) return false;
     const bool same_light = lights_[row] == lights_[row - 1];
     if (has_tilts(observable_)) return same_light && views_[row] == views_[row - 1];
     return observable_ != Observable::intensity || same_light;
@@ -99,6 +102,7 @@ class CurvesOfRows {
 
   Curve begun(std::size_t row) const {
     Curve curve{medium_, observable_, {}, {}};
+    if (depths_[row] != 0) curve.scene.depth = depths_[row];
     curve.scene.light_angles.clear();
     curve.scene.view_angles = {views_[row]};
     if (observable_ <= Observable::intensity) curve.scene.light_angles = {lights_[row]};
@@ -121,7 +125,7 @@ class CurvesOfRows {
 
   Observable observable_;
   const SceneSpec& medium_;
-  std::vector<double> lights_, views_, tilts_;
+  std::vector<double> lights_, views_, tilts_, depths_;
 };
 
 }  // namespace
@@ -132,6 +136,8 @@ mc::Measurement measurement_of_table(const std::string& path, const SceneSpec& m
   const Observable observable = observable_of(path, table);
   check_columns(path, table, observable);
   if (has_tilts(observable)) table.column("tilt");
+  if (table.has("depth") && medium.depth)
+    throw InputError("depth", *medium.depth, path + " has depths of its own: leave the key out");
   mc::Measurement found;
   found.name = path;
   found.curves = CurvesOfRows(table, observable, medium).curves();

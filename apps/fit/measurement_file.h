@@ -10,7 +10,8 @@ namespace flatspeckle::apps {
 /// A measurement that a file holds: a result of covariance, flux or sweep (HDF5), which brings its
 /// depth, wavelength, lights, views and tilts, or a table (CSV) of one column that an observable
 /// names, with columns error, or covariance_1, covariance_2 ..., and light_angle, view_angle and
-/// tilt where they are not 0. asked: keys of the fit; medium: their values. Throws InputError.
+/// tilt where they are not 0, depth where that is not the fit's. asked: keys of the fit; medium:
+/// their values. Throws InputError.
 mc::Measurement read_measurement(const std::string& path, const Keys& asked,
                                  const SceneSpec& medium);
 

@@ -47,8 +47,8 @@ LeastSquaresFit best_fit(const LeastSquares& problem, const std::vector<Eigen::V
                          int most_iterations = 60, double tolerance = 1e-6);
 
 /// What measurements say of the parameters, linear about a point: of the Fisher information J^T J
-/// of residuals in standard errors. A combination of which they tell nothing has an error of up to a
-/// million times the distance of the bounds.
+/// of residuals in standard errors. A combination of which they tell nothing has an error of up to
+/// a million times the distance of the bounds.
 struct Information {
   Eigen::MatrixXd covariance, correlation;
   double condition = 0;  ///< of the information of parameters in units of the distance of bounds

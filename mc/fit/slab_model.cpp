@@ -107,7 +107,7 @@ bool SlabModel::reversed() const {
 }
 
 double SlabModel::refine(const std::vector<Scene>& scenes, const VectorXd& errors, double share) {
-  constexpr int most = 100;
+  constexpr int most = 30;
   while (true) {
     const Solved found = solved(scenes);
     const double change = (found.fine - found.coarse).cwiseQuotient(errors).cwiseAbs().maxCoeff();

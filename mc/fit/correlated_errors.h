@@ -1,0 +1,14 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "core/numbers/statistics.h"
+
+namespace flatspeckle::mc {
+
+/// The covariance of the errors of what an estimator makes of sums, real parts, by leaving one
+/// group out at a time as jackknife() does; its inverse is that of Hartlap, Simon and Schneider
+/// 2007 (eq. 17), for so many groups and values. Empty where groups are fewer than values and ten.
+Eigen::MatrixXd correlated_errors(const GroupedSums& sums, const Estimator& theta);
+
+}  // namespace flatspeckle::mc
