@@ -4,9 +4,11 @@
 #include "apps/command/subcommands.h"
 #include "apps/fit/fit_summary.h"
 #include "apps/fit/measurement_file.h"
+#include "apps/fit/plan_summary.h"
 #include "core/error.h"
 #include "core/session/session.h"
 #include "mc/fit/fit_datasets.h"
+#include "mc/fit/plan_datasets.h"
 
 namespace flatspeckle::apps {
 
@@ -17,6 +19,8 @@ struct FitKeys {
   SceneSpec medium;
   std::vector<std::string> free, measurements;
   std::int64_t starts = 2, most_iterations = 60;
+  bool plan = false;
+  double patterns = 1000;
   RunSettings run;
 };
 
@@ -36,6 +40,17 @@ void add_keys(Keys& keys, FitKeys& values) {
       .from(1, 100);
   keys.add("most_iterations", values.most_iterations, "Steps after which a fit gives up")
       .from(1, 10000);
+  keys.add("plan", values.plan,
+           "No measurement: how well the free keys, at the values that the scene gives them, would "
+           "be known from speckle in these views under these tilts");
+  keys.add("patterns", values.patterns, "Independent patterns of each view")
+      .positive()
+      .only_of("plan");
+  keys.group("Plan", "plan");
+  keys.add("light_angles", values.medium.light_angles, "Direction of the light, from +z").angle();
+  keys.add("view_angles", values.medium.view_angles, "Directions of the views, from +z").angle();
+  keys.add("tilts", values.medium.tilts, "Rotations of the light").angle();
+  keys.group("");
   add_scatterer_keys(keys, values.medium);
   add_bulk_keys(keys, values.medium);
   add_medium_keys(keys, values.medium);
@@ -59,18 +74,46 @@ void check_depths(const mc::FitTask& task) {
                      "is of one thickness; measurements of several share mean_free_path");
 }
 
-/// Reads what the scenes of all measurements make use of.
+/// Reads what a scene makes use of.
+void read_scene(const Keys& keys, const SceneSpec& scene) {
+  const Keyed<SceneSpec> keyed(scene);
+  make_scene(keyed.keys, keyed.values);
+  keys.join_reads(keyed.keys);
+}
+
+/// The same of all measurements, which bring lights and views.
 void check_scenes(const Keys& keys, const mc::FitTask& task) {
   const Eigen::VectorXd middle = (lower_coordinates(task.free) + upper_coordinates(task.free)) / 2;
   for (const auto& measurement : task.measurements)
-    for (const auto& curve : measurement.curves) {
-      const Keyed<SceneSpec> keyed(mc::with_parameters(curve.scene, task.free, middle));
-      make_scene(keyed.keys, keyed.values);
-      keys.join_reads(keyed.keys);
-    }
+    for (const auto& curve : measurement.curves)
+      read_scene(keys, mc::with_parameters(curve.scene, task.free, middle));
+}
+
+mc::PlanTask plan_of(const Keys& keys, const FitKeys& values) {
+  mc::PlanTask task;
+  keys.read(values.medium.dimension);
+  task.scene = values.medium;
+  task.scene.covariance = "memory_effect";
+  task.patterns = keys.read(values.patterns);
+  task.free = mc::read_free_parameters(keys.required(values.free), values.medium);
+  for (const auto& free : task.free)
+    if (free.start.value_or(0) == 0)
+      throw InputError("free", free.key, "a plan needs its value, which must not be 0");
+  read_scene(keys, task.scene);
+  return task;
+}
+
+/// Lights and views that are given are of no use beside a measurement.
+void refuse_views(const Keys& keys, const FitKeys& values) {
+  for (const auto* list :
+       {&values.medium.light_angles, &values.medium.view_angles, &values.medium.tilts})
+    if (keys.given(*list))
+      throw InputError(keys.name(*list), list->front(),
+                       "measurements bring their own; leave it out");
 }
 
 mc::FitTask task_of(const Keys& keys, const FitKeys& values) {
+  refuse_views(keys, values);
   mc::FitTask task;
   keys.read(values.medium.dimension);
   task.starts = static_cast<int>(keys.read(values.starts));
@@ -84,17 +127,19 @@ mc::FitTask task_of(const Keys& keys, const FitKeys& values) {
   return task;
 }
 
-}  // namespace
+int run_plan(const Session& session, const Subcommand& command, const FitKeys& values) {
+  const mc::PlanTask task = plan_of(command.keys(), values);
+  if (!command.settle()) return ExitStatus::done;
+  return session.once(ResultFile(session.out()), [&](ResultFile& file) -> std::optional<Made> {
+    const mc::FitPlan plan = mc::fit_plan(task);
+    mc::write_plan(file, task, plan);
+    print_plan(task, plan);
+    return Made{"information of circular Gaussian fields; transport through slabs"};
+  });
+}
 
-int fit(const Arguments& arguments) {
-  FitKeys values;
-  Subcommand command("fit", "The medium that gave these measurements, with errors");
-  Keys& keys = command.keys();
-  add_keys(keys, values);
-  if (!command.parse(arguments)) return ExitStatus::done;
-
-  const Session session(command.text(), keys, values.run, command.only_prints());
-  const mc::FitTask task = task_of(keys, values);
+int run_fit(const Session& session, const Subcommand& command, const FitKeys& values) {
+  const mc::FitTask task = task_of(command.keys(), values);
   if (!command.settle()) return ExitStatus::done;
   return session.once(ResultFile(session.out()), [&](ResultFile& file) -> std::optional<Made> {
     const mc::MediumFit fit = mc::fit_medium(task);
@@ -105,6 +150,17 @@ int fit(const Arguments& arguments) {
                 static_cast<double>(fit.residuals.size()),
                 fit.converged ? ExitStatus::done : ExitStatus::error_not_reached};
   });
+}
+
+}  // namespace
+
+int fit(const Arguments& arguments) {
+  FitKeys values;
+  Subcommand command("fit", "The medium that gave these measurements, with errors");
+  add_keys(command.keys(), values);
+  if (!command.parse(arguments)) return ExitStatus::done;
+  const Session session(command.text(), command.keys(), values.run, command.only_prints());
+  return (command.keys().read(values.plan) ? run_plan : run_fit)(session, command, values);
 }
 
 }  // namespace flatspeckle::apps

@@ -35,28 +35,22 @@ namespace {
 
 /// In the order of docs/format.md.
 std::vector<const DatasetTable*> all_tables() {
-  std::vector<const DatasetTable*> tables = {&provenance_table,     &scene_table,
-                                             &layers_table,         &density_table,
-                                             &axes_table,           &beams_table,
-                                             &trace_table,          &mc::mean_table,
-                                             &mc::intensity_table,  &mc::full_table,
-                                             &mc::pairs_table,      &mc::moves_table,
-                                             &mc::gradient_table,   &mc::delays_table,
-                                             &mc::contrast_table,   &mc::frequency_table,
-                                             &mc::numerical_table,  &validate_table,
-                                             &wave::solution_table, &wave::spectrum_table,
-                                             &wave::map_table,      &mc::flux_table,
-                                             &mc::field_table,      &mc::imaging_table,
-                                             &mc::picture_table,    &mc::recovery_table,
-                                             &mc::fit_table,        &sweep_axes_table,
-                                             &sweep_table,          &stacked_table,
-                                             &placement_table,      &structure_factor_table,
-                                             &grin::rays_table,     &grin::trials_table,
-                                             &grin::camera_table,   &grin::area_table,
-                                             &grin::radial_table,   &grin::directional_table,
-                                             &grin::polar_table,    &grin::render_table,
-                                             &grin::energy_table,   &grin::box_map_table,
-                                             &grin::ring_map_table, &grin::design::design_table};
+  std::vector<const DatasetTable*> tables = {
+      &provenance_table,     &scene_table,          &layers_table,
+      &density_table,        &axes_table,           &beams_table,
+      &trace_table,          &mc::mean_table,       &mc::intensity_table,
+      &mc::full_table,       &mc::pairs_table,      &mc::moves_table,
+      &mc::gradient_table,   &mc::delays_table,     &mc::contrast_table,
+      &mc::frequency_table,  &mc::numerical_table,  &validate_table,
+      &wave::solution_table, &wave::spectrum_table, &wave::map_table,
+      &mc::flux_table,       &mc::field_table,      &mc::imaging_table,
+      &mc::picture_table,    &mc::recovery_table,   &mc::fit_table,
+      &mc::plan_table,       &sweep_axes_table,     &sweep_table,
+      &stacked_table,        &placement_table,      &structure_factor_table,
+      &grin::rays_table,     &grin::trials_table,   &grin::camera_table,
+      &grin::area_table,     &grin::radial_table,   &grin::directional_table,
+      &grin::polar_table,    &grin::render_table,   &grin::energy_table,
+      &grin::box_map_table,  &grin::ring_map_table, &grin::design::design_table};
 #ifdef FLATSPECKLE_BENCH
   for (const DatasetTable* table : bench_tables()) tables.push_back(table);
 #endif

@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "core/result/result_group.h"
+#include "mc/fit/row_major.h"
 
 namespace flatspeckle::mc {
 
@@ -56,24 +57,17 @@ const DatasetTable fit_table{
 
 namespace {
 
-std::vector<double> list(const Eigen::MatrixXd& values) {
-  std::vector<double> rows;
-  for (Eigen::Index i = 0; i < values.rows(); ++i)
-    for (Eigen::Index j = 0; j < values.cols(); ++j) rows.push_back(values(i, j));
-  return rows;
-}
-
 void write_parameters(const ResultGroup& root, const FitTask& task, const MediumFit& fit) {
   root.number("parameter", task.free.size());
   root.number("parameter_2", task.free.size());
   root.put("parameter_name", column(task.free, &FreeParameter::key));
-  root.put("estimate", list(fit.estimates), list(fit.errors));
+  root.put("estimate", row_major(fit.estimates), row_major(fit.errors));
   root.put("lower_bound", column(task.free, &FreeParameter::lower));
   root.put("upper_bound", column(task.free, &FreeParameter::upper));
   root.put("known", std::vector<std::uint64_t>(fit.known.begin(), fit.known.end()));
-  root.put("parameter_covariance", list(fit.covariance));
-  root.put("parameter_correlation", list(fit.correlation));
-  root.put("worst_combination", list(fit.worst));
+  root.put("parameter_covariance", row_major(fit.covariance));
+  root.put("parameter_correlation", row_major(fit.correlation));
+  root.put("worst_combination", row_major(fit.worst));
   root.number("derived", fit.derived.size());
   root.put("derived_name", column(fit.derived, &Derived::name));
   root.put("derived_value", column(fit.derived, &Derived::value),
@@ -95,7 +89,8 @@ void write_data(const ResultGroup& root, const FitTask& task, const MediumFit& f
       }
       ++number;
     }
-    const auto more = list(one.values), uncertain = list(one.covariance.diagonal().cwiseSqrt());
+    const auto more = row_major(one.values),
+               uncertain = row_major(one.covariance.diagonal().cwiseSqrt());
     values.insert(values.end(), more.begin(), more.end());
     errors.insert(errors.end(), uncertain.begin(), uncertain.end());
     ++measurement;
@@ -108,9 +103,9 @@ void write_data(const ResultGroup& root, const FitTask& task, const MediumFit& f
   root.put("datum_observable", observables);
   root.put("datum_angle", angles);
   root.put("measured", values, errors);
-  root.put("model", list(fit.model));
-  root.put("pull", list(fit.pulls));
-  root.put("residual", list(fit.residuals));
+  root.put("model", row_major(fit.model));
+  root.put("pull", row_major(fit.pulls));
+  root.put("residual", row_major(fit.residuals));
 }
 
 void write_trace(const ResultGroup& root, const MediumFit& fit) {

@@ -199,9 +199,9 @@ LeastSquaresFit refined_fit(const FitTask& task, const LeastSquares& problem, Sl
       levenberg_marquardt(problem, starts.front(), task.most_iterations, tolerance);
   if (!(best.converged && is_likely(best)))
     best = best_fit(problem, starts, task.most_iterations, tolerance);
-  const VectorXd before = best.residuals;
+  const int before = model.order();
   fit.numerical = model.refine(scenes_at(task, best.parameters), data.errors(), share);
-  if ((problem.residuals(best.parameters) - before).cwiseAbs().maxCoeff() == 0) return best;
+  if (model.order() == before) return best;
   auto trace = std::move(best.trace);
   best = levenberg_marquardt(problem, best.parameters, task.most_iterations, tolerance);
   trace.insert(trace.end(), best.trace.begin(), best.trace.end());

@@ -108,48 +108,46 @@ bool SlabModel::reversed() const {
 
 double SlabModel::refine(const std::vector<Scene>& scenes, const VectorXd& errors, double share) {
   constexpr int most = 30;
+  VectorXd found = solved(scenes, order_);
   while (true) {
-    const Solved found = solved(scenes);
-    const double change = (found.fine - found.coarse).cwiseQuotient(errors).cwiseAbs().maxCoeff();
-    if (change < share || order_ > most) return change;
-    order_ = Refinement::next_order(order_);
+    const int next = Refinement::next_order(order_);
+    const VectorXd finer = solved(scenes, next);
+    const double change = (finer - found).cwiseQuotient(errors).cwiseAbs().maxCoeff();
+    if (change < share || next > most) return change;
+    order_ = next;
+    found = finer;
   }
 }
 
-SlabModel::Solved SlabModel::solved(const std::vector<Scene>& scenes) const {
-  Solved all{VectorXd(size_), VectorXd(size_)};
+VectorXd SlabModel::solved(const std::vector<Scene>& scenes, int order) const {
+  VectorXd all(size_);
   for (const Group& group : groups_)
-    group.flux ? solve_flux(group, scenes, all) : solve_fields(group, scenes, all);
+    group.flux ? solve_flux(group, scenes, all) : solve_fields(group, scenes, order, all);
   return all;
 }
 
-void SlabModel::solve_fields(const Group& group, const std::vector<Scene>& scenes,
-                             Solved& all) const {
+void SlabModel::solve_fields(const Group& group, const std::vector<Scene>& scenes, int order,
+                             VectorXd& all) const {
   constexpr double tolerance = 1e-4;  // of paths of two scatterings, a hundredth of it
   Scene joint = scenes[group.curves.front()];
   joint.request = {};
   for (const std::size_t i : group.curves) join(joint.request, scenes[i].request);
-  const Refinement two_orders{tolerance, order_, 1};
-  const Refined found = joint.medium.dimension == 3
-                            ? space_covariance(joint, group.reversed, two_orders)
-                            : slab_covariance(joint, group.reversed, two_orders);
-  auto before = found.value;
-  for (std::size_t e = 0; e < before.size(); ++e) before[e] -= found.difference[e];
+  const Refinement once{tolerance, order, true, 1};
+  const Refined found = joint.medium.dimension == 3 ? space_covariance(joint, group.reversed, once)
+                                                    : slab_covariance(joint, group.reversed, once);
   std::size_t entry = 0;
   for (const std::size_t i : group.curves) {
     const CovarianceRequest& request = scenes[i].request;
     const std::size_t count = request.entries.size();
-    put(all.fine, first_[i],
+    put(all, first_[i],
         observed(curves_[i], request, std::span(found.value).subspan(entry, count)));
-    put(all.coarse, first_[i],
-        observed(curves_[i], request, std::span(before).subspan(entry, count)));
     entry += count;
   }
 }
 
 void SlabModel::solve_flux(const Group& group, const std::vector<Scene>& scenes,
-                           Solved& all) const {
-  constexpr Refinement precise{1e-6};
+                           VectorXd& all) const {
+  constexpr Refinement precise{1e-5};
   constexpr std::size_t bins = 1, shares = flux_shares + bins;
   Scene joint = scenes[group.curves.front()];
   Lights& lights = joint.request.lights;
@@ -171,7 +169,7 @@ void SlabModel::solve_flux(const Group& group, const std::vector<Scene>& scenes,
   auto next = places.begin();
   for (const std::size_t i : group.curves)
     for (Index j = 0; j < std::ssize(curves_[i].entries); ++j, ++next)
-      all.fine[first_[i] + j] = all.coarse[first_[i] + j] = found.value[*next].real();
+      all[first_[i] + j] = found.value[*next].real();
 }
 
 }  // namespace flatspeckle::mc

@@ -21,12 +21,13 @@ class SlabModel {
   SlabModel(std::vector<Curve> curves, const std::vector<Scene>& scenes);
 
   /// Of all curves, one after the other, in media of these scenes.
-  Eigen::VectorXd values(const std::vector<Scene>& scenes) const { return solved(scenes).fine; }
+  Eigen::VectorXd values(const std::vector<Scene>& scenes) const { return solved(scenes, order_); }
 
-  /// Takes more ordinates until the values change by less than `share` of these errors. Returns the
-  /// largest change, in them.
+  /// Takes more ordinates until still more change the values by less than `share` of these errors.
+  /// Returns the largest change, in them.
   double refine(const std::vector<Scene>& scenes, const Eigen::VectorXd& errors, double share);
 
+  int order() const { return order_; }
   bool reversed() const;
 
  private:
@@ -35,20 +36,18 @@ class SlabModel {
     bool flux = false, reversed = false;
     std::vector<std::size_t> curves;
   };
-  struct Solved {
-    Eigen::VectorXd fine, coarse;
-  };
 
   bool joins(const Group& group, const std::vector<Scene>& scenes, std::size_t curve) const;
-  Solved solved(const std::vector<Scene>& scenes) const;
-  void solve_fields(const Group& group, const std::vector<Scene>& scenes, Solved& all) const;
-  void solve_flux(const Group& group, const std::vector<Scene>& scenes, Solved& all) const;
+  Eigen::VectorXd solved(const std::vector<Scene>& scenes, int order) const;
+  void solve_fields(const Group& group, const std::vector<Scene>& scenes, int order,
+                    Eigen::VectorXd& all) const;
+  void solve_flux(const Group& group, const std::vector<Scene>& scenes, Eigen::VectorXd& all) const;
 
   std::vector<Curve> curves_;
   std::vector<Eigen::Index> first_;  ///< of each curve in all values
   Eigen::Index size_ = 0;
   std::vector<Group> groups_;
-  int order_ = 5;
+  int order_ = 5;  ///< nodes of a panel of directions
 };
 
 }  // namespace flatspeckle::mc

@@ -41,6 +41,13 @@ class SyntheticSlab {
     put(curve, real_parts(values));
   }
 
+  /// What follows is of another thickness of the medium.
+  void set_depth(double depth) {
+    slab_.depth = depth;
+    truth_.optical_depth = *truth_.optical_depth * depth / depth_;
+    depth_ = depth;
+  }
+
   void add_transmittance() {
     Curve curve{slab_, Observable::transmittance, {0}, {0}};
     put(curve, {slab_flux(at_truth(curve.scene), 1, {1e-6}).value[transmitted].real()});

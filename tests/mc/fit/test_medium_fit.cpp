@@ -1,5 +1,6 @@
 #include <doctest/doctest.h>
 
+#include "mc/fit/fit_datasets.h"
 #include "tests/mc/fit/synthetic_slab.h"
 
 namespace flatspeckle::mc {
@@ -8,8 +9,23 @@ namespace {
 
 using Eigen::VectorXd;
 using tests::slab_task;
+using tests::SyntheticSlab;
 
 const VectorXd truth{{0.8, 0.98, 4}};
+
+/// g and the mean free path of slabs without absorption.
+FitTask lossless_task(std::vector<Measurement> measurements) {
+  SceneSpec none;
+  none.scatterer = "hg";
+  FitTask task;
+  task.free = read_free_parameters({"g=0.3:0.97", "mean_free_path=200:4000"}, none);
+  task.measurements = std::move(measurements);
+  return task;
+}
+
+double relative_error(const MediumFit& fit) {  // of mu_s (1 - g)
+  return fit.derived.front().error / fit.derived.front().value;
+}
 
 }  // namespace
 
@@ -35,6 +51,28 @@ TEST_CASE("a parameter at its bound stays there") {
   REQUIRE(fit.converged);
   CHECK(fit.estimates[1] == 0.97);
   CHECK(fit.chi_squared > 50);
+}
+
+TEST_CASE("a thick slab in transmission tells mu_s (1 - g) alone; a thin one tells g") {
+  SyntheticSlab slab(20000, 0.8, 1, 30);
+  slab.add_curve(0, {1, 2, 3, 4});
+  slab.add_transmittance();
+  auto task = lossless_task(slab.exact());
+  const MediumFit thick = fit_medium(task);
+  MESSAGE("thick: g to " << thick.errors[0] << "; " << degeneracy(task, thick));
+  CHECK(relative_error(thick) < 0.02);
+  CHECK(thick.errors[1] / thick.estimates[1] > 5 * relative_error(thick));
+  CHECK(thick.correlation(0, 1) > 0.98);
+  CHECK(degeneracy(task, thick).starts_with("mu_s (1 - g) is known to"));
+
+  slab.set_depth(2000);
+  slab.add_curve(0.3, {1, 2, 4});
+  slab.add_transmittance();
+  task.measurements = slab.exact();
+  const MediumFit both = fit_medium(task);
+  MESSAGE("with a thin one: g to " << both.errors[0] << "; " << degeneracy(task, both));
+  CHECK(both.errors[0] < thick.errors[0] / 2);
+  CHECK(both.errors[1] < thick.errors[1] / 2);
 }
 
 }  // namespace flatspeckle::mc

@@ -1,0 +1,194 @@
+#include "mc/fit/fit_plan.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+
+#include "core/error.h"
+#include "mc/fit/levenberg_marquardt.h"
+#include "mc/fit/slab_model.h"
+#include "mc/slab/slab_covariance.h"
+#include "mc/space/space_scene.h"
+
+namespace flatspeckle::mc {
+
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXcd;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// Covariances of each view's fields: at rest, then of each tilt.
+std::vector<MatrixXcd> covariances(Scene scene) {
+  const CovarianceRequest tilts = scene.request;
+  const std::size_t views = tilts.reference_views, fields = 1 + tilts.moves;
+  CovarianceRequest& all = scene.request;
+  all.kind = CovarianceRequest::Kind::pairs;
+  all.entries.clear();
+  const auto channel = [&](std::size_t view, std::size_t field) {
+    const std::size_t entry =
+        field == 0 ? tilts.reference_intensity(view) : tilts.tilted_intensity(field - 1, view);
+    return tilts.entries[entry].a;
+  };
+  for (std::size_t view = 0; view < views; ++view)
+    for (std::size_t i = 0; i < fields; ++i)
+      for (std::size_t j = 0; j <= i; ++j)
+        all.entries.push_back({channel(view, i), channel(view, j)});
+  constexpr Refinement precise{1e-6};
+  const auto values = scene.medium.dimension == 3 ? space_covariance(scene, false, precise).value
+                                                  : slab_covariance(scene, false, precise).value;
+  std::vector<MatrixXcd> found;
+  auto next = values.begin();
+  for (std::size_t view = 0; view < views; ++view) {
+    MatrixXcd& c = found.emplace_back(fields, fields);
+    for (Index i = 0; i < c.rows(); ++i)
+      for (Index j = 0; j <= i; ++j, ++next) {
+        c(i, j) = *next;
+        c(j, i) = std::conj(*next);
+      }
+  }
+  return found;
+}
+
+/// Of each view's fields, with derivatives by the coordinates of the parameters.
+struct Fields {
+  std::vector<MatrixXcd> covariance;
+  std::vector<std::vector<MatrixXcd>> slopes;  ///< [view][parameter]
+};
+
+Fields fields_of(const PlanTask& task, const VectorXd& at) {
+  constexpr double step = 1e-3;  // of the distance of the bounds
+  const auto c = [&](const VectorXd& x) {
+    return covariances(scene_of(with_parameters(task.scene, task.free, x)));
+  };
+  const VectorXd lower = lower_coordinates(task.free), upper = upper_coordinates(task.free);
+  Fields found{c(at), {}};
+  found.slopes.resize(found.covariance.size());
+  for (Index i = 0; i < at.size(); ++i) {
+    VectorXd high = at, low = at;
+    high[i] = std::min(at[i] + step * (upper[i] - lower[i]), upper[i]);
+    low[i] = std::max(at[i] - step * (upper[i] - lower[i]), lower[i]);
+    const auto above = c(high), below = c(low);
+    for (std::size_t v = 0; v < above.size(); ++v)
+      found.slopes[v].push_back((above[v] - below[v]) / (high[i] - low[i]));
+  }
+  return found;
+}
+
+MatrixXcd without(const MatrixXcd& matrix, Index field) {
+  const Index after = matrix.rows() - field - 1;
+  MatrixXcd found(matrix.rows() - 1, matrix.cols() - 1);
+  found << matrix.topLeftCorner(field, field), matrix.topRightCorner(field, after),
+      matrix.bottomLeftCorner(after, field), matrix.bottomRightCorner(after, after);
+  return found;
+}
+
+/// Of all views but one, and all fields but one; -1: none is left out.
+MatrixXd total_information(const Fields& fields, Index parameters, Index view, Index field) {
+  MatrixXd total = MatrixXd::Zero(parameters, parameters);
+  for (std::size_t v = 0; v < fields.covariance.size(); ++v) {
+    if (static_cast<Index>(v) == view) continue;
+    MatrixXcd covariance = fields.covariance[v];
+    auto slopes = fields.slopes[v];
+    if (field >= 0) {
+      covariance = without(covariance, field);
+      for (auto& slope : slopes) slope = without(slope, field);
+    }
+    total += field_information(covariance, slopes);
+  }
+  return total;
+}
+
+/// A matrix J with J^T J the information.
+MatrixXd root_of(const MatrixXd& information) {
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(information);
+  return solver.eigenvalues().cwiseMax(0).cwiseSqrt().asDiagonal() *
+         solver.eigenvectors().transpose();
+}
+
+/// What is known with some of it left out.
+class Planned {
+ public:
+  static constexpr Index none = -1;
+
+  explicit Planned(const PlanTask& task) : task_(task), at_(std::ssize(task.free)) {
+    for (Index i = 0; i < at_.size(); ++i) {
+      const FreeParameter& free = task.free[static_cast<std::size_t>(i)];
+      at_[i] = free.coordinate(free.start.value());
+    }
+    bounds_.lower = lower_coordinates(task.free);
+    bounds_.upper = upper_coordinates(task.free);
+    fields_ = fields_of(task, at_);
+  }
+
+  const VectorXd& at() const { return at_; }
+
+  Information known(Index view, Index field) const {
+    const MatrixXd one = total_information(fields_, at_.size(), view, field);
+    return information(bounds_, root_of(task_.patterns * one));
+  }
+
+  /// Errors over those of all, with one of so many left out in turn.
+  template <typename LeftOut>
+  MatrixXd growth(Index count, const LeftOut& left_out) const {
+    const VectorXd all = known(none, none).errors();
+    MatrixXd found(count, at_.size());
+    for (Index i = 0; i < count; ++i)
+      found.row(i) = left_out(i).errors().cwiseQuotient(all).transpose();
+    return found;
+  }
+
+ private:
+  const PlanTask& task_;
+  VectorXd at_;
+  LeastSquares bounds_;
+  Fields fields_;
+};
+
+}  // namespace
+
+MatrixXd field_information(const MatrixXcd& covariance, const std::vector<MatrixXcd>& slopes) {
+  const Eigen::PartialPivLU<MatrixXcd> solver(covariance);
+  const auto count = static_cast<Index>(slopes.size());
+  std::vector<MatrixXcd> relative;
+  for (const MatrixXcd& slope : slopes) relative.push_back(solver.solve(slope));
+  MatrixXd found(count, count);
+  VectorXd with_scale(count);  // whose own derivative of C is C
+  for (Index a = 0; a < count; ++a) {
+    with_scale[a] = relative[static_cast<std::size_t>(a)].trace().real();
+    for (Index b = 0; b < count; ++b)
+      found(a, b) = (relative[static_cast<std::size_t>(a)] * relative[static_cast<std::size_t>(b)])
+                        .trace()
+                        .real();
+  }
+  return found - with_scale * with_scale.transpose() / static_cast<double>(covariance.rows());
+}
+
+FitPlan fit_plan(const PlanTask& task) {
+  const Planned planned(task);
+  const Information all = planned.known(Planned::none, Planned::none);
+  FitPlan plan;
+  plan.values.resize(planned.at().size());
+  plan.errors = all.errors();
+  for (Index i = 0; i < plan.values.size(); ++i) {
+    const FreeParameter& free = task.free[static_cast<std::size_t>(i)];
+    plan.values[i] = free.start.value();
+    plan.errors[i] *= free.slope(planned.at()[i]);
+  }
+  plan.correlation = all.correlation;
+  plan.condition = all.condition;
+  plan.patterns_to_percent =
+      task.patterns * (100 * plan.errors.cwiseQuotient(plan.values)).cwiseAbs2();
+  plan.views = task.scene.view_angles;
+  plan.tilts = task.scene.tilts;
+  plan.without_view = planned.growth(
+      std::ssize(plan.views), [&](Index view) { return planned.known(view, Planned::none); });
+  plan.without_tilt = planned.growth(
+      std::ssize(plan.tilts), [&](Index tilt) { return planned.known(Planned::none, tilt + 1); });
+  return plan;
+}
+
+}  // namespace flatspeckle::mc

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace flatspeckle::mc {
+
+/// As datasets have it: last axis fastest.
+inline std::vector<double> row_major(const Eigen::MatrixXd& values) {
+  const Eigen::MatrixXd columns = values.transpose();
+  return {columns.data(), columns.data() + columns.size()};
+}
+
+}  // namespace flatspeckle::mc

@@ -1,0 +1,43 @@
+#include <random>
+
+#include <doctest/doctest.h>
+
+#include "mc/fit/correlated_errors.h"
+
+namespace flatspeckle::mc {
+
+TEST_CASE("errors of ratios of sums are correlated as their terms are") {
+  // x and y of variances 1 and 4 about 10 and 20, correlation 1/2; values x / 10 and y / x.
+  constexpr int batches = 4000;
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> normal;
+  GroupedSums sums(2);
+  for (int batch = 0; batch < batches; ++batch) {
+    const double a = normal(random), b = normal(random);
+    const Complex values[] = {10 + a, 20 + 2 * (0.5 * a + std::sqrt(0.75) * b)};
+    sums.add(1, values);
+  }
+  const Estimator theta = [](double samples, std::span<const Complex> total) {
+    return std::vector<Complex>{total[0] / samples / 10.0, total[1] / total[0]};
+  };
+  const Eigen::MatrixXd found = correlated_errors(sums, theta);
+  REQUIRE(found.rows() == 2);
+  // d(y/x) = dy/10 - dx/5: variance 4/100 + 1/25 - 2 (1)/50, covariance with x/10: (1/10 - 1/5)/10
+  const double n = batches;
+  CHECK(found(0, 0) * n == doctest::Approx(0.01).epsilon(0.3));
+  CHECK(found(1, 1) * n == doctest::Approx(0.04).epsilon(0.3));
+  CHECK(found(0, 1) * n == doctest::Approx(-0.01).epsilon(0.3));
+  CHECK(found(0, 1) == found(1, 0));
+  const Estimate alone = jackknife(sums, theta);
+  const double groups = static_cast<double>(sums.groups()), hartlap = (groups - 1) / (groups - 4);
+  CHECK(found(1, 1) == doctest::Approx(hartlap * alone.error[1] * alone.error[1]));
+}
+
+TEST_CASE("too few groups tell nothing of correlations") {
+  GroupedSums sums(2);
+  const Complex values[] = {1, 2};
+  for (int batch = 0; batch < 5; ++batch) sums.add(1, values);
+  CHECK(correlated_errors(sums, sample_mean).size() == 0);
+}
+
+}  // namespace flatspeckle::mc

@@ -1,0 +1,55 @@
+#include <cmath>
+
+#include <doctest/doctest.h>
+
+#include "mc/fit/fit_plan.h"
+
+namespace flatspeckle::mc {
+
+namespace {
+
+using Eigen::MatrixXcd;
+using Eigen::MatrixXd;
+
+PlanTask plan_of(double patterns) {
+  PlanTask task;
+  task.scene.domain = "slab";
+  task.scene.depth = 2000;
+  task.scene.scatterer = "hg";
+  task.scene.g = 0.8;
+  task.scene.optical_depth = 4;
+  task.scene.albedo = 0.98;
+  task.scene.covariance = "memory_effect";
+  task.scene.view_angles = {0.1, 0.4};
+  task.scene.tilts = {1e-4, 3e-4, 6e-4};
+  task.free = read_free_parameters({"g=0.5:0.95", "optical_depth=1:20"}, task.scene);
+  task.patterns = patterns;
+  return task;
+}
+
+}  // namespace
+
+TEST_CASE("two fields of unknown scale tell of their correlation what the closed form says") {
+  for (const double r : {0.0, 0.5, 0.95}) {
+    const MatrixXcd covariance{{3.0, 3.0 * r}, {3.0 * r, 3.0}}, slope{{0.0, 3.0}, {3.0, 0.0}};
+    const MatrixXd found = field_information(covariance, {slope});
+    CHECK(found(0, 0) == doctest::Approx(2 / std::pow(1 - r * r, 2)));
+  }
+}
+
+TEST_CASE("a scale alone is not known where that of the fields is not") {
+  const MatrixXcd covariance{{2.0, Complex(1, 0.5)}, {Complex(1, -0.5), 1.5}};
+  CHECK(std::abs(field_information(covariance, {covariance})(0, 0)) < 1e-12);
+}
+
+TEST_CASE("errors of a plan fall with the root of the patterns, and grow with what is left out") {
+  const FitPlan few = fit_plan(plan_of(100)), many = fit_plan(plan_of(10000));
+  for (int i = 0; i < 2; ++i) {
+    CHECK(few.errors[i] == doctest::Approx(10 * many.errors[i]));
+    CHECK(few.patterns_to_percent[i] == doctest::Approx(many.patterns_to_percent[i]));
+    CHECK(many.without_view.col(i).minCoeff() > 1);
+    CHECK(many.without_tilt.col(i).minCoeff() > 1);
+  }
+}
+
+}  // namespace flatspeckle::mc
