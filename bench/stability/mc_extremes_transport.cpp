@@ -5,6 +5,7 @@
 
 #include "bench/stability/extreme_rows.h"
 #include "bench/stability/mc_extremes.h"
+#include "bench/stability/mc_extremes_fit.h"
 #include "grin/media/phase_function.h"
 #include "mc/estimators/flux_walk.h"
 #include "mc/slab/slab_covariance.h"
@@ -116,6 +117,7 @@ std::vector<ExtremeCase> mc_transport_extremes() {
       rows.add("transport, two frequencies, OD " + short_number(bulk.optical_depth) + ", albedo " +
                    short_number(bulk.albedo) + (dimension == 3 ? ", in space" : ""),
                "shift 1e-18 = none", [=] { return same_frequencies(bulk, dimension); });
+  add_fits(rows);
   return std::move(rows).rows();
 }
 

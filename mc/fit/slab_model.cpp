@@ -132,7 +132,7 @@ void SlabModel::solve_fields(const Group& group, const std::vector<Scene>& scene
   Scene joint = scenes[group.curves.front()];
   joint.request = {};
   for (const std::size_t i : group.curves) join(joint.request, scenes[i].request);
-  const Refinement once{tolerance, order, true, 1};
+  const Refinement once{tolerance, order, 0};
   const Refined found = joint.medium.dimension == 3 ? space_covariance(joint, group.reversed, once)
                                                     : slab_covariance(joint, group.reversed, once);
   std::size_t entry = 0;

@@ -18,8 +18,7 @@ namespace flatspeckle::mc {
 struct Refinement {
   double tolerance = 1e-6;
   int least_order = 5;        ///< nodes of a panel
-  bool once = false;         ///< in the plane: solves with these alone, and knows no difference
-  int most_ordinates = 1500;  ///< of both ways together; past it the error tells what is missing
+  int most_ordinates = 1500;  ///< of both ways; the error tells what is missing. 0: one solution
 
   /// Where small tolerances are asked for, fewer nodes have never been enough.
   int first_order() const { return std::max(least_order, tolerance > 1e-5 ? 5 : 7); }

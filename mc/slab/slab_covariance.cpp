@@ -102,7 +102,8 @@ class Refiner {
     int order = std::max(refinement_.first_order(), slab_.resolved.least_order());
     step(order);
     add_double_scattering();
-    if (refinement_.once) return {sum(&Part::value), std::vector<Complex>(few_.size()), ordinates_};
+    if (refinement_.most_ordinates == 0)
+      return {sum(&Part::value), std::vector<Complex>(few_.size()), ordinates_};
     while (step(order = Refinement::next_order(order))) settle();
     return {sum(&Part::value), difference(), ordinates_};
   }

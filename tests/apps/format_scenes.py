@@ -54,6 +54,8 @@ RUNS = {
     "image": ("image", IMAGE),
     "recover": ("recover", {"frames": "frames.csv", "points": 2, "samples": None, "threads": None}),
     "fit": ("fit", {**FIT, "samples": None}),
+    "fit_plan": ("fit", {"plan": True, "free": ["g=0:0.8"], "g": 0.5, "depth": 100, "optical_depth": 2,
+                         "tilts": [0.002], "samples": None}),
     "image_reference": ("image", {**IMAGE, "reference_x": 5}),
     "image_lucy": ("image", {**IMAGE, "reference_x": 5, "deconvolution": "richardson_lucy"}),
     "recover_reference": ("recover", {"frames": "frames.csv", "reference": "frames.csv", "points": 2,

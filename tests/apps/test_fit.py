@@ -73,6 +73,34 @@ class Fit(ProgramTest):
         pulls = (found["estimate"] - [0.9, 50]) / found["estimate_error"]
         self.assertLess(np.abs(pulls).max(), 4)
 
+    def test_curves_of_one_run(self):
+        """Tilts of one run of Monte Carlo see the same paths: its sums tell how errors correlate."""
+        self.call("covariance", domain="slab", depth=2000, scatterer="hg", g=0.8, optical_depth=4,
+                  albedo=0.98, covariance="memory_effect", view_angles=0.1, seed=3, samples=100000,
+                  tilts=[0, 0.0002, 0.0003, 0.0004, 0.0006], out="t.h5")
+        done = self.call("fit", "--free", "g=0.5:0.95", measurement="t.h5", optical_depth=4, albedo=0.98,
+                         out="fit.h5")
+        self.assertEqual(done.stderr, "")
+        found = datasets(self.folder / "fit.h5")
+        self.assertEqual(len(found["measured"]), 4)
+        self.assertLess(abs(found["estimate"][0] - 0.8) / found["estimate_error"][0], 4)
+        self.assertLess(attributes(self.folder / "fit.h5")["chi_squared"], 3 + 4 * 6**0.5)
+
+    def test_thicknesses_of_a_table(self):
+        self.write("t.csv", "depth,transmittance,error\n50,0.9,0.05\n200,0.5,0.05\n")
+        self.call("fit", free="mean_free_path=10:1000", measurement="t.csv", out="fit.h5")
+        self.assertEqual(list(datasets(self.folder / "fit.h5")["datum_curve"]), [0, 1])
+
+    def test_plan(self):
+        keys = {"free": ["g=0.5:0.95", "optical_depth=1:20"], "depth": 2000, "g": 0.8, "optical_depth": 4,
+                "view_angles": [0.1, 0.4], "tilts": [0.0002, 0.0006]}
+        done = self.call("fit", "--plan", **keys, patterns=100, out="plan.h5")
+        found = datasets(self.folder / "plan.h5")
+        percent = 100 * (100 * found["planned_error"] / found["planned"])**2
+        np.testing.assert_allclose(found["patterns_to_percent"], percent)
+        self.assertEqual(found["growth_without_view"].shape, (2, 2))
+        self.assertIn("patterns to 1 %", done.stdout)
+
     def test_not_converged(self):
         done, found = self.fit(MEASURED / "slab_transmission.csv", MEASURED / "slab_reflection.csv",
                                MEASURED / "slab_transmittance.csv", status=3, most_iterations=1)

@@ -49,6 +49,8 @@ KINDS = {
     "power": ("flux", {**SLAB}),
     "fitted": ("fit", {"free": ["g=0.5:0.95", "optical_depth=1:20"], "depth": 2000, "threads": 1,
                        "measurement": DATA / "measurements/slab_transmission.csv"}),
+    "planned": ("fit", {"plan": True, "free": ["g=0.5:0.95", "optical_depth=1:20"], "depth": 2000, "g": 0.8,
+                        "optical_depth": 4, "tilts": [0.0002, 0.0006]}),
     "rays": ("trace", RAYS),
     "lens": ("design", {"nodes": [3], "directions": 6, "rays_per_direction": 8, "threads": 1}),
     "picture": ("render", {**SPACE, "pixels": [4, 4]}),
@@ -62,8 +64,10 @@ KINDS = {
 # What each script draws.
 OWN = {"memory_effect": {"grid", "points", "curve", "moves", "layers"}, "memory_range": {"grid", "points"},
        "range_map": {"grid"}, "convergence": {"grid", "points"}, "tilt_shift": {"map"},
-       "dws": {"delays", "exposed"}, "contrast": {"exposed"}, "layer_range": {"layers"}, "frequency": {"frequencies"}, "validation": {"both"}, "speckle_field": {"fields"}, "image": {"frames"}, "fit": {"fitted"},
-       "rays": {"rays"}, "design": {"lens"}, "render": {"picture", "pulse"}, "render_time": {"pulse"},
+       "dws": {"delays", "exposed"}, "contrast": {"exposed"}, "layer_range": {"layers"},
+       "frequency": {"frequencies"}, "validation": {"both"}, "speckle_field": {"fields"},
+       "image": {"frames"}, "fit": {"fitted"}, "fit_plan": {"planned"}, "rays": {"rays"},
+       "design": {"lens"}, "render": {"picture", "pulse"}, "render_time": {"pulse"},
        "light_map": {"light"}, "reflection_image": {"spectrum"}, "field_map": {"near"}}
 
 

@@ -73,6 +73,8 @@ SCENES = [
     ("render", {**STAGE, **AREA, "samples": 2000, "density": "density.h5", "phase":
                 "henyey_greenstein", "g": 0.5, "method": "photon_map", "photon_radius": 0.4}),
     ("render", {**STAGE, **CAMERA, "body_sphere": [0, 0, 2, 0.5], "index": 1.5, "samples": 500}),
+    ("fit", {"free": ["g=0:0.8"], "depth": 100, "optical_depth": 2, "measurement": "curve.csv"}),
+    ("fit", {"plan": True, "free": ["g=0:0.8"], "depth": 100, "g": 0.5, "optical_depth": 2, "tilts": [0.002, 0.004]}),
     ("place", {"width": 12, "depth": 8, "radii": [0.3, 0.6], "count": 30, "structure": "s.h5",
                "realizations": 4}),
     ("place", {"width": 12, "depth": 8, "radii": 0.4, "packing_fraction": 0.3,
@@ -104,6 +106,7 @@ def write_files(folder):
     """What the scenes read: older.h5 is a finished result, stopped.h5 one that can be resumed,
     points.h5.shards holds the points of a sweep."""
     (folder / "sensors.csv").write_text("x,z\n0,14\n1,14\n-3,-2\n")
+    (folder / "curve.csv").write_text("tilt,field_correlation,error\n0.002,0.8,0.05\n0.004,0.6,0.05\n")
     (folder / "sources.csv").write_text("x,z\n0,-5\n1,-5\n")
     (folder / "rays.csv").write_text("x,y,z,dx,dy,dz\n0,0,-0.5,0,0,1\n0.1,0,-0.5,0.1,0,1\n")
     (folder / "phase.csv").write_text("angle,value\n0,3\n1,1\n3.141592653589793,0.5\n")

@@ -1,19 +1,19 @@
 #include <doctest/doctest.h>
 
+#include "bench/scenes/synthetic_slab.h"
 #include "core/run/stopwatch.h"
-#include "tests/mc/fit/synthetic_slab.h"
 
 namespace flatspeckle::mc {
 
 TEST_CASE("pulls of a slab's parameters are standard normal, and their scatter is the bound") {
   constexpr int sets = 100;
   const Eigen::VectorXd truth{{0.8, 0.98, 4}};
-  const auto slab = tests::standard_slab();
-  const Eigen::VectorXd bound = fit_medium(tests::slab_task(slab.exact())).errors;
+  const auto slab = bench::standard_slab();
+  const Eigen::VectorXd bound = fit_medium(bench::slab_task(slab.exact())).errors;
   Eigen::ArrayXd sum = Eigen::ArrayXd::Zero(3), squares = sum, scatter = sum;
   const double before = process_cpu_seconds();
   for (unsigned seed = 1; seed <= sets; ++seed) {
-    const MediumFit fit = fit_medium(tests::slab_task(slab.measured(seed)));
+    const MediumFit fit = fit_medium(bench::slab_task(slab.measured(seed)));
     REQUIRE(fit.converged);
     const Eigen::ArrayXd off = fit.estimates - truth, pull = off / fit.errors.array();
     sum += pull;

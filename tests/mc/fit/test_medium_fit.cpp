@@ -1,15 +1,15 @@
 #include <doctest/doctest.h>
 
+#include "bench/scenes/synthetic_slab.h"
 #include "mc/fit/fit_datasets.h"
-#include "tests/mc/fit/synthetic_slab.h"
 
 namespace flatspeckle::mc {
 
 namespace {
 
+using bench::slab_task;
+using bench::SyntheticSlab;
 using Eigen::VectorXd;
-using tests::slab_task;
-using tests::SyntheticSlab;
 
 const VectorXd truth{{0.8, 0.98, 4}};
 
@@ -30,7 +30,7 @@ double relative_error(const MediumFit& fit) {  // of mu_s (1 - g)
 }  // namespace
 
 TEST_CASE("without noise a slab's parameters are found again") {
-  const MediumFit fit = fit_medium(slab_task(tests::standard_slab().exact()));
+  const MediumFit fit = fit_medium(slab_task(bench::standard_slab().exact()));
   REQUIRE(fit.converged);
   CHECK((fit.estimates - truth).cwiseQuotient(fit.errors).cwiseAbs().maxCoeff() < 0.1);
   CHECK(fit.chi_squared < 0.05);
@@ -38,14 +38,14 @@ TEST_CASE("without noise a slab's parameters are found again") {
 }
 
 TEST_CASE("with noise a slab's parameters are found within their errors") {
-  const MediumFit fit = fit_medium(slab_task(tests::standard_slab().measured(1)));
+  const MediumFit fit = fit_medium(slab_task(bench::standard_slab().measured(1)));
   REQUIRE(fit.converged);
   CHECK((fit.estimates - truth).cwiseQuotient(fit.errors).cwiseAbs().maxCoeff() < 3);
   CHECK(fit.chi_squared < 14 + 4 * std::sqrt(28));
 }
 
 TEST_CASE("a parameter at its bound stays there") {
-  auto task = slab_task(tests::standard_slab().exact());
+  auto task = slab_task(bench::standard_slab().exact());
   task.free[1].upper = 0.97;  // of the albedo
   const MediumFit fit = fit_medium(task);
   REQUIRE(fit.converged);
@@ -62,7 +62,7 @@ TEST_CASE("a thick slab in transmission tells mu_s (1 - g) alone; a thin one tel
   MESSAGE("thick: g to " << thick.errors[0] << "; " << degeneracy(task, thick));
   CHECK(relative_error(thick) < 0.02);
   CHECK(thick.errors[1] / thick.estimates[1] > 5 * relative_error(thick));
-  CHECK(thick.correlation(0, 1) > 0.98);
+  CHECK(std::abs(thick.correlation(0, 1)) > 0.98);
   CHECK(degeneracy(task, thick).starts_with("mu_s (1 - g) is known to"));
 
   slab.set_depth(2000);

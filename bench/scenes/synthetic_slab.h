@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <numbers>
 #include <random>
 #include <vector>
 
@@ -9,9 +10,8 @@
 #include "mc/slab/slab_covariance.h"
 #include "mc/slab/slab_flux.h"
 #include "mc/theory/memory_effect.h"
-#include "tests/mc/estimates.h"
 
-namespace flatspeckle::mc::tests {
+namespace flatspeckle::bench {
 
 /// A slab that measurements are made of, by transport that is refined to a part in a million, and
 /// noise that is a share of each value.
@@ -30,14 +30,14 @@ class SyntheticSlab {
 
   /// C_E of a view, tilts in 1/depth of the transverse wavenumber.
   void add_curve(double view, const std::vector<double>& tilts) {
-    Curve curve{slab_, Observable::field_correlation, {}, {}};
+    mc::Curve curve{slab_, mc::Observable::field_correlation, {}, {}};
     curve.scene.covariance = "memory_effect";
     curve.scene.view_angles = {view};
     for (const double tilt : tilts)
-      add(curve, std::asin(tilt / depth_ / (2 * pi)), curve.scene.tilts);
+      add(curve, std::asin(tilt / depth_ / (2 * std::numbers::pi)), curve.scene.tilts);
     const Scene scene = at_truth(curve.scene);
     const auto values =
-        field_correlation(scene.request, slab_covariance(scene, false, {1e-6}).value);
+        mc::field_correlation(scene.request, mc::slab_covariance(scene, false, {1e-6}).value);
     put(curve, real_parts(values));
   }
 
@@ -49,16 +49,16 @@ class SyntheticSlab {
   }
 
   void add_transmittance() {
-    Curve curve{slab_, Observable::transmittance, {0}, {0}};
-    put(curve, {slab_flux(at_truth(curve.scene), 1, {1e-6}).value[transmitted].real()});
+    mc::Curve curve{slab_, mc::Observable::transmittance, {0}, {0}};
+    put(curve, {mc::slab_flux(at_truth(curve.scene), 1, {1e-6}).value[mc::transmitted].real()});
   }
 
   /// With noise of a seed.
-  std::vector<Measurement> measured(unsigned seed) const {
+  std::vector<mc::Measurement> measured(unsigned seed) const {
     std::mt19937_64 random(seed);
     std::normal_distribution<double> normal;
     auto all = exact_;
-    for (Measurement& one : all) {
+    for (mc::Measurement& one : all) {
       const Eigen::VectorXd error = share_ * one.values.cwiseAbs();
       one.covariance = error.cwiseAbs2().asDiagonal();
       for (Eigen::Index i = 0; i < error.size(); ++i) one.values[i] += error[i] * normal(random);
@@ -66,9 +66,10 @@ class SyntheticSlab {
     return all;
   }
   /// Without noise.
-  std::vector<Measurement> exact() const {
+  std::vector<mc::Measurement> exact() const {
     auto all = exact_;
-    for (Measurement& one : all) one.covariance = (share_ * one.values).cwiseAbs2().asDiagonal();
+    for (mc::Measurement& one : all)
+      one.covariance = (share_ * one.values).cwiseAbs2().asDiagonal();
     return all;
   }
 
@@ -79,13 +80,13 @@ class SyntheticSlab {
     spec.optical_depth = truth_.optical_depth;
     return make_scene(spec);
   }
-  static void add(Curve& curve, double x, std::vector<double>& axis) {
+  static void add(mc::Curve& curve, double x, std::vector<double>& axis) {
     curve.entries.push_back(axis.size());
     curve.abscissa.push_back(x);
     axis.push_back(x);
   }
-  void put(const Curve& curve, const std::vector<double>& values) {
-    Measurement one{"synthetic", {curve}, {}, {}};
+  void put(const mc::Curve& curve, const std::vector<double>& values) {
+    mc::Measurement one{"synthetic", {curve}, {}, {}};
     one.values =
         Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
     exact_.push_back(one);
@@ -93,15 +94,15 @@ class SyntheticSlab {
 
   double depth_, share_;
   SceneSpec slab_, truth_;
-  std::vector<Measurement> exact_;
+  std::vector<mc::Measurement> exact_;
 };
 
 /// The three that describe a slab; from grids of starts.
-inline FitTask slab_task(std::vector<Measurement> measurements, double thickest = 20) {
+inline mc::FitTask slab_task(std::vector<mc::Measurement> measurements, double thickest = 20) {
   SceneSpec none;
   none.scatterer = "hg";
-  FitTask task;
-  task.free = read_free_parameters(
+  mc::FitTask task;
+  task.free = mc::read_free_parameters(
       {"g=0.5:0.95", "albedo=0.9:1", "optical_depth=1:" + std::to_string(thickest)}, none);
   task.measurements = std::move(measurements);
   return task;
@@ -110,10 +111,10 @@ inline FitTask slab_task(std::vector<Measurement> measurements, double thickest 
 /// Two views in transmission and two in reflection, and the transmittance.
 inline SyntheticSlab standard_slab() {
   SyntheticSlab slab(2000, 0.8, 0.98, 4);
-  for (const double view : {0.0, 0.3, pi - 0.44, pi - 0.84})
+  for (const double view : {0.0, 0.3, std::numbers::pi - 0.44, std::numbers::pi - 0.84})
     slab.add_curve(view, {1.25, 2.5, 5, 10});
   slab.add_transmittance();
   return slab;
 }
 
-}  // namespace flatspeckle::mc::tests
+}  // namespace flatspeckle::bench

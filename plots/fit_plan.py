@@ -1,0 +1,52 @@
+#!/usr/bin/env python3
+"""How many independent patterns make the error of each free key a hundredth of its value, over the
+values of the first two keys, from one or more `fit --plan` results."""
+
+from lib import style
+
+import matplotlib.pyplot as plt
+import numpy as np
+
+
+def read(result):
+    """Names, values and patterns of the keys."""
+    names = [name.decode() for name in result.values("parameter_name")]
+    return names, result.values("planned"), result.values("patterns_to_percent")
+
+
+def draw_map(axis, first, second, patterns):
+    x, y = np.unique(first), np.unique(second)
+    cells = np.full((len(y), len(x)), np.nan)
+    for a, b, value in zip(first, second, patterns):
+        cells[np.searchsorted(y, b), np.searchsorted(x, a)] = np.log10(value)
+    image = axis.imshow(cells, origin="lower", aspect="auto", cmap="viridis_r")
+    middle = (np.nanmin(cells) + np.nanmax(cells)) / 2
+    for (row, column), value in np.ndenumerate(cells):
+        if np.isfinite(value):
+            axis.text(column, row, f"{10**value:.2g}", ha="center", va="center", fontsize=7,
+                      color="w" if value > middle else "k")
+    axis.set_xticks(range(len(x)), style.short(x))
+    axis.set_yticks(range(len(y)), style.short(y))
+    axis.tick_params(top=False, right=False, length=0)
+    return image
+
+
+def draw(results):
+    names, _, _ = read(results[0])
+    if any(read(result)[0] != names for result in results):
+        raise style.Unusable(f"{results[0].path}: all plans must have the same free keys")
+    values = np.array([read(result)[1] for result in results])
+    patterns = np.array([read(result)[2] for result in results])
+    second = values[:, 1] if len(names) > 1 else np.zeros(len(results))
+    figure, axes = plt.subplots(1, len(names), figsize=(min(style.PAGE, 2.6 * len(names)), 2.4), sharey=True,
+                                squeeze=False)
+    for number, (axis, name) in enumerate(zip(axes[0], names)):
+        draw_map(axis, values[:, 0], second, patterns[:, number])
+        axis.set(title=f"patterns to know {name} to 1 %", xlabel=names[0])
+    if len(names) > 1:
+        axes[0, 0].set_ylabel(names[1])
+    return figure
+
+
+if __name__ == "__main__":
+    style.main(draw, __doc__, several=True)
