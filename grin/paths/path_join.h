@@ -9,8 +9,8 @@ struct JoiningCurve {
   Vec3 start_direction, end_direction;  ///< unit tangents
   double spreading;                     ///< |J| from the light's vertex to the sensor's
   double optical_depth;                 ///< reference
-  bool passes = false;                  ///< surfaces that refract
-  double fresnel = 1;                   ///< chance of that
+  int passages = 0;                     ///< of surfaces that refract
+  double fresnel = 1;                   ///< chance of these
 };
 
 struct JoinedPath {
@@ -72,7 +72,7 @@ inline JoinedPath joined_path(const Strategies& strategies, const PathVertex& y,
       rivals(z, z_from_y, from_z.density, strategies.most_light() - y.vertices, y.vertices, share) /
           heuristic(y.choice());
   const double ours = (y.end || z.end ? 1 : heuristic(share)) *
-                      (curve.passes ? heuristic(found_share(curve.fresnel)) : 1);
+                      heuristic(found_share(curve.passages, curve.fresnel));
   return {value, ours / (ours + others), from_z.pixel};
 }
 

@@ -66,8 +66,8 @@ struct Join {
   double transmittance;  ///< or an unbiased estimate of it, where the density is a grid; and the
                          ///< chance of what happens at surfaces of bodies, Fresnel's
   double multiplicity;   ///< K of C26: f multiplicity is unbiased for the sum of f over the curves
-  bool passes = false;   ///< surfaces that refract, found by search
-  double fresnel = 1;    ///< chance of that
+  Passages passages = {};  ///< of surfaces that refract, found by search
+  double fresnel = 1;      ///< chance of these
 };
 
 /// Light of one direction, at the plane across it through x.

@@ -254,7 +254,7 @@ std::optional<Join> join_by_way(const Legs& legs, const PathPoint& p, const Path
             .optical_depth = -std::log(way->chance),
             .transmittance = way->chance,
             .multiplicity = multiplicity,
-            .passes = true,
+            .passages = way->passages,
             .fresnel = way->chance};
   if (backwards) {  // n_p^2 / |J_pq| = n_q^2 / |J_qp|
     join.start_direction = -way->end_direction;

@@ -15,7 +15,7 @@ FEWER = {"pixels": [24, 16]}
 
 PICTURES = {
     "glass_ball": {"config": SCENES / "render_glass_ball.toml", **FEWER, "samples": 100000},
-    "fisheye": {"config": SCENES / "render_fisheye.toml", **FEWER, "samples": 6000},
+    "fisheye": {"config": SCENES / "render_fisheye.toml", **FEWER, "samples": 60000},
     "waveguide": {"config": SCENES / "render_waveguide.toml", "pixels": [12, 12], "samples": 20000},
     "fibre": {"config": SCENES / "render_grin_fibre.toml", "path_bins": [80.42, 80.74, 4],
               "pixels": [12, 12], "samples": 20000},

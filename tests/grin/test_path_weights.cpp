@@ -40,7 +40,7 @@ Flight as_flight(const Join& join, const PathPoint& to) {
   flight.direction = join.end_direction;
   flight.spreading = join.spreading;
   flight.optical_depth = join.optical_depth;
-  if (join.passes) flight.passages.add(false);
+  flight.passages = join.passages;
   flight.fresnel = join.fresnel;
   return flight;
 }
