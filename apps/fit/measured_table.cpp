@@ -66,8 +66,7 @@ Eigen::MatrixXd covariance_of(const std::string& path, const Table& table) {
     for (Index i = 0; i < size; ++i) covariance(i, j) = column[static_cast<std::size_t>(i)];
   }
   if (table.has("covariance_" + std::to_string(size + 1)) ||
-      !((covariance - covariance.transpose()).cwiseAbs().maxCoeff() <=
-        1e-9 * covariance.cwiseAbs().maxCoeff()))
+      (covariance - covariance.transpose()).norm() > 1e-9 * covariance.norm())
     throw InputError("measurement", path,
                      "must have as many columns covariance_1 ... as rows, a symmetric matrix");
   return covariance;
