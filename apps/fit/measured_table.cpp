@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "apps/fit/measurement_file.h"
@@ -49,6 +50,17 @@ std::vector<double> column_or(const Table& table, const std::string& name, doubl
   return {values.begin(), values.end()};
 }
 
+/// To rounding.
+bool is_symmetric(const Eigen::MatrixXd& matrix) {
+  double largest = 0, skew = 0;
+  for (Index i = 0; i < matrix.rows(); ++i)
+    for (Index j = 0; j < matrix.cols(); ++j) {
+      largest = std::max(largest, std::abs(matrix(i, j)));
+      skew = std::max(skew, std::abs(matrix(i, j) - matrix(j, i)));
+    }
+  return skew <= 1e-9 * largest;
+}
+
 Eigen::MatrixXd covariance_of(const std::string& path, const Table& table) {
   if (table.has("error")) {
     const auto errors = table.column("error");
@@ -65,8 +77,7 @@ Eigen::MatrixXd covariance_of(const std::string& path, const Table& table) {
     const auto column = table.column("covariance_" + std::to_string(j + 1));
     for (Index i = 0; i < size; ++i) covariance(i, j) = column[static_cast<std::size_t>(i)];
   }
-  if (table.has("covariance_" + std::to_string(size + 1)) ||
-      (covariance - covariance.transpose()).norm() > 1e-9 * covariance.norm())
+  if (table.has("covariance_" + std::to_string(size + 1)) || !is_symmetric(covariance))
     throw InputError("measurement", path,
                      "must have as many columns covariance_1 ... as rows, a symmetric matrix");
   return covariance;
