@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <iostream>
 #include <set>
 
 #include "apps/command/subcommands.h"
@@ -138,9 +139,17 @@ int run_plan(const Session& session, const Subcommand& command, const FitKeys& v
   });
 }
 
+void tell_guesses(const mc::FitTask& task) {
+  for (const auto& measurement : task.measurements)
+    if (measurement.guessed_independent)
+      std::cerr << "note: " << measurement.name
+                << " does not tell how its errors are correlated: they count as independent\n";
+}
+
 int run_fit(const Session& session, const Subcommand& command, const FitKeys& values) {
   const mc::FitTask task = task_of(command.keys(), values);
   if (!command.settle()) return ExitStatus::done;
+  tell_guesses(task);
   return session.once(ResultFile(session.out()), [&](ResultFile& file) -> std::optional<Made> {
     const mc::MediumFit fit = mc::fit_medium(task);
     mc::write_fit(file, task, fit);

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <iostream>
 #include <optional>
 #include <set>
 #include <sstream>
@@ -238,8 +237,7 @@ mc::Measurement measurement_of_result(const std::string& path, const Keys& asked
   if (const Eigen::MatrixXd known = errors_of(there, found.curves); known.size() > 0)
     found.covariance = known;
   else
-    std::cerr << "note: " << path << " does not tell how its errors are correlated: they count as "
-              << "independent\n";
+    found.guessed_independent = true;
   return found;
 }
 

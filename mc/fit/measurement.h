@@ -36,6 +36,7 @@ struct Measurement {
   std::vector<Curve> curves;
   Eigen::VectorXd values;      ///< of all curves, one after the other
   Eigen::MatrixXd covariance;  ///< of their errors
+  bool guessed_independent = false;  ///< the file does not tell how its errors are correlated
 };
 
 }  // namespace flatspeckle::mc

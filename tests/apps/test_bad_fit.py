@@ -87,7 +87,7 @@ class BadFit(RefusingTest):
         self.assert_refused(["needs its value"], *words, **{**plan, "g": None})
         self.assert_refused(["needs its value"], "fit", "--plan", "--free", "g=-0.5:0.95", **{**plan, "g": 0})
         self.assert_refused(["tilts"], *words, **{**plan, "tilts": None})
-        self.assert_refused(["measurement", "no use"], *words, **plan, measurement="m.csv")
+        self.assert_refused(["measurement", "has use for it"], *words, **plan, measurement="m.csv")
         self.assert_refused(["patterns = 0"], *words, **plan, patterns=0)
         self.refused(["tilts", "bring their own"], tilts=0.1)
         self.refused(["view_angles", "bring their own"], view_angles=0.1)

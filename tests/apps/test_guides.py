@@ -35,7 +35,7 @@ def commands(block):
     """Words after `flatspeckle`, of each line of it."""
     for line in block.replace("\\\n", " ").splitlines():
         if line.strip().startswith("flatspeckle "):
-            line = re.sub(r"\s#.*", "", re.sub(r'"?\$\w+"?', "0", line))
+            line = re.sub(r"\s#.*", "", re.sub(r'"?\$\{?\w+\}?"?', "0.5", line))
             yield shlex.split(line)[1:]
 
 

@@ -60,7 +60,7 @@ class Method(ProgramTest):
 
     def test_one_budget_of_time_for_both(self):
         keys = {**BOX, "width": 60, "depth": 30, "count": 300}
-        done = self.call("validate", **keys, seconds=1, threads=1, out="x.h5")
+        done = self.call("validate", **keys, seconds=0.2, threads=1, out="x.h5")
         with h5py.File(self.folder / "x.h5") as file:
             taken = {name: file[f"{name}/trace/wall_s"][-1] for name in ("mc", "wave")}
         self.assertLess(taken["mc"], taken["wave"])

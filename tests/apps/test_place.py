@@ -142,8 +142,10 @@ class Correlated(PlaceTest):
         for structure, allowance in (("none", 0.179), ("hard_disks", 0.0321)):
             self.call("validate", **scene, structure=structure, wave_samples=20, out="both.h5")
             stored = attributes(self.folder / "both.h5")
-            correlations = (stored["bias_allowance"] - 2 / stored["k_mean_free_path"]
-                            - 2 * stored["k_shift"] / (2 * np.pi))
+            shift, depth, width = stored["k_shift"] / (2 * np.pi), scene["depth"], scene["width"]
+            guided = 0.35 * min(1, 2 * np.pi * shift * depth) * min(1, np.sqrt(2 * shift) * depth / width)
+            correlations = (stored["bias_allowance"] - 2 / stored["k_mean_free_path"] - 2 * shift
+                            - guided)
             self.assertAlmostEqual(correlations, allowance, 3)
 
     def test_resumed_only_with_the_same(self):

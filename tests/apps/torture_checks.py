@@ -11,7 +11,7 @@ from torture_run import MOST_S, OBEYS_S
 MOST_LETTERS = 500  # of the line that refuses
 FINISHED = (0, 3)
 # Times, and counts of this run alone, not of the one that it resumes (docs/format.md).
-COST = ("wall_s", "cpu_s", "state", "trials", "flights", "lost_flights", "joins", "lost_values")
+COST = ("wall_s", "cpu_s", "trace_cpu_s", "state", "trials", "flights", "lost_flights", "joins", "lost_values")
 
 
 def datasets(path):
@@ -61,7 +61,7 @@ def check_same_data(path, reference):
     found = datasets(path)
     different = [name for name in sorted({*found, *reference}) if name not in found or
                  name not in reference or
-                 np.asarray(found[name]).tobytes() != np.asarray(reference[name]).tobytes()]
+                 program.bits_of(found[name]) != program.bits_of(reference[name])]
     if different:
         yield f"{path.name} differs from an undisturbed run: {', '.join(different[:5])}"
 
