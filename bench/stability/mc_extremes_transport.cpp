@@ -1,7 +1,6 @@
 // Slabs without chance, in the plane and in space, as thin, deep and peaked as they come.
 
 #include <cmath>
-#include <numbers>
 
 #include "bench/stability/extreme_rows.h"
 #include "bench/stability/mc_extremes.h"
@@ -18,7 +17,6 @@ namespace flatspeckle::bench {
 namespace {
 
 using mc::ReversedPaths;
-constexpr double pi = std::numbers::pi;
 
 /// Without absorption.
 Finding lossless_in_plane(const Bulk& bulk) {
