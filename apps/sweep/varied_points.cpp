@@ -23,8 +23,8 @@ constexpr double most_points = 1e6;
 std::vector<std::string> values_of(const Key& key, const std::string& values) {
   std::vector<std::string> texts;
   if (key.is_number()) {
-    const Written kind = key.unit() == "rad" ? Written::angle : Written::number;
-    for (const double value : written_numbers("vary " + key.name(), values, kind))
+    for (const double value :
+         written_numbers("vary " + key.name(), values, written_kind(key.unit())))
       texts.push_back(number_text(value));
     return texts;
   }

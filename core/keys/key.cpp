@@ -187,7 +187,7 @@ std::string Key::line() const {
 }
 
 void Key::set(const std::vector<std::string>& texts) const {
-  std::visit(Setter(name_, unit_ == "rad" ? Written::angle : Written::number, texts), member_);
+  std::visit(Setter(name_, written_kind(unit_), texts), member_);
 }
 
 void Key::check() const {

@@ -23,14 +23,15 @@ std::optional<double> plain(std::string_view text) {
   return read_number(std::string(trimmed(text)));
 }
 
-/// What stands for a factor behind a number, longest first where one ends like another.
-std::optional<std::pair<std::string_view, double>> unit_of(std::string_view text, Written kind) {
+/// What stands for a factor behind a number, longest first where one ends like another; where there
+/// is none, an empty text for 1.
+std::pair<std::string_view, double> unit_of(std::string_view text, Written kind) {
   constexpr double pi = std::numbers::pi;
   constexpr std::array<std::pair<std::string_view, double>, 4> units = {
       {{"pi", pi}, {"deg", pi / 180}, {"mrad", 1e-3}, {"rad", 1}}};
   for (const auto& unit : units)
     if (text.ends_with(unit.first) && (kind == Written::angle || unit.first == "pi")) return unit;
-  return std::nullopt;
+  return {"", 1};
 }
 
 /// "2pi/3", "30deg", "0.1".
@@ -43,20 +44,18 @@ std::optional<double> term(std::string_view text, Written kind) {
     divisor = *below;
     text = trimmed(text.substr(0, slash));
   }
-  const auto unit = unit_of(text, kind);
-  if (!unit) return plain(text) ? std::optional(*plain(text) / divisor) : std::nullopt;
-  text = trimmed(text.substr(0, text.size() - unit->first.size()));
-  if (text.empty() && unit->first == "pi") return unit->second / divisor;
-  const auto factor = plain(text);
-  return factor ? std::optional(*factor * unit->second / divisor) : std::nullopt;
+  const auto [unit, size] = unit_of(text, kind);
+  text = trimmed(text.substr(0, text.size() - unit.size()));
+  const auto factor = text.empty() && unit == "pi" ? 1 : plain(text);
+  return factor ? std::optional(*factor * size / divisor) : std::nullopt;
 }
 
 /// Where the last sum or difference stands: no sign of a number and none of its exponent.
 std::size_t last_sign(std::string_view text) {
   for (std::size_t at = text.size(); at-- > 1;) {
     if (text[at] != '+' && text[at] != '-') continue;
-    const char before =
-        trimmed(text.substr(0, at)).empty() ? '+' : trimmed(text.substr(0, at)).back();
+    const std::string_view left = trimmed(text.substr(0, at));
+    const char before = left.empty() ? '+' : left.back();
     if (before != '+' && before != '-' && before != '/' && std::tolower(before) != 'e') return at;
   }
   return text.npos;
@@ -94,6 +93,10 @@ std::vector<double> range(const std::string& key, const std::string& text, Writt
 }
 
 }  // namespace
+
+Written written_kind(const std::string& unit) {
+  return unit == "rad" ? Written::angle : Written::number;
+}
 
 std::optional<double> written_number(const std::string& text, Written kind) {
   const std::string_view whole = trimmed(text);

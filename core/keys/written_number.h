@@ -11,6 +11,9 @@ namespace flatspeckle {
 /// Whether degrees and milliradians may stand behind a number.
 enum class Written { number, angle };
 
+/// Of a key with this unit.
+Written written_kind(const std::string& unit);
+
 /// "0.1", "pi", "-0.25pi", "pi/2", "pi - 0.2"; of an angle also "30deg", "5mrad", "0.1rad". No
 /// value if the text is anything else.
 std::optional<double> written_number(const std::string& text, Written kind);

@@ -77,7 +77,8 @@ def diffusion_line(result, steps=200):
     known, q = result.values("tilt")[order], result.values("tilt_q")[order]
     tilt = np.linspace(known[0], known[-1], steps)
     medium = (result.attribute(name) for name in ("depth", "optical_depth", "g", "albedo"))
-    return 1000 * tilt, theory.slab_diffusion(*medium, np.interp(tilt, known, q))
+    return 1000 * tilt, theory.slab_diffusion(*medium, np.interp(tilt, known, q),
+                                              theory.dimension(result))
 
 
 def draw_theory(axis, results):
