@@ -2,10 +2,12 @@
 #include <cstring>
 #include <iostream>
 
+#include "apps/command/key_lists.h"
 #include "apps/command/key_owners.h"
 #include "apps/command/subcommands.h"
 #include "core/error.h"
 #include "core/keys/number_text.h"
+#include "core/result/version.h"
 
 namespace flatspeckle::apps {
 
@@ -17,7 +19,7 @@ struct Frame {
 };
 
 constexpr Frame frames[] = {
-    {"json", "{\n", ",\n", "}\n"},
+    {"json", "\"subcommands\": {\n", "},\n", "}\n}}\n"},
     {"markdown", "", "", ""},
     {"dictionary", "", "", ""},
     {"completion",
@@ -43,16 +45,23 @@ void print_owners() {
 
 }  // namespace
 
-/// Each subcommand prints its own.
+/// Each subcommand prints its own. JSON begins with the version, and each subcommand's purpose.
 int list_keys(const Arguments& arguments) {
   const std::string form = arguments.size() > 2 ? arguments[2] : "json";
   const Frame& frame = frame_named(form);
+  const bool is_json = form == "json";
+  if (is_json)
+    std::cout << "{\"version\": " << quoted(version()) << ", \"commit\": " << quoted(git_commit())
+              << ",\n ";
   std::cout << frame.before;
   if (form == "markdown") print_owners();
   const char* between = "";
   for (const SubcommandEntry& entry : subcommands()) {
     if (entry.run == list_keys) continue;
     std::cout << between;
+    if (is_json)
+      std::cout << quoted(entry.name) << ": {\"purpose\": " << quoted(entry.purpose)
+                << ", \"keys\": ";
     entry.run({"flatspeckle", entry.name, "--keys=" + form});
     between = frame.between;
   }

@@ -15,4 +15,7 @@ install(EXPORT flatspeckle NAMESPACE flatspeckle:: FILE flatspeckle-targets.cmak
 
 install(DIRECTORY plots data/scenes DESTINATION ${CMAKE_INSTALL_DATADIR}/flatspeckle
         PATTERN __pycache__ EXCLUDE)
+# Debian's own place for packages of python3; under another prefix PYTHONPATH names it.
+set(FLATSPECKLE_PYTHON_DIR lib/python3/dist-packages CACHE STRING "Where the Python package goes, under the prefix")
+install(DIRECTORY python/flatspeckle DESTINATION ${FLATSPECKLE_PYTHON_DIR} PATTERN __pycache__ EXCLUDE)
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})

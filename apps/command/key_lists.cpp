@@ -27,31 +27,28 @@ std::string shape_of(const Key& key) {
   return shape + (key.is_list() ? " ..." : "");
 }
 
-std::string quoted(const std::string& text) {
-  std::string all = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') all += '\\';
-    all += c;
-  }
-  return all + '"';
-}
-
-std::string quoted(const std::vector<std::string>& texts) {
+std::string quoted_list(const std::vector<std::string>& texts) {
   std::vector<std::string> all;
   for (const std::string& text : texts) all.push_back(quoted(text));
   return '[' + joined(all, ", ") + ']';
 }
 
+const char* json(bool value) {
+  return value ? "true" : "false";
+}
+
 /// One object for each row.
-void print_json(const Keys& keys, const std::string& subcommand) {
+void print_json(const Keys& keys) {
   const char* between = "\n";
-  std::cout << quoted(subcommand) << ": [";
+  std::cout << '[';
   for (const Key& key : keys.rows()) {
     std::cout << between << "  {\"name\": " << quoted(key.name())
               << ", \"group\": " << quoted(key.group()) << ", \"type\": " << quoted(type_of(key))
-              << ", \"list\": " << (key.is_list() ? "true" : "false")
-              << ", \"default\": " << quoted(key.default_value())
-              << ", \"words\": " << quoted(key.words()) << ", \"unit\": " << quoted(key.unit())
+              << ", \"list\": " << json(key.is_list()) << ", \"file\": " << json(key.is_file())
+              << ", \"in_scene_files\": " << json(key.is_in_files())
+              << ", \"effort\": " << json(key.is_effort())
+              << ", \"default\": " << quoted_list(key.default_value())
+              << ", \"words\": " << quoted_list(key.words()) << ", \"unit\": " << quoted(key.unit())
               << ", \"only_of\": " << quoted(key.only_of())
               << ", \"accepted\": " << quoted(key.accepted())
               << ", \"help\": " << quoted(key.help()) << '}';
@@ -112,6 +109,15 @@ void print_dictionary(const Keys& keys) {
 
 }  // namespace
 
+std::string quoted(const std::string& text) {
+  std::string all = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') all += '\\';
+    all += c;
+  }
+  return all + '"';
+}
+
 void print_help_lines(const Keys& keys) {
   std::string group;
   for (const Key* row : in_groups(keys)) {
@@ -127,7 +133,7 @@ bool print_keys(const Keys& keys, const std::string& subcommand,
                 const std::vector<std::string>& arguments) {
   if (arguments.size() != 3 || !arguments[2].starts_with("--keys=")) return false;
   const std::string form = arguments[2].substr(sizeof "--keys=" - 1);
-  if (form == "json") print_json(keys, subcommand);
+  if (form == "json") print_json(keys);
   if (form == "markdown") print_markdown(keys, subcommand);
   if (form == "completion") print_completion(keys, subcommand);
   if (form == "dictionary") print_dictionary(keys);

@@ -9,6 +9,9 @@ namespace flatspeckle::apps {
 
 // Keys as texts for people and programs, all by their rows.
 
+/// A text of JSON.
+std::string quoted(const std::string& text);
+
 /// The lines of --help, by groups.
 void print_help_lines(const Keys& keys);
 

@@ -147,6 +147,7 @@ std::string Key::accepted() const {
   if (!words_.empty()) return "must be one of " + joined(words_, " ");
   if (exactly_ > 0) return "must be " + shape_;
   if (each_ > 0) return "must be " + std::to_string(each_) + " numbers for each: " + shape_;
+  if (is_switch()) return "must be true or false";
   return is_number() ? range() : "must be a text";
 }
 

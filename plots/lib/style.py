@@ -17,7 +17,6 @@ for package in ("matplotlib", "h5py", "numpy"):
 
 import matplotlib
 
-matplotlib.use("Agg")
 logging.getLogger("fontTools").setLevel(logging.ERROR)  # of the ages of fonts
 import matplotlib.pyplot as plt
 import numpy as np
@@ -32,7 +31,7 @@ LINES = ["-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (7, 2)), (0, (1, 1))
 GREY = "0.5"
 COLUMN, PAGE, PAGE_HEIGHT = 3.4, 7.0, 8.6  # of a journal, inches
 
-plt.rcParams.update({
+LOOK = {
     "font.size": 8, "axes.labelsize": 8, "axes.titlesize": 8, "legend.fontsize": 7,
     "xtick.labelsize": 7, "ytick.labelsize": 7, "mathtext.fontset": "dejavusans",
     "axes.linewidth": 0.6, "lines.linewidth": 0.9, "lines.markersize": 3.5,
@@ -41,7 +40,8 @@ plt.rcParams.update({
     "errorbar.capsize": 1.5, "legend.frameon": False, "legend.handlelength": 2.4,
     "pdf.fonttype": 42, "savefig.dpi": 300, "figure.constrained_layout.use": True,
     "savefig.bbox": "tight", "savefig.pad_inches": 0.02,
-})
+}
+plt.rcParams.update(LOOK)
 
 
 def look(number):
@@ -122,7 +122,9 @@ def output_prefix(arguments):
 
 def main(draw, description, several=False, add_options=None):
     """Runs draw(results) -> figure on the command line's files; exits 2 if they lack something.
-    With add_options(parser) it runs draw(results, arguments)."""
+    With add_options(parser) it runs draw(results, arguments). From Python, python/flatspeckle/plots.py
+    is in its place."""
+    matplotlib.use("Agg")
     parser = argparse.ArgumentParser(description=description)
     parser.add_argument("results", metavar="RESULT.h5", nargs="+" if several else 1)
     parser.add_argument("--out", metavar="PREFIX", help="writes PREFIX.png and PREFIX.pdf "

@@ -1,0 +1,80 @@
+"""Every subcommand is a function with every key of the program's table, with its default and help, and
+each key takes a value that the program accepts."""
+
+import inspect
+import re
+import subprocess
+import unittest
+
+from package import PackageTest, fs
+
+from flatspeckle import functions, keys, scene
+
+NUMBERS = [1, 0.5, 0, 2, 1e-7, 100, -1]
+LENGTHS = (1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 12)
+# Refusals that say: the value is understood, but this scene does without.
+UNUSED = re.compile("nothing here has use for it|leave it out|is a key of .* only")
+
+
+def candidates(key):
+    """Values of its kind, until one is accepted."""
+    if key.words:
+        singles = [key.words[0]]
+    elif key.type is bool:
+        singles = [True]
+    elif key.type is str:
+        singles = ["none", "1.5", "0/2", "render", "g=0:0.5", __file__]
+    else:
+        singles = [key.type(number) for number in NUMBERS if key.type(number) == number]
+    if not key.is_list:
+        return singles
+    rising = [[key.type(0.1 * first + place) for place in range(count)] for first in (0, 1) for count in LENGTHS
+              ] if key.type in (int, float) else []
+    return rising + [[one] * count for count in LENGTHS for one in singles]
+
+
+class EveryKey(PackageTest):
+    def refusal(self, subcommand, key, value):
+        """What the program says to this value, nothing where it is accepted."""
+        known = keys.keys_of(subcommand)
+        values = scene.all_texts({"out": str(self.folder / "new.h5"), key.name: value}, known)
+        words = functions.command(subcommand, values, known, self.folder) + ["--print-config"]
+        done = subprocess.run(words, capture_output=True, text=True, timeout=60, cwd=self.folder)
+        self.assertIn(done.returncode, (0, 2), done.stderr)
+        return "" if done.returncode == 0 else functions.refusal(done.stderr, self.folder)
+
+    def is_understood(self, subcommand, key, value):
+        line = self.refusal(subcommand, key, value)
+        self.assertNotIn("unknown key", line)
+        return not line or fs.InputError(line).key != key.name or UNUSED.search(line)
+
+    def test_each_key_takes_a_value(self):
+        for subcommand in functions.subcommands():
+            for key in keys.keys_of(subcommand).values():
+                with self.subTest(subcommand=subcommand, key=key.name):
+                    if key.name != "out":
+                        self.assertTrue(any(self.is_understood(subcommand, key, value) for value in candidates(key)))
+
+    def test_each_key_is_described(self):
+        for subcommand in functions.subcommands():
+            function = getattr(fs, subcommand)
+            parameters = inspect.signature(function).parameters
+            text = re.sub(r"\s+", " ", function.__doc__)
+            for name, key in keys.keys_of(subcommand).items():
+                with self.subTest(subcommand=subcommand, key=name):
+                    self.assertEqual(parameters[name].default, key.default)
+                    for part in (name, key.unit, key.accepted, *key.helps):
+                        self.assertIn(re.sub(r"\s+", " ", part), text)
+
+    def test_all_but_lists_of_keys_are_functions(self):
+        printed = subprocess.run([fs.program.path(), "--help"], capture_output=True, text=True).stdout
+        named = set(re.findall(r"^  (\w+)  ", printed, re.MULTILINE))
+        self.assertEqual(set(functions.subcommands()), named - {"bench", "keys", "datasets"})
+
+    def test_no_key_is_hidden_by_a_word_of_python(self):
+        for subcommand in functions.subcommands():
+            self.assertFalse({"cache", "progress", "scene"} & set(keys.keys_of(subcommand)), subcommand)
+
+
+if __name__ == "__main__":
+    unittest.main()
