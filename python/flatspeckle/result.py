@@ -7,6 +7,7 @@ import numpy as np
 import xarray
 
 STATES = "state"  # what --resume goes on from
+OF_SCALES = {"CLASS", "NAME", "REFERENCE_LIST", "DIMENSION_LIST", "DIMENSION_LABELS"}
 
 
 def plain(value):
@@ -48,7 +49,7 @@ def dims(dataset):
 
 def variable(dataset):
     values = dataset.asstr()[()] if h5py.check_string_dtype(dataset.dtype) else dataset[()]
-    attributes = {name: plain(dataset.attrs[name]) for name in ("units", "long_name") if name in dataset.attrs}
+    attributes = {name: plain(dataset.attrs[name]) for name in dataset.attrs if name not in OF_SCALES}
     return xarray.Variable(dims(dataset), values, attributes)
 
 

@@ -1,0 +1,20 @@
+"""Which g made this speckle?
+
+A measured curve, here one made by light paths with their noise, is handed over as a table; the answer has an error."""
+
+import numpy as np
+
+import flatspeckle as fs
+
+g = 0.9
+slab = fs.Scene(depth=1000, scatterer="hg", optical_depth=4)
+curve = fs.covariance(slab, domain="slab", g=g, covariance="memory_effect", tilts=np.linspace(0, 1e-3, 11),
+                      method="mc", samples=50_000, seed=7)
+far = curve.isel(tilt=slice(1, None))  # without tilt the correlation is 1 by definition
+measured = {"tilt": far.tilt, "field_correlation": far.field_correlation, "error": far.field_correlation_error}
+found = fs.fit(slab, free={"g": (0.5, 0.98)}, measurement=[measured])
+estimate, error = float(found.estimate[0]), float(found.estimate_error[0])
+print(f"g = {estimate:.4f} +- {error:.4f}; the curve was made with {g}")
+fs.plots.fit(found).savefig("fitting.png", dpi=150)
+
+assert abs(estimate - g) < 4 * error and error < 0.02
