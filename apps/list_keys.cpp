@@ -21,10 +21,21 @@ struct Frame {
 constexpr Frame frames[] = {
     {"json", "\"subcommands\": {\n", "},\n", "}\n}}\n"},
     {"markdown", "", "", ""},
+    {"man",
+     ".TH FLATSPECKLE 1\n.SH NAME\nflatspeckle \\- speckle statistics: path-space Monte Carlo "
+     "checked "
+     "by an exact wave solver\n.SH SYNOPSIS\n\\fBflatspeckle\\fR SUBCOMMAND [\\-\\-config "
+     "SCENE.toml] "
+     "[\\-\\-key value ...] \\-\\-out FILE.h5\n",
+     "",
+     ".SH EXIT STATUS\n0 done, 2 bad input, 3 stopped before the target error was reached, 4 input "
+     "or "
+     "output failed, 5 a row of a benchmark failed, 75 interrupted and resumable, 130 interrupted, "
+     "nothing to resume.\n"},
     {"dictionary", "", "", ""},
     {"completion",
      "# Completion for bash: source <(flatspeckle keys completion)\n"
-     "_flatspeckle() {\n  local words\n  case \"${COMP_WORDS[1]}\" in\n",
+     "_flatspeckle() {\n  local words=",
      "",
      "  esac\n"
      "  COMPREPLY=($(compgen -f -W \"$words\" -- \"${COMP_WORDS[COMP_CWORD]}\"))\n"
@@ -34,7 +45,7 @@ constexpr Frame frames[] = {
 const Frame& frame_named(const std::string& form) {
   for (const Frame& frame : frames)
     if (form == frame.form) return frame;
-  throw InputError("keys", form, "must be one of json markdown dictionary completion");
+  throw InputError("keys", form, "must be one of json markdown man dictionary completion");
 }
 
 void print_owners() {
@@ -43,25 +54,38 @@ void print_owners() {
     std::cout << "| `" << key << "` | " << joined(owners, ", ") << " |\n";
 }
 
+/// Of completion: what the first word may be; the others are flags of it.
+void print_first_words() {
+  std::cout << '"';
+  for (const SubcommandEntry& entry : subcommands()) std::cout << entry.name << ' ';
+  std::cout << "\"\n  [[ $COMP_CWORD == 1 ]] || case \"${COMP_WORDS[1]}\" in\n";
+}
+
+void print_heading(const std::string& form, const SubcommandEntry& entry) {
+  if (form == "json")
+    std::cout << quoted(entry.name) << ": {\"purpose\": " << quoted(entry.purpose)
+              << ", \"keys\": ";
+  if (form == "man")
+    std::cout << ".SH flatspeckle " << roff(entry.name) << '\n' << roff(entry.purpose) << '\n';
+}
+
 }  // namespace
 
 /// Each subcommand prints its own. JSON begins with the version, and each subcommand's purpose.
 int list_keys(const Arguments& arguments) {
   const std::string form = arguments.size() > 2 ? arguments[2] : "json";
   const Frame& frame = frame_named(form);
-  const bool is_json = form == "json";
-  if (is_json)
+  if (form == "json")
     std::cout << "{\"version\": " << quoted(version()) << ", \"commit\": " << quoted(git_commit())
               << ",\n ";
   std::cout << frame.before;
+  if (form == "completion") print_first_words();
   if (form == "markdown") print_owners();
   const char* between = "";
   for (const SubcommandEntry& entry : subcommands()) {
     if (entry.run == list_keys) continue;
     std::cout << between;
-    if (is_json)
-      std::cout << quoted(entry.name) << ": {\"purpose\": " << quoted(entry.purpose)
-                << ", \"keys\": ";
+    print_heading(form, entry);
     entry.run({"flatspeckle", entry.name, "--keys=" + form});
     between = frame.between;
   }

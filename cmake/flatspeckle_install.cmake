@@ -18,4 +18,24 @@ install(DIRECTORY plots data/scenes DESTINATION ${CMAKE_INSTALL_DATADIR}/flatspe
 # Debian's own place for packages of python3; under another prefix PYTHONPATH names it.
 set(FLATSPECKLE_PYTHON_DIR lib/python3/dist-packages CACHE STRING "Where the Python package goes, under the prefix")
 install(DIRECTORY python/flatspeckle DESTINATION ${FLATSPECKLE_PYTHON_DIR} PATTERN __pycache__ EXCLUDE)
-install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
+# Made by the program itself, from its keys.
+install(CODE "execute_process(COMMAND $<TARGET_FILE:flatspeckle> keys man
+                              OUTPUT_FILE ${PROJECT_BINARY_DIR}/flatspeckle.1 COMMAND_ERROR_IS_FATAL ANY)
+              execute_process(COMMAND $<TARGET_FILE:flatspeckle> keys completion
+                              OUTPUT_FILE ${PROJECT_BINARY_DIR}/flatspeckle.bash COMMAND_ERROR_IS_FATAL ANY)")
+install(FILES ${PROJECT_BINARY_DIR}/flatspeckle.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+install(FILES ${PROJECT_BINARY_DIR}/flatspeckle.bash RENAME flatspeckle
+        DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
+install(FILES LICENSE CITATION.cff CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+
+# cpack: a package for the Debian that it is made on.
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_CONTACT "The flatspeckle developers")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY ${PROJECT_DESCRIPTION})
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_DEPENDS "python3 (>= 3.11), python3-h5py, python3-xarray, python3-matplotlib")
+include(CPack)

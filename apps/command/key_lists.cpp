@@ -86,6 +86,16 @@ void print_markdown(const Keys& keys, const std::string& subcommand) {
   }
 }
 
+void print_man(const Keys& keys) {
+  std::string group;
+  for (const Key* row : in_groups(keys)) {
+    if (row->group() != group) std::cout << ".SS " << roff(row->group()) << '\n';
+    group = row->group();
+    std::cout << ".TP\n\\fB" << roff("--" + row->name()) << "\\fR" << roff(shape_of(*row)) << '\n'
+              << roff(row->help()) << '\n';
+  }
+}
+
 void print_completion(const Keys& keys, const std::string& subcommand) {
   std::set<std::string> flags{"--config", "--help", "--print-config"};
   for (const Key& key : keys.rows()) flags.insert("--" + key.name());
@@ -118,6 +128,16 @@ std::string quoted(const std::string& text) {
   return all + '"';
 }
 
+std::string roff(const std::string& text) {
+  std::string all = text.starts_with('.') || text.starts_with('\'') ? "\\&" : "";
+  for (const char c : text) {
+    if (c == '-') all += '\\';
+    all += c;
+    if (c == '\\') all += 'e';
+  }
+  return all;
+}
+
 void print_help_lines(const Keys& keys) {
   std::string group;
   for (const Key* row : in_groups(keys)) {
@@ -135,6 +155,7 @@ bool print_keys(const Keys& keys, const std::string& subcommand,
   const std::string form = arguments[2].substr(sizeof "--keys=" - 1);
   if (form == "json") print_json(keys);
   if (form == "markdown") print_markdown(keys, subcommand);
+  if (form == "man") print_man(keys);
   if (form == "completion") print_completion(keys, subcommand);
   if (form == "dictionary") print_dictionary(keys);
   if (form == "names") print_names(keys);

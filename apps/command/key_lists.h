@@ -11,12 +11,14 @@ namespace flatspeckle::apps {
 
 /// A text of JSON.
 std::string quoted(const std::string& text);
+/// A text of manual pages.
+std::string roff(const std::string& text);
 
 /// The lines of --help, by groups.
 void print_help_lines(const Keys& keys);
 
 /// Prints the keys of a subcommand where its only argument asks for that: --keys=json, =markdown,
-/// =completion, =dictionary (of fuzzers) or =names. False where it does not.
+/// =man, =completion, =dictionary (of fuzzers) or =names. False where it does not.
 bool print_keys(const Keys& keys, const std::string& subcommand,
                 const std::vector<std::string>& arguments);
 

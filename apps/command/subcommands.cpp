@@ -47,7 +47,7 @@ std::span<const SubcommandEntry> subcommands() {
       {"bench",
        "what accuracy costs, where it breaks, what plans leave out: error, stability, plan", bench},
 #endif
-      {"keys", "the keys of all subcommands, for programs: json, markdown, completion, dictionary",
+      {"keys", "the keys of all subcommands, for programs: json, markdown, man, completion",
        list_keys},
       {"datasets", "what result files hold, as in docs/format.md", datasets}};
   return entries;
