@@ -28,7 +28,7 @@ struct ImageKeys {
   std::vector<double> object_x, object_brightness;
   std::optional<double> object_depth, object_extent, camera_depth, reference_x;
   std::vector<double> camera;
-  std::int64_t pixels = 4096, repeats = 16;
+  std::int64_t pixels = 4096, repeats = 16, average = 1;
   std::optional<std::int64_t> points, paths_per_field;
   double resolution = 1;
   mc::CameraNoise noise;
@@ -75,14 +75,18 @@ void add_keys(Keys& keys, ImageKeys& values) {
   add_object_keys(keys, values);
   add_reference_keys(keys, values);
   keys.group("Pictures");
-  keys.add("repeats", values.repeats, "Media, with a frame of each")
-      .from(1, std::numeric_limits<double>::infinity());
+  keys.add("repeats", values.repeats,
+           "Media, with a frame of each, in which the points are looked for (0: only what is "
+           "expected)")
+      .from(0, std::numeric_limits<double>::infinity());
+  mc::add_average_key(keys, values.average);
   keys.add("method", values.method,
            "Fields by light paths, or of placements by the exact solver (wave)")
       .one_of({"paths", "wave"});
-  keys.add("paths_per_field", values.paths_per_field,
-           "Light paths of each medium (default: so many that the excess kurtosis is 0.01, and four "
-           "for each grain that can be seen)")
+  keys.add(
+          "paths_per_field", values.paths_per_field,
+          "Light paths of each medium (default: so many that the excess kurtosis is 0.01, and four "
+          "for each grain that can be seen)")
       .positive();
   add_wave_keys(keys, values.estimation);
   keys.remove("wave_samples");
@@ -141,8 +145,11 @@ std::size_t lags_of(const mc::LineScene& line, const std::optional<double>& obje
 mc::ImagingTask task_of(const Keys& keys, const ImageKeys& values, std::size_t points) {
   mc::ImagingTask task;
   task.repeats = static_cast<std::uint64_t>(keys.read(values.repeats));
+  task.average = static_cast<std::uint64_t>(keys.read(values.average));
   read_camera_keys(keys, values.noise, task.recovery.noise);
   task.recovery.noise.background = keys.read(values.noise.background);
+  if (keys.read(values.reference_x) && task.average > 1)
+    throw InputError("average", task.average, "frames with a reference are not averaged");
   if (keys.read(values.reference_x))
     task.deconvolution = deconvolution_task(keys, values.deconvolution);
   if (const auto& sought = keys.read(values.points)) points = static_cast<std::size_t>(*sought);
@@ -155,10 +162,11 @@ mc::ImagingTask task_of(const Keys& keys, const ImageKeys& values, std::size_t p
 void check_memory(const mc::LineScene& line, const mc::ImagingTask& task, bool keeps_fields) {
   const auto channels = static_cast<double>(line.scene.request.channels.size()),
              pixels = static_cast<double>(line.camera.pixels);
-  const double of_a_medium =
-      sizeof(double) * 2 * pixels + (keeps_fields ? sizeof(Complex) * channels : 0);
-  const double bytes =
-      32 * channels * task.threads + static_cast<double>(task.repeats) * of_a_medium;
+  const auto frames = static_cast<double>(task.average);
+  const double of_a_repeat = sizeof(double) * 2 * pixels +
+                             (keeps_fields ? sizeof(Complex) * channels * frames : 0),
+               at_once = (32 * channels + sizeof(double) * pixels * frames) * task.threads;
+  const double bytes = at_once + static_cast<double>(task.repeats) * of_a_repeat;
   if (bytes > 0.8 * usable_memory())
     throw InputError("repeats", task.repeats,
                      "frames and fields need " + std::to_string(bytes / 1e9) + " GB");
@@ -184,7 +192,8 @@ std::optional<mc::FieldDraw> exact_fields(const mc::LineScene& line, const mc::I
                                           double tolerance) {
   const BatchJob exact = wave_estimation(line.scene, tolerance, task.seed).job.batches;
   const std::size_t channels = line.scene.request.channels.size();
-  const auto fields = std::make_shared<std::vector<Complex>>(task.repeats * channels);
+  const std::uint64_t media = task.repeats * task.average;
+  const auto fields = std::make_shared<std::vector<Complex>>(media * channels);
   BatchJob job;
   job.size = 1;
   job.run = [&](std::uint64_t number, std::span<Complex>) {
@@ -193,7 +202,7 @@ std::optional<mc::FieldDraw> exact_fields(const mc::LineScene& line, const mc::I
     std::copy_n(sums.begin(), channels, fields->begin() + static_cast<long>(number * channels));
   };
   RunState state;
-  run_batches(job, {{task.repeats, std::nullopt, std::nullopt}, task.threads, "wave", {}}, state);
+  run_batches(job, {{media, std::nullopt, std::nullopt}, task.threads, "wave", {}}, state);
   if (interrupted()) return std::nullopt;
   remove_mean(*fields, channels);
   return [fields, channels](std::uint64_t number, std::span<Complex> field, std::span<double>) {
@@ -210,6 +219,7 @@ struct Fields {
 std::optional<Fields> fields_of(const mc::LineScene& line, const mc::ImagingTask& task,
                                 const std::string& method, double wave_tolerance,
                                 const std::optional<std::int64_t>& paths_per_field) {
+  if (task.repeats == 0) return Fields{{}, "what is expected, without frames"};
   if (method == "wave") {
     auto draw = exact_fields(line, task, wave_tolerance);
     if (!draw) return std::nullopt;
@@ -226,36 +236,43 @@ std::optional<Fields> fields_of(const mc::LineScene& line, const mc::ImagingTask
 void print_pictures(const mc::LineScene& line, const mc::ImagingTask& task,
                     const std::vector<mc::ImagedMedium>& media,
                     const mc::ImagingPrediction& prediction) {
-  const mc::Measured mean = mc::mean_psnr(media);
-  std::printf("frames divided by the reference: PSNR %.1f +- %.2g dB", mean.value, mean.error);
+  std::printf("frames divided by the reference: ");
+  if (!media.empty()) {
+    const mc::Measured mean = mc::mean_psnr(media);
+    std::printf("PSNR %.1f +- %.2g dB, ", mean.value, mean.error);
+  }
   if (task.deconvolution.method == mc::DeconvolutionTask::Method::wiener)
-    std::printf(", expected %.1f dB", mc::expected_psnr(line, task, prediction));
+    std::printf("expected %.1f dB", mc::expected_psnr(line, task, prediction));
   std::puts("");
+}
+
+void print_moments(const mc::LineScene& line, const mc::ImagingTask& task,
+                   const std::vector<mc::ImagedMedium>& media) {
+  const mc::Measured contrast = mc::mean_contrast(line.object, media),
+                     fourth = mc::mean_fourth_moment(media);
+  std::printf(
+      "contrast %.4f +- %.2g (Gaussian: %.4f), E|u|^4/(E|u|^2)^2 %.3f +- %.2g, %.0f grains\n",
+      contrast.value, contrast.error,
+      mc::gaussian_contrast(line.object, task.recovery.noise.background), fourth.value,
+      fourth.error, mc::mean_grains(media));
 }
 
 void print_summary(const mc::LineScene& line, const mc::ImagingTask& task,
                    const std::vector<mc::ImagedMedium>& media,
                    const mc::ImagingPrediction& prediction) {
-  const mc::Measured contrast = mc::mean_contrast(line.object, media),
-                     fourth = mc::mean_fourth_moment(media);
-  const double grains = mc::mean_grains(media);
-  std::printf(
-      "contrast %.4f +- %.2g (Gaussian: %.4f), E|u|^4/(E|u|^2)^2 %.3f +- %.2g, %.0f grains\n",
-      contrast.value, contrast.error,
-      mc::gaussian_contrast(line.object, task.recovery.noise.background), fourth.value,
-      fourth.error, grains);
-  if (const auto correlation = real_parts(prediction.correlation.value); !correlation.empty()) {
-    const auto signals =
-        mc::peaks_over_noise(line.object, correlation, mc::frame_grains(line, task, media));
+  if (!media.empty()) print_moments(line, task, media);
+  const auto expected = mc::expected_peaks(line, task, media, prediction);
+  if (const auto correlation = real_parts(prediction.correlation.value); !correlation.empty())
     std::printf("pairs of points: C_I down to %.3f, peaks down to %.1f times the noise\n",
                 *std::min_element(correlation.begin(), correlation.end()),
-                *std::min_element(signals.begin(), signals.end()));
-  }
+                *std::min_element(expected.signals.begin(), expected.signals.end()));
   if (line.reference) print_pictures(line, task, media, prediction);
-  if (task.recovery.points == 0) return;
-  const auto [rate, error] = mc::success_rate(media);
-  std::printf("all %zu points found in %.3g +- %.2g of the media\n", line.object.x.size(), rate,
-              error);
+  if (task.recovery.points > 0 && !media.empty()) {
+    const auto [rate, error] = mc::success_rate(media);
+    std::printf("all %zu points found in %.3g +- %.2g of the media\n", line.object.x.size(), rate,
+                error);
+  }
+  if (expected.success) std::printf("success expected: %.3g\n", *expected.success);
 }
 
 }  // namespace
@@ -279,7 +296,7 @@ int image(const Arguments& arguments) {
   const std::optional<double> reference = keys.read(values.reference_x);
   const auto prediction_paths = static_cast<std::uint64_t>(keys.read(values.prediction_paths));
   mc::ImagingTask task = task_of(keys, values, object.x.size());
-  if (method == "wave" && task.repeats < 2)
+  if (method == "wave" && task.repeats * task.average < 2)
     throw InputError("repeats", task.repeats, "the exact solver's mean field takes two or more");
   task.seed = session.seed();
   task.threads = session.threads();
@@ -305,7 +322,7 @@ int image(const Arguments& arguments) {
         write_medium(file, line.scene);
         mc::write_imaging(file, line, task, *media, *prediction);
         print_summary(line, task, *media, *prediction);
-        return Made{fields->how, static_cast<double>(task.repeats)};
+        return Made{fields->how, static_cast<double>(task.repeats * task.average)};
       });
 }
 

@@ -22,6 +22,7 @@ struct RecoverKeys {
   std::optional<std::int64_t> points;
   std::optional<double> longest;
   double resolution = 1;
+  std::int64_t average = 1;
   mc::CameraNoise noise;
   mc::DeconvolutionKeys deconvolution;
   RunSettings run;
@@ -37,6 +38,7 @@ void add_keys(Keys& keys, RecoverKeys& values) {
       .from(8, std::numeric_limits<double>::infinity());
   keys.add("resolution", values.resolution, "Least distance of points, in grains of the speckle")
       .positive();
+  mc::add_average_key(keys, values.average);
   add_camera_keys(keys, values.noise);
   keys.add("reference", values.reference,
            "CSV file of a reference point's frame: one column, or one for each frame; frames are "
@@ -60,6 +62,26 @@ mc::RecoveryTask task_of(const Keys& keys, const RecoverKeys& values, std::size_
         "must be less than a quarter of the frame's " + std::to_string(pixels) + " pixels");
   task.lags = static_cast<std::size_t>(longest) + 1;
   return task;
+}
+
+/// Frames of each object, side by side.
+std::vector<std::vector<double>> frames_of(const Table& table) {
+  std::vector<std::vector<double>> frames;
+  for (const std::string& name : table.names()) {
+    const auto column = table.column(name);
+    frames.emplace_back(column.begin(), column.end());
+  }
+  return frames;
+}
+
+std::size_t average_of(const Keys& keys, const RecoverKeys& values, std::size_t frames) {
+  const auto average = static_cast<std::size_t>(keys.read(values.average));
+  if (frames % average != 0)
+    throw InputError("average", average,
+                     "does not divide the " + std::to_string(frames) + " frames");
+  if (average > 1 && !keys.read(values.reference).empty())
+    throw InputError("average", average, "frames with a reference are not averaged");
+  return average;
 }
 
 /// Of each frame; nothing without a reference.
@@ -111,20 +133,23 @@ int recover(const Arguments& arguments) {
   const Session session(command.text(), keys, values.run, command.only_prints());
   const Table table = read_csv(keys.required(values.frames));
   const mc::RecoveryTask task = task_of(keys, values, table.rows());
+  const std::size_t average = average_of(keys, values, table.names().size());
   const References references = references_of(keys, values, table);
   keys.refuse_unread();
   if (!command.settle()) return ExitStatus::done;
   return session.once(ResultFile(session.out()), [&](ResultFile& file) -> std::optional<Made> {
     std::vector<mc::Recovered> all;
     std::vector<mc::Deconvolved> pictures;
-    for (const std::string& name : table.names()) {
-      const auto frame = table.column(name);
+    std::vector<std::string> names;
+    const auto frames = frames_of(table);
+    for (std::size_t i = 0; i < frames.size(); i += average) {
       if (!references.of_frame.empty())
         pictures.push_back(
-            mc::deconvolved(frame, references.of_frame[all.size()], task.lags, references.task));
-      all.push_back(mc::recovered(frame, task));
+            mc::deconvolved(frames[i], references.of_frame[i], task.lags, references.task));
+      all.push_back(mc::recovered(std::span(frames).subspan(i, average), task));
+      names.push_back(table.names()[i]);
     }
-    mc::write_recovery(file, table.names(), task, all);
+    mc::write_recovery(file, names, task, all);
     if (!pictures.empty()) mc::write_deconvolved(file, task, pictures);
     print_summary(all);
     return Made{"autocorrelation of each frame, sparse search", static_cast<double>(all.size())};

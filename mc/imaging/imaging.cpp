@@ -33,11 +33,32 @@ double fourth_moment(std::span<const Complex> field, std::size_t points) {
   return 1 + sum / static_cast<double>(points);
 }
 
-void divide_by_reference(ImagedMedium& medium, const LineScene& line, const ImagingTask& task,
-                         std::span<const Complex> field, RandomStream& random) {
+/// What the camera has of one medium.
+struct Exposure {
+  std::vector<double> frame, reference;
+  double fourth_moment = 0;
+};
+
+Exposure exposed(const LineScene& line, const ImagingTask& task, const FieldDraw& draw,
+                 std::uint64_t number) {
+  const std::size_t channels = line.scene.request.channels.size();
+  std::vector<Complex> field(channels);
+  std::vector<double> intensity(channels);
+  draw(number, field, intensity);
+  Exposure made;
+  const std::size_t of_object = line.object.x.size() * line.camera.pixels;
+  made.frame = incoherent_sum(std::span(field).first(of_object), line.object.brightness);
+  made.fourth_moment = fourth_moment(field, line.scene.request.lights.size());
+  RandomStream random(task.seed, static_cast<std::uint64_t>(Stream::camera), number);
+  expose(made.frame, task.recovery.noise, random);
+  if (!line.reference) return made;
   const std::vector<double> one{1};
-  medium.reference = incoherent_sum(field, one);
-  expose(medium.reference, task.recovery.noise, random);
+  made.reference = incoherent_sum(std::span(field).subspan(of_object), one);
+  expose(made.reference, task.recovery.noise, random);
+  return made;
+}
+
+void divide_by_reference(ImagedMedium& medium, const LineScene& line, const ImagingTask& task) {
   const std::size_t lags = task.recovery.lags;
   medium.deconvolved = deconvolved(medium.frame, medium.reference, lags, task.deconvolution);
   medium.psnr =
@@ -46,19 +67,17 @@ void divide_by_reference(ImagedMedium& medium, const LineScene& line, const Imag
 
 ImagedMedium imaged_one(const LineScene& line, const ImagingTask& task, const FieldDraw& draw,
                         std::uint64_t number) {
-  const std::size_t channels = line.scene.request.channels.size();
-  std::vector<Complex> field(channels);
-  std::vector<double> intensity(channels);
-  draw(number, field, intensity);
   ImagedMedium medium;
-  const std::size_t of_object = line.object.x.size() * line.camera.pixels;
-  medium.frame = incoherent_sum(std::span(field).first(of_object), line.object.brightness);
-  medium.fourth_moment = fourth_moment(field, line.scene.request.lights.size());
-  RandomStream random(task.seed, static_cast<std::uint64_t>(Stream::camera), number);
-  expose(medium.frame, task.recovery.noise, random);
-  if (line.reference)
-    divide_by_reference(medium, line, task, std::span(field).subspan(of_object), random);
-  static_cast<Recovered&>(medium) = recovered(medium.frame, task.recovery);
+  std::vector<std::vector<double>> frames;
+  for (std::uint64_t i = 0; i < task.average; ++i) {
+    Exposure made = exposed(line, task, draw, number * task.average + i);
+    frames.push_back(std::move(made.frame));
+    medium.reference = std::move(made.reference);
+    medium.fourth_moment += made.fourth_moment / static_cast<double>(task.average);
+  }
+  static_cast<Recovered&>(medium) = recovered(frames, task.recovery);
+  medium.frame = std::move(frames.front());
+  if (line.reference) divide_by_reference(medium, line, task);
   if (task.recovery.points > 0)
     medium.score = score(shifts(line), medium.fit.object,
                          task.recovery.resolution_grains * medium.statistics.grain);
@@ -131,6 +150,7 @@ LineScene with_fewer_pixels(LineScene line, std::size_t most) {
 std::optional<std::vector<ImagedMedium>> imaged(const LineScene& line, const ImagingTask& task,
                                                 const FieldDraw& draw) {
   std::vector<ImagedMedium> media(task.repeats);
+  if (media.empty()) return media;
   BatchJob job;
   job.size = 1;
   job.run = [&](std::uint64_t number, std::span<Complex>) {

@@ -17,12 +17,13 @@ namespace flatspeckle::mc {
 struct ImagingTask {
   RecoveryTask recovery;            ///< its resolution is also what counts as found
   DeconvolutionTask deconvolution;  ///< where the scene has a reference
-  std::uint64_t repeats = 1;
+  std::uint64_t repeats = 1;        ///< 0: no frames
+  std::uint64_t average = 1;        ///< media of each repeat, whose autocorrelations are averaged
   std::uint64_t seed = 1;
   int threads = 1;
 };
 
-/// One medium: its frame, and what that tells.
+/// One medium, or some of one repeat: the first's frame, and what all frames tell.
 struct ImagedMedium : Recovered {
   std::vector<double> frame, reference;  ///< of the reference alone, where there is one
   Deconvolved deconvolved;
@@ -31,7 +32,7 @@ struct ImagedMedium : Recovered {
   double fourth_moment = 0;  ///< of the points' fields, E|u|^4 / (E|u|^2)^2: Gaussian, 2
 };
 
-/// All frames, one of each medium: number, seed and scene make them, no thread does. Nothing where
+/// All frames: number, seed and scene make them, no thread does. Nothing where
 /// a signal came (catch_interrupts). draw: fields of line.scene, [point][pixel].
 std::optional<std::vector<ImagedMedium>> imaged(const LineScene& line, const ImagingTask& task,
                                                 const FieldDraw& draw);

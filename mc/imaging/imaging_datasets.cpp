@@ -13,16 +13,17 @@ namespace flatspeckle::mc {
 const DatasetTable imaging_table{
     .name = "image",
     .rows = {{"camera_place", Data::scale, "", "PLACE", "pixels: x, or sines of directions"},
-             {"repeat", Data::numbers, "", "1", "number of the medium"},
+             {"repeat", Data::numbers, "", "1", "number of the medium, or of `average` media"},
              {"point", Data::numbers, "", "1", "number of the point of the object"},
              {"sought", Data::numbers, "", "1", "number of the point that was looked for"},
              {"pair", Data::numbers, "", "1", "number of the pair of points (0, 1), (0, 2), ..."},
              {"distance", Data::scale, "", "length", "lag of the camera in lengths of the object"},
              {"object_x", Data::real, "point", "length", "the object"},
              {"object_brightness", Data::real, "point", "1", "relative"},
-             {"frame", Data::real, "repeat camera_place", "1", "in units of the light's mean"},
+             {"frame", Data::real, "repeat camera_place", "1",
+              "of the first medium, in units of the light's mean"},
              {"autocorrelation", Data::real, "repeat distance", "1",
-              "<dI dI'> / <I>^2 of the frame without its envelope"},
+              "<dI dI'> / <I>^2 of the frame without its envelope, mean over the repeat's media"},
              {"mean_autocorrelation", Data::estimate, "distance", "1", "mean over the media"},
              {"contrast", Data::real, "repeat", "1",
               "standard deviation over mean, without envelope"},
@@ -42,6 +43,8 @@ const DatasetTable imaging_table{
              {"pair_distance", Data::real, "pair", "length", "of two points of the object"},
              {"pair_correlation", Data::estimate, "pair", "1",
               "C_I of their speckles, from light paths"},
+             {"predicted_success", Data::real, "", "1",
+              "probability that all points are found, from the pairs' signals alone"},
              {"pair_signal", Data::real, "pair", "1",
               "height of their peak in a frame's autocorrelation over its noise, predicted"}},
     .attributes = {{"frame", "magnification", "float64",
@@ -69,7 +72,7 @@ Estimate mean_autocorrelation(const std::vector<ImagedMedium>& media) {
 }
 
 void write_axes(ResultFile& file, const ResultGroup& root, const LineScene& line,
-                const ImagingTask& task, double length_of_pixel, std::size_t media) {
+                const ImagingTask& task, double length_of_pixel) {
   file.bind("PLACE", {line.camera.depth ? "length" : "1"});
   std::vector<double> places, distances;
   for (std::size_t p = 0; p < line.camera.pixels; ++p)
@@ -77,8 +80,6 @@ void write_axes(ResultFile& file, const ResultGroup& root, const LineScene& line
   for (std::size_t lag = 0; lag < task.recovery.lags; ++lag)
     distances.push_back(static_cast<double>(lag) * length_of_pixel);
   root.put("camera_place", places);
-  root.number("repeat", media);
-  root.number("point", line.object.x.size());
   root.put("distance", distances);
 }
 
@@ -102,23 +103,20 @@ void write_fits(const ResultGroup& root, const ImagingTask& task,
 
 void write_prediction(const ResultGroup& root, const LineScene& line, const ImagingTask& task,
                       const std::vector<ImagedMedium>& media, const ImagingPrediction& prediction) {
-  const auto signal = peaks_over_noise(line.object, real_parts(prediction.correlation.value),
-                                       frame_grains(line, task, media));
-  root.number("pair", signal.size());
+  const ExpectedPeaks expected = expected_peaks(line, task, media, prediction);
+  root.number("pair", expected.signals.size());
   root.put("pair_distance", prediction.distance);
   root.put("pair_correlation", prediction.correlation);
-  root.put("pair_signal", signal);
+  root.put("pair_signal", expected.signals);
+  if (expected.success) root.put("predicted_success", *expected.success);
 }
 
-}  // namespace
-
-void write_imaging(ResultFile& file, const LineScene& line, const ImagingTask& task,
-                   const std::vector<ImagedMedium>& media, const ImagingPrediction& prediction) {
+/// What was seen in the media.
+void write_frames(ResultFile& file, const ResultGroup& root, const LineScene& line,
+                  const ImagingTask& task, const std::vector<ImagedMedium>& media) {
   const double moved = magnification(line), length_of_pixel = 1 / std::abs(moved);
-  const ResultGroup root(file, imaging_table);
-  write_axes(file, root, line, task, length_of_pixel, media.size());
-  root.put("object_x", line.object.x);
-  root.put("object_brightness", line.object.brightness);
+  write_axes(file, root, line, task, length_of_pixel);
+  root.number("repeat", media.size());
   root.put("frame",
            of_each(media, line.camera.pixels, [](const ImagedMedium& m) { return m.frame; }));
   root.attribute("frame", "magnification", moved);
@@ -126,6 +124,17 @@ void write_imaging(ResultFile& file, const LineScene& line, const ImagingTask& t
   write_statistics(root, media);
   write_moments(root, line, task.recovery.noise.background, media);
   if (task.recovery.points > 0) write_fits(root, task, media, length_of_pixel);
+}
+
+}  // namespace
+
+void write_imaging(ResultFile& file, const LineScene& line, const ImagingTask& task,
+                   const std::vector<ImagedMedium>& media, const ImagingPrediction& prediction) {
+  const ResultGroup root(file, imaging_table);
+  root.number("point", line.object.x.size());
+  root.put("object_x", line.object.x);
+  root.put("object_brightness", line.object.brightness);
+  if (!media.empty()) write_frames(file, root, line, task, media);
   if (!prediction.distance.empty()) write_prediction(root, line, task, media, prediction);
   if (line.reference) write_pictures(file, line, task, media, prediction);
 }

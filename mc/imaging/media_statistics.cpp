@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "mc/imaging/success_prediction.h"
+
 namespace flatspeckle::mc {
 
 namespace {
@@ -35,7 +37,10 @@ double mean_grains(const std::vector<ImagedMedium>& media) {
 
 FrameGrains frame_grains(const LineScene& line, const ImagingTask& task,
                          const std::vector<ImagedMedium>& media) {
-  return {mean_grains(media), task.recovery.noise, static_cast<double>(line.camera.pixels)};
+  const auto frames = static_cast<double>(task.average);
+  constexpr double of_speckle = 1.5;  // grains over what a triangle as its spectrum is wide
+  return {media.empty() ? of_speckle * most_grains(line) * frames : mean_grains(media),
+          task.recovery.noise, static_cast<double>(line.camera.pixels) * frames};
 }
 
 double gaussian_contrast(const LineObject& object, double background) {
@@ -65,6 +70,20 @@ Measured success_rate(const std::vector<ImagedMedium>& media) {
   const auto n = static_cast<double>(media.size());
   const double likely = (found + 1) / (n + 2);
   return {found / n, std::sqrt(likely * (1 - likely) / (n + 3))};
+}
+
+ExpectedPeaks expected_peaks(const LineScene& line, const ImagingTask& task,
+                             const std::vector<ImagedMedium>& media,
+                             const ImagingPrediction& prediction) {
+  const FrameGrains frame = frame_grains(line, task, media);
+  ExpectedPeaks expected;
+  expected.signals = peaks_over_noise(line.object, real_parts(prediction.correlation.value), frame);
+  const std::size_t points = line.object.x.size();
+  if (points > 1 && task.recovery.points == points)
+    expected.success =
+        predicted_success(expected.signals, points,
+                          static_cast<double>(task.recovery.lags) * frame.grains / frame.pixels);
+  return expected;
 }
 
 Measured mean_psnr(const std::vector<ImagedMedium>& media) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "mc/imaging/imaging.h"
@@ -14,7 +15,7 @@ struct Measured {
 /// Grains of a frame, averaged over all media.
 double mean_grains(const std::vector<ImagedMedium>& media);
 
-/// Of the mean frame.
+/// Of the frames of one repeat; without media, as Gaussian speckle is expected to have them.
 FrameGrains frame_grains(const LineScene& line, const ImagingTask& task,
                          const std::vector<ImagedMedium>& media);
 
@@ -34,6 +35,15 @@ Measured mean_fourth_moment(const std::vector<ImagedMedium>& media);
 /// Of media in which all points were found. The error is the standard deviation of what so many
 /// trials leave open, which is not 0 where all succeed (Beta distribution with a uniform prior).
 Measured success_rate(const std::vector<ImagedMedium>& media);
+
+/// What a frame of a repeat should show without being made.
+struct ExpectedPeaks {
+  std::vector<double> signals;    ///< as peaks_over_noise()
+  std::optional<double> success;  ///< as predicted_success(), where so many points are looked for
+};
+ExpectedPeaks expected_peaks(const LineScene& line, const ImagingTask& task,
+                             const std::vector<ImagedMedium>& media,
+                             const ImagingPrediction& prediction);
 
 /// dB.
 Measured mean_psnr(const std::vector<ImagedMedium>& media);

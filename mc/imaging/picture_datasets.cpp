@@ -49,6 +49,11 @@ void write_residuals(const ResultGroup& root, const std::vector<ImagedMedium>& m
 void write_pictures(ResultFile& file, const LineScene& line, const ImagingTask& task,
                     const std::vector<ImagedMedium>& media, const ImagingPrediction& prediction) {
   const ResultGroup root(file, picture_table);
+  root.put("reference_x", *line.reference);
+  root.put("reference_correlation", prediction.to_reference);
+  if (task.deconvolution.method == DeconvolutionTask::Method::wiener)
+    root.put("predicted_psnr", expected_psnr(line, task, prediction));
+  if (media.empty()) return;
   const std::size_t lags = task.recovery.lags, shown = 2 * lags - 1;
   const bool mirrored = magnification(line) < 0;
   std::vector<double> places;
@@ -60,7 +65,6 @@ void write_pictures(ResultFile& file, const LineScene& line, const ImagingTask& 
     return picture;
   };
   root.put("picture_x", places);
-  root.put("reference_x", *line.reference);
   root.put("reference_frame",
            of_each(media, line.camera.pixels, [](const ImagedMedium& m) { return m.reference; }));
   root.put("true_picture",
@@ -71,10 +75,7 @@ void write_pictures(ResultFile& file, const LineScene& line, const ImagingTask& 
   root.put("psnr", column(media, [](const ImagedMedium& m) { return m.psnr; }));
   const Measured mean = mean_psnr(media);
   root.put("mean_psnr", mean.value, mean.error);
-  root.put("reference_correlation", prediction.to_reference);
-  if (task.deconvolution.method == DeconvolutionTask::Method::wiener)
-    root.put("predicted_psnr", expected_psnr(line, task, prediction));
-  else
+  if (task.deconvolution.method == DeconvolutionTask::Method::richardson_lucy)
     write_residuals(root, media);
 }
 

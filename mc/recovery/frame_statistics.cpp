@@ -91,21 +91,33 @@ double squared_contrast(std::span<const double> frame) {
   return 2 * by(2 * width) - by(width);
 }
 
-FrameStatistics frame_statistics(std::span<const double> frame, std::size_t lags,
+FrameStatistics frame_statistics(std::span<const std::vector<double>> frames, std::size_t lags,
                                  double noise_variance) {
-  const auto rest = without_envelope(frame, 2.0 * static_cast<double>(lags));
-  auto values = Autocorrelation(frame.size())(rest);
+  const std::size_t pixels = frames.front().size();
+  const auto count = static_cast<double>(frames.size());
+  const Autocorrelation autocorrelation(pixels);
+  std::vector<double> values(pixels);
+  double square = -noise_variance;
+  for (const auto& frame : frames) {
+    const auto own = autocorrelation(without_envelope(frame, 2.0 * static_cast<double>(lags)));
+    for (std::size_t lag = 0; lag < pixels; ++lag) values[lag] += own[lag] / count;
+    square += squared_contrast(frame) / count;
+  }
   FrameStatistics found;
-  found.noise =
-      standard_deviation(std::span(values).subspan(lags, std::min(lags, frame.size() - lags)));
+  found.noise = standard_deviation(std::span(values).subspan(lags, std::min(lags, pixels - lags)));
   values.resize(lags);
   values[0] -= noise_variance;
-  const double square = squared_contrast(frame) - noise_variance;
   found.contrast = std::sqrt(std::max(square, 0.0));
   found.grain = values[0] > 0 ? central_peak(values, found.noise) : 0;
-  found.grains = found.grain > 0 ? static_cast<double>(frame.size()) / found.grain : 0;
+  found.grains = found.grain > 0 ? static_cast<double>(pixels) * count / found.grain : 0;
   found.autocorrelation = std::move(values);
   return found;
+}
+
+FrameStatistics frame_statistics(std::span<const double> frame, std::size_t lags,
+                                 double noise_variance) {
+  const std::vector<double> one(frame.begin(), frame.end());
+  return frame_statistics(std::span(&one, 1), lags, noise_variance);
 }
 
 }  // namespace flatspeckle::mc

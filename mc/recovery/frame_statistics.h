@@ -10,7 +10,7 @@ struct FrameStatistics {
   double contrast = 0;  ///< standard deviation over mean, of what is left of the envelope
   double grain = 0;     ///< pixels: the integral of the square of the autocorrelation's central
                         ///< peak over its height, by which averages over the frame get better
-  double grains = 0;    ///< in the frame
+  double grains = 0;    ///< in the frames
   double noise = 0;     ///< standard deviation of the autocorrelation where nothing is expected
   std::vector<double> autocorrelation;  ///< by lag in pixels, from 0
 };
@@ -24,9 +24,13 @@ std::vector<double> without_envelope(std::span<const double> frame, double width
 /// little: the variance lacks a part as 1/width, which is seen in two widths and put back.
 double squared_contrast(std::span<const double> frame);
 
-/// lags: so many of the autocorrelation, at most half of the pixels; the noise is that of as many
-/// beyond. noise_variance: of the camera, over the square of the mean: without correlation, it
-/// stands in the first value alone, and is taken off there.
+/// Of frames of one object, of the same pixels: the mean autocorrelation, the rms contrast, and the
+/// grains of all. lags: so many of the autocorrelation, at most half of the pixels; the noise is
+/// that of as many beyond. noise_variance: of the camera, over the square of the mean: without
+/// correlation, it stands in the first value alone, and is taken off there.
+FrameStatistics frame_statistics(std::span<const std::vector<double>> frames, std::size_t lags,
+                                 double noise_variance = 0);
+/// Of one.
 FrameStatistics frame_statistics(std::span<const double> frame, std::size_t lags,
                                  double noise_variance = 0);
 

@@ -2,9 +2,9 @@
 
 namespace flatspeckle::mc {
 
-Recovered recovered(std::span<const double> frame, const RecoveryTask& task) {
+Recovered recovered(std::span<const std::vector<double>> frames, const RecoveryTask& task) {
   Recovered found;
-  found.statistics = frame_statistics(frame, task.lags, noise_variance(task.noise));
+  found.statistics = frame_statistics(frames, task.lags, noise_variance(task.noise));
   if (task.points == 0) return found;
   const double resolution = task.resolution_grains * found.statistics.grain;
   found.fit = sparse_search(found.statistics.autocorrelation, {task.points, resolution});

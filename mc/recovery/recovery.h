@@ -1,6 +1,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "mc/recovery/camera_noise.h"
 #include "mc/recovery/frame_statistics.h"
@@ -21,7 +22,7 @@ struct Recovered {
   SparseFit fit;  ///< in pixels
 };
 
-/// Of one frame alone.
-Recovered recovered(std::span<const double> frame, const RecoveryTask& task);
+/// Of frames of one object, whose autocorrelations are averaged.
+Recovered recovered(std::span<const std::vector<double>> frames, const RecoveryTask& task);
 
 }  // namespace flatspeckle::mc

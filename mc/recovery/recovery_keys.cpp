@@ -22,6 +22,13 @@ DeconvolutionTask deconvolution_task(const Keys& keys, const DeconvolutionKeys& 
   return task;
 }
 
+void add_average_key(Keys& keys, std::int64_t& average) {
+  keys.add("average", average,
+           "Frames of one object, each through another medium, whose autocorrelations are averaged "
+           "before the search")
+      .positive();
+}
+
 void add_camera_keys(Keys& keys, CameraNoise& noise) {
   keys.add("photons", noise.photons,
            "Of the camera: detected per pixel, mean of the light (default 0: no shot noise)")

@@ -17,6 +17,9 @@ void add_keys(Keys& keys, DeconvolutionKeys& values);
 /// Reads what the method has use for.
 DeconvolutionTask deconvolution_task(const Keys& keys, const DeconvolutionKeys& values);
 
+/// average
+void add_average_key(Keys& keys, std::int64_t& average);
+
 /// photons and read_noise.
 void add_camera_keys(Keys& keys, CameraNoise& noise);
 void read_camera_keys(const Keys& keys, const CameraNoise& values, CameraNoise& noise);

@@ -1,0 +1,74 @@
+// Whether all points are found, predicted from the pairs' signals alone.
+#include <cmath>
+#include <random>
+
+#include <doctest/doctest.h>
+
+#include "mc/imaging/success_prediction.h"
+#include "mc/recovery/image_score.h"
+#include "mc/recovery/sparse_search.h"
+
+namespace flatspeckle::mc {
+
+namespace {
+
+/// Share of autocorrelations in which the search finds all points: peaks of this height in white
+/// noise of unit variance.
+double found_share(const LineObject& object, double signal, std::size_t lags, int runs,
+                   std::mt19937& random) {
+  std::normal_distribution<double> noise(0, 1);
+  double found = 0;
+  for (int run = 0; run < runs; ++run) {
+    std::vector<double> values(lags);
+    for (double& value : values) value = noise(random);
+    for (std::size_t i = 0; i < object.x.size(); ++i)
+      for (std::size_t j = 0; j < i; ++j)
+        values[static_cast<std::size_t>(std::abs(object.x[i] - object.x[j]))] += signal;
+    const SparseFit fit = sparse_search(values, {object.x.size(), 1, 1000});
+    found += score(object, fit.object, 0.5).found == 1;
+  }
+  return found / runs;
+}
+
+/// Signal of all pairs at which half of the searches succeed.
+double half(std::size_t points, double places) {
+  double low = 0, high = 20;
+  while (high - low > 1e-3) {
+    const double middle = (low + high) / 2;
+    const std::vector<double> signals(points * (points - 1) / 2, middle);
+    (predicted_success(signals, points, places) < 0.5 ? low : high) = middle;
+  }
+  return low;
+}
+
+}  // namespace
+
+TEST_CASE("points are found from the signal on at which they are predicted to be") {
+  std::mt19937 random(1);
+  constexpr std::size_t lags = 120;
+  const LineObject four{{0, 13, 50, 96}, {1, 1, 1, 1}},
+      six{{0, 9, 23, 53, 70, 95}, {1, 1, 1, 1, 1, 1}};
+  for (const LineObject& object : {four, six}) {
+    const double signal = half(object.x.size(), lags);
+    CAPTURE(object.x.size());
+    CAPTURE(signal);
+    CHECK(found_share(object, signal / 2, lags, 40, random) < 0.2);
+    CHECK(found_share(object, 1.5 * signal, lags, 40, random) > 0.5);
+  }
+}
+
+TEST_CASE("of many equal points the whole object decides") {
+  CHECK(half(10, 1e6) == doctest::Approx(std::sqrt(4 * std::log(1e6) / 10)).epsilon(0.2));
+  CHECK(half(4, 1e8) == doctest::Approx(std::sqrt(4 * std::log(1e8) / 4)).epsilon(0.1));
+}
+
+TEST_CASE("the dimmest point decides, and no signal is no success") {
+  std::vector<double> signals(6, 10.0);
+  CHECK(predicted_success(signals, 4, 100) > 0.999);
+  signals[2] = signals[4] = signals[5] = 0.1;        // of the last point
+  CHECK(predicted_success(signals, 4, 100) < 0.02);  // one in a hundred places by chance
+  CHECK(predicted_success(std::vector<double>(6, 0.0), 4, 100) < 0.01);
+  CHECK(predicted_success(std::vector<double>{5}, 2, 100) == doctest::Approx(1).epsilon(0.05));
+}
+
+}  // namespace flatspeckle::mc
