@@ -13,7 +13,7 @@ namespace flatspeckle::mc {
 const DatasetTable imaging_table{
     .name = "image",
     .rows = {{"camera_place", Data::scale, "", "PLACE", "pixels: x, or sines of directions"},
-             {"repeat", Data::numbers, "", "1", "number of the medium, or of `average` media"},
+             {"repeat", Data::numbers, "", "1", "number of the medium, or of several, by the key average"},
              {"point", Data::numbers, "", "1", "number of the point of the object"},
              {"sought", Data::numbers, "", "1", "number of the point that was looked for"},
              {"pair", Data::numbers, "", "1", "number of the pair of points (0, 1), (0, 2), ..."},

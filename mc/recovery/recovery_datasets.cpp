@@ -5,8 +5,8 @@ namespace flatspeckle::mc {
 const DatasetTable recovery_table{
     .name = "recover",
     .rows = {
-        {"frame", Data::numbers, "", "1", "number of the frame, or of `average` frames"},
-        {"frame_name", Data::text, "frame", "", "its column, of `average` frames the first's"},
+        {"frame", Data::numbers, "", "1", "number of the frame, or of several by the key average"},
+        {"frame_name", Data::text, "frame", "", "its column, of several frames the first's"},
         {"lag", Data::numbers, "", "1", "pixels"},
         {"sought", Data::numbers, "", "1", "number of the point that was looked for"},
         {"autocorrelation", Data::real, "frame lag", "1",
