@@ -35,17 +35,18 @@ std::vector<double> coefficients(const GroupedSums& sums, const Estimator& theta
 
 }  // namespace
 
-Estimate controlled_jackknife(const GroupedSums& sums, const Estimator& theta,
-                              std::size_t control) {
+Estimate controlled_jackknife(const GroupedSums& sums, const Estimator& theta, std::size_t control,
+                              double few) {
   constexpr std::size_t many = 32;
-  if (sums.groups() < many) return jackknife(sums, theta);
-  return jackknife(sums, [&theta, control, of_control = coefficients(sums, theta, control)](
-                             double samples, std::span<const Complex> all) {
+  if (sums.groups() < many) return jackknife(sums, theta, few);
+  const auto of_control = coefficients(sums, theta, control);
+  const auto controlled = [&](double samples, std::span<const Complex> all) {
     std::vector<Complex> value = theta(samples, all);
     for (std::size_t i = 0; i < value.size(); ++i)
       value[i] -= of_control[i] * all[control] / samples;
     return value;
-  });
+  };
+  return jackknife(sums, controlled, few);
 }
 
 }  // namespace flatspeckle

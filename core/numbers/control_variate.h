@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/numbers/statistics.h"
+#include "core/numbers/mean_errors.h"
 
 namespace flatspeckle {
 
@@ -8,6 +8,7 @@ namespace flatspeckle {
 /// `control`, known to be 0 on average, is taken away (control variate, by regression over the
 /// groups). The regression's own bias is of the order of one over the samples. Only where it is
 /// worth it: where groups are many, and the control tells clearly of the variance.
-Estimate controlled_jackknife(const GroupedSums& sums, const Estimator& theta, std::size_t control);
+Estimate controlled_jackknife(const GroupedSums& sums, const Estimator& theta, std::size_t control,
+                              double few = few_groups);
 
 }  // namespace flatspeckle

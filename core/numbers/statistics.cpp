@@ -19,16 +19,16 @@ std::size_t most_groups(std::size_t size) {
 
 constexpr double rounding = 1e-13;  ///< relative: deviations below it say nothing
 
-bool is_rare(double sum_dd, double sum_d4, std::size_t groups) {
-  constexpr double enough = 24, least_share = 1.0 / 9;
-  const double least = std::min(enough, least_share * static_cast<double>(groups));
+bool is_rare(double sum_dd, double sum_d4, std::size_t groups, double few) {
+  constexpr double many = 216;
+  const double least = few * std::min(1.0, static_cast<double>(groups) / many);
   return sum_dd * sum_dd < least * sum_d4;
 }
 
 std::uint64_t is_carried_by_few(const Estimate& estimate, std::size_t i, double sum_dd,
-                                double sum_d4, std::size_t groups) {
+                                double sum_d4, std::size_t groups, double few) {
   const bool rounded = estimate.error[i] < rounding * std::abs(estimate.value[i]);
-  return !rounded && is_rare(sum_dd, sum_d4, groups) ? 1 : 0;
+  return !rounded && is_rare(sum_dd, sum_d4, groups, few) ? 1 : 0;
 }
 
 /// For values whose squares are below all numbers: a power of two, so that they keep their digits.
@@ -119,6 +119,10 @@ void append(Estimate& all, const Estimate& more) {
 }
 
 Estimate jackknife(const GroupedSums& sums, const Estimator& theta) {
+  return jackknife(sums, theta, few_groups);
+}
+
+Estimate jackknife(const GroupedSums& sums, const Estimator& theta, double few) {
   const double samples = sums.total_samples();
   const std::vector<Complex> total = sums.total();
   Estimate estimate{theta(samples, total), {}};
@@ -156,7 +160,7 @@ Estimate jackknife(const GroupedSums& sums, const Estimator& theta) {
     const double spread =
         sum_dd[i] - 2 * (std::conj(mean) * sum_d[i]).real() + sum_w * std::norm(mean);
     estimate.error[i] = std::sqrt(std::max(0.0, spread) / static_cast<double>(groups)) / lifted[i];
-    estimate.rare[i] = is_carried_by_few(estimate, i, sum_dd[i], sum_d4[i], groups);
+    estimate.rare[i] = is_carried_by_few(estimate, i, sum_dd[i], sum_d4[i], groups, few);
   }
   return estimate;
 }
@@ -173,7 +177,7 @@ std::vector<Complex> added_up(std::span<const Complex> sums, const EntrySums& of
 
 }  // namespace
 
-Estimate jackknife(const GroupedSums& sums, const EntrySums& of) {
+Estimate jackknife(const GroupedSums& sums, const EntrySums& of, double few) {
   const double samples = sums.total_samples();
   const std::size_t groups = sums.groups();
   Estimate estimate{sample_mean(samples, added_up(sums.total(), of)), {}};
@@ -202,7 +206,7 @@ Estimate jackknife(const GroupedSums& sums, const EntrySums& of) {
   estimate.error.resize(of.count);
   for (std::size_t i = 0; i < of.count; ++i) {
     estimate.error[i] = std::sqrt(sum_dd[i] / static_cast<double>(groups)) / lifted[i];
-    estimate.rare[i] = is_carried_by_few(estimate, i, sum_dd[i], sum_d4[i], groups);
+    estimate.rare[i] = is_carried_by_few(estimate, i, sum_dd[i], sum_d4[i], groups, few);
   }
   return estimate;
 }

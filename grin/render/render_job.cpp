@@ -20,6 +20,10 @@ namespace flatspeckle::grin {
 
 namespace {
 
+/// Groups that make up an error of a picture; what fewer do is marked. Of light paths that are
+/// worth as unequal as in a graded fibre, pixels of fewer lie beyond two errors too often.
+constexpr double few_of_pictures = 36;
+
 /// So many that adding up the picture takes little of the time, and so few that a batch ends soon
 /// and the number of batches from which errors are trusted is soon there: long paths are fewer.
 /// A power of two: no rounding of the flights changes it.
@@ -195,8 +199,9 @@ RenderJob render_job(const RenderScene& scene, const RenderRequest& request, std
   job.batches.relative_error =
       [=, cells = scene.map, steady = steady_picture(job.pictures, scene.bins),
        has_drift = job.has_drift, first_of_map = job.first_of_map()](const GroupedSums& sums) {
-        const Estimate picture = has_drift ? controlled_jackknife(sums, steady, sums.size() - 1)
-                                           : jackknife(sums, steady_sums);
+        const Estimate picture =
+            has_drift ? controlled_jackknife(sums, steady, sums.size() - 1, few_of_pictures)
+                      : jackknife(sums, steady_sums, few_of_pictures);
         const double of_pictures = largest_error(tracer.transport->sensors, picture);
         return cells ? std::max(of_pictures, relative_error(fluence(sums, first_of_map, *cells)))
                      : of_pictures;
@@ -205,7 +210,8 @@ RenderJob render_job(const RenderScene& scene, const RenderRequest& request, std
 }
 
 Estimate RenderJob::estimate(const GroupedSums& sums, const Estimator& theta) const {
-  return has_drift ? controlled_jackknife(sums, theta, sums.size() - 1) : jackknife(sums, theta);
+  return has_drift ? controlled_jackknife(sums, theta, sums.size() - 1, few_of_pictures)
+                   : jackknife(sums, theta, few_of_pictures);
 }
 
 RenderedPicture rendered_picture(const RenderJob& job, const GroupedSums& sums) {

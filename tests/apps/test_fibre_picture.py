@@ -1,0 +1,49 @@
+"""Pictures of the graded fibre against those of its rays in closed form. By night, with the argument Pixels: what share of
+the pixels that are not marked lies beyond two errors."""
+
+import sys
+import unittest
+
+import numpy as np
+
+from fibre_picture import fibre_picture
+from renders import RenderTest
+
+
+class Picture(RenderTest):
+    def test_it_is_that_of_the_rays(self):
+        truth = fibre_picture(6, blocks=1)
+        for method in ("path", "light", "bidirectional"):
+            with self.subTest(method=method):
+                found = self.scene("grin_fibre", pixels=[6, 6], path_bins=[80.42, 80.74, 2], method=method, samples=15000)
+                self.assert_within(found["image"], found["image_error"], truth)
+                self.assert_within(found["total"], found["total_error"], truth.mean() * 1.8**2)
+
+    def test_rays_fill_pixels_evenly_enough(self):
+        coarse, fine = fibre_picture(24, blocks=1), fibre_picture(24)
+        self.assertLess(np.sqrt(np.mean((coarse - fine) ** 2)), 0.005 * np.sqrt(np.mean(fine**2)))
+
+
+class Pixels(RenderTest):
+    def assert_few_beyond(self, samples, seeds):
+        """At most 8 %, and what chance adds to so many pixels: one standard error."""
+        beyond = seen = 0
+        truth = fibre_picture(24)
+        for seed in seeds:
+            found = self.scene("grin_fibre", pixels=[24, 24], samples=samples, seed=seed)
+            trusted = found["image_rare"] == 0
+            off = np.abs(found["image"] - truth)[trusted]
+            beyond += np.count_nonzero(off > 2 * found["image_error"][trusted])
+            seen += np.count_nonzero(trusted)
+        print(f"{samples} samples: {beyond} of {seen} beyond two errors")
+        self.assertLess(beyond, 0.08 * seen + np.sqrt(0.08 * 0.92 * seen))
+
+    def test_of_many_samples(self):
+        self.assert_few_beyond(600000, range(1, 4))
+
+    def test_of_few_samples(self):
+        self.assert_few_beyond(60000, range(1, 25))
+
+
+if __name__ == "__main__":
+    unittest.main(defaultTest="Picture" if len(sys.argv) < 2 else None)
