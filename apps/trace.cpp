@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "apps/command/subcommands.h"
+#include "core/result/result_group.h"
 #include "core/session/session.h"
 #include "grin/rays/light_speed.h"
 #include "grin/scene/trace_datasets.h"
@@ -13,24 +14,36 @@ namespace flatspeckle::apps {
 namespace {
 
 using grin::FoundConnections;
+using grin::RayState;
 using grin::TracedRay;
 using grin::TraceScene;
+
+/// Ends of the rays that came to a stop surface; of all where none did.
+std::vector<RayState> ends_to_tell(const std::vector<TracedRay>& rays, std::size_t on_surface) {
+  std::vector<RayState> ends;
+  for (const TracedRay& ray : rays)
+    if (on_surface == 0 || ray.status == grin::RayStatus::surface) ends.push_back(ray.end);
+  return ends;
+}
 
 std::string ends_of(const std::vector<TracedRay>& rays, double length_unit) {
   std::size_t ends[3] = {};
   for (const auto& ray : rays) ++ends[static_cast<std::size_t>(ray.status)];
   std::ostringstream text;
-  text << "ended: " << ends[0] << " on a stop surface, " << ends[1] << " at max_length";
-  if (ends[2] > 0) text << ", " << ends[2] << " at the edge of the grid";
-  const auto extremes =  // clang 14 captures no structured bindings
-      std::minmax_element(rays.begin(), rays.end(), [](const TracedRay& a, const TracedRay& b) {
-        return a.end.optical_path < b.end.optical_path;
-      });
-  const auto range = [&](const char* what, double unit, const char* name) {
-    const double low = unit * extremes.first->end.optical_path;
-    const double high = unit * extremes.second->end.optical_path;
-    text << '\n' << what << std::setprecision(12) << low << " to " << high << name;
-    text << std::setprecision(3) << ", spread " << high - low << name;
+  text << "ended: " << ends[1] << " at max_length, ";
+  if (ends[2] > 0) text << ends[2] << " at the edge of the grid, ";
+  text << ends[0] << " on a stop surface";
+  const auto told = ends_to_tell(rays, ends[0]);
+  if (told.size() < rays.size()) text << "; of those:";
+  const auto [least, most] =
+      std::ranges::minmax(column(told, [](const RayState& end) { return end.v.norm(); }));
+  text << std::setprecision(6) << "\nindex at the end " << least << " to " << most;
+  const auto path =  // clang 14 captures no structured bindings
+      std::ranges::minmax(column(told, [](const RayState& end) { return end.optical_path; }));
+  const auto range = [&](const char* what, double size, const char* unit) {
+    text << '\n'
+         << what << std::setprecision(12) << size * path.min << " to " << size * path.max << unit;
+    text << std::setprecision(3) << ", spread " << size * (path.max - path.min) << unit;
   };
   range("optical path ", 1, "");
   if (length_unit != 1) range("time ", length_unit / grin::light_speed, " s");

@@ -247,11 +247,9 @@ int validate(const Arguments& arguments) {
         print_entries(scene, comparison);
         write_medium(file, scene);
         write_axes(file, scene);
-        print_ranges(
-            "mc", mc::write_moments(file, "mc", mc.job.field, scene, mc_sums, mc_moments).ranges);
+        print_ranges("mc", mc::write_moments(file, "mc", mc.job.field, scene, mc_sums, mc_moments));
         print_ranges(name, mc::write_moments(file, name, reference.job.field, scene, reference_sums,
-                                             reference_moments)
-                               .ranges);
+                                             reference_moments));
         if (name == "transport") mc::write_numerical(file, name);
         write_comparison(file, comparison);
         if (shifts.empty()) return;

@@ -52,7 +52,10 @@ void print_entries(const CovarianceRequest& request, const Estimate& estimate,
   if (entries > most_rows) std::printf("... and %zu more\n", entries - most_rows);
 }
 
-void print_ranges(const std::string& group, const std::vector<mc::WrittenRange>& ranges) {
+namespace {
+
+/// group: of a result file, empty for the root.
+void print_ranges_of(const std::string& group, const std::vector<mc::WrittenRange>& ranges) {
   for (const auto& [long_name, estimate, few_steps] : ranges) {
     if (few_steps)
       std::fputs(
@@ -64,7 +67,8 @@ void print_ranges(const std::string& group, const std::vector<mc::WrittenRange>&
   }
 }
 
-void print_moves(const CovarianceRequest& request, const mc::WrittenMoves& moves) {
+/// C_E and C_I of a curve, then the ranges.
+void print_curve(const CovarianceRequest& request, const mc::WrittenMoves& moves) {
   const bool tilts = request.kind == CovarianceRequest::Kind::memory_effect;
   if (tilts || request.kind == CovarianceRequest::Kind::translation) {
     const auto& [value, error, rare] = moves.correlation;
@@ -78,7 +82,21 @@ void print_moves(const CovarianceRequest& request, const mc::WrittenMoves& moves
     }
     if (value.size() > most_rows) std::printf("... and %zu more\n", value.size() - most_rows);
   }
-  print_ranges("", moves.ranges);
+  print_ranges_of("", moves.ranges);
+}
+
+}  // namespace
+
+void print_ranges(const std::string& group, const std::vector<mc::WrittenMoves>& groups) {
+  for (const mc::WrittenMoves& moves : groups) print_ranges_of(group, moves.ranges);
+}
+
+void print_moves(const CovarianceRequest& request, const std::vector<mc::WrittenMoves>& groups) {
+  for (const mc::WrittenMoves& moves : groups) {
+    if (groups.size() > 1)
+      std::printf("%s views:\n", &moves == &groups.front() ? "transmitted" : "reflected");
+    print_curve(request, moves);
+  }
 }
 
 std::string range_text(const mc::Range& range, double error) {

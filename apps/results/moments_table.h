@@ -27,11 +27,12 @@ inline constexpr std::size_t most_rows = 60;
 void print_entries(const CovarianceRequest& request, const Estimate& estimate,
                    const std::string& name = "covariance");
 
-/// The ranges of a group (empty: the root), and on standard error which rest on too few steps.
-void print_ranges(const std::string& group, const std::vector<mc::WrittenRange>& ranges);
-/// C_E and C_I = C_E^2 of a curve of tilts or translations, then its range. Of a map over tilts and
-/// shifts the ranges alone.
-void print_moves(const CovarianceRequest& request, const mc::WrittenMoves& moves);
+/// The ranges of a group of a file (empty: the root), and on standard error which rest on too few
+/// steps.
+void print_ranges(const std::string& group, const std::vector<mc::WrittenMoves>& groups);
+/// C_E and C_I = C_E^2 of a curve of tilts or translations, then its range, for each of its
+/// view_groups(). Of a map over tilts and shifts the ranges alone.
+void print_moves(const CovarianceRequest& request, const std::vector<mc::WrittenMoves>& groups);
 /// "1.36 +- 0.01", or which steps are missing.
 std::string range_text(const mc::Range& range, double error);
 

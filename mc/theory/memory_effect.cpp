@@ -46,6 +46,30 @@ std::size_t place_of_zero(const std::vector<double>& steps) {
   return static_cast<std::size_t>(std::find(steps.begin(), steps.end(), 0.0) - steps.begin());
 }
 
+double correlation_of_sums(const CovarianceRequest& request, std::span<const Complex> entries,
+                           const std::vector<std::size_t>& views, std::size_t move) {
+  Complex cross = 0;
+  double reference = 0, moved = 0;
+  for (const std::size_t v : views) {
+    cross += entries[request.tilted_entry(move, v)];
+    reference += entries[request.reference_intensity(v)].real();
+    moved += entries[request.tilted_intensity(move, v)].real();
+  }
+  const double product = reference * moved;
+  return product > 0 ? std::abs(cross) / std::sqrt(product) : 0;
+}
+
+double correlation_of_powers(const CovarianceRequest& request, std::span<const Complex> entries,
+                             const std::vector<std::size_t>& views, std::size_t move) {
+  double cross = 0, product = 0;
+  for (const std::size_t v : views) {
+    cross += std::norm(entries[request.tilted_entry(move, v)]);
+    product += entries[request.reference_intensity(v)].real() *
+               entries[request.tilted_intensity(move, v)].real();
+  }
+  return product > 0 ? std::sqrt(cross / product) : 0;
+}
+
 /// Those of Correlations.
 std::vector<Range> ranges(const CovarianceRequest& request, std::span<const Complex> moves) {
   using Kind = CovarianceRequest::Kind;
@@ -64,25 +88,37 @@ std::vector<Range> ranges(const CovarianceRequest& request, std::span<const Comp
   return found;
 }
 
+std::vector<Complex> with_ranges(const CovarianceRequest& request, std::vector<Complex> moves) {
+  for (const Range& range : ranges(request, std::span(moves))) moves.emplace_back(range.value);
+  return moves;
+}
+
 }  // namespace
+
+std::vector<std::vector<std::size_t>> view_groups(const CovarianceRequest& request) {
+  std::vector<std::vector<std::size_t>> sides(2);
+  for (std::size_t v = 0; v < request.reference_views; ++v) {
+    const View& view = request.views[v];
+    sides[!view.near && std::cos(view.angle) <= 0].push_back(v);
+  }
+  std::erase_if(sides, [](const auto& side) { return side.empty(); });
+  return sides;
+}
+
+std::vector<Complex> field_correlation(const CovarianceRequest& request,
+                                       std::span<const Complex> entries,
+                                       const std::vector<std::size_t>& views) {
+  const bool near = request.views.front().near;
+  std::vector<Complex> correlation;
+  for (std::size_t move = 0; move < request.moves; ++move)
+    correlation.emplace_back(near ? correlation_of_powers(request, entries, views, move)
+                                  : correlation_of_sums(request, entries, views, move));
+  return correlation;
+}
 
 std::vector<Complex> field_correlation(const CovarianceRequest& request,
                                        std::span<const Complex> entries) {
-  double reference = 0;
-  for (std::size_t v = 0; v < request.reference_views; ++v)
-    reference += entries[request.reference_intensity(v)].real();
-  std::vector<Complex> correlation;
-  for (std::size_t t = 0; t < request.moves; ++t) {
-    Complex cross = 0;
-    double tilted = 0;
-    for (std::size_t v = 0; v < request.reference_views; ++v) {
-      cross += entries[request.tilted_entry(t, v)];
-      tilted += entries[request.tilted_intensity(t, v)].real();
-    }
-    const double product = reference * tilted;
-    correlation.emplace_back(product > 0 ? std::abs(cross) / std::sqrt(product) : 0);
-  }
-  return correlation;
+  return field_correlation(request, entries, view_groups(request).front());
 }
 
 Range memory_effect_range(const std::vector<double>& tilt_q, std::span<const Complex> correlation) {
@@ -113,15 +149,13 @@ bool few_steps(const std::vector<double>& steps, const Range& range) {
 
 std::vector<Complex> correlation_and_ranges(const CovarianceRequest& request,
                                             std::span<const Complex> entries) {
-  auto values = field_correlation(request, entries);
-  for (const Range& range : ranges(request, std::span(values))) values.emplace_back(range.value);
-  return values;
+  return with_ranges(request, field_correlation(request, entries));
 }
 
 Correlations correlations(const CovarianceRequest& request, const GroupedSums& sums,
-                          const Estimator& covariance) {
+                          const Estimator& covariance, const std::vector<std::size_t>& views) {
   const auto all = jackknife(sums, [&](double samples, std::span<const Complex> total) {
-    return correlation_and_ranges(request, covariance(samples, total));
+    return with_ranges(request, field_correlation(request, covariance(samples, total), views));
   });
   Correlations found{part(all, 0, request.moves), {}};
   for (const Range& range : ranges(request, found.moves.value)) {
@@ -133,7 +167,8 @@ Correlations correlations(const CovarianceRequest& request, const GroupedSums& s
 
 MemoryEffect memory_effect(const CovarianceRequest& request, const GroupedSums& sums,
                            const Estimator& covariance) {
-  const auto [moves, ranges] = correlations(request, sums, covariance);
+  const auto [moves, ranges] =
+      correlations(request, sums, covariance, view_groups(request).front());
   return {real_parts(moves.value), moves.error, moves.rare, ranges.front()};
 }
 

@@ -9,10 +9,20 @@
 
 namespace flatspeckle::mc {
 
-/// C_E per move (C19): |sum over views of the covariance of reference and moved field|, over the
-/// square root of the product of their intensities summed over the same views. A function of the
-/// covariance entries of a request with moves, whichever solver they come from. Where an
-/// intensity vanishes the correlation is 0.
+/// The reference's views by what one field correlation sums over: those of one side of the medium,
+/// transmitted before reflected; near sensors all together. One group or two.
+std::vector<std::vector<std::size_t>> view_groups(const CovarianceRequest& request);
+
+/// C_E per move (C19). Of far views |sum over views of the covariance of reference and moved
+/// field|, over the square root of the product of their intensities summed over the same views.
+/// Near sensors, whose covariances differ in phase, count by power: the square root of sum |C|^2
+/// over sum I I'. A function of the covariance entries of a request with moves, whichever solver
+/// they come from. Where an intensity vanishes the correlation is 0. views: one of the
+/// view_groups().
+std::vector<Complex> field_correlation(const CovarianceRequest& request,
+                                       std::span<const Complex> entries,
+                                       const std::vector<std::size_t>& views);
+/// Of the first of the view_groups().
 std::vector<Complex> field_correlation(const CovarianceRequest& request,
                                        std::span<const Complex> entries);
 
@@ -46,18 +56,19 @@ struct RangeEstimate {
 /// field_correlation of every move and half-widths, with jackknife errors. The only range of
 /// memory_effect and translation is that of their moves; those of tilt_shift are along tilts at
 /// shift 0, along shifts at tilt 0, and of far views along matched views. Tilts count in tilt_q.
+/// views: one of the view_groups().
 struct Correlations {
   Estimate moves;
   std::vector<RangeEstimate> ranges;
 };
 Correlations correlations(const CovarianceRequest& request, const GroupedSums& sums,
-                          const Estimator& covariance);
+                          const Estimator& covariance, const std::vector<std::size_t>& views);
 
-/// field_correlation, then the values of those ranges.
+/// field_correlation, then the values of those ranges, of the first of the view_groups().
 std::vector<Complex> correlation_and_ranges(const CovarianceRequest& request,
                                             std::span<const Complex> entries);
 
-/// Of a memory_effect or translation request.
+/// Of a memory_effect or translation request, of the first of its view_groups().
 struct MemoryEffect {
   std::vector<double> correlation, correlation_error;  ///< per tilt or shift
   std::vector<std::uint64_t> correlation_rare;         ///< see Estimate

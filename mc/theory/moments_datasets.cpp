@@ -42,7 +42,7 @@ const DatasetTable moves_table{
              {"moved_intensity", Data::estimate, "MOVES VIEW", "COVARIANCE",
               "variance of the moved field"},
              {"field_correlation", Data::estimate, "MOVES", "1",
-              "field correlation C_E, summed over views"},
+              "field correlation C_E, summed over views on one side, transmitted if there are any"},
              {"memory_effect_range", Data::estimate, "", "1",
               "q L at C_I = 1/2 with matched views, L the depth"},
              {"tilt_range", Data::estimate, "", "1",
@@ -55,7 +55,19 @@ const DatasetTable moves_table{
              {"matched_moved_intensity", Data::estimate, "tilt view_angle", "COVARIANCE",
               "variance of the moved field"},
              {"matched_correlation", Data::estimate, "tilt", "1",
-              "field correlation C_E with matched views, summed over views"},
+              "field correlation C_E with matched views, summed over the same"},
+             {"reflected_field_correlation", Data::estimate, "MOVES", "1",
+              "C_E of the reflected views, where there are transmitted ones too"},
+             {"reflected_memory_effect_range", Data::estimate, "", "1",
+              "q L of the reflected views at C_I = 1/2 with matched views, L the depth"},
+             {"reflected_tilt_range", Data::estimate, "", "1",
+              "q L of the reflected views at C_I = 1/2 where the views stay, L the depth"},
+             {"reflected_shift_range", Data::estimate, "", "SHIFT_RANGE",
+              "shift times the depth of the reflected views at C_I = 1/2 where the light stays"},
+             {"reflected_translation_range", Data::estimate, "", "length",
+              "translation of the reflected views at C_I = 1/2"},
+             {"reflected_matched_correlation", Data::estimate, "tilt", "1",
+              "C_E of the reflected views with matched views"},
              {"diffusion_theory", Data::real, "tilt", "1",
               "C_E of matched views in diffusion theory of a slab"},
              {"single_scattering", Data::real, "tilt", "1",
@@ -67,13 +79,17 @@ const DatasetTable moves_table{
              {"tilted_intensity_gradient", Data::estimate, "parameter tilt VIEW", "",
               "derivative of the variance of the tilted field in the matched view"},
              {"field_correlation_gradient", Data::estimate, "parameter tilt", "",
-              "derivative of the field correlation C_E, summed over views"},
+              "derivative of the field correlation C_E"},
              {"memory_effect_range_gradient", Data::estimate, "parameter", "",
               "derivative of the range q L at C_I = 1/2; 0 where that is censored"}},
     .attributes = {{"memory_effect_range", "censored", "uint64", censored_meaning},
                    {"tilt_range", "censored", "uint64", censored_meaning},
                    {"shift_range", "censored", "uint64", censored_meaning},
-                   {"translation_range", "censored", "uint64", censored_meaning}},
+                   {"translation_range", "censored", "uint64", censored_meaning},
+                   {"reflected_memory_effect_range", "censored", "uint64", censored_meaning},
+                   {"reflected_tilt_range", "censored", "uint64", censored_meaning},
+                   {"reflected_shift_range", "censored", "uint64", censored_meaning},
+                   {"reflected_translation_range", "censored", "uint64", censored_meaning}},
     .roles = {{"MOVES", {"tilt", "tilt shift", "shift"}}, {"SHIFT_RANGE", {"1", "length"}}}};
 
 namespace {
@@ -93,63 +109,36 @@ void write_mean(const ResultGroup& out, const CovarianceRequest& request, const 
 /// Writes what memory_effect, tilt_shift and translation requests ask for.
 class MovesWriter {
  public:
-  MovesWriter(const ResultGroup& out, const Scene& scene, const Estimate& covariance)
-      : out_(out), scene_(scene), request_(scene.request), covariance_(covariance) {
+  MovesWriter(const ResultGroup& out, const Scene& scene)
+      : out_(out), scene_(scene), request_(scene.request) {}
+
+  void entries(const Estimate& covariance) const {
+    const bool tilts = request_.kind == Kind::memory_effect,
+               map = request_.kind == Kind::tilt_shift;
+    const std::size_t matched = map && far() ? request_.tilts.size() : 0,
+                      moves = request_.moves - matched;
     out_.put("reference_intensity",
              part(covariance, request_.reference_intensity(0), request_.reference_views));
+    moved(covariance, "covariance", tilts ? "tilted_intensity" : "moved_intensity", 0, moves);
+    if (matched) moved(covariance, "matched_covariance", "matched_moved_intensity", moves, matched);
   }
 
-  /// Tilts with matched views, or translations: one curve.
-  void curve(const Correlations& found) {
-    const bool tilts = request_.kind == Kind::memory_effect;
-    const RangeEstimate& only = found.ranges.front();
-    entries("covariance", tilts ? "tilted_intensity" : "moved_intensity", 0, request_.moves);
-    out_.put("field_correlation", found.moves);
-    tilts ? range("memory_effect_range", only, scene_.domain.depth)
-          : range("translation_range", only, 1);
-    ranges_.back().few_steps = few_steps(tilts ? request_.tilt_q : request_.shifts, only.range);
-  }
-
-  void map(const Correlations& found) {
-    const std::size_t tilts = request_.tilts.size(), map = tilts * request_.shifts.size();
-    const double depth = scene_.domain.depth;
-    const bool far = !request_.views.front().near;
-    entries("covariance", "moved_intensity", 0, map);
-    out_.put("field_correlation", part(found.moves, 0, map));
-    range("tilt_range", found.ranges[0], depth);
-    range("shift_range", found.ranges[1], far ? depth : 1);
-    if (!far) return;
-    entries("matched_covariance", "matched_moved_intensity", map, tilts);
-    out_.put("matched_correlation", part(found.moves, map, tilts));
-    range("memory_effect_range", found.ranges[2], depth);
-    if (request_.lights.all(Light::Kind::plane)) theory();
-  }
-
-  const std::vector<WrittenRange>& ranges() const { return ranges_; }
-
- private:
-  /// Covariances and intensities of moves from `first` on.
-  void entries(const std::string& covariance, const std::string& intensity, std::size_t first,
-               std::size_t moves) const {
-    const std::size_t count = moves * request_.reference_views;
-    out_.put(covariance, part(covariance_, request_.tilted_entry(first, 0), count));
-    out_.put(intensity, part(covariance_, request_.tilted_intensity(first, 0), count));
-  }
-
-  void range(const std::string& path, RangeEstimate estimate, double scale) {
-    estimate.range.value *= scale;
-    estimate.error *= scale;
-    out_.put(path, {{estimate.range.value}, {estimate.error}, {estimate.rare}});
-    out_.attribute(path, "censored", static_cast<std::uint64_t>(estimate.range.censored));
-    ranges_.push_back({out_.row(path).long_name, estimate});
+  /// Of a group of views; prefix: of its datasets.
+  WrittenMoves correlation(const Correlations& found, const std::string& prefix) {
+    prefix_ = prefix;
+    ranges_.clear();
+    request_.kind == Kind::tilt_shift ? map(found) : curve(found);
+    return {found.moves, ranges_};
   }
 
   /// Diffusion theory where it holds, in transmission, and single scattering, both for matched
   /// views of plane waves.
-  void theory() const {
-    const auto views = request_.reference_angles();
+  void theory(const std::vector<std::size_t>& group) const {
+    if (request_.kind != Kind::tilt_shift || !far() || !request_.lights.all(Light::Kind::plane))
+      return;
+    const auto views = column(group, [&](std::size_t v) { return request_.views[v].angle; });
     const double depth = scene_.domain.depth, light = request_.lights.front().angle;
-    if (request_.transmission_only() && !scene_.profile)
+    if (std::cos(views.front()) > 0 && !scene_.profile)
       out_.put("diffusion_theory", column(request_.tilt_q, [&](double q) {
                  return diffusion_field_correlation(scene_.medium, depth, q);
                }));
@@ -158,10 +147,51 @@ class MovesWriter {
              }));
   }
 
+ private:
+  bool far() const { return !request_.views.front().near; }
+
+  /// Tilts with matched views, or translations: one curve.
+  void curve(const Correlations& found) {
+    const bool tilts = request_.kind == Kind::memory_effect;
+    const RangeEstimate& only = found.ranges.front();
+    out_.put(prefix_ + "field_correlation", found.moves);
+    tilts ? range("memory_effect_range", only, scene_.domain.depth)
+          : range("translation_range", only, 1);
+    ranges_.back().few_steps = few_steps(tilts ? request_.tilt_q : request_.shifts, only.range);
+  }
+
+  void map(const Correlations& found) {
+    const std::size_t tilts = request_.tilts.size(), map = tilts * request_.shifts.size();
+    const double depth = scene_.domain.depth;
+    out_.put(prefix_ + "field_correlation", part(found.moves, 0, map));
+    range("tilt_range", found.ranges[0], depth);
+    range("shift_range", found.ranges[1], far() ? depth : 1);
+    if (!far()) return;
+    out_.put(prefix_ + "matched_correlation", part(found.moves, map, tilts));
+    range("memory_effect_range", found.ranges[2], depth);
+  }
+
+  /// Covariances and intensities of moves from `first` on.
+  void moved(const Estimate& all, const std::string& covariance, const std::string& intensity,
+             std::size_t first, std::size_t moves) const {
+    const std::size_t count = moves * request_.reference_views;
+    out_.put(covariance, part(all, request_.tilted_entry(first, 0), count));
+    out_.put(intensity, part(all, request_.tilted_intensity(first, 0), count));
+  }
+
+  void range(const std::string& name, RangeEstimate estimate, double scale) {
+    const std::string path = prefix_ + name;
+    estimate.range.value *= scale;
+    estimate.error *= scale;
+    out_.put(path, {{estimate.range.value}, {estimate.error}, {estimate.rare}});
+    out_.attribute(path, "censored", static_cast<std::uint64_t>(estimate.range.censored));
+    ranges_.push_back({out_.row(path).long_name, estimate});
+  }
+
   const ResultGroup& out_;
   const Scene& scene_;
   const CovarianceRequest& request_;
-  const Estimate& covariance_;
+  std::string prefix_;
   std::vector<WrittenRange> ranges_;
 };
 
@@ -201,9 +231,9 @@ Estimate unpack_full(const CovarianceRequest& request, const Estimate& triangle)
   return full;
 }
 
-WrittenMoves write_moments(ResultFile& file, const std::string& group, const FieldJob& job,
-                           const Scene& scene, const GroupedSums& sums,
-                           const FieldMoments& moments) {
+std::vector<WrittenMoves> write_moments(ResultFile& file, const std::string& group,
+                                        const FieldJob& job, const Scene& scene,
+                                        const GroupedSums& sums, const FieldMoments& moments) {
   const CovarianceRequest& request = scene.request;
   write_mean({file, mean_table, group}, request, moments.mean);
   const ResultGroup out(file, request_table(request.kind), group);
@@ -213,10 +243,15 @@ WrittenMoves write_moments(ResultFile& file, const std::string& group, const Fie
   if (!request.has_reference()) return {};
   file.bind("MOVES", moves_of(request));
   file.bind("SHIFT_RANGE", {request.views.front().near ? "length" : "1"});
-  MovesWriter writer(out, scene, moments.covariance);
-  const Correlations found = correlations(request, sums, job.covariance);
-  request.kind == Kind::tilt_shift ? writer.map(found) : writer.curve(found);
-  return {found.moves, writer.ranges()};
+  MovesWriter writer(out, scene);
+  writer.entries(moments.covariance);
+  const auto groups = view_groups(request);
+  writer.theory(groups.front());
+  std::vector<WrittenMoves> written;
+  for (const auto& views : groups)
+    written.push_back(writer.correlation(correlations(request, sums, job.covariance, views),
+                                         written.empty() ? "" : "reflected_"));
+  return written;
 }
 
 }  // namespace flatspeckle::mc

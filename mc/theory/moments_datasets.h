@@ -30,17 +30,18 @@ struct WrittenRange {
   bool few_steps = false;
 };
 
-/// What a file has of moves: C_E of each, and ranges. Empty for other requests.
+/// What a file has of moves of a group of views: C_E of each, and ranges.
 struct WrittenMoves {
   Estimate correlation;
   std::vector<WrittenRange> ranges;
 };
 
 /// Writes mean field and covariance, each with its standard error, into a group (empty: the root),
-/// and for moves what follows: correlations, their ranges, theory. Axes must have been written
-/// (flatland/scene/scene_datasets.h); moments are those of job and sums.
-WrittenMoves write_moments(ResultFile& file, const std::string& group, const FieldJob& job,
-                           const Scene& scene, const GroupedSums& sums,
-                           const FieldMoments& moments);
+/// and for moves what follows, of each of its view_groups(): correlations, their ranges,
+/// theory of the first. Axes must have been written (flatland/scene/scene_datasets.h); moments are
+/// those of job and sums. Returns one per group, none for other requests.
+std::vector<WrittenMoves> write_moments(ResultFile& file, const std::string& group,
+                                        const FieldJob& job, const Scene& scene,
+                                        const GroupedSums& sums, const FieldMoments& moments);
 
 }  // namespace flatspeckle::mc

@@ -54,24 +54,35 @@ def file_look(method, number):
     return {"marker": look["marker"], **method_look(method, look["color"])}
 
 
+def sides(result, prefix):
+    """(dataset, what to add to its label): of transmitted and of reflected views."""
+    first, reflected = f"{prefix}field_correlation", f"{prefix}reflected_field_correlation"
+    if not result.has(reflected):
+        return [(first, "")]
+    return [(first, ", transmitted"), (reflected, ", reflected")]
+
+
 def read_series(results, unit):
     """unit: what a move of 1 is drawn as."""
     series = []
     for number, result in enumerate(results):
-        for method, prefix in read_groups(result):
-            name = f"{prefix}field_correlation"
-            if result.dataset(name).ndim != 1:
-                raise style.Unusable(f"{result.path}: {name} is not a curve over tilts")
-            series.append(Series(f"{pathlib.Path(result.path).stem}, {METHODS[method]}",
-                                 unit * result.axis(name, 0), np.real(result.values(name)),
-                                 result.values(f"{name}_error"), file_look(method, number)))
+        groups = read_groups(result)
+        for side, (_, of_side) in enumerate(sides(result, groups[0][1])):
+            for method, prefix in groups:
+                name = sides(result, prefix)[side][0]
+                if result.dataset(name).ndim != 1:
+                    raise style.Unusable(f"{result.path}: {name} is not a curve over tilts")
+                series.append(Series(f"{pathlib.Path(result.path).stem}, {METHODS[method]}{of_side}",
+                                     unit * result.axis(name, 0), np.real(result.values(name)),
+                                     result.values(f"{name}_error"),
+                                     file_look(method, number + side * len(results))))
     return series
 
 
 def diffusion_line(result, steps=200):
     """(tilts in mrad, C_E) of light through a slab in diffusion theory; None of other scenes."""
     scene = tomllib.loads(result.attribute("config", ""))
-    if scene.get("domain") != "slab" or np.any(np.cos(result.values("view_angle")) < 0):
+    if scene.get("domain") != "slab" or np.all(np.cos(result.values("view_angle")) < 0):
         return None
     order = np.argsort(result.values("tilt"))
     known, q = result.values("tilt")[order], result.values("tilt_q")[order]

@@ -15,6 +15,7 @@ FULL = {"covariance": "full"}
 PAIRS = {"covariance": "pairs", "pairs": [0, 0.1, 0.04, 0.14, 0, 0.5, 0, 0.5]}
 MAP = {"covariance": "tilt_shift", "tilts": [0, 0.01, 0.03], "shifts": [-0.1, 0, 0.1]}
 MOVED = {"covariance": "translation", "shifts": [0, 0.2, 0.5], "beam_waist": 2}
+SIDES = {"view_angles": [0.1, 3.0]}
 HG = {"width": 20, "depth": 10, "scatterer": "hg", "optical_depth": 2, "g": 0.5, "albedo": 0.9}
 DISKS = {"width": 12, "depth": 8, "radii": 0.4, "packing_fraction": 0.4, "realizations": 4}
 GRID = {"depth": 100, "optical_depth": [1, 2], "albedo": [1, 0.9], "g": [0, 0.5],
@@ -71,6 +72,9 @@ RUNS = {
     "map": ("covariance", {**BOX, **MAP, "view_angles": [0.1, 0.5]}),
     "map_near": ("covariance", {**BOX, **MAP, "near_sensors": "sensors.csv", "method": "wave"}),
     "moved": ("covariance", {**BOX, **MOVED}),
+    "moved_both_sides": ("covariance", {**BOX, **MOVED, **SIDES}),
+    "tilts_both_sides": ("covariance", {**BOX, **TILTS, **SIDES}),
+    "map_both_sides": ("covariance", {**BOX, **MAP, **SIDES}),
     "gradient": ("covariance", {**HG, **FAR, "gradient": True}),
     "gradient_full": ("covariance", {**HG, **FAR, **FULL, "gradient": True}),
     "gradient_pairs": ("covariance", {**HG, **PAIRS, "gradient": True}),

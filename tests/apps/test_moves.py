@@ -52,6 +52,21 @@ class Moves(ProgramTest):
         self.assertNotIn("diffusion_theory", self.open())
         self.assertIn("single_scattering", self.open())
 
+    def test_views_on_both_sides_are_told_apart(self):
+        curve = {**MAP, "covariance": "memory_effect", "shifts": None}
+        self.call("covariance", **{**curve, "view_angles": [0.3, 2.9]}, out="both.h5")
+        both = self.open("both.h5")
+        for views, name in (([0.3], "field_correlation"), ([2.9], "reflected_field_correlation")):
+            self.call("covariance", **{**curve, "view_angles": views}, out="one.h5")
+            one = self.open("one.h5")
+            error = np.hypot(one["field_correlation_error"][()], both[f"{name}_error"][()])
+            self.assertTrue(np.all(np.abs(one["field_correlation"][()] - both[name][()])
+                                   <= 5 * error))
+        self.call("covariance", **{**MAP, "view_angles": [0.3, 2.9]}, out="map.h5")
+        self.check_shapes(self.open("map.h5"), {
+            "reflected_field_correlation": (3, 2), "reflected_matched_correlation": (3,),
+            "reflected_tilt_range": (), "reflected_memory_effect_range": ()})
+
     def test_map_by_both_methods(self):
         self.call("validate", **{**MAP, "wave_samples": 40}, out="result.h5")
         for method in ("mc", "wave"):

@@ -114,6 +114,32 @@ TEST_CASE("field correlation of known entries, summed over views before the rati
   CHECK(correlation[1].real() == doctest::Approx(5 / std::sqrt(9.0 * 16)).epsilon(1e-14));
 }
 
+TEST_CASE("transmitted and reflected views have field correlations of their own") {
+  const auto both = memory_effect_request(k, 0, {0.1, 3.0, -0.2}, {0.0, 0.02});
+  const auto groups = view_groups(both);
+  REQUIRE(groups.size() == 2);
+  CHECK(groups[0] == std::vector<std::size_t>{0, 2});
+  CHECK(groups[1] == std::vector<std::size_t>{1});
+  std::vector<Complex> entries(both.entries.size(), 1);
+  entries[both.tilted_entry(1, 0)] = 0.5;
+  entries[both.tilted_entry(1, 1)] = 0.1;
+  entries[both.tilted_entry(1, 2)] = 0.7;
+  CHECK(field_correlation(both, entries)[1].real() == doctest::Approx(0.6).epsilon(1e-14));
+  CHECK(field_correlation(both, entries, groups[1])[1].real() ==
+        doctest::Approx(0.1).epsilon(1e-14));
+}
+
+TEST_CASE("near sensors, whose covariances differ in phase, correlate by power") {
+  const auto request = translation_request(point_source({0, -3}),
+                                           {near_sensor({0, 9}), near_sensor({2, 9})}, {0, 1});
+  REQUIRE(view_groups(request).size() == 1);
+  std::vector<Complex> entries(request.entries.size(), 1);
+  entries[request.tilted_entry(1, 0)] = {0, 0.6};
+  entries[request.tilted_entry(1, 1)] = {-0.8, 0};
+  CHECK(field_correlation(request, entries)[1].real() ==
+        doctest::Approx(std::sqrt(0.5)).epsilon(1e-14));
+}
+
 TEST_CASE("where there is no light there is no correlation, and no NaN") {
   const auto request = memory_effect_request(k, 0, {0.1}, {0.0, 0.02});
   const std::vector<Complex> dark(request.entries.size());

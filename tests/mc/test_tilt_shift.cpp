@@ -55,7 +55,8 @@ TEST_CASE("at the matched shifts the map holds the memory effect") {
 TEST_CASE("an infinite slab refuses what does not match; a wide box has next to nothing there") {
   const auto request = map_request({0, 1.5});
   const auto run = tests::run(box(request), ReversedPaths::automatic, 60000, 3);
-  const auto map = correlations(request, run.sums, run.job.covariance);
+  const auto map =
+      correlations(request, run.sums, run.job.covariance, view_groups(request).front());
   REQUIRE(map.moves.value.size() > 7);
   CHECK(map.moves.value[0].real() == doctest::Approx(1).epsilon(1e-12));
   CHECK(map.moves.value[1].real() < 0.1);  // sinc(1.5 x 30 / 2) and noise
@@ -78,7 +79,8 @@ TEST_CASE("half-widths of the map's axes are those of its width") {
       tilt_shift_request(k, plane_wave(light), tests::far_views({0.3}), small_tilts, steps);
   const auto run =
       tests::run(tests::hg_box(60, 4, {4, 0.4}, request), ReversedPaths::automatic, 60000, 4);
-  const auto map = correlations(request, run.sums, run.job.covariance);
+  const auto map =
+      correlations(request, run.sums, run.job.covariance, view_groups(request).front());
   const double expected = 2 * 1.391557 / 60;
   CHECK(map.ranges[1].range.value == doctest::Approx(expected).epsilon(0.1));
   CHECK(map.ranges[0].range.value == doctest::Approx(expected).epsilon(0.1));
@@ -97,7 +99,8 @@ TEST_CASE("near sensors shift along x") {
   // A shift of 0.4 wavelengths matters where light comes from all around; a tilt that changes the
   // phase by 0.08 over a mean free path does not.
   const auto run = tests::run(box(request), ReversedPaths::automatic, 40000, 5);
-  const auto map = correlations(request, run.sums, run.job.covariance);
+  const auto map =
+      correlations(request, run.sums, run.job.covariance, view_groups(request).front());
   CHECK(map.moves.value.size() == 4);  // none matched
   CHECK(map.moves.value[1].real() < 0.9);
   CHECK(map.moves.value[2].real() > 0.9);
