@@ -19,6 +19,7 @@ int design(const Arguments& arguments);
 int bench(const Arguments& arguments);
 int list_keys(const Arguments& arguments);
 int datasets(const Arguments& arguments);
+int explain(const Arguments& arguments);
 
 std::span<const SubcommandEntry> subcommands() {
   static constexpr SubcommandEntry entries[] = {
@@ -49,6 +50,8 @@ std::span<const SubcommandEntry> subcommands() {
 #endif
       {"keys", "the keys of all subcommands, for programs: json, markdown, man, completion",
        list_keys},
+      {"explain", "what a result file holds, in words: its medium, sizes, and what draws it",
+       explain},
       {"datasets", "what result files hold, as in docs/format.md", datasets}};
   return entries;
 }

@@ -3,6 +3,7 @@
 #include <iostream>
 
 #include "apps/command/subcommands.h"
+#include "apps/results/all_tables.h"
 #include "core/result/provenance.h"
 #include "core/result/run_state_file.h"
 #include "flatland/media/density_map.h"
@@ -33,31 +34,6 @@
 namespace flatspeckle::apps {
 
 namespace {
-
-/// In the order of docs/format.md.
-std::vector<const DatasetTable*> all_tables() {
-  std::vector<const DatasetTable*> tables = {
-      &provenance_table,     &scene_table,          &layers_table,
-      &density_table,        &axes_table,           &beams_table,
-      &trace_table,          &mc::mean_table,       &mc::intensity_table,
-      &mc::full_table,       &mc::pairs_table,      &mc::moves_table,
-      &mc::gradient_table,   &mc::delays_table,     &mc::contrast_table,
-      &mc::frequency_table,  &mc::numerical_table,  &validate_table,
-      &wave::solution_table, &wave::spectrum_table, &wave::map_table,
-      &mc::flux_table,       &mc::field_table,      &mc::imaging_table,
-      &mc::picture_table,    &mc::recovery_table,   &mc::fit_table,
-      &mc::plan_table,       &sweep_axes_table,     &sweep_table,
-      &stacked_table,        &placement_table,      &structure_factor_table,
-      &grin::rays_table,     &grin::trials_table,   &grin::camera_table,
-      &grin::area_table,     &grin::radial_table,   &grin::directional_table,
-      &grin::polar_table,    &grin::render_table,   &grin::energy_table,
-      &grin::box_map_table,  &grin::ring_map_table, &grin::design::design_table};
-#ifdef FLATSPECKLE_BENCH
-  for (const DatasetTable* table : bench_tables()) tables.push_back(table);
-#endif
-  tables.push_back(&state_table);
-  return tables;
-}
 
 /// A cell of a table; upright lines would end it.
 std::string cell(const std::string& text) {
@@ -107,6 +83,30 @@ void print_roles(const std::vector<const DatasetTable*>& tables) {
 }
 
 }  // namespace
+
+std::vector<const DatasetTable*> all_tables() {
+  std::vector<const DatasetTable*> tables = {
+      &provenance_table,     &scene_table,          &layers_table,
+      &density_table,        &axes_table,           &beams_table,
+      &trace_table,          &mc::mean_table,       &mc::intensity_table,
+      &mc::full_table,       &mc::pairs_table,      &mc::moves_table,
+      &mc::gradient_table,   &mc::delays_table,     &mc::contrast_table,
+      &mc::frequency_table,  &mc::numerical_table,  &validate_table,
+      &wave::solution_table, &wave::spectrum_table, &wave::map_table,
+      &mc::flux_table,       &mc::field_table,      &mc::imaging_table,
+      &mc::picture_table,    &mc::recovery_table,   &mc::fit_table,
+      &mc::plan_table,       &sweep_axes_table,     &sweep_table,
+      &stacked_table,        &placement_table,      &structure_factor_table,
+      &grin::rays_table,     &grin::trials_table,   &grin::camera_table,
+      &grin::area_table,     &grin::radial_table,   &grin::directional_table,
+      &grin::polar_table,    &grin::render_table,   &grin::energy_table,
+      &grin::box_map_table,  &grin::ring_map_table, &grin::design::design_table};
+#ifdef FLATSPECKLE_BENCH
+  for (const DatasetTable* table : bench_tables()) tables.push_back(table);
+#endif
+  tables.push_back(&state_table);
+  return tables;
+}
 
 int datasets(const Arguments& arguments) {
   Subcommand command("datasets", "Tables of what result files hold, for docs/format.md");

@@ -1,0 +1,137 @@
+#include <algorithm>
+#include <filesystem>
+#include <iostream>
+#include <set>
+
+#include "apps/command/command_line.h"
+#include "apps/command/subcommands.h"
+#include "apps/results/all_tables.h"
+#include "core/error.h"
+#include "core/keys/number_text.h"
+#include "core/result/guarded_read.h"
+#include "core/result/provenance.h"
+#include "core/result/result_reader.h"
+#include "flatland/scene/scene_datasets.h"
+
+namespace flatspeckle::apps {
+
+namespace {
+
+// Where several methods tell the same, each has a group.
+constexpr const char* groups[] = {"", "mc/", "wave/", "transport/"};
+
+/// A script of plots/ and the dataset that it draws, of all that have it.
+struct Drawing {
+  const char *dataset, *script;
+};
+
+constexpr Drawing drawings[] = {{"squared_contrast", "contrast"},
+                                {"delay", "dws"},
+                                {"frequency_shift", "frequency"},
+                                {"deviation", "validation"},
+                                {"tilt_q", "memory_effect"},
+                                {"field", "speckle_field"},
+                                {"frame", "image"},
+                                {"parameter_name", "fit"},
+                                {"exit/x", "rays"},
+                                {"ball_spline", "design"},
+                                {"radial_spline", "design"},
+                                {"total_field", "field_map"},
+                                {"image", "render"}};
+
+/// As text, whatever its type; empty where there is none.
+std::string attribute_text(const ResultReader& file, const AttributeRow& row) {
+  if (!file.has_attribute("/", row.name)) return "";
+  if (row.type == "float64") return number_text(file.attribute<double>("/", row.name));
+  if (row.type == "uint64") return std::to_string(file.attribute<std::uint64_t>("/", row.name));
+  return row.type == "text" ? file.attribute<std::string>("/", row.name) : "";
+}
+
+void print_run(const ResultReader& file) {
+  const auto text = [&](const char* name) { return file.attribute<std::string>("/", name); };
+  std::cout << file.path().string() << "\n  made by flatspeckle " << text("version") << " on "
+            << text("started") << ":\n  " << text("command_line") << '\n';
+  const bool converged = file.attribute<bool>("/", "converged");
+  std::cout << "  " << number_text(file.attribute<double>("/", "samples")) << " samples in "
+            << number_text(file.attribute<double>("/", "wall_s")) << " s; "
+            << (converged ? "ended as it was asked to"
+                          : "stopped before its target error, or interrupted: --resume goes on")
+            << "\n\n";
+}
+
+void print_medium(const ResultReader& file) {
+  const char* title = "Medium\n";
+  for (const AttributeRow& row : scene_table.attributes) {
+    const std::string value = row.object.empty() ? attribute_text(file, row) : "";
+    if (value.empty()) continue;
+    std::cout << title << "  " << row.name << " = " << value << ": " << row.meaning << '\n';
+    title = "";
+  }
+  if (*title == '\0') std::cout << '\n';
+}
+
+/// "3 x 2", of a number "one number".
+std::string shape_text(const std::vector<std::size_t>& shape) {
+  std::vector<std::string> sizes;
+  for (const std::size_t size : shape) sizes.push_back(std::to_string(size));
+  return sizes.empty() ? "one number" : joined(sizes, " x ");
+}
+
+void print_row(const ResultReader& file, const std::string& path, const DatasetRow& row) {
+  std::cout << "  " << path << " (" << shape_text(file.shape(path)) << "): " << file.attribute<std::string>(path, "long_name");
+  if (has_error(row.data)) std::cout << "; with " << path << "_error";
+  std::cout << '\n';
+}
+
+/// Rows of several tables may share a name; what it is here the file itself says.
+void print_datasets(const ResultReader& file) {
+  std::cout << "Holds\n";
+  std::set<std::string> told;
+  for (const DatasetTable* table : all_tables())
+    for (const DatasetRow& row : table->rows)
+      for (const char* group : groups) {
+        const std::string path = group + row.path;
+        if (!path.starts_with("state") && file.has(path) && told.insert(path).second)
+          print_row(file, path, row);
+      }
+}
+
+void print_drawings(const ResultReader& file) {
+  const char* title = "\nTo draw it\n";
+  std::set<std::string> told;
+  for (const Drawing& drawing : drawings) {
+    const bool has = std::any_of(std::begin(groups), std::end(groups), [&](const char* group) {
+      return file.has(std::string(group) + drawing.dataset);
+    });
+    if (!has || !told.insert(drawing.script).second) continue;
+    std::cout << title << "  plots/" << drawing.script << ".py " << file.path().string() << '\n';
+    title = "";
+  }
+}
+
+void print_all(const std::string& path) {
+  const ResultReader file(path);
+  if (!file.has_attribute("/", "program") || !file.has_attribute("/", "converged"))
+    throw InputError("explain", path, "must be a result of flatspeckle");
+  print_run(file);
+  print_medium(file);
+  print_datasets(file);
+  print_drawings(file);
+}
+
+}  // namespace
+
+int explain(const Arguments& arguments) {
+  if (arguments.size() == 3 && arguments[2].starts_with("--")) {
+    Subcommand command("explain", "What a result holds, in words: explain FILE.h5");
+    if (!command.parse(arguments)) return ExitStatus::done;
+  }
+  if (arguments.size() != 3) throw InputError("explain: must have one result file, and no more");
+  const std::string& path = arguments[2];
+  if (!std::filesystem::exists(path)) throw InputError("explain", path, "no such file");
+  read_in_child(path, [&] { const ResultReader file(path); });
+  print_all(path);
+  return ExitStatus::done;
+}
+
+}  // namespace flatspeckle::apps
