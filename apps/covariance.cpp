@@ -3,6 +3,7 @@
 #include "apps/command/subcommands.h"
 #include "apps/results/extras.h"
 #include "apps/results/moments_table.h"
+#include "apps/results/tilt_search.h"
 #include "core/session/identity.h"
 #include "core/session/session.h"
 #include "flatland/scene/scene_datasets.h"
@@ -41,6 +42,8 @@ int covariance(const Arguments& arguments) {
   Subcommand command("covariance", "Covariance and intensity of the speckle field of a scene");
   Keys& keys = command.keys();
   add_keys(keys, spec);
+  std::optional<std::int64_t> tilt_count;
+  add_tilt_count_key(keys, tilt_count);
   keys.group("Methods");
   keys.add("method", method,
            "Monte Carlo, exactly, or of a slab by transport without chance; auto: transport where "
@@ -62,6 +65,7 @@ int covariance(const Arguments& arguments) {
   if (method == "wave") keys.read(methods.wave_tolerance);
   if (method != "wave") keys.read(spec.dimension);
   read_extras(keys, extras, method);
+  choose_tilts(keys, tilt_count, spec, method, run, session.seed());
   const Scene scene = with_dimension(make_scene(keys, spec), spec);
   const auto [estimation, write_extras] =
       method == "mc"     ? extended_estimation(scene, reversed, extras, session.seed())

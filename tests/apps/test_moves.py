@@ -67,6 +67,19 @@ class Moves(ProgramTest):
             "reflected_field_correlation": (3, 2), "reflected_matched_correlation": (3,),
             "reflected_tilt_range": (), "reflected_memory_effect_range": ()})
 
+    def test_tilts_that_are_sought_end_at_twice_the_range(self):
+        for medium in ({"domain": "slab", "depth": 100, "optical_depth": 10, "g": 0.8},
+                       {"width": 40, "depth": 20, "optical_depth": 4, "g": 0.5, "samples": 20000}):
+            self.call("covariance", scatterer="hg", **medium, covariance="memory_effect",
+                      light_angles=0.1, view_angles=2.9, tilt_count=9, out="sought.h5")
+            file = self.open("sought.h5")
+            self.assertEqual(len(file["tilt"]), 9)
+            self.assertLess(abs(file["field_correlation"][4]**2 - 0.5), 0.05)
+            self.assertEqual(file["memory_effect_range"].attrs["censored"], 0)
+            self.write("again.toml", file.attrs["config"])
+            self.call("covariance", config="again.toml", out="again.h5")
+            self.assert_same_data("sought.h5", "again.h5")
+
     def test_map_by_both_methods(self):
         self.call("validate", **{**MAP, "wave_samples": 40}, out="result.h5")
         for method in ("mc", "wave"):

@@ -1,0 +1,94 @@
+#include "apps/results/tilt_search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+
+#include "core/error.h"
+#include "core/run/runner.h"
+#include "mc/theory/memory_effect.h"
+
+namespace flatspeckle::apps {
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+/// Of the light and all views: the most that may be added to their sines, and a little less.
+double largest_sine_step(const SceneSpec& spec) {
+  constexpr double horizon = 0.99;
+  double largest = std::sin(spec.light_angles.at(0));
+  for (const double view : spec.view_angles) largest = std::max(largest, std::sin(view));
+  if (largest >= horizon)
+    throw InputError("tilt_count: a light or view is too close to the horizon: give tilts");
+  return horizon - largest;
+}
+
+/// The rotation that adds so much to the sine of the light.
+double tilt_of(double light, double sine_step) {
+  const double moved = std::asin(std::sin(light) + sine_step);
+  return std::remainder((std::cos(light) >= 0 ? moved : pi - moved) - light, 2 * pi);
+}
+
+double to_four_digits(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g", value);
+  return std::stod(text);
+}
+
+std::vector<double> doubling_tilts(const SceneSpec& spec, double largest) {
+  constexpr int doublings = 20;
+  std::vector<double> tilts;
+  for (int step = doublings; step >= 0; --step)
+    tilts.push_back(tilt_of(spec.light_angles[0], std::ldexp(largest, -step)));
+  return tilts;
+}
+
+/// q at C_I = 1/2, or the largest or smallest that was tried.
+double pilot_range(const Scene& scene, bool transport, int threads, std::uint64_t seed) {
+  constexpr double tolerance = 1e-3;
+  constexpr std::uint64_t paths = 20000;
+  const auto reversed = mc::ReversedPaths::no;
+  const Estimation pilot = transport ? transport_estimation(scene, reversed, tolerance)
+                                     : mc_estimation(scene, reversed, seed);
+  RunOptions options;
+  if (transport)
+    options.stop = both_batches();
+  else
+    options.stop.samples = paths;
+  options.threads = threads;
+  RunState state;
+  run_batches(pilot.job.batches, options, state);
+  return mc::memory_effect(scene.request, state.sums, pilot.job.covariance).range.range.value;
+}
+
+}  // namespace
+
+void add_tilt_count_key(Keys& keys, std::optional<std::int64_t>& count) {
+  keys.add("tilt_count", count,
+           "In place of tilts: so many from 0 to twice that of C_I = 1/2, which a pilot finds")
+      .from(3, 1000)
+      .only_of("covariance = memory_effect");
+}
+
+void choose_tilts(const Keys& keys, std::optional<std::int64_t>& count, SceneSpec& spec,
+                  const std::string& method, const RunSettings& run, std::uint64_t seed) {
+  if (!keys.given(count)) return;
+  if (keys.read(spec.covariance) != "memory_effect")
+    throw InputError("tilt_count", *count, "is of covariance = memory_effect");
+  if (!spec.tilts.empty()) throw InputError("tilts, tilt_count: exactly one must be given");
+  const double light = keys.required(spec.light_angles).front(), largest = largest_sine_step(spec),
+               k = 2 * pi / spec.wavelength;
+  SceneSpec pilot = spec;
+  pilot.tilts = doubling_tilts(spec, largest);
+  const double range = pilot_range(with_dimension(make_scene(pilot), pilot), method == "transport",
+                                   threads_of(keys, run), seed),
+               end = std::min(2 * range / k, largest);
+  const auto last = static_cast<double>(*count - 1);
+  for (std::int64_t step = 0; step < *count; ++step)
+    spec.tilts.push_back(to_four_digits(tilt_of(light, end * static_cast<double>(step) / last)));
+  count.reset();
+}
+
+}  // namespace flatspeckle::apps
