@@ -239,10 +239,11 @@ void print_pictures(const mc::LineScene& line, const mc::ImagingTask& task,
   std::printf("frames divided by the reference: ");
   if (!media.empty()) {
     const mc::Measured mean = mc::mean_psnr(media);
-    std::printf("PSNR %.1f +- %.2g dB, ", mean.value, mean.error);
+    std::printf("PSNR %.1f +- %.2g dB", mean.value, mean.error);
   }
   if (task.deconvolution.method == mc::DeconvolutionTask::Method::wiener)
-    std::printf("expected %.1f dB", mc::expected_psnr(line, task, prediction));
+    std::printf("%sexpected %.1f dB", media.empty() ? "" : ", ",
+                mc::expected_psnr(line, task, prediction));
   std::puts("");
 }
 
@@ -261,7 +262,7 @@ void print_summary(const mc::LineScene& line, const mc::ImagingTask& task,
                    const std::vector<mc::ImagedMedium>& media,
                    const mc::ImagingPrediction& prediction) {
   if (!media.empty()) print_moments(line, task, media);
-  const auto expected = mc::expected_peaks(line, task, media, prediction);
+  const auto expected = mc::expected_peaks(line, task, prediction);
   if (const auto correlation = real_parts(prediction.correlation.value); !correlation.empty())
     std::printf("pairs of points: C_I down to %.3f, peaks down to %.1f times the noise\n",
                 *std::min_element(correlation.begin(), correlation.end()),

@@ -13,7 +13,8 @@ namespace flatspeckle::mc {
 const DatasetTable imaging_table{
     .name = "image",
     .rows = {{"camera_place", Data::scale, "", "PLACE", "pixels: x, or sines of directions"},
-             {"repeat", Data::numbers, "", "1", "number of the medium, or of several, by the key average"},
+             {"repeat", Data::numbers, "", "1",
+              "number of the medium, or of several, by the key average"},
              {"point", Data::numbers, "", "1", "number of the point of the object"},
              {"sought", Data::numbers, "", "1", "number of the point that was looked for"},
              {"pair", Data::numbers, "", "1", "number of the pair of points (0, 1), (0, 2), ..."},
@@ -102,8 +103,8 @@ void write_fits(const ResultGroup& root, const ImagingTask& task,
 }
 
 void write_prediction(const ResultGroup& root, const LineScene& line, const ImagingTask& task,
-                      const std::vector<ImagedMedium>& media, const ImagingPrediction& prediction) {
-  const ExpectedPeaks expected = expected_peaks(line, task, media, prediction);
+                      const ImagingPrediction& prediction) {
+  const ExpectedPeaks expected = expected_peaks(line, task, prediction);
   root.number("pair", expected.signals.size());
   root.put("pair_distance", prediction.distance);
   root.put("pair_correlation", prediction.correlation);
@@ -135,7 +136,7 @@ void write_imaging(ResultFile& file, const LineScene& line, const ImagingTask& t
   root.put("object_x", line.object.x);
   root.put("object_brightness", line.object.brightness);
   if (!media.empty()) write_frames(file, root, line, task, media);
-  if (!prediction.distance.empty()) write_prediction(root, line, task, media, prediction);
+  if (!prediction.distance.empty()) write_prediction(root, line, task, prediction);
   if (line.reference) write_pictures(file, line, task, media, prediction);
 }
 

@@ -35,12 +35,11 @@ double mean_grains(const std::vector<ImagedMedium>& media) {
   return mean_of(media, 0, [](const ImagedMedium& m) { return m.statistics.grains; }).value;
 }
 
-FrameGrains frame_grains(const LineScene& line, const ImagingTask& task,
-                         const std::vector<ImagedMedium>& media) {
+FrameGrains frame_grains(const LineScene& line, const ImagingTask& task) {
   const auto frames = static_cast<double>(task.average);
   constexpr double of_speckle = 1.5;  // grains over what a triangle as its spectrum is wide
-  return {media.empty() ? of_speckle * most_grains(line) * frames : mean_grains(media),
-          task.recovery.noise, static_cast<double>(line.camera.pixels) * frames};
+  return {of_speckle * most_grains(line) * frames, task.recovery.noise,
+          static_cast<double>(line.camera.pixels) * frames};
 }
 
 double gaussian_contrast(const LineObject& object, double background) {
@@ -73,9 +72,8 @@ Measured success_rate(const std::vector<ImagedMedium>& media) {
 }
 
 ExpectedPeaks expected_peaks(const LineScene& line, const ImagingTask& task,
-                             const std::vector<ImagedMedium>& media,
                              const ImagingPrediction& prediction) {
-  const FrameGrains frame = frame_grains(line, task, media);
+  const FrameGrains frame = frame_grains(line, task);
   ExpectedPeaks expected;
   expected.signals = peaks_over_noise(line.object, real_parts(prediction.correlation.value), frame);
   const std::size_t points = line.object.x.size();

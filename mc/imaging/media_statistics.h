@@ -15,9 +15,8 @@ struct Measured {
 /// Grains of a frame, averaged over all media.
 double mean_grains(const std::vector<ImagedMedium>& media);
 
-/// Of the frames of one repeat; without media, as Gaussian speckle is expected to have them.
-FrameGrains frame_grains(const LineScene& line, const ImagingTask& task,
-                         const std::vector<ImagedMedium>& media);
+/// Of the frames of one repeat, as Gaussian speckle of the whole box is expected to have them.
+FrameGrains frame_grains(const LineScene& line, const ImagingTask& task);
 
 /// Contrast of an object's Gaussian speckle: sqrt(sum of b^2) / sum of b, 1/sqrt(N) for N equal
 /// points; less by 1 + background.
@@ -42,7 +41,6 @@ struct ExpectedPeaks {
   std::optional<double> success;  ///< as predicted_success(), where so many points are looked for
 };
 ExpectedPeaks expected_peaks(const LineScene& line, const ImagingTask& task,
-                             const std::vector<ImagedMedium>& media,
                              const ImagingPrediction& prediction);
 
 /// dB.

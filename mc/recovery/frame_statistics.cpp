@@ -55,12 +55,14 @@ double standard_deviation(std::span<const double> values) {
 }
 
 /// The integral of the square of the normalised peak about lag 0, up to where it first falls to the
-/// noise.
+/// noise, or rises again, to the peak of a pair or for a wide base.
 double central_peak(std::span<const double> autocorrelation, double noise) {
   double sum = 0.5;
   for (std::size_t lag = 1; lag < autocorrelation.size(); ++lag) {
     const double value = autocorrelation[lag] / autocorrelation[0];
-    if (value < std::max(noise / autocorrelation[0], 0.02)) break;
+    const bool has_passed_a_minimum =
+        value < 0.25 && value > autocorrelation[lag - 1] / autocorrelation[0];
+    if (value < std::max(noise / autocorrelation[0], 0.02) || has_passed_a_minimum) break;
     sum += value * value;
   }
   return 2 * sum;
