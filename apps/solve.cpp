@@ -9,6 +9,7 @@
 #include "apps/results/wavelengths.h"
 #include "core/error.h"
 #include "core/keys/csv.h"
+#include "core/keys/number_text.h"
 #include "core/numbers/blas.h"
 #include "core/result/result_group.h"
 #include "core/run/interrupt.h"
@@ -16,6 +17,8 @@
 #include "core/run/stopwatch.h"
 #include "core/session/session.h"
 #include "flatland/scene/scene_datasets.h"
+#include "wave_solver/clusters/cluster_file.h"
+#include "wave_solver/clusters/cluster_solution.h"
 #include "wave_solver/maps/map_datasets.h"
 #include "wave_solver/solutions/spectrum.h"
 #include "wave_solver/solutions/wave_solution.h"
@@ -31,7 +34,8 @@ struct SolveKeys {
   MapSettings map;
   SpectrumSettings spectrum;
   double tolerance = wave::SolveOptions().tolerance;
-  std::string solver = "auto";
+  std::string solver = "auto", cluster;
+  std::optional<double> t_matrix_gap;
 };
 
 const std::map<std::string, wave::Method> solvers = {{"auto", wave::Method::automatic},
@@ -47,7 +51,7 @@ void add_keys(Keys& keys, SolveKeys& values) {
   keys.remove("placement");
   keys.add("placement", values.spec.placement,
            "CSV with columns x, z [, radius [, index_re, index_im]]; or poisson, hard_disk or "
-           "equilibrium, to draw one");
+           "equilibrium, to draw one; of a cluster: CSV with columns x, z [, angle]");
   add_view_keys(keys, values.spec);
   add_map_keys(keys, values.map);
   add_spectrum_keys(keys, values.spectrum);
@@ -57,6 +61,15 @@ void add_keys(Keys& keys, SolveKeys& values) {
            "fast (direct) is for thousands of unknowns and more, krylov (iterative) for weak "
            "scattering")
       .one_of({"auto", "dense", "fast", "krylov"});
+  keys.group("Clusters");
+  keys.add("t_matrix_gap", values.t_matrix_gap,
+           "Also write the T-matrix of the whole placement, for sources at least so far from the "
+           "circle around it")
+      .positive()
+      .unit("length");
+  keys.add("cluster", values.cluster,
+           "Result with a T-matrix: its cluster stands, as one object, at each of the places")
+      .file();
   add_thread_key(keys, values.run);
   add_seed_key(keys, values.run, "Seed of a drawn placement");
   add_output_key(keys, values.run);
@@ -170,6 +183,38 @@ std::optional<wave::Spectrum> spectrum(const SolveKeys& values, const Placement&
   return spectrum;
 }
 
+/// Copies of a cluster in place of scatterers: what it is comes from its file.
+int solve_clusters(const Subcommand& command, const SolveKeys& values, const Session& session,
+                   const Sensors& sensors) {
+  const Keys& keys = command.keys();
+  keys.read(values.tolerance);
+  keys.read(values.solver);
+  if (is_placement_rule(values.spec))
+    throw InputError("placement", values.spec.placement.value_or("none"),
+                     "must be a CSV with columns x, z [, angle], of the cluster's copies");
+  const auto places = wave::read_places(*keys.read(values.spec.placement));
+  const auto cluster = wave::read_cluster(keys.read(values.cluster));
+  if (values.tolerance < cluster.tolerance)
+    throw InputError("tolerance", values.tolerance,
+                     "must be at least that of the cluster, " + number_text(cluster.tolerance));
+  keys.disregard(values.run.seed);  // nothing is drawn
+  if (!command.settle()) return ExitStatus::done;
+  blas_single_thread();
+  const wave::ClusterSolution solution(
+      cluster.t_matrix, places, values.spec.light_angles,
+      {values.tolerance, sensors.points, true, solvers.at(values.solver)});
+  return session.once(ResultFile(session.out()), [&](ResultFile& file) -> std::optional<Made> {
+    wave::write_solution(file, solution, sensors.angles, sensors.points);
+    const double wavelength = 2 * std::numbers::pi / cluster.t_matrix.k;
+    ResultGroup(file, scene_table).attribute("wavelength", wavelength);
+    std::ostringstream plan;
+    plan << places.size() << " copies of a cluster, " << solution.equations().unknowns()
+         << " unknowns: " << solution.method();
+    std::printf("%s\nresidual %.1e\n", plan.str().c_str(), solution.diagnosis().residual);
+    return Made{plan.str(), 1};
+  });
+}
+
 Made spectrum_made(const wave::Spectrum& spectrum, const WavelengthList& wavelengths,
                    const Placement& placement) {
   std::ostringstream plan;
@@ -192,9 +237,11 @@ int solve(const Arguments& arguments) {
   const Session session(command.text(), keys, values.run, command.only_prints());
   const SceneSpec& spec = values.spec;
   const Sensors sensors = sensors_of(keys, spec);
+  if (!values.cluster.empty()) return solve_clusters(command, values, session, sensors);
   const auto wavelengths = wavelength_list(keys, values.spectrum);
   std::optional<wave::MapGrid> grid;
   if (wavelengths.values.empty()) grid = map_grid(keys, values.map, keys.read(spec.wavelength));
+  if (wavelengths.values.empty()) keys.read(values.t_matrix_gap);
   keys.read(values.tolerance);
   keys.read(values.solver);
   std::optional<Scene> scene;
@@ -222,6 +269,10 @@ int solve(const Arguments& arguments) {
     });
   }
   const auto solution = solved(values, placement, spec.wavelength, grid, sensors.points);
+  std::optional<wave::KeptCluster> cluster;
+  if (values.t_matrix_gap)
+    cluster = wave::kept_cluster(placement, 2 * std::numbers::pi / spec.wavelength,
+                                 *values.t_matrix_gap, values.tolerance);
   if (grid) catch_interrupts();  // which must not leave the file that a map is written to
   ResultFile result(session.out(), grid ? ResultFile::Storage::disk : ResultFile::Storage::memory);
   return session.once(std::move(result), [&](ResultFile& file) -> std::optional<Made> {
@@ -232,6 +283,7 @@ int solve(const Arguments& arguments) {
       if (!method) return std::nullopt;
       map_method = *method;
     }
+    if (cluster) wave::write_cluster(file, *cluster);
     write_scene(file);
     print_summary(solution);
     if (grid) std::printf("%s\n", map_method.c_str());

@@ -28,6 +28,8 @@
 #include "mc/slab/refinement.h"
 #include "mc/speckle/field_datasets.h"
 #include "mc/theory/moments_datasets.h"
+#include "wave_solver/clusters/cluster_file.h"
+#include "wave_solver/clusters/cluster_solution.h"
 #include "wave_solver/maps/map_datasets.h"
 #include "wave_solver/solutions/spectrum.h"
 
@@ -92,7 +94,8 @@ std::vector<const DatasetTable*> all_tables() {
       &mc::full_table,       &mc::pairs_table,      &mc::moves_table,
       &mc::gradient_table,   &mc::delays_table,     &mc::contrast_table,
       &mc::frequency_table,  &mc::numerical_table,  &validate_table,
-      &wave::solution_table, &wave::spectrum_table, &wave::map_table,
+      &wave::solution_table, &wave::spectrum_table, &wave::cluster_table,
+      &wave::cluster_solution_table, &wave::map_table,
       &mc::flux_table,       &mc::field_table,      &mc::imaging_table,
       &mc::picture_table,    &mc::recovery_table,   &mc::fit_table,
       &mc::plan_table,       &sweep_axes_table,     &sweep_table,

@@ -5,6 +5,7 @@
 #include "bench/plan/plan_timing.h"
 #include "wave_solver/dense/blas.h"
 #include "wave_solver/dense/dense_factor.h"
+#include "wave_solver/equations/t_matrix_system.h"
 #include "wave_solver/maps/field_map.h"
 #include "wave_solver/solutions/wave_solution.h"
 

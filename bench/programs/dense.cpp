@@ -17,6 +17,7 @@
 #include "flatland/placement/placement.h"
 #include "wave_solver/dense/blas.h"
 #include "wave_solver/dense/dense_factor.h"
+#include "wave_solver/equations/t_matrix_system.h"
 #include "wave_solver/solutions/wave_solution.h"
 
 using namespace flatspeckle;

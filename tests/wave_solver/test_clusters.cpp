@@ -89,15 +89,32 @@ TEST_CASE("copies of a cluster scatter as all their disks do") {
   for (const auto& places :
        {std::vector<ClusterPlace>{{{0.4, 2}, 1.1}}, six_places(2 * cluster.radius + gap)}) {
     const auto expected = full_far_fields(copies(disks, places), lights, views);
-    const auto got = cluster_far_fields(cluster, places, lights, views);
-    CHECK(relative_distance(got, expected) < 1e-9);
+    const ClusterSolution solution(cluster, places, lights);
+    CHECK(relative_distance(solution.fields(far_views(views)), expected) < 1e-9);
+    CHECK(solution.diagnosis().residual < 1e-11);
+  }
+}
+
+// With few orders T can be inverted, and all ways of solving are open.
+TEST_CASE("copies of a cluster far apart are solved densely and fast") {
+  const auto disks = five_disks();
+  constexpr double wide = 2, tolerance = 1e-9;
+  const auto cluster = cluster_t_matrix(disks, k, wide, tolerance);
+  const auto places = six_places(2 * cluster.radius + wide);
+  const std::vector<double> lights{0.3, -2.0}, views{0, 0.5, 1.9, -0.8, 3.0};
+  const auto expected = full_far_fields(copies(disks, places), lights, views);
+  for (const Method method : {Method::dense, Method::fast}) {
+    const ClusterSolution solution(cluster, places, lights, {tolerance, {}, true, method});
+    CHECK(relative_distance(solution.fields(far_views(views)), expected) < 1e-9);
+    CHECK(solution.diagnosis().residual < tolerance);
+    CHECK(solution.equations().are_whole());
   }
 }
 
 TEST_CASE("clusters closer than the gap of their T-matrix are refused") {
   const auto cluster = cluster_t_matrix(five_disks(), k, gap);
-  CHECK_THROWS_AS(cluster_far_fields(cluster, six_places(2 * cluster.radius + 0.9 * gap), {0}, {0}),
-                  InputError);
+  const auto near = six_places(2 * cluster.radius + 0.9 * gap);
+  CHECK_THROWS_AS(ClusterSolution(cluster, near, {0}), InputError);
   CHECK_THROWS_AS(cluster_t_matrix(five_disks(), k, 0), InputError);
   CHECK_THROWS_AS(cluster_t_matrix(five_disks(), k, 1e-3), InputError);
 }

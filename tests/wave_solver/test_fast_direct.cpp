@@ -8,6 +8,7 @@
 #include "core/numbers/random.h"
 #include "reference.h"
 #include "wave_solver/dense/dense_factor.h"
+#include "wave_solver/equations/t_matrix_system.h"
 #include "wave_solver/skeletons/fast_direct.h"
 
 namespace flatspeckle::wave {

@@ -6,6 +6,7 @@
 
 #include "core/numbers/random.h"
 #include "reference.h"
+#include "wave_solver/equations/t_matrix_system.h"
 #include "wave_solver/sums/fast_product.h"
 #include "wave_solver/sums/ring_product.h"
 

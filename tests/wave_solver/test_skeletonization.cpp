@@ -5,6 +5,7 @@
 
 #include "core/numbers/random.h"
 #include "reference.h"
+#include "wave_solver/equations/t_matrix_system.h"
 #include "wave_solver/skeletons/skeletonization.h"
 
 namespace flatspeckle::wave {
@@ -46,7 +47,7 @@ TEST_CASE("A skeleton tells the waves of its box to all outside, near and far") 
     const Rectangle box{{0, 0}, {2.1, 2.1}};
     std::vector<std::size_t> inside, outside, near;
     for (std::size_t u = 0; u < system.unknowns(); ++u)
-      (box.distance(placement[system.scatterer_of(u)].position) == 0 ? inside : outside)
+      (box.distance(placement[system.body_of(u)].position) == 0 ? inside : outside)
           .push_back(u);
     Rectangle hull{{0, 0}, {2.1, 2.1}};
     if (disks) hull = {{-0.15, -0.15}, {2.25, 2.25}};
@@ -56,7 +57,7 @@ TEST_CASE("A skeleton tells the waves of its box to all outside, near and far") 
       const double distance = skeletonization.distance(active);
       near.clear();
       for (std::size_t u : outside)
-        if (hull.distance(placement[system.scatterer_of(u)].position) - scatterer.radius < distance)
+        if (hull.distance(placement[system.body_of(u)].position) - scatterer.radius < distance)
           near.push_back(u);
       REQUIRE(near.size() > 20);
       REQUIRE(near.size() < outside.size() / 2);

@@ -4,6 +4,7 @@
 
 #include "core/error.h"
 #include "reference.h"
+#include "wave_solver/equations/t_matrix_system.h"
 #include "wave_solver/solutions/wave_solution.h"
 
 namespace flatspeckle::wave {

@@ -2,22 +2,41 @@
 
 #include <vector>
 
-#include "wave_solver/clusters/cluster_t_matrix.h"
+#include "core/result/dataset_row.h"
+#include "flatland/request/sensor.h"
+#include "wave_solver/clusters/cluster_equations.h"
+#include "wave_solver/solutions/light_solution.h"
 
 namespace flatspeckle::wave {
 
-/// Where a copy of a cluster stands: its centre, and how far it is turned (C2).
-struct ClusterPlace {
-  Vec2 centre;
-  double angle = 0;
+/// The exact scattered field of copies of one cluster under unit plane waves.
+class ClusterSolution {
+ public:
+  /// By the equations with T^-1, dense or fast; where T is too nearly singular for that, by a dense
+  /// LU of 1 - T S. Throws as ClusterEquations and EquationSolver do, where fast is asked for then,
+  /// and InputError for sensors that are closer to a cluster's circle than its gap.
+  ClusterSolution(const ClusterTMatrix& cluster, std::vector<ClusterPlace> places,
+                  std::vector<double> light_angles, const SolveOptions& options = {});
+
+  const ClusterEquations& equations() const { return equations_; }
+  const std::vector<ClusterPlace>& places() const { return places_; }
+  const std::vector<double>& light_angles() const { return light_angles_; }
+  const Diagnosis& diagnosis() const { return found_.diagnosis; }
+  /// How the equations were solved, in words.
+  const std::string& method() const { return found_.method; }
+  /// For all lights: [light][view]; near ones are scattered fields.
+  std::vector<Complex> fields(const std::vector<View>& views) const;
+
+ private:
+  std::vector<ClusterPlace> places_;
+  std::vector<double> light_angles_;
+  ClusterEquations equations_;
+  LightSolution found_;
 };
 
-/// Far-field amplitudes (C4, phase origin r = 0), [light][view], of copies of one cluster under
-/// unit plane waves: b = T (a + S b) of C10 with the clusters as objects. Throws InputError where
-/// circles are closer than the cluster's gap, std::runtime_error where the equations are singular.
-std::vector<Complex> cluster_far_fields(const ClusterTMatrix& cluster,
-                                        const std::vector<ClusterPlace>& places,
-                                        const std::vector<double>& light_angles,
-                                        const std::vector<double>& view_angles);
+extern const DatasetTable cluster_solution_table;
+/// As write_solution() of a placement does.
+void write_solution(ResultFile& file, const ClusterSolution& solution,
+                    const std::vector<double>& view_angles, const std::vector<Vec2>& sensors);
 
 }  // namespace flatspeckle::wave

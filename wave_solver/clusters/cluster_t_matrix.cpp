@@ -7,8 +7,8 @@
 #include "core/keys/number_text.h"
 #include "core/numbers/scaled_bessel.h"
 #include "wave_solver/dense/blas.h"
-#include "wave_solver/dense/dense_factor.h"
 #include "wave_solver/equations/t_matrix_system.h"
+#include "wave_solver/solutions/equation_solver.h"
 
 namespace flatspeckle::wave {
 
@@ -75,17 +75,17 @@ std::vector<Complex> ClusterTMatrix::turned(double angle) const {
   return result;
 }
 
+ClusterTMatrix cluster_waves(double k, double radius, double gap, int order) {
+  return {k, radius, gap, order, scaled_modes(k, radius, order), {}};
+}
+
 // With V the regular waves about the origin in those about each scatterer, times sigma, the
 // coefficients are beta = -M^-1 V, and V^T takes them back; V is divided by w.
 ClusterTMatrix cluster_t_matrix(const Placement& cluster, double k, double gap, double tolerance) {
   if (!(gap > 0)) throw InputError("gap", number_text(gap), "must be positive");
   if (cluster.empty()) throw InputError("a cluster needs scatterers");
-  ClusterTMatrix result;
-  result.k = k;
-  result.radius = circle_radius(cluster);
-  result.gap = gap;
-  result.order = series_order(k, result.radius, gap, tolerance);
-  result.modes = scaled_modes(k, result.radius, result.order);
+  const double radius = circle_radius(cluster);
+  ClusterTMatrix result = cluster_waves(k, radius, gap, series_order(k, radius, gap, tolerance));
   auto inverse = result.modes;
   for (Mode& mode : inverse) {
     const ScaledReal one(1.0L);
@@ -97,7 +97,7 @@ ClusterTMatrix cluster_t_matrix(const Placement& cluster, double k, double gap, 
   for (std::size_t j = 0; j < cluster.size(); ++j) scatterers.push_back(system.modes(j));
   std::vector<Complex> waves(unknowns * size);
   translate_regular(k, scatterers, {{0, 0}, inverse, result.order}, {waves.data(), unknowns});
-  const auto coefficients = DenseFactor(system.matrix(), unknowns).solve(waves);
+  const auto coefficients = EquationSolver(system, Method::automatic, tolerance / 10).solve(waves);
   result.response.resize(size * size);
   multiply(CblasTrans, CblasNoTrans, size, size, unknowns, -1, waves.data(), unknowns,
            coefficients.data(), unknowns, 0, result.response.data(), size);

@@ -32,4 +32,7 @@ struct ClusterTMatrix {
 ClusterTMatrix cluster_t_matrix(const Placement& cluster, double k, double gap,
                                 double tolerance = 1e-12);
 
+/// The waves of a T-matrix, without its response.
+ClusterTMatrix cluster_waves(double k, double radius, double gap, int order);
+
 }  // namespace flatspeckle::wave

@@ -24,12 +24,11 @@ namespace {
 
 constexpr std::size_t leaf_unknowns = 256;  // smaller boxes would hardly be compressed
 
-std::vector<SortedDisk> disks_of(const TMatrixSystem& system) {
+std::vector<SortedDisk> disks_of(const WaveEquations& system) {
   std::vector<SortedDisk> disks;
-  for (std::size_t j = 0; j < system.placement().size(); ++j) {
-    const auto& [position, scatterer] = system.placement()[j];
-    disks.push_back({position, scatterer.disk_radius(), system.first(j + 1) - system.first(j)});
-  }
+  for (std::size_t j = 0; j < system.bodies().size(); ++j)
+    disks.push_back({system.bodies()[j].centre, system.bodies()[j].radius,
+                     system.first(j + 1) - system.first(j)});
   return disks;
 }
 
@@ -44,7 +43,7 @@ double square(std::size_t n) {
 // block of M.
 class FastDirect::Builder {
  public:
-  Builder(const TMatrixSystem& system, double tolerance, double memory)
+  Builder(const WaveEquations& system, double tolerance, double memory)
       : system_(system),
         memory_(memory),
         skeletonization_(system, tolerance),
@@ -146,7 +145,7 @@ class FastDirect::Builder {
         continue;
       }
       for (std::size_t unknown : active_[other]) {
-        const SortedDisk& disk = disks_[system_.scatterer_of(unknown)];
+        const SortedDisk& disk = disks_[system_.body_of(unknown)];
         if (hull.distance(disk.centre) - disk.radius < distance) found.push_back(unknown);
       }
     }
@@ -204,7 +203,7 @@ class FastDirect::Builder {
     cpu_seconds_[0] = thread_cpu_seconds() - start;
   }
 
-  const TMatrixSystem& system_;
+  const WaveEquations& system_;
   double memory_;
   Skeletonization skeletonization_;
   std::vector<SortedDisk> disks_;
@@ -214,7 +213,7 @@ class FastDirect::Builder {
   std::vector<double> cpu_seconds_;
 };
 
-FastDirect::FastDirect(const TMatrixSystem& system, double tolerance, double memory)
+FastDirect::FastDirect(const WaveEquations& system, double tolerance, double memory)
     : unknowns_(system.unknowns()) {
   assert(tolerance > 0 && tolerance < 1);
   blas_single_thread();

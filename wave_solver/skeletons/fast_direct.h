@@ -6,7 +6,7 @@
 
 #include "core/numbers/complex.h"
 #include "wave_solver/equations/system_memory.h"
-#include "wave_solver/equations/t_matrix_system.h"
+#include "wave_solver/equations/wave_equations.h"
 #include "wave_solver/skeletons/skeleton_elimination.h"
 
 namespace flatspeckle::wave {
@@ -40,7 +40,7 @@ class FastDirect {
   /// Factors M. Threaded over the boxes of a level, with the same result for any number of
   /// threads. Throws InputError where more than `memory` bytes might be needed, before a level is
   /// begun, and std::runtime_error for singular equations. 0 < tolerance < 1.
-  FastDirect(const TMatrixSystem& system, double tolerance, double memory = memory_of_system());
+  FastDirect(const WaveEquations& system, double tolerance, double memory = memory_of_system());
 
   /// X <- M^-1 X, threaded likewise; x: [column][unknown].
   void solve(std::span<Complex> x) const;

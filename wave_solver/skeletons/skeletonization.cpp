@@ -10,13 +10,14 @@ namespace {
 
 constexpr std::size_t chunk = 128;  // rows that are formed at a time
 
-// What a unit field, at most, excites in a scatterer: its equations' size.
-double largest_response(const TMatrixSystem& system) {
+// What a unit field, at most, excites in a body: its equations' size. Of cos n and sin n, one.
+double largest_response(const WaveEquations& system) {
   double largest = 0;
-  for (std::size_t j = 0; j < system.placement().size(); ++j) {
-    long double response = 0;
-    for (const auto& t : system.t_matrix(j)) response += std::abs(t);
-    largest = std::max(largest, static_cast<double>(std::sqrt(response)));
+  for (std::size_t j = 0; j < system.bodies().size(); ++j) {
+    double response = system.strength(system.first(j));
+    for (std::size_t unknown = system.first(j) + 1; unknown < system.first(j + 1); unknown += 2)
+      response += system.strength(unknown);
+    largest = std::max(largest, std::sqrt(response));
   }
   return largest;
 }
@@ -48,7 +49,7 @@ std::vector<Vec2> proxy_contour(const Rectangle& hull, double distance, double s
   return points;
 }
 
-Skeletonization::Skeletonization(const TMatrixSystem& system, double tolerance)
+Skeletonization::Skeletonization(const WaveEquations& system, double tolerance)
     : system_(system),
       tolerance_(tolerance),
       logarithm_(-std::log(tolerance)),

@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "wave_solver/equations/t_matrix_system.h"
+#include "wave_solver/equations/wave_equations.h"
 #include "wave_solver/skeletons/box_tree.h"
 #include "wave_solver/skeletons/interpolative.h"
 
@@ -29,7 +29,7 @@ std::vector<Vec2> proxy_contour(const Rectangle& hull, double distance, double s
 class Skeletonization {
  public:
   /// tolerance: of the 2-norm of each column of M between the box and all others.
-  Skeletonization(const TMatrixSystem& system, double tolerance);
+  Skeletonization(const WaveEquations& system, double tolerance);
 
   /// Within this distance, rim to rim, unknowns are wanted in `near`. It makes near rows about as
   /// many as points on the contour.
@@ -41,7 +41,7 @@ class Skeletonization {
   void add_near(const ActiveBox& box, std::span<const std::size_t> near, RowSketch& sketch) const;
   void add_contour(const ActiveBox& box, RowSketch& sketch) const;
 
-  const TMatrixSystem& system_;
+  const WaveEquations& system_;
   double tolerance_, logarithm_;  // ln(1/tolerance)
   double weight_ = 0;             // of the contour's rows
 };

@@ -39,7 +39,7 @@ Method method_for(std::size_t unknowns, double tolerance) {
   return unknowns <= dense_limit ? Method::dense : Method::fast;
 }
 
-EquationSolver::EquationSolver(const TMatrixSystem& system, Method method, double tolerance)
+EquationSolver::EquationSolver(const WaveEquations& system, Method method, double tolerance)
     : system_(system), tolerance_(std::max(tolerance, best_product)) {
   if (method == Method::automatic) method = method_for(system.unknowns(), tolerance);
   if (method == Method::dense) {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/numbers/complex.h"
-#include "wave_solver/equations/t_matrix_system.h"
+#include "wave_solver/equations/wave_equations.h"
 
 namespace flatspeckle::wave {
 
@@ -28,7 +28,7 @@ class EquationSolver {
  public:
   /// Keeps a reference to the system. tolerance: asked of the residual of fast and krylov, from
   /// 1e-12 on; dense leaves that of rounding. Throws InputError where memory does not suffice.
-  EquationSolver(const TMatrixSystem& system, Method method, double tolerance);
+  EquationSolver(const WaveEquations& system, Method method, double tolerance);
   ~EquationSolver();
 
   /// sides: [column][unknown]. Throws std::runtime_error where no finite solution is found, or a
@@ -49,7 +49,7 @@ class EquationSolver {
   std::vector<Complex> by_gmres(const std::vector<Complex>& sides);
   std::vector<Complex> subtracted(std::vector<Complex> b, const std::vector<Complex>& x) const;
 
-  const TMatrixSystem& system_;
+  const WaveEquations& system_;
   double tolerance_;
   std::unique_ptr<DenseFactor> dense_;
   std::unique_ptr<FastDirect> fast_;

@@ -3,13 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <stdexcept>
 #include <utility>
 
 #include "core/result/result_group.h"
 #include "flatland/scene/scene_datasets.h"
-#include "wave_solver/dense/blas.h"
-#include "wave_solver/dense/combinations.h"
 #include "wave_solver/solutions/boundary_residual.h"
 
 namespace flatspeckle::wave {
@@ -32,43 +29,6 @@ const DatasetTable solution_table{
       "largest mismatch of the boundary conditions, unit incident waves"}}};
 
 namespace {
-
-void require_finite(std::span<const Complex> values) {
-  for (const Complex& value : values)
-    if (!std::isfinite(value.real()) || !std::isfinite(value.imag()))
-      throw std::runtime_error("the multiple-scattering equations have no finite solution");
-}
-
-// |T_n| of each unknown: rows of the scaled equations times its root are those of the unscaled.
-std::vector<double> row_weights(const TMatrixSystem& system) {
-  std::vector<double> weights;
-  for (std::size_t j = 0; j < system.placement().size(); ++j)
-    for (const Mode& mode : system.modes(j).modes)
-      weights.push_back(static_cast<double>(std::abs(system.t_matrix(j)[mode.order])));
-  return weights;
-}
-
-// a^T b of matrices with n rows, columns by columns: [column of b][column of a].
-std::vector<Complex> transposed_product(const std::vector<Complex>& a, const Complex* b,
-                                        std::size_t columns_b, std::size_t n) {
-  if (n == 0) return {};
-  const std::size_t columns_a = a.size() / n;
-  std::vector<Complex> result(columns_b * columns_a);
-  if (result.empty()) return result;
-  multiply(CblasTrans, CblasNoTrans, columns_a, columns_b, n, 1, a.data(), n, b, n, 0,
-           result.data(), columns_a);
-  return result;
-}
-
-// Columns of the basis, n long, to those of all lights.
-std::vector<Complex> expanded(const LightBasis& basis, std::vector<Complex> columns,
-                              std::size_t n) {
-  if (basis.weights.empty() || n == 0) return columns;
-  std::vector<Complex> all(n * basis.count());
-  multiply(CblasNoTrans, CblasNoTrans, n, basis.count(), basis.size(), 1, columns.data(), n,
-           basis.weights.data(), basis.size(), 0, all.data(), n);
-  return all;
-}
 
 std::vector<Complex> transposed(const std::vector<Complex>& matrix, std::size_t rows) {
   std::vector<Complex> result(matrix.size());
@@ -152,35 +112,15 @@ std::vector<Complex> WaveSolution::fields(std::span<const View> views) const {
   return fields;
 }
 
-namespace {
-
-// Fields at the rims and inside of disks amplify what is left of the equations.
-EquationSolver solver_of(const TMatrixSystem& system, const SolveOptions& options) {
-  const Method method = options.method == Method::automatic
-                            ? method_for(system.unknowns(), options.tolerance)
-                            : options.method;
-  return {system, method, options.sensors.empty() ? options.tolerance : options.tolerance / 10};
-}
-
-}  // namespace
-
 WaveSolution solve(const Placement& placement, double k, const std::vector<double>& light_angles,
                    const SolveOptions& options) {
   check_no_overlap(placement);
   TMatrixSystem system(placement, k, options.tolerance, options.sensors);
-  const auto basis = light_basis(light_angles, k, enclosing_circle(placement), options.tolerance);
-  EquationSolver solver = solver_of(system, options);
-  const auto sides = system.right_sides(basis.angles);
-  auto x = solver.solve(sides);
-  Diagnosis diagnosis;
-  if (options.diagnose)
-    diagnosis = {relative_size(solver.remainder(), sides, row_weights(system)), solver.condition(),
-                 -1};
-  x = expanded(basis, std::move(x), system.unknowns());
-  WaveSolution solution(std::move(system), light_angles, std::move(x));
-  if (options.diagnose) diagnosis.boundary_residual = boundary_residual(solution);
-  solution.diagnosis_ = diagnosis;
-  solution.method_ = solver.description();
+  auto found = solve_lights(system, light_angles, enclosing_circle(placement), options);
+  WaveSolution solution(std::move(system), light_angles, std::move(found.coefficients));
+  if (options.diagnose) found.diagnosis.boundary_residual = boundary_residual(solution);
+  solution.diagnosis_ = found.diagnosis;
+  solution.method_ = std::move(found.method);
   return solution;
 }
 

@@ -7,27 +7,10 @@
 #include "core/result/dataset_row.h"
 #include "flatland/request/sensor.h"
 #include "wave_solver/equations/t_matrix_system.h"
-#include "wave_solver/solutions/equation_solver.h"
 #include "wave_solver/solutions/light_basis.h"
+#include "wave_solver/solutions/light_solution.h"
 
 namespace flatspeckle::wave {
-
-struct SolveOptions {
-  /// Relative accuracy asked of far fields, and of near fields at `sensors`; sets the basis orders.
-  double tolerance = 1e-12;
-  std::vector<Vec2> sensors;
-  /// Also estimate residual, condition and boundary residual.
-  bool diagnose = true;
-  Method method = Method::automatic;
-};
-
-/// How far a solution can be trusted; NaN-free, -1 where it was not asked for.
-struct Diagnosis {
-  /// ||b - T(a + S b)|| / ||T a||, over all lights (C10); of many an estimate (combinations.h)
-  double residual = -1;
-  double condition = -1;          ///< of the scaled matrix, in the Frobenius norm (an estimate)
-  double boundary_residual = -1;  ///< see boundary_residual.h
-};
 
 /// The exact scattered field of one placement under unit plane waves. Light and view angles in
 /// radians (C2), positions in the placement's unit.

@@ -14,20 +14,20 @@ namespace flatspeckle::wave {
 
 namespace {
 
-std::vector<Vec2> positions(const TMatrixSystem& system) {
+std::vector<Vec2> positions(const WaveEquations& system) {
   std::vector<Vec2> result;
-  for (const auto& placed : system.placement()) result.push_back(placed.position);
+  for (const auto& body : system.bodies()) result.push_back(body.centre);
   return result;
 }
 
-// What the choice of a range looks at: the scatterer of the highest order stands for all.
+// What the choice of a range looks at: the body of the highest order stands for all.
 struct Outline {
-  explicit Outline(const TMatrixSystem& system)
+  explicit Outline(const WaveEquations& system)
       : k(system.k()), centres(positions(system)), box(bounds(centres, centres)) {
     std::size_t highest = 0;
     for (std::size_t j = 0; j < centres.size(); ++j) {
       if (system.order(j) > system.order(highest)) highest = j;
-      radius = std::max(radius, system.placement()[j].scatterer.disk_radius());
+      radius = std::max(radius, system.bodies()[j].radius);
     }
     modes = system.modes(highest);
     box = {box.low - Vec2{radius, radius}, box.high + Vec2{radius, radius}};
@@ -60,7 +60,7 @@ double grid_cost(const Outline& outline, double range, double tolerance) {
 }
 
 // Cheapest range of a RingProduct; none where forming blocks at every use is cheaper.
-std::optional<double> best_range(const TMatrixSystem& system, double tolerance, bool with_grid) {
+std::optional<double> best_range(const WaveEquations& system, double tolerance, bool with_grid) {
   const Outline outline(system);
   double best = cost::uses * outline.squares * seconds_per_element;
   std::optional<double> range;
@@ -79,18 +79,18 @@ std::optional<double> best_range(const TMatrixSystem& system, double tolerance, 
   return range;
 }
 
-bool points_only(const TMatrixSystem& system) {
-  return system.unknowns() == system.placement().size();
+bool points_only(const WaveEquations& system) {
+  return system.unknowns() == system.bodies().size();
 }
 
 }  // namespace
 
-FastProduct::FastProduct(const TMatrixSystem& system, double tolerance) : system_(system) {
+FastProduct::FastProduct(const WaveEquations& system, double tolerance) : system_(system) {
   if (system.unknowns() == 0) return;
   if (points_only(system)) {
     points_ = std::make_unique<HelmholtzSum>(system.k(), positions(system), tolerance);
     for (std::size_t j = 0; j < system.unknowns(); ++j)
-      sigma_.push_back(std::sqrt(static_cast<double>(std::abs(system.t_matrix(j)[0]))));
+      sigma_.push_back(std::sqrt(system.strength(j)));
     return;
   }
   for (const bool with_grid : {true, false}) {

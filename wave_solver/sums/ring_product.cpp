@@ -5,7 +5,7 @@
 #include <cmath>
 #include <map>
 #include <numeric>
-#include <tuple>
+#include <utility>
 
 #include "core/run/parallel.h"
 #include "wave_solver/dense/blas.h"
@@ -16,19 +16,21 @@ namespace flatspeckle::wave {
 
 namespace {
 
-std::vector<Vec2> centres(const Placement& placement) {
+using Bodies = std::span<const WaveEquations::Body>;
+
+std::vector<Vec2> centres(Bodies bodies) {
   std::vector<Vec2> positions;
-  for (const auto& placed : placement) positions.push_back(placed.position);
+  for (const auto& body : bodies) positions.push_back(body.centre);
   return positions;
 }
 
 }  // namespace
 
-RingProduct::RingProduct(const TMatrixSystem& system, double range, double tolerance) {
+RingProduct::RingProduct(const WaveEquations& system, double range, double tolerance) {
   blas_single_thread();
-  const Placement& placement = system.placement();
-  for (std::size_t j = 0; j <= placement.size(); ++j) first_.push_back(system.first(j));
-  if (placement.empty()) return;
+  const Bodies bodies = system.bodies();
+  for (std::size_t j = 0; j <= bodies.size(); ++j) first_.push_back(system.first(j));
+  if (bodies.empty()) return;
   make_rings(system, range, tolerance);
   std::optional<KernelSplit> split;
   if (std::isfinite(range)) {
@@ -38,37 +40,38 @@ RingProduct::RingProduct(const TMatrixSystem& system, double range, double toler
     resolved_ = finer >= finest_grid;
     if (!resolved_) return;
     split.emplace(system.k(), range, finer);
-    const auto points = place_rings(placement, range);
+    const auto points = place_rings(bodies, range);
     const GridShape shape(system.k(), range, finer, bounds(points, points));
     far_.emplace(*split, shape, finer, points, points);
   }
-  find_neighbours(placement, range);
-  parallel_for(placement.size(), [&](std::size_t j) {
+  find_neighbours(bodies, range);
+  parallel_for(bodies.size(), [&](std::size_t j) {
     for (const Neighbour& neighbour : neighbours_[j])
       if (!neighbour.transposed) fill(system, j, neighbour, split);
   });
 }
 
-// One for each kind of scatterer and order.
-void RingProduct::make_rings(const TMatrixSystem& system, double range, double tolerance) {
-  using Key = std::tuple<int, double, double, double, double, double, int>;
-  std::map<Key, std::uint32_t> known;
-  for (std::size_t j = 0; j < system.placement().size(); ++j) {
-    const Scatterer& s = system.placement()[j].scatterer;
-    const Key key(static_cast<int>(s.kind), s.radius, s.index.real(), s.index.imag(), s.albedo,
-                  s.phase_shift, system.order(j));
-    const auto [kind, is_new] = known.try_emplace(key, static_cast<std::uint32_t>(rings_.size()));
+// One for bodies of the same radius and waves.
+void RingProduct::make_rings(const WaveEquations& system, double range, double tolerance) {
+  std::map<std::vector<long double>, std::uint32_t> known;
+  for (std::size_t j = 0; j < system.bodies().size(); ++j) {
+    const double radius = system.bodies()[j].radius;
+    std::vector<long double> key{radius};
+    for (const Mode& mode : system.modes(j).modes)
+      key.push_back(static_cast<long double>(mode.weight));
+    const auto [kind, is_new] =
+        known.try_emplace(std::move(key), static_cast<std::uint32_t>(rings_.size()));
     if (is_new)
-      rings_.emplace_back(system.modes(j), system.k(), s.disk_radius(), range + s.disk_radius(),
-                          0.1 * tolerance);
+      rings_.emplace_back(system.modes(j), system.k(), radius, range + radius, 0.1 * tolerance);
     kind_.push_back(kind->second);
   }
 }
 
 // In an order in which neighbours stand close to each other.
-std::vector<Vec2> RingProduct::place_rings(const Placement& placement, double range) {
-  const auto positions = centres(placement);
-  ring_first_.resize(placement.size());
+std::vector<Vec2> RingProduct::place_rings(std::span<const WaveEquations::Body> bodies,
+                                           double range) {
+  const auto positions = centres(bodies);
+  ring_first_.resize(bodies.size());
   std::vector<Vec2> points;
   const StripOrder strips(positions, range / 3);
   for (const std::uint32_t j : strips.order()) {
@@ -80,17 +83,17 @@ std::vector<Vec2> RingProduct::place_rings(const Placement& placement, double ra
   return points;
 }
 
-void RingProduct::find_neighbours(const Placement& placement, double range) {
-  const auto positions = centres(placement);
+void RingProduct::find_neighbours(std::span<const WaveEquations::Body> bodies, double range) {
+  const auto positions = centres(bodies);
   double largest = 0, reach = 0;
   for (const MultipoleRing& ring : rings_) largest = std::max(largest, ring.radius);
   const Extent box = bounds(positions, positions);
   reach = std::min(range + 2 * largest, 2 * length(box.high - box.low) + 1);
   const StripOrder strips(positions, reach / 3);
-  neighbours_.resize(placement.size());
+  neighbours_.resize(bodies.size());
   std::vector<StripOrder::Stretch> stretches;
   std::size_t size = 0;
-  for (std::uint32_t j = 0; j < placement.size(); ++j) {
+  for (std::uint32_t j = 0; j < bodies.size(); ++j) {
     stretches.clear();
     strips.around(positions[j], reach, stretches);
     for (const auto& stretch : stretches)
@@ -106,26 +109,26 @@ void RingProduct::find_neighbours(const Placement& placement, double range) {
   blocks_.resize(size);
 }
 
-void RingProduct::fill(const TMatrixSystem& system, std::size_t row, const Neighbour& column,
+void RingProduct::fill(const WaveEquations& system, std::size_t row, const Neighbour& column,
                        const std::optional<KernelSplit>& split) {
-  std::vector<std::size_t> rows(modes(row)), columns(modes(column.scatterer));
+  std::vector<std::size_t> rows(modes(row)), columns(modes(column.body));
   std::iota(rows.begin(), rows.end(), first_[row]);
-  std::iota(columns.begin(), columns.end(), first_[column.scatterer]);
+  std::iota(columns.begin(), columns.end(), first_[column.body]);
   system.entries(rows, columns, &blocks_[column.block], rows.size());
-  if (split) subtract_far(system.placement(), row, column, *split);
+  if (split) subtract_far(system.bodies(), row, column, *split);
 }
 
-void RingProduct::subtract_far(const Placement& placement, std::size_t row, const Neighbour& column,
-                               const KernelSplit& split) {
-  const MultipoleRing &to = ring(row), &from = ring(column.scatterer);
-  const Vec2 d = placement[row].position - placement[column.scatterer].position;
+void RingProduct::subtract_far(std::span<const WaveEquations::Body> bodies, std::size_t row,
+                               const Neighbour& column, const KernelSplit& split) {
+  const MultipoleRing &to = ring(row), &from = ring(column.body);
+  const Vec2 d = bodies[row].centre - bodies[column.body].centre;
   std::vector<double> distance;
   for (std::size_t s = 0; s < from.points; ++s)
     for (std::size_t r = 0; r < to.points; ++r)
       distance.push_back(length(d + to.position(r) - from.position(s)));
   std::vector<Complex> far(distance.size());
   split.far(distance, far);
-  const std::size_t rows = modes(row), columns = modes(column.scatterer);
+  const std::size_t rows = modes(row), columns = modes(column.body);
   std::vector<Complex> received(to.points * columns);
   multiply(CblasNoTrans, CblasNoTrans, to.points, columns, from.points, 1, far.data(), to.points,
            from.charges.data(), from.points, 0, received.data(), to.points);
@@ -148,9 +151,9 @@ std::vector<Complex> RingProduct::operator()(std::span<const Complex> x) const {
   parallel_for(kind_.size(), [&](std::size_t j) {
     for (const Neighbour& near : neighbours_[j])
       multiply(near.transposed ? CblasTrans : CblasNoTrans, CblasNoTrans, modes(j), columns,
-               modes(near.scatterer), 1, &blocks_[near.block],
-               near.transposed ? modes(near.scatterer) : modes(j), &x[first_[near.scatterer]],
-               unknowns, 1, &y[first_[j]], unknowns);
+               modes(near.body), 1, &blocks_[near.block],
+               near.transposed ? modes(near.body) : modes(j), &x[first_[near.body]], unknowns, 1,
+               &y[first_[j]], unknowns);
     if (far_)
       multiply(CblasTrans, CblasNoTrans, modes(j), columns, ring(j).points, 1,
                ring(j).charges.data(), ring(j).points, &fields[ring_first_[j]], ring_points_, 1,

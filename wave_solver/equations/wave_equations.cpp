@@ -1,0 +1,241 @@
+#include "wave_solver/equations/wave_equations.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "core/numbers/hankel_array.h"
+#include "core/run/parallel.h"
+#include "wave_solver/dense/blas.h"
+#include "wave_solver/equations/system_memory.h"
+#include "wave_solver/equations/tiles.h"
+
+namespace flatspeckle::wave {
+
+namespace {
+
+constexpr std::size_t worth_threads = 300;  // unknowns
+
+}  // namespace
+
+void WaveEquations::add(const Body& body, std::span<const Mode> modes) {
+  const std::size_t number = bodies_.size();
+  bodies_.push_back(body);
+  modes_.insert(modes_.end(), modes.begin(), modes.end());
+  body_of_.resize(modes_.size(), number);
+  first_.push_back(modes_.size());
+}
+
+void WaveEquations::add(const Body& body, std::span<const Mode> modes,
+                        std::span<const Complex> diagonal) {
+  add(body, modes);
+  diagonal_.insert(diagonal_.end(), diagonal.begin(), diagonal.end());
+  own_.emplace_back();
+}
+
+void WaveEquations::add(const Body& body, std::span<const Mode> modes, OwnBlock own) {
+  add(body, modes);
+  for (std::size_t i = 0; i < modes.size(); ++i)
+    diagonal_.push_back((*own)[i * (modes.size() + 1)]);
+  own_.push_back(std::move(own));
+}
+
+int WaveEquations::order(std::size_t body) const {
+  return modes_[first_[body + 1] - 1].order;
+}
+
+double WaveEquations::strength(std::size_t unknown) const {
+  const auto weight = static_cast<double>(modes_[unknown].weight);
+  return (modes_[unknown].order == 0 ? 2 : 1) * weight * weight;
+}
+
+Complex WaveEquations::own(std::size_t row, std::size_t column) const {
+  const std::size_t body = body_of_[row];
+  if (!own_[body]) return row == column ? diagonal_[row] : Complex();
+  const std::size_t first = first_[body], size = first_[body + 1] - first;
+  return (*own_[body])[row - first + size * (column - first)];
+}
+
+ModeSet WaveEquations::modes(std::size_t j) const {
+  return {bodies_[j].centre, std::span(modes_).subspan(first_[j], first_[j + 1] - first_[j]),
+          order(j)};
+}
+
+// Unknowns as mode sets, one for each run of one body.
+struct WaveEquations::Listed {
+  Listed(const WaveEquations& system, std::span<const std::size_t> unknowns) {
+    modes.reserve(unknowns.size());
+    for (std::size_t unknown : unknowns) {
+      const std::size_t j = system.body_of_[unknown];
+      const Mode& mode = modes.emplace_back(system.modes_[unknown]);
+      if (runs.empty() || bodies.back() != j) {
+        bodies.push_back(j);
+        first.push_back(modes.size() - 1);
+        runs.push_back({system.bodies_[j].centre, {&mode, 0}, 0});
+      }
+      ModeSet& run = runs.back();
+      run.modes = {run.modes.data(), run.modes.size() + 1};
+      run.order = std::max(run.order, mode.order);
+    }
+  }
+
+  std::vector<Mode> modes;
+  std::vector<ModeSet> runs;
+  std::vector<std::size_t> bodies, first;  // of each run; its first place in the list
+};
+
+void WaveEquations::entries(std::span<const std::size_t> rows, std::span<const std::size_t> columns,
+                            Complex* out, std::size_t ld) const {
+  const Listed receivers(*this, rows), senders(*this, columns);
+  for (std::size_t s = 0; s < senders.runs.size(); ++s) {
+    Complex* const block = out + ld * senders.first[s];
+    translate(k_, receivers.runs, senders.runs[s], {block, ld});
+    const auto own_columns = columns.subspan(senders.first[s], senders.runs[s].modes.size());
+    for (std::size_t r = 0; r < receivers.runs.size(); ++r) {
+      if (receivers.bodies[r] != senders.bodies[s]) continue;
+      for (std::size_t j = 0; j < own_columns.size(); ++j)
+        for (std::size_t i = 0; i < receivers.runs[r].modes.size(); ++i)
+          block[receivers.first[r] + i + ld * j] =
+              own(rows[receivers.first[r] + i], own_columns[j]);
+    }
+  }
+}
+
+void WaveEquations::outgoing(std::span<const Vec2> points, std::span<const std::size_t> columns,
+                             Complex* out, std::size_t ld) const {
+  const Listed senders(*this, columns);
+  for (std::size_t s = 0; s < senders.runs.size(); ++s)
+    field_at(k_, points, senders.runs[s], {out + ld * senders.first[s], ld});
+}
+
+std::vector<ModeSet> WaveEquations::all_modes() const {
+  std::vector<ModeSet> all;
+  for (std::size_t j = 0; j < bodies_.size(); ++j) all.push_back(modes(j));
+  return all;
+}
+
+// Order 0 everywhere: plain arrays of distances.
+void WaveEquations::point_columns(Complex* matrix) const {
+  const std::size_t size = unknowns();
+  std::vector<double> strength(size);
+  std::vector<Vec2> positions(size);
+  for (std::size_t j = 0; j < size; ++j) {
+    strength[j] = std::numbers::sqrt2 * static_cast<double>(modes_[j].weight);
+    positions[j] = bodies_[j].centre;
+  }
+  const auto fill = [&](std::size_t j) {
+    Complex* const column = matrix + j * (size + 1);
+    std::vector<double> distance(size - j);
+    for (std::size_t i = 1; i < distance.size(); ++i) {
+      const Vec2 d = positions[j + i] - positions[j];
+      distance[i] = k_ * std::sqrt(dot(d, d));
+    }
+    column[0] = diagonal_[j];
+    hankel0(std::span(distance).subspan(1), {column + 1, distance.size() - 1});
+    for (std::size_t i = 1; i < distance.size(); ++i) column[i] *= strength[j] * strength[j + i];
+  };
+  parallel_for((size + tile - 1) / tile, size > worth_threads, [&](std::size_t part) {
+    const std::size_t begin = part * tile, end = std::min(begin + tile, size);
+    for (std::size_t j = begin; j < end; ++j) fill(j);
+    mirror_columns(matrix, size, begin, end);
+  });
+}
+
+void WaveEquations::multipole_columns(Complex* matrix) const {
+  const std::size_t size = unknowns();
+  const auto all = all_modes();
+  parallel_for(all.size(), size > worth_threads, [&](std::size_t j) {
+    Complex* const corner = matrix + first_[j] * (size + 1);
+    const std::size_t height = all[j].modes.size();
+    for (std::size_t i = 0; i < height; ++i)
+      for (std::size_t l = 0; l < height; ++l)
+        corner[i * size + l] = own(first_[j] + l, first_[j] + i);
+    translate(k_, std::span(all).subspan(j + 1), all[j], {corner + height, size});
+    mirror_columns(matrix, size, first_[j], first_[j + 1]);
+  });
+}
+
+Entries WaveEquations::matrix() const {
+  require_dense_memory(unknowns());
+  const std::size_t size = unknowns();
+  Entries matrix(size * size);
+  if (size == bodies_.size())
+    point_columns(matrix.data());
+  else
+    multipole_columns(matrix.data());
+  return matrix;
+}
+
+// Bodies one after the other whose columns make a block for BLAS; one at the least. Ends of
+// them, the first 0.
+std::vector<std::size_t> WaveEquations::column_blocks() const {
+  constexpr std::size_t most_columns = 64;
+  std::vector<std::size_t> ends{0};
+  for (std::size_t j = 1; j < first_.size(); ++j)
+    if (j + 1 == first_.size() || first_[j + 1] - first_[ends.back()] > most_columns)
+      ends.push_back(j);
+  return ends;
+}
+
+// What the bodies' own parts of M make of x.
+void WaveEquations::add_own(std::size_t begin, std::size_t end, const Complex* x,
+                            Complex* y) const {
+  for (std::size_t body = begin; body < end; ++body)
+    for (std::size_t row = first_[body]; row < first_[body + 1]; ++row)
+      if (own_[body])
+        for (std::size_t i = first_[body]; i < first_[body + 1]; ++i) y[row] += own(row, i) * x[i];
+      else
+        y[row] += diagonal_[row] * x[row];
+}
+
+// M is symmetric: the columns of some bodies, transposed, make their rows of the product.
+std::vector<Complex> WaveEquations::apply(std::span<const Complex> x) const {
+  const std::size_t size = unknowns();
+  if (size == 0) return {};
+  std::vector<Complex> y(x.size());
+  const std::size_t columns = x.size() / size;
+  const auto all = all_modes();
+  const auto ends = column_blocks();
+  parallel_for(ends.size() - 1, [&](std::size_t part) {
+    const std::size_t begin = first_[ends[part]], width = first_[ends[part + 1]] - begin;
+    std::vector<Complex> block(size * width);
+    for (std::size_t j = ends[part]; j < ends[part + 1]; ++j)
+      translate(k_, all, all[j], {&block[size * (first_[j] - begin)], size});
+    multiply(CblasTrans, CblasNoTrans, width, columns, size, 1, block.data(), size, x.data(), size,
+             0, &y[begin], size);
+    for (std::size_t column = 0; column < columns; ++column)
+      add_own(ends[part], ends[part + 1], &x[column * size], &y[column * size]);
+  });
+  return y;
+}
+
+void WaveEquations::plane_wave(Vec2 w, Complex factor, std::span<Complex> column) const {
+  std::vector<ModeSet> receivers;
+  for (std::size_t j = 0; j < bodies_.size(); ++j) receivers.push_back(modes(j));
+  expand_plane_wave(k_, receivers, w, factor, column);
+}
+
+std::vector<Complex> WaveEquations::right_sides(std::span<const double> light_angles) const {
+  std::vector<Complex> sides(light_angles.size() * unknowns());
+  for (std::size_t light = 0; light < light_angles.size(); ++light)
+    plane_wave(direction(light_angles[light]), -1,
+               std::span(sides).subspan(light * unknowns(), unknowns()));
+  return sides;
+}
+
+std::vector<Complex> WaveEquations::far_row(double view_angle) const {
+  std::vector<Complex> row(unknowns());
+  const double size = std::sqrt(2 / (std::numbers::pi * k_));
+  plane_wave(-direction(view_angle), std::polar(size, -std::numbers::pi / 4), row);
+  return row;
+}
+
+std::vector<Complex> WaveEquations::outside_row(Vec2 point) const {
+  std::vector<Complex> row(unknowns());
+  for (std::size_t j = 0; j < bodies_.size(); ++j)
+    field_at(k_, {&point, 1}, modes(j), {&row[first_[j]], 1});
+  return row;
+}
+
+}  // namespace flatspeckle::wave
