@@ -34,6 +34,7 @@ FILES = {
     "layers.csv": "thickness,density\n3,0.05\n3,0.25\n4,0.15\n",
     "blobs.csv": "x,z,radius,amplitude\n-2,4,2,-1\n5,7,1.5,2\n",
     "disks.csv": "x,z,radius\n0,0,0.3\n1,2,0.2\n",
+    "places.csv": "x,z,angle\n0,0,0\n9,1,2\n",
     "disk_points.csv": "density,radius,index,index_imaginary\n0.1,0.2,1.5,0\n0.2,0.1,1.4,0.01\n",
 }
 
@@ -101,6 +102,8 @@ RUNS = {
                                          "scatterer": "tm", "wavelengths": [0.9, 1.1]}),
     "solve_near": ("solve", {"placement": "disks.csv", "near_sensors": "sensors.csv",
                              "scatterer": "tm"}),
+    "motif": ("solve", {"placement": "disks.csv", "scatterer": "tm", "t_matrix_gap": 3}),
+    "solve_copies": ("solve", {"placement": "places.csv", "cluster": "motif.h5", **FAR}),
     "flux": ("flux", {**BOX, "angle_bins": 600}),
     "field": ("field", {"width": 20, "depth": 10, "mean_free_path": 10, "view_angles": SINES,
                         "tilts": [0, 0.1], "method": "paths"}),

@@ -51,6 +51,7 @@ SCENES = [
                "target_error": 0.1}),
     ("solve", {**BOX, "map": [-10, 10, 0, 10], "map_pixels": [20, 10]}),
     ("solve", {**BOX, "wavelengths": [0.9, 1.1], "wavelength_count": 3}),
+    ("solve", {**BOX, "t_matrix_gap": 5}),
     ("solve", {"placement": "disks.csv", "scatterer": "tm", "index": "1.5+0.1i", **VIEWS}),
     ("validate", {**BOX, **TILTS, "samples": 4000, "wave_samples": 20}),
     ("validate", {**SLAB, **TILTS, "samples": 4000, "tolerance": 1e-3}),
