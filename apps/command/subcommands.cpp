@@ -20,6 +20,7 @@ int bench(const Arguments& arguments);
 int list_keys(const Arguments& arguments);
 int datasets(const Arguments& arguments);
 int explain(const Arguments& arguments);
+int new_scene(const Arguments& arguments);
 
 std::span<const SubcommandEntry> subcommands() {
   static constexpr SubcommandEntry entries[] = {
@@ -50,6 +51,7 @@ std::span<const SubcommandEntry> subcommands() {
 #endif
       {"keys", "the keys of all subcommands, for programs: json, markdown, man, completion",
        list_keys},
+      {"new", "a commented scene to begin with, for a purpose", new_scene},
       {"explain", "what a result file holds, in words: its medium, sizes, and what draws it",
        explain},
       {"datasets", "what result files hold, as in docs/format.md", datasets}};

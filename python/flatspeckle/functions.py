@@ -16,7 +16,7 @@ from flatspeckle.result import read
 from flatspeckle.run import BAD_INPUT, DONE, FAILED, TARGET_MISSED, run
 from flatspeckle.scene import all_texts, line, scene_of
 
-NO_FUNCTION = ("keys", "datasets", "explain", "bench")
+NO_FUNCTION = ("keys", "datasets", "explain", "new", "bench")
 OWN = """
 Runs `flatspeckle {name}` and returns its result as an xarray.Dataset. Keys that are not given, or None,
 have the program's defaults. Before the keys stand, if need be, a Scene, a mapping, or the path of a scene

@@ -1,0 +1,117 @@
+#include <algorithm>
+#include <iostream>
+#include <iterator>
+
+#include "apps/command/command_line.h"
+#include "apps/command/subcommands.h"
+#include "core/error.h"
+
+namespace flatspeckle::apps {
+
+namespace {
+
+/// A scene to begin with: the subcommand that it is for, and its lines.
+struct Purpose {
+  const char *word, *subcommand, *lines;
+};
+
+constexpr Purpose purposes[] = {
+    {"memory-effect", "covariance",
+     R"(# How far may the light be tilted before the speckle behind a slab is another one?
+domain = "slab"               # infinite across
+depth = 1000                  # lengths in wavelengths
+scatterer = "hg"              # Henyey and Greenstein
+g = 0.9                       # mean cosine of scattering
+optical_depth = 10            # depth in mean free paths
+albedo = 1                    # below 1: absorbs
+view_angles = [0]             # radians; pi - 0.2 is a view in reflection
+covariance = "memory_effect"
+tilts = [0, 1e-4, 2e-4, 3e-4, 4e-4, 6e-4, 8e-4]  # radians
+)"},
+    {"validate", "validate",
+     R"(# Monte Carlo against the exact solution, entry by entry: cylinders in a box.
+domain = "box"
+width = 20                    # wavelengths
+depth = 10
+scatterer = "tm"              # dielectric cylinders, E along the axis
+radius = 0.16
+index = "1.5"                 # "1.5+0.01i" absorbs
+count = 67                    # how many, placed anew each time
+view_angles = [0.4, 1.0, 2.1, 3.1415]
+wave_samples = 400            # placements of the exact solver
+samples = 200000              # light paths
+)"},
+    {"near-field", "solve",
+     R"(# The exact field around and inside cylinders, on a grid: near field.
+domain = "box"
+width = 12                    # wavelengths
+depth = 8
+scatterer = "tm"
+radius = 0.4
+index = "1.5"
+count = 20
+map = [-8, 8, -2, 12]         # x from, to, z from, to
+)"},
+    {"waveguide", "render",
+     R"(# A beam along a graded index guide, n^2 = n0^2 - alpha^2 r^2, in a scattering medium; what arrives at its end.
+field = ["parabolic"]
+index = 1.33
+alpha = 0.15
+stage_box = [-6, -6, 0, 6, 6, 20]            # corners
+mu_s = 0.15                                  # scattering, per length
+phase = "henyey_greenstein"
+g = 0.9
+beam_light = [0, 0, 0, 0, 0, 1, 0.3, 1]      # x y z dx dy dz radius power
+sensor = "area"
+sensor_at = [0, 0, 20]
+sensor_size = [6, 6]
+pixels = [48, 48]
+samples = 60000
+)"},
+    {"lens", "design",
+     R"(# A lens that brings parallel light to a point of its rim.
+design = "radial"             # or "ball": free in space
+coefficients = 8
+directions = 1
+rays_per_direction = 100
+)"},
+    {"imaging", "image",
+     R"(# Will a camera see four points behind a medium, in the autocorrelation of its frame?
+domain = "box"
+width = 4000
+depth = 20
+scatterer = "hg"
+g = 0.9
+optical_depth = 5
+object_x = [0, 60, 150, 310]  # the points, on a line
+object_depth = -40000         # far away on the other side
+camera = [-0.5, 0.5]          # sines of the directions that it sees
+pixels = 8192
+repeats = 2                   # media
+)"}};
+
+std::string words() {
+  std::string all;
+  for (const Purpose& purpose : purposes) all += std::string(" ") + purpose.word;
+  return all;
+}
+
+}  // namespace
+
+int new_scene(const Arguments& arguments) {
+  if (arguments.size() == 3 && arguments[2].starts_with("--")) {
+    Subcommand command("new", "A commented scene to begin with: new PURPOSE, one of" + words());
+    if (!command.parse(arguments)) return ExitStatus::done;
+  }
+  if (arguments.size() != 3) throw InputError("new: must have one purpose, of" + words());
+  const auto* const found =
+      std::find_if(std::begin(purposes), std::end(purposes),
+                   [&](const Purpose& purpose) { return arguments[2] == purpose.word; });
+  if (found == std::end(purposes))
+    throw InputError("new", arguments[2], "must be one of" + words());
+  std::cout << found->lines << "# To run it: flatspeckle " << found->subcommand
+            << " --config THIS_FILE --out result.h5; then: flatspeckle explain result.h5\n";
+  return ExitStatus::done;
+}
+
+}  // namespace flatspeckle::apps
