@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <iostream>
 #include <set>
+#include <sstream>
 
 #include "apps/command/subcommands.h"
 #include "apps/fit/fit_summary.h"
@@ -20,6 +21,8 @@ struct FitKeys {
   SceneSpec medium;
   std::vector<std::string> free, measurements;
   std::int64_t starts = 2, most_iterations = 60;
+  std::string method = "auto";
+  double model_share = 0.2;
   bool plan = false;
   double patterns = 1000;
   RunSettings run;
@@ -41,6 +44,13 @@ void add_keys(Keys& keys, FitKeys& values) {
       .from(1, 100);
   keys.add("most_iterations", values.most_iterations, "Steps after which a fit gives up")
       .from(1, 10000);
+  keys.add("method", values.method,
+           "The model: transport through slabs, or Monte Carlo; auto: transport where all "
+           "measurements are of slabs")
+      .one_of({"transport", "mc", "auto"});
+  keys.add("model_share", values.model_share,
+           "Of the estimates' variances: what chance in a model by Monte Carlo may add")
+      .from(0.001, 1);
   keys.add("plan", values.plan,
            "No measurement: how well the free keys, at the values that the scene gives them, would "
            "be known from speckle in these views under these tilts");
@@ -55,10 +65,13 @@ void add_keys(Keys& keys, FitKeys& values) {
   add_scatterer_keys(keys, values.medium);
   add_bulk_keys(keys, values.medium);
   add_medium_keys(keys, values.medium);
-  for (const char* of_boxes : {"domain", "width", "count", "placement"}) keys.remove(of_boxes);
+  for (const char* of_placements : {"count", "placement"}) keys.remove(of_placements);
   add_structure_key(keys, values.medium);
   add_dimension_key(keys, values.medium);
   add_output_key(keys, values.run);
+  add_seed_key(keys, values.run, "Of the paths of a model by Monte Carlo");
+  keys.add("seconds", values.run.seconds, "After which a model by Monte Carlo draws no more paths")
+      .positive();
   add_thread_key(keys, values.run);
 }
 
@@ -113,7 +126,23 @@ void refuse_views(const Keys& keys, const FitKeys& values) {
                        "measurements bring their own; leave it out");
 }
 
-mc::FitTask task_of(const Keys& keys, const FitKeys& values) {
+bool is_slab(const mc::Curve& curve) {
+  return curve.scene.domain == "slab";
+}
+
+/// Where the model is by Monte Carlo.
+std::optional<mc::PathSettings> paths_of(const Keys& keys, const FitKeys& values,
+                                         const mc::FitTask& task, const Session& session) {
+  const std::string method = keys.read(values.method);
+  const bool slabs = std::ranges::all_of(task.measurements, [](const mc::Measurement& one) {
+    return std::ranges::all_of(one.curves, is_slab);
+  });
+  if (method == "transport" || (method == "auto" && slabs)) return std::nullopt;
+  return mc::PathSettings{session.seed(), session.threads(), keys.read(values.model_share),
+                          keys.read(values.run.seconds)};
+}
+
+mc::FitTask task_of(const Keys& keys, const FitKeys& values, const Session& session) {
   refuse_views(keys, values);
   mc::FitTask task;
   keys.read(values.medium.dimension);
@@ -122,6 +151,7 @@ mc::FitTask task_of(const Keys& keys, const FitKeys& values) {
   task.free = mc::read_free_parameters(keys.required(values.free), values.medium);
   for (const std::string& path : keys.required(values.measurements))
     task.measurements.push_back(read_measurement(path, keys, values.medium));
+  task.paths = paths_of(keys, values, task, session);
   check_depths(task);
   check_scenes(keys, task);
   mc::check(task);
@@ -146,17 +176,24 @@ void tell_guesses(const mc::FitTask& task) {
                 << " does not tell how its errors are correlated: they count as independent\n";
 }
 
+std::string model_of(const mc::FitTask& task, const mc::MediumFit& fit) {
+  if (!task.paths)
+    return std::string("transport through slabs, ") +
+           (fit.reversed ? "reversed paths" : "no reversed paths");
+  std::ostringstream text;
+  text << "Monte Carlo, " << fit.paths << " paths of each run at the end";
+  return text.str();
+}
+
 int run_fit(const Session& session, const Subcommand& command, const FitKeys& values) {
-  const mc::FitTask task = task_of(command.keys(), values);
+  const mc::FitTask task = task_of(command.keys(), values, session);
   if (!command.settle()) return ExitStatus::done;
   tell_guesses(task);
   return session.once(ResultFile(session.out()), [&](ResultFile& file) -> std::optional<Made> {
     const mc::MediumFit fit = mc::fit_medium(task);
     mc::write_fit(file, task, fit);
     print_fit(task, fit);
-    return Made{std::string("least squares; transport through slabs, ") +
-                    (fit.reversed ? "reversed paths" : "no reversed paths"),
-                static_cast<double>(fit.residuals.size()),
+    return Made{"least squares; " + model_of(task, fit), static_cast<double>(fit.residuals.size()),
                 fit.converged ? ExitStatus::done : ExitStatus::error_not_reached};
   });
 }

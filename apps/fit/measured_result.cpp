@@ -11,6 +11,7 @@
 #include "core/result/run_state_file.h"
 #include "mc/estimators/flux_walk.h"
 #include "mc/fit/correlated_errors.h"
+#include "mc/fit/curve_values.h"
 #include "mc/theory/memory_effect.h"
 
 namespace flatspeckle::apps {
@@ -36,7 +37,7 @@ struct Observed {
 
 struct Contents {
   std::string config;
-  bool numerical = false;
+  bool numerical = false, of_placements = false;
   std::vector<Observed> observed;
   std::vector<Complex> entries;  ///< of the request
   std::optional<GroupedSums> sums;
@@ -85,6 +86,7 @@ std::vector<Complex> entries_of(const ResultReader& file, Observable observable)
 Contents contents_of(const ResultReader& file) {
   Contents found;
   found.config = file.attribute<std::string>("/", "config");
+  found.of_placements = found.config.find("method = \"wave\"") != std::string::npos;
   found.numerical = file.has_attribute("/", "errors");
   if (file.has("field_correlation") && file.has("tilt"))
     found.observed.push_back(observed(file, Observable::field_correlation, "tilt"));
@@ -146,8 +148,21 @@ bool tells(const Observed& of, std::size_t entry) {
   return of.observable != Observable::field_correlation || of.abscissa[entry] != 0;
 }
 
+/// Of exact placements: sums of each channel's field, then of each entry's products (C12).
+Estimator placement_covariance(const CovarianceRequest& request) {
+  return [request](double samples, std::span<const Complex> sums) {
+    std::vector<Complex> values;
+    for (std::size_t e = 0; e < request.entries.size(); ++e) {
+      const auto [a, b] = request.entries[e];
+      const Complex products = sums[request.channels.size() + e];
+      values.push_back((products - sums[a] * std::conj(sums[b]) / samples) / (samples - 1));
+    }
+    return values;
+  };
+}
+
 /// Of sums of paths, whose closed part is what is missing in them.
-Estimator covariance_estimator(const Contents& there) {
+Estimator path_covariance(const Contents& there) {
   auto closed = sample_mean(there.sums->total_samples(), there.sums->total());
   closed.resize(there.entries.size());
   for (std::size_t e = 0; e < closed.size(); ++e) closed[e] = there.entries[e] - closed[e];
@@ -160,10 +175,14 @@ Estimator covariance_estimator(const Contents& there) {
 
 /// All values of a curve from the sums.
 Estimator estimator_of(const Contents& there, const Curve& curve) {
-  if (curve.observable == Observable::intensity) return covariance_estimator(there);
+  const CovarianceRequest request =
+      mc::is_flux(curve.observable) ? CovarianceRequest() : make_request(curve.scene);
+  const Estimator covariance = mc::is_flux(curve.observable) ? Estimator()
+                               : there.of_placements         ? placement_covariance(request)
+                                                             : path_covariance(there);
+  if (curve.observable == Observable::intensity) return covariance;
   if (curve.observable == Observable::field_correlation)
-    return [request = make_request(curve.scene), covariance = covariance_estimator(there)](
-               double samples, std::span<const Complex> sums) {
+    return [=](double samples, std::span<const Complex> sums) {
       return mc::field_correlation(request, covariance(samples, sums));
     };
   const std::size_t lights = curve.scene.light_angles.size(),

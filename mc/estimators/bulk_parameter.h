@@ -1,10 +1,18 @@
 #pragma once
 
+#include <string>
+
 namespace flatspeckle::mc {
 
 /// What a scene's bulk can be differentiated by, all others held fixed: radius and (real part of
 /// the) index of cylinders at fixed density, of spheres at fixed extinction.
 enum class BulkParameter { mu_t, g, albedo, radius, index };
+
+/// As results call it.
+inline std::string name_of(BulkParameter parameter) {
+  constexpr const char* names[] = {"mu_t", "g", "albedo", "radius", "index"};
+  return names[static_cast<std::size_t>(parameter)];
+}
 
 /// d log p / dg of Henyey-Greenstein's phase function, of C22 or in space, at a scattering angle of
 /// known 1 - cos.

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <memory>
 
 #include "core/error.h"
 #include "core/result/result_group.h"
+#include "mc/estimators/directional_slope.h"
 #include "mc/estimators/gradient_scorer.h"
 #include "mc/estimators/single_scattering.h"
 #include "mc/theory/memory_effect.h"
@@ -38,48 +40,39 @@ Values extinction_slope(const Scene& scene, const ClosedForm& closed_form) {
   return slope;
 }
 
-/// d log / dg of the amplitudes' product of every entry, which is all of B = 1 that knows g.
-std::vector<double> amplitude_slopes(const Scene& scene) {
-  const auto lights = light_ends(scene), views = view_ends(scene);
-  std::vector<double> slopes;
+/// d log of the amplitudes' product of every entry.
+Values amplitude_slopes(const Scene& scene, const AmplitudeSlope& slope) {
+  Values slopes;
   for (const Entry entry : scene.request.entries) {
-    slopes.push_back(0);
-    for (const auto channel : {entry.a, entry.b}) {
-      const auto [i, v] = scene.request.channels[channel];
-      const double turn = one_minus_cosine(-lights[i].towards, views[v].towards);
-      slopes.back() += henyey_greenstein_slope(scene.medium.g, turn, scene.medium.dimension) / 2;
-    }
+    const FarField a(scene, entry.a), b(scene, entry.b);
+    slopes.push_back(slope(a.light, a.view) + std::conj(slope(b.light, b.view)));
   }
   return slopes;
 }
 
 struct GradientKind {
   using Sums = std::span<Complex>;
-  std::vector<BulkParameter> parameters;
+  std::shared_ptr<const std::vector<MediumSlope>> slopes;
 
-  std::size_t quantities() const { return 1 + parameters.size(); }
+  std::size_t quantities() const { return 1 + slopes->size(); }
 
-  GradientTally tally(const Scene& scene) const { return {scene.medium.g, scene.medium.dimension}; }
+  GradientTally tally(const Scene&) const { return {*slopes}; }
 
   template <bool reversed, bool phases, typename Scattering>
   auto scorer(const Scene& scene, const Scattering& scattering, Sums sums) const {
-    return GradientScorer<Scattering, reversed, phases>(scene, scattering, parameters, sums);
+    return GradientScorer<Scattering, reversed, phases>(scene, scattering, *slopes, sums);
   }
 
   template <typename Scattering>
   Values single(const Scene& scene, const Scattering& scattering) const {
     const auto closed_form = [&](const Scene& any) { return single_scattering(any, scattering); };
-    const Values single = closed_form(scene);
-    const auto by_g = amplitude_slopes(scene);
+    const Values single = closed_form(scene), by_mu_t = extinction_slope(scene, closed_form);
     Values all = single;
-    for (const BulkParameter parameter : parameters) {
-      Values slope = single;
-      if (parameter == BulkParameter::mu_t) slope = extinction_slope(scene, closed_form);
-      for (std::size_t e = 0; e < slope.size(); ++e) {
-        if (parameter == BulkParameter::g) slope[e] *= by_g[e];
-        if (parameter == BulkParameter::albedo) slope[e] /= scene.medium.albedo;
-      }
-      all.insert(all.end(), slope.begin(), slope.end());
+    for (const MediumSlope& slope : *slopes) {
+      const Values turned = amplitude_slopes(scene, slope.amplitude);
+      const double mu_t = slope.log_mu_t * scene.medium.mu_t;
+      for (std::size_t e = 0; e < single.size(); ++e)
+        all.push_back(mu_t * by_mu_t[e] + product(single[e], turned[e] + slope.log_albedo));
     }
     return all;
   }
@@ -96,27 +89,6 @@ Estimator gradient_of(const PathJob& job, double depth) {
       };
 }
 
-/// Derivative of C_E and its range along that of the entries, by a central difference.
-Values directional_slope(const CovarianceRequest& request, std::span<const Complex> entries,
-                         std::span<const Complex> along) {
-  const auto largest = [](std::span<const Complex> values) {
-    double most = 0;
-    for (const Complex value : values) most = std::max(most, std::abs(value));
-    return most;
-  };
-  Values slope(request.tilts.size() + 1);
-  if (largest(along) == 0) return slope;
-  const double step = 1e-6 * largest(entries) / largest(along);
-  const auto moved = [&](double by) {
-    Values values(entries.begin(), entries.end());
-    for (std::size_t e = 0; e < values.size(); ++e) values[e] += by * along[e];
-    return correlation_and_ranges(request, values);
-  };
-  const Values above = moved(step), below = moved(-step);
-  for (std::size_t t = 0; t < slope.size(); ++t) slope[t] = (above[t] - below[t]) / (2 * step);
-  return slope;
-}
-
 /// What f makes of the estimates of each parameter, one after the other.
 Estimate each(const Estimate& all, std::size_t parameters,
               const std::function<Estimate(const Estimate&)>& f) {
@@ -128,11 +100,6 @@ Estimate each(const Estimate& all, std::size_t parameters,
 
 }  // namespace
 
-std::string name_of(BulkParameter parameter) {
-  constexpr const char* names[] = {"mu_t", "g", "albedo", "radius", "index"};
-  return names[static_cast<std::size_t>(parameter)];
-}
-
 std::vector<BulkParameter> bulk_parameters(const Scene& scene) {
   switch (scene.scatterer.kind) {
     case Scatterer::Kind::hg:
@@ -141,8 +108,12 @@ std::vector<BulkParameter> bulk_parameters(const Scene& scene) {
     case Scatterer::Kind::point:
       return {BulkParameter::mu_t, BulkParameter::albedo};
     default:
-      return {BulkParameter::mu_t};
+      break;
   }
+  if (!scene.scatterer.is_disk() || !scene.medium.structure.independent())
+    return {BulkParameter::mu_t};
+  if (!scene.scatterer.is_penetrable()) return {BulkParameter::mu_t, BulkParameter::radius};
+  return {BulkParameter::mu_t, BulkParameter::radius, BulkParameter::index};
 }
 
 GradientJob gradient_job(const PathJob& paths, const std::vector<BulkParameter>& parameters,
@@ -176,7 +147,16 @@ Plan gradient_plan(const Scene& scene, ReversedPaths reversed) {
 GradientJob gradient_job(const Scene& scene, const Plan& plan, std::uint64_t seed) {
   assert(!scene.profile);
   const auto parameters = bulk_parameters(scene);
-  return gradient_job(path_job(GradientKind{parameters}, scene, plan, seed), parameters, scene);
+  std::vector<MediumSlope> slopes;
+  for (const BulkParameter parameter : parameters) slopes.push_back(medium_slope(scene, parameter));
+  return gradient_job(slope_job(scene, plan, slopes, seed), parameters, scene);
+}
+
+PathJob slope_job(const Scene& scene, const Plan& plan, const std::vector<MediumSlope>& slopes,
+                  std::uint64_t seed) {
+  assert(slopes.size() <= most_slopes);
+  return path_job(GradientKind{std::make_shared<const std::vector<MediumSlope>>(slopes)}, scene,
+                  plan, seed);
 }
 
 CorrelationGradient memory_effect_gradient(const CovarianceRequest& request,
@@ -188,7 +168,9 @@ CorrelationGradient memory_effect_gradient(const CovarianceRequest& request,
     Values all;
     for (std::size_t p = 0; p < parameters; ++p) {
       const auto along = std::span(gradient).subspan(p * entries, entries);
-      const Values slope = directional_slope(request, covariance, along);
+      const Values slope = directional_slope(
+          [&](const Values& moved) { return correlation_and_ranges(request, moved); }, covariance,
+          along);
       all.insert(all.end(), slope.begin(), slope.end());
     }
     return all;

@@ -5,24 +5,22 @@
 #include <vector>
 
 #include "core/result/dataset_row.h"
-#include "mc/estimators/bulk_parameter.h"
+#include "mc/estimators/medium_slope.h"
 #include "mc/estimators/path_job.h"
 
 namespace flatspeckle::mc {
 
 /// Derivatives of a scene's covariance from the paths that estimate it: the integrand of C14 is
 /// differentiated, the density that the paths are drawn from is not. The parameters are mu_t, g and
-/// albedo where they describe the scatterers as a bulk (all for hg, no g for points, mu_t alone for
-/// cylinders), and the optical depth, mu_t times the depth, at fixed depth.
+/// albedo where they describe the scatterers as a bulk (all for hg, no g for points), of cylinders
+/// mu_t, radius and index, and the optical depth, mu_t times the depth, at fixed depth.
 struct GradientJob : PathJob {
   std::vector<std::string> parameters;
   Estimator gradient;  ///< [parameter][entry]
 };
 
-/// As results call it.
-std::string name_of(BulkParameter parameter);
-
-/// What a scene's paths are differentiated by; the optical depth follows from mu_t.
+/// What a scene's paths are differentiated by; the optical depth follows from mu_t. Of cylinders
+/// with a structure factor, which their size would change, mu_t alone.
 std::vector<BulkParameter> bulk_parameters(const Scene& scene);
 
 /// Of a job whose quantities after the covariance are derivatives by the parameters, mu_t first.
@@ -36,6 +34,10 @@ void check_gradient(const Scene& scene);
 Plan gradient_plan(const Scene& scene, ReversedPaths reversed);
 
 GradientJob gradient_job(const Scene& scene, const Plan& plan, std::uint64_t seed);
+
+/// Of a job whose quantities after the covariance are derivatives by these.
+PathJob slope_job(const Scene& scene, const Plan& plan, const std::vector<MediumSlope>& slopes,
+                  std::uint64_t seed);
 
 /// Derivatives of what memory_effect() gives: of C_E, [parameter][tilt], and of the range,
 /// [parameter]: 0 where it is censored.

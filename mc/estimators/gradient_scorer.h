@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "flatland/scene/scene.h"
-#include "mc/estimators/bulk_parameter.h"
+#include "mc/estimators/medium_slope.h"
 #include "mc/estimators/path_ends.h"
 #include "mc/estimators/slope_sums.h"
 
@@ -13,11 +13,10 @@ namespace flatspeckle::mc {
 
 /// What the logarithm of a path's integrand mu_s^B prod exp(-mu_t r) prod p depends on.
 struct GradientTally {
-  double g = 0;
-  int dimension = 2;
+  std::span<const MediumSlope> slopes;
   int scatterers = 1;
   double length = 0;
-  double phase_slope = 0;  ///< sum of d log p / d g over the inner scatterers
+  std::array<double, most_slopes> phase_slope{};  ///< sums of d log p over the inner scatterers
 
   template <typename Direction>
   void flight(Vec2, const Direction&, double r) {
@@ -26,7 +25,8 @@ struct GradientTally {
   }
   template <typename Direction>
   void scattering(Vec2, const Direction& from, const Direction& to) {
-    phase_slope += henyey_greenstein_slope(g, one_minus_cosine(from, to), dimension);
+    for (std::size_t p = 0; p < slopes.size(); ++p)
+      if (slopes[p].amplitude.depends()) phase_slope[p] += 2 * slopes[p].amplitude(from, to).real();
   }
 };
 
@@ -38,12 +38,12 @@ class GradientScorer {
 
  public:
   GradientScorer(const Scene& scene, const Scattering& scattering,
-                 std::span<const BulkParameter> parameters, std::span<Complex> sums)
+                 std::span<const MediumSlope> slopes, std::span<Complex> sums)
       : request_(scene.request),
         medium_(scene.medium),
         scattering_(scattering),
-        parameters_(parameters),
-        sums_(scene.request, parameters.size(), sums),
+        slopes_(slopes),
+        sums_(scene.request, slopes.size(), sums),
         ends_(scene, [](std::size_t ends) { return EndValues(ends); }) {}
 
   /// B = 1 at x.
@@ -55,9 +55,10 @@ class GradientScorer {
     for (std::size_t c = 0; c < sums_.channels(); ++c) {
       const auto [i, v] = request_.channels[c];
       const Vec2 from = -lights.direction(i), to = views.direction(v);
-      GradientTally tally{medium_.g, medium_.dimension};
-      tally.scattering(x, from, to);
-      add_term(c, half_slopes(tally), light, view, local(scattering_, x).amplitude(from, to));
+      Slopes half = half_slopes({slopes_});
+      for (std::size_t p = 0; p < slopes_.size(); ++p)
+        if (slopes_[p].amplitude.depends()) half[p] += slopes_[p].amplitude(from, to);
+      add_term(c, half, light, view, local(scattering_, x).amplitude(from, to));
     }
     sums_.accumulate(weight);
   }
@@ -78,7 +79,7 @@ class GradientScorer {
  private:
   using Ends = EndFactors<phases>;
   /// Logarithmic derivatives, by parameter.
-  using Slopes = std::array<double, 3>;
+  using Slopes = std::array<Complex, most_slopes>;
   /// A e of every end and its slopes.
   struct EndValues {
     std::vector<Complex> value;
@@ -89,43 +90,29 @@ class GradientScorer {
 
   void attenuate(Ends& ends, Vec2 x, EndValues& out) const {
     ends.attenuate(x, out.value);
-    for (std::size_t p = 0; p < parameters_.size(); ++p)
+    for (std::size_t p = 0; p < slopes_.size(); ++p)
       for (std::size_t j = 0; j < ends.size(); ++j)
-        out.slopes[j][p] =
-            parameters_[p] == BulkParameter::mu_t ? ends.log_attenuation(j) / medium_.mu_t : 0;
+        out.slopes[j][p] = slopes_[p].log_mu_t * ends.log_attenuation(j);
   }
 
   void at(Ends& ends, Vec2 x, const Direction& arrival, EndValues& out) const {
     attenuate(ends, x, out);
     local(scattering_, x).towards(arrival, ends.directions(), out.value);
-    for (std::size_t p = 0; p < parameters_.size(); ++p) {
-      if (parameters_[p] != BulkParameter::g) continue;
+    for (std::size_t p = 0; p < slopes_.size(); ++p) {
+      const AmplitudeSlope& amplitude = slopes_[p].amplitude;
+      if (!amplitude.depends()) continue;
       for (std::size_t j = 0; j < ends.size(); ++j)
-        out.slopes[j][p] = henyey_greenstein_slope(
-                               medium_.g, one_minus_cosine(arrival, Direction(ends.direction(j))),
-                               medium_.dimension) /
-                           2;
+        out.slopes[j][p] += amplitude(arrival, Direction(ends.direction(j)));
     }
   }
 
   Slopes half_slopes(const GradientTally& tally) const {
+    const double by_mu_t = tally.scatterers - medium_.mu_t * tally.length;
     Slopes half{};
-    for (std::size_t p = 0; p < parameters_.size(); ++p) {
-      switch (parameters_[p]) {
-        case BulkParameter::mu_t:
-          half[p] = (tally.scatterers / medium_.mu_t - tally.length) / 2;
-          break;
-        case BulkParameter::g:
-          half[p] = tally.phase_slope / 2;
-          break;
-        case BulkParameter::albedo:
-          half[p] = tally.scatterers / medium_.albedo / 2;
-          break;
-        case BulkParameter::radius:
-        case BulkParameter::index:
-          break;  // of transport alone
-      }
-    }
+    for (std::size_t p = 0; p < slopes_.size(); ++p)
+      half[p] = (slopes_[p].log_mu_t * by_mu_t + slopes_[p].log_albedo * tally.scatterers +
+                 tally.phase_slope[p]) /
+                2;
     return half;
   }
 
@@ -142,7 +129,7 @@ class GradientScorer {
   const CovarianceRequest& request_;
   const BulkMedium& medium_;
   const Scattering& scattering_;
-  std::span<const BulkParameter> parameters_;
+  std::span<const MediumSlope> slopes_;
   SlopeSums sums_;
   PathEnds<EndValues, reversed, phases> ends_;
 };

@@ -32,7 +32,7 @@ class SlopeSums {
   void add_term(std::size_t c, Complex term, const Slope& slope) {
     field_[c] += term;
     for (std::size_t p = 0; p < parameters_; ++p)
-      field_slope_[p * field_.size() + c] += slope(p) * term;
+      field_slope_[p * field_.size() + c] += product(term, slope(p));
   }
 
   void accumulate(double weight) {

@@ -1,5 +1,7 @@
 #include "mc/fit/correlated_errors.h"
 
+#include <cmath>
+
 namespace flatspeckle::mc {
 
 namespace {
@@ -15,33 +17,37 @@ VectorXd real_values(const std::vector<Complex>& values) {
 
 }  // namespace
 
-MatrixXd correlated_errors(const GroupedSums& sums, const Estimator& theta) {
+MatrixXd deviations(const GroupedSums& sums, const Estimator& theta) {
   const double samples = sums.total_samples();
   const auto total = sums.total();
   const VectorXd all = real_values(theta(samples, total));
-  const auto size = all.size(), groups = static_cast<Index>(sums.groups());
-  constexpr Index more = 10;
-  if (groups < size + more) return {};
+  const auto groups = static_cast<Index>(sums.groups());
   // Pseudo-values and weights as those of jackknife().
-  double sum_w = 0;
-  VectorXd sum_d = VectorXd::Zero(size), mean = sum_d;
-  MatrixXd sum_dd = MatrixXd::Zero(size, size);
+  VectorXd mean = VectorXd::Zero(all.size()), rest(groups);
+  MatrixXd found(all.size(), groups);
   auto without = total;
   for (std::size_t group = 0; group < sums.groups(); ++group) {
+    const auto g = static_cast<Index>(group);
     const auto left_out = sums.group_sums(group);
     for (std::size_t i = 0; i < total.size(); ++i) without[i] = total[i] - left_out[i];
-    const double h_minus_1 = samples / sums.group_samples(group) - 1;
-    const VectorXd d = all - real_values(theta(samples - sums.group_samples(group), without));
-    sum_w += 1 / h_minus_1;
-    sum_d += d;
-    sum_dd += h_minus_1 * d * d.transpose();
-    mean += h_minus_1 / (h_minus_1 + 1) * d;
+    rest[g] = samples / sums.group_samples(group) - 1;
+    found.col(g) = all - real_values(theta(samples - sums.group_samples(group), without));
+    mean += rest[g] / (rest[g] + 1) * found.col(g);
   }
-  const MatrixXd spread = sum_dd - mean * sum_d.transpose() - sum_d * mean.transpose() +
-                          sum_w * mean * mean.transpose();
+  for (Index g = 0; g < groups; ++g)
+    found.col(g) = std::sqrt(rest[g]) * found.col(g) - mean / std::sqrt(rest[g]);
+  return found / std::sqrt(static_cast<double>(groups));
+}
+
+MatrixXd correlated_errors(const GroupedSums& sums, const Estimator& theta) {
+  const auto size = static_cast<Index>(theta(sums.total_samples(), sums.total()).size()),
+             groups = static_cast<Index>(sums.groups());
+  constexpr Index more = 10;
+  if (groups < size + more) return {};
+  const MatrixXd found = deviations(sums, theta);
   const double of_inverse =
       static_cast<double>(groups - 1) / static_cast<double>(groups - size - 2);
-  return of_inverse / static_cast<double>(groups) * spread;
+  return of_inverse * found * found.transpose();
 }
 
 }  // namespace flatspeckle::mc

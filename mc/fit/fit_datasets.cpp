@@ -22,6 +22,8 @@ const DatasetTable fit_table{
           "0 where the error is a quarter of the distance of the bounds or more"},
          {"parameter_covariance", Data::real, "parameter parameter_2", "",
           "covariance of the estimates' errors"},
+         {"chance_covariance", Data::real, "parameter parameter_2", "",
+          "of a model by Monte Carlo: what chance in it has added to that covariance"},
          {"parameter_correlation", Data::real, "parameter parameter_2", "1",
           "correlation of the estimates' errors"},
          {"worst_combination", Data::real, "parameter", "1",
@@ -52,7 +54,7 @@ const DatasetTable fit_table{
                     "largest over least eigenvalue of the information, parameters in distances of "
                     "their bounds; absent where a combination is not known at all"},
                    {"", "numerical_error", "float64",
-                    "largest numerical error of the model, in standard errors"},
+                    "largest numerical error of the model, in standard errors; 0 by Monte Carlo"},
                    {"", "degeneracy", "text", "what is known well, and what is not"}}};
 
 namespace {
@@ -66,6 +68,7 @@ void write_parameters(const ResultGroup& root, const FitTask& task, const Medium
   root.put("upper_bound", column(task.free, &FreeParameter::upper));
   root.put("known", std::vector<std::uint64_t>(fit.known.begin(), fit.known.end()));
   root.put("parameter_covariance", row_major(fit.covariance));
+  if (task.paths) root.put("chance_covariance", row_major(fit.by_chance));
   root.put("parameter_correlation", row_major(fit.correlation));
   root.put("worst_combination", row_major(fit.worst));
   root.number("derived", fit.derived.size());

@@ -7,8 +7,8 @@
 #include <Eigen/LU>
 
 #include "core/error.h"
+#include "mc/fit/curve_values.h"
 #include "mc/fit/levenberg_marquardt.h"
-#include "mc/fit/slab_model.h"
 #include "mc/slab/slab_covariance.h"
 #include "mc/space/space_scene.h"
 

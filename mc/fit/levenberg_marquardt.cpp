@@ -53,6 +53,11 @@ VectorXd within(const LeastSquares& problem, const VectorXd& parameters) {
 
 }  // namespace
 
+VectorXd damped_step(const LeastSquares& problem, const LeastSquaresFit& at, double damping) {
+  return within(problem, at.parameters + NormalEquations(problem, at).step(damping)) -
+         at.parameters;
+}
+
 LeastSquaresFit levenberg_marquardt(const LeastSquares& problem, const VectorXd& start,
                                     int most_iterations, double tolerance) {
   constexpr double first_damping = 1e-3, most_damping = 1e12, factor = 10;
@@ -67,9 +72,8 @@ LeastSquaresFit levenberg_marquardt(const LeastSquares& problem, const VectorXd&
   note();
   double damping = first_damping;
   for (; at.iterations < most_iterations && damping < most_damping; ++at.iterations) {
-    const VectorXd next =
-        within(problem, at.parameters + NormalEquations(problem, at).step(damping));
-    const double length = (next - at.parameters).cwiseQuotient(range).cwiseAbs().maxCoeff();
+    const VectorXd step = damped_step(problem, at, damping), next = at.parameters + step;
+    const double length = step.cwiseQuotient(range).cwiseAbs().maxCoeff();
     at.converged = length < tolerance && damping <= 1;
     if (at.converged) return at;
     const VectorXd residuals = problem.residuals(next);
@@ -111,9 +115,13 @@ LeastSquaresFit best_fit(const LeastSquares& problem, const std::vector<VectorXd
 }
 
 Information information(const LeastSquares& problem, const MatrixXd& jacobian) {
+  return information_of(problem, jacobian.transpose() * jacobian);
+}
+
+Information information_of(const LeastSquares& problem, const MatrixXd& fisher) {
   const VectorXd range = problem.upper - problem.lower;
-  const MatrixXd scaled = jacobian * range.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(scaled.transpose() * scaled);
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(range.asDiagonal() * fisher *
+                                                       range.asDiagonal());
   const VectorXd known = solver.eigenvalues();  // ascending
   const MatrixXd& combinations = solver.eigenvectors();
   const Index last = known.size() - 1;

@@ -37,6 +37,9 @@ struct LeastSquaresFit {
 LeastSquaresFit levenberg_marquardt(const LeastSquares& problem, const Eigen::VectorXd& start,
                                     int most_iterations = 60, double tolerance = 1e-6);
 
+/// The step from a point of known residuals and jacobian; what a bound holds back takes no part.
+Eigen::VectorXd damped_step(const LeastSquares& problem, const LeastSquaresFit& at, double damping);
+
 /// Of all starts, those of the least chi^2.
 std::vector<Eigen::VectorXd> best_starts(const LeastSquares& problem,
                                          const std::vector<Eigen::VectorXd>& starts,
@@ -59,5 +62,7 @@ struct Information {
 
 /// An infinite condition where a combination is not known at all.
 Information information(const LeastSquares& problem, const Eigen::MatrixXd& jacobian);
+/// fisher: J^T J.
+Information information_of(const LeastSquares& problem, const Eigen::MatrixXd& fisher);
 
 }  // namespace flatspeckle::mc

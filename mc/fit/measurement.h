@@ -34,8 +34,8 @@ struct Curve {
 struct Measurement {
   std::string name;  ///< the file
   std::vector<Curve> curves;
-  Eigen::VectorXd values;      ///< of all curves, one after the other
-  Eigen::MatrixXd covariance;  ///< of their errors
+  Eigen::VectorXd values;            ///< of all curves, one after the other
+  Eigen::MatrixXd covariance;        ///< of their errors
   bool guessed_independent = false;  ///< the file does not tell how its errors are correlated
 };
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,12 +13,21 @@
 
 namespace flatspeckle::mc {
 
+/// How a model by Monte Carlo is sampled.
+struct PathSettings {
+  std::uint64_t seed = 1;
+  int threads = 1;
+  double share = 0.2;             ///< of errors' variances, that chance in the model may add
+  std::optional<double> seconds;  ///< after which no more paths are drawn
+};
+
 /// Which medium gave these measurements?
 struct FitTask {
   std::vector<FreeParameter> free;
   std::vector<Measurement> measurements;
   int starts = 2;  ///< of each parameter without a start
   int most_iterations = 60;
+  std::optional<PathSettings> paths;  ///< the model is by Monte Carlo; else by transport
 };
 
 /// What follows from the parameters, and how well it is known.
@@ -37,7 +48,9 @@ struct MediumFit {
   Eigen::VectorXd residuals;  ///< whitened: independent, in standard errors
   Eigen::VectorXd pulls;      ///< (measured - model) / error of each value
   double chi_squared = 0;
-  double numerical = 0;  ///< largest numerical error of the model, in standard errors
+  double numerical = 0;       ///< largest numerical error of the model, in standard errors
+  Eigen::MatrixXd by_chance;  ///< by Monte Carlo: its part of the covariance
+  double paths = 0;           ///< by Monte Carlo: those of each run at the best medium
   bool converged = false, reversed = false;
   std::vector<LeastSquaresFit::Step> trace;  ///< with values of the parameters
 
@@ -47,7 +60,7 @@ struct MediumFit {
 /// Throws InputError for what the measurements cannot tell, or the scene cannot be.
 void check(const FitTask& task);
 
-/// Least squares by transport on slabs, of all measurements at once. Throws InputError.
+/// Least squares of all measurements at once. Throws InputError.
 MediumFit fit_medium(const FitTask& task);
 
 }  // namespace flatspeckle::mc

@@ -5,11 +5,11 @@
 
 #include "core/error.h"
 #include "mc/estimators/flux_walk.h"
+#include "mc/fit/curve_values.h"
 #include "mc/slab/slab_covariance.h"
 #include "mc/slab/slab_flux.h"
 #include "mc/space/space_flux.h"
 #include "mc/space/space_scene.h"
-#include "mc/theory/memory_effect.h"
 
 namespace flatspeckle::mc {
 
@@ -18,63 +18,11 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-bool is_flux(Observable observable) {
-  return observable == Observable::reflectance || observable == Observable::transmittance;
-}
-
-/// Reversed paths add about 1 / (k l* angle) of what is seen at this angle from backscattering.
-bool needs_reversed(const Scene& scene) {
-  constexpr double negligible = 1e-3;
-  const double width = 1 / (scene.k * scene.medium.transport_mean_free_path());
-  for (const Channel& channel : scene.request.channels) {
-    const View& view = scene.request.views[channel.view];
-    const Light& light = scene.request.lights[channel.light];
-    if (view.near || light.kind != Light::Kind::plane) return true;
-    if (std::cos(view.angle) > 0) continue;
-    const double angle = std::abs(std::sin(light.angle) + std::sin(view.angle));
-    if (angle * negligible < width) return true;
-  }
-  return false;
-}
-
-/// Adds the channels and entries of another request, as pairs.
-void join(CovarianceRequest& all, const CovarianceRequest& more) {
-  const auto lights = static_cast<std::uint32_t>(all.lights.size()),
-             views = static_cast<std::uint32_t>(all.views.size()),
-             channels = static_cast<std::uint32_t>(all.channels.size());
-  all.kind = CovarianceRequest::Kind::pairs;
-  all.lights.insert(all.lights.end(), more.lights.begin(), more.lights.end());
-  all.views.insert(all.views.end(), more.views.begin(), more.views.end());
-  for (const Channel& channel : more.channels)
-    all.channels.push_back({channel.light + lights, channel.view + views});
-  for (const Entry& entry : more.entries)
-    all.entries.push_back({entry.a + channels, entry.b + channels});
-}
-
-/// Those of a curve, of the covariance entries of its request.
-std::vector<double> observed(const Curve& curve, const CovarianceRequest& request,
-                             std::span<const Complex> entries) {
-  const bool intensity = curve.observable == Observable::intensity;
-  const auto all = intensity ? std::vector<Complex>(entries.begin(), entries.end())
-                             : field_correlation(request, entries);
-  std::vector<double> values;
-  for (const std::size_t entry : curve.entries) {
-    const double value = all[entry].real();
-    values.push_back(curve.observable == Observable::intensity_correlation ? value * value : value);
-  }
-  return values;
-}
-
 void put(VectorXd& all, Index first, const std::vector<double>& values) {
   std::copy(values.begin(), values.end(), all.data() + first);
 }
 
 }  // namespace
-
-Scene scene_of(const SceneSpec& spec) {
-  const Scene scene = make_scene(spec);
-  return spec.dimension == 3 ? in_space(scene, spec) : scene;
-}
 
 SlabModel::SlabModel(std::vector<Curve> curves, const std::vector<Scene>& scenes)
     : curves_(std::move(curves)) {

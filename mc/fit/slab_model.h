@@ -9,9 +9,6 @@
 
 namespace flatspeckle::mc {
 
-/// A scene of the plane or, with dimension = 3, of space. Throws InputError.
-Scene scene_of(const SceneSpec& spec);
-
 /// Curves of slabs by transport, a smooth function of the medium: the number of ordinates does not
 /// change between calls. Curves of one slab are solved together. Paths count walked backwards too
 /// where a view is so near to exact backscattering that they make a thousandth.

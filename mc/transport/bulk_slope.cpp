@@ -70,11 +70,8 @@ BulkSlope bulk_slope(const Scene& scene, const ScatteringLaw& law, BulkParameter
 
 std::vector<BulkParameter> slab_parameters(const Scene& scene) {
   auto parameters = bulk_parameters(scene);
-  const bool spheres = scene.scatterer.kind == Scatterer::Kind::mie;
-  if (!spheres && !(scene.scatterer.is_disk() && scene.medium.structure.independent()))
-    return parameters;
-  parameters.push_back(BulkParameter::radius);
-  if (spheres || scene.scatterer.is_penetrable()) parameters.push_back(BulkParameter::index);
+  if (scene.scatterer.kind == Scatterer::Kind::mie)
+    parameters.insert(parameters.end(), {BulkParameter::radius, BulkParameter::index});
   return parameters;
 }
 

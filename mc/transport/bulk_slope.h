@@ -92,8 +92,7 @@ BulkSlopeOf<Slope> scatterer_slope(const Scene& scene, const Law& law, BulkParam
 /// law: the scene's, and outlives the slope.
 BulkSlope bulk_slope(const Scene& scene, const ScatteringLaw& law, BulkParameter parameter);
 
-/// By what transport differentiates: bulk_parameters(), and of spheres, or of cylinders at
-/// independent positions, the radius and, where light enters them, the index.
+/// By what transport differentiates: bulk_parameters(), and of spheres the radius and the index.
 std::vector<BulkParameter> slab_parameters(const Scene& scene);
 
 template <typename Number>

@@ -18,7 +18,7 @@ std::vector<LayerParameter> layer_parameters(const Scene& scene) {
   std::vector<LayerParameter> parameters;
   for (std::size_t layer = 0; layer < scene.profile->materials().size(); ++layer)
     for (const BulkParameter parameter : bulk_parameters(scene))
-      parameters.push_back({layer, parameter});
+      if (parameter <= BulkParameter::albedo) parameters.push_back({layer, parameter});
   return parameters;
 }
 
@@ -33,8 +33,8 @@ struct LayerGradientKind {
 
   template <bool reversed, bool phases, typename Scattering>
   auto scorer(const Scene& scene, const Scattering& scattering, Sums sums) const {
-    return LayerGradientScorer<Scattering, reversed, phases>(
-        scene, scattering, *layers_of(scene), parameters, sums);
+    return LayerGradientScorer<Scattering, reversed, phases>(scene, scattering, *layers_of(scene),
+                                                             parameters, sums);
   }
 
   /// Paths have it all.

@@ -56,6 +56,7 @@ RUNS = {
     "image": ("image", IMAGE),
     "recover": ("recover", {"frames": "frames.csv", "points": 2, "samples": None, "threads": None}),
     "fit": ("fit", {**FIT, "samples": None}),
+    "fit_paths": ("fit", {**FIT, "method": "mc", "samples": None}),
     "fit_plan": ("fit", {"plan": True, "free": ["g=0:0.8"], "g": 0.5, "depth": 100, "optical_depth": 2,
                          "tilts": [0.002], "samples": None}),
     "image_reference": ("image", {**IMAGE, "reference_x": 5}),

@@ -57,7 +57,12 @@ class BadFit(RefusingTest):
 
     def test_scene(self):
         self.refused(["depth"], depth=None)
-        self.refused(["domain"], domain="box")
+        self.refused(["domain"], domain="box", width=2000, method="transport")
+        self.refused(["width"], domain="box")
+        self.refused(["model_share"], model_share=0.5)
+        self.refused(["model_share = 2"], model_share=2, method="mc")
+        self.refused(["transmittance", "of a box"], "transmittance,error\n0.5,0.1\n", domain="box", width=2000)
+        self.refused(["wavelength", "what the medium is made of"], method="mc", free=["wavelength=0.9:1.1"])
         self.assert_refused(["free is not given"], "fit", measurement="m.csv")
         self.assert_refused(["measurement is not given"], "fit", free="g=0:0.5")
         self.assert_refused(["no.csv"], "fit", free="g=0:0.5", measurement="no.csv", **SLAB)

@@ -101,6 +101,30 @@ class Fit(ProgramTest):
         self.assertEqual(found["growth_without_view"].shape, (2, 2))
         self.assertIn("patterns to 1 %", done.stdout)
 
+    def test_paths(self):
+        """Monte Carlo finds what transport finds, to what chance adds, and tells how much that is."""
+        files = [MEASURED / "slab_transmission.csv", MEASURED / "slab_transmittance.csv"]
+        keys = {"free": ["g=0.5:0.95", "optical_depth=1:20"], "albedo": 0.98}
+        _, transport = self.fit(*files, **keys)
+        _, paths = self.fit(*files, **keys, method="mc", model_share=0.3)
+        chance = np.sqrt(np.diag(paths["chance_covariance"]))
+        off = np.abs(paths["estimate"] - transport["estimate"])
+        self.assertLess((off / chance).max(), 4)
+        measured = np.sqrt(paths["estimate_error"]**2 - chance**2)
+        self.assertLess((chance / measured).max(), 0.3**0.5)
+        np.testing.assert_allclose(measured, transport["estimate_error"], rtol=0.3)
+
+    def test_box(self):
+        """Cylinders in a box, by intensities of Monte Carlo's own."""
+        box = {"domain": "box", "width": 20, "depth": 10, "scatterer": "tm"}
+        self.call("covariance", **box, radius=0.16, index="1.5", density=0.33, seed=7, samples=40000, method="mc",
+                  view_angles=[0.2, 0.5, 0.9, 1.3, 1.8, 2.4, 2.8], out="box.h5")
+        self.call("fit", "--free", "density=0.1:1", "radius=0.1:0.25", "index=1.2:1.8", scatterer="tm",
+                  measurement="box.h5", model_share=0.5, threads=1, out="fit.h5")
+        found = datasets(self.folder / "fit.h5")
+        pulls = (found["estimate"] - [0.33, 0.16, 1.5]) / found["estimate_error"]
+        self.assertLess(np.abs(pulls).max(), 4)
+
     def test_not_converged(self):
         done, found = self.fit(MEASURED / "slab_transmission.csv", MEASURED / "slab_reflection.csv",
                                MEASURED / "slab_transmittance.csv", status=3, most_iterations=1)

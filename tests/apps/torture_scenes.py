@@ -75,6 +75,7 @@ SCENES = [
                 "henyey_greenstein", "g": 0.5, "method": "photon_map", "photon_radius": 0.4}),
     ("render", {**STAGE, **CAMERA, "body_sphere": [0, 0, 2, 0.5], "index": 1.5, "samples": 500}),
     ("fit", {"free": ["g=0:0.8"], "depth": 100, "optical_depth": 2, "measurement": "curve.csv"}),
+    ("fit", {"free": ["g=0:0.8"], "depth": 100, "optical_depth": 2, "measurement": "curve.csv", "method": "mc"}),
     ("fit", {"plan": True, "free": ["g=0:0.8"], "depth": 100, "g": 0.5, "optical_depth": 2, "tilts": [0.002, 0.004]}),
     ("place", {"width": 12, "depth": 8, "radii": [0.3, 0.6], "count": 30, "structure": "s.h5",
                "realizations": 4}),

@@ -336,7 +336,7 @@ TEST_CASE("points have the derivatives of isotropic bulk, but no g") {
   }
 }
 
-TEST_CASE("cylinders have a density alone") {
+TEST_CASE("cylinders have a density, a radius and an index") {
   SceneSpec spec;
   spec.domain = "slab";
   spec.depth = 10;
@@ -345,7 +345,7 @@ TEST_CASE("cylinders have a density alone") {
   spec.optical_depth = 1;
   const Scene scene = make_scene(spec);
   CHECK(gradient_job(scene, gradient_plan(scene, ReversedPaths::no), 1).parameters ==
-        std::vector<std::string>{"mu_t", "optical_depth"});
+        std::vector<std::string>{"mu_t", "radius", "index", "optical_depth"});
 }
 
 TEST_CASE("what does not scatter has no derivatives, and too many entries are refused") {

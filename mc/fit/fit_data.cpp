@@ -1,0 +1,93 @@
+#include "mc/fit/fit_data.h"
+
+#include "core/error.h"
+#include "mc/fit/curve_values.h"
+
+namespace flatspeckle::mc {
+
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+}  // namespace
+
+std::vector<Curve> curves_of(const FitTask& task) {
+  std::vector<Curve> curves;
+  for (const Measurement& one : task.measurements)
+    curves.insert(curves.end(), one.curves.begin(), one.curves.end());
+  return curves;
+}
+
+std::vector<Scene> scenes_at(const FitTask& task, const VectorXd& coordinates) {
+  std::vector<Scene> scenes;
+  for (const Measurement& one : task.measurements)
+    for (const Curve& curve : one.curves)
+      scenes.push_back(scene_of(with_parameters(curve.scene, task.free, coordinates)));
+  return scenes;
+}
+
+VectorXd middle(const FitTask& task) {
+  VectorXd at = (lower_coordinates(task.free) + upper_coordinates(task.free)) / 2;
+  for (std::size_t i = 0; i < task.free.size(); ++i)
+    if (const auto& start = task.free[i].start)
+      at[static_cast<Index>(i)] = task.free[i].coordinate(*start);
+  return at;
+}
+
+std::vector<VectorXd> grid_of_starts(const FitTask& task) {
+  const VectorXd lower = lower_coordinates(task.free), upper = upper_coordinates(task.free);
+  std::vector<VectorXd> starts{middle(task)};
+  for (std::size_t i = 0; i < task.free.size(); ++i) {
+    if (task.free[i].start) continue;
+    const auto j = static_cast<Index>(i);
+    std::vector<VectorXd> more;
+    for (const VectorXd& start : starts)
+      for (int n = 0; n < task.starts; ++n) {
+        more.push_back(start);
+        more.back()[j] = lower[j] + (n + 0.5) / task.starts * (upper[j] - lower[j]);
+      }
+    starts = std::move(more);
+  }
+  return starts;
+}
+
+Data::Data(const FitTask& task) {
+  Index size = 0;
+  for (const Measurement& one : task.measurements) size += one.values.size();
+  values_.resize(size);
+  errors_.resize(size);
+  Index first = 0;
+  for (const Measurement& one : task.measurements) {
+    values_.segment(first, one.values.size()) = one.values;
+    errors_.segment(first, one.values.size()) = one.covariance.diagonal().cwiseSqrt();
+    roots_.emplace_back(one.covariance);
+    if (roots_.back().info() != Eigen::Success)
+      throw InputError("measurement", one.name,
+                       "the covariance of its errors must be positive definite");
+    first += one.values.size();
+  }
+}
+
+MatrixXd Data::whitened(const MatrixXd& of) const {
+  MatrixXd white(of.rows(), of.cols());
+  Index first = 0;
+  for (const auto& root : roots_) {
+    white.middleRows(first, root.rows()) = root.matrixL().solve(of.middleRows(first, root.rows()));
+    first += root.rows();
+  }
+  return white;
+}
+
+MatrixXd Data::covariance() const {
+  MatrixXd all = MatrixXd::Zero(values_.size(), values_.size());
+  Index first = 0;
+  for (const auto& root : roots_) {
+    all.block(first, first, root.rows(), root.rows()) = root.reconstructedMatrix();
+    first += root.rows();
+  }
+  return all;
+}
+
+}  // namespace flatspeckle::mc

@@ -1,0 +1,192 @@
+#include "mc/fit/path_fit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+
+#include <Eigen/Eigenvalues>
+
+#include "core/run/interrupt.h"
+#include "core/run/stopwatch.h"
+#include "mc/fit/fit_data.h"
+#include "mc/fit/fit_report.h"
+#include "mc/fit/path_model.h"
+
+namespace flatspeckle::mc {
+
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double first_paths = 10000;
+
+/// Least squares at one medium, the errors of the model added to those of the measurements.
+struct Round {
+  SampledModel model;
+  MatrixXd noise;
+  Eigen::LLT<MatrixXd> root;  ///< of the covariance of all errors
+  LeastSquaresFit at;         ///< whitened by it
+  MatrixXd fisher;            ///< less what chance in the slopes adds
+  double excess = 0;          ///< that, in the combination where it is most, over the rest
+
+  Round(const VectorXd& coordinates, SampledModel sampled, const Data& data)
+      : model(std::move(sampled)), noise(model.noise()), root(data.covariance() + noise) {
+    at.parameters = coordinates;
+    at.residuals = root.matrixL().solve(model.values - data.values());
+    at.jacobian = root.matrixL().solve(model.slopes);
+    const Index size = model.values.size();
+    const MatrixXd full = at.jacobian.transpose() * at.jacobian,
+                   added = model.added_information(root.solve(MatrixXd::Identity(size, size)));
+    const MatrixXd safe =
+        full + 1e-14 * full.trace() * MatrixXd::Identity(full.rows(), full.cols());
+    excess =
+        Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd>(added, safe).eigenvalues().maxCoeff();
+    fisher = excess < 0.5 ? MatrixXd(full - added) : full;
+  }
+
+  /// -2 log likelihood, but for a constant.
+  double unlikelihood() const {
+    const MatrixXd& triangle = root.matrixLLT();
+    return at.chi_squared() + 2 * triangle.diagonal().array().log().sum();
+  }
+
+  /// What chance adds to the covariance of the estimates' coordinates.
+  MatrixXd by_chance() const {
+    const MatrixXd inverse =
+        (at.jacobian.transpose() * at.jacobian)
+            .ldlt()
+            .solve(MatrixXd::Identity(at.parameters.size(), at.parameters.size()));
+    const MatrixXd estimator = inverse * root.solve(model.slopes).transpose();
+    return estimator * noise * estimator.transpose();
+  }
+};
+
+/// The search for the medium.
+class Search {
+ public:
+  explicit Search(const FitTask& task) : task_(task), data_(task), model_(task) {
+    bounds_.lower = lower_coordinates(task.free);
+    bounds_.upper = upper_coordinates(task.free);
+  }
+
+  MediumFit fit() {
+    std::optional<MediumFit> best;
+    for (const VectorXd& start : starts()) {
+      MediumFit one = from(start);
+      const bool likely =
+          one.converged && is_likely(one.chi_squared, data_.values().size(), start.size());
+      if (!best || (one.converged && !best->converged) ||
+          (one.converged == best->converged && one.chi_squared < best->chi_squared))
+        best = std::move(one);
+      if (likely) break;
+    }
+    return *best;
+  }
+
+ private:
+  /// By few paths: those that are likeliest.
+  std::vector<VectorXd> starts() {
+    constexpr std::size_t most = 3;
+    std::multimap<double, VectorXd> ranked;
+    for (const VectorXd& start : grid_of_starts(task_))
+      ranked.emplace(round(start, first_paths).unlikelihood(), start);
+    std::vector<VectorXd> best;
+    for (const auto& [unlikely, start] : ranked)
+      if (best.size() < most) best.push_back(start);
+    return best;
+  }
+
+  Round round(const VectorXd& at, double paths) {
+    model_.move(at);
+    return more(at, paths);
+  }
+  /// Where it is already.
+  Round more(const VectorXd& at, double paths) {
+    model_.sample(paths);
+    stop_if_interrupted();
+    return {at, model_.model(), data_};
+  }
+
+  /// Of the errors of the parameters: the largest share that chance in the model adds.
+  double share(const Round& round) const {
+    const Information known = information_of(bounds_, round.fisher);
+    const VectorXd chance = round.by_chance().diagonal(),
+                   rest = (known.covariance.diagonal() - chance).cwiseMax(1e-3 * chance);
+    return std::max(chance.cwiseQuotient(rest).maxCoeff(), round.excess);
+  }
+
+  bool out_of_time() const {
+    return task_.paths->seconds && clock_.seconds() > *task_.paths->seconds;
+  }
+
+  /// Steps of Levenberg and Marquardt. One that is shorter than the errors needs no look at where
+  /// it leads, for the model is linear there: it is the end, or calls for more paths.
+  MediumFit from(const VectorXd& start) {
+    constexpr double far = 4, near = 1, most_damping = 1e12;  // squares, in standard errors
+    double paths = first_paths, damping = 1e-3;
+    Round here = round(start, paths);
+    std::vector<LeastSquaresFit::Step> trace;
+    for (int i = 0; i < task_.most_iterations && damping < most_damping && !out_of_time(); ++i) {
+      trace.push_back({here.at.parameters, here.at.chi_squared(), process_cpu_seconds()});
+      const VectorXd step = damped_step(bounds_, here.at, damping);
+      const double length = (here.at.jacobian * step).squaredNorm();
+      if (length < near && damping <= 1) {
+        const double excess = share(here) / task_.paths->share;
+        if (excess <= 1) return ended(here, step, paths, true, std::move(trace));
+        paths *= std::clamp(1.2 * excess, 1.3, 10.0);
+        here = more(here.at.parameters, paths);
+        continue;
+      }
+      const VectorXd next = here.at.parameters + step;
+      Round there = round(next, paths);
+      if (length < far || there.unlikelihood() <= here.unlikelihood()) {
+        here = std::move(there);
+        damping = std::max(damping / 10, 1e-12);
+      } else {
+        damping *= 10;
+        model_.move(here.at.parameters);
+      }
+    }
+    return ended(here, VectorXd::Zero(start.size()), paths, false, std::move(trace));
+  }
+
+  MediumFit ended(const Round& here, const VectorXd& step, double paths, bool converged,
+                  std::vector<LeastSquaresFit::Step> trace) const {
+    MediumFit fit;
+    const VectorXd at = here.at.parameters + step;
+    put_information(task_, information_of(bounds_, here.fisher), at, fit);
+    fit.by_chance = covariance_of_values(task_, at, here.by_chance());
+    fit.model = here.model.values + here.model.slopes * step;
+    fit.residuals = here.at.residuals + here.at.jacobian * step;
+    fit.chi_squared = fit.residuals.squaredNorm();
+    const VectorXd errors = (data_.errors().cwiseAbs2() + here.noise.diagonal()).cwiseSqrt();
+    fit.pulls = (data_.values() - fit.model).cwiseQuotient(errors);
+    fit.paths = paths;
+    fit.converged = converged;
+    trace.push_back({at, fit.chi_squared, process_cpu_seconds()});
+    fit.trace = std::move(trace);
+    for (auto& one : fit.trace) one.parameters = values_at(task_, one.parameters);
+    return fit;
+  }
+
+  const FitTask& task_;
+  const Data data_;
+  PathModel model_;
+  LeastSquares bounds_;
+  Stopwatch clock_;
+};
+
+}  // namespace
+
+MediumFit fit_by_paths(const FitTask& task) {
+  return Search(task).fit();
+}
+
+void check_paths(const FitTask& task) {
+  PathModel{task};
+}
+
+}  // namespace flatspeckle::mc
