@@ -2,6 +2,7 @@
 #include <cctype>
 #include <chrono>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <filesystem>
 #include <iostream>
@@ -80,6 +81,12 @@ int fail(std::string what, int status) {
   return status;
 }
 
+/// Of a library that ran out of memory or disk, whose clearing up at the end may crash.
+[[noreturn]] void fail_at_once(const std::string& what) {
+  fail(what, ExitStatus::io_failed);
+  std::_Exit(ExitStatus::io_failed);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -90,7 +97,7 @@ int main(int argc, char** argv) {
   } catch (const InputError& error) {
     return fail(error.what(), ExitStatus::bad_input);
   } catch (const IoError& error) {
-    return fail(error.what(), ExitStatus::io_failed);
+    fail_at_once(error.what());
   } catch (const std::filesystem::filesystem_error& error) {
     return fail(error.what(), ExitStatus::io_failed);
   } catch (const std::bad_alloc&) {

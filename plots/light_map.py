@@ -45,6 +45,8 @@ def slice_of(result, name, normal):
 
 
 def draw(results, arguments):
+    for result in results:
+        result.refuse_sweep()
     result = results[0]
     length = pictures.length_name(result)
     units = {"1/length^3": f"{length}$^{{-3}}$"}.get(

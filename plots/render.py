@@ -90,6 +90,8 @@ def norms(results, arguments):
 
 
 def draw(results, arguments):
+    for result in results:
+        result.refuse_sweep()
     results = pictures.sensors(results)
     for result in results:
         if result.values("image").size == 1:

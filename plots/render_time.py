@@ -77,6 +77,8 @@ def pulse_name(result):
 
 
 def draw(results, arguments):
+    for result in results:
+        result.refuse_sweep()
     result = pictures.chosen(results[0], arguments.sensor)
     if not result.has("transient"):
         raise Unusable(f"{result.path}: is not timed; render with --path_bins")

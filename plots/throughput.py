@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""Power on the detector of several results of `flatspeckle render` against a key of their scenes, by
-default the amplitude of ultrasound: a curve for each value of another key, over the power where the
-first is 0 if there is such a result. Means over the sound's period make curves of their own."""
+"""Power on the detector against a key, of a sweep of `render` by default the first that varies, of
+several results of `render` the amplitude of ultrasound: a curve for each value of another key, over
+the power where the first is 0 if that is among them. Means over the sound's period make curves of
+their own."""
 
 import tomllib
 
@@ -19,22 +20,47 @@ def scene_of(result):
     return tomllib.loads(result.attribute("config", ""))
 
 
+def key_name(result, arguments):
+    return arguments.key or next(iter(result.swept()), "amplitude")
+
+
+def swept_values(result, key):
+    """Of a key that varies, at each point of the sweep, in its axes' order."""
+    axes = [scales[0].name.strip("/") for scales in result.dataset("total").dims]
+    if key not in axes:  # a list of points
+        return result.values(key)
+    grid = np.meshgrid(*(result.values(name) for name in axes), indexing="ij")
+    return grid[axes.index(key)].ravel()
+
+
 def key_of(result, key):
+    """Its value, or those at the points of a sweep."""
     value = scene_of(result).get(key)
-    if isinstance(value, (int, float)):
+    if key in result.swept():
+        value = swept_values(result, key)
+        if np.issubdtype(value.dtype, np.number):
+            return value
+    elif isinstance(value, (int, float)):
         return float(value)
-    raise Unusable(f"{result.path}: its scene has no number {key}")
+    raise Unusable(f"{result.path}: its scene has no number {key}; --key takes one that has")
+
+
+def rows_of(result, arguments):
+    """Second key, key, power and error of each point that there is."""
+    power, error = result.values("total").ravel(), result.values("total_error").ravel()
+    second = key_of(result, arguments.curves) if arguments.curves else 0.0
+    key = key_of(result, key_name(result, arguments))
+    rows = np.array(np.broadcast_arrays(second, key, power, error)).T
+    return rows[np.isfinite(rows[:, 2])]
 
 
 def curves(results, arguments):
     """(value of the second key, sound's phase is random) -> rows of key, power, error, by the key."""
     found = {}
     for result in results:
-        second = key_of(result, arguments.curves) if arguments.curves else 0.0
-        row = (key_of(result, arguments.key), float(result.values("total")),
-               float(result.values("total_error")))
-        curve = second, scene_of(result).get("random_phase", False)
-        found.setdefault(curve, []).append(row)
+        is_mean = scene_of(result).get("random_phase", False)
+        for second, *row in rows_of(result, arguments):
+            found.setdefault((second, is_mean), []).append(row)
     return {curve: np.array(sorted(rows)) for curve, rows in sorted(found.items())}
 
 
@@ -59,14 +85,15 @@ def over_the_first(power, error):
 def draw(results, arguments):
     figure, axis = plt.subplots(figsize=(style.COLUMN, 2.4))
     found = curves(results, arguments)
+    key = key_name(results[0], arguments)
     relative = all(rows[0, 0] == 0 and rows[0, 1] > 0 for rows in found.values())
     labels = labels_of(found, arguments)
     for number, (curve, rows) in enumerate(found.items()):
-        key, power, error = rows.T
+        place, power, error = rows.T
         if relative:
             power, error = over_the_first(power, error)
-        axis.errorbar(key, power, error, **style.look(number), label=labels[curve])
-    axis.set_xlabel(NAMES.get(arguments.key, arguments.key))
+        axis.errorbar(place, power, error, **style.look(number), label=labels[curve])
+    axis.set_xlabel(NAMES.get(key, key))
     axis.set_ylabel("power / power at 0" if relative else "power on the detector")
     axis.xaxis.set_major_locator(MaxNLocator(4))
     axis.ticklabel_format(axis="x", scilimits=(-2, 4), useMathText=True)
@@ -76,7 +103,7 @@ def draw(results, arguments):
 
 
 def add_options(parser):
-    parser.add_argument("--key", default="amplitude", help="of the horizontal axis")
+    parser.add_argument("--key", help="of the horizontal axis")
     parser.add_argument("--curves", metavar="KEY", help="a curve for each of its values")
 
 

@@ -36,8 +36,19 @@ class Result:
 
     def dataset(self, name):
         if not isinstance(self.file.get(name), h5py.Dataset):
-            raise Unusable(f"{self.path}: has no dataset {name}")
+            why = ("is not complete: the same command with --resume goes on; "
+                   if self.attribute("complete") == 0 else "")
+            raise Unusable(f"{self.path}: {why}has no dataset {name}")
         return self.file[name]
+
+    def swept(self):
+        """Keys that vary in a sweep of another subcommand; none of other results."""
+        return list(self.attribute("swept", [])) if self.attribute("of") else []
+
+    def refuse_sweep(self):
+        if self.swept():
+            raise Unusable(f"{self.path}: a sweep over {', '.join(self.swept())}, no one picture; "
+                           "plots/throughput.py draws its powers")
 
     def values(self, name):
         return self.dataset(name)[...]
