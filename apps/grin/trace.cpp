@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <iomanip>
 #include <sstream>
@@ -17,6 +18,7 @@ using grin::FoundConnections;
 using grin::RayState;
 using grin::TracedRay;
 using grin::TraceScene;
+using grin::Vec3;
 
 /// Ends of the rays that came to a stop surface; of all where none did.
 std::vector<RayState> ends_to_tell(const std::vector<TracedRay>& rays, std::size_t on_surface) {
@@ -24,6 +26,16 @@ std::vector<RayState> ends_to_tell(const std::vector<TracedRay>& rays, std::size
   for (const TracedRay& ray : rays)
     if (on_surface == 0 || ray.status == grin::RayStatus::surface) ends.push_back(ray.end);
   return ends;
+}
+
+/// Root mean square distance from their mean.
+double spot_radius(const std::vector<RayState>& ends) {
+  const auto count = static_cast<double>(ends.size());
+  Vec3 mean = Vec3::Zero();
+  for (const RayState& end : ends) mean += end.x / count;
+  double square = 0;
+  for (const RayState& end : ends) square += (end.x - mean).squaredNorm() / count;
+  return std::sqrt(square);
 }
 
 std::string ends_of(const std::vector<TracedRay>& rays, double length_unit) {
@@ -38,6 +50,7 @@ std::string ends_of(const std::vector<TracedRay>& rays, double length_unit) {
   const auto [least, most] =
       std::ranges::minmax(column(told, [](const RayState& end) { return end.v.norm(); }));
   text << std::setprecision(6) << "\nindex at the end " << least << " to " << most;
+  text << ", spot of radius " << spot_radius(told) << " (rms)";
   const auto path =  // clang 14 captures no structured bindings
       std::ranges::minmax(column(told, [](const RayState& end) { return end.optical_path; }));
   const auto range = [&](const char* what, double size, const char* unit) {
