@@ -15,7 +15,7 @@ SIGMAS = 4  # agreement is judged at so many combined standard errors
 BAND = "0.92"
 PEAKED = 8  # highest over lowest value from which on a logarithmic axis shows more
 MOST_RELATIVE = 100  # % of deviation that are drawn: beyond, values are all noise
-ENTRIES = "number of the entry"
+ENTRIES, SENSORS = "number of the entry", "number of the sensor"
 
 
 @dataclass
@@ -72,22 +72,30 @@ def numbered(reference, entries):
                       *(entry[None] for entry in entries))
 
 
+def views_of(result, name):
+    """Abscissae of its second axis and what they are: view angles, or numbers of sensors."""
+    kind = result.dataset(name).dims[1][0].name.strip("/")
+    return result.axis(name, 1), "view angle" if kind == "view_angle" else SENSORS
+
+
 def read_comparison(result):
     reference = reference_of(result)
     if result.has("mc/intensity"):
-        lights, views = (result.axis("mc/intensity", axis) for axis in (0, 1))
-        curves = [f"light {style.angle(light)}" for light in lights]
-        return Comparison(reference, views, "view angle", curves, r"intensity $C_{vv}$",
-                          *read_entries(result, "intensity"))
+        lights = result.axis("mc/intensity", 0)
+        kind = result.dataset("mc/intensity").dims[0][0].name.strip("/")
+        curves = [f"light {style.angle(light) if kind == 'light_angle' else f'{light:g}'}"
+                  for light in lights]
+        return Comparison(reference, *views_of(result, "mc/intensity"), curves,
+                          r"intensity $C_{vv}$", *read_entries(result, "intensity"))
     if not result.has("mc/covariance"):
         raise style.Unusable(f"{result.path}: has neither mc/intensity nor mc/covariance")
     entries = read_entries(result, "covariance")
     if entries[0].ndim != 2:
         return numbered(reference, entries)
-    tilts, views = (result.axis("mc/covariance", axis) for axis in (0, 1))
+    tilts, (views, kind) = result.axis("mc/covariance", 0), views_of(result, "mc/covariance")
     if len(views) > max(6, len(tilts)):
         curves = [f"tilt {style.angle(tilt)}" for tilt in tilts]
-        return Comparison(reference, views, "view angle", curves, "covariance $|C|$", *entries)
+        return Comparison(reference, views, kind, curves, "covariance $|C|$", *entries)
     return Comparison(reference, tilts, "tilt", [f"view {style.angle(view)}" for view in views],
                       "covariance $|C|$", *(entry.T for entry in entries))
 
@@ -182,8 +190,8 @@ def draw(results):
     draw_values(values, data, allowance)
     draw_relative(relative, data, allowance)
     draw_residual(residual, data, allowance)
-    if data.x_label == ENTRIES:
-        residual.set_xlabel(ENTRIES)
+    if data.x_label in (ENTRIES, SENSORS):
+        residual.set_xlabel(data.x_label)
         residual.xaxis.set_major_locator(MaxNLocator(integer=True))
     else:
         style.angle_axis(residual, data.x, data.x_label)

@@ -21,12 +21,26 @@ void print_correlations(const mc::FitTask& task, const mc::MediumFit& fit) {
     }
 }
 
+/// What a reader of the estimate has to know of it.
+std::string remark(const mc::FreeParameter& parameter, double estimate, bool known) {
+  const double nearest = std::min(estimate - parameter.lower, parameter.upper - estimate);
+  if (nearest < 1e-6 * (parameter.upper - parameter.lower)) return "  at its bound";
+  return known ? "" : "  not known better than by its bounds";
+}
+
+/// Whether the misfit is beyond what errors explain: five standard deviations of chi^2.
+bool unlikely(const mc::MediumFit& fit) {
+  constexpr double deviations = 5;
+  const auto freedom = static_cast<double>(fit.degrees_of_freedom());
+  return fit.chi_squared > freedom + deviations * std::sqrt(2 * freedom);
+}
+
 void print_parameters(const mc::FitTask& task, const mc::MediumFit& fit) {
   std::printf("%-26s %12s %10s\n", "parameter", "value", "error");
   for (std::size_t i = 0; i < task.free.size(); ++i) {
     const auto j = static_cast<Eigen::Index>(i);
     std::printf("%-26s %12.6g %10.2g%s\n", task.free[i].key.c_str(), fit.estimates[j],
-                fit.errors[j], fit.known[i] ? "" : "  not known better than by its bounds");
+                fit.errors[j], remark(task.free[i], fit.estimates[j], fit.known[i]).c_str());
   }
   for (const mc::Derived& one : fit.derived)
     if (std::ranges::find(task.free, one.name, &mc::FreeParameter::key) == task.free.end())
@@ -40,6 +54,8 @@ void print_fit(const mc::FitTask& task, const mc::MediumFit& fit) {
   print_correlations(task, fit);
   std::printf("chi^2 %.4g of %td values less %zu parameters; condition %.3g\n", fit.chi_squared,
               fit.residuals.size(), task.free.size(), fit.condition);
+  if (unlikely(fit))
+    std::printf("chi^2 is unlikely: this model cannot give these measurements with their errors\n");
   if (const std::string words = mc::degeneracy(task, fit); !words.empty())
     std::printf("%s\n", words.c_str());
   constexpr double small = 0.1;

@@ -106,8 +106,8 @@ class SweepWriter {
     const ResultGroup root(file_, sweep_table);
     const auto& request = scenes_.front().request;
     const double depth = scenes_.front().domain.depth;
-    write_single_scattering(root, request, depth);
     if (!request.transmission_only()) return;
+    write_single_scattering(root, request, depth);
     std::vector<double> curves;
     for (const Scene& scene : scenes_)
       for (double q : request.tilt_q)

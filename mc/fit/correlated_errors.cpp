@@ -47,7 +47,12 @@ MatrixXd correlated_errors(const GroupedSums& sums, const Estimator& theta) {
   const MatrixXd found = deviations(sums, theta);
   const double of_inverse =
       static_cast<double>(groups - 1) / static_cast<double>(groups - size - 2);
-  return of_inverse * found * found.transpose();
+  MatrixXd covariance = of_inverse * found * found.transpose();
+  const double shrinkage = 1 / static_cast<double>(groups);
+  const VectorXd variance = covariance.diagonal();
+  covariance *= 1 - shrinkage;
+  covariance.diagonal() += shrinkage * variance;
+  return covariance;
 }
 
 }  // namespace flatspeckle::mc

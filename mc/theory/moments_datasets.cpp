@@ -131,14 +131,15 @@ class MovesWriter {
     return {found.moves, ranges_};
   }
 
-  /// Diffusion theory where it holds, in transmission, and single scattering, both for matched
-  /// views of plane waves.
+  /// Diffusion theory where it holds and single scattering, both in transmission, for matched views
+  /// of plane waves.
   void theory(const std::vector<std::size_t>& group) const {
     if (request_.kind != Kind::tilt_shift || !far() || !request_.lights.all(Light::Kind::plane))
       return;
     const auto views = column(group, [&](std::size_t v) { return request_.views[v].angle; });
+    if (std::cos(views.front()) <= 0) return;
     const double depth = scene_.domain.depth, light = request_.lights.front().angle;
-    if (std::cos(views.front()) > 0 && !scene_.profile)
+    if (!scene_.profile)
       out_.put("diffusion_theory", column(request_.tilt_q, [&](double q) {
                  return diffusion_field_correlation(scene_.medium, depth, q);
                }));

@@ -28,6 +28,8 @@ class Decay:
 def label(result):
     values = {name: result.attribute(name) for name in ("optical_depth", "g", "albedo")}
     text = rf"OD {values['optical_depth']:.3g}, $g$ = {values['g']:.3g}"
+    if result.has("view_angle") and np.cos(result.values("view_angle")[0]) < 0:
+        text += ", reflected"
     return text if values["albedo"] == 1 else text + f", albedo {values['albedo']:.3g}"
 
 

@@ -29,6 +29,28 @@ class Fit(ProgramTest):
         self.assertLess(chi_squared, 14 + 4 * 28**0.5)
         self.assertIn("mu_s (1 - g) is known to", done.stdout)
 
+    def test_a_result_of_many_close_tilts(self):
+        """Errors that are so correlated that what is left of them in some sums is rounding."""
+        tilts = [0, 0.0003, 0.0006, 0.0009, 0.0012, 0.0016, 0.002, 0.0025, 0.003, 0.004, 0.006, 0.01]
+        for seed in (1, 2):
+            self.call("covariance", domain="slab", depth=100, scatterer="hg", g=0.9, albedo=0.99,
+                      optical_depth=10, tilts=tilts, covariance="memory_effect", view_angles=0,
+                      method="mc", target_error=0.01, seed=seed, out="measured.h5")
+            self.call("fit", "--free", "g=0.5:0.99", "optical_depth=1:30", depth=100, albedo=0.99,
+                      measurement="measured.h5", out="fit.h5")
+            found = datasets(self.folder / "fit.h5")
+            pulls = (found["estimate"] - [0.9, 10]) / found["estimate_error"]
+            self.assertLess(np.abs(pulls).max(), 4)
+            self.assertLess(attributes(self.folder / "fit.h5")["chi_squared"], 9 + 4 * 18**0.5)
+
+    def test_a_model_that_cannot_be(self):
+        self.write("curve.csv", "tilt,field_correlation,error\n" + "".join(
+            f"{0.001 * i},{0.99 - 0.001 * i},0.001\n" for i in range(1, 6)))
+        done = self.call("fit", "--free", "g=0:0.8", depth=100, optical_depth=10,
+                         measurement="curve.csv", out="fit.h5")
+        self.assertIn("at its bound", done.stdout)
+        self.assertIn("chi^2 is unlikely", done.stdout)
+
     def test_start(self):
         """The same end from another start, and one that the scene states."""
         files = [MEASURED / "slab_transmission.csv", MEASURED / "slab_reflection.csv",

@@ -33,6 +33,22 @@ TEST_CASE("errors of ratios of sums are correlated as their terms are") {
   CHECK(found(1, 1) == doctest::Approx(hartlap * alone.error[1] * alone.error[1]));
 }
 
+TEST_CASE("errors that all but cancel in a difference are not believed to the last digit") {
+  std::mt19937_64 random(4);
+  std::normal_distribution<double> normal;
+  GroupedSums sums(2);
+  for (int batch = 0; batch < 512; ++batch) {
+    const double a = normal(random);
+    const Complex values[] = {10 + a, 10 + a + 1e-6 * normal(random)};
+    sums.add(1, values);
+  }
+  const Eigen::MatrixXd found = correlated_errors(sums, sample_mean);
+  const Eigen::Vector2d difference(1, -1);
+  const double groups = static_cast<double>(sums.groups());
+  CHECK(difference.dot(found * difference) ==
+        doctest::Approx((found(0, 0) + found(1, 1)) / groups).epsilon(0.01));
+}
+
 TEST_CASE("too few groups tell nothing of correlations") {
   GroupedSums sums(2);
   const Complex values[] = {1, 2};
