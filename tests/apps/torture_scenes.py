@@ -136,4 +136,5 @@ def write_files(folder):
 def rows_of_keys():
     """{subcommand: [row of a key]} as the program tells them."""
     told = subprocess.run([PROGRAM, "keys", "json"], check=True, capture_output=True)
-    return json.loads(told.stdout)
+    subcommands = json.loads(told.stdout)["subcommands"]
+    return {name: one["keys"] for name, one in subcommands.items()}
