@@ -81,10 +81,10 @@ int fail(std::string what, int status) {
   return status;
 }
 
-/// Of a library that ran out of memory or disk, whose clearing up at the end may crash.
-[[noreturn]] void fail_at_once(const std::string& what) {
-  fail(what, ExitStatus::io_failed);
-  std::_Exit(ExitStatus::io_failed);
+/// Where memory or disk ran out, and the clearing up of libraries at the end may crash.
+[[noreturn]] void fail_at_once(const std::string& what, int status) {
+  fail(what, status);
+  std::_Exit(status);
 }
 
 }  // namespace
@@ -97,11 +97,11 @@ int main(int argc, char** argv) {
   } catch (const InputError& error) {
     return fail(error.what(), ExitStatus::bad_input);
   } catch (const IoError& error) {
-    fail_at_once(error.what());
+    fail_at_once(error.what(), ExitStatus::io_failed);
   } catch (const std::filesystem::filesystem_error& error) {
     return fail(error.what(), ExitStatus::io_failed);
   } catch (const std::bad_alloc&) {
-    return fail("this scene needs more memory than there is", ExitStatus::bad_input);
+    fail_at_once("this scene needs more memory than there is", ExitStatus::bad_input);
   } catch (const std::system_error& error) {
     if (error.code() != std::errc::resource_unavailable_try_again) return fail(error.what(), 1);
     return fail("no thread can be started, for which memory may be too little",

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstring>
 #include <functional>
+#include <new>
 #include <numeric>
 #include <stdexcept>
 #include <type_traits>
@@ -262,11 +263,18 @@ void collect(CollectedResult& all, CollectedDataset set) {
   all.datasets.push_back(std::move(set));
 }
 
+/// All that HDF5 can lack for a file in memory.
+struct NoMemory : std::bad_alloc {
+  explicit NoMemory(const std::string& /*what*/) {}
+};
+
 /// An empty HDF5 file in memory: a full disk can then only show where we write it ourselves, in
 /// commit(), and not while HDF5 closes its objects.
 std::unique_ptr<Hdf5Handle> file_in_memory() {
   static std::atomic<unsigned> number{0};  // HDF5 tells open files apart by their names
-  const Hdf5Calls<IoError> call("HDF5 cannot make a file in memory");
+  const Hdf5Calls<NoMemory> call("");
+  constexpr std::size_t of_hdf5 = std::size_t{8} << 20;
+  ::operator delete(::operator new(of_hdf5));  // without it HDF5 crashes where it makes its cache
   const Hdf5Handle access = call.handle(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   constexpr std::size_t increment = std::size_t{1} << 20;
   call.check(H5Pset_fapl_core(access.get(), increment, false));
