@@ -78,7 +78,8 @@ std::string shape_text(const std::vector<std::size_t>& shape) {
 }
 
 void print_row(const ResultReader& file, const std::string& path, const DatasetRow& row) {
-  std::cout << "  " << path << " (" << shape_text(file.shape(path)) << "): " << file.attribute<std::string>(path, "long_name");
+  std::cout << "  " << path << " (" << shape_text(file.shape(path))
+            << "): " << file.attribute<std::string>(path, "long_name");
   if (has_error(row.data)) std::cout << "; with " << path << "_error";
   std::cout << '\n';
 }

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "mc/fit/fit_datasets.h"
+#include "mc/fit/fit_report.h"
 
 namespace flatspeckle::apps {
 
@@ -28,13 +29,6 @@ std::string remark(const mc::FreeParameter& parameter, double estimate, bool kno
   return known ? "" : "  not known better than by its bounds";
 }
 
-/// Whether the misfit is beyond what errors explain: five standard deviations of chi^2.
-bool unlikely(const mc::MediumFit& fit) {
-  constexpr double deviations = 5;
-  const auto freedom = static_cast<double>(fit.degrees_of_freedom());
-  return fit.chi_squared > freedom + deviations * std::sqrt(2 * freedom);
-}
-
 void print_parameters(const mc::FitTask& task, const mc::MediumFit& fit) {
   std::printf("%-26s %12s %10s\n", "parameter", "value", "error");
   for (std::size_t i = 0; i < task.free.size(); ++i) {
@@ -54,7 +48,7 @@ void print_fit(const mc::FitTask& task, const mc::MediumFit& fit) {
   print_correlations(task, fit);
   std::printf("chi^2 %.4g of %td values less %zu parameters; condition %.3g\n", fit.chi_squared,
               fit.residuals.size(), task.free.size(), fit.condition);
-  if (unlikely(fit))
+  if (!mc::is_likely(fit.chi_squared, fit.residuals.size(), fit.estimates.size()))
     std::printf("chi^2 is unlikely: this model cannot give these measurements with their errors\n");
   if (const std::string words = mc::degeneracy(task, fit); !words.empty())
     std::printf("%s\n", words.c_str());

@@ -2,7 +2,6 @@
 // many lights cost, and how well they solve. usage: bench_fast_direct [tolerance] [N ...]
 // CPU seconds are comparable between machines only as ratios; run on one thread (OMP_NUM_THREADS=1)
 // for those, on all for wall seconds.
-#include "wave_solver/equations/t_matrix_system.h"
 #include "wave_solver/skeletons/fast_direct.h"
 
 #include <cmath>
@@ -14,6 +13,7 @@
 
 #include "core/numbers/random.h"
 #include "core/run/stopwatch.h"
+#include "wave_solver/equations/t_matrix_system.h"
 
 using namespace flatspeckle;
 

@@ -91,7 +91,8 @@ Refined slab_flux(const Scene& slab, std::size_t angle_bins, const Refinement& r
 }
 
 FluxJob slab_flux_job(const Scene& slab, std::size_t angle_bins, const Refinement& refinement) {
-  FluxJob job{{}, slab.request.lights.size(), angle_bins, "intensity alone in the plane, by doubling"};
+  FluxJob job{
+      {}, slab.request.lights.size(), angle_bins, "intensity alone in the plane, by doubling"};
   job.batches = two_batches(job.lights * (flux_shares + angle_bins),
                             [=] { return slab_flux(slab, angle_bins, refinement); });
   return job;

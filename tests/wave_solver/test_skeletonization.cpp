@@ -47,8 +47,7 @@ TEST_CASE("A skeleton tells the waves of its box to all outside, near and far") 
     const Rectangle box{{0, 0}, {2.1, 2.1}};
     std::vector<std::size_t> inside, outside, near;
     for (std::size_t u = 0; u < system.unknowns(); ++u)
-      (box.distance(placement[system.body_of(u)].position) == 0 ? inside : outside)
-          .push_back(u);
+      (box.distance(placement[system.body_of(u)].position) == 0 ? inside : outside).push_back(u);
     Rectangle hull{{0, 0}, {2.1, 2.1}};
     if (disks) hull = {{-0.15, -0.15}, {2.25, 2.25}};
     for (const double tolerance : {1e-3, 1e-6, 1e-9}) {
