@@ -1,0 +1,151 @@
+#!/usr/bin/env python3
+"""The guides as a site: site_pages.py FOLDER. Pages by Sphinx (MyST, furo), the libraries' by Doxygen; no
+network. A warning, or a link that leads nowhere, ends it with status 1. scripts/site.sh installs
+what it takes."""
+
+import ast
+import html.parser
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import urllib.parse
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+DOCS = ROOT / "docs"
+
+# What stands in the sidebar, in this order; a test sees that every guide is here.
+CHAPTERS = {
+    "First": ["tour", "questions", "tutorials", "gallery"],
+    "Speckle": ["monte_carlo", "exact_solver", "media", "sweeps", "imaging", "fit"],
+    "Rays and light": ["rays", "design", "render"],
+    "Reference": ["commands", "scenes", "keys", "format", "conventions", "python", "library"],
+    "About": ["report/report", "development", "contributing", "changelog", "sources"],
+}
+PICTURE = re.compile(r"!\[([^\]]*)\]\(([^)]+\.(?:png|jpg))\)")
+LINK = re.compile(r"(\]\()(?:docs/)?([^):]+\))")
+
+
+def flattened(text):
+    """Of a page at the root of the checkout: the site has the guides at its own."""
+    text = LINK.sub(r"\1\2", text)
+    return text.replace("(CONTRIBUTING.md", "(contributing.md").replace("(CHANGELOG.md", "(changelog.md")
+
+
+def title_of(page):
+    return next(line[2:] for line in page.read_text().splitlines() if line.startswith("# "))
+
+
+def sidebar():
+    parts = []
+    for chapter, pages in CHAPTERS.items():
+        parts.append(":::{toctree}\n:hidden:\n:maxdepth: 1\n:caption: " + chapter + "\n\n"
+                     + "\n".join(pages) + "\n:::\n")
+    return "\n".join(parts)
+
+
+def tutorial_page(script):
+    """What a script says of itself, its picture, and all of it."""
+    text = script.read_text()
+    said = ast.get_docstring(ast.parse(text)).strip()
+    first, _, rest = said.partition("\n\n")
+    code = text.split('"""', 2)[2].strip()
+    return (f"# {first.rstrip('.')}\n\n{rest}\n\n![{first}]({script.stem}.png)\n\n"
+            f"```python\n{code}\n```\n")
+
+
+def gallery(source):
+    """Every picture of the guides as a thumbnail that leads to where it is explained."""
+    tiles, shown = [], set()
+    for page in [page for pages in CHAPTERS.values() for page in pages if page != "gallery"]:
+        folder = (source / page).parent.relative_to(source)
+        for caption, picture in PICTURE.findall((source / f"{page}.md").read_text()):
+            if (path := folder / picture) not in shown:
+                tiles.append(f"[![{caption}]({path}) {caption}]({page}.md)")
+            shown.add(path)
+    return "# Gallery\n\n<div class=\"gallery\">\n\n" + "\n\n".join(tiles) + "\n\n</div>\n"
+
+
+def write_source(source):
+    shutil.copytree(DOCS, source, ignore=shutil.ignore_patterns("site", "*.json"))
+    shutil.copytree(DOCS / "site" / "static", source / "static")
+    shutil.copy(DOCS / "site" / "conf.py", source)
+    shutil.copy(ROOT / "LICENSE", source)
+    (source / "index.md").write_text(flattened((ROOT / "README.md").read_text()) + "\n" + sidebar())
+    for name in ("CONTRIBUTING", "CHANGELOG"):
+        (source / f"{name.lower()}.md").write_text(flattened((ROOT / f"{name}.md").read_text()))
+    scripts = sorted((source / "tutorials").glob("*.py"))
+    for script in scripts:
+        script.with_suffix(".md").write_text(tutorial_page(script))
+    tutorials = source / "tutorials.md"
+    pages = "\n".join(f"tutorials/{script.stem}" for script in scripts)
+    tutorials.write_text(tutorials.read_text().replace(".py)", ".md)")
+                         + f"\n:::{{toctree}}\n:hidden:\n\n{pages}\n:::\n")
+    library = source / "library.md"
+    library.write_text(library.read_text()
+                       + '\n<p><a href="api/annotated.html">Classes and functions of the libraries</a></p>\n')
+    (source / "gallery.md").write_text(gallery(source))
+
+
+def run(*command, **more):
+    if subprocess.run(command, **more).returncode != 0:
+        sys.exit(f"site: {command[0]} found what must be mended")
+
+
+class Links(html.parser.HTMLParser):
+    """Where a page leads, and the places in it that others may lead to."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.targets, self.places = set(), {""}
+        self.feed(text)
+
+    def handle_starttag(self, tag, attributes):
+        for name, value in attributes:
+            if name in ("href", "src") and value and tag != "link":
+                self.targets.add(value)
+            elif name in ("id", "name") and value:
+                self.places.add(value)
+
+
+def dead_links(site):
+    """(page, link) of those within the site that lead nowhere; Doxygen looks after its own."""
+    pages = {path: Links(path.read_text()) for path in site.rglob("*.html")
+             if path.relative_to(site).parts[0] != "api"}
+    dead = []
+    for path, links in pages.items():
+        for link in links.targets:
+            url = urllib.parse.urlparse(link)
+            if url.scheme:
+                continue
+            target = path if not url.path else (path.parent / urllib.parse.unquote(url.path)).resolve()
+            place = urllib.parse.unquote(url.fragment)
+            if not target.exists() or (target in pages and place not in pages[target].places):
+                dead.append((path.relative_to(site), link))
+    return dead
+
+
+def main(folder):
+    site = pathlib.Path(folder).resolve()
+    shutil.rmtree(site, ignore_errors=True)
+    with tempfile.TemporaryDirectory() as scratch:
+        source = pathlib.Path(scratch) / "source"
+        write_source(source)
+        run("sphinx-build", "-W", "--keep-going", "-q", "-b", "html", source, site)
+    settings = (DOCS / "site" / "Doxyfile").read_text() + f"\nOUTPUT_DIRECTORY = {site}\nHTML_OUTPUT = api\n"
+    run("doxygen", "-", cwd=ROOT, input=settings.encode())
+    shutil.rmtree(site / ".doctrees", ignore_errors=True)
+    dead = dead_links(site)
+    for page, link in dead:
+        print(f"{page}: {link} leads nowhere")
+    if dead:
+        sys.exit(1)
+    print(f"{site}/index.html")
+
+
+if __name__ == "__main__":
+    if len(sys.argv) != 2:
+        sys.exit(__doc__)
+    main(sys.argv[1])
