@@ -35,17 +35,18 @@ constexpr Frame frames[] = {
     {"dictionary", "", "", ""},
     {"completion",
      "# Completion for bash: source <(flatspeckle keys completion)\n"
-     "_flatspeckle() {\n  local words=",
+     "_flatspeckle() {\n  local flags=",
      "",
      "  esac\n"
-     "  COMPREPLY=($(compgen -f -W \"$words\" -- \"${COMP_WORDS[COMP_CWORD]}\"))\n"
+     "  COMPREPLY=($(compgen -f -W \"$flags\" -- \"${COMP_WORDS[COMP_CWORD]}\"))\n"
      "}\n"
-     "complete -F _flatspeckle flatspeckle\n"}};
+     "complete -F _flatspeckle flatspeckle\n"},
+    {"zsh", "#compdef flatspeckle\nlocal flags=", "", "  esac\ncompadd -- ${=flags}\n_files\n"}};
 
 const Frame& frame_named(const std::string& form) {
   for (const Frame& frame : frames)
     if (form == frame.form) return frame;
-  throw InputError("keys", form, "must be one of json markdown man dictionary completion");
+  throw InputError("keys", form, "must be one of json markdown man dictionary completion zsh");
 }
 
 void print_owners() {
@@ -55,10 +56,11 @@ void print_owners() {
 }
 
 /// Of completion: what the first word may be; the others are flags of it.
-void print_first_words() {
+void print_first_words(const std::string& shell) {
   std::cout << '"';
   for (const SubcommandEntry& entry : subcommands()) std::cout << entry.name << ' ';
-  std::cout << "\"\n  [[ $COMP_CWORD == 1 ]] || case \"${COMP_WORDS[1]}\" in\n";
+  std::cout << (shell == "zsh" ? "\"\n  (( CURRENT == 2 )) || case \"${words[2]}\" in\n"
+                               : "\"\n  [[ $COMP_CWORD == 1 ]] || case \"${COMP_WORDS[1]}\" in\n");
 }
 
 void print_heading(const std::string& form, const SubcommandEntry& entry) {
@@ -79,7 +81,7 @@ int list_keys(const Arguments& arguments) {
     std::cout << "{\"version\": " << quoted(version()) << ", \"commit\": " << quoted(git_commit())
               << ",\n ";
   std::cout << frame.before;
-  if (form == "completion") print_first_words();
+  if (form == "completion" || form == "zsh") print_first_words(form);
   if (form == "markdown") print_owners();
   const char* between = "";
   for (const SubcommandEntry& entry : subcommands()) {

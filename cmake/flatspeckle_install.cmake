@@ -22,10 +22,14 @@ install(DIRECTORY python/flatspeckle DESTINATION ${FLATSPECKLE_PYTHON_DIR} PATTE
 install(CODE "execute_process(COMMAND $<TARGET_FILE:flatspeckle> keys man
                               OUTPUT_FILE ${PROJECT_BINARY_DIR}/flatspeckle.1 COMMAND_ERROR_IS_FATAL ANY)
               execute_process(COMMAND $<TARGET_FILE:flatspeckle> keys completion
-                              OUTPUT_FILE ${PROJECT_BINARY_DIR}/flatspeckle.bash COMMAND_ERROR_IS_FATAL ANY)")
+                              OUTPUT_FILE ${PROJECT_BINARY_DIR}/flatspeckle.bash COMMAND_ERROR_IS_FATAL ANY)
+              execute_process(COMMAND $<TARGET_FILE:flatspeckle> keys zsh
+                              OUTPUT_FILE ${PROJECT_BINARY_DIR}/flatspeckle.zsh COMMAND_ERROR_IS_FATAL ANY)")
 install(FILES ${PROJECT_BINARY_DIR}/flatspeckle.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
 install(FILES ${PROJECT_BINARY_DIR}/flatspeckle.bash RENAME flatspeckle
         DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
+install(FILES ${PROJECT_BINARY_DIR}/flatspeckle.zsh RENAME _flatspeckle
+        DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions)
 install(FILES LICENSE CITATION.cff CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
 # cpack: a package for the Debian that it is made on.

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Memory effect: intensity correlation against tilt, from one sweep (by both methods: with their
-deviation beneath), or from any number of memory_effect results of `covariance` and `validate`,
-compared in one panel."""
+deviation beneath), or from any number of results of `covariance`, `validate` and `sweep` compared in
+one panel."""
 
 from lib import correlation_panel, covariance_curves, page, style, sweep_curves, sweep_file
 
@@ -21,11 +21,6 @@ def refuse_maps(result):
                                     for scales in list(result.dataset(name).dims)[1:]):
             raise style.Unusable(f"{result.path}: a map over tilts and shifts; "
                                  "plots/tilt_shift.py draws it")
-
-
-def is_sweep(result):
-    return any(result.has(f"{prefix}field_correlation")
-               and result.dataset(f"{prefix}field_correlation").ndim > 1 for prefix in ("", "mc/"))
 
 
 def arrange(sweep):
@@ -100,13 +95,11 @@ def draw_sweep(sweep, arguments):
 def draw(results, arguments):
     for result in results:
         refuse_maps(result)
-    if not any(is_sweep(result) for result in results):
-        if arguments.select:
-            raise style.Unusable(f"{results[0].path}: not a sweep, --select has nothing to select")
+    sweeps = [result for result in results if covariance_curves.is_sweep(result)]
+    if arguments.select and not sweeps:
+        raise style.Unusable(f"{results[0].path}: not a sweep, --select has nothing to select")
+    if len(results) > 1 or not sweeps:
         return covariance_curves.draw(results, arguments)
-    if len(results) > 1:
-        raise style.Unusable("a sweep is drawn alone: give one sweep, or several covariance or "
-                             "validate results")
     return draw_sweep(sweep_file.read(results, arguments), arguments)
 
 

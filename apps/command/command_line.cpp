@@ -12,6 +12,7 @@
 #include "apps/command/key_owners.h"
 #include "apps/command/nearest_key.h"
 #include "apps/command/scene_file.h"
+#include "apps/command/written_lengths.h"
 #include "core/error.h"
 #include "core/keys/number_text.h"
 #include "core/keys/written_number.h"
@@ -19,6 +20,8 @@
 namespace flatspeckle::apps {
 
 namespace {
+
+constexpr const char* length_unit_key = "length_unit";
 
 /// -.4 and -pi are numbers; CLI11 would take them for the flags "." and "p" with a value.
 std::string with_figure(const std::string& argument) {
@@ -89,6 +92,22 @@ Subcommand::Subcommand(std::string name, std::string purpose)
 
 Subcommand::~Subcommand() = default;
 
+/// Where there are lengths, and no key of the physics that says what they are in.
+void Subcommand::add_length_unit() {
+  const auto& rows = keys_.rows();
+  const bool lengths =
+      std::any_of(rows.begin(), rows.end(), [](const Key& key) { return key.unit() == "length"; });
+  if (!lengths || keys_.find(length_unit_key) != nullptr) return;
+  keys_.group("Units");
+  keys_
+      .add(length_unit_key, length_unit_,
+           "What lengths without a unit are in, um or 1e-6, where some are written with one: 532nm")
+      .positive()
+      .unit("m")
+      .effort();
+  keys_.read(length_unit_);
+}
+
 /// Each name once, whatever the number of its rows.
 void Subcommand::add_flags() {
   std::set<std::string> names;
@@ -104,15 +123,34 @@ void Subcommand::add_flags() {
   }
 }
 
-/// CLI11 lets an option without a value take the flag that follows it.
+/// What is given of a key; CLI11 lets an option without a value take the flag that follows it.
+std::vector<std::string> Subcommand::results_of(const Key& key) const {
+  const CLI::Option* const option = app_->get_option("--" + key.name());
+  for (const std::string& value : option->results())
+    if (value.empty() || value.starts_with("--"))
+      throw InputError(key.name(), '"' + value + '"', "must have a value");
+  return option->results();
+}
+
+/// Of "um" and the like, in metres.
+std::optional<double> Subcommand::take_length_unit() {
+  const Key* const key = keys_.find(length_unit_key);
+  if (key == nullptr) return std::nullopt;
+  const auto given = results_of(*key);
+  if (given.empty()) return std::nullopt;
+  const auto metres = metres_of(given.back());
+  if (!metres) throw InputError(key->name(), given.back(), "must be um, mm, 0.5um, or in metres");
+  keys_.set(key->name(), {number_text(*metres)});
+  return metres;
+}
+
 void Subcommand::take_results() {
+  const auto metres = take_length_unit();
   for (const Key& key : keys_.rows()) {
-    const CLI::Option* const option = app_->get_option("--" + key.name());
-    if (option->count() == 0) continue;
-    for (const std::string& value : option->results())
-      if (value.empty() || value.starts_with("--"))
-        throw InputError(key.name(), '"' + value + '"', "must have a value");
-    key.set(option->results());
+    auto given = results_of(key);
+    if (given.empty() || key.name() == length_unit_key) continue;
+    for (std::string& text : given) text = in_unit_of_length(key, text, metres);
+    key.set(given);
   }
 }
 
@@ -133,6 +171,7 @@ void Subcommand::parse_by(const Parser& parser) {
 }
 
 bool Subcommand::parse(const Arguments& arguments) {
+  add_length_unit();
   if (print_keys(keys_, name_, arguments)) return false;
   std::vector<std::string> own;
   std::transform(arguments.rbegin(), arguments.rend() - 2, std::back_inserter(own), with_figure);
@@ -154,6 +193,7 @@ bool Subcommand::parse(const Arguments& arguments) {
 }
 
 void Subcommand::parse_config(const std::string& config) {
+  add_length_unit();
   std::istringstream text(config);
   parse_by([&] { app_->parse_from_stream(text); });
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -42,7 +43,10 @@ class Subcommand {
   const std::string& text() const { return text_; }
 
  private:
+  void add_length_unit();
   void add_flags();
+  std::vector<std::string> results_of(const Key& key) const;
+  std::optional<double> take_length_unit();
   void take_results();
   void print_help() const;
   template <typename Parser>
@@ -51,6 +55,7 @@ class Subcommand {
   std::string name_, purpose_, text_;
   std::unique_ptr<CLI::App> app_;
   Keys keys_;
+  std::optional<double> length_unit_;
   bool print_config_ = false;
 };
 

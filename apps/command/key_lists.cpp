@@ -99,7 +99,7 @@ void print_man(const Keys& keys) {
 void print_completion(const Keys& keys, const std::string& subcommand) {
   std::set<std::string> flags{"--config", "--help", "--print-config"};
   for (const Key& key : keys.rows()) flags.insert("--" + key.name());
-  std::cout << "    " << subcommand << ") words=\"";
+  std::cout << "    " << subcommand << ") flags=\"";
   for (const std::string& flag : flags) std::cout << flag << ' ';
   std::cout << "\" ;;\n";
 }
@@ -156,7 +156,7 @@ bool print_keys(const Keys& keys, const std::string& subcommand,
   if (form == "json") print_json(keys);
   if (form == "markdown") print_markdown(keys, subcommand);
   if (form == "man") print_man(keys);
-  if (form == "completion") print_completion(keys, subcommand);
+  if (form == "completion" || form == "zsh") print_completion(keys, subcommand);
   if (form == "dictionary") print_dictionary(keys);
   if (form == "names") print_names(keys);
   return true;

@@ -7,6 +7,7 @@
 #include "core/session/identity.h"
 #include "core/session/session.h"
 #include "flatland/scene/scene_datasets.h"
+#include "mc/estimators/reflection_theory.h"
 #include "mc/slab/refinement.h"
 
 namespace flatspeckle::apps {
@@ -44,6 +45,8 @@ int covariance(const Arguments& arguments) {
   add_keys(keys, spec);
   std::optional<std::int64_t> tilt_count;
   add_tilt_count_key(keys, tilt_count);
+  std::vector<double> q_depths;
+  add_q_depths_key(keys, q_depths);
   keys.group("Methods");
   keys.add("method", method,
            "Monte Carlo, exactly, or of a slab by transport without chance; auto: transport where "
@@ -65,6 +68,7 @@ int covariance(const Arguments& arguments) {
   if (method == "wave") keys.read(methods.wave_tolerance);
   if (method != "wave") keys.read(spec.dimension);
   read_extras(keys, extras, method);
+  take_q_depths(keys, q_depths, spec);
   choose_tilts(keys, tilt_count, spec, method, run, session.seed());
   const Scene scene = with_dimension(make_scene(keys, spec), spec);
   const auto [estimation, write_extras] =
@@ -92,6 +96,7 @@ int covariance(const Arguments& arguments) {
                        write_axes(file, scene);
                        print_moves(scene.request,
                                    mc::write_moments(file, "", job, scene, sums, moments));
+                       mc::write_reflection_theory(file, scene);
                        if (write) write(file, sums);
                        if (method == "transport") mc::write_numerical(file);
                      });

@@ -9,6 +9,7 @@
 #include "apps/results/datasets.h"
 #include "apps/results/extras.h"
 #include "apps/results/moments_table.h"
+#include "apps/results/tilt_search.h"
 #include "core/error.h"
 #include "core/result/result_group.h"
 #include "core/session/identity.h"
@@ -206,6 +207,8 @@ int validate(const Arguments& arguments) {
       "entry");
   Keys& keys = command.keys();
   add_keys(keys, spec);
+  std::vector<double> q_depths;
+  add_q_depths_key(keys, q_depths);
   add_frequency_key(keys, shifts);
   add_mc_keys(keys, methods);
   add_wave_keys(keys, methods);
@@ -215,6 +218,7 @@ int validate(const Arguments& arguments) {
   if (!command.parse(arguments)) return ExitStatus::done;
 
   Session session(command.text(), keys, run, command.only_prints());
+  take_q_depths(keys, q_depths, spec);
   const bool slab = spec.domain == "slab";
   const StopRule stop = with_share(stop_rule(keys, run), slab ? 1 : mc_share);
   const auto reversed = reversed_paths(keys, methods);

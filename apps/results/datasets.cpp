@@ -20,6 +20,7 @@
 #include "mc/changes/frequency_shifts.h"
 #include "mc/estimators/flux.h"
 #include "mc/estimators/gradient.h"
+#include "mc/estimators/reflection_theory.h"
 #include "mc/fit/fit_datasets.h"
 #include "mc/fit/plan_datasets.h"
 #include "mc/imaging/imaging_datasets.h"
@@ -99,6 +100,7 @@ std::vector<const DatasetTable*> all_tables() {
                                              &mc::full_table,
                                              &mc::pairs_table,
                                              &mc::moves_table,
+                                             &mc::reflection_theory_table,
                                              &mc::gradient_table,
                                              &mc::delays_table,
                                              &mc::contrast_table,

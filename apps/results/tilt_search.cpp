@@ -72,6 +72,24 @@ void add_tilt_count_key(Keys& keys, std::optional<std::int64_t>& count) {
       .only_of("covariance = memory_effect");
 }
 
+void add_q_depths_key(Keys& keys, std::vector<double>& q_depths) {
+  keys.add("q_depths", q_depths, "In place of tilts: q L of each, L the depth")
+      .only_of("tilts of plane waves, where depth is given");
+}
+
+void take_q_depths(const Keys& keys, std::vector<double>& q_depths, SceneSpec& spec) {
+  if (!keys.given(q_depths)) return;
+  if (!spec.tilts.empty()) throw InputError("tilts, q_depths: exactly one must be given");
+  const double per_sine = 2 * pi / keys.read(spec.wavelength) * keys.required(spec.depth);
+  const double light = keys.required(spec.light_angles).front();
+  for (const double q_depth : keys.read(q_depths)) {
+    if (std::abs(std::sin(light) + q_depth / per_sine) >= 1)
+      throw InputError("q_depths", q_depth, "takes the light past the horizon");
+    spec.tilts.push_back(q_depth == 0 ? 0 : tilt_of(light, q_depth / per_sine));
+  }
+  q_depths.clear();
+}
+
 void choose_tilts(const Keys& keys, std::optional<std::int64_t>& count, SceneSpec& spec,
                   const std::string& method, const RunSettings& run, std::uint64_t seed) {
   if (!keys.given(count)) return;

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "apps/results/estimation.h"
 
@@ -15,5 +16,12 @@ void add_tilt_count_key(Keys& keys, std::optional<std::int64_t>& count);
 /// Throws InputError.
 void choose_tilts(const Keys& keys, std::optional<std::int64_t>& count, SceneSpec& spec,
                   const std::string& method, const RunSettings& run, std::uint64_t seed);
+
+/// q L of tilts, L the depth, in place of the tilts themselves.
+void add_q_depths_key(Keys& keys, std::vector<double>& q_depths);
+
+/// Where they are given: fills spec.tilts with the rotations that have them, and empties the list.
+/// Throws InputError.
+void take_q_depths(const Keys& keys, std::vector<double>& q_depths, SceneSpec& spec);
 
 }  // namespace flatspeckle::apps

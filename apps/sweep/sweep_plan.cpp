@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "apps/results/tilt_search.h"
 #include "core/error.h"
 #include "core/result/version.h"
 #include "mc/walk/plan.h"
@@ -49,6 +50,7 @@ SweepPlan::SweepPlan()
   add_structure_key(keys, base);
   add_view_keys(keys, base);
   keys.add("tilts", base.tilts, "Rotations of the light").angle();
+  add_q_depths_key(keys, q_depths_);
   keys.group("Methods");
   keys.add("method", method_,
            "Monte Carlo, exactly, of slabs by transport without chance; both: Monte Carlo and what "
@@ -89,6 +91,7 @@ void SweepPlan::parse_config(const std::string& config, const std::string& comma
 /// All that can be refused: every point must make a scene that the method can take.
 void SweepPlan::check() {
   const Keys& keys = command_.keys();
+  take_q_depths(keys, q_depths_, base);
   choose_method(keys, method_, base, settings);
   method_words = method_ == "both"
                      ? std::vector<std::string>{"mc", base.domain == "slab" ? "transport" : "wave"}

@@ -63,6 +63,7 @@ class SweepPlan {
   SweepLists lists_;
   std::string method_ = "auto", share_, of_;
   VaryValues vary_;  ///< of another subcommand (sweep_experiments.h)
+  std::vector<double> q_depths_;  ///< empty once the tilts are made of it
   mc::ReversedPaths reversed_ = mc::ReversedPaths::automatic;
   StopRule mc_stop_, wave_stop_;
   Subcommand command_;

@@ -6,7 +6,8 @@ void add_scatterer_keys(Keys& keys, SceneSpec& spec) {
   keys.group("Scatterers");
   keys.add("wavelength", spec.wavelength,
            "Wavelength around the scatterers; k = 2 pi / wavelength; sets the unit of length")
-      .positive();
+      .positive()
+      .unit("length");
   keys.add("scatterer", spec.scatterer,
            "Points; soft (field 0 at the rim), hard (normal derivative 0), tm and te cylinders (E "
            "or H along the axis); a phase function of the bulk; or in space mie, spheres")

@@ -168,8 +168,9 @@ void add_keys(Keys& keys, RenderValues& values) {
   keys.add("path_moments", values.path_moments,
            "Also the mean optical path of the light in each pixel, and the mean of its square");
   keys.add("length_unit", values.length_unit,
-           "Metres in a unit of length, for the times of path_bins")
-      .positive();
+           "What lengths are in, um or 1e-6, for the times of path_bins")
+      .positive()
+      .unit("m");
   add_map_keys(keys, values);
 }
 

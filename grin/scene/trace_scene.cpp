@@ -65,7 +65,9 @@ void add_keys(Keys& keys, TraceValues& values) {
   keys.add("path_points", values.path_points,
            "Points of each ray in the file, to be drawn, and an index map; 0: none")
       .from(0, 100'000);
-  keys.add("length_unit", values.length_unit, "Metres in a unit of length, for times").positive();
+  keys.add("length_unit", values.length_unit, "What lengths are in, um or 1e-6, for times")
+      .positive()
+      .unit("m");
 }
 
 TraceScene make_trace_scene(const Keys& keys, const TraceValues& values) {

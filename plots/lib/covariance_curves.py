@@ -1,11 +1,11 @@
-"""Memory-effect curves of any number of results of `covariance` and `validate` in one panel: over
-tilts, or over translations."""
+"""Memory-effect curves of any number of results of `covariance`, `validate` and `sweep` in one panel:
+over tilts, or over translations."""
 
 import pathlib
 import tomllib
 from dataclasses import dataclass
 
-from lib import correlation_panel, page, style, theory
+from lib import correlation_panel, page, smooth, style, sweep_file, theory
 from lib.curve_looks import method_look
 from lib.sweep_file import METHODS
 
@@ -22,6 +22,16 @@ class Series:
     correlation: np.ndarray
     error: np.ndarray
     look: dict
+    line: tuple = None  # (moves, C_E) of theory
+
+
+MOST_CURVES = 8  # that a panel holds legibly
+STEPS = 200  # of a line
+
+
+def is_sweep(result):
+    return any(result.has(f"{prefix}field_correlation")
+               and result.dataset(f"{prefix}field_correlation").ndim > 1 for prefix in ("", "mc/"))
 
 
 def read_groups(result):
@@ -40,8 +50,9 @@ def read_groups(result):
 
 def kind_of_moves(results):
     """tilt or shift (a translation), whichever all results stand on."""
-    kinds = {result.dataset(f"{prefix}field_correlation").dims[0][0].name.strip("/"): result.path
-             for result in results for _, prefix in read_groups(result)}
+    kinds = {"tilt" if is_sweep(result) else
+             result.dataset(f"{prefix}field_correlation").dims[0][0].name.strip("/"): result.path
+             for result in results for _, prefix in ([("", "")] if is_sweep(result) else read_groups(result))}
     if len(kinds) > 1:
         raise style.Unusable(f"{kinds['shift']} is of translations, {kinds['tilt']} of tilts: "
                              "draw them one by one")
@@ -62,45 +73,84 @@ def sides(result, prefix):
     return [(first, ", transmitted"), (reflected, ", reflected")]
 
 
-def read_series(results, unit):
-    """unit: what a move of 1 is drawn as."""
-    series = []
-    for number, result in enumerate(results):
-        groups = read_groups(result)
-        for side, (_, of_side) in enumerate(sides(result, groups[0][1])):
-            for method, prefix in groups:
-                name = sides(result, prefix)[side][0]
-                if result.dataset(name).ndim != 1:
-                    raise style.Unusable(f"{result.path}: {name} is not a curve over tilts")
-                series.append(Series(f"{pathlib.Path(result.path).stem}, {METHODS[method]}{of_side}",
-                                     unit * result.axis(name, 0), np.real(result.values(name)),
-                                     result.values(f"{name}_error"),
-                                     file_look(method, number + side * len(results))))
+def result_series(result, number, unit):
+    """Of one result; a side of the medium is a curve. unit: what a move of 1 is drawn as."""
+    series, stem, groups = [], pathlib.Path(result.path).stem, read_groups(result)
+    for side, (_, of_side) in enumerate(sides(result, groups[0][1])):
+        for method, prefix in groups:
+            name = sides(result, prefix)[side][0]
+            if result.dataset(name).ndim != 1:
+                raise style.Unusable(f"{result.path}: {name} is not a curve over tilts")
+            line = None if method != groups[0][0] else \
+                reflection_line(result) if side or only_reflected(result) else diffusion_line(result)
+            series.append(Series(f"{stem}, {METHODS[method]}{of_side}",
+                                 unit * result.axis(name, 0), np.real(result.values(name)),
+                                 result.values(f"{name}_error"), file_look(method, number + side), line))
     return series
 
 
-def diffusion_line(result, steps=200):
+def sweep_series(result, number, arguments):
+    """A curve for each point of a sweep."""
+    sweep, series = sweep_file.read([result], arguments), []
+    tilt, stem = result.values("tilt"), pathlib.Path(result.path).stem
+    fine, stored = np.linspace(tilt.min(), tilt.max(), STEPS), sweep.optional("diffusion_theory")
+    for place, row in enumerate(sweep.rows):
+        words = ", ".join([stem, *([sweep.label(sweep.varying(), row)] if sweep.varying() else [])])
+        for method in sweep.prefixes:
+            line = None if stored is None else theory.curve(sweep, theory.diffusion, row, stored[row], fine)
+            series.append(Series(f"{words}, {METHODS[method]}" if method else words, 1000 * tilt,
+                                 sweep.of(method, "field_correlation")[row],
+                                 sweep.of(method, "field_correlation_error")[row],
+                                 file_look(method, number + place),
+                                 None if line is None else (1000 * line[0], line[1])))
+    return series
+
+
+def read_series(results, unit, arguments):
+    series = []
+    for result in results:
+        number = len({s.look["color"] for s in series})
+        series += sweep_series(result, number, arguments) if is_sweep(result) else \
+            result_series(result, number, unit)
+    if len(series) > MOST_CURVES and len(results) > 1 and any(map(is_sweep, results)):
+        raise style.Unusable(f"{len(series)} curves, a panel holds {MOST_CURVES}: choose some by --select")
+    return series
+
+
+def only_reflected(result):
+    return np.all(np.cos(result.values("view_angle")) < 0)
+
+
+def diffusion_line(result):
     """(tilts in mrad, C_E) of light through a slab in diffusion theory; None of other scenes."""
     scene = tomllib.loads(result.attribute("config", ""))
-    if scene.get("domain") != "slab" or np.all(np.cos(result.values("view_angle")) < 0):
+    if scene.get("domain") != "slab" or not result.has("tilt_q"):
         return None
     order = np.argsort(result.values("tilt"))
     known, q = result.values("tilt")[order], result.values("tilt_q")[order]
-    tilt = np.linspace(known[0], known[-1], steps)
+    tilt = np.linspace(known[0], known[-1], STEPS)
     medium = (result.attribute(name) for name in ("depth", "optical_depth", "g", "albedo"))
     return 1000 * tilt, theory.slab_diffusion(*medium, np.interp(tilt, known, q),
                                               theory.dimension(result))
 
 
-def draw_theory(axis, results):
+def reflection_line(result):
+    """(tilts in mrad, C_E) of reflected light in theory, smooth between the tilts of the file; None
+    where it has none."""
+    if not result.has("reflection_theory") or len(result.values("tilt")) < 3:
+        return None
+    order = np.argsort(result.values("tilt"))
+    tilt, known = result.values("tilt")[order], result.values("reflection_theory")[order]
+    fine = np.linspace(tilt[0], tilt[-1], STEPS)
+    return 1000 * fine, smooth.cubic(tilt, known, fine)
+
+
+def draw_theory(axis, series):
     """Whether there is any."""
-    lines = [diffusion_line(result) for result in results]
-    for number, line in enumerate(lines):
-        if line is not None:
-            look = style.look(number)
-            axis.plot(line[0], line[1]**2, color=look["color"], linestyle=look["linestyle"],
-                      linewidth=0.7, zorder=1)
-    return any(line is not None for line in lines)
+    lines = [s for s in series if s.line is not None]
+    for s in lines:
+        axis.plot(s.line[0], s.line[1]**2, color=s.look["color"], linewidth=0.7, zorder=1)
+    return bool(lines)
 
 
 def shared(results, name):
@@ -126,7 +176,7 @@ def title(results):
 
 def draw(results, arguments):
     tilts = kind_of_moves(results) == "tilt"
-    series = read_series(results, 1000 if tilts else 1)
+    series = read_series(results, 1000 if tilts else 1, arguments)
     figure, axis = plt.subplots(figsize=(style.COLUMN, 2.6))
     correlation_panel.prepare(
         axis, np.concatenate([s.moves for s in series]),
@@ -141,8 +191,10 @@ def draw(results, arguments):
     elif share_q(results):
         correlation_panel.add_q_axis(axis, results[0], series[0].moves)
     entries = [(plt.Line2D([], [], linestyle="none", **s.look), s.label) for s in series]
-    if tilts and draw_theory(axis, results):
+    if tilts and draw_theory(axis, series):
         entries.append((plt.Line2D([], [], color="black", linewidth=0.7),
+                        "lines: diffusion theory, of reflected light with single scattering"
+                        if any(result.has("reflection_theory") for result in results) else
                         "lines: diffusion theory"))
     page.legend_outside(figure, entries)
     style.caption(figure, unseen.notes(arguments))

@@ -75,6 +75,7 @@ RUNS = {
     "map_near": ("covariance", {**BOX, **MAP, "near_sensors": "sensors.csv", "method": "wave"}),
     "moved": ("covariance", {**BOX, **MOVED}),
     "moved_both_sides": ("covariance", {**BOX, **MOVED, **SIDES}),
+    "reflected_tilts": ("covariance", {**SLAB, **TILTS, "view_angles": 2.9}),
     "tilts_both_sides": ("covariance", {**BOX, **TILTS, **SIDES}),
     "map_both_sides": ("covariance", {**BOX, **MAP, **SIDES}),
     "gradient": ("covariance", {**HG, **FAR, "gradient": True}),

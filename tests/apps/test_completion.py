@@ -27,6 +27,26 @@ class Completion(unittest.TestCase):
         self.assertEqual(completed("trace", "--optical"), [])
 
 
+ZSH = """
+compadd() { shift; print -l -- $@ }
+_files() { : }
+words=(flatspeckle $@); CURRENT=$(( $# + 1 ))
+eval "$("$PROGRAM" keys zsh)"
+"""
+
+
+@unittest.skipUnless(shutil.which("zsh"), "no zsh here")
+class Zsh(unittest.TestCase):
+    def offered(self, *words):
+        return subprocess.run(["zsh", "-fc", ZSH, "zsh", *words], capture_output=True, text=True, check=True,
+                              env={"PROGRAM": PROGRAM}).stdout.split()
+
+    def test_subcommands_and_flags(self):
+        self.assertIn("covariance", self.offered("cov"))
+        self.assertIn("--optical_depth", self.offered("covariance", "--opt"))
+        self.assertNotIn("--optical_depth", self.offered("trace", "--opt"))
+
+
 class Manual(unittest.TestCase):
     def test_is_clean(self):
         page = subprocess.run([PROGRAM, "keys", "man"], capture_output=True, text=True, check=True).stdout

@@ -1,0 +1,13 @@
+#!/usr/bin/env bash
+# Installs what is missing (Debian 12) and makes a Debian package that any x86-64 can run: build/package/flatspeckle_*.deb.
+set -euo pipefail
+# shellcheck source=scripts/setup.sh
+source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
+
+install_build_packages
+install_missing dpkg-dev file
+cmake -S . -B build/package -G Ninja -DCMAKE_BUILD_TYPE=Release
+cmake --build build/package --parallel "$jobs"
+cd build/package
+cpack --config CPackConfig.cmake
+ls flatspeckle_*.deb
