@@ -4,6 +4,7 @@
 #include <atomic>
 #include <fstream>
 #include <limits>
+#include <malloc.h>
 #include <string>
 #include <sys/mman.h>
 #include <sys/resource.h>
@@ -57,7 +58,9 @@ void require_address_space_of_threads(int threads) {
   if (!address_space_holds(rest + static_cast<std::size_t>(threads) * of_thread))
     throw InputError("threads: ulimit -v does not leave 10 MiB of address space for each of " +
                      std::to_string(threads) + " threads and 32 MiB; fewer need less");
-  if (address_space_is_limited()) start_threads(threads);
+  if (!address_space_is_limited()) return;
+  mallopt(M_ARENA_MAX, 1);  // for each thread that allocates, glibc would map 128 MiB
+  start_threads(threads);
 }
 
 }  // namespace flatspeckle

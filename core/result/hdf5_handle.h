@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <new>
 #include <span>
 #include <string>
 #include <type_traits>
@@ -11,6 +12,7 @@
 
 #include <hdf5.h>
 
+#include "core/numbers/address_space.h"
 #include "core/numbers/complex.h"
 
 namespace flatspeckle {
@@ -55,8 +57,16 @@ class Hdf5Calls {
   std::string what_;
 };
 
+/// HDF5 crashes where it has no memory for itself. Throws std::bad_alloc where it would not have
+/// some and these bytes.
+inline void require_hdf5_memory(std::size_t bytes = 0) {
+  constexpr std::size_t own = std::size_t{8} << 20;
+  if (!address_space_holds(own + bytes)) throw std::bad_alloc();
+}
+
 /// HDF5 would print a page about every failure; ours become exceptions. Holds for one thread.
 inline void silence_hdf5() {
+  require_hdf5_memory();
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
 }
 

@@ -273,8 +273,6 @@ struct NoMemory : std::bad_alloc {
 std::unique_ptr<Hdf5Handle> file_in_memory() {
   static std::atomic<unsigned> number{0};  // HDF5 tells open files apart by their names
   const Hdf5Calls<NoMemory> call("");
-  constexpr std::size_t of_hdf5 = std::size_t{8} << 20;
-  ::operator delete(::operator new(of_hdf5));  // without it HDF5 crashes where it makes its cache
   const Hdf5Handle access = call.handle(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   constexpr std::size_t increment = std::size_t{1} << 20;
   call.check(H5Pset_fapl_core(access.get(), increment, false));
@@ -308,9 +306,11 @@ ResultFile::ResultFile(ResultFile&&) noexcept = default;
 ResultFile& ResultFile::operator=(ResultFile&&) noexcept = default;
 ResultFile::~ResultFile() = default;
 
-// HDF5 does not survive a full disk, not even until its file is closed: room is made before.
+// HDF5 does not survive a full disk or memory, not even until its file is closed: room is made
+// before. A file in memory grows by copies.
 void ResultFile::make_room(std::size_t bytes) {
-  if (!beside_ || !file_) return;
+  if (!file_) return;
+  if (!beside_) return require_hdf5_memory(2 * bytes);
   hsize_t size = 0;
   const Hdf5Calls<IoError> call("HDF5 cannot write " + path_.string());
   call.check(H5Fget_filesize(file_->get(), &size));

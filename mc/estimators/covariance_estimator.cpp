@@ -1,5 +1,6 @@
 #include "mc/estimators/covariance_estimator.h"
 
+#include "core/numbers/blas.h"
 #include "mc/estimators/path_fields.h"
 #include "mc/estimators/path_job.h"
 #include "mc/estimators/single_scattering.h"
@@ -59,9 +60,10 @@ PathBatches path_batches(const Scene& scene, const Plan& plan, std::uint64_t see
 FieldJob covariance_job(const Scene& scene, const Plan& plan, std::uint64_t seed) {
   const auto batches = path_batches(scene, plan, seed);
   const auto single = unsampled(CovarianceKind(), scene, plan);
-  if (plan.rank_k)
-    return path_job(scene, plan, 1, single, into<RankKAccumulator>(scene.request, batches)).field;
-  return path_job(scene, plan, 1, single, into<EntryAccumulator>(scene.request, batches)).field;
+  if (!plan.rank_k)
+    return path_job(scene, plan, 1, single, into<EntryAccumulator>(scene.request, batches)).field;
+  blas_single_thread();  // before threads compete for its memory
+  return path_job(scene, plan, 1, single, into<RankKAccumulator>(scene.request, batches)).field;
 }
 
 }  // namespace flatspeckle::mc
