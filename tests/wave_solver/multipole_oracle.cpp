@@ -65,10 +65,18 @@ class InverseT {
   Cylinder<ScaledReal> inside_;
 };
 
-/// right becomes the solution.
+/// right becomes the solution. Equations are turned so that their diagonal is large for LAPACK,
+/// which measures pivots by |re| + |im|: real ones of soft disks it would leave for others, and the
+/// factors of unequal disks would grow without bound.
 void solve(std::vector<Complex>& matrix, std::vector<Complex>& right) {
   const auto size = static_cast<lapack_int>(right.size());
   std::vector<lapack_int> pivots(right.size());
+  for (std::size_t row = 0; row < right.size(); ++row) {
+    const Complex diagonal = matrix[row * (right.size() + 1)];
+    const Complex turned = std::polar(1.0, two_pi / 8 - std::arg(diagonal));
+    cblas_zscal(size, &turned, &matrix[row], size);
+    right[row] *= turned;
+  }
   if (LAPACKE_zgesv(LAPACK_COL_MAJOR, size, 1, matrix.data(), size, pivots.data(), right.data(),
                     size) != 0)
     throw std::runtime_error("multipole oracle: singular");

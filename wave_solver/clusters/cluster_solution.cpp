@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 #include <utility>
 
@@ -72,17 +73,20 @@ double norm(const std::vector<Complex>& values) {
   return std::sqrt(sum);
 }
 
-// b - T S b = T a; equations: of S alone, right sides -a.
+// b - T S b = T a; equations: of S alone, right sides -a. All turned so that the diagonal is large
+// for LAPACK, which measures pivots by |re| + |im|: factors may grow without bound otherwise.
 LightSolution pivoted(const ClusterEquations& equations, const ClusterTMatrix& cluster,
                       const std::vector<ClusterPlace>& places,
-                      const std::vector<double>& light_angles) {
+                      const std::vector<double>& light_angles, double tolerance) {
   const std::size_t n = equations.unknowns();
+  const Complex turned = std::polar(1.0, std::numbers::pi / 4);
   Entries matrix = equations.matrix();
-  respond(cluster, places, -1, matrix.data(), n);
-  for (std::size_t i = 0; i < n; ++i) matrix[i * (n + 1)] += 1;
+  respond(cluster, places, -turned, matrix.data(), n);
+  for (std::size_t i = 0; i < n; ++i) matrix[i * (n + 1)] += turned;
   auto sides = equations.right_sides(light_angles);
   respond(cluster, places, -1, sides.data(), light_angles.size());
   LightSolution found{sides, {}, "dense LU with pivoting"};
+  for (Complex& side : found.coefficients) side *= turned;
   std::vector<lapack_int> pivots(n);
   const auto size = static_cast<lapack_int>(n);
   if (LAPACKE_zgesv(LAPACK_COL_MAJOR, size, static_cast<lapack_int>(light_angles.size()),
@@ -91,7 +95,11 @@ LightSolution pivoted(const ClusterEquations& equations, const ClusterTMatrix& c
   auto left = equations.apply(found.coefficients);
   respond(cluster, places, 1, left.data(), light_angles.size());
   for (std::size_t i = 0; i < left.size(); ++i) left[i] += sides[i] - found.coefficients[i];
-  found.diagnosis.residual = norm(left) / norm(sides);
+  const double asked = norm(sides);
+  found.diagnosis.residual = asked > 0 ? norm(left) / asked : 0;
+  if (!(found.diagnosis.residual <= 100 * std::max(tolerance, 1e-12)))
+    throw std::runtime_error("clusters: not solved, residual " +
+                             number_text(found.diagnosis.residual));
   return found;
 }
 
@@ -118,7 +126,7 @@ ClusterSolution::ClusterSolution(const ClusterTMatrix& cluster, std::vector<Clus
   require_off(cluster, places_, options.sensors);
   found_ = equations_.are_whole()
                ? solve_lights(equations_, light_angles_, circle_of(equations_), options)
-               : pivoted(equations_, cluster, places_, light_angles_);
+               : pivoted(equations_, cluster, places_, light_angles_, options.tolerance);
   require_finite(found_.coefficients);
 }
 
