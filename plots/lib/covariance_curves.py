@@ -193,9 +193,9 @@ def draw(results, arguments):
     entries = [(plt.Line2D([], [], linestyle="none", **s.look), s.label) for s in series]
     if tilts and draw_theory(axis, series):
         entries.append((plt.Line2D([], [], color="black", linewidth=0.7),
-                        "lines: diffusion theory, of reflected light with single scattering"
-                        if any(result.has("reflection_theory") for result in results) else
                         "lines: diffusion theory"))
     page.legend_outside(figure, entries)
-    style.caption(figure, unseen.notes(arguments))
+    reflected = ["theory of reflected light: diffusion and single scattering"] \
+        if any(result.has("reflection_theory") for result in results) else []
+    style.caption(figure, [*unseen.notes(arguments), *reflected])
     return figure

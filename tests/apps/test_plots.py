@@ -113,6 +113,11 @@ class Plots(ProgramTest):
                         self.assertEqual((status, heard.count("\n")), (2, 1), heard)
                         self.assertIn(str(file), heard)
 
+    def test_several_sweeps_stand_in_one_panel(self):
+        status, _, heard = run_script("memory_effect", self.make("grid"), self.make("curve"), "--select", "g=0",
+                                      "--out", self.folder / "both")
+        self.assertEqual((status, heard), (0, ""))
+
     def test_captions_say_what_a_reader_does_not_see(self):
         said = run_script("memory_effect", self.make("grid"), "--out", self.folder / "a")[1]
         self.assertIn("error bars are smaller than the symbols", said)
