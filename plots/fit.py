@@ -8,16 +8,30 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 NAMES = {"field_correlation": r"$C_E$", "intensity_correlation": r"$C_I$", "intensity": "intensity",
-         "reflectance": "reflectance", "transmittance": "transmittance"}
+         "reflectance": "reflectance", "transmittance": "transmittance", "squared_contrast": "$K^2$",
+         "field_covariance": r"$\langle u_i u_j^*\rangle$"}
 
 
 def texts(result, name):
     return [text.decode() for text in result.values(name)]
 
 
+def abscissa(result, observable):
+    """Of every datum: its tilt or angle, its time, or, of covariances of fields, its number."""
+    angle = result.values("datum_angle")
+    time = result.values("datum_time") if result.has("datum_time") else 0 * angle
+    return np.select([observable == "field_covariance", time > 0], [np.arange(len(angle)), time], angle)
+
+
+def abscissa_name(result, observable):
+    if (observable == "field_covariance").any():
+        return "number of the value"
+    return "delay or exposure" if result.has("datum_time") else "tilt or angle (rad)"
+
+
 def draw_data(axis, pulls, result):
     observable = np.array(texts(result, "datum_observable"))
-    curve, angle = result.values("datum_curve"), result.values("datum_angle")
+    curve, angle = result.values("datum_curve"), abscissa(result, observable)
     single = []
     for number in np.unique(curve):
         rows = np.flatnonzero(curve == number)
@@ -38,7 +52,9 @@ def draw_data(axis, pulls, result):
     axis.set(ylabel="measured")
     axis.tick_params(labelbottom=False)
     pulls.axhspan(-1, 1, color="0.9")
-    pulls.set(xlabel="tilt or angle (rad)", ylabel="pull")
+    pulls.set(xlabel=abscissa_name(result, observable), ylabel="pull")
+    if result.has("datum_time"):
+        pulls.set_xscale("log")
     most = 1.2 * max(2, np.abs(result.values("pull")).max())
     pulls.set_ylim(-most, most)
 

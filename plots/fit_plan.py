@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """How many independent patterns make the error of each free key a hundredth of its value, over the
-values of the first two keys, from one or more `fit --plan` results."""
+values of the first two keys, from `fit --plan` with `--vary`, or several plans."""
 
 from lib import style
 
@@ -9,9 +9,11 @@ import numpy as np
 
 
 def read(result):
-    """Names, values and patterns of the keys."""
+    """Names of the keys, values and patterns [plan][key]."""
     names = [name.decode() for name in result.values("parameter_name")]
-    return names, result.values("planned"), result.values("patterns_to_percent")
+    if result.has("point"):
+        return names, result.values("point_planned"), result.values("point_patterns_to_percent")
+    return names, result.values("planned")[None], result.values("patterns_to_percent")[None]
 
 
 def draw_map(axis, first, second, patterns):
@@ -35,9 +37,9 @@ def draw(results):
     names, _, _ = read(results[0])
     if any(read(result)[0] != names for result in results):
         raise style.Unusable(f"{results[0].path}: all plans must have the same free keys")
-    values = np.array([read(result)[1] for result in results])
-    patterns = np.array([read(result)[2] for result in results])
-    second = values[:, 1] if len(names) > 1 else np.zeros(len(results))
+    values = np.concatenate([read(result)[1] for result in results])
+    patterns = np.concatenate([read(result)[2] for result in results])
+    second = values[:, 1] if len(names) > 1 else np.zeros(len(values))
     figure, axes = plt.subplots(1, len(names), figsize=(min(style.PAGE, 2.6 * len(names)), 2.4), sharey=True,
                                 squeeze=False)
     for number, (axis, name) in enumerate(zip(axes[0], names)):

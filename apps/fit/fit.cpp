@@ -4,13 +4,19 @@
 #include <sstream>
 
 #include "apps/command/subcommands.h"
+#include "apps/fit/fit_comparison.h"
 #include "apps/fit/fit_summary.h"
 #include "apps/fit/measurement_file.h"
 #include "apps/fit/plan_summary.h"
+#include "apps/fit/search_journal.h"
+#include "apps/sweep/varied_points.h"
 #include "core/error.h"
+#include "core/keys/number_text.h"
+#include "core/result/version.h"
 #include "core/session/session.h"
 #include "mc/fit/fit_datasets.h"
-#include "mc/fit/plan_datasets.h"
+#include "mc/fit/plan/plan_datasets.h"
+#include "mc/fit/task/fit_data.h"
 
 namespace flatspeckle::apps {
 
@@ -18,13 +24,15 @@ namespace {
 
 /// What the user asks.
 struct FitKeys {
-  SceneSpec medium;
-  std::vector<std::string> free, measurements;
+  mc::MovingSpec medium;
+  std::vector<std::string> free, measurements, compare;
   std::int64_t starts = 2, most_iterations = 60;
   std::string method = "auto";
   double model_share = 0.2;
+  bool trust_paths = false;
   bool plan = false;
   double patterns = 1000;
+  VaryValues varied;
   RunSettings run;
 };
 
@@ -38,6 +46,8 @@ void add_keys(Keys& keys, FitKeys& values) {
       "it starts");
   keys.add("measurement", values.measurements,
            "Files that are fitted together: results of covariance, flux and sweep (.h5), tables");
+  keys.add("compare", values.compare,
+           "No measurement: results of fits of the same measurements by other media, side by side");
   keys.add("starts", values.starts,
            "Of each free key without a start: values of a grid, the best of which is gone on from, "
            "and two more where it ends in no likely medium")
@@ -46,17 +56,20 @@ void add_keys(Keys& keys, FitKeys& values) {
       .from(1, 10000);
   keys.add("method", values.method,
            "The model: transport through slabs, or Monte Carlo; auto: transport where all "
-           "measurements are of slabs")
+           "measurements are of slabs whose scatterers do not flow")
       .one_of({"transport", "mc", "auto"});
   keys.add("model_share", values.model_share,
            "Of the estimates' variances: what chance in a model by Monte Carlo may add")
       .from(0.001, 1);
+  keys.add("trust_paths", values.trust_paths,
+           "Of a model by Monte Carlo: what paths neglect of waves counts as no error of it");
   keys.add("plan", values.plan,
            "No measurement: how well the free keys, at the values that the scene gives them, would "
            "be known from speckle in these views under these tilts");
   keys.add("patterns", values.patterns, "Independent patterns of each view")
       .positive()
       .only_of("plan");
+  add_vary_key(keys, values.varied);
   keys.group("Plan", "plan");
   keys.add("light_angles", values.medium.light_angles, "Direction of the light, from +z").angle();
   keys.add("view_angles", values.medium.view_angles, "Directions of the views, from +z").angle();
@@ -68,22 +81,27 @@ void add_keys(Keys& keys, FitKeys& values) {
   for (const char* of_placements : {"count", "placement"}) keys.remove(of_placements);
   add_structure_key(keys, values.medium);
   add_dimension_key(keys, values.medium);
+  mc::add_motion_keys(keys, values.medium);
   add_output_key(keys, values.run);
   add_seed_key(keys, values.run, "Of the paths of a model by Monte Carlo");
   keys.add("seconds", values.run.seconds, "After which a model by Monte Carlo draws no more paths")
       .positive();
   add_thread_key(keys, values.run);
+  keys.add("resume", values.run.resume,
+           "Go on with a search by Monte Carlo that was ended, from OUT.search, if it is there")
+      .effort();
+}
+
+bool is_free(const mc::FitTask& task, const std::string& key) {
+  return std::ranges::find(task.free, key, &mc::FreeParameter::key) != task.free.end();
 }
 
 /// An optical depth is that of one thickness.
 void check_depths(const mc::FitTask& task) {
-  const auto has = [&](const char* key) {
-    return std::ranges::any_of(task.free, [&](const auto& free) { return free.key == key; });
-  };
   std::set<double> depths;
   for (const auto& measurement : task.measurements)
     for (const auto& curve : measurement.curves) depths.insert(curve.scene.depth.value_or(0));
-  if (depths.size() > 1 && has("optical_depth"))
+  if (depths.size() > 1 && is_free(task, "optical_depth"))
     throw InputError("free", "optical_depth",
                      "is of one thickness; measurements of several share mean_free_path");
 }
@@ -103,13 +121,13 @@ void check_scenes(const Keys& keys, const mc::FitTask& task) {
       read_scene(keys, mc::with_parameters(curve.scene, task.free, middle));
 }
 
-mc::PlanTask plan_of(const Keys& keys, const FitKeys& values) {
+mc::PlanTask plan_of(const Keys& keys, const FitKeys& values, const mc::MovingSpec& medium) {
   mc::PlanTask task;
   keys.read(values.medium.dimension);
-  task.scene = values.medium;
+  task.scene = medium;
   task.scene.covariance = "memory_effect";
   task.patterns = keys.read(values.patterns);
-  task.free = mc::read_free_parameters(keys.required(values.free), values.medium);
+  task.free = mc::read_free_parameters(keys.required(values.free), medium);
   for (const auto& free : task.free)
     if (free.start.value_or(0) == 0)
       throw InputError("free", free.key, "a plan needs its value, which must not be 0");
@@ -126,20 +144,45 @@ void refuse_views(const Keys& keys, const FitKeys& values) {
                        "measurements bring their own; leave it out");
 }
 
-bool is_slab(const mc::Curve& curve) {
-  return curve.scene.domain == "slab";
+/// Whether transport can do all of it.
+bool is_still_slab(const mc::FitTask& task, const mc::Curve& curve) {
+  const bool flows = !curve.scene.only_diffuses() || is_free(task, "velocity_x") ||
+                     is_free(task, "velocity_z") || is_free(task, "shear");
+  return curve.scene.domain == "slab" && !(curve.moving() && flows);
+}
+
+/// Of motion, what the measurements have use for.
+void read_motion(const Keys& keys, const FitKeys& values, const mc::FitTask& task) {
+  const auto curves = mc::curves_of(task);
+  const bool contrast = std::ranges::any_of(curves, [](const mc::Curve& curve) {
+    return curve.observable == mc::Observable::squared_contrast;
+  });
+  const mc::MovingSpec& medium = values.medium;
+  const std::pair<const double&, bool> rows[] = {{medium.diffusion, task.moving()},
+                                                 {medium.velocity_x, task.moving()},
+                                                 {medium.velocity_z, task.moving()},
+                                                 {medium.shear, task.moving()},
+                                                 {medium.beta, contrast}};
+  for (const auto& [member, of_use] : rows) {
+    if (of_use)
+      keys.read(member);
+    else if (is_free(task, keys.name(member)))
+      throw InputError("free", keys.name(member),
+                       "nothing that was measured tells of it: needs delays or exposures");
+  }
 }
 
 /// Where the model is by Monte Carlo.
 std::optional<mc::PathSettings> paths_of(const Keys& keys, const FitKeys& values,
                                          const mc::FitTask& task, const Session& session) {
   const std::string method = keys.read(values.method);
-  const bool slabs = std::ranges::all_of(task.measurements, [](const mc::Measurement& one) {
-    return std::ranges::all_of(one.curves, is_slab);
+  const bool slabs = std::ranges::all_of(task.measurements, [&](const mc::Measurement& one) {
+    return std::ranges::all_of(one.curves,
+                               [&](const mc::Curve& curve) { return is_still_slab(task, curve); });
   });
   if (method == "transport" || (method == "auto" && slabs)) return std::nullopt;
   return mc::PathSettings{session.seed(), session.threads(), keys.read(values.model_share),
-                          keys.read(values.run.seconds)};
+                          keys.read(values.run.seconds), keys.read(values.trust_paths)};
 }
 
 mc::FitTask task_of(const Keys& keys, const FitKeys& values, const Session& session) {
@@ -151,6 +194,7 @@ mc::FitTask task_of(const Keys& keys, const FitKeys& values, const Session& sess
   task.free = mc::read_free_parameters(keys.required(values.free), values.medium);
   for (const std::string& path : keys.required(values.measurements))
     task.measurements.push_back(read_measurement(path, keys, values.medium));
+  read_motion(keys, values, task);
   task.paths = paths_of(keys, values, task, session);
   check_depths(task);
   check_scenes(keys, task);
@@ -158,8 +202,31 @@ mc::FitTask task_of(const Keys& keys, const FitKeys& values, const Session& sess
   return task;
 }
 
+/// Plans of all combinations of what is varied.
+int run_plans(const Session& session, const Subcommand& command, const FitKeys& values) {
+  const Keyed<mc::MovingSpec> medium(values.medium);
+  const SweepPoints points = varied_points(command.keys(), values.varied, medium.keys);
+  std::vector<mc::PlanTask> tasks;
+  for (std::size_t i = 0; i < points.count(); ++i) {
+    const Keyed<mc::MovingSpec> there(values.medium);
+    set_point(points, i, there.keys);
+    there.keys.check();
+    tasks.push_back(plan_of(command.keys(), values, there.values));
+  }
+  if (!command.settle()) return ExitStatus::done;
+  return session.once(ResultFile(session.out()), [&](ResultFile& file) -> std::optional<Made> {
+    std::vector<mc::PlanPoint> plans;
+    for (std::size_t i = 0; i < points.count(); ++i)
+      plans.push_back({points.name(i), mc::fit_plan(tasks[i])});
+    mc::write_plans(file, tasks.front(), plans);
+    print_plans(tasks.front(), plans);
+    return Made{"information of circular Gaussian fields; transport through slabs"};
+  });
+}
+
 int run_plan(const Session& session, const Subcommand& command, const FitKeys& values) {
-  const mc::PlanTask task = plan_of(command.keys(), values);
+  if (!values.varied.vary.empty()) return run_plans(session, command, values);
+  const mc::PlanTask task = plan_of(command.keys(), values, values.medium);
   if (!command.settle()) return ExitStatus::done;
   return session.once(ResultFile(session.out()), [&](ResultFile& file) -> std::optional<Made> {
     const mc::FitPlan plan = mc::fit_plan(task);
@@ -185,17 +252,35 @@ std::string model_of(const mc::FitTask& task, const mc::MediumFit& fit) {
   return text.str();
 }
 
+/// All that a search depends on.
+std::string identity_of(const Keys& keys, const mc::FitTask& task) {
+  std::string text = version() + '\n' + keys.identity();
+  for (const mc::Measurement& one : task.measurements)
+    for (const double value : one.values) text += number_text(value) + ' ';
+  return text;
+}
+
 int run_fit(const Session& session, const Subcommand& command, const FitKeys& values) {
-  const mc::FitTask task = task_of(command.keys(), values, session);
+  mc::FitTask task = task_of(command.keys(), values, session);
   if (!command.settle()) return ExitStatus::done;
   tell_guesses(task);
-  return session.once(ResultFile(session.out()), [&](ResultFile& file) -> std::optional<Made> {
-    const mc::MediumFit fit = mc::fit_medium(task);
-    mc::write_fit(file, task, fit);
-    print_fit(task, fit);
-    return Made{"least squares; " + model_of(task, fit), static_cast<double>(fit.residuals.size()),
-                fit.converged ? ExitStatus::done : ExitStatus::error_not_reached};
-  });
+  std::optional<SearchJournal> journal;
+  if (task.paths) {
+    journal.emplace(session.out(), identity_of(command.keys(), task), values.run.resume);
+    task.made = journal->steps();
+    task.keep = [&](const mc::SearchStep& step) { journal->add(step); };
+  }
+  const int status =
+      session.once(ResultFile(session.out()), [&](ResultFile& file) -> std::optional<Made> {
+        const mc::MediumFit fit = mc::fit_medium(task);
+        mc::write_fit(file, task, fit);
+        print_fit(task, fit);
+        return Made{"least squares; " + model_of(task, fit),
+                    static_cast<double>(fit.residuals.size()),
+                    fit.converged ? ExitStatus::done : ExitStatus::error_not_reached};
+      });
+  if (journal) journal->remove();
+  return status;
 }
 
 }  // namespace
@@ -205,6 +290,10 @@ int fit(const Arguments& arguments) {
   Subcommand command("fit", "The medium that gave these measurements, with errors");
   add_keys(command.keys(), values);
   if (!command.parse(arguments)) return ExitStatus::done;
+  if (!command.keys().read(values.compare).empty()) {
+    if (command.settle()) print_comparison(values.compare);
+    return ExitStatus::done;
+  }
   const Session session(command.text(), command.keys(), values.run, command.only_prints());
   return (command.keys().read(values.plan) ? run_plan : run_fit)(session, command, values);
 }

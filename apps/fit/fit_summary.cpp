@@ -29,6 +29,16 @@ std::string remark(const mc::FreeParameter& parameter, double estimate, bool kno
   return known ? "" : "  not known better than by its bounds";
 }
 
+/// The bias that is to be expected of the estimates, which their errors hold.
+void print_neglected(const mc::FitTask& task, const mc::MediumFit& fit) {
+  const Eigen::VectorXd bias = fit.by_neglect.diagonal().cwiseSqrt();
+  if (!(fit.by_neglect.trace() > 0)) return;
+  std::printf("of the errors, what paths neglect of waves:");
+  for (std::size_t i = 0; i < task.free.size(); ++i)
+    std::printf(" %s %.2g", task.free[i].key.c_str(), bias[static_cast<Eigen::Index>(i)]);
+  std::puts("");
+}
+
 void print_parameters(const mc::FitTask& task, const mc::MediumFit& fit) {
   std::printf("%-26s %12s %10s\n", "parameter", "value", "error");
   for (std::size_t i = 0; i < task.free.size(); ++i) {
@@ -45,6 +55,7 @@ void print_parameters(const mc::FitTask& task, const mc::MediumFit& fit) {
 
 void print_fit(const mc::FitTask& task, const mc::MediumFit& fit) {
   print_parameters(task, fit);
+  if (task.paths) print_neglected(task, fit);
   print_correlations(task, fit);
   std::printf("chi^2 %.4g of %td values less %zu parameters; condition %.3g\n", fit.chi_squared,
               fit.residuals.size(), task.free.size(), fit.condition);

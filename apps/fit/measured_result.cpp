@@ -6,13 +6,13 @@
 #include "apps/command/command_line.h"
 #include "apps/fit/measurement_file.h"
 #include "core/error.h"
+#include "core/keys/number_text.h"
 #include "core/result/guarded_read.h"
 #include "core/result/result_reader.h"
 #include "core/result/run_state_file.h"
 #include "mc/estimators/flux_walk.h"
-#include "mc/fit/correlated_errors.h"
-#include "mc/fit/curve_values.h"
-#include "mc/theory/memory_effect.h"
+#include "mc/fit/task/correlated_errors.h"
+#include "mc/fit/task/curve_values.h"
 
 namespace flatspeckle::apps {
 
@@ -33,13 +33,22 @@ const std::set<std::string> arrangement = {
 struct Observed {
   Observable observable;
   std::vector<double> values, errors, abscissa;
+  bool of_times = false;  ///< delays or exposures
+
+  /// Of values [time][light][view], the time's number comes first.
+  double place(std::size_t entry) const {
+    return of_times ? abscissa[entry / (values.size() / abscissa.size())]
+                    : abscissa[entry % abscissa.size()];
+  }
 };
 
 struct Contents {
   std::string config;
-  bool numerical = false, of_placements = false;
+  bool numerical = false, of_placements = false, fixed_count = false, flows = false;
+  double beta = 1;
   std::vector<Observed> observed;
-  std::vector<Complex> entries;  ///< of the request
+  std::vector<double> delays;    ///< of the entries
+  std::vector<Complex> entries;  ///< of the request, then after each delay
   std::optional<GroupedSums> sums;
 };
 
@@ -50,8 +59,9 @@ Observed observed(const ResultReader& file, Observable observable, const std::st
     throw InputError("measurement", file.path().string(), "has no " + name + "_error");
   found.errors = file.dataset<double>(name + "_error");
   const std::size_t size = found.values.size();
-  const bool fits = observable == Observable::intensity ? size % found.abscissa.size() == 0
-                                                        : size == found.abscissa.size();
+  found.of_times = axis == "delay" || axis == "exposure";
+  const bool of_views = found.of_times || observable == Observable::intensity;
+  const bool fits = of_views ? size % found.abscissa.size() == 0 : size == found.abscissa.size();
   if (!fits || found.errors.size() != size)
     throw InputError("measurement", file.path().string(),
                      name + " has " + std::to_string(size) + " values for " +
@@ -83,14 +93,36 @@ std::vector<Complex> entries_of(const ResultReader& file, Observable observable)
   return entries;
 }
 
+/// What decays, from which contrasts follow too.
+void read_delays(const ResultReader& file, Contents& contents) {
+  contents.delays = file.dataset<double>("delay");
+  contents.flows = file.has("complex_covariance");
+  if (file.has("squared_contrast"))
+    contents.beta = file.attribute<double>("squared_contrast", "beta");
+  for (const double value : file.dataset<double>("intensity")) contents.entries.emplace_back(value);
+  if (contents.flows)
+    for (const Complex value : file.dataset<Complex>("complex_covariance"))
+      contents.entries.push_back(value);
+  else
+    for (const double value : file.dataset<double>("covariance"))
+      contents.entries.emplace_back(value);
+}
+
 Contents contents_of(const ResultReader& file) {
   Contents found;
   found.config = file.attribute<std::string>("/", "config");
   found.of_placements = found.config.find("method = \"wave\"") != std::string::npos;
+  const bool points = found.config.find("scatterer = \"point\"") != std::string::npos;
+  found.fixed_count =
+      found.of_placements && (!points || found.config.find("\ncount = ") != std::string::npos);
   found.numerical = file.has_attribute("/", "errors");
-  if (file.has("field_correlation") && file.has("tilt"))
-    found.observed.push_back(observed(file, Observable::field_correlation, "tilt"));
-  if (file.has("intensity") && file.has("view_angle") && file.has("light_angle"))
+  if (file.has("exposure"))
+    found.observed.push_back(observed(file, Observable::squared_contrast, "exposure"));
+  else if (file.has("field_correlation"))
+    found.observed.push_back(
+        observed(file, Observable::field_correlation, file.has("delay") ? "delay" : "tilt"));
+  if (!file.has("delay") && file.has("intensity") && file.has("view_angle") &&
+      file.has("light_angle"))
     found.observed.push_back(observed(file, Observable::intensity, "view_angle"));
   if (file.has("reflectance")) {
     found.observed.push_back(observed(file, Observable::reflectance, "light_angle"));
@@ -98,10 +130,13 @@ Contents contents_of(const ResultReader& file) {
   }
   if (found.observed.empty())
     throw InputError("measurement", file.path().string(),
-                     "has none of field_correlation over tilts, intensity of far views, "
-                     "reflectance and transmittance");
-  const Observable first = found.observed.front().observable;
-  if (first <= Observable::intensity) found.entries = entries_of(file, first);
+                     "has none of field_correlation over tilts or delays, squared_contrast, "
+                     "intensity of far views, reflectance and transmittance");
+  const Observed& first = found.observed.front();
+  if (first.of_times)
+    read_delays(file, found);
+  else if (first.observable <= Observable::intensity)
+    found.entries = entries_of(file, first.observable);
   found.sums = sums_of(file);
   return found;
 }
@@ -127,15 +162,15 @@ void check_same(const std::string& path, const Keys& asked, const Keys& there) {
 }
 
 /// The medium as it was arranged for the measurement.
-SceneSpec arranged(const std::string& path, const std::string& config, const Keys& asked,
-                   const SceneSpec& medium) {
+mc::MovingSpec arranged(const std::string& path, const std::string& config, const Keys& asked,
+                        const mc::MovingSpec& medium) {
   Subcommand there("measurement", "");
   SceneSpec measured;
   add_keys(there.keys(), measured);
   add_dimension_key(there.keys(), measured);
   there.parse_config(arrangement_of(config));
   check_same(path, asked, there.keys());
-  Keyed<SceneSpec> keyed(medium);
+  Keyed<mc::MovingSpec> keyed(medium);
   for (const Key& row : there.keys().rows())
     if (arrangement.contains(row.name()) && row.given()) keyed.keys.set(row.name(), row.value());
   keyed.values.domain = measured.domain;
@@ -143,9 +178,19 @@ SceneSpec arranged(const std::string& path, const std::string& config, const Key
   return keyed.values;
 }
 
-/// A correlation at no tilt is 1, which tells nothing.
+/// K^2 of still scatterers is the arrangement's.
+void take_beta(const std::string& path, const Contents& there, const Keys& asked,
+               mc::MovingSpec& scene) {
+  if (there.delays.empty()) return;
+  const Key* const here = asked.find("beta");
+  if (here != nullptr && here->given() && scene.beta != there.beta)
+    throw InputError("beta", here->shown(), path + " has " + number_text(there.beta));
+  scene.beta = there.beta;
+}
+
+/// A correlation at no tilt or delay is 1, which tells nothing.
 bool tells(const Observed& of, std::size_t entry) {
-  return of.observable != Observable::field_correlation || of.abscissa[entry] != 0;
+  return of.observable != Observable::field_correlation || of.place(entry) != 0;
 }
 
 /// Of exact placements: sums of each channel's field, then of each entry's products (C12).
@@ -173,22 +218,8 @@ Estimator path_covariance(const Contents& there) {
   };
 }
 
-/// All values of a curve from the sums.
-Estimator estimator_of(const Contents& there, const Curve& curve) {
-  const CovarianceRequest request =
-      mc::is_flux(curve.observable) ? CovarianceRequest() : make_request(curve.scene);
-  const Estimator covariance = mc::is_flux(curve.observable) ? Estimator()
-                               : there.of_placements         ? placement_covariance(request)
-                                                             : path_covariance(there);
-  if (curve.observable == Observable::intensity) return covariance;
-  if (curve.observable == Observable::field_correlation)
-    return [=](double samples, std::span<const Complex> sums) {
-      return mc::field_correlation(request, covariance(samples, sums));
-    };
-  const std::size_t lights = curve.scene.light_angles.size(),
-                    per_light = there.sums->size() / lights,
-                    share = curve.observable == Observable::reflectance ? mc::reflected
-                                                                        : mc::transmitted;
+/// The shares of each light.
+Estimator power(std::size_t lights, std::size_t per_light, std::size_t share) {
   return [=](double samples, std::span<const Complex> sums) {
     std::vector<Complex> shares;
     for (std::size_t light = 0; light < lights; ++light)
@@ -197,9 +228,29 @@ Estimator estimator_of(const Contents& there, const Curve& curve) {
   };
 }
 
+/// The values of a curve that were measured, from the sums.
+Estimator estimator_of(const Contents& there, const Curve& curve) {
+  if (mc::is_flux(curve.observable)) {
+    const std::size_t lights = curve.scene.light_angles.size();
+    const Estimator shares =
+        power(lights, there.sums->size() / lights,
+              curve.observable == Observable::reflectance ? mc::reflected : mc::transmitted);
+    return shares;
+  }
+  const CovarianceRequest request = make_request(curve.scene);
+  const Estimator covariance =
+      there.of_placements ? placement_covariance(request) : path_covariance(there);
+  return [=](double samples, std::span<const Complex> sums) {
+    std::vector<Complex> values;
+    for (const double value : mc::observed(curve, there.beta, request, covariance(samples, sums)))
+      values.emplace_back(value);
+    return values;
+  };
+}
+
 /// The covariance of what was measured, from the sums; empty where they do not tell.
 Eigen::MatrixXd errors_of(const Contents& there, const std::vector<Curve>& curves) {
-  const bool of_paths = curves.front().observable <= Observable::intensity;
+  const bool of_paths = !mc::is_flux(curves.front().observable);
   if (!there.sums ||
       (of_paths && (there.entries.empty() || there.sums->size() < there.entries.size())))
     return {};
@@ -207,9 +258,9 @@ Eigen::MatrixXd errors_of(const Contents& there, const std::vector<Curve>& curve
   for (const Curve& curve : curves) each.push_back(estimator_of(there, curve));
   return mc::correlated_errors(*there.sums, [&](double samples, std::span<const Complex> sums) {
     std::vector<Complex> values;
-    for (std::size_t i = 0; i < curves.size(); ++i) {
-      const auto all = each[i](samples, sums);
-      for (const std::size_t entry : curves[i].entries) values.push_back(all[entry]);
+    for (const Estimator& curve : each) {
+      const auto own = curve(samples, sums);
+      values.insert(values.end(), own.begin(), own.end());
     }
     return values;
   });
@@ -228,24 +279,48 @@ Eigen::MatrixXd independent_errors(const std::string& path, const std::vector<do
   return variances.asDiagonal();
 }
 
+/// Of `field`, whose lights are all that were tilted.
+std::optional<mc::Measurement> drawn_fields(const std::string& path, const Keys& asked,
+                                            const mc::MovingSpec& medium) {
+  const ResultReader file(path);
+  if (!file.has("realization") || !file.has("field")) return std::nullopt;
+  mc::MovingSpec scene = arranged(path, file.attribute<std::string>("/", "config"), asked, medium);
+  scene.tilts.clear();
+  scene.light_angles = file.dataset<double>("light_angle");
+  if (!file.has("view_angle"))
+    throw InputError("measurement", path, "has fields of near sensors: must be of far views");
+  return measurement_of_drawn_fields(path, scene, file.dataset<Complex>("field"));
+}
+
 mc::Measurement measurement_of_result(const std::string& path, const Keys& asked,
-                                      const SceneSpec& medium) {
+                                      const mc::MovingSpec& medium) {
+  if (auto fields = guarded_read(path, [&] { return drawn_fields(path, asked, medium); }))
+    return *fields;
   const Contents there = guarded_read(path, [&] { return contents_of(ResultReader(path)); });
   if (there.numerical)
     throw InputError("measurement", path,
                      "has numerical errors, not those of a measurement: make it by --method mc, "
                      "or give a table with errors");
-  SceneSpec scene = arranged(path, there.config, asked, medium);
+  mc::MovingSpec scene = arranged(path, there.config, asked, medium);
+  take_beta(path, there, asked, scene);
   mc::Measurement found;
   found.name = path;
+  found.by_paths = !there.of_placements;
   std::vector<double> values, errors;
   for (const Observed& of : there.observed) {
-    if (of.observable == Observable::field_correlation) scene.covariance = "memory_effect";
     Curve curve{scene, of.observable, {}, {}};
+    if (of.of_times) {
+      curve.times = of.abscissa;
+      curve.delays = there.delays;
+    } else if (of.observable == Observable::field_correlation) {
+      curve.scene.covariance = "memory_effect";
+    }
+    curve.flows = there.flows;
+    curve.fixed_count = there.fixed_count;
     for (std::size_t entry = 0; entry < of.values.size(); ++entry) {
       if (!tells(of, entry)) continue;
       curve.entries.push_back(entry);
-      curve.abscissa.push_back(of.abscissa[entry % of.abscissa.size()]);
+      curve.abscissa.push_back(of.place(entry));
       values.push_back(of.values[entry]);
       errors.push_back(of.errors[entry]);
     }
@@ -261,7 +336,7 @@ mc::Measurement measurement_of_result(const std::string& path, const Keys& asked
 }
 
 mc::Measurement read_measurement(const std::string& path, const Keys& asked,
-                                 const SceneSpec& medium) {
+                                 const mc::MovingSpec& medium) {
   return path.ends_with(".h5") ? measurement_of_result(path, asked, medium)
                                : measurement_of_table(path, medium);
 }

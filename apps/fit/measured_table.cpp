@@ -6,6 +6,8 @@
 #include "core/error.h"
 #include "core/keys/csv.h"
 #include "core/keys/number_text.h"
+#include "mc/changes/contrast.h"
+#include "mc/fit/task/curve_values.h"
 
 namespace flatspeckle::apps {
 
@@ -15,30 +17,40 @@ using Eigen::Index;
 using mc::Curve;
 using mc::Observable;
 
+/// Fields have tables of their own.
+const std::vector<std::string> columns_of_values(mc::observable_words.begin(),
+                                                 mc::observable_words.end() - 1);
+
 Observable observable_of(const std::string& path, const Table& table) {
   std::vector<Observable> found;
-  for (std::size_t i = 0; i < mc::observable_words.size(); ++i)
-    if (table.has(mc::observable_words[i])) found.push_back(static_cast<Observable>(i));
+  for (std::size_t i = 0; i < columns_of_values.size(); ++i)
+    if (table.has(columns_of_values[i])) found.push_back(static_cast<Observable>(i));
   if (found.size() != 1)
     throw InputError("measurement", path,
-                     "must have one column among " + joined(mc::observable_words, " "));
+                     "must have one column among " + joined(columns_of_values, " ") +
+                         ", or field_re and field_im, or speckle_intensity");
   return found.front();
 }
 
-bool has_tilts(Observable observable) {
-  return observable == Observable::field_correlation ||
-         observable == Observable::intensity_correlation;
+/// What a table's correlations are over.
+enum class Axis { none, tilt, delay, exposure };
+const std::vector<std::string> axis_words = {"", "tilt", "delay", "exposure"};
+
+Axis axis_of(const Table& table, Observable observable) {
+  if (observable == Observable::squared_contrast) return Axis::exposure;
+  if (observable > Observable::intensity_correlation) return Axis::none;
+  return table.has("delay") ? Axis::delay : Axis::tilt;
 }
 
 /// Throws for columns that nothing would read.
-void check_columns(const std::string& path, const Table& table, Observable observable) {
+void check_columns(const std::string& path, const Table& table, Observable observable, Axis axis) {
   const std::string covariance = "covariance_";
   for (const std::string& name : table.names()) {
     const bool known = name == "error" || name == "light_angle" || name == "depth" ||
                        name.starts_with(covariance) ||
                        name == mc::observable_words[static_cast<std::size_t>(observable)] ||
-                       (name == "view_angle" && observable <= Observable::intensity) ||
-                       (name == "tilt" && has_tilts(observable));
+                       (name == "view_angle" && !mc::is_flux(observable)) ||
+                       name == axis_words[static_cast<std::size_t>(axis)];
     if (!known)
       throw InputError("measurement", path, "column " + name + ": nothing here has use for it");
   }
@@ -83,15 +95,18 @@ Eigen::MatrixXd covariance_of(const std::string& path, const Table& table) {
   return covariance;
 }
 
-/// Curves of rows that follow each other and have the same depth and light and, of tilts, view.
+/// Curves of rows that follow each other and have the same depth and light and, of tilts and times,
+/// view.
 class CurvesOfRows {
  public:
-  CurvesOfRows(const Table& table, Observable observable, const SceneSpec& medium)
+  CurvesOfRows(const Table& table, Observable observable, Axis axis, const mc::MovingSpec& medium)
       : observable_(observable),
+        axis_(axis),
         medium_(medium),
         lights_(column_or(table, "light_angle", 0)),
         views_(column_or(table, "view_angle", 0)),
-        tilts_(column_or(table, "tilt", 0)),
+        at_(axis == Axis::none ? observable == Observable::intensity ? views_ : lights_
+                               : column_or(table, axis_words[static_cast<std::size_t>(axis)], 0)),
         depths_(column_or(table, "depth", medium.depth.value_or(0))) {}
 
   std::vector<Curve> curves() const {
@@ -100,6 +115,11 @@ class CurvesOfRows {
       if (row == 0 || !joins(row)) found.push_back(begun(row));
       add(found.back(), row);
     }
+    for (Curve& curve : found)
+      if (axis_ == Axis::exposure)
+        curve.delays = mc::exposure_delays(curve.times);
+      else
+        curve.delays = curve.times;
     return found;
   }
 
@@ -107,7 +127,7 @@ class CurvesOfRows {
   bool joins(std::size_t row) const {
     if (depths_[row] != depths_[row - 1]) return false;
     const bool same_light = lights_[row] == lights_[row - 1];
-    if (has_tilts(observable_)) return same_light && views_[row] == views_[row - 1];
+    if (axis_ != Axis::none) return same_light && views_[row] == views_[row - 1];
     return observable_ != Observable::intensity || same_light;
   }
 
@@ -116,47 +136,90 @@ class CurvesOfRows {
     if (depths_[row] != 0) curve.scene.depth = depths_[row];
     curve.scene.light_angles.clear();
     curve.scene.view_angles = {views_[row]};
-    if (observable_ <= Observable::intensity) curve.scene.light_angles = {lights_[row]};
+    if (!mc::is_flux(observable_)) curve.scene.light_angles = {lights_[row]};
     if (observable_ == Observable::intensity) curve.scene.view_angles.clear();
-    if (has_tilts(observable_)) curve.scene.covariance = "memory_effect";
+    if (axis_ == Axis::tilt) curve.scene.covariance = "memory_effect";
     return curve;
   }
 
+  /// The list that rows of a curve go into.
+  std::vector<double>& list(Curve& curve) const {
+    if (axis_ == Axis::tilt) return curve.scene.tilts;
+    if (axis_ != Axis::none) return curve.times;
+    return observable_ == Observable::intensity ? curve.scene.view_angles
+                                                : curve.scene.light_angles;
+  }
+
   void add(Curve& curve, std::size_t row) const {
-    const double x = has_tilts(observable_)                 ? tilts_[row]
-                     : observable_ == Observable::intensity ? views_[row]
-                                                            : lights_[row];
-    auto& axis = has_tilts(observable_)                 ? curve.scene.tilts
-                 : observable_ == Observable::intensity ? curve.scene.view_angles
-                                                        : curve.scene.light_angles;
-    axis.push_back(x);
+    list(curve).push_back(at_[row]);
     curve.entries.push_back(curve.entries.size());
-    curve.abscissa.push_back(x);
+    curve.abscissa.push_back(at_[row]);
   }
 
   Observable observable_;
-  const SceneSpec& medium_;
-  std::vector<double> lights_, views_, tilts_, depths_;
+  Axis axis_;
+  const mc::MovingSpec& medium_;
+  std::vector<double> lights_, views_, at_, depths_;
 };
 
-}  // namespace
+void check_times(const std::string& path, Axis axis, const std::vector<double>& times) {
+  for (const double time : times)
+    if (!(time > 0))
+      throw InputError("measurement", path,
+                       axis_words[static_cast<std::size_t>(axis)] + " must be positive");
+}
 
-mc::Measurement measurement_of_table(const std::string& path, const SceneSpec& medium) {
-  const Table table = read_csv(path);
-  if (table.rows() == 0) throw InputError("measurement", path, "must have at least one row");
+/// Without rows of no tilt or delay, whose correlations are 1 and tell nothing.
+Table telling(const std::string& path, const Table& table) {
+  const char* const axis = table.has("delay") ? "delay" : "tilt";
+  const bool correlations = table.has("field_correlation") || table.has("intensity_correlation");
+  if (!correlations || !table.has(axis)) return table;
+  const auto at = table.column(axis);
+  std::vector<std::string> names;
+  std::vector<std::vector<double>> columns;
+  std::size_t number = 0, kept = 0;
+  for (const std::string& name : table.names()) {
+    const bool of_covariance = name.starts_with("covariance_");
+    if (of_covariance && number < at.size() && at[number++] == 0) continue;
+    names.push_back(of_covariance ? "covariance_" + std::to_string(++kept) : name);
+    columns.emplace_back();
+    for (std::size_t row = 0; row < at.size(); ++row)
+      if (at[row] != 0) columns.back().push_back(table.column(name)[row]);
+  }
+  if (columns.front().empty())
+    throw InputError("measurement", path, std::string("must have rows of a ") + axis + " but 0");
+  return {path, names, columns};
+}
+
+mc::Measurement measurement_of_values(const std::string& path, const Table& table,
+                                      const mc::MovingSpec& medium) {
   const Observable observable = observable_of(path, table);
-  check_columns(path, table, observable);
-  if (has_tilts(observable)) table.column("tilt");
+  const Axis axis = axis_of(table, observable);
+  check_columns(path, table, observable, axis);
+  if (axis != Axis::none) {
+    const auto at = table.column(axis_words[static_cast<std::size_t>(axis)]);
+    if (axis != Axis::tilt) check_times(path, axis, {at.begin(), at.end()});
+  }
   if (table.has("depth") && medium.depth)
     throw InputError("depth", *medium.depth, path + " has depths of its own: leave the key out");
   mc::Measurement found;
   found.name = path;
-  found.curves = CurvesOfRows(table, observable, medium).curves();
+  found.curves = CurvesOfRows(table, observable, axis, medium).curves();
   const auto values = table.column(mc::observable_words[static_cast<std::size_t>(observable)]);
   found.values =
       Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Index>(values.size()));
   found.covariance = covariance_of(path, table);
   return found;
+}
+
+}  // namespace
+
+mc::Measurement measurement_of_table(const std::string& path, const mc::MovingSpec& medium) {
+  const Table table = read_csv(path);
+  if (table.rows() == 0) throw InputError("measurement", path, "must have at least one row");
+  if (table.has("field_re")) return measurement_of_fields(path, table, medium);
+  if (table.has("speckle_intensity")) return measurement_of_intensities(path, table, medium);
+  return measurement_of_values(path, telling(path, table), medium);
 }
 
 }  // namespace flatspeckle::apps

@@ -34,4 +34,14 @@ void print_plan(const mc::PlanTask& task, const mc::FitPlan& plan) {
   if (plan.tilts.size() > 1) print_growth(task, "tilt", plan.tilts, plan.without_tilt);
 }
 
+void print_plans(const mc::PlanTask& task, const std::vector<mc::PlanPoint>& points) {
+  std::printf("independent patterns of each view to 1 %%\n%-36s", "");
+  for (const auto& free : task.free) std::printf(" %14s", free.key.c_str());
+  for (const mc::PlanPoint& point : points) {
+    std::printf("\n%-36s", point.name.c_str());
+    for (const double patterns : point.plan.patterns_to_percent) std::printf(" %14.2g", patterns);
+  }
+  std::puts("");
+}
+
 }  // namespace flatspeckle::apps

@@ -17,6 +17,7 @@
 #include "flatland/scene/scene_datasets.h"
 #include "mc/changes/frequency_shifts.h"
 #include "mc/slab/refinement.h"
+#include "mc/theory/allowance.h"
 #include "mc/theory/moments_datasets.h"
 
 namespace flatspeckle::apps {
@@ -37,28 +38,6 @@ const DatasetTable validate_table{
          "solutions, or the tolerance of transport"}}};
 
 namespace {
-
-/// What the Monte Carlo method neglects, as a fraction: corrections of order 1/(k mean free path);
-/// the shift of the wavenumber (refraction at the faces, local fields); and correlations, of order
-/// the packing fraction where they are not taken in, of its square where they are (C16). As
-/// data/bias_map.csv has it; a size, not a bound. A box that shifts the phase guides the mean
-/// field, the more the further the critical angle sqrt(2 |k_shift| / k) leads across it over its
-/// depth (measured for widths from 3 to 20).
-struct Allowance {
-  double crossed_paths, k_shift, guided, correlations;
-
-  explicit Allowance(const Scene& scene)
-      : crossed_paths(2 / (scene.k * scene.medium.mean_free_path())) {
-    const double shift = std::abs(scene.medium.k_shift) / scene.k, depth = scene.domain.depth,
-                 phase = std::min(1.0, scene.k * shift * depth),
-                 across = std::min(1.0, std::sqrt(2 * shift) * depth / scene.domain.width);
-    k_shift = 2 * shift;
-    guided = 0.35 * phase * across;
-    const double packing = scene.medium.packing_fraction;
-    correlations = scene.medium.structure.independent() ? packing : packing * packing;
-  }
-  double total() const { return crossed_paths + k_shift + guided + correlations; }
-};
 
 /// Where a fixed number of points lacks a part of the covariance that Monte Carlo has (C12).
 bool misses_forward_lobe(const Scene& scene) {
@@ -100,7 +79,7 @@ RowNames shift_names(const CovarianceRequest& request, const std::vector<double>
 }
 
 void print_allowance(const Scene& scene, std::size_t entries) {
-  const Allowance part(scene);
+  const mc::Allowance part(scene);
   std::printf(
       "%zu more within the %.1f %% that the method\n"
       "neglects (%.1f %% crossed paths: 2/(k mfp), k mfp = %.1f; %.1f %% refraction: 2 "
@@ -178,7 +157,7 @@ Refer by_waves(const Keys& keys, const MethodSettings& methods, const RunSetting
     return Reference{"wave",
                      shifts.empty() ? without_change(wave_estimation(scene, tolerance, seed))
                                     : wave_frequencies(scene, shifts, tolerance, seed),
-                     stop, Allowance(scene).total()};
+                     stop, mc::Allowance(scene).total()};
   };
 }
 

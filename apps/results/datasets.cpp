@@ -22,7 +22,7 @@
 #include "mc/estimators/gradient.h"
 #include "mc/estimators/reflection_theory.h"
 #include "mc/fit/fit_datasets.h"
-#include "mc/fit/plan_datasets.h"
+#include "mc/fit/plan/plan_datasets.h"
 #include "mc/imaging/imaging_datasets.h"
 #include "mc/imaging/picture_datasets.h"
 #include "mc/recovery/recovery_datasets.h"

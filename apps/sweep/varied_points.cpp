@@ -125,7 +125,7 @@ void add_vary_key(Keys& keys, VaryValues& values) {
   keys.add("vary", values.vary,
            "What to sweep, all combinations: key=1,2,3 or key=first:last:count or "
            "key=first:last:count:log; key.0 is the first value of a key of several, key.all all")
-      .only_of("sweeps of another subcommand");
+      .only_of("sweeps of another subcommand, and of plan in fit");
 }
 
 void add_keys(Keys& keys, VaryValues& values) {

@@ -5,8 +5,10 @@
 #include <random>
 #include <vector>
 
+#include "mc/changes/contrast.h"
 #include "mc/estimators/flux_walk.h"
 #include "mc/fit/medium_fit.h"
+#include "mc/fit/task/curve_values.h"
 #include "mc/slab/slab_covariance.h"
 #include "mc/slab/slab_flux.h"
 #include "mc/theory/memory_effect.h"
@@ -39,6 +41,21 @@ class SyntheticSlab {
     const auto values =
         mc::field_correlation(scene.request, mc::slab_covariance(scene, false, {1e-6}).value);
     put(curve, real_parts(values));
+  }
+
+  static constexpr double beta = 0.5;
+
+  /// |g1| of a view after delays k^2 D tau.
+  void add_decay(double view, const std::vector<double>& delays) {
+    mc::Curve curve{slab_, mc::Observable::field_correlation, {}, delays, delays, delays};
+    put_moving(curve, view);
+  }
+
+  /// K^2 of a view after exposures, `beta` of still scatterers.
+  void add_contrast(double view, const std::vector<double>& times) {
+    mc::Curve curve{slab_, mc::Observable::squared_contrast, {}, times,
+                    times, mc::exposure_delays(times)};
+    put_moving(curve, view);
   }
 
   /// What follows is of another thickness of the medium.
@@ -85,6 +102,16 @@ class SyntheticSlab {
     curve.abscissa.push_back(x);
     axis.push_back(x);
   }
+  void put_moving(mc::Curve& curve, double view) {
+    curve.scene.view_angles = {view};
+    for (std::size_t i = 0; i < curve.times.size(); ++i) curve.entries.push_back(i);
+    const Scene scene = at_truth(curve.scene);
+    const bool reversed = mc::needs_reversed(scene);
+    auto found = mc::slab_covariance(scene, reversed, {1e-6}).value;
+    for (const double delay : curve.delays)
+      found.push_back(mc::slab_covariance(scene, reversed, {1e-6}, {.delay = delay}).value.front());
+    put(curve, mc::observed(curve, beta, scene.request, found));
+  }
   void put(const mc::Curve& curve, const std::vector<double>& values) {
     mc::Measurement one{"synthetic", {curve}, {}, {}};
     one.values =
@@ -93,13 +120,13 @@ class SyntheticSlab {
   }
 
   double depth_, share_;
-  SceneSpec slab_, truth_;
+  mc::MovingSpec slab_, truth_;
   std::vector<mc::Measurement> exact_;
 };
 
 /// The three that describe a slab; from grids of starts.
 inline mc::FitTask slab_task(std::vector<mc::Measurement> measurements, double thickest = 20) {
-  SceneSpec none;
+  mc::MovingSpec none;
   none.scatterer = "hg";
   mc::FitTask task;
   task.free = mc::read_free_parameters(

@@ -17,13 +17,27 @@ Finding found_again(const Truth& truth, const std::vector<std::string>& free) {
   for (const double view : {0.2, std::numbers::pi - 0.6}) slab.add_curve(view, {1, 2, 4, 8});
   slab.add_transmittance();
   mc::FitTask task = slab_task(slab.exact());
-  SceneSpec none;
+  mc::MovingSpec none;
   none.scatterer = "hg";
   task.free = mc::read_free_parameters(free, none);
   const mc::MediumFit fit = mc::fit_medium(task);
   const Eigen::VectorXd off =
       fit.estimates - Eigen::VectorXd{{truth.g, truth.albedo, truth.optical_depth}};
   return {fit.converged ? off.cwiseQuotient(fit.errors).cwiseAbs().maxCoeff() : 1e9, 0.2};
+}
+
+/// The same of the diffusion that a decay tells of, in a medium that is known.
+Finding diffusion_again(double optical_depth, const std::vector<double>& delays) {
+  SyntheticSlab slab(2000, 0.8, 1, optical_depth);
+  slab.add_decay(0.2, delays);
+  mc::FitTask task = slab_task(slab.exact());
+  for (mc::Curve& curve : task.measurements.front().curves) {
+    curve.scene.g = 0.8;
+    curve.scene.optical_depth = optical_depth;
+  }
+  task.free = mc::read_free_parameters({"diffusion=0.001:1000"}, {});
+  const mc::MediumFit fit = mc::fit_medium(task);
+  return {fit.converged ? std::abs(fit.estimates[0] - 1) / fit.errors[0] : 1e9, 0.2};
 }
 
 }  // namespace
@@ -39,6 +53,13 @@ void add_fits(ExtremeRows& rows) {
   add("OD 0.1, g 0.9", {0.9, 0.95, 0.1}, {"g=0.3:0.98", albedo, "optical_depth=0.01:3"});
   add("OD 15, g 0.95", {0.95, 0.99, 15}, {"g=0.3:0.99", albedo, "optical_depth=1:60"});
   add("OD 10, g 0", {0, 0.9, 10}, {"g=-0.5:0.9", albedo, "optical_depth=1:60"});
+  const auto add_diffusion = [&](const std::string& name, double optical_depth,
+                                 const std::vector<double>& delays) {
+    rows.add_slow("fit of a decay, " + name, "diffusion, in standard errors of 1 % noise",
+                  [=] { return diffusion_again(optical_depth, delays); });
+  };
+  add_diffusion("OD 0.01, single scattering", 0.01, {1, 5, 20});
+  add_diffusion("OD 60, most of it gone", 60, {1e-4, 1e-3, 1e-2});
   add("albedo 1, its bound", {0.7, 1, 5}, {"g=0.3:0.98", albedo, "optical_depth=1:60"});
 }
 

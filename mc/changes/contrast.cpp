@@ -46,25 +46,40 @@ class Cubic {
 }  // namespace
 
 double exposed(const std::vector<double>& delays, const std::vector<double>& squares, double time) {
-  std::map<double, double> curve{{0, 1}};
+  constexpr double least = 1e-300;
+  std::map<double, double> curve{{0, 0}};
   for (std::size_t i = 0; i < delays.size(); ++i)
-    if (delays[i] > 0) curve[delays[i]] = squares[i];
+    if (delays[i] > 0) curve[std::sqrt(delays[i])] = std::log(std::max(squares[i], least));
   std::vector<double> x, y;
-  for (const auto& [delay, square] : curve) {
-    x.push_back(delay);
-    y.push_back(square);
+  for (const auto& [root, log] : curve) {
+    x.push_back(root);
+    y.push_back(log);
   }
   static const Quadrature rule = gauss_legendre(4);
+  const double last = std::sqrt(time);
   double sum = 0;
-  for (std::size_t i = 0; i + 1 < x.size() && x[i] < time; ++i) {
+  for (std::size_t i = 0; i + 1 < x.size() && x[i] < last; ++i) {
     const Cubic cubic(x, y, i);
-    const double width = std::min(x[i + 1], time) - x[i];
+    const double width = std::min(x[i + 1], last) - x[i], most = std::max(y[i], y[i + 1]);
     for (std::size_t n = 0; n < rule.node.size(); ++n) {
       const double at = x[i] + width * rule.node[n];
-      sum += width * rule.weight[n] * cubic(at) * (1 - at / time);
+      sum += width * rule.weight[n] * 2 * at * std::exp(std::min(cubic(at), most)) *
+             (1 - at * at / time);
     }
   }
   return 2 * sum / time;
+}
+
+std::vector<double> exposure_delays(const std::vector<double>& times) {
+  constexpr double ratio = 1.5, below = 8;
+  const auto [shortest, longest] = std::ranges::minmax(times);
+  const double first = shortest / below;
+  const auto steps = static_cast<int>(std::ceil(std::log(longest / first) / std::log(ratio)));
+  std::vector<double> delays;
+  for (int i = 0; i < steps; ++i)
+    delays.push_back(first * std::pow(longest / first, static_cast<double>(i) / steps));
+  delays.push_back(longest);
+  return delays;
 }
 
 void check_exposure(const Exposure& exposure, const std::vector<double>& delays) {

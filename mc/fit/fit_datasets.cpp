@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <sstream>
 
 #include "core/result/result_group.h"
-#include "mc/fit/row_major.h"
+#include "mc/numbers/row_major.h"
 
 namespace flatspeckle::mc {
 
@@ -24,6 +25,8 @@ const DatasetTable fit_table{
           "covariance of the estimates' errors"},
          {"chance_covariance", Data::real, "parameter parameter_2", "",
           "of a model by Monte Carlo: what chance in it has added to that covariance"},
+         {"neglected_covariance", Data::real, "parameter parameter_2", "",
+          "of a model by Monte Carlo: what it neglects of waves has added to that covariance"},
          {"parameter_correlation", Data::real, "parameter parameter_2", "1",
           "correlation of the estimates' errors"},
          {"worst_combination", Data::real, "parameter", "1",
@@ -38,7 +41,10 @@ const DatasetTable fit_table{
          {"datum_measurement", Data::count, "datum", "1", "number of its measurement"},
          {"datum_curve", Data::count, "datum", "1", "number of its curve, over all"},
          {"datum_observable", Data::text, "datum", "", "what was measured"},
-         {"datum_angle", Data::real, "datum", "rad", "tilt, of an intensity view, else light"},
+         {"datum_angle", Data::real, "datum", "rad",
+          "tilt, of an intensity view, else light; 0 of delays and exposures"},
+         {"datum_time", Data::real, "datum", "1",
+          "delay or exposure, in one unit of time; 0 of what has none"},
          {"measured", Data::estimate, "datum", "", "measured value"},
          {"model", Data::real, "datum", "", "the same of the medium that fits best"},
          {"pull", Data::real, "datum", "1", "measured less model, in standard errors"},
@@ -68,7 +74,10 @@ void write_parameters(const ResultGroup& root, const FitTask& task, const Medium
   root.put("upper_bound", column(task.free, &FreeParameter::upper));
   root.put("known", std::vector<std::uint64_t>(fit.known.begin(), fit.known.end()));
   root.put("parameter_covariance", row_major(fit.covariance));
-  if (task.paths) root.put("chance_covariance", row_major(fit.by_chance));
+  if (task.paths) {
+    root.put("chance_covariance", row_major(fit.by_chance));
+    root.put("neglected_covariance", row_major(fit.by_neglect));
+  }
   root.put("parameter_correlation", row_major(fit.correlation));
   root.put("worst_combination", row_major(fit.worst));
   root.number("derived", fit.derived.size());
@@ -80,15 +89,16 @@ void write_parameters(const ResultGroup& root, const FitTask& task, const Medium
 void write_data(const ResultGroup& root, const FitTask& task, const MediumFit& fit) {
   std::vector<std::uint64_t> measurements, curves;
   std::vector<std::string> observables;
-  std::vector<double> angles, values, errors;
+  std::vector<double> angles, times, values, errors;
   std::uint64_t measurement = 0, number = 0;
   for (const Measurement& one : task.measurements) {
     for (const Curve& curve : one.curves) {
-      for (const double angle : curve.abscissa) {
+      for (const double at : curve.abscissa) {
         measurements.push_back(measurement);
         curves.push_back(number);
         observables.push_back(observable_words[static_cast<std::size_t>(curve.observable)]);
-        angles.push_back(angle);
+        angles.push_back(curve.moving() ? 0 : at);
+        times.push_back(curve.moving() ? at : 0);
       }
       ++number;
     }
@@ -105,6 +115,7 @@ void write_data(const ResultGroup& root, const FitTask& task, const MediumFit& f
   root.put("datum_curve", curves);
   root.put("datum_observable", observables);
   root.put("datum_angle", angles);
+  if (task.moving()) root.put("datum_time", times);
   root.put("measured", values, errors);
   root.put("model", row_major(fit.model));
   root.put("pull", row_major(fit.pulls));
@@ -132,6 +143,8 @@ std::string percent(double share) {
 
 std::string degeneracy(const FitTask& task, const MediumFit& fit) {
   constexpr double much = 3;
+  const std::set<std::string> of_motion = {"diffusion", "velocity_x", "velocity_z", "shear",
+                                           "beta"};
   const Derived& joint = fit.derived.front();
   const double known = joint.error / std::abs(joint.value);
   std::string worst;
@@ -139,11 +152,11 @@ std::string degeneracy(const FitTask& task, const MediumFit& fit) {
   for (std::size_t i = 0; i < task.free.size(); ++i) {
     const auto j = static_cast<Eigen::Index>(i);
     const double error = fit.errors[j] / std::abs(fit.estimates[j]);
-    if (!(error > least)) continue;
+    if (!(error > least) || of_motion.contains(task.free[i].key)) continue;
     worst = task.free[i].key;
     least = error;
   }
-  if (!(least > much * known)) return "";
+  if (!(known > 0 && least > much * known)) return "";
   return "mu_s (1 - g) is known to " + percent(known) + ", " + worst + " alone to " +
          percent(least);
 }

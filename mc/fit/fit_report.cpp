@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "mc/fit/curve_values.h"
 #include "mc/fit/derived.h"
+#include "mc/fit/task/fit_data.h"
 
 namespace flatspeckle::mc {
 
@@ -23,25 +23,25 @@ VectorXd slopes_at(const FitTask& task, const VectorXd& coordinates) {
 /// Of the first curve's medium.
 std::vector<Derived> derived_at(const FitTask& task, const VectorXd& at,
                                 const MatrixXd& covariance) {
-  const SceneSpec& spec = task.measurements.front().curves.front().scene;
-  const auto scene = [&](const VectorXd& x) {
-    return scene_of(with_parameters(spec, task.free, x));
-  };
-  const VectorXd range = upper_coordinates(task.free) - lower_coordinates(task.free);
-  const auto rows = static_cast<Index>(derived_rows.size());
+  const MovingSpec& spec = task.measurements.front().curves.front().scene;
+  std::vector<DerivedRow> rows;
+  for (const DerivedRow& row : derived_rows)
+    if (!row.of_motion || task.moving()) rows.push_back(row);
+  const auto count = std::ssize(rows);
   const auto values = [&](const VectorXd& x) {
-    const Scene of = scene(x);
-    VectorXd found(rows);
-    for (Index r = 0; r < rows; ++r) found[r] = derived_rows[static_cast<std::size_t>(r)].value(of);
+    const Medium of(with_parameters(spec, task.free, x));
+    VectorXd found(count);
+    for (Index r = 0; r < count; ++r) found[r] = rows[static_cast<std::size_t>(r)].value(of);
     return found;
   };
-  LeastSquares as_problem{values, {}, lower_coordinates(task.free), upper_coordinates(task.free)};
+  const LeastSquares as_problem{
+      values, {}, lower_coordinates(task.free), upper_coordinates(task.free)};
   const VectorXd here = values(at);
   const MatrixXd slopes = jacobian(as_problem, at, here);
   const VectorXd error = (slopes * covariance * slopes.transpose()).diagonal().cwiseSqrt();
   std::vector<Derived> derived;
-  for (Index r = 0; r < rows; ++r) {
-    const DerivedRow& row = derived_rows[static_cast<std::size_t>(r)];
+  for (Index r = 0; r < count; ++r) {
+    const DerivedRow& row = rows[static_cast<std::size_t>(r)];
     derived.push_back({row.name, row.unit, here[r], error[r]});
   }
   return derived;
@@ -79,19 +79,6 @@ MatrixXd covariance_of_values(const FitTask& task, const VectorXd& coordinates,
 bool is_likely(double chi_squared, Index values, Index parameters) {
   const auto degrees = static_cast<double>(values - parameters);
   return chi_squared < degrees + 4 * std::sqrt(2 * degrees) + 4;
-}
-
-MatrixXd jacobian(const LeastSquares& problem, const VectorXd& at, const VectorXd& here) {
-  constexpr double step = 1e-3;  // of the distance of the bounds
-  MatrixXd slopes(here.size(), at.size());
-  for (Index i = 0; i < at.size(); ++i) {
-    const double range = problem.upper[i] - problem.lower[i],
-                 sign = 2 * at[i] > problem.lower[i] + problem.upper[i] ? -1 : 1;
-    VectorXd next = at;
-    next[i] += sign * step * range;
-    slopes.col(i) = (problem.residuals(next) - here) / (next[i] - at[i]);
-  }
-  return slopes;
 }
 
 }  // namespace flatspeckle::mc

@@ -19,9 +19,4 @@ Eigen::MatrixXd covariance_of_values(const FitTask& task, const Eigen::VectorXd&
 /// Whether chi^2 is no more than noise makes it, to four standard deviations.
 bool is_likely(double chi_squared, Eigen::Index values, Eigen::Index parameters);
 
-/// Derivatives by coordinates, in differences towards the middle, for a bound may be the end of
-/// what can be computed. residuals: at a point; here: those of `at`.
-Eigen::MatrixXd jacobian(const LeastSquares& problem, const Eigen::VectorXd& at,
-                         const Eigen::VectorXd& here);
-
 }  // namespace flatspeckle::mc

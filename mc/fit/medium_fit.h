@@ -1,34 +1,14 @@
 #pragma once
 
-#include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include <Eigen/Core>
 
-#include "mc/fit/free_parameter.h"
-#include "mc/fit/levenberg_marquardt.h"
-#include "mc/fit/measurement.h"
+#include "mc/fit/task/fit_task.h"
+#include "mc/numbers/levenberg_marquardt.h"
 
 namespace flatspeckle::mc {
-
-/// How a model by Monte Carlo is sampled.
-struct PathSettings {
-  std::uint64_t seed = 1;
-  int threads = 1;
-  double share = 0.2;             ///< of errors' variances, that chance in the model may add
-  std::optional<double> seconds;  ///< after which no more paths are drawn
-};
-
-/// Which medium gave these measurements?
-struct FitTask {
-  std::vector<FreeParameter> free;
-  std::vector<Measurement> measurements;
-  int starts = 2;  ///< of each parameter without a start
-  int most_iterations = 60;
-  std::optional<PathSettings> paths;  ///< the model is by Monte Carlo; else by transport
-};
 
 /// What follows from the parameters, and how well it is known.
 struct Derived {
@@ -48,9 +28,10 @@ struct MediumFit {
   Eigen::VectorXd residuals;  ///< whitened: independent, in standard errors
   Eigen::VectorXd pulls;      ///< (measured - model) / error of each value
   double chi_squared = 0;
-  double numerical = 0;       ///< largest numerical error of the model, in standard errors
-  Eigen::MatrixXd by_chance;  ///< by Monte Carlo: its part of the covariance
-  double paths = 0;           ///< by Monte Carlo: those of each run at the best medium
+  double numerical = 0;  ///< largest numerical error of the model, in standard errors
+  // By Monte Carlo, parts of the covariance: of chance, and of what paths neglect of waves.
+  Eigen::MatrixXd by_chance, by_neglect;
+  double paths = 0;  ///< by Monte Carlo: those of each run at the best medium
   bool converged = false, reversed = false;
   std::vector<LeastSquaresFit::Step> trace;  ///< with values of the parameters
 

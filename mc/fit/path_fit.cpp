@@ -9,9 +9,10 @@
 
 #include "core/run/interrupt.h"
 #include "core/run/stopwatch.h"
-#include "mc/fit/fit_data.h"
 #include "mc/fit/fit_report.h"
-#include "mc/fit/path_model.h"
+#include "mc/fit/model/neglected.h"
+#include "mc/fit/model/path_model.h"
+#include "mc/fit/task/fit_data.h"
 
 namespace flatspeckle::mc {
 
@@ -26,14 +27,19 @@ constexpr double first_paths = 10000;
 /// Least squares at one medium, the errors of the model added to those of the measurements.
 struct Round {
   SampledModel model;
-  MatrixXd noise;
+  Data data;  ///< with errors as this model has them
+  MatrixXd noise, neglected;
   Eigen::LLT<MatrixXd> root;  ///< of the covariance of all errors
   LeastSquaresFit at;         ///< whitened by it
   MatrixXd fisher;            ///< less what chance in the slopes adds
   double excess = 0;          ///< that, in the combination where it is most, over the rest
 
-  Round(const VectorXd& coordinates, SampledModel sampled, const Data& data)
-      : model(std::move(sampled)), noise(model.noise()), root(data.covariance() + noise) {
+  Round(const VectorXd& coordinates, SampledModel sampled, MatrixXd errors, const Data& measured)
+      : model(std::move(sampled)),
+        data(measured.has_fields() ? measured.about(model.values) : measured),
+        noise(model.noise()),
+        neglected(std::move(errors)),
+        root(data.covariance() + noise + neglected) {
     at.parameters = coordinates;
     at.residuals = root.matrixL().solve(model.values - data.values());
     at.jacobian = root.matrixL().solve(model.slopes);
@@ -53,14 +59,15 @@ struct Round {
     return at.chi_squared() + 2 * triangle.diagonal().array().log().sum();
   }
 
-  /// What chance adds to the covariance of the estimates' coordinates.
-  MatrixXd by_chance() const {
+  /// What errors of the model, noise or neglected, add to the covariance of the estimates'
+  /// coordinates.
+  MatrixXd by(const MatrixXd& errors) const {
     const MatrixXd inverse =
         (at.jacobian.transpose() * at.jacobian)
             .ldlt()
             .solve(MatrixXd::Identity(at.parameters.size(), at.parameters.size()));
     const MatrixXd estimator = inverse * root.solve(model.slopes).transpose();
-    return estimator * noise * estimator.transpose();
+    return estimator * errors * estimator.transpose();
   }
 };
 
@@ -74,8 +81,9 @@ class Search {
 
   MediumFit fit() {
     std::optional<MediumFit> best;
+    std::size_t number = 0;
     for (const VectorXd& start : starts()) {
-      MediumFit one = from(start);
+      MediumFit one = from(start, number++);
       const bool likely =
           one.converged && is_likely(one.chi_squared, data_.values().size(), start.size());
       if (!best || (one.converged && !best->converged) ||
@@ -107,13 +115,17 @@ class Search {
   Round more(const VectorXd& at, double paths) {
     model_.sample(paths);
     stop_if_interrupted();
-    return {at, model_.model(), data_};
+    SampledModel model = model_.model();
+    MatrixXd neglected = MatrixXd::Zero(model.values.size(), model.values.size());
+    if (!task_.paths->trusted)
+      neglected = neglected_covariance(task_, media_at(task_, at), model.values);
+    return {at, std::move(model), std::move(neglected), data_};
   }
 
   /// Of the errors of the parameters: the largest share that chance in the model adds.
   double share(const Round& round) const {
     const Information known = information_of(bounds_, round.fisher);
-    const VectorXd chance = round.by_chance().diagonal(),
+    const VectorXd chance = round.by(round.noise).diagonal(),
                    rest = (known.covariance.diagonal() - chance).cwiseMax(1e-3 * chance);
     return std::max(chance.cwiseQuotient(rest).maxCoeff(), round.excess);
   }
@@ -124,13 +136,18 @@ class Search {
 
   /// Steps of Levenberg and Marquardt. One that is shorter than the errors needs no look at where
   /// it leads, for the model is linear there: it is the end, or calls for more paths.
-  MediumFit from(const VectorXd& start) {
+  MediumFit from(const VectorXd& start, std::size_t number) {
     constexpr double far = 4, near = 1, most_damping = 1e12;  // squares, in standard errors
-    double paths = first_paths, damping = 1e-3;
-    Round here = round(start, paths);
     std::vector<LeastSquaresFit::Step> trace;
-    for (int i = 0; i < task_.most_iterations && damping < most_damping && !out_of_time(); ++i) {
+    const SearchStep last = last_made(start, number, trace);
+    double paths = last.paths, damping = last.damping;
+    Round here = round(last.at, paths);
+    for (int i = last.iteration;
+         i < task_.most_iterations && damping < most_damping && !out_of_time(); ++i) {
       trace.push_back({here.at.parameters, here.at.chi_squared(), process_cpu_seconds()});
+      if (task_.keep && i >= kept_)
+        task_.keep({number, i, paths, damping, here.at.chi_squared(), trace.back().cpu_s,
+                    here.at.parameters});
       const VectorXd step = damped_step(bounds_, here.at, damping);
       const double length = (here.at.jacobian * step).squaredNorm();
       if (length < near && damping <= 1) {
@@ -153,17 +170,33 @@ class Search {
     return ended(here, VectorXd::Zero(start.size()), paths, false, std::move(trace));
   }
 
+  /// Where the search from a start stands, after the steps that were made before.
+  SearchStep last_made(const VectorXd& start, std::size_t number,
+                       std::vector<LeastSquaresFit::Step>& trace) {
+    SearchStep last{number, 0, first_paths, 1e-3, 0, 0, start};
+    kept_ = 0;
+    for (const SearchStep& step : task_.made) {
+      if (step.start != number) continue;
+      if (kept_ > 0) trace.push_back({last.at, last.chi_squared, last.cpu_s});
+      last = step;
+      kept_ = step.iteration + 1;
+    }
+    return last;
+  }
+
   MediumFit ended(const Round& here, const VectorXd& step, double paths, bool converged,
                   std::vector<LeastSquaresFit::Step> trace) const {
     MediumFit fit;
     const VectorXd at = here.at.parameters + step;
     put_information(task_, information_of(bounds_, here.fisher), at, fit);
-    fit.by_chance = covariance_of_values(task_, at, here.by_chance());
+    fit.by_chance = covariance_of_values(task_, at, here.by(here.noise));
+    fit.by_neglect = covariance_of_values(task_, at, here.by(here.neglected));
     fit.model = here.model.values + here.model.slopes * step;
     fit.residuals = here.at.residuals + here.at.jacobian * step;
     fit.chi_squared = fit.residuals.squaredNorm();
-    const VectorXd errors = (data_.errors().cwiseAbs2() + here.noise.diagonal()).cwiseSqrt();
-    fit.pulls = (data_.values() - fit.model).cwiseQuotient(errors);
+    const VectorXd errors =
+        (here.data.errors().cwiseAbs2() + (here.noise + here.neglected).diagonal()).cwiseSqrt();
+    fit.pulls = (here.data.values() - fit.model).cwiseQuotient(errors);
     fit.paths = paths;
     fit.converged = converged;
     trace.push_back({at, fit.chi_squared, process_cpu_seconds()});
@@ -177,6 +210,7 @@ class Search {
   PathModel model_;
   LeastSquares bounds_;
   Stopwatch clock_;
+  int kept_ = 0;  ///< iterations that were told before
 };
 
 }  // namespace

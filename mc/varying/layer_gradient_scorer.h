@@ -29,7 +29,7 @@ class LayerGradientScorer {
         layers_(layers),
         parameters_(parameters),
         path_slopes_(parameters.size()),
-        sums_(scene.request, parameters.size(), sums),
+        sums_(scene.request.channels.size(), scene.request.entries, parameters.size(), sums),
         ends_(scene, [&](std::size_t ends) { return EndValues(ends, parameters.size()); }) {}
 
   /// B = 1 at x.
@@ -71,8 +71,7 @@ class LayerGradientScorer {
     std::vector<Complex> value;
     std::vector<double> slope;
 
-    EndValues(std::size_t ends, std::size_t parameters)
-        : value(ends), slope(ends * parameters) {}
+    EndValues(std::size_t ends, std::size_t parameters) : value(ends), slope(ends * parameters) {}
   };
 
   void attenuate(Ends& ends, Vec2 x, EndValues& out) const {
@@ -98,9 +97,8 @@ class LayerGradientScorer {
       if (layer != here || parameter != BulkParameter::g) continue;
       for (std::size_t j = 0; j < ends.size(); ++j)
         out.slope[j * parameters_.size() + p] +=
-            henyey_greenstein_slope(
-                layers_.materials()[layer].medium.g,
-                one_minus_cosine(arrival, Direction(ends.direction(j)))) /
+            henyey_greenstein_slope(layers_.materials()[layer].medium.g,
+                                    one_minus_cosine(arrival, Direction(ends.direction(j)))) /
             2;
     }
   }
@@ -113,8 +111,7 @@ class LayerGradientScorer {
       const double scatterers =
           tally.scatterers[layer] + (layer == layers_.material_at(first) ? 1 : 0);
       double slope = tally.phase_slope[layer];
-      if (parameter == BulkParameter::mu_t)
-        slope = scatterers / medium.mu_t - tally.length[layer];
+      if (parameter == BulkParameter::mu_t) slope = scatterers / medium.mu_t - tally.length[layer];
       if (parameter == BulkParameter::albedo) slope = scatterers / medium.albedo;
       path_slopes_[p] = slope / 2;
     }

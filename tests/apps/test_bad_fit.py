@@ -61,7 +61,15 @@ class BadFit(RefusingTest):
         self.refused(["width"], domain="box")
         self.refused(["model_share"], model_share=0.5)
         self.refused(["model_share = 2"], model_share=2, method="mc")
-        self.refused(["transmittance", "of a box"], "transmittance,error\n0.5,0.1\n", domain="box", width=2000)
+        self.refused(["free = diffusion", "nothing that was measured"], free=["diffusion=0.1:1"])
+        self.refused(["free = beta", "nothing that was measured"], free=["beta=0.1:1"],
+                     table="delay,field_correlation,error\n0.1,0.5,0.1\n0.2,0.5,0.1\n")
+        self.refused(["shear", "method = mc"], free=["shear=0:1"], method="transport",
+                     table="delay,field_correlation,error\n0.1,0.5,0.1\n0.2,0.5,0.1\n")
+        self.refused(["exposure must be positive"], "exposure,squared_contrast,error\n0,0.5,0.1\n")
+        self.refused(["rows of a tilt but 0"], "tilt,field_correlation,error\n0,1,0\n")
+        self.refused(["column tilt"], "delay,tilt,field_correlation,error\n0.1,0.1,0.5,0.1\n")
+        self.assertIn("no.h5", self.call("fit", compare="no.h5", status=2).stderr)
         self.refused(["wavelength", "what the medium is made of"], method="mc", free=["wavelength=0.9:1.1"])
         self.assert_refused(["free is not given"], "fit", measurement="m.csv")
         self.assert_refused(["measurement is not given"], "fit", free="g=0:0.5")

@@ -1,10 +1,12 @@
 """A slab's parameters from measured tables and from results of the program itself."""
 
+import subprocess
+import time
 import unittest
 
 import numpy as np
 
-from program import DATA, ProgramTest, attributes, datasets
+from program import DATA, PROGRAM, ProgramTest, attributes, datasets, flags
 
 MEASURED = DATA / "measurements"
 FREE = ["g=0.5:0.95", "albedo=0.9:1", "optical_depth=1:20"]
@@ -146,6 +148,76 @@ class Fit(ProgramTest):
         found = datasets(self.folder / "fit.h5")
         pulls = (found["estimate"] - [0.33, 0.16, 1.5]) / found["estimate_error"]
         self.assertLess(np.abs(pulls).max(), 4)
+
+    def test_motion(self):
+        """Diffusion and shear from decays and from contrasts of a run; delays of a table, with one of 0."""
+        slab = {"domain": "slab", "depth": 50, "scatterer": "hg", "g": 0.6, "optical_depth": 5}
+        self.call("covariance", **slab, method="mc", samples=20000, seed=5, diffusion=0.5, shear=0.02,
+                  view_angles=[0.2, 0.9, 2.64], delays=[0, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2], out="flow.h5")
+        free = {"depth": 50, "g": 0.6, "optical_depth": 5, "threads": 1}
+        for words in ({"measurement": "flow.h5"}, {"measurement": "contrast.h5"}):
+            if words["measurement"] == "contrast.h5":
+                self.call("covariance", **slab, method="mc", samples=20000, seed=6, diffusion=0.5, shear=0.02,
+                          view_angles=[0.2, 0.9, 2.64], delays=[0.001, 0.002, 0.004, 0.008, 0.02, 0.05, 0.1, 0.2],
+                          exposures=[0.02, 0.05, 0.1, 0.2], beta=0.5, out="contrast.h5")
+            self.call("fit", "--free", "diffusion=0.05:5", "shear=0:0.1", **free, **words, out="fit.h5")
+            found = datasets(self.folder / "fit.h5")
+            pulls = (found["estimate"] - [0.5, 0.02]) / found["estimate_error"]
+            self.assertLess(np.abs(pulls).max(), 4)
+            self.assertGreater(found["datum_time"].min(), 0)
+        self.write("decay.csv", "delay,field_correlation,error\n0,1,0\n0.01,0.9,0.01\n0.02,0.8,0.01\n")
+        done = self.call("fit", "--free", "diffusion=0.001:5", **free, measurement="decay.csv", out="fit.h5")
+        self.assertIn("diffusion_constant", done.stdout)
+        self.assertEqual(len(datasets(self.folder / "fit.h5")["measured"]), 2)
+
+    def test_power_of_a_box(self):
+        """By walks of its own, against those of flux."""
+        box = {"domain": "box", "width": 20, "depth": 10, "scatterer": "hg"}
+        self.call("flux", **box, g=0.5, albedo=0.9, mean_free_path=4, light_angles=[0, 0.7], samples=100000,
+                  seed=3, out="power.h5")
+        self.call("fit", "--free", "g=0:0.9", "albedo=0.5:1", "mean_free_path=1:20", scatterer="hg",
+                  measurement="power.h5", model_share=0.5, threads=1, out="fit.h5")
+        found = datasets(self.folder / "fit.h5")
+        pulls = (found["estimate"] - [0.5, 0.9, 4]) / found["estimate_error"]
+        self.assertLess(np.abs(pulls).max(), 4)
+
+    def test_killed_and_resumed(self):
+        """The same to the last bit, from the steps of a search that was killed."""
+        words = ["fit", "--free", "g=0.5:0.95", "optical_depth=1:20"]
+        keys = {"depth": 2000, "albedo": 0.98, "method": "mc", "threads": 1, "model_share": 0.5,
+                "measurement": str(MEASURED / "slab_transmission.csv")}
+        self.call(*words, **keys, out="whole.h5")
+        command = [PROGRAM, *words, *flags(keys), "--out", "killed.h5"]
+        with subprocess.Popen(command, cwd=self.folder, stdout=subprocess.DEVNULL) as run:
+            journal = self.folder / "killed.h5.search"
+            while run.poll() is None and not (journal.exists() and len(journal.read_text().splitlines()) > 4):
+                time.sleep(0.002)
+            run.kill()
+        self.assertFalse((self.folder / "killed.h5").exists())
+        with open(journal, "a") as file:
+            file.write("0 9 cut")
+        self.call(*words, "--resume", **keys, out="killed.h5")
+        whole, resumed = datasets(self.folder / "whole.h5"), datasets(self.folder / "killed.h5")
+        for name in whole:
+            np.testing.assert_array_equal(whole[name], resumed[name], name)
+        self.assertFalse(journal.exists())
+
+    def test_compare(self):
+        """Of two media for the same curves the right one is likelier."""
+        for name, scatterer in (("hg", {"scatterer": "hg"}), ("rayleigh", {"scatterer": "rayleigh"})):
+            free = ["optical_depth=1:20"] + (["g=0.5:0.95"] if name == "hg" else [])
+            self.call("fit", "--free", *free, **scatterer, depth=2000, albedo=0.98, out=f"{name}.h5",
+                      measurement=str(MEASURED / "slab_reflection.csv"))
+        lines = self.call("fit", compare=["rayleigh.h5", "hg.h5"]).stdout.splitlines()
+        self.assertTrue(lines[1].startswith("hg.h5"), lines)
+
+    def test_plans(self):
+        self.call("fit", "--plan", "--free", "g=-0.5:0.95", "optical_depth=0.1:20", "--vary", "g=0.5,0.8",
+                  "optical_depth=1,4", depth=2000, view_angles=0.1, tilts=[0.0002, 0.0006], out="plans.h5")
+        self.call("fit", "--plan", "--free", "g=-0.5:0.95", "optical_depth=0.1:20", g=0.8, optical_depth=1,
+                  depth=2000, view_angles=0.1, tilts=[0.0002, 0.0006], out="plan.h5")
+        plans, plan = datasets(self.folder / "plans.h5"), datasets(self.folder / "plan.h5")
+        np.testing.assert_allclose(plans["point_patterns_to_percent"][2], plan["patterns_to_percent"])
 
     def test_not_converged(self):
         done, found = self.fit(MEASURED / "slab_transmission.csv", MEASURED / "slab_reflection.csv",

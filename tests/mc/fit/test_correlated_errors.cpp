@@ -2,7 +2,7 @@
 
 #include <doctest/doctest.h>
 
-#include "mc/fit/correlated_errors.h"
+#include "mc/fit/task/correlated_errors.h"
 
 namespace flatspeckle::mc {
 

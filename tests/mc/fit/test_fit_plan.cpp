@@ -2,7 +2,7 @@
 
 #include <doctest/doctest.h>
 
-#include "mc/fit/fit_plan.h"
+#include "mc/fit/plan/fit_plan.h"
 
 namespace flatspeckle::mc {
 

@@ -3,7 +3,7 @@
 
 #include <doctest/doctest.h>
 
-#include "mc/fit/levenberg_marquardt.h"
+#include "mc/numbers/levenberg_marquardt.h"
 
 namespace flatspeckle::mc {
 

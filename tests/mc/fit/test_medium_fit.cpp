@@ -15,7 +15,7 @@ const VectorXd truth{{0.8, 0.98, 4}};
 
 /// g and the mean free path of slabs without absorption.
 FitTask lossless_task(std::vector<Measurement> measurements) {
-  SceneSpec none;
+  MovingSpec none;
   none.scatterer = "hg";
   FitTask task;
   task.free = read_free_parameters({"g=0.3:0.97", "mean_free_path=200:4000"}, none);

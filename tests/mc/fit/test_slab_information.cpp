@@ -2,7 +2,7 @@
 
 #include <doctest/doctest.h>
 
-#include "mc/fit/levenberg_marquardt.h"
+#include "mc/numbers/levenberg_marquardt.h"
 #include "tests/mc/transport/slabs.h"
 
 namespace flatspeckle::mc {

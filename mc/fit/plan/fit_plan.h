@@ -4,8 +4,8 @@
 
 #include <Eigen/Core>
 
-#include "flatland/scene/scene.h"
-#include "mc/fit/free_parameter.h"
+#include "mc/fit/task/free_parameter.h"
+#include "mc/fit/task/moving_spec.h"
 
 namespace flatspeckle::mc {
 
@@ -13,7 +13,7 @@ namespace flatspeckle::mc {
 /// independent patterns, their scale unknown.
 struct PlanTask {
   std::vector<FreeParameter> free;  ///< with a start each: where the plan is made
-  SceneSpec scene;                  ///< of a slab, covariance = memory_effect
+  MovingSpec scene;                 ///< of a slab, covariance = memory_effect
   double patterns = 1;
 };
 

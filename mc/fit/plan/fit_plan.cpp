@@ -1,4 +1,4 @@
-#include "mc/fit/fit_plan.h"
+#include "mc/fit/plan/fit_plan.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,8 +7,8 @@
 #include <Eigen/LU>
 
 #include "core/error.h"
-#include "mc/fit/curve_values.h"
-#include "mc/fit/levenberg_marquardt.h"
+#include "mc/fit/task/curve_values.h"
+#include "mc/numbers/levenberg_marquardt.h"
 #include "mc/slab/slab_covariance.h"
 #include "mc/space/space_scene.h"
 

@@ -3,12 +3,21 @@
 #include <span>
 #include <vector>
 
-#include "mc/fit/measurement.h"
+#include "mc/fit/task/measurement.h"
 
 namespace flatspeckle::mc {
 
 /// A scene of the plane or, with dimension = 3, of space. Throws InputError.
 Scene scene_of(const SceneSpec& spec);
+
+/// What a curve is of: its scene, made, and its motion.
+struct Medium {
+  MovingSpec spec;
+  Scene scene;
+
+  explicit Medium(const MovingSpec& of) : spec(of), scene(scene_of(of)) {}
+};
+using Media = std::vector<Medium>;  ///< of all curves
 
 bool is_flux(Observable observable);
 
@@ -19,8 +28,9 @@ bool needs_reversed(const Scene& scene);
 /// Adds the channels and entries of another request, as pairs.
 void join(CovarianceRequest& all, const CovarianceRequest& more);
 
-/// Those of a curve, of the covariance entries of its request.
-std::vector<double> observed(const Curve& curve, const CovarianceRequest& request,
+/// Those of a curve, of the covariance entries of its request, [0 and its delays][entry]. beta: K^2
+/// of still scatterers.
+std::vector<double> observed(const Curve& curve, double beta, const CovarianceRequest& request,
                              std::span<const Complex> entries);
 
 }  // namespace flatspeckle::mc

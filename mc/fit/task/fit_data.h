@@ -5,13 +5,13 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 
-#include "mc/fit/medium_fit.h"
+#include "mc/fit/task/curve_values.h"
+#include "mc/fit/task/fit_task.h"
 
 namespace flatspeckle::mc {
 
 std::vector<Curve> curves_of(const FitTask& task);
-/// Of every curve.
-std::vector<Scene> scenes_at(const FitTask& task, const Eigen::VectorXd& coordinates);
+Media media_at(const FitTask& task, const Eigen::VectorXd& coordinates);
 
 /// Where parameters start, or amid their bounds.
 Eigen::VectorXd middle(const FitTask& task);
@@ -24,6 +24,11 @@ class Data {
   /// Throws InputError where a covariance is not positive definite.
   explicit Data(const FitTask& task);
 
+  bool has_fields() const { return has_fields_; }
+  /// With the errors that fields have where the model is right; of a scale that is not known,
+  /// fields in that of the model.
+  Data about(const Eigen::VectorXd& model) const;
+
   const Eigen::VectorXd& values() const { return values_; }
   const Eigen::VectorXd& errors() const { return errors_; }
   Eigen::VectorXd residuals(const Eigen::VectorXd& model) const {
@@ -35,6 +40,8 @@ class Data {
   Eigen::MatrixXd covariance() const;
 
  private:
+  const std::vector<Measurement>* measurements_;
+  bool has_fields_ = false;
   Eigen::VectorXd values_, errors_;
   std::vector<Eigen::LLT<Eigen::MatrixXd>> roots_;
 };

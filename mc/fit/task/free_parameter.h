@@ -6,7 +6,7 @@
 
 #include <Eigen/Core>
 
-#include "flatland/scene/scene.h"
+#include "mc/fit/task/moving_spec.h"
 
 namespace flatspeckle::mc {
 
@@ -29,11 +29,11 @@ struct FreeParameter {
 /// InputError for what is no such text, for keys that are no number, for bounds that the key does
 /// not accept, and for starts beyond them.
 std::vector<FreeParameter> read_free_parameters(const std::vector<std::string>& texts,
-                                                const SceneSpec& scene);
+                                                const MovingSpec& scene);
 
 /// The scene with the values of the parameters at these coordinates.
-SceneSpec with_parameters(const SceneSpec& scene, const std::vector<FreeParameter>& free,
-                          const Eigen::VectorXd& coordinates);
+MovingSpec with_parameters(const MovingSpec& scene, const std::vector<FreeParameter>& free,
+                           const Eigen::VectorXd& coordinates);
 
 Eigen::VectorXd lower_coordinates(const std::vector<FreeParameter>& free);
 Eigen::VectorXd upper_coordinates(const std::vector<FreeParameter>& free);

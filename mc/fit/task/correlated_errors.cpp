@@ -1,4 +1,4 @@
-#include "mc/fit/correlated_errors.h"
+#include "mc/fit/task/correlated_errors.h"
 
 #include <cmath>
 

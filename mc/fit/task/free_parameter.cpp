@@ -1,4 +1,4 @@
-#include "mc/fit/free_parameter.h"
+#include "mc/fit/task/free_parameter.h"
 
 #include <algorithm>
 #include <cmath>
@@ -18,8 +18,8 @@ using Scale = FreeParameter::Scale;
 constexpr const char* form = "must be key=lower:upper, as g=0.5:0.99";
 
 /// Positive and without an upper bound of their own.
-const std::set<std::string> of_any_size = {"optical_depth", "mean_free_path", "density", "radius",
-                                           "depth"};
+const std::set<std::string> of_any_size = {"optical_depth", "mean_free_path", "density",
+                                           "radius",        "depth",          "diffusion"};
 
 bool is_one_number(const Key* key) {
   return key != nullptr && !key->is_list() && !key->is_whole() &&
@@ -59,8 +59,8 @@ FreeParameter parsed(const std::string& text) {
   return free;
 }
 
-void check_bounds(const FreeParameter& free, const std::string& text, const SceneSpec& scene) {
-  const Keyed<SceneSpec> keyed(scene);
+void check_bounds(const FreeParameter& free, const std::string& text, const MovingSpec& scene) {
+  const Keyed<MovingSpec> keyed(scene);
   if (!is_one_number(keyed.keys.find(free.key)))
     throw InputError("free", text, free.key + " is no key of the scene that holds one number");
   for (const double bound : {free.lower, free.upper}) {
@@ -69,10 +69,10 @@ void check_bounds(const FreeParameter& free, const std::string& text, const Scen
   }
 }
 
-FreeParameter read_one(const std::string& text, const SceneSpec& scene) {
+FreeParameter read_one(const std::string& text, const MovingSpec& scene) {
   FreeParameter free = parsed(text);
   check_bounds(free, text, scene);
-  const Keyed<SceneSpec> keyed(scene);
+  const Keyed<MovingSpec> keyed(scene);
   free.start = start_of(*keyed.keys.find(free.key));
   if (free.start && !(free.lower <= *free.start && *free.start <= free.upper))
     throw InputError(free.key, *free.start,
@@ -109,7 +109,7 @@ double FreeParameter::slope(double coordinate) const {
 }
 
 std::vector<FreeParameter> read_free_parameters(const std::vector<std::string>& texts,
-                                                const SceneSpec& scene) {
+                                                const MovingSpec& scene) {
   std::vector<FreeParameter> free;
   std::set<std::string> seen;
   for (const std::string& text : texts) {
@@ -120,9 +120,9 @@ std::vector<FreeParameter> read_free_parameters(const std::vector<std::string>& 
   return free;
 }
 
-SceneSpec with_parameters(const SceneSpec& scene, const std::vector<FreeParameter>& free,
-                          const VectorXd& coordinates) {
-  Keyed<SceneSpec> keyed(scene);
+MovingSpec with_parameters(const MovingSpec& scene, const std::vector<FreeParameter>& free,
+                           const VectorXd& coordinates) {
+  Keyed<MovingSpec> keyed(scene);
   for (std::size_t i = 0; i < free.size(); ++i)
     set(keyed.keys, free[i].key, free[i].value(coordinates[static_cast<Index>(i)]));
   return keyed.values;

@@ -1,4 +1,4 @@
-#include "mc/fit/levenberg_marquardt.h"
+#include "mc/numbers/levenberg_marquardt.h"
 
 #include <algorithm>
 #include <limits>
@@ -91,6 +91,19 @@ LeastSquaresFit levenberg_marquardt(const LeastSquares& problem, const VectorXd&
     damping = std::max(damping / factor, 1e-12);
   }
   return at;
+}
+
+MatrixXd jacobian(const LeastSquares& problem, const VectorXd& at, const VectorXd& here) {
+  constexpr double step = 1e-3;  // of the distance of the bounds
+  MatrixXd slopes(here.size(), at.size());
+  for (Index i = 0; i < at.size(); ++i) {
+    const double range = problem.upper[i] - problem.lower[i],
+                 sign = 2 * at[i] > problem.lower[i] + problem.upper[i] ? -1 : 1;
+    VectorXd next = at;
+    next[i] += sign * step * range;
+    slopes.col(i) = (problem.residuals(next) - here) / (next[i] - at[i]);
+  }
+  return slopes;
 }
 
 std::vector<VectorXd> best_starts(const LeastSquares& problem, const std::vector<VectorXd>& starts,

@@ -1,11 +1,11 @@
-#include "mc/fit/slab_model.h"
+#include "mc/fit/model/slab_model.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "core/error.h"
 #include "mc/estimators/flux_walk.h"
-#include "mc/fit/curve_values.h"
+#include "mc/fit/task/curve_values.h"
 #include "mc/slab/slab_covariance.h"
 #include "mc/slab/slab_flux.h"
 #include "mc/space/space_flux.h"
@@ -24,28 +24,29 @@ void put(VectorXd& all, Index first, const std::vector<double>& values) {
 
 }  // namespace
 
-SlabModel::SlabModel(std::vector<Curve> curves, const std::vector<Scene>& scenes)
-    : curves_(std::move(curves)) {
+SlabModel::SlabModel(std::vector<Curve> curves, const Media& media) : curves_(std::move(curves)) {
   for (std::size_t i = 0; i < curves_.size(); ++i) {
-    if (scenes[i].domain.kind != Domain::Kind::slab)
+    if (media[i].scene.domain.kind != Domain::Kind::slab)
       throw InputError("domain", "box", "measurements are compared with slabs");
+    if (curves_[i].moving() && !media[i].spec.only_diffuses())
+      throw InputError("velocity_x, velocity_z, shear: are of method = mc");
     first_.push_back(size_);
     size_ += static_cast<Index>(curves_[i].entries.size());
     const auto group =
-        std::ranges::find_if(groups_, [&](const Group& one) { return joins(one, scenes, i); });
+        std::ranges::find_if(groups_, [&](const Group& one) { return joins(one, media, i); });
     const bool flux = is_flux(curves_[i].observable);
     if (group == groups_.end())
-      groups_.push_back({flux, !flux && needs_reversed(scenes[i]), {i}});
+      groups_.push_back({flux, !flux && needs_reversed(media[i].scene), curves_[i].delays, {i}});
     else
       group->curves.push_back(i);
   }
 }
 
-bool SlabModel::joins(const Group& group, const std::vector<Scene>& scenes,
-                      std::size_t curve) const {
-  const Scene &first = scenes[group.curves.front()], &scene = scenes[curve];
+bool SlabModel::joins(const Group& group, const Media& media, std::size_t curve) const {
+  const Scene &first = media[group.curves.front()].scene, &scene = media[curve].scene;
   const bool flux = is_flux(curves_[curve].observable);
-  return first.domain.depth == scene.domain.depth && first.k == scene.k && group.flux == flux &&
+  return group.delays == curves_[curve].delays && first.domain.depth == scene.domain.depth &&
+         first.k == scene.k && group.flux == flux &&
          (flux || (!has_near_ends(first.request) && !has_near_ends(scene.request) &&
                    group.reversed == needs_reversed(scene)));
 }
@@ -54,12 +55,12 @@ bool SlabModel::reversed() const {
   return std::ranges::any_of(groups_, &Group::reversed);
 }
 
-double SlabModel::refine(const std::vector<Scene>& scenes, const VectorXd& errors, double share) {
+double SlabModel::refine(const Media& media, const VectorXd& errors, double share) {
   constexpr int most = 30;
-  VectorXd found = solved(scenes, order_);
+  VectorXd found = solved(media, order_);
   while (true) {
     const int next = Refinement::next_order(order_);
-    const VectorXd finer = solved(scenes, next);
+    const VectorXd finer = solved(media, next);
     const double change = (finer - found).cwiseQuotient(errors).cwiseAbs().maxCoeff();
     if (change < share || next > most) return change;
     order_ = next;
@@ -67,37 +68,46 @@ double SlabModel::refine(const std::vector<Scene>& scenes, const VectorXd& error
   }
 }
 
-VectorXd SlabModel::solved(const std::vector<Scene>& scenes, int order) const {
+VectorXd SlabModel::solved(const Media& media, int order) const {
   VectorXd all(size_);
   for (const Group& group : groups_)
-    group.flux ? solve_flux(group, scenes, all) : solve_fields(group, scenes, order, all);
+    group.flux ? solve_flux(group, media, all) : solve_fields(group, media, order, all);
   return all;
 }
 
-void SlabModel::solve_fields(const Group& group, const std::vector<Scene>& scenes, int order,
+void SlabModel::solve_fields(const Group& group, const Media& media, int order,
                              VectorXd& all) const {
   constexpr double tolerance = 1e-4;  // of paths of two scatterings, a hundredth of it
-  Scene joint = scenes[group.curves.front()];
+  const Medium& first = media[group.curves.front()];
+  Scene joint = first.scene;
   joint.request = {};
-  for (const std::size_t i : group.curves) join(joint.request, scenes[i].request);
+  for (const std::size_t i : group.curves) join(joint.request, media[i].scene.request);
   const Refinement once{tolerance, order, 0};
-  const Refined found = joint.medium.dimension == 3 ? space_covariance(joint, group.reversed, once)
-                                                    : slab_covariance(joint, group.reversed, once);
+  const auto solve = [&](const FieldChange& change) {
+    return joint.medium.dimension == 3 ? space_covariance(joint, group.reversed, once, change)
+                                       : slab_covariance(joint, group.reversed, once, change);
+  };
+  std::vector<Refined> found{solve({})};
+  for (const double delay : group.delays)
+    found.push_back(solve({.delay = first.spec.diffusion * delay}));
   std::size_t entry = 0;
   for (const std::size_t i : group.curves) {
-    const CovarianceRequest& request = scenes[i].request;
+    const CovarianceRequest& request = media[i].scene.request;
     const std::size_t count = request.entries.size();
-    put(all, first_[i],
-        observed(curves_[i], request, std::span(found.value).subspan(entry, count)));
+    std::vector<Complex> entries;
+    for (const Refined& one : found) {
+      const auto own = std::span(one.value).subspan(entry, count);
+      entries.insert(entries.end(), own.begin(), own.end());
+    }
+    put(all, first_[i], observed(curves_[i], media[i].spec.beta, request, entries));
     entry += count;
   }
 }
 
-void SlabModel::solve_flux(const Group& group, const std::vector<Scene>& scenes,
-                           VectorXd& all) const {
+void SlabModel::solve_flux(const Group& group, const Media& media, VectorXd& all) const {
   constexpr Refinement precise{1e-5};
   constexpr std::size_t bins = 1, shares = flux_shares + bins;
-  Scene joint = scenes[group.curves.front()];
+  Scene joint = media[group.curves.front()].scene;
   Lights& lights = joint.request.lights;
   lights.clear();
   const auto place = [&](const Light& light) {
@@ -110,7 +120,7 @@ void SlabModel::solve_flux(const Group& group, const std::vector<Scene>& scenes,
   for (const std::size_t i : group.curves)
     for (const std::size_t entry : curves_[i].entries)
       places.push_back(
-          shares * static_cast<std::size_t>(place(scenes[i].request.lights[entry])) +
+          shares * static_cast<std::size_t>(place(media[i].scene.request.lights[entry])) +
           (curves_[i].observable == Observable::reflectance ? reflected : transmitted));
   const Refined found = joint.medium.dimension == 3 ? space_flux(joint, bins, precise)
                                                     : slab_flux(joint, bins, precise);

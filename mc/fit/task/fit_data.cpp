@@ -1,13 +1,13 @@
-#include "mc/fit/fit_data.h"
+#include "mc/fit/task/fit_data.h"
 
 #include "core/error.h"
-#include "mc/fit/curve_values.h"
 
 namespace flatspeckle::mc {
 
 namespace {
 
 using Eigen::Index;
+using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
@@ -20,12 +20,12 @@ std::vector<Curve> curves_of(const FitTask& task) {
   return curves;
 }
 
-std::vector<Scene> scenes_at(const FitTask& task, const VectorXd& coordinates) {
-  std::vector<Scene> scenes;
+Media media_at(const FitTask& task, const VectorXd& coordinates) {
+  Media media;
   for (const Measurement& one : task.measurements)
     for (const Curve& curve : one.curves)
-      scenes.push_back(scene_of(with_parameters(curve.scene, task.free, coordinates)));
-  return scenes;
+      media.emplace_back(with_parameters(curve.scene, task.free, coordinates));
+  return media;
 }
 
 VectorXd middle(const FitTask& task) {
@@ -53,7 +53,7 @@ std::vector<VectorXd> grid_of_starts(const FitTask& task) {
   return starts;
 }
 
-Data::Data(const FitTask& task) {
+Data::Data(const FitTask& task) : measurements_(&task.measurements) {
   Index size = 0;
   for (const Measurement& one : task.measurements) size += one.values.size();
   values_.resize(size);
@@ -62,12 +62,38 @@ Data::Data(const FitTask& task) {
   for (const Measurement& one : task.measurements) {
     values_.segment(first, one.values.size()) = one.values;
     errors_.segment(first, one.values.size()) = one.covariance.diagonal().cwiseSqrt();
+    has_fields_ = has_fields_ || !one.samples.empty();
     roots_.emplace_back(one.covariance);
     if (roots_.back().info() != Eigen::Success)
       throw InputError("measurement", one.name,
                        "the covariance of its errors must be positive definite");
     first += one.values.size();
   }
+}
+
+Data Data::about(const VectorXd& model) const {
+  Data found = *this;
+  Index first = 0;
+  for (std::size_t m = 0; m < roots_.size(); ++m) {
+    const Measurement& one = (*measurements_)[m];
+    MatrixXd covariance = one.covariance;
+    Index inside = 0;
+    for (const FieldSample& sample : one.samples) {
+      const auto size = static_cast<Index>(sample.channels * sample.channels);
+      const MatrixXcd c = unpacked(model.segment(first + inside, size), sample.channels),
+                      s = unpacked(one.values.segment(inside, size), sample.channels);
+      covariance.block(inside, inside, size, size) = sample_errors(sample, c);
+      const double scale = sample.known_scale ? 1 : likeliest_scale(c, s);
+      found.values_.segment(first + inside, size) = one.values.segment(inside, size) / scale;
+      inside += size;
+    }
+    if (!one.samples.empty()) {
+      found.roots_[m].compute(covariance);
+      found.errors_.segment(first, inside) = covariance.diagonal().cwiseSqrt();
+    }
+    first += one.values.size();
+  }
+  return found;
 }
 
 MatrixXd Data::whitened(const MatrixXd& of) const {

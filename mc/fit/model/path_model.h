@@ -1,14 +1,15 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include "core/run/runner.h"
-#include "mc/estimators/medium_slope.h"
+#include "mc/changes/moving_slopes.h"
 #include "mc/estimators/path_job.h"
-#include "mc/fit/medium_fit.h"
-#include "mc/fit/slab_model.h"
+#include "mc/fit/model/slab_model.h"
+#include "mc/fit/task/fit_task.h"
 
 namespace flatspeckle::mc {
 
@@ -27,7 +28,8 @@ struct SampledModel {
 };
 
 /// Curves by Monte Carlo, with derivatives from the same paths; the power through slabs is by
-/// transport. Media next to each other see the same random numbers.
+/// transport, that of boxes by walks of its own. Where placements hold a fixed number of
+/// scatterers, that is taken in. Media next to each other see the same random numbers.
 class PathModel {
  public:
   /// Throws InputError for what paths cannot tell.
@@ -40,21 +42,42 @@ class PathModel {
   SampledModel model() const;
 
  private:
+  /// What a fixed number of scatterers changes, by paths of its own.
+  struct FixedCount {
+    PathJob job;
+    RunState state;
+    double count = 0;
+
+    /// Of each entry.
+    std::vector<Complex> correction(double samples, std::span<const Complex> sums) const;
+  };
+
   /// Curves that the same paths tell.
   struct Run {
-    bool reversed;
+    bool power, reversed;
+    std::vector<double> delays;
     std::vector<std::size_t> curves;
     std::vector<CovarianceRequest> requests;  ///< of each
     PathJob job;
     RunState state;
+    std::optional<FixedCount> fixed_count;
+    Lights lights;  ///< of all curves, of power
+    double beta = 1;
+    std::vector<double> beta_slopes;  ///< by the coordinates
+
+    /// Covariances of all curves, [0 and delays][entry].
+    std::size_t covariances() const { return job.entries * (1 + delays.size()); }
   };
 
-  bool joins(const Run& run, const std::vector<Scene>& scenes, std::size_t curve) const;
-  void begin(Run& run, std::uint64_t seed, const std::vector<Scene>& scenes) const;
-  std::vector<MediumSlope> slopes(const Scene& scene, std::size_t curve) const;
-  std::vector<Complex> curve_values(const Run& run, std::span<const Complex> entries) const;
-  std::vector<Complex> run_values(const Run& run, double samples,
-                                  std::span<const Complex> sums) const;
+  bool joins(const Run& run, const Media& media, std::size_t curve) const;
+  void begin(Run& run, std::uint64_t seed, const Media& media) const;
+  std::vector<MovingSlope> slopes(Run& run, const Scene& scene) const;
+  std::vector<Complex> power_values(const Run& run, std::span<const Complex> shares) const;
+  std::vector<Complex> curve_values(const Run& run, double beta,
+                                    std::span<const Complex> covariances) const;
+  std::vector<Complex> run_values(const Run& run, std::vector<Complex> all,
+                                  std::span<const Complex> correction) const;
+  void add(const Run& run, SampledModel& model, Eigen::VectorXd& all) const;
   void put_power(SampledModel& model) const;
 
   const FitTask& task_;

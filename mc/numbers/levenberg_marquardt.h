@@ -40,6 +40,11 @@ LeastSquaresFit levenberg_marquardt(const LeastSquares& problem, const Eigen::Ve
 /// The step from a point of known residuals and jacobian; what a bound holds back takes no part.
 Eigen::VectorXd damped_step(const LeastSquares& problem, const LeastSquaresFit& at, double damping);
 
+/// Derivatives by coordinates, in differences towards the middle, for a bound may be the end of
+/// what can be computed. residuals: at a point; here: those of `at`.
+Eigen::MatrixXd jacobian(const LeastSquares& problem, const Eigen::VectorXd& at,
+                         const Eigen::VectorXd& here);
+
 /// Of all starts, those of the least chi^2.
 std::vector<Eigen::VectorXd> best_starts(const LeastSquares& problem,
                                          const std::vector<Eigen::VectorXd>& starts,

@@ -1,9 +1,9 @@
-#include "mc/fit/plan_datasets.h"
+#include "mc/fit/plan/plan_datasets.h"
 
 #include <cmath>
 
 #include "core/result/result_group.h"
-#include "mc/fit/row_major.h"
+#include "mc/numbers/row_major.h"
 
 namespace flatspeckle::mc {
 
@@ -22,7 +22,13 @@ const DatasetTable plan_table{
              {"growth_without_view", Data::real, "view_angle parameter", "1",
               "error without this view over that with all"},
              {"growth_without_tilt", Data::real, "tilt parameter", "1",
-              "error without this tilt over that with all"}},
+              "error without this tilt over that with all"},
+             {"point", Data::numbers, "", "1", "number of the plan, of several"},
+             {"point_name", Data::text, "point", "", "what is varied there"},
+             {"point_planned", Data::estimate, "point parameter", "",
+              "value there, with the least error"},
+             {"point_patterns_to_percent", Data::real, "point parameter", "1",
+              "patterns that make the error there a hundredth of the value"}},
     .attributes = {{"", "patterns", "float64", "independent patterns of each view"},
                    {"", "condition", "float64",
                     "largest over least eigenvalue of the information, parameters in distances of "
@@ -42,6 +48,26 @@ void write_plan(ResultFile& file, const PlanTask& task, const FitPlan& plan) {
   root.put("growth_without_tilt", row_major(plan.without_tilt));
   root.attribute("patterns", task.patterns);
   if (std::isfinite(plan.condition)) root.attribute("condition", plan.condition);
+}
+
+void write_plans(ResultFile& file, const PlanTask& task, const std::vector<PlanPoint>& points) {
+  const ResultGroup root(file, plan_table);
+  std::vector<double> values, errors, patterns;
+  const auto append = [](std::vector<double>& all, const Eigen::VectorXd& more) {
+    all.insert(all.end(), more.begin(), more.end());
+  };
+  for (const PlanPoint& point : points) {
+    append(values, point.plan.values);
+    append(errors, point.plan.errors);
+    append(patterns, point.plan.patterns_to_percent);
+  }
+  root.number("parameter", task.free.size());
+  root.put("parameter_name", column(task.free, &FreeParameter::key));
+  root.number("point", points.size());
+  root.put("point_name", column(points, &PlanPoint::name));
+  root.put("point_planned", values, errors);
+  root.put("point_patterns_to_percent", patterns);
+  root.attribute("patterns", task.patterns);
 }
 
 }  // namespace flatspeckle::mc

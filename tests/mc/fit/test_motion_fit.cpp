@@ -1,0 +1,37 @@
+#include <doctest/doctest.h>
+
+#include "bench/scenes/moving_media.h"
+
+namespace flatspeckle::mc {
+
+namespace {
+
+using Eigen::VectorXd;
+
+void check_found(const FitTask& task, const VectorXd& truth, double most) {
+  const MediumFit fit = fit_medium(task);
+  REQUIRE(fit.converged);
+  const VectorXd pulls = (fit.estimates - truth).cwiseQuotient(fit.errors);
+  CAPTURE(pulls.transpose());
+  CHECK(pulls.cwiseAbs().maxCoeff() < most);
+}
+
+}  // namespace
+
+TEST_CASE("diffusion and mean free path follow from decays, and from contrasts") {
+  check_found(bench::motion_task(bench::diffusing_slab().exact(),
+                                 {"diffusion=0.1:10", "optical_depth=3:20"}),
+              VectorXd{{1, 8}}, 0.1);
+  auto contrasts = bench::exposed_slab().exact();
+  contrasts.resize(1);
+  contrasts.front().curves.front().scene.optical_depth = 8;
+  check_found(bench::motion_task(contrasts, {"diffusion=0.1:10", "beta=0.2:1"}),
+              VectorXd{{1, bench::SyntheticSlab::beta}}, 0.1);
+}
+
+TEST_CASE("shear and diffusion are told apart by light in several views") {
+  check_found(bench::ShearedSlab().task(1, 0.02),
+              VectorXd{{bench::ShearedSlab::diffusion, bench::ShearedSlab::shear}}, 4);
+}
+
+}  // namespace flatspeckle::mc
