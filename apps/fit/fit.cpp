@@ -109,7 +109,9 @@ void check_depths(const mc::FitTask& task) {
 /// Reads what a scene makes use of.
 void read_scene(const Keys& keys, const SceneSpec& scene) {
   const Keyed<SceneSpec> keyed(scene);
-  make_scene(keyed.keys, keyed.values);
+  const Scene made = make_scene(keyed.keys, keyed.values);
+  if (made.profile || made.index)
+    throw InputError("layers, index_field: fit takes media that are the same everywhere");
   keys.join_reads(keyed.keys);
 }
 

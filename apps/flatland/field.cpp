@@ -34,6 +34,7 @@ void add_keys(Keys& keys, FieldKeys& values) {
   add_bulk_keys(keys, values.spec);
   add_medium_keys(keys, values.spec);
   add_profile_keys(keys, values.spec);
+  add_index_keys(keys, values.spec);
   add_structure_key(keys, values.spec);
   add_view_keys(keys, values.spec);
   keys.add("tilts", values.spec.tilts,

@@ -67,6 +67,8 @@ int flux(const Arguments& arguments) {
   Session session(command.text(), keys, run, command.only_prints());
   choose_method(keys, method, spec, run);
   const bool by_mc = method == "mc";
+  if (!by_mc && !spec.layers.empty())
+    throw InputError("layers", spec.layers, "their flux is by method = mc");
   if (!by_mc) read_transport(keys, methods, spec, run);
   const StopRule stop = by_mc ? stop_rule(keys, run) : both_batches();
   const auto bins = static_cast<std::size_t>(keys.read(angle_bins));

@@ -16,9 +16,11 @@
 #include "core/run/progress.h"
 #include "core/run/stopwatch.h"
 #include "core/session/session.h"
+#include "flatland/scene/index_fields.h"
 #include "flatland/scene/scene_datasets.h"
 #include "wave_solver/clusters/cluster_file.h"
 #include "wave_solver/clusters/cluster_solution.h"
+#include "wave_solver/graded/graded_fields.h"
 #include "wave_solver/maps/map_datasets.h"
 #include "wave_solver/solutions/spectrum.h"
 #include "wave_solver/solutions/wave_solution.h"
@@ -48,11 +50,15 @@ void add_keys(Keys& keys, SolveKeys& values) {
   add_bulk_keys(keys, values.spec);
   add_medium_keys(keys, values.spec);
   add_profile_keys(keys, values.spec);
+  add_index_keys(keys, values.spec);
   keys.remove("placement");
   keys.add("placement", values.spec.placement,
            "CSV with columns x, z [, radius [, index_re, index_im]]; or poisson, hard_disk or "
            "equilibrium, to draw one; of a cluster: CSV with columns x, z [, angle]");
   add_view_keys(keys, values.spec);
+  keys.add("near_sources", values.spec.near_sources,
+           "CSV with columns x, z: point sources in place of plane waves")
+      .only_of("media with an index_field");
   add_map_keys(keys, values.map);
   add_spectrum_keys(keys, values.spectrum);
   keys.group("Solver");
@@ -215,6 +221,59 @@ int solve_clusters(const Subcommand& command, const SolveKeys& values, const Ses
   });
 }
 
+/// Where scatterers of a file lie: the corners of the box around them.
+std::vector<Vec2> corners_around(const Placement& placement) {
+  Vec2 low = placement.front().position, high = low;
+  for (const auto& [x, scatterer] : placement) {
+    low = {std::min(low.x, x.x), std::min(low.z, x.z)};
+    high = {std::max(high.x, x.x), std::max(high.z, x.z)};
+  }
+  return {low, {high.x, low.z}, {low.x, high.z}, high};
+}
+
+/// Point scatterers where the index varies.
+int solve_graded(const Subcommand& command, const SolveKeys& values, const Session& session) {
+  const Keys& keys = command.keys();
+  const SceneSpec& spec = values.spec;
+  const double k = 2 * std::numbers::pi / spec.wavelength;
+  Placement placement;
+  std::optional<wave::GradedFields> fields;
+  Lights lights;
+  std::vector<View> views;
+  if (is_placement_rule(spec)) {
+    const Scene scene = make_scene(keys, spec);
+    placement = drawn_placement(spec, scene, session.seed());
+    fields = wave::graded_fields(scene);
+    lights = scene.request.lights;
+    views = scene.request.views;
+  } else {
+    const auto field = index_field(keys, spec);
+    const auto sources = read_points(keys.required(spec.near_sources)),
+               sensors = read_points(keys.required(spec.near_sensors));
+    keys.read(spec.wavelength);
+    placement = placement_of_file(keys, spec, values.run);
+    if (placement.empty() || placement.front().scatterer.is_disk())
+      throw InputError("index_field", spec.index_field, "is of points, one at the least");
+    fields.emplace(*field, k, sources, sensors, corners_around(placement));
+    for (const Vec2 source : sources) lights.push_back(point_source(source));
+    for (const Vec2 sensor : sensors) views.push_back(near_sensor(sensor));
+  }
+  for (const View& view : views) require_outside(placement, view.point);
+  if (!command.settle()) return ExitStatus::done;
+  blas_single_thread();  // says now what it lacks
+  return session.once(ResultFile(session.out()), [&](ResultFile& file) -> std::optional<Made> {
+    write_light_axis(file, lights);
+    write_view_axis(file, views);
+    ResultGroup(file, wave::graded_table).put("near_source_field", fields->of(placement));
+    wave::write_placement(file, placement);
+    ResultGroup(file, scene_table).attribute("wavelength", spec.wavelength);
+    const std::string plan = std::to_string(placement.size()) +
+                             " points in a graded medium, coupled by its own Green function";
+    std::printf("%s\n", plan.c_str());
+    return Made{plan, 1};
+  });
+}
+
 Made spectrum_made(const wave::Spectrum& spectrum, const WavelengthList& wavelengths,
                    const Placement& placement) {
   std::ostringstream plan;
@@ -236,6 +295,9 @@ int solve(const Arguments& arguments) {
 
   const Session session(command.text(), keys, values.run, command.only_prints());
   const SceneSpec& spec = values.spec;
+  if (keys.read(spec.index_field) != "homogeneous") return solve_graded(command, values, session);
+  if (!spec.near_sources.empty())
+    throw InputError("near_sources", spec.near_sources, "are of media with an index_field");
   const Sensors sensors = sensors_of(keys, spec);
   if (!values.cluster.empty()) return solve_clusters(command, values, session, sensors);
   const auto wavelengths = wavelength_list(keys, values.spectrum);

@@ -31,6 +31,7 @@
 #include "mc/theory/moments_datasets.h"
 #include "wave_solver/clusters/cluster_file.h"
 #include "wave_solver/clusters/cluster_solution.h"
+#include "wave_solver/graded/graded_fields.h"
 #include "wave_solver/maps/map_datasets.h"
 #include "wave_solver/solutions/spectrum.h"
 
@@ -111,6 +112,7 @@ std::vector<const DatasetTable*> all_tables() {
                                              &wave::spectrum_table,
                                              &wave::cluster_table,
                                              &wave::cluster_solution_table,
+                                             &wave::graded_table,
                                              &wave::map_table,
                                              &mc::flux_table,
                                              &mc::field_table,

@@ -8,6 +8,7 @@
 #include "core/error.h"
 #include "core/numbers/blas.h"
 #include "mc/estimators/covariance_estimator.h"
+#include "mc/slab/layered_covariance.h"
 #include "mc/slab/slab_covariance.h"
 #include "mc/space/space_scene.h"
 #include "wave_solver/solutions/ensemble.h"
@@ -58,7 +59,8 @@ void choose_method(const Keys& keys, std::string& method, const SceneSpec& spec,
                    const RunSettings& run) {
   if (keys.read(method) != "auto") return;
   const bool to_last = keys.given(run.samples) || keys.given(run.seconds);
-  method = spec.domain == "slab" && spec.layers.empty() && !to_last ? "transport" : "mc";
+  const bool varies = !spec.layers.empty() || spec.index_field != "homogeneous";
+  method = spec.domain == "slab" && !varies && !to_last ? "transport" : "mc";
 }
 
 void disregard_unused(const Keys& keys, const SceneSpec& spec,
@@ -73,8 +75,8 @@ void read_transport(const Keys& keys, MethodSettings& settings, const SceneSpec&
                     const RunSettings& run) {
   if (spec.domain != "slab")
     throw InputError("method", "transport", "needs domain = slab; take another method");
-  if (!spec.layers.empty())
-    throw InputError("layers", spec.layers, "are of Monte Carlo and the exact solver");
+  if (spec.index_field != "homogeneous")
+    throw InputError("index_field", spec.index_field, "is of Monte Carlo and the exact solver");
   const double asked = keys.read(run.target_error).value_or(1);
   settings.tolerance = std::min(keys.read(settings.tolerance), std::max(asked, least_tolerance));
 }
@@ -92,6 +94,7 @@ void note_rounding(const Scene& scene) {
 }
 
 void Neglected::add(const Scene& scene) {
+  refracted = scene.index && !scene.index->is_around();
   phase = std::max(phase, std::abs(scene.medium.k_shift) * scene.domain.depth);
   if (!scene.profile) return add(scene.medium, scene.k);
   for (const Material& material : scene.profile->materials()) add(material.medium, scene.k);
@@ -123,16 +126,18 @@ void note(const Neglected& neglected) {
         << "note: disks fill " << neglected.packing
         << " of the medium; the Monte Carlo method takes their positions as independent, which "
            "neglects terms of that order (structure = hard_disks takes them in)\n";
-  if (neglected.k_shift > much_shift)
+  if (neglected.k_shift > much_shift && !neglected.refracted)
     std::cerr << "note: the scatterers shift the wavenumber by " << neglected.k_shift << " of it, "
               << neglected.phase
               << " rad over the depth, which the Monte Carlo method neglects (refraction at the "
-                 "edges; a box narrower than deep guides the mean field)\n";
+                 "edges; a box narrower than deep guides the mean field; index_field = mean_field "
+                 "takes both in)\n";
 }
 
 Scene rounded_scene(const Keys& keys, const SceneSpec& spec) {
   const Scene scene = make_scene(keys, spec);
-  if (scene.placement.kind == PlacementRule::Kind::poisson || spec.count) return scene;
+  if (scene.placement.kind == PlacementRule::Kind::poisson || spec.count || scene.profile)
+    return scene;
   SceneSpec rounded = spec;
   rounded.density = rounded.mean_free_path = rounded.optical_depth = std::nullopt;
   rounded.count = std::llround(scene.placement.mean_count);
@@ -158,8 +163,11 @@ Estimation transport_estimation(const Scene& scene, mc::ReversedPaths reversed, 
   const bool space = scene.medium.dimension == 3, near = has_near_ends(scene.request);
   if (space && near) throw InputError("dimension", 3, "is of plane waves and far views");
   plan << "transport: pairs at one transverse frequency" << (space ? " in space" : "")
-       << ", by doubling; " << (near ? "near ends as plane waves; " : "")
+       << (scene.profile ? " through layers" : "") << ", by doubling; "
+       << (near ? "near ends as plane waves; " : "")
        << (with_reversed ? "reversed paths" : "no reversed paths") << "; tolerance " << tolerance;
+  if (scene.profile)
+    return {mc::layered_covariance_job(scene, with_reversed, {tolerance}), plan.str()};
   if (space) return {mc::space_covariance_job(scene, with_reversed, {tolerance}), plan.str()};
   return {mc::slab_covariance_job(scene, with_reversed, {tolerance}), plan.str()};
 }

@@ -57,9 +57,10 @@ void note_rounding(const Scene& scene);
 /// What the Monte Carlo method neglects grows with these; of several scenes: the worst.
 struct Neglected {
   double k_mean_free_path = std::numeric_limits<double>::infinity();
-  double packing = 0;  ///< of disks whose correlations are not taken in
-  double k_shift = 0;  ///< over k: shift of the wavenumber (conventions, C15)
-  double phase = 0;    ///< what that shift adds over the depth, radians
+  double packing = 0;      ///< of disks whose correlations are not taken in
+  double k_shift = 0;      ///< over k: shift of the wavenumber (conventions, C15)
+  double phase = 0;        ///< what that shift adds over the depth, radians
+  bool refracted = false;  ///< what it does to the mean field is taken in
 
   Neglected() = default;
   explicit Neglected(const Scene& scene) { add(scene); }

@@ -13,6 +13,11 @@ namespace flatspeckle::apps {
 
 namespace {
 
+void refuse_layers(const Scene& scene, const std::string& key) {
+  if (scene.profile)
+    throw InputError("method", "transport", "of layers has no " + key + ": take mc");
+}
+
 void require_plane_waves(const std::string& key, const CovarianceRequest& request) {
   using Kind = CovarianceRequest::Kind;
   if (!request.lights.all(Light::Kind::plane) || request.kind == Kind::tilt_shift)
@@ -40,6 +45,7 @@ ExtendedEstimation mc_gradient(const Scene& scene, mc::ReversedPaths reversed, s
 
 ExtendedEstimation transport_gradient(const Scene& scene, mc::ReversedPaths reversed,
                                       double tolerance) {
+  refuse_layers(scene, "gradient");
   mc::check_gradient(scene);
   const bool with_reversed = mc::make_plan(scene, reversed).reversed;
   const auto job = scene.medium.dimension == 3 ? mc::space_gradient_job : mc::slab_gradient_job;
@@ -90,6 +96,7 @@ mc::PathJob change_job(const Scene& scene, mc::ReversedPaths reversed,
 
 ExtendedEstimation transport_delays(const Scene& scene, mc::ReversedPaths reversed,
                                     const Extras& extras, double tolerance) {
+  refuse_layers(scene, "delays");
   mc::check_delays(scene, extras.delays);
   require_changing("delays", scene.request);
   if (!motion_of(extras).only_diffuses(scene))
@@ -185,6 +192,7 @@ ChangeEstimation mc_frequencies(const Scene& scene, mc::ReversedPaths reversed,
 
 ChangeEstimation transport_frequencies(const Scene& scene, mc::ReversedPaths reversed,
                                        const std::vector<double>& shifts, double tolerance) {
+  refuse_layers(scene, "frequency_shifts");
   check_frequency_shifts(scene.request, shifts);
   std::vector<mc::FieldChange> changes;
   for (const double shift : shifts) changes.push_back({.shift = shift});

@@ -6,6 +6,7 @@
 #include "apps/results/tilt_search.h"
 #include "core/error.h"
 #include "core/result/version.h"
+#include "core/session/identity.h"
 #include "mc/walk/plan.h"
 
 namespace flatspeckle::apps {
@@ -46,6 +47,7 @@ SweepPlan::SweepPlan()
   add_medium_keys(keys, base);
   add_scatterer_keys(keys, base);
   add_bulk_keys(keys, base);
+  add_profile_keys(keys, base);
   add_sweep_keys(keys, lists_);
   add_structure_key(keys, base);
   add_view_keys(keys, base);
@@ -186,7 +188,8 @@ std::string SweepPlan::identity(std::size_t run) const {
   auto left_out = keys_of_the_work;
   left_out.insert(lists_.keys.begin(), lists_.keys.end());
   left_out.insert({"points", "method"});
-  return header() + command_.keys().config(left_out) + name(run) + '\n' + inputs_text(scene(run));
+  return header() + command_.keys().config(left_out) + name(run) + '\n' + inputs_text(scene(run)) +
+         inputs_text(command_.keys());
 }
 
 std::string SweepPlan::identity() const {

@@ -125,6 +125,21 @@ PlanCase equal_layers(const NamedScene& on) {
                  });
 }
 
+/// Point sources and near sensors, in a field of hardly any gradient.
+PlanCase curved_rays(const NamedScene& on) {
+  return case_of("curved rays", on.name + ", near ends", Numbers::other, Measure::sample,
+                 [scene = on.scene]() mutable {
+                   scene.request = full_request({point_source({0, -4}), point_source({0.5, -4})},
+                                                {near_sensor({0, 14}), near_sensor({8, 14})});
+                   Scene graded = scene;
+                   graded.index.emplace();
+                   graded.index->kind = IndexField::Kind::linear;
+                   graded.index->slope = {0, 1e-9};
+                   return std::pair{kernel_of(mc::covariance_job(graded, plan_of(graded), seed)),
+                                    kernel_of(mc::covariance_job(scene, plan_of(scene), seed + 1))};
+                 });
+}
+
 PlanCase derivatives(const NamedScene& on) {
   return case_of("derivatives", on.name, Numbers::same, Measure::sample, [scene = on.scene] {
     const Plan plan = mc::gradient_plan(scene, mc::ReversedPaths::no);
@@ -192,6 +207,7 @@ std::vector<PlanCase> mc_plan_cases() {
       bulk_table(forward),
       equal_layers(points),
       equal_layers(forward),
+      curved_rays(points),
       derivatives(forward),
       delays(around),
       frequencies(around),

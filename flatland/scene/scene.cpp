@@ -8,6 +8,7 @@
 #include "core/keys/chosen.h"
 #include "core/keys/number_text.h"
 #include "flatland/scene/density_maps.h"
+#include "flatland/scene/index_fields.h"
 #include "flatland/scene/layer_table.h"
 
 namespace flatspeckle {
@@ -196,6 +197,7 @@ Scene make_scene(const Keys& keys, const SceneSpec& spec) {
   if (!keys.read(spec.layers).empty()) layers.emplace(keys, spec);
   const MakeDensityMap map = density_map(keys, spec);
   Scene scene = without_bulk(keys, spec, layers);
+  scene.index = index_field(keys, spec);
   keys.refuse_unread();
   if (layers)
     make_layered(scene, layers->layers(spec));
@@ -205,6 +207,7 @@ Scene make_scene(const Keys& keys, const SceneSpec& spec) {
     scene.profile = map(scene.domain, {scene.scatterer, scene.medium});
     scene.medium = scene.profile->mean();
   }
+  check_index_field(scene);
   check_extinction(scene.medium);
   scene.placement.mean_count = scene.medium.density * scene.domain.area();
   check_packing(scene);

@@ -8,6 +8,7 @@
 
 #include "core/keys/keys.h"
 #include "flatland/media/domain.h"
+#include "flatland/media/index_field.h"
 #include "flatland/media/medium.h"
 #include "flatland/media/medium_profile.h"
 #include "flatland/placement/placement.h"
@@ -28,6 +29,10 @@ struct SceneSpec : ScattererValues {
   std::optional<double> min_gap;
   std::string structure = "none";
   std::string layers, density_blobs, density_map;
+  std::string index_field = "homogeneous", index_blobs, index_grid;
+  double axis_index = 1;
+  std::vector<double> index_slope{};
+  std::optional<double> index_alpha, sound_amplitude, sound_wavenumber;
   std::vector<double> light_angles{0};
   std::string near_sources;
   std::optional<double> beam_waist, beam_depth;
@@ -46,6 +51,7 @@ struct Scene {
   Scatterer scatterer;
   BulkMedium medium;                               ///< where it varies, in the mean
   std::shared_ptr<const MediumProfile> profile{};  ///< null where it is the same everywhere
+  std::optional<IndexField> index{};               ///< none where it is 1 everywhere
   PlacementRule placement;
   CovarianceRequest request;
 };
@@ -61,6 +67,8 @@ void add_dimension_key(Keys& keys, SceneSpec& spec);
 void add_structure_key(Keys& keys, SceneSpec& spec);
 /// Of media that vary.
 void add_profile_keys(Keys& keys, SceneSpec& spec);
+/// Of an index that varies.
+void add_index_keys(Keys& keys, SceneSpec& spec);
 void add_view_keys(Keys& keys, SceneSpec& spec);
 /// Near sources and beams.
 void add_light_keys(Keys& keys, SceneSpec& spec);

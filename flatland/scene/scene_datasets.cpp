@@ -1,5 +1,7 @@
 #include "flatland/scene/scene_datasets.h"
 
+#include <cmath>
+
 #include "core/result/result_group.h"
 
 namespace flatspeckle {
@@ -24,6 +26,9 @@ const DatasetTable scene_table{
         {"", "density", "float64", "scatterers per area"},
         {"", "packing_fraction", "float64", "share of the area that scatterers cover"},
         {"", "k_shift", "float64", "real part of the effective wavenumber less k"},
+        {"", "index_front", "float64",
+         "index around the scatterers at x = z = 0, where n^2 is linear or parabolic"},
+        {"", "index_back", "float64", "the same at z = depth"},
     }};
 
 const DatasetTable axes_table{
@@ -128,6 +133,10 @@ void write_medium(ResultFile& file, const Scene& scene) {
     root.attribute("k_mean_free_path", scene.k * medium.mean_free_path());
   }
   if (scene.profile) scene.profile->write(file);
+  if (scene.index && scene.index->is_quadratic()) {
+    root.attribute("index_front", std::sqrt(scene.index->square({0, 0})));
+    root.attribute("index_back", std::sqrt(scene.index->square({0, scene.domain.depth})));
+  }
   if (!medium.has_scatterers) return;
   root.attribute("density", medium.density);
   root.attribute("packing_fraction", medium.packing_fraction);

@@ -97,6 +97,41 @@ void add_profile_keys(Keys& keys, SceneSpec& spec) {
       .only_of("a box");
 }
 
+void add_index_keys(Keys& keys, SceneSpec& spec) {
+  keys.group("Index around the scatterers");
+  keys.add("index_field", spec.index_field,
+           "How the index varies: n^2 linear, a parabolic guide along z, blobs, standing sound, "
+           "samples of a grid (wavelengths are those where it is 1); or mean_field, by what the "
+           "scatterers add to it (k_shift)")
+      .one_of(index_field_words);
+  keys.add("axis_index", spec.axis_index,
+           "Index at the origin (linear), on the axis x = 0 (parabolic), or around")
+      .positive()
+      .only_of("index_field = linear, parabolic, blobs and ultrasound");
+  keys.add("index_slope", spec.index_slope, "Gradient of n^2, along x and z")
+      .exactly(2, "along x, along z")
+      .unit("1/length")
+      .only_of("index_field = linear");
+  keys.add("index_alpha", spec.index_alpha, "Of n^2 = axis_index^2 - alpha^2 x^2")
+      .positive()
+      .unit("1/length")
+      .only_of("index_field = parabolic");
+  keys.add("index_blobs", spec.index_blobs,
+           "CSV with columns x, z, height, width: height exp(-r^2/(2 width^2)), of the index")
+      .file()
+      .only_of("index_field = blobs");
+  keys.add("sound_amplitude", spec.sound_amplitude, "Of the index, times J_0(wavenumber x)")
+      .only_of("index_field = ultrasound");
+  keys.add("sound_wavenumber", spec.sound_wavenumber, "2 pi frequency / speed of the sound")
+      .positive()
+      .unit("1/length")
+      .only_of("index_field = ultrasound");
+  keys.add("index_grid", spec.index_grid,
+           "HDF5 file with excess [x][y][z], n - 1 as render takes it, of which y = 0 counts")
+      .file()
+      .only_of("index_field = grid");
+}
+
 void add_view_keys(Keys& keys, SceneSpec& spec) {
   keys.group("Lights and views");
   keys.add("light_angles", spec.light_angles, "Directions of plane waves and beams, from +z")
@@ -151,6 +186,7 @@ void add_keys(Keys& keys, SceneSpec& spec) {
   add_bulk_keys(keys, spec);
   add_structure_key(keys, spec);
   add_profile_keys(keys, spec);
+  add_index_keys(keys, spec);
   add_view_keys(keys, spec);
   add_light_keys(keys, spec);
   add_request_keys(keys, spec);

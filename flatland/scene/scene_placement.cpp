@@ -1,9 +1,20 @@
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
 #include "core/error.h"
+#include "flatland/media/layers.h"
+#include "flatland/placement/cell_grid.h"
 #include "flatland/scene/scene.h"
 
 namespace flatspeckle {
 
 namespace {
+
+Vec2 uniform_between(const Domain& box, double from, double to, RandomStream& random) {
+  const double x = (random.uniform() - 0.5) * box.width;
+  return {x, from + random.uniform() * (to - from)};
+}
 
 /// A medium that varies, of points: of a uniform density that is nowhere exceeded, each is kept
 /// with the share that its place has of it.
@@ -19,13 +30,90 @@ Placement thinned(const Scene& scene, RandomStream& random) {
   return placement;
 }
 
+/// Disks of one material, and between which depths.
+struct Population {
+  Scatterer scatterer;
+  double from, to;
+  std::size_t count;
+};
+
+/// In whole numbers, the largest disks first: they find no room among many small ones.
+std::vector<Population> populations(const Scene& scene) {
+  const auto whole = [](double mean) { return static_cast<std::size_t>(std::llround(mean)); };
+  const auto* layers = dynamic_cast<const Layers*>(scene.profile.get());
+  if (layers == nullptr)
+    return {{scene.profile->materials().front().scatterer, 0, scene.domain.depth,
+             whole(scene.placement.mean_count)}};
+  std::vector<Population> list;
+  for (std::size_t layer = 0; layer < layers->materials().size(); ++layer) {
+    const auto& [scatterer, medium, motion] = layers->materials()[layer];
+    const double area = scene.domain.width * layers->thickness(layer);
+    list.push_back({scatterer, layers->faces()[layer], layers->faces()[layer + 1],
+                    whole(medium.density * area)});
+  }
+  std::ranges::stable_sort(list, std::greater(),
+                           [](const Population& some) { return some.scatterer.radius; });
+  return list;
+}
+
+/// A medium that varies, of disks: one after the other where there is room, centres as dense as
+/// the place asks.
+class AddedDisks {
+ public:
+  AddedDisks(const Scene& scene, RandomStream& random)
+      : scene_(scene),
+        random_(random),
+        gap_(std::max(scene.placement.min_gap, default_gap * scene.scatterer.radius)),
+        grid_(2 * scene.scatterer.radius + gap_) {}
+
+  Placement placed() {
+    for (const Population& population : populations(scene_)) add(population);
+    return std::move(placement_);
+  }
+
+ private:
+  void add(const Population& population) {
+    constexpr std::uint64_t most_tries = 100'000'000;
+    std::uint64_t tries = 0;
+    for (std::size_t placed = 0; placed < population.count;) {
+      if (++tries == most_tries)
+        throw InputError("the disks cannot be packed one after the other; lower the density");
+      const Vec2 x = uniform_between(scene_.domain, population.from, population.to, random_);
+      if (!wanted(x) || taken(x, population.scatterer.radius)) continue;
+      grid_.insert(x, placement_.size());
+      placement_.push_back({x, population.scatterer});
+      ++placed;
+    }
+  }
+  /// Of a density map.
+  bool wanted(Vec2 x) {
+    const MediumProfile& profile = *scene_.profile;
+    return profile.materials().size() > 1 ||
+           random_.uniform() * profile.most_density() < profile.density(x);
+  }
+  bool taken(Vec2 x, double radius) const {
+    return grid_.any_near(x, [&](Vec2 other, std::size_t number) {
+      return length(x - other) < radius + placement_[number].scatterer.radius + gap_;
+    });
+  }
+
+  const Scene& scene_;
+  RandomStream& random_;
+  double gap_;
+  CellGrid grid_;
+  Placement placement_;
+};
+
 }  // namespace
 
 Placement draw_placement(const Scene& scene, RandomStream& random) {
   if (!scene.profile) return draw_placement(scene.domain, scene.scatterer, scene.placement, random);
-  if (scene.scatterer.is_disk())
-    throw InputError("scatterer: of a medium that varies the exact solver takes points alone");
-  return thinned(scene, random);
+  if (!scene.scatterer.is_disk()) return thinned(scene, random);
+  if (scene.placement.kind == PlacementRule::Kind::equilibrium)
+    throw InputError("placement", "equilibrium",
+                     "is of media that do not vary; disks of others are placed one after the "
+                     "other: hard_disk");
+  return AddedDisks(scene, random).placed();
 }
 
 }  // namespace flatspeckle

@@ -69,7 +69,7 @@ Complex mean_field(const Scene& scene, double light, double view) {
 
 bool has_coherent_field(const Scene& scene) {
   return scene.domain.kind == Domain::Kind::box && scene.medium.has_scatterers && !scene.profile &&
-         scene.request.lights.all(Light::Kind::plane) &&
+         (!scene.index || !scene.index->is_around()) && scene.request.lights.all(Light::Kind::plane) &&
          std::none_of(scene.request.views.begin(), scene.request.views.end(),
                       [](const View& view) { return view.near; });
 }

@@ -28,6 +28,7 @@ class FieldScorer {
 
 struct CovarianceKind {
   using Sums = Accumulator&;
+  static constexpr bool bent = true;
 
   NoTally tally(const Scene&) const { return {}; }
 

@@ -25,7 +25,7 @@ class PathFields {
   PathFields(const Scene& scene, const Scattering& scattering)
       : scattering_(scattering),
         channels_(scene.request.channels),
-        ends_(scene, [](std::size_t ends) { return std::vector<Complex>(ends); }),
+        ends_(scene, scattering, [](std::size_t ends) { return std::vector<Complex>(ends); }),
         is_grid_(is_grid(channels_, ends_.lights.size(), ends_.views.size())),
         field_(channels_.size()) {}
 
@@ -72,9 +72,10 @@ class PathFields {
 
   const Scattering& scattering_;
   const std::vector<Channel>& channels_;
-  PathEnds<std::vector<Complex>, reversed, phases> ends_;  ///< A e of every end
-  bool is_grid_;                                           ///< rows of views, a light each
-  std::vector<Complex> field_;                             ///< per channel
+  PathEndsOf<std::vector<Complex>, reversed, EndsOf<Scattering, phases>>
+      ends_;                    ///< A e of every end
+  bool is_grid_;                ///< rows of views, a light each
+  std::vector<Complex> field_;  ///< per channel
 };
 
 }  // namespace flatspeckle::mc

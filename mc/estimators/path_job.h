@@ -29,7 +29,8 @@ std::vector<Complex> unsampled(const Kind& kind, const Scene& scene, const Plan&
   std::vector<Complex> single;
   if (plan.sampled_single || scene.medium.mu_s == 0) return single;
   with_any_scattering(scene, plan.phase, [&]<typename Scattering>(const Scattering& scattering) {
-    if constexpr (!varies<Scattering>) single = kind.single(scene, scattering);
+    if constexpr (!varies<Scattering> && !bends<Scattering>)
+      single = kind.single(scene, scattering);
   });
   return single;
 }

@@ -7,6 +7,17 @@
 
 namespace flatspeckle::mc {
 
+/// Least n^2 around the scatterers: where it is small the mean free path is shorter, and so is k.
+inline double least_square(const Scene& scene) {
+  if (!scene.index || !scene.index->is_quadratic()) return 1;
+  const double half = scene.domain.width / 2;
+  double least = scene.index->square({half, 0});
+  for (const Vec2 corner :
+       {Vec2{-half, 0}, {half, scene.domain.depth}, {-half, scene.domain.depth}})
+    least = std::min(least, scene.index->square(corner));
+  return least;
+}
+
 /// What the Monte Carlo method neglects, as a fraction: corrections of order 1/(k mean free path);
 /// the shift of the wavenumber (refraction at the faces, local fields); and correlations, of order
 /// the packing fraction where they are not taken in, of its square where they are (C16). As
@@ -20,12 +31,14 @@ struct Allowance {
   double near_zone;
 
   explicit Allowance(const Scene& scene)
-      : crossed_paths(2 / (scene.k * scene.medium.mean_free_path())) {
+      : crossed_paths(2 / (scene.k * scene.medium.mean_free_path() * least_square(scene))) {
     const double shift = std::abs(scene.medium.k_shift) / scene.k, depth = scene.domain.depth,
                  phase = std::min(1.0, scene.k * shift * depth),
                  across = std::min(1.0, std::sqrt(2 * shift) * depth / scene.domain.width);
     k_shift = 2 * shift;
-    guided = scene.domain.kind == Domain::Kind::box ? 0.35 * phase * across : 0;
+    const bool refracted = scene.index && !scene.index->is_around(),
+               guides = scene.domain.kind == Domain::Kind::box && !refracted;
+    guided = guides ? 0.35 * phase * across : 0;
     const double packing = scene.medium.packing_fraction;
     correlations = scene.medium.structure.independent() ? packing : packing * packing;
     const double size = scene.scatterer.is_disk() ? scene.k * scene.scatterer.radius : 0;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "core/run/interrupt.h"
@@ -102,6 +103,15 @@ std::vector<C> moments(const C& rate, int count) {
   return moment;
 }
 
+/// A layer or some of them by what they do to radiance from above and below, rows times these; what
+/// leaves of lights and, turned round, of views; and what views collect.
+struct Sheet {
+  Matrix top, bottom;  ///< reflected
+  Matrix down, up;     ///< transmitted
+  BothWays<Rows> lights, views;
+  Rows collected;
+};
+
 /// A layer by what leaves it. Of equal radiance from above and below 1 - `equal` comes back, of
 /// opposite radiance `opposite` - 1: both small for a thin layer, so that albedo 1 balances to
 /// rounding of it; `transmitted` follows from them, and in the deep, where it is small, from
@@ -118,6 +128,8 @@ class Layer {
   Layer(const Operator& medium, RealOf<Number> depth, const Waves& lights, const Waves& views);
   /// Puts another one on top.
   void double_depth();
+  Sheet sheet(const std::vector<Complex>& light_factors,
+              const std::vector<Complex>& view_factors) const;
   LayerResponseOf<Number> response() const {
     return {of_lights(leaves_.up), of_lights(leaves_.down), collected_};
   }
@@ -265,6 +277,53 @@ void Layer<Number>::double_depth() {
   depth_ = 2.0 * depth_;
 }
 
+template <>
+Sheet Layer<double>::sheet(const std::vector<Complex>& light_factors,
+                           const std::vector<Complex>& view_factors) const {
+  const auto ways = [&](const std::vector<Complex>& factors, const auto& of) {
+    return BothWays<Rows>{scaled(factors, of(leaves_.down)), scaled(factors, of(leaves_.up))};
+  };
+  Rows collected = scaled(view_factors, collected_);
+  for (Eigen::Index light = 0; light < lights_; ++light)
+    collected.col(light) *= light_factors[static_cast<std::size_t>(light)];
+  return {reflected(),
+          reflected(),
+          transmitted_,
+          transmitted_,
+          ways(light_factors, [this](const Rows& rows) { return of_lights(rows); }),
+          ways(view_factors, [this](const Rows& rows) { return of_views(rows); }),
+          collected};
+}
+
+/// One above the other. even: rows whose sign is not turned.
+Sheet stacked(const Sheet& above, const Sheet& below, Eigen::Index even) {
+  const Matrix one = identity_like(above.top);
+  const FactorsOf<Matrix> of_down(Matrix(one - product(below.top, above.bottom))),
+      of_up(Matrix(one - product(above.bottom, below.top)));
+  const auto between = [&](const BothWays<Rows>& upper, const BothWays<Rows>& lower) {
+    return BothWays<Rows>{of_down.after(upper.down + product(lower.up, above.bottom)),
+                          of_up.after(lower.up + product(upper.down, below.top))};
+  };
+  const auto leaving = [&](const BothWays<Rows>& upper, const BothWays<Rows>& lower,
+                           const BothWays<Rows>& middle) {
+    return BothWays<Rows>{lower.down + product(middle.down, below.down),
+                          upper.up + product(middle.up, above.up)};
+  };
+  const auto contracted = [&](Rows views, const Rows& lights) {
+    views.rightCols(views.cols() - even) = -views.rightCols(views.cols() - even);
+    return product_transposed(views, lights);
+  };
+  const auto lights = between(above.lights, below.lights);
+  return {above.top + product(above.down, of_down.before(product(below.top, above.up))),
+          below.bottom + product(below.up, of_up.before(product(above.bottom, below.down))),
+          product(above.down, of_down.before(below.down)),
+          product(below.up, of_up.before(above.up)),
+          leaving(above.lights, below.lights, lights),
+          leaving(above.views, below.views, between(above.views, below.views)),
+          above.collected + below.collected + contracted(above.views.down, lights.up) +
+              contracted(below.views.up, lights.down)};
+}
+
 template <typename Number>
 double fastest_rate(const TransportOperatorOf<Number>& medium, const PairWavesOf<Number>& waves) {
   double rate = medium.fastest;
@@ -275,10 +334,11 @@ double fastest_rate(const TransportOperatorOf<Number>& medium, const PairWavesOf
 
 }  // namespace
 
+namespace {
+
 template <typename Number>
-LayerResponseOf<Number> layer_response(const TransportOperatorOf<Number>& medium,
-                                       RealOf<Number> depth, const PairWavesOf<Number>& lights,
-                                       const PairWavesOf<Number>& views) {
+Layer<Number> doubled(const TransportOperatorOf<Number>& medium, RealOf<Number> depth,
+                      const PairWavesOf<Number>& lights, const PairWavesOf<Number>& views) {
   const double rate = std::max(fastest_rate(medium, lights), fastest_rate(medium, views));
   const int doublings =
       std::max(0, static_cast<int>(std::ceil(std::log2(value_of(depth) * rate / 2))));
@@ -287,7 +347,26 @@ LayerResponseOf<Number> layer_response(const TransportOperatorOf<Number>& medium
     stop_if_interrupted();
     layer.double_depth();
   }
-  return layer.response();
+  return layer;
+}
+
+}  // namespace
+
+template <typename Number>
+LayerResponseOf<Number> layer_response(const TransportOperatorOf<Number>& medium,
+                                       RealOf<Number> depth, const PairWavesOf<Number>& lights,
+                                       const PairWavesOf<Number>& views) {
+  return doubled(medium, depth, lights, views).response();
+}
+
+Rows stack_response(const std::vector<StackedLayer>& layers) {
+  std::optional<Sheet> all;
+  for (const StackedLayer& one : layers) {
+    const Sheet sheet = doubled(one.medium, one.depth, one.lights, one.views)
+                            .sheet(one.light_factors, one.view_factors);
+    all = all ? stacked(*all, sheet, one.medium.even) : sheet;
+  }
+  return all->collected;
 }
 
 template LayerResponse layer_response(const TransportOperator&, double, const PairWaves&,

@@ -51,4 +51,16 @@ LayerResponseOf<Number> layer_response(const TransportOperatorOf<Number>& medium
                                        RealOf<Number> depth, const PairWavesOf<Number>& lights,
                                        const PairWavesOf<Number>& views);
 
+/// One of several layers on the same ordinates, with what those above and below leave of its
+/// lights and views where they enter it.
+struct StackedLayer {
+  TransportOperator medium;
+  double depth;
+  PairWaves lights, views;
+  std::vector<Complex> light_factors, view_factors;
+};
+
+/// What views collect of layers, from the top down, [view][light]: by the star product.
+Rows stack_response(const std::vector<StackedLayer>& layers);
+
 }  // namespace flatspeckle::mc

@@ -13,6 +13,7 @@
 #include "mc/ends/profile_flight.h"
 #include "mc/ends/varying_scattering.h"
 #include "mc/walk/first_scatterer.h"
+#include "mc/walk/graded_first.h"
 #include "mc/walk/importance.h"
 #include "mc/walk/plan.h"
 
@@ -67,7 +68,7 @@ class PathWalk {
         profile_(scene.profile.get()),
         scattering_(scattering),
         importance_(scene),
-        first_(scene, weighted ? importance_.rise() : 0),
+        first_(make_first(scene)),
         expected_view_(scene, view_ends(scene)),
         tally_(tally) {}
 
@@ -80,8 +81,12 @@ class PathWalk {
 
   template <typename Scorer>
   void walk(RandomStream& random, Scorer& scorer) {
-    const auto [x, light] = first_.sample(random);
-    const Direction arrival = light;
+    const auto first = first_.sample(random);
+    if constexpr (bends<Scattering>) {
+      if (!first.hit) return;
+    }
+    const Vec2 x = first.x;
+    const Direction arrival = first.arrival;
     if constexpr (varies<Scattering>) {
       if (mu_s(x) == 0) return;
     }
@@ -93,7 +98,8 @@ class PathWalk {
     const auto [length, weight] = first_flight(x, path_.start, random);
     Tally tally = tally_;
     tally.flight(x, path_.start, length);
-    follow({x + length * path_.start, path_.start, weight, 1, tally}, random, scorer);
+    const auto [end, w] = landed(x, path_.start, length);
+    follow({end, w, weight, 1, tally}, random, scorer);
     while (!waiting_.empty()) {
       Walker walker = waiting_.back();
       if (--waiting_.back().copies == 0) waiting_.pop_back();
@@ -102,6 +108,15 @@ class PathWalk {
   }
 
  private:
+  using First = std::conditional_t<bends<Scattering>, GradedFirst, FirstScatterer>;
+
+  First make_first(const Scene& scene) const {
+    if constexpr (bends<Scattering>)
+      return First(scene, scattering_);
+    else
+      return First(scene, weighted ? importance_.rise() : 0);
+  }
+
   /// Weights in units of mu_s^2 / mu_t, that of B = 2.
   struct Walker {
     Vec2 x;
@@ -124,6 +139,10 @@ class PathWalk {
   /// Its length and its weight. It stays inside: else most walks of a thin medium would find
   /// nothing.
   std::pair<double, double> first_flight(Vec2 x, Vec2 w, RandomStream& random) const {
+    if constexpr (bends<Scattering>) {
+      const grin::BoundedFlight flight{medium_.mu_t, scattering_.medium().inside(x, w)};
+      return {flight.sample(random.uniform()), flight.probability()};
+    }
     const double edge = domain_.distance_to_edge(x, w);
     if constexpr (varies<Scattering>) {
       const ProfileFlight flight(*profile_, x, w, edge);
@@ -132,6 +151,16 @@ class PathWalk {
     const StretchedFlight flight{medium_.mu_t, edge, pull(x, w)};
     const double length = flight.sample(random.uniform());
     return {length, flight.weight(length)};
+  }
+
+  /// Where a flight ends, and its direction there.
+  std::pair<Vec2, Direction> landed(Vec2 x, const Direction& w, double length) const {
+    if constexpr (bends<Scattering>) {
+      const auto place = scattering_.medium().flown(x, w, length);
+      return place ? std::pair(place->x, place->w) : std::pair(x, w);
+    } else {
+      return {x + length * w, w};
+    }
   }
 
   /// From where a walker has arrived, until it leaves, dies or splits.
@@ -150,6 +179,7 @@ class PathWalk {
     constexpr std::uint64_t between_looks = 4096;
     if (++steps_ % between_looks == 0) stop_if_interrupted();
     const Direction w = local(scattering_, walker.x).sample(walker.arrival, random);
+    if constexpr (bends<Scattering>) return fly_bent(walker, w, random);
     const double edge = domain_.distance_to_edge(walker.x, w),
                  flight = sample_flight(walker, w, edge, random);
     if (flight >= edge) return false;
@@ -157,6 +187,17 @@ class PathWalk {
     walker.tally.flight(walker.x, w, flight);
     walker.x = walker.x + flight * w;
     walker.arrival = w;
+    return true;
+  }
+
+  bool fly_bent(Walker& walker, Vec2 w, RandomStream& random) const {
+    const double flight = grin::sample_free_flight(medium_.mu_t, random.uniform());
+    const auto place = scattering_.medium().flown(walker.x, w, flight);
+    if (!place) return false;
+    walker.tally.scattering(walker.x, walker.arrival, w);
+    walker.tally.flight(walker.x, w, flight);
+    walker.x = place->x;
+    walker.arrival = place->w;
     return true;
   }
 
@@ -275,7 +316,7 @@ class PathWalk {
   const MediumProfile* profile_;  ///< of a medium that varies
   const Scattering& scattering_;
   DepthImportance importance_;
-  FirstScatterer first_;
+  First first_;
   ExpectedContribution expected_view_;
   std::vector<Walker> waiting_;
   [[no_unique_address]] Tally tally_;

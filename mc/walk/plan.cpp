@@ -67,7 +67,8 @@ Plan make_plan(const Scene& scene, ReversedPaths reversed) {
   const auto& request = scene.request;
   Plan plan;
   plan.domain = scene.domain.kind;
-  plan.phase = scene.profile                 ? Plan::Phase::varying
+  plan.phase = scene.index                   ? Plan::Phase::graded
+               : scene.profile               ? Plan::Phase::varying
                : scene.medium.dimension == 3 ? Plan::Phase::space
                                              : phase_of(scene.scatterer);
   plan.reversed = reversed == ReversedPaths::yes || (reversed == ReversedPaths::automatic &&
@@ -78,7 +79,8 @@ Plan make_plan(const Scene& scene, ReversedPaths reversed) {
   plan.phases = plan.reversed || request.kind != CovarianceRequest::Kind::intensity;
   plan.weighted = scene.medium.albedo < 1 - 1e-12 || loses_by_the_sides(scene);
   constexpr std::size_t few = 20000;  // entries; a millisecond each at the most
-  plan.sampled_single = scene.profile || plan.near || plan.rank_k || request.entries.size() > few;
+  plan.sampled_single =
+      scene.index || scene.profile || plan.near || plan.rank_k || request.entries.size() > few;
   plan.paths_per_batch = paths_per_batch(scene, plan);
   return plan;
 }
@@ -121,6 +123,9 @@ std::string Plan::describe() const {
       break;
     case Phase::varying:
       text << "scattering that varies";
+      break;
+    case Phase::graded:
+      text << "curved rays";
       break;
   }
   text << "; " << (weighted ? "walkers split and play roulette" : "walkers of equal weight") << "; "

@@ -14,7 +14,7 @@ enum class ReversedPaths { automatic, yes, no };
 /// What a scene asks of the estimator, derived before the first batch. Each choice picks a kernel
 /// that has no code for what is left out.
 struct Plan {
-  enum class Phase { isotropic, henyey_greenstein, tabulated, space, varying };
+  enum class Phase { isotropic, henyey_greenstein, tabulated, space, varying, graded };
   Domain::Kind domain = Domain::Kind::box;
   Phase phase = Phase::isotropic;
   bool phases = true;            ///< false: magnitudes alone, which is all that intensities need

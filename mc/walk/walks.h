@@ -7,8 +7,12 @@
 #include <span>
 #include <type_traits>
 
+#include "core/error.h"
+#include "flatland/scene/index_fields.h"
 #include "flatland/scene/scene.h"
 #include "mc/ends/space_scattering.h"
+#include "mc/graded/graded_ends.h"
+#include "mc/graded/graded_scattering.h"
 #include "mc/walk/path_walk.h"
 #include "mc/walk/plan.h"
 
@@ -38,6 +42,7 @@ void with_scattering(const Scene& scene, Plan::Phase phase, F f) {
       return f(TabulatedScattering(scene.medium, scene.k));
     case Plan::Phase::space:
     case Plan::Phase::varying:
+    case Plan::Phase::graded:
       assert(false);
   }
 }
@@ -55,10 +60,22 @@ inline VaryingScattering varying_scattering(const Scene& scene) {
   return {*scene.profile, std::move(forms)};
 }
 
+/// Of a medium whose index varies.
+inline GradedScattering graded_scattering(const Scene& scene) {
+  std::vector<GradedScattering> made;
+  const auto medium = graded_medium(scene);
+  check_graded_ends(scene, *medium);
+  with_scattering(scene, phase_of(scene.scatterer), [&](const auto& scattering) {
+    made.emplace_back(AnyScattering(scattering), medium);
+  });
+  return made.front();
+}
+
 /// The same of any scene.
 template <typename F>
 void with_any_scattering(const Scene& scene, Plan::Phase phase, F f) {
   if (phase == Plan::Phase::varying) return f(varying_scattering(scene));
+  if (phase == Plan::Phase::graded) return f(graded_scattering(scene));
   if (phase == Plan::Phase::space) return f(SpaceScattering(scene.medium.space_phase));
   with_scattering(scene, phase, f);
 }
@@ -98,7 +115,7 @@ class Walks {
 ///   Sums                            what a batch adds to
 ///   tally(scene)                    what every path starts with
 ///   scorer<reversed, phases>(scene, scattering, sums)
-/// and only_varying, if it is of media that vary alone.
+/// and only_varying, if it is of media that vary alone, and bent, if it knows curved flights.
 template <typename Kind>
 auto walks(const Kind& kind, const Scene& scene, const Plan& plan, std::uint64_t seed) {
   using Sums = typename Kind::Sums;
@@ -112,12 +129,26 @@ auto walks(const Kind& kind, const Scene& scene, const Plan& plan, std::uint64_t
     batches = [=](std::uint64_t number, Sums sums) { shared->batch(seed, number, sums); };
   };
   with_any_scattering(scene, plan.phase, [&]<typename Scattering>(const Scattering& scattering) {
-    if constexpr (varies<Scattering> || !requires { Kind::only_varying; })
-      with_flag(plan.weighted, [&](auto weighted) {
-        if (plan.reversed) return choose(scattering, weighted, std::true_type{}, std::true_type{});
-        with_flag(plan.phases,
-                  [&](auto phases) { choose(scattering, weighted, std::false_type{}, phases); });
-      });
+    constexpr bool fits = bends<Scattering> ? requires {
+      Kind::bent;
+    }
+                                            : varies<Scattering> || !requires {
+                                              Kind::only_varying;
+                                            };
+                                            if constexpr (!fits)
+                                              refuse_graded(
+                                                  scene,
+                                                  "this; take covariances, fields or validate");
+                                            else
+                                              with_flag(plan.weighted, [&](auto weighted) {
+                                                if (plan.reversed)
+                                                  return choose(scattering, weighted,
+                                                                std::true_type{}, std::true_type{});
+                                                with_flag(plan.phases, [&](auto phases) {
+                                                  choose(scattering, weighted, std::false_type{},
+                                                         phases);
+                                                });
+                                              });
   });
   return batches;
 }

@@ -81,7 +81,7 @@ class Refused(RefusingTest):
         self.check(["amplitude"], "x,z,radius\n0,0,1\n")
         self.check(["box"], domain="slab", width=None)
         self.check(["count"], density=None, count=31)
-        self.check(["points alone"], method="wave", scatterer="tm", radius=0.2)
+        self.check(["equilibrium"], method="wave", scatterer="tm", radius=0.2, placement="equilibrium")
 
     def test_cells(self):
         for density in (np.full((2, 2), -1.0), np.zeros((2, 2)), np.ones(3), np.full((2, 2), np.nan)):

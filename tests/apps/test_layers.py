@@ -26,6 +26,30 @@ class Layers(ProgramTest):
             self.assertTrue(np.all(np.abs(mc[()] - exact[()]) < allowed))
             self.assertTrue(np.all(error < 0.03 * exact[()]))
 
+    def test_layers_of_disks_agree_with_exact_placements(self):
+        self.write("layers.csv", "thickness,density,radius\n3,0.1,0.2\n3,0.4,0.1\n4,0.2,0.2\n")
+        self.call("validate", **BOX, scatterer="tm", index=1.3, view_angles=[0.6, 1, 2, 2.6], samples=40000,
+                  wave_samples=3000, wave_tolerance=1e-3, out="result.h5")
+        with h5py.File(self.folder / "result.h5") as file:
+            mc, exact = file["mc/intensity"], file["wave/intensity"]
+            error = np.hypot(file["mc/intensity_error"], file["wave/intensity_error"])
+            allowed = 4 * error + file.attrs["bias_allowance"] * exact[()]
+            self.assertTrue(np.all(np.abs(mc[()] - exact[()]) < allowed))
+            self.assertTrue(np.all(error < 0.05 * exact[()]))
+
+    def test_transport_agrees_with_paths_and_is_swept(self):
+        self.write("layers.csv", TISSUE)
+        slab = {**SLAB, "samples": 20000, "light_angles": 0.2, "view_angles": [0.1, 0.9, 2, 2.9]}
+        self.call("validate", **slab, tolerance=1e-3, out="result.h5")
+        with h5py.File(self.folder / "result.h5") as file:
+            mc, exact = file["mc/intensity"][()], file["transport/intensity"][()]
+            self.assertTrue(np.all(np.abs(mc - exact) < 4 * file["mc/intensity_error"][()] + 1e-3 * exact))
+        self.write("layers.csv", "thickness,optical_depth\n20,2\n10,0.5\n")
+        self.call("sweep", layers="layers.csv", method="transport", g=[0, 0.5], tilts=[0, 0.002, 0.01], tolerance=1e-3,
+                  out="sweep.h5")
+        with h5py.File(self.folder / "sweep.h5") as file:
+            self.assertEqual(file["field_correlation"].size, 6)
+
     def test_what_is_in_the_file(self):
         self.write("layers.csv", TISSUE)
         self.call("flux", **SLAB, out="result.h5")
@@ -74,11 +98,12 @@ class Refused(RefusingTest):
 
     def test_what_layers_have_not(self):
         self.check(["dimension"], dimension=3)
-        self.check(["layers", "Monte Carlo"], method="transport", samples=None)
-        self.check(["layers", "Monte Carlo"], command="validate")
+        self.check(["layers", "delays", "take mc"], method="transport", samples=None, delays=[0, 1])
+        self.check(["layers", "gradient", "take mc"], method="transport", samples=None, gradient=True)
+        self.check(["layers", "method = mc"], command="flux", method="transport", samples=None)
         points = "thickness,density\n3,0.05\n3,0.25\n"
         disks = {**BOX, "scatterer": "tm", "radius": 0.2}
-        self.check(["points"], points, method="wave", **disks)
+        self.check(["equilibrium"], points, method="wave", placement="equilibrium", **disks)
         self.check(["structure"], points, structure="hard_disks", **disks)
         self.check(["count"], points, **{**BOX, "scatterer": "point", "count": 5})
 

@@ -41,6 +41,7 @@ KINDS = {
     "frequencies": ("covariance", {**SLAB, "frequency_shifts": [0, 1e-4, 3e-4]}),
     "exposed": ("covariance", {**SLAB, "view_angles": 2.5, "delays": [0, 0.1, 0.3, 1, 3, 10, 30], "exposures": [5, 30]}),
     "layers": ("covariance", {"domain": "slab", "layers": "rows.csv", "scatterer": "hg", **TILTS, **FEW}),
+    "graded": ("covariance", {**SLAB, "method": "mc", "index_field": "linear", "index_slope": [0, 1e-4], **TILTS, **FEW}),
     "both": ("validate", {**BOX, "view_angles": [0.1, 0.3], "wave_samples": 40, **FEW}),
     "fields": ("field", {**BOX, "view_angles": [0.1, 0.2, 0.3], "light_angles": [0, 0.01, 0.2],
                          "fields": 4, "threads": 1}),
@@ -62,9 +63,9 @@ KINDS = {
                        "map": [-2, 2, -2, 2], "map_pixels": [6, 5]}),
 }
 # What each script draws.
-OWN = {"memory_effect": {"grid", "points", "curve", "moves", "layers"}, "memory_range": {"grid", "points"},
+OWN = {"memory_effect": {"grid", "points", "curve", "moves", "layers", "graded"}, "memory_range": {"grid", "points"},
        "range_map": {"grid"}, "convergence": {"grid", "points"}, "tilt_shift": {"map"},
-       "dws": {"delays", "exposed"}, "contrast": {"exposed"}, "layer_range": {"layers"},
+       "dws": {"delays", "exposed"}, "contrast": {"exposed"}, "layer_range": {"layers"}, "graded_range": {"graded"},
        "frequency": {"frequencies"}, "validation": {"both"}, "speckle_field": {"fields"},
        "image": {"frames"}, "fit": {"fitted"}, "fit_plan": {"planned"}, "rays": {"rays"},
        "design": {"lens"}, "render": {"picture", "pulse"}, "render_time": {"pulse"},

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include <omp.h>
@@ -13,6 +14,7 @@
 #include "core/numbers/random.h"
 #include "flatland/scene/frequency_shift.h"
 #include "wave_solver/equations/system_memory.h"
+#include "wave_solver/graded/graded_fields.h"
 #include "wave_solver/solutions/wave_solution.h"
 
 namespace flatspeckle::wave {
@@ -40,14 +42,18 @@ struct Fields {
   Scene scene;
   FieldPlan plan;
   SolveOptions options;
+  std::optional<GradedFields> graded;  // where the index varies
 
   Fields(const Scene& of, double tolerance)
-      : scene(of), plan(field_plan(of, tolerance)), options(batch_options(of, tolerance)) {}
+      : scene(of), plan(field_plan(of, tolerance)), options(batch_options(of, tolerance)) {
+    if (scene.index && scene.index->is_around()) graded = graded_fields(scene);
+  }
 
   // In every channel of the request.
   std::vector<Complex> of(const Placement& placement) const {
     const CovarianceRequest& request = scene.request;
-    const auto fields = scattered_fields(placement, scene.k, plan, options);
+    const auto fields =
+        graded ? graded->of(placement) : scattered_fields(placement, scene.k, plan, options);
     std::vector<Complex> channels;
     channels.reserve(request.channels.size());
     for (const Channel& channel : request.channels)
@@ -141,8 +147,8 @@ void require_uncovered(const Scene& scene, const std::string& key, Vec2 point) {
 void require_solvable(const Scene& scene) {
   if (scene.domain.kind == Domain::Kind::slab)
     throw InputError("domain", "slab", "the wave solver needs a box");
-  if (scene.profile && scene.scatterer.is_disk())
-    throw InputError("scatterer: of a medium that varies the exact solver takes points alone");
+  if (scene.profile && scene.placement.kind == PlacementRule::Kind::equilibrium)
+    throw InputError("placement", "equilibrium", "is of media that do not vary: take hard_disk");
   if (scene.scatterer.is_bulk())
     throw InputError("scatterer", "hg", "the wave solver needs point, soft, hard, tm or te");
   for (const View& view : scene.request.views)

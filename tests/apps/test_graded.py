@@ -1,0 +1,118 @@
+"""An index that varies around the scatterers: exact placements, Monte Carlo, and what is refused."""
+
+import unittest
+
+import h5py
+import numpy as np
+
+from program import ProgramTest
+from refusing import RefusingTest
+
+SOURCES = "x,z\n0,-4\n0.5,-4\n"
+SENSORS = "x,z\n0,14\n0.5,14\n8,14\n0,-4\n"
+BOX = {"domain": "box", "width": 20, "depth": 10, "density": 0.155, "near_sources": "sources.csv",
+       "near_sensors": "sensors.csv"}
+LINEAR = {"index_field": "linear", "index_slope": [0, 0.05]}
+
+
+class Graded(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        self.write("sources.csv", SOURCES)
+        self.write("sensors.csv", SENSORS)
+
+    def check_agreement(self, samples=40000, wave_samples=1500, **keys):
+        self.call("validate", **{**BOX, **keys}, samples=samples, wave_samples=wave_samples, out="result.h5")
+        with h5py.File(self.folder / "result.h5") as file:
+            mc, exact = file["mc/intensity"][()], file["wave/intensity"][()]
+            error = np.hypot(file["mc/intensity_error"], file["wave/intensity_error"])
+            allowed = 4 * error + file.attrs["bias_allowance"] * exact
+            self.assertTrue(np.all(np.abs(mc - exact) < allowed), (mc, exact, error))
+            self.assertTrue(np.all(error < 0.06 * exact))
+
+    def test_a_linear_field_agrees_with_exact_placements(self):
+        self.check_agreement(**LINEAR)
+
+    def test_a_guide_agrees_with_exact_placements(self):
+        self.check_agreement(index_field="parabolic", index_alpha=0.06)
+
+    def test_hardly_any_field_is_none(self):
+        found = []
+        for keys in ({}, {"index_field": "linear", "index_slope": [0, 1e-9]}):
+            self.call("covariance", **BOX, **keys, covariance="full", samples=4000, out="result.h5")
+            with h5py.File(self.folder / "result.h5") as file:
+                found.append(file["covariance"][()])
+        np.testing.assert_allclose(found[0], found[1], atol=1e-5 * np.abs(found[0]).max())
+
+    def test_solve_knows_what_an_ensemble_is_made_of(self):
+        self.write("one.csv", "x,z\n1,5\n")
+        self.call("solve", **LINEAR, placement="one.csv", near_sources="sources.csv",
+                  near_sensors="sensors.csv", out="one.h5")
+        with h5py.File(self.folder / "one.h5") as file:
+            one = file["near_source_field"][()]
+        self.assertEqual(one.shape, (2, 4))
+        # |4 i G G'|, with 1/sqrt(8 pi k J) for |G|: leading order in 1/(k distance).
+        def size(p, q):
+            p, q = np.array(p, float), np.array(q, float)
+            mean, way = (2 + 0.05 * (p[1] + q[1])) / 2, (q - p) @ (q - p)
+            sigma = np.sqrt(2 * way / (mean + np.sqrt(mean**2 - 0.05**2 * way / 4)))
+            return 1 / np.sqrt(8 * np.pi * 2 * np.pi * sigma * (way / sigma**2 - (0.025 * sigma)**2 / 4))
+        expected = 4 * size((0, -4), (1, 5)) * size((1, 5), (8, 14))
+        self.assertAlmostEqual(abs(one[0, 2]) / expected, 1, delta=0.003)
+
+    def test_sound_and_blobs(self):
+        self.write("blobs.csv", "x,z,height,width\n2,4,0.05,3\n")
+        for keys in ({"index_field": "blobs", "index_blobs": "blobs.csv"},
+                     {"index_field": "ultrasound", "sound_amplitude": 0.01, "sound_wavenumber": 0.3}):
+            self.call("covariance", **BOX, **keys, samples=2000, out="result.h5")
+            with h5py.File(self.folder / "result.h5") as file:
+                self.assertTrue(np.all(file["intensity"][()] > 0))
+
+    def test_the_mean_field_refracts(self):
+        self.call("covariance", domain="box", width=5, depth=10, scatterer="tm", radius=0.1, index=1.5, count=33,
+                  index_field="mean_field", view_angles=[0.4, 2], samples=2000, out="result.h5")
+        with h5py.File(self.folder / "result.h5") as file:
+            self.assertTrue(np.all(file["intensity"][()] > 0))
+
+
+class Refused(RefusingTest):
+    def check(self, words, command="covariance", **changes):
+        self.write("sources.csv", SOURCES)
+        self.write("sensors.csv", SENSORS)
+        with self.subTest(**changes):
+            self.assert_refused(words, command, **{**BOX, "samples": 400, **changes})
+
+    def test_keys(self):
+        self.check(["index_slope"], index_field="linear")
+        self.check(["index_alpha"], index_field="parabolic")
+        self.check(["index_alpha"], **LINEAR, index_alpha=0.1)
+        self.check(["index_slope"], index_slope=[0, 0.05])
+        self.check(["index_field", "must be one of"], index_field="wavy")
+        self.check(["n^2 = -"], index_field="linear", index_slope=[0, 0.5])
+        self.check(["no such file"], index_field="blobs", index_blobs="none.csv")
+        self.write("blobs.csv", "x,z,height,width\n0,0,0.1,0\n")
+        self.check(["width = 0", "positive"], index_field="blobs", index_blobs="blobs.csv")
+
+    def test_what_graded_media_have_not(self):
+        self.check(["phase functions"], **LINEAR, scatterer="tm", radius=0.1)
+        self.check(["no beams"], **LINEAR, near_sources=None, beam_waist=3)
+        self.check(["near_sources alone"], **LINEAR, near_sources=None, light_angles=0, method="wave", samples=None,
+                   wave_samples=10)
+        self.check(["exact solver"], index_field="blobs", index_blobs=self.blobs(), method="wave",
+                   samples=None, wave_samples=10)
+        self.check(["index_field", "slab"], domain="slab", width=None, index_field="parabolic", index_alpha=0.05,
+                   near_sources=None, near_sensors=None)
+        self.check(["covariances"], **LINEAR, near_sources=None, near_sensors=None, delays=[0, 1])
+
+    def test_caustics_are_told(self):
+        self.check(["caustic"], index_field="parabolic", index_alpha=0.5, axis_index=6)
+        self.check(["turns round at z"], domain="slab", width=None, index_field="linear",
+                   index_slope=[0, -0.05], light_angles=1.2, near_sources=None, near_sensors=None)
+
+    def blobs(self):
+        self.write("blobs.csv", "x,z,height,width\n2,4,0.05,3\n")
+        return "blobs.csv"
+
+
+if __name__ == "__main__":
+    unittest.main()

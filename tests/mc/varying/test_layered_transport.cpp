@@ -1,0 +1,86 @@
+// Layers by transport: divided slabs against undivided ones, different ones against Monte Carlo.
+#include <cmath>
+#include <memory>
+
+#include "core/error.h"
+#include "flatland/media/layers.h"
+#include "mc/slab/layered_covariance.h"
+#include "mc/slab/slab_covariance.h"
+#include "tests/mc/estimates.h"
+
+namespace flatspeckle::mc {
+
+namespace {
+
+using tests::pi;
+
+struct Layer {
+  double thickness, optical_depth, g, albedo;
+};
+
+Scene layered(const std::vector<Layer>& layers, const CovarianceRequest& request) {
+  std::vector<Material> materials;
+  std::vector<double> thicknesses;
+  double depth = 0;
+  for (const auto& [thickness, optical_depth, g, albedo] : layers) {
+    const Scene alone = tests::hg_slab(thickness, {thickness / optical_depth, g, albedo}, request);
+    materials.push_back({alone.scatterer, alone.medium});
+    thicknesses.push_back(thickness);
+    depth += thickness;
+  }
+  Scene scene = tests::hg_slab(depth, {1, 0, 1}, request);
+  scene.profile = std::make_shared<const Layers>(materials, thicknesses);
+  scene.medium = scene.profile->mean();
+  return scene;
+}
+
+/// Intensities and a tilt, in transmission, reflection and near backscattering.
+CovarianceRequest some_pairs() {
+  const double light = 0.3, q = 0.004;
+  const auto tilted = [&](double angle) {
+    const double turned = std::asin(std::sin(angle) + q);
+    return std::cos(angle) > 0 ? turned : pi - turned;
+  };
+  std::vector<AnglePair> pairs;
+  for (const double view : {0.1, -0.7, pi - 0.5, pi + light + 1e-3}) {
+    pairs.push_back({light, view, light, view});
+    pairs.push_back({light, view, tilted(light), tilted(view)});
+  }
+  return pairs_request(pairs);
+}
+
+}  // namespace
+
+TEST_CASE("a slab cut into layers is the slab") {
+  for (const auto& [g, albedo] : {std::pair{0.0, 1.0}, {0.7, 0.95}}) {
+    const Scene whole = tests::hg_slab(60, {10, g, albedo}, some_pairs());
+    const Scene cut =
+        layered({{7, 0.7, g, albedo}, {33, 3.3, g, albedo}, {20, 2, g, albedo}}, some_pairs());
+    for (const bool reversed : {false, true}) {
+      const auto expected = slab_covariance(whole, reversed, {1e-6}).value,
+                 found = layered_covariance(cut, reversed, {1e-5}).value;
+      for (std::size_t e = 0; e < found.size(); ++e) {
+        CAPTURE(e);
+        CHECK(std::abs(found[e] - expected[e]) < 5e-5 * std::abs(expected[e / 2 * 2]));
+      }
+    }
+  }
+}
+
+TEST_CASE("different layers, absorbing ones among them, agree with paths") {
+  const Scene scene = layered({{20, 2, 0.8, 0.99}, {30, 0.5, 0, 0}, {10, 1, 0, 1}}, some_pairs());
+  const auto expected = layered_covariance(scene, true, {1e-4}).value;
+  const auto found = tests::run(scene, ReversedPaths::yes, 60000, 3).entries();
+  for (std::size_t e = 0; e < expected.size(); ++e) {
+    CAPTURE(e);
+    CHECK_WITHIN_4_SIGMA(found.value[e], found.error[e], expected[e], 2e-4 * std::abs(expected[e]));
+    CHECK(found.error[e] < 0.05 * std::abs(expected[e / 2 * 2]));
+  }
+}
+
+TEST_CASE("near ends and density maps are refused") {
+  const Scene near = layered({{20, 2, 0.8, 1}}, intensity_request({0.0}, {near_sensor({0, 80})}));
+  CHECK_THROWS_AS(layered_covariance_job(near, false, {1e-4}), InputError);
+}
+
+}  // namespace flatspeckle::mc
