@@ -37,14 +37,14 @@ Complex hankel_order_0(double x) {
   return {::j0(x), ::y0(x)};
 }
 
-Complex inner(const std::vector<Complex>& a, const std::vector<Complex>& b) {
+Complex hermitian_product(const std::vector<Complex>& a, const std::vector<Complex>& b) {
   Complex sum = 0;
   for (std::size_t i = 0; i < a.size(); ++i) sum += std::conj(a[i]) * b[i];
   return sum;
 }
 
 double norm_of(const std::vector<Complex>& a) {
-  return std::sqrt(inner(a, a).real());
+  return std::sqrt(hermitian_product(a, a).real());
 }
 
 /// BiCGSTAB (van der Vorst 1992) for A x = b from x = b.
@@ -56,20 +56,20 @@ std::vector<Complex> solved_by_iteration(const Apply& apply, const std::vector<C
   for (std::size_t i = 0; i < b.size(); ++i) r[i] = b[i] - r[i];
   const std::vector<Complex> shadow = r;
   std::vector<Complex> p = r;
-  Complex rho = inner(shadow, r);
+  Complex rho = hermitian_product(shadow, r);
   const double size = norm_of(b);
   for (int step = 0; step < most_steps; ++step) {
     if (norm_of(r) <= tolerance * size) return x;
     const auto v = apply(p);
-    const Complex alpha = rho / inner(shadow, v);
+    const Complex alpha = rho / hermitian_product(shadow, v);
     for (std::size_t i = 0; i < b.size(); ++i) r[i] -= alpha * v[i];
     const auto t = apply(r);
-    const Complex omega = inner(t, r) / inner(t, t);
+    const Complex omega = hermitian_product(t, r) / hermitian_product(t, t);
     for (std::size_t i = 0; i < b.size(); ++i) {
       x[i] += alpha * p[i] + omega * r[i];
       r[i] -= omega * t[i];
     }
-    const Complex next = inner(shadow, r), beta = next / rho * alpha / omega;
+    const Complex next = hermitian_product(shadow, r), beta = next / rho * alpha / omega;
     rho = next;
     for (std::size_t i = 0; i < b.size(); ++i) p[i] = r[i] + beta * (p[i] - omega * v[i]);
   }
