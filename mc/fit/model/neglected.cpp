@@ -38,7 +38,7 @@ double turned(const Scene& scene, std::size_t entry) {
 }
 
 Part part_of(const Curve& curve, const Medium& medium, std::size_t entry, double value) {
-  if (is_flux(curve.observable)) return {};
+  if (is_flux(curve.observable) || !medium.scene.medium.has_scatterers) return {};
   const Shares shares(medium.scene);
   if (curve.observable == Observable::intensity)
     return {shares.common * value, shares.own * value, turned(medium.scene, entry)};

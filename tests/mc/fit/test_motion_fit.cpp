@@ -23,7 +23,6 @@ TEST_CASE("diffusion and mean free path follow from decays, and from contrasts")
                                  {"diffusion=0.1:10", "optical_depth=3:20"}),
               VectorXd{{1, 8}}, 0.1);
   auto contrasts = bench::exposed_slab().exact();
-  contrasts.resize(1);
   contrasts.front().curves.front().scene.optical_depth = 8;
   check_found(bench::motion_task(contrasts, {"diffusion=0.1:10", "beta=0.2:1"}),
               VectorXd{{1, bench::SyntheticSlab::beta}}, 0.1);
