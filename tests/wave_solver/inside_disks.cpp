@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <doctest/doctest.h>
+
 #include "core/error.h"
 #include "core/numbers/random.h"
 #include "multipole_oracle.h"
@@ -113,6 +115,23 @@ std::vector<RimPoint> rim_points(const Placement& placement) {
   return points;
 }
 
+/// Where two disks face each other, and close by.
+std::vector<RimPoint> gap_points(const Placement& two) {
+  constexpr double little = 1e-9;
+  std::vector<RimPoint> points;
+  for (const std::size_t disk : {0, 1}) {
+    const auto& [centre, scatterer] = two[disk];
+    const Vec2 across = two[1 - disk].position - centre;
+    const double gap = length(across) - two[0].scatterer.radius - two[1].scatterer.radius;
+    for (const double widths : {-1.0, 0.0, 0.5, 2.0}) {
+      const double turn = widths * std::sqrt(2 * gap / scatterer.radius);
+      const Vec2 to = scatterer.radius * direction(angle_of(across) + turn);
+      points.push_back({disk, centre + (1 - little) * to, centre + (1 + little) * to});
+    }
+  }
+  return points;
+}
+
 /// Relative to the largest field on any rim.
 WorstError error_of(const WaveSolution& solution, const MultipoleOracle& oracle,
                     const std::vector<RimPoint>& points) {
@@ -129,6 +148,13 @@ WorstError error_of(const WaveSolution& solution, const MultipoleOracle& oracle,
   return {off.inside / largest, off.outside / largest};
 }
 
+void add_errors(const Placement& placement, const std::vector<RimPoint>& points,
+                const std::vector<double>& tolerances, std::vector<WorstError>& worst) {
+  const MultipoleOracle oracle = oracle_of(solved(placement, 1e-12));
+  for (std::size_t i = 0; i < tolerances.size(); ++i)
+    worst[i].add(error_of(solved(placement, tolerances[i]), oracle, points), tolerances[i]);
+}
+
 }  // namespace
 
 std::vector<WorstError> worst_errors(int first, int clusters, const ClusterSize& most,
@@ -138,12 +164,27 @@ std::vector<WorstError> worst_errors(int first, int clusters, const ClusterSize&
     const Placement placement = random_cluster(number, most.disks);
     if (!is_small(placement, most.unknowns)) continue;
     --clusters;
-    const MultipoleOracle oracle = oracle_of(solved(placement, 1e-12));
-    const auto points = rim_points(placement);
-    for (std::size_t i = 0; i < tolerances.size(); ++i)
-      worst[i].add(error_of(solved(placement, tolerances[i]), oracle, points), tolerances[i]);
+    add_errors(placement, rim_points(placement), tolerances, worst);
   }
   return worst;
+}
+
+void check_gap(const std::string& kind, double ratio, double gap,
+               const std::vector<double>& tolerances) {
+  Scatterer disk = reference_scatterer(kind);
+  disk.radius = 1 / two_pi;
+  Scatterer other = disk;
+  other.radius *= ratio;
+  const double away = disk.radius + other.radius * (1 + gap);
+  const Placement two{{{0.1, -0.2}, disk}, {Vec2{0.1, -0.2} + away * direction(1.2), other}};
+  std::vector<WorstError> worst(tolerances.size());
+  add_errors(two, gap_points(two), tolerances, worst);
+  CAPTURE(ratio);
+  CAPTURE(gap);
+  for (const WorstError& error : worst) {
+    CHECK(error.inside < 1);
+    CHECK(error.outside < 1);
+  }
 }
 
 double worst_on_map(const Placement& placement, double angle, const MapGrid& grid, double tolerance,

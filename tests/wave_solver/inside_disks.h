@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <string>
 #include <vector>
 
 #include "wave_solver/maps/field_map.h"
@@ -27,6 +28,11 @@ struct ClusterSize {
 /// oracle, by tolerance. Two disks or more, index to 8, gaps from 1e-4 of the smaller radius on.
 std::vector<WorstError> worst_errors(int first, int clusters, const ClusterSize& most,
                                      const std::vector<double>& tolerances);
+
+/// Checks the same of a disk of k a = 1 and one `ratio` times as large, where they face each other
+/// across a gap given in radii of that one. kind: as reference_scatterer() has it.
+void check_gap(const std::string& kind, double ratio, double gap,
+               const std::vector<double>& tolerances);
 
 /// Of a map of penetrable disks in a plane wave, against an oracle: |u - exact|, the largest of
 /// every stride-th pixel.

@@ -1,3 +1,5 @@
+#include <string>
+
 #include <doctest/doctest.h>
 
 #include "inside_disks.h"
@@ -11,6 +13,14 @@ TEST_CASE("Fields are within the tolerance on both sides of the rims: small clus
     CAPTURE(tolerances[i]);
     CHECK(worst[i].inside < 1);
     CHECK(worst[i].outside < 1);
+  }
+}
+
+TEST_CASE("Fields in narrow gaps are within the tolerance, on both of the rims that face it") {
+  for (const std::string kind : {"D", "N", "TM15", "TE15"}) {
+    CAPTURE(kind);
+    check_gap(kind, 1, 0.1, {1e-3, 1e-6, 1e-9});
+    check_gap(kind, 0.2, 0.03, {1e-3, 1e-6, 1e-9});
   }
 }
 
