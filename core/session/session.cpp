@@ -140,6 +140,16 @@ void Session::resume() {
               << "all is done afresh\n";
 }
 
+/// What an interrupted run has done is not thrown away without a word.
+void Session::tell_unfinished() const {
+  if (!is_sealed(settings_.out)) return;
+  const ResultReader file(settings_.out);
+  if (!file.has_attribute("/", "identity") || file.attribute<bool>("/", "converged")) return;
+  if (file.attribute<std::string>("/", "identity") == identity_)
+    std::cerr << "note: " << settings_.out
+              << " holds a part of this run, which begins anew; --resume would go on with it\n";
+}
+
 /// Whether this call asks for more than the file holds, whose runs have ended.
 bool Session::extends(const ResultReader& file) const {
   return std::ranges::any_of(runs_, [&](const PlannedRun& run) {
@@ -158,6 +168,7 @@ int Session::run(std::string plan, std::vector<PlannedRun> runs, const std::stri
   const bool exists = known_.has_value();
   has_older_ = exists && !settings_.resume;
   if (exists && settings_.resume) resume();
+  if (has_older_) tell_unfinished();
   if (already_complete_) {
     std::cout << settings_.out << " is complete, and no more is asked for\n";
     return ExitStatus::done;

@@ -76,6 +76,7 @@ class Session {
 
  private:
   void resume();
+  void tell_unfinished() const;
   bool extends(const ResultReader& file) const;
   static void note_rounding(const PlannedRun& run);
   void run_one(const PlannedRun& run);

@@ -63,6 +63,8 @@ class Lights {
   Beam beam(double stratum) const { return beam_at(beam_number(stratum)); }
   Beam beam_at(std::size_t number) const;
   std::size_t beams() const { return beams_.size(); }
+  /// And nothing else, so that no path from a sensor is joined to a light or hits one.
+  bool are_beams() const { return beams_.size() == source_.size(); }
 
   /// A path arrives on the boundary at x along `direction`: calls use(EndHit) for each light there.
   template <class S, class Use>

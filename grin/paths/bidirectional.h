@@ -33,7 +33,8 @@ class Bidirectional {
   void add(double stratum) {
     std::fill(promised_.begin(), promised_.end(), JoinPromise());
     walk_from_light();
-    for_each_sensor([&] { walk_from_sensor(stratum); });
+    const bool meets_nothing = transport_.lights.are_beams() && vertices_.kept().empty();
+    if (!meets_nothing) for_each_sensor([&] { walk_from_sensor(stratum); });
   }
 
   /// Appends what the last paths promised to each sensor, and kept of it.

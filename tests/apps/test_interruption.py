@@ -124,6 +124,13 @@ class Interruption(ProgramTest):
         with h5py.File(self.folder / "run.h5") as file:
             self.assertGreater(file["state/mc/group_samples"][()].sum(), scene["samples"])
 
+    def test_that_it_begins_anew_is_said(self):
+        keys = {**LONG["mc"][1], "threads": 2, "out": "run.h5"}
+        self.interrupt(signal.SIGINT, 0.1, "covariance", **keys)
+        for noted, of in ((True, {}), (False, {}), (False, {"seed": 2})):
+            done = self.call("covariance", **{**keys, **of, "samples": 1000})
+            self.assertEqual("--resume would go on" in done.stderr, noted)
+
     def test_another_seed_may_not(self):
         keys = LONG["mc"][1]
         self.interrupt(signal.SIGINT, 0.1, "covariance", **keys, threads=2, out="run.h5")
