@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "apps/experiments/single_run.h"
+#include "core/keys/number_text.h"
 #include "core/session/identity.h"
 #include "grin/render/energy_datasets.h"
 #include "grin/render/map_datasets.h"
@@ -69,6 +70,10 @@ bool print_sensor(const grin::Sensor& sensor, const grin::SensorResult& result) 
   const auto& image = result.picture.steady;
   const std::size_t brightest = largest_of(image);
   if (result.total) print_found("total power", *result.total, "");
+  if (result.within)
+    for (std::size_t i = 0; i < result.within->radii.size(); ++i)
+      print_row(("within " + number_text(result.within->radii[i])).c_str(), result.within->power, i,
+                "");
   print_found("mean of pixels", result.mean, units);
   print_row("brightest pixel", image, brightest, units);
   const bool is_lit = image.value[brightest].real() > 0;

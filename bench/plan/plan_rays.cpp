@@ -174,6 +174,40 @@ PlanRow leapfrogs(double cpu_seconds) {
                      [&] { return flown_out(*by_leaps, ball, 0.7); }, "ray", 2e-4, cpu_seconds);
 }
 
+/// So many steps of a bundle, far from everything.
+template <class Go>
+std::vector<Complex> went_on(const RayField& field, const Go& go) {
+  RayLanes bundle{};
+  RandomStream random(1, 0, 0);
+  for (int lane = 0; lane < lanes; ++lane)
+    bundle.put(lane, start_ray(field, random_point(random).x, random_direction(random)));
+  go(bundle);
+  std::vector<Complex> values;
+  for (int lane = 0; lane < lanes; ++lane)
+    note(values, bundle.at(lane).x, bundle.at(lane).optical_path);
+  return values;
+}
+
+PlanRow one_ray_at_a_time(double cpu_seconds) {
+  constexpr int steps = 200;
+  const auto field = make_ray_field(StandingWave(0.33, 1e-3, 0, 3.4, 20), {}, true);
+  const auto one_by_one = [&](RayLanes& bundle) {
+    for (int lane = 0; lane < lanes; ++lane) {
+      RayState ray = bundle.at(lane);
+      field->advance(steps * step, steps, ray, nullptr);
+      bundle.put(lane, ray);
+    }
+  };
+  const auto in_lanes = [&](RayLanes& bundle) { field->advance_lanes(step, steps, bundle); };
+  PlanRow row{.per = "ray"};
+  compare_values(
+      row, [&] { return went_on(*field, one_by_one); }, [&] { return went_on(*field, in_lanes); },
+      1e-12, cpu_seconds);
+  row.general_s /= lanes;
+  row.special_s /= lanes;
+  return row;
+}
+
 PlanRow search_for_curves(double cpu_seconds) {
   PlanRow row{.per = "join"};
   const auto general =
@@ -195,6 +229,7 @@ std::vector<PlanCase> ray_plan_cases() {
           row("|J| of flights", "fisheye", spreading),
           row("steps", "Luneburg ball, rays in closed form", closed_forms),
           row("two forces of three a step", "weak sound, by leapfrog", leapfrogs),
+          row("waiting for a ray's last step", "sound, rays side by side", one_ray_at_a_time),
           row("kind of field at every step", "Luneburg ball", kind_of_field)};
 }
 

@@ -1,7 +1,8 @@
-// Leapfrog steps per second and thread through a Bessel mode of sound, beside the same loop with a
-// field that costs a few multiplications (the floor of arithmetic; nothing here comes from memory),
-// and with the C library's Bessel functions. Interleaved; medians. usage: bench_ray_speed [rounds]
-#include <algorithm>
+// Steps per second and thread, in millions, of each field and integrator: one ray at a time, side
+// by side in lanes, in trace() as a user runs it (which also looks for the index mismatch, asking
+// the field once more at each step's end) and in flights of light transport. The first rows' field
+// costs a few multiplications: the floor of arithmetic; nothing here comes from memory.
+// Interleaved; medians. usage: bench_ray_speed [rounds]
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -12,39 +13,22 @@
 #include "bench/measure/median.h"
 #include "core/numbers/random.h"
 #include "core/run/stopwatch.h"
-#include "grin/fields/focused_sound.h"
-#include "grin/fields/spline_field.h"
-#include "grin/fields/ultrasound.h"
-#include "grin/rays/ray_step.h"
+#include "grin/curved/curved_space.h"
+#include "grin/rays/ray_lanes.h"
+#include "grin/scene/ray_tracing.h"
 
 using namespace flatspeckle;
 using namespace flatspeckle::grin;
 
 namespace {
 
-constexpr int rays = 256, steps = 400;
-constexpr double wavenumber = 7, radius = 1, step = 0.01;  // kr rho up to about 14
+constexpr int steps = 400, rays = 16 * lanes;
+constexpr double wavenumber = 7, step = 0.005;  // kr rho up to about 14
 
-// Quartic in rho: what leapfrog itself costs.
-struct QuarticField {
-  double excess(const Vec3& x) const { return gradient(x).excess; }
-  IndexGradient gradient(const Vec3& x) const {
-    const double u = x[0] * x[0] + x[1] * x[1], slope = -0.2 + 0.02 * u;
-    return {0.33 + u * (-0.1 + 0.005 * u), Vec3(slope * x[0], slope * x[1], 0)};
-  }
-  IndexHessian hessian(const Vec3&) const { return {}; }
-};
-
-// J_0 by the C library.
-struct LibraryField {
-  double excess(const Vec3& x) const { return gradient(x).excess; }
-  IndexGradient gradient(const Vec3& x) const {
-    const double rho = std::hypot(x[0], x[1]), z = wavenumber * rho;
-    const double slope = rho > 0 ? -0.01 * wavenumber * ::j1(z) / rho : 0;
-    return {0.33 + 0.01 * ::j0(z), Vec3(slope * x[0], slope * x[1], 0)};
-  }
-  IndexHessian hessian(const Vec3&) const { return {}; }
-};
+/// What steps themselves cost.
+LinearRamp floor_of_arithmetic() {
+  return {0.33, {0.01, 0, 0}};
+}
 
 SplineField spline() {
   const FieldGrid grid{Vec3(-2, -2, -1), Vec3::Constant(0.1), {41, 41, 81}};
@@ -54,76 +38,159 @@ SplineField spline() {
   return SplineField(grid, values);
 }
 
-template <IndexField F>
-std::vector<RayState> bundle(const F& field) {
+GaussianBlobs blobs() {
+  RandomStream random(3, 0, 0);
+  std::vector<GaussianBlob> all;
+  for (int i = 0; i < 12; ++i)
+    all.push_back({{random.uniform(), random.uniform(), 2 * random.uniform()},
+                   0.02 * random.uniform(),
+                   0.3 + 0.3 * random.uniform()});
+  return GaussianBlobs(all, 0.33);
+}
+
+std::vector<RayStart> starts(int count) {
   RandomStream random(1, 1, 0);
-  std::vector<RayState> result;
-  for (int i = 0; i < rays; ++i) {
-    const Vec3 x(radius * (random.uniform() - 0.5), radius * (random.uniform() - 0.5), 0);
-    result.push_back(start_ray(field, x, {0.1 * random.uniform(), 0.1 * random.uniform(), 1}));
+  std::vector<RayStart> result;
+  for (int i = 0; i < count; ++i) {
+    const Vec3 x(random.uniform() - 0.5, random.uniform() - 0.5, 0);
+    result.push_back({x, Vec3(0.1 * random.uniform(), 0.1 * random.uniform(), 1).normalized()});
   }
   return result;
 }
 
 double sink = 0;
 
-// One ray after the other: each step waits for the one before.
-template <IndexField F>
-void one_by_one(const F& field, std::vector<RayState> bundle) {
-  for (RayState& ray : bundle) {
-    RayState here = ray;
-    for (int i = 0; i < steps; ++i) Leapfrog::step(field, here, step);
-    ray = here;
-  }
-  for (const RayState& ray : bundle) sink += ray.optical_path;
-}
-
-// A few rays in turn, so that their steps overlap.
-template <int Width, IndexField F>
-void side_by_side(const F& field, std::vector<RayState> bundle) {
-  for (int first = 0; first < rays; first += Width)
-    for (int i = 0; i < steps; ++i)
-      for (int k = 0; k < Width; ++k) Leapfrog::step(field, bundle[first + k], step);
-  for (const RayState& ray : bundle) sink += ray.optical_path;
-}
-
 struct Contestant {
-  std::string name;
-  std::function<void()> run;
-  std::vector<double> nanoseconds = {};
+  std::function<double()> steps;  ///< that it makes
+  std::vector<double> speeds = {};
 };
 
 template <IndexField F>
-void enter(std::vector<Contestant>& contest, const std::string& name, const F& field) {
-  const auto start = bundle(field);
-  contest.push_back({name + ", one ray at a time", [=] { one_by_one(field, start); }});
-  contest.push_back({name + ", 4 rays in turn", [=] { side_by_side<4>(field, start); }});
+std::vector<RayState> bundle(const F& field) {
+  std::vector<RayState> result;
+  for (const RayStart& start : starts(lanes))
+    result.push_back(start_ray(field, start.x, start.direction));
+  return result;
+}
+
+template <class Integrator, IndexField F>
+double one_by_one(const F& field) {
+  for (RayState ray : bundle(field)) {
+    for (int i = 0; i < steps; ++i) Integrator::step(field, ray, step);
+    sink += ray.optical_path;
+  }
+  return lanes * steps;
+}
+
+template <class Integrator, LaneField F>
+double side_by_side(const F& field) {
+  RayLanes all{};
+  const auto from = bundle(field);
+  for (int lane = 0; lane < lanes; ++lane) all.put(lane, from[static_cast<std::size_t>(lane)]);
+  make_steps<false>(Integrator(), field, all, step, 4 * steps);
+  for (int lane = 0; lane < lanes; ++lane) sink += all.optical_path[lane];
+  return 4 * lanes * steps;
+}
+
+template <class Integrator, IndexField F>
+double traced(const F& field, const std::vector<RayStart>& from) {
+  const SceneField scene{facts(field), field};
+  const RayStops stops{{Plane{{0, 0, 2}, Vec3::UnitZ()}}, 10, 1e-10};
+  double made = 0;
+  for (const TracedRay& ray : trace_rays(scene, stops, {Integrator(), step}, from, 0)) {
+    made += static_cast<double>(ray.steps);
+    sink += ray.end.optical_path;
+  }
+  return made;
+}
+
+/// Rays of the same light through a box, as unscattered light goes.
+double flown(const CurvedSpace& space, const std::vector<RayStart>& from) {
+  RandomStream random(1, 2, 0);
+  double arc = 0;
+  std::size_t next = 0;
+  const auto count = [&](const Flight& flight) { arc += flight.optical_path; };
+  const auto start = [&]() -> std::optional<CurvedSpace::FlightStart> {
+    if (next == from.size()) return std::nullopt;
+    const RayStart& one = from[next++];
+    return CurvedSpace::FlightStart{{one.x}, one.direction, &random};
+  };
+  if (space.has_lanes()) {
+    space.fly_side_by_side([&](int, const Flight* flight) {
+      if (flight) count(*flight);
+      return start();
+    });
+  } else {
+    while (const auto one = start()) count(space.fly(one->from, one->direction, random));
+  }
+  sink += arc;
+  return arc / (1.33 * 1.33 * step);  // dsigma = ds / n
+}
+
+struct Row {
+  std::string field, integrator;
+  std::vector<Contestant> contest;
+};
+
+template <class Integrator, IndexField F>
+Row row(const std::string& name, const F& field) {
+  const auto from = std::make_shared<const std::vector<RayStart>>(starts(rays));
+  Row found{name, Integrator::word, {}};
+  found.contest.push_back({[=] { return one_by_one<Integrator>(field); }});
+  found.contest.push_back({});
+  if constexpr (LaneField<F>)
+    found.contest.back().steps = [=] { return side_by_side<Integrator>(field); };
+  found.contest.push_back({[=] { return traced<Integrator>(field, *from); }});
+  const bool leaps = std::same_as<Integrator, Leapfrog>;
+  if (leaps ? goes_by_leapfrog<F> : std::same_as<Integrator, Sharma>) {
+    const Stage box{.boundary = Box{{-3, -3, -1e-3}, {3, 3, 2}}};
+    const std::shared_ptr<const CurvedSpace> space =
+        make_curved_space(field, box, {step, 100, Spreading::none, leaps});
+    found.contest.push_back({[=] { return flown(*space, *from); }});
+  }
+  return found;
+}
+
+template <IndexField F>
+void enter(std::vector<Row>& rows, const std::string& name, const F& field) {
+  rows.push_back(row<Leapfrog>(name, field));
+  rows.push_back(row<Yoshida4>(name, field));
+  rows.push_back(row<Sharma>(name, field));
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  const int rounds = argc > 1 ? std::atoi(argv[1]) : 31;
-  std::vector<Contestant> contest;
-  enter(contest, "quartic in rho (floor)", QuarticField{});
-  for (const int m : {0, 1, 2, 4})
-    enter(contest, "sound, J_" + std::to_string(m),
-          StandingWave(0.33, 0.01, m, wavenumber, 4 * radius));
-  enter(contest, "J_0 of the C library", LibraryField{});
-  enter(contest, "focused sound, 16 waves",
+  const int rounds = argc > 1 ? std::atoi(argv[1]) : 9;
+  std::vector<Row> rows;
+  enter(rows, "linear (floor)", floor_of_arithmetic());
+  for (const int m : {0, 1, 4})
+    enter(rows, "sound, J_" + std::to_string(m), StandingWave(0.33, 0.01, m, wavenumber, 4));
+  enter(rows, "focused sound, 16 waves",
         FocusedSound(0.33, 0.01, wavenumber, arc_directions(16, 0.5), Vec3::UnitZ()));
-  enter(contest, "spline grid", spline());
-  for (int round = 0; round < rounds; ++round) {
-    for (Contestant& entry : contest) {
-      const double before = thread_cpu_seconds();
-      entry.run();
-      entry.nanoseconds.push_back((thread_cpu_seconds() - before) * 1e9 / rays / steps);
-    }
-  }
-  std::printf("%-44s %10s %16s\n", "leapfrog steps, one thread", "ns/step", "million/s");
-  for (const Contestant& entry : contest) {
-    const double each = bench::median(entry.nanoseconds);
-    std::printf("%-44s %10.2f %16.1f\n", entry.name.c_str(), each, 1e3 / each);
+  enter(rows, "12 blobs", blobs());
+  enter(rows, "parabolic", ParabolicGuide({0.33, 0.3}));
+  enter(rows, "fisheye", Fisheye({0.33, 5}));
+  enter(rows, "tanh", TanhRamp{0.33, 0.4, 0.5});
+  enter(rows, "sech", SechGuide({0.33, 0.3}));
+  enter(rows, "spline grid", spline());
+  for (int round = 0; round < rounds; ++round)
+    for (Row& row : rows)
+      for (Contestant& entry : row.contest) {
+        if (!entry.steps) continue;
+        const double before = process_cpu_seconds();
+        const double made = entry.steps();
+        entry.speeds.push_back(made / (process_cpu_seconds() - before) / 1e6);
+      }
+  std::printf("million steps a second        one by one  in lanes     trace   flights\n");
+  for (Row& row : rows) {
+    std::printf("%-26s %-9s", row.field.c_str(), row.integrator.c_str());
+    for (Contestant& entry : row.contest)
+      if (entry.speeds.empty())
+        std::printf(" %9s", "-");
+      else
+        std::printf(" %9.1f", bench::median(entry.speeds));
+    std::puts("");
   }
   return sink == 0;
 }

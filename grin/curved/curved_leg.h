@@ -21,8 +21,7 @@ class CurvedLeg {
         room_(room.room),
         medium_(room.medium),
         step_(room.step),
-        tolerance_(1e-9 * step_),
-        has_collisions_(medium_.scatters() || medium_.grid()) {}
+        tolerance_(1e-9 * step_) {}
 
   /// Goes on from a state in the room, or on its surface and on the way in, at arc length 0.
   /// weight: of light that is absorbed and not scattered, is multiplied by an estimate of what is
@@ -30,10 +29,23 @@ class CurvedLeg {
   template <class... Tangent>
   LegStop go(double longest, double& weight, RandomStream& random, RayState& ray,
              Tangent&... tangent) const {
+    constexpr int most_steps = 1 << 20;
+    LegProgress progress{next_collision(0, random), weight};
+    const LegStop stop = go_on(longest, most_steps, progress, random, ray, tangent...);
+    weight = progress.weight;
+    return stop == LegStop::steps ? LegStop::lost : stop;
+  }
+
+  /// The same from any state of a leg, no more than so many steps.
+  template <class... Tangent>
+  LegStop go_on(double longest, int most_steps, LegProgress& progress, RandomStream& random,
+                RayState& ray, Tangent&... tangent) const {
     const double outside = room_.distance(ray.x);
     const double put_back = outside >= -tolerance_ ? std::max(0.0, outside) + 0.75 * tolerance_ : 0;
-    double clearance = put_back - outside, collision = next_collision(0, random);
-    for (int steps = 0; steps < most_steps && ray.arc_length <= longest; ++steps) {
+    double clearance = put_back - outside;
+    auto& [collision, weight] = progress;
+    for (int steps = 0; ray.arc_length <= longest; ++steps) {
+      if (steps == most_steps) return LegStop::steps;
       const std::tuple<RayState, Tangent...> before(ray, tangent...);
       const RayState& start = std::get<0>(before);
       Step::step(field_, ray, tangent..., step_);
@@ -97,11 +109,8 @@ class CurvedLeg {
   }
 
  private:
-  static constexpr int most_steps = 1 << 20;
-
   double next_collision(double after, RandomStream& random) const {
-    if (!has_collisions_) return std::numeric_limits<double>::infinity();
-    return after + sample_free_flight(medium_.majorant(), random.uniform());
+    return grin::next_collision(medium_, after, random);
   }
   /// Where in a step light collides, theta; goes on to the first tentative collision beyond it.
   std::optional<double> collide(const StepCurve& curve, double& collision, double& weight,
@@ -159,7 +168,6 @@ class CurvedLeg {
   const Room room_;
   const PartMedium& medium_;
   double step_, tolerance_;
-  bool has_collisions_;
 };
 
 }  // namespace flatspeckle::grin

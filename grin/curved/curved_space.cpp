@@ -1,8 +1,11 @@
 #include "grin/curved/curved_space.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "grin/connections/geometric_spreading.h"
+#include "grin/rays/lane_pool.h"
 #include "grin/straight/straight_legs.h"
 #include "grin/surfaces/first_crossing.h"
 #include "grin/ways/beam_search.h"
@@ -126,6 +129,11 @@ std::optional<LegEnd> CurvedSpace::curved_leg(Flight& flight, Neighbours& neighb
   const LegStop stop = field_->fly(leg_room(), longest, weight, random, ray,
                                    follows ? &neighbours.tangent : nullptr);
   if (stop == LegStop::lost) return std::nullopt;
+  end_leg(flight, ray, weight);
+  return stop == LegStop::collision ? at_collision : end_at(ray.x);
+}
+
+void CurvedSpace::end_leg(Flight& flight, const RayState& ray, double weight) const {
   if (!medium().scatters() && !medium().grid())
     weight *= transmittance(medium().mu_t(), ray.arc_length);
   attenuate(flight, weight);
@@ -134,7 +142,70 @@ std::optional<LegEnd> CurvedSpace::curved_leg(Flight& flight, Neighbours& neighb
   flight.arc_length += ray.arc_length;
   flight.optical_path += ray.optical_path;
   flight.optical_depth += medium().reference() * ray.arc_length;
-  return stop == LegStop::collision ? at_collision : end_at(ray.x);
+}
+
+bool CurvedSpace::has_lanes() const {
+  return setup_->field_part == around && room().surfaces.size() == 1 && !setup_->is_straight &&
+         setup_->options.spreading == Spreading::none && field_->has_lanes();
+}
+
+/// LanePool's work.
+class CurvedSpace::Lanes {
+ public:
+  Lanes(const CurvedSpace& space, const NextFlight& next)
+      : space_(space),
+        next_(next),
+        room_(space.leg_room()),
+        step_(space.setup_->options.step),
+        longest_(space.setup_->options.max_length) {}
+
+  bool begin(int lane, RayState& ray) {
+    auto& at = at_[lane];
+    const auto start = next_(lane, at.has_flown ? &at.flight : nullptr);
+    if (!start) return false;
+    at = {.flight = {.point = start->from,
+                     .start_direction = start->direction,
+                     .direction = start->direction},
+          .progress = {next_collision(room_.medium, 0, *start->random)},
+          .random = start->random,
+          .has_flown = true};
+    ray = start_ray(*space_.field_, start->from.x, start->direction);
+    return true;
+  }
+  void go(RayLanes& rays, int steps) const { space_.field_->advance_lanes(step_, steps, rays); }
+  double clearance(int lane, const RayState& ray) const {
+    const double end = std::min(at_[lane].progress.collision, longest_);
+    return std::min(-room_.room.distance(ray.x), end - ray.arc_length);
+  }
+  void passed(int) const {}
+  bool careful(int lane, RayState& ray, double&) {
+    auto& at = at_[lane];
+    constexpr int few = LanePool<Lanes>::steps_at_once;
+    const LegStop stop = space_.field_->go_on(room_, longest_, few, at.progress, *at.random, ray);
+    if (stop == LegStop::steps) return true;
+    if (stop == LegStop::lost) return false;
+    space_.end_leg(at.flight, ray, at.progress.weight);
+    at.flight.end = stop == LegStop::collision ? Flight::End::collision : Flight::End::boundary;
+    return false;
+  }
+
+ private:
+  struct Flying {
+    Flight flight;
+    LegProgress progress;
+    RandomStream* random;
+    bool has_flown = false;
+  };
+  const CurvedSpace& space_;
+  const NextFlight& next_;
+  LegRoom room_;
+  double step_, longest_;
+  std::array<Flying, grin::lanes> at_{};
+};
+
+void CurvedSpace::fly_side_by_side(const NextFlight& next) const {
+  Lanes all(*this, next);
+  LanePool(all).run();
 }
 
 void CurvedSpace::cross(Flight& flight, LegEnd surface, Neighbours& neighbours,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 
 #include "grin/curved/ray_field.h"
@@ -34,6 +35,18 @@ class CurvedSpace {
   /// log: its legs are added to that.
   Flight fly(const PathPoint& from, const Vec3& direction, RandomStream& random,
              FlightLog* log = nullptr) const;
+  /// Whether flights may go side by side, at less cost than one by one: in one part that the field
+  /// fills, without |J|.
+  bool has_lanes() const;
+  /// Flights side by side. next(lane, flight) is told what became of the lane's last (null at
+  /// first) and says where its next begins, if there is one; its random numbers are its own.
+  struct FlightStart {
+    PathPoint from;
+    Vec3 direction;
+    RandomStream* random;
+  };
+  using NextFlight = std::function<std::optional<FlightStart>(int lane, const Flight*)>;
+  void fly_side_by_side(const NextFlight& next) const;
   /// Of a leg of a flight (flight_log.h).
   template <class Use>
   void for_points(const FlightLeg& leg, double apart, RandomStream& random, const Use& use) const;
@@ -97,6 +110,7 @@ class CurvedSpace {
   }
 
   class Legs;
+  class Lanes;
   struct Neighbours;
   class Curve;
 
@@ -106,6 +120,7 @@ class CurvedSpace {
   Flight fly(const PathPoint& from, const Vec3& direction, bool spreads, RandomStream& random,
              FlightLog* log) const;
   bool goes_outside(const Vec3& x, const Vec3& direction) const;
+  void end_leg(Flight& flight, const RayState& ray, double weight) const;
   std::optional<LegEnd> leg(Flight& flight, Neighbours& neighbours, RandomStream& random) const;
   std::optional<LegEnd> curved_leg(Flight& flight, Neighbours& neighbours,
                                    RandomStream& random) const;

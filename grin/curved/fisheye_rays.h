@@ -52,6 +52,7 @@ class FisheyeRays final : public RayFieldOf<Fisheye> {
         index_(1 + field.profile().centre_excess),
         radius_(radius / unit_) {}
 
+  bool has_lanes() const override { return false; }
   LegStop fly(const LegRoom& room, double longest, double& weight, RandomStream& random,
               RayState& ray, RayTangent* tangent) const override {
     if (room.medium.grid()) return RayFieldOf::fly(room, longest, weight, random, ray, tangent);

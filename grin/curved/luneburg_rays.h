@@ -2,8 +2,8 @@
 
 #include <numbers>
 
-#include "grin/curved/ray_field_of.h"
 #include "grin/curved/luneburg_orbit.h"
+#include "grin/curved/ray_field_of.h"
 
 namespace flatspeckle::grin {
 
@@ -18,6 +18,7 @@ class LuneburgRays final : public RayFieldOf<Luneburg> {
         unit_(field.profile().radius),
         radius_(radius / unit_) {}
 
+  bool has_lanes() const override { return false; }
   LegStop fly(const LegRoom& room, double longest, double& weight, RandomStream& random,
               RayState& ray, RayTangent* tangent) const override {
     if (room.medium.grid()) return RayFieldOf::fly(room, longest, weight, random, ray, tangent);

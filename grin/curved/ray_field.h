@@ -9,6 +9,7 @@
 #include "grin/curved/leg_room.h"
 #include "grin/fields/any_index_field.h"
 #include "grin/rays/any_steps.h"
+#include "grin/rays/ray_lanes.h"
 #include "grin/rays/watch.h"
 
 namespace flatspeckle::grin {
@@ -34,9 +35,20 @@ class RayField {
   virtual TraceEnd follow(std::span<const Surface> surfaces, const TraceLimits& limits, RayLog& log,
                           RayState& ray) const = 0;
 
+  /// Whether rays may go side by side, at less cost than one by one.
+  virtual bool has_lanes() const = 0;
+  /// Equal steps of all of them: of an integrator and looking for the index mismatch, as follow()
+  /// makes them, or as advance() does.
+  virtual void follow_lanes(const Integrators& integrator, double h, int steps,
+                            RayLanes& rays) const = 0;
+  virtual void advance_lanes(double h, int steps, RayLanes& rays) const = 0;
+
   /// CurvedLeg::go(), with a tangent where there is one.
   virtual LegStop fly(const LegRoom& room, double longest, double& weight, RandomStream& random,
                       RayState& ray, RayTangent* tangent) const = 0;
+  /// CurvedLeg::go_on().
+  virtual LegStop go_on(const LegRoom& room, double longest, int most_steps, LegProgress& progress,
+                        RandomStream& random, RayState& ray) const = 0;
   /// Equal steps, with a tangent where there is one.
   virtual void advance(double sigma, int steps, RayState& ray, RayTangent* tangent) const = 0;
   /// CurvedLeg::ratio_tracked().

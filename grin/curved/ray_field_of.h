@@ -28,11 +28,26 @@ class RayFieldOf : public RayField {
     return end;
   }
 
+  bool has_lanes() const override { return LaneField<F>; }
+  void follow_lanes([[maybe_unused]] const Integrators& integrator, [[maybe_unused]] double h,
+                    [[maybe_unused]] int steps, [[maybe_unused]] RayLanes& rays) const override {
+    if constexpr (LaneField<F>)
+      std::visit([&](const auto& by) { make_steps<true>(by, field_, rays, h, steps); }, integrator);
+  }
+  void advance_lanes([[maybe_unused]] double h, [[maybe_unused]] int steps,
+                     [[maybe_unused]] RayLanes& rays) const override {
+    if constexpr (LaneField<F>) make_steps<false>(Step(), field_, rays, h, steps);
+  }
+
   LegStop fly(const LegRoom& room, double longest, double& weight, RandomStream& random,
               RayState& ray, RayTangent* tangent) const override {
     const CurvedLeg<F, Step> leg(field_, room);
     return tangent ? leg.go(longest, weight, random, ray, *tangent)
                    : leg.go(longest, weight, random, ray);
+  }
+  LegStop go_on(const LegRoom& room, double longest, int most_steps, LegProgress& progress,
+                RandomStream& random, RayState& ray) const override {
+    return CurvedLeg<F, Step>(field_, room).go_on(longest, most_steps, progress, random, ray);
   }
   void advance(double sigma, int steps, RayState& ray, RayTangent* tangent) const override {
     for (int i = 0; i < steps; ++i) {
@@ -72,7 +87,8 @@ class RayFieldOf : public RayField {
     if constexpr (requires { at_phase(field_, phase); })
       return std::make_unique<RayFieldOf>(at_phase(field_, phase));
     else
-      throw InputError("random_phase: needs the field ultrasound or focused_sound, and it alone");
+      throw InputError(
+          "random_phase: needs the field ultrasound, focused_sound or transducers, and it alone");
   }
 
  private:

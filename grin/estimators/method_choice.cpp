@@ -28,7 +28,10 @@ struct Trial {
 /// What costs time, in flights of cost 1.
 double work(const TransportCounts& counts, const Tracers& tracers, RenderMethod method) {
   const bool curved = tracers.plan().curved;
-  const double per_flight = curved && method == RenderMethod::light ? 0.7 : 1;  // most without |J|
+  // without |J|: all, and side by side; most
+  const double per_flight = method == RenderMethod::analog            ? 0.25
+                            : curved && method == RenderMethod::light ? 0.7
+                                                                      : 1;
   const double per_promise = curved ? 0.03 : 0.3, per_iteration = curved ? 2 : 1;
   const double steps = per_flight * static_cast<double>(counts.flights) +
                        per_iteration * static_cast<double>(counts.connections.iterations);
@@ -177,6 +180,7 @@ std::vector<Candidate> candidates(const Tracers& tracers) {
   for (const RenderMethod method :
        {RenderMethod::bidirectional, RenderMethod::path, RenderMethod::light})
     if (has_finite_variance(tracers.scene(), method)) found.push_back({tracers.make(method)});
+  if (can_be_analog(tracers.scene())) found.push_back({tracers.make(RenderMethod::analog)});
   return found;
 }
 

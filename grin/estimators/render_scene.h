@@ -33,7 +33,7 @@ struct RenderScene {
 /// Of a scene with several sensors; a number where it has no names.
 std::string sensor_name(const RenderScene& scene, std::size_t sensor);
 
-enum class RenderMethod { path, light, bidirectional, photon_map };
+enum class RenderMethod { path, light, bidirectional, photon_map, analog };
 /// In their order.
 std::vector<std::string> method_words();
 std::string method_word(RenderMethod method);

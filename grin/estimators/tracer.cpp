@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "grin/estimators/analog_light.h"
 #include "grin/estimators/photon_map.h"
 #include "grin/estimators/render_pilot.h"
 #include "grin/estimators/unscattered_beams.h"
@@ -47,6 +48,13 @@ RenderPlan render_plan(const RenderScene& scene) {
   add(scene.stage.medium);
   for (const Body& body : scene.stage.bodies) add(body.medium);
   return plan;
+}
+
+bool can_be_analog(const RenderScene& scene) {
+  if (std::holds_alternative<Homogeneous>(scene.field)) return false;
+  const auto ends = sensor_ends(scene.sensors, scene.stage);
+  return std::all_of(ends.begin(), ends.end(),
+                     [](const SensorEnd& end) { return end.can_be_hit(); });
 }
 
 std::shared_ptr<Transport> transport_of(const RenderScene& scene, const RenderRequest& request,
@@ -96,7 +104,7 @@ Tracer Tracers::make(RenderMethod method) const {
   Tracer tracer = plan_.curved ? curved(method) : straight(method);
   if (method != RenderMethod::photon_map) tracer.unscattered_beams = unscattered_beams_;
   tracer.flights_per_pair =
-      method == RenderMethod::photon_map
+      method == RenderMethod::photon_map || method == RenderMethod::analog
           ? flights_per_pair(*tracer.transport, tracer.kernel, scene_.bins)
           : tune_joins(*tracer.transport, tracer.kernel, scene_.bins, tracer.flights_per_join);
   return tracer;
@@ -143,9 +151,9 @@ namespace {
 
 /// Of its flights: weights of light tracing ask for it at the last one alone.
 Spreading spreading_of(RenderMethod method) {
-  return method == RenderMethod::photon_map ? Spreading::none
-         : method == RenderMethod::light    ? Spreading::to_boundary
-                                            : Spreading::all;
+  return method == RenderMethod::photon_map || method == RenderMethod::analog ? Spreading::none
+         : method == RenderMethod::light ? Spreading::to_boundary
+                                         : Spreading::all;
 }
 
 }  // namespace
@@ -158,6 +166,8 @@ Tracer Tracers::curved(RenderMethod method) const {
     return {method, transport,
             photon_kernel(plan_.timed, transport, space, scene_.random_phase,
                           photon_radius(scene_, request_))};
+  if (method == RenderMethod::analog)
+    return {method, transport, analog_kernel(plan_.timed, transport, space, scene_.random_phase)};
   Tracer tracer{method, transport, curved_kernel(plan_, transport, space, scene_.random_phase)};
   tracer.flights_per_join = space->cost_of_join();
   return tracer;

@@ -12,6 +12,9 @@ namespace flatspeckle::grin {
 /// The least plan that a scene allows.
 RenderPlan render_plan(const RenderScene& scene);
 
+/// Of curved rays, and sensors that light can hit.
+bool can_be_analog(const RenderScene& scene);
+
 /// Lights and sensors for a method; throws InputError where they do not fit the stage.
 std::shared_ptr<Transport> transport_of(const RenderScene& scene, const RenderRequest& request,
                                         RenderMethod method);

@@ -1,6 +1,7 @@
 #include "grin/estimators/unscattered_beams.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -127,7 +128,10 @@ class UnscatteredBeams {
         counts_(counts) {}
 
   void add_ray(const EndPosition& start, double stratum) {
-    const Flight flight = space_.fly(start.point, start.inward, random_);
+    add_ray(space_.fly(start.point, start.inward, random_), stratum);
+  }
+  /// That has gone so.
+  void add_ray(const Flight& flight, double stratum) {
     counts_.add_flight(flight.end == Flight::End::lost);
     if (flight.end == Flight::End::lost) return;
     for (const SensorEnd& sensor : transport_.sensors)
@@ -198,38 +202,75 @@ class UnscatteredBeams {
   TransportCounts& counts_;
 };
 
-/// with_space(use): calls use(space), the same or another for each ray.
+/// Where the rays of a batch begin, evenly.
+class EvenRays {
+ public:
+  EvenRays(const Lights& lights, int rays, RandomStream& random)
+      : lights_(lights), rays_(rays), even_(random), beam_(random.uniform()) {}
+
+  double stratum(int ray) const { return (ray + beam_) / rays_; }
+  EndPosition start(int ray) const {
+    return lights_.beam_position(stratum(ray), even_.u(ray), even_.v(ray));
+  }
+
+ private:
+  const Lights& lights_;
+  int rays_;
+  EvenSquare even_;
+  double beam_;
+};
+
+/// Rays side by side.
+template <bool timed>
+void add_rays(const CurvedSpace& space, int rays, const EvenRays& from, RandomStream& random,
+              UnscatteredBeams<timed, CurvedSpace>& light) {
+  std::array<int, lanes> number{};
+  int next = 0;
+  space.fly_side_by_side(
+      [&](int lane, const Flight* flown) -> std::optional<CurvedSpace::FlightStart> {
+        int& own = number[static_cast<std::size_t>(lane)];
+        if (flown) light.add_ray(*flown, from.stratum(own));
+        if (next == rays) return std::nullopt;
+        own = next++;
+        const EndPosition start = from.start(own);
+        return CurvedSpace::FlightStart{start.point, start.inward, &random};
+      });
+}
+
+/// with_space(use): calls use(space), the same or another for each ray. in_lanes: the space of all
+/// rays, if they may go side by side.
 template <bool timed, class WithSpace>
 PathKernel kernel(std::shared_ptr<const Transport> transport, const BeamSeeds& seeds,
-                  const WithSpace& with_space) {
+                  const WithSpace& with_space, std::shared_ptr<const CurvedSpace> in_lanes) {
   const double ways_per_ray = share_of_ways(seeds.is_any_seen);
-  return [=](int rays, RandomStream& random, Film& film, TransportCounts& counts,
-             JoinPromises*) {
-    const EvenSquare even(random);
-    const double beam = random.uniform(), beam_of_way = random.uniform();
-    const double first_way = random.uniform();
+  return [=](int rays, RandomStream& random, Film& film, TransportCounts& counts, JoinPromises*) {
+    const EvenRays from(transport->lights, rays, random);
+    const double beam_of_way = random.uniform(), first_way = random.uniform();
     const auto ways_before = [=](int ray) { return std::floor(ray * ways_per_ray + first_way); };
     const bool has_area = std::any_of(transport->sensors.begin(), transport->sensors.end(),
                                       [](const SensorEnd& sensor) { return sensor.can_be_hit(); });
-    for (int ray = 0; ray < rays; ++ray) {
-      const double stratum = (ray + beam) / rays;
-      const EndPosition start = transport->lights.beam_position(stratum, even.u(ray), even.v(ray));
+    if (has_area && in_lanes) {
+      UnscatteredBeams<timed, CurvedSpace> light(*transport, seeds, ways_per_ray, *in_lanes, random,
+                                                 film, counts);
+      add_rays<timed>(*in_lanes, rays, from, random, light);
+    }
+    for (int ray = 0; ray < rays; ++ray)
       with_space(random, [&](const auto& space) {
         UnscatteredBeams<timed, std::decay_t<decltype(space)>> light(
             *transport, seeds, ways_per_ray, space, random, film, counts);
-        if (has_area) light.add_ray(start, stratum);
+        if (has_area && !in_lanes) light.add_ray(from.start(ray), from.stratum(ray));
         if (const double way = ways_before(ray); ways_before(ray + 1) > way)
           light.add_ways(fraction(beam_of_way + way * golden));
       });
-    }
   };
 }
 
 template <class WithSpace>
 PathKernel kernel(bool timed, std::shared_ptr<const Transport> transport, const BeamSeeds& seeds,
-                  const WithSpace& with_space) {
-  return timed ? kernel<true>(transport, seeds, with_space)
-               : kernel<false>(transport, seeds, with_space);
+                  const WithSpace& with_space,
+                  std::shared_ptr<const CurvedSpace> in_lanes = nullptr) {
+  return timed ? kernel<true>(transport, seeds, with_space, in_lanes)
+               : kernel<false>(transport, seeds, with_space, in_lanes);
 }
 
 }  // namespace
@@ -244,12 +285,14 @@ PathKernel beams_kernel(bool timed, std::shared_ptr<const Transport> transport, 
 PathKernel beams_kernel(bool timed, std::shared_ptr<const Transport> transport,
                         std::shared_ptr<const CurvedSpace> space, bool random_phase) {
   const auto seeds = all_seeds(*transport, *space, 512);
-  return kernel(timed, transport, seeds, [=](RandomStream& random, const auto& use) {
+  const bool goes_in_lanes = !random_phase && space->has_lanes();
+  const auto with_space = [=](RandomStream& random, const auto& use) {
     if (random_phase)
       use(*space->frozen(2 * std::numbers::pi * random.uniform()));
     else
       use(*space);
-  });
+  };
+  return kernel(timed, transport, seeds, with_space, goes_in_lanes ? space : nullptr);
 }
 
 }  // namespace flatspeckle::grin

@@ -15,6 +15,7 @@
 #include "grin/fields/sech.h"
 #include "grin/fields/spline_field.h"
 #include "grin/fields/tanh_ramp.h"
+#include "grin/fields/transducers.h"
 #include "grin/fields/ultrasound.h"
 #include "grin/index/field_sum.h"
 
@@ -23,8 +24,8 @@ namespace flatspeckle::grin {
 /// All kinds of index fields (field_kind.h); the one list of them.
 using IndexFieldKinds = std::tuple<HomogeneousValues, LuneburgValues, FisheyeValues,
                                    ParabolicValues, SechValues, LinearValues, TanhValues,
-                                   BlobsValues, UltrasoundValues, FocusedSoundValues, GridValues,
-                                   BallValues, RadialSplineValues>;
+                                   BlobsValues, UltrasoundValues, FocusedSoundValues,
+                                   TransducersValues, GridValues, BallValues, RadialSplineValues>;
 
 template <class Kinds>
 struct FieldsOf;

@@ -7,6 +7,7 @@ namespace flatspeckle::grin {
 
 /// Maxwell's fisheye, n = n0 / (1 + r^2/a^2); n0 is 1 + centre_excess.
 struct FisheyeProfile {
+  static constexpr bool goes_in_lanes = true;
   double centre_excess = 1, radius = 1;
 
   double excess(double u) const {

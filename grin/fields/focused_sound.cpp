@@ -55,8 +55,8 @@ void add_keys(Keys& keys, FocusedSoundValues& values) {
 FocusedSound make_field(const Keys& keys, const FocusedSoundValues& values, const FieldUse& use) {
   const auto spread = keys.read(values.focusing) == "arc" ? arc_directions : cap_directions;
   return {background(keys, values.index, use),
-          keys.required(values.amplitude),
-          keys.required(values.sound_wavenumber),
+          amplitude_of(keys, values),
+          wavenumber_of(keys, values, use),
           spread(static_cast<int>(keys.read(values.emitters)), keys.read(values.aperture)),
           vector_of(keys.read(values.centre)),
           phase_of(keys, values, use)};

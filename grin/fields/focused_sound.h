@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "core/numbers/wide_functions.h"
+#include "grin/index/lanes.h"
 #include "grin/index/sound.h"
 
 namespace flatspeckle::grin {
@@ -48,6 +50,28 @@ class FocusedSound {
     }
     return {background_ + amplitude_ * cosines, amplitude_ * slope};
   }
+  void gradients(const LaneVectors& x, LaneGradients& found) const {
+    const double background = background_, amplitude = amplitude_;
+    LaneGradients sum{};
+    for (const Vec3& wave : waves_) {
+      const double wx = wave[0], wy = wave[1], wz = wave[2], at_origin = phase(wave, Vec3::Zero());
+#pragma omp simd
+      for (int k = 0; k < lanes; ++k) {
+        const auto at = wide_sine_cosine(wx * x.x[k] + wy * x.y[k] + wz * x.z[k] + at_origin);
+        sum.excess[k] += at.cosine;
+        sum.gradient.x[k] -= at.sine * wx;
+        sum.gradient.y[k] -= at.sine * wy;
+        sum.gradient.z[k] -= at.sine * wz;
+      }
+    }
+#pragma omp simd
+    for (int k = 0; k < lanes; ++k) {
+      found.excess[k] = background + amplitude * sum.excess[k];
+      found.gradient.x[k] = amplitude * sum.gradient.x[k];
+      found.gradient.y[k] = amplitude * sum.gradient.y[k];
+      found.gradient.z[k] = amplitude * sum.gradient.z[k];
+    }
+  }
   IndexHessian hessian(const Vec3& x) const {
     double cosines = 0;
     Vec3 slope = Vec3::Zero();
@@ -62,7 +86,9 @@ class FocusedSound {
   }
 
  private:
-  double phase(const Vec3& wave, const Vec3& x) const { return wave.dot(x - focus_) - psi_; }
+  double phase(const Vec3& wave, const Vec3& x) const {
+    return wave.dot(x - focus_) - psi_;
+  }
 
   double background_, amplitude_;  ///< of one wave
   double k_;

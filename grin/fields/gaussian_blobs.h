@@ -4,7 +4,9 @@
 #include <utility>
 #include <vector>
 
+#include "core/numbers/wide_functions.h"
 #include "grin/index/field_kind.h"
+#include "grin/index/lanes.h"
 
 namespace flatspeckle::grin {
 
@@ -36,6 +38,25 @@ class GaussianBlobs {
       sum.gradient -= e / (blob.width * blob.width) * r;
     }
     return sum;
+  }
+  void gradients(const LaneVectors& x, LaneGradients& found) const {
+    LaneGradients sum{};
+    for (const GaussianBlob& blob : blobs_) {
+      const double height = blob.height, steep = 1 / (blob.width * blob.width);
+      const double cx = blob.centre[0], cy = blob.centre[1], cz = blob.centre[2];
+#pragma omp simd
+      for (int k = 0; k < lanes; ++k) {
+        const double rx = x.x[k] - cx, ry = x.y[k] - cy, rz = x.z[k] - cz;
+        const double e = height * wide_exp((rx * rx + ry * ry + rz * rz) * (-steep / 2));
+        sum.excess[k] += e;
+        sum.gradient.x[k] -= e * steep * rx;
+        sum.gradient.y[k] -= e * steep * ry;
+        sum.gradient.z[k] -= e * steep * rz;
+      }
+    }
+#pragma omp simd
+    for (int k = 0; k < lanes; ++k) sum.excess[k] += background_;
+    found = sum;
   }
   IndexHessian hessian(const Vec3& x) const {
     IndexHessian sum{background_, Vec3::Zero(), Mat3::Zero()};

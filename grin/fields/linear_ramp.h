@@ -1,6 +1,7 @@
 #pragma once
 
 #include "grin/index/field_kind.h"
+#include "grin/index/lanes.h"
 
 namespace flatspeckle::grin {
 
@@ -11,7 +12,19 @@ struct LinearRamp {
 
   double excess(const Vec3& x) const { return excess_at_origin + slope.dot(x); }
   IndexGradient gradient(const Vec3& x) const { return {excess(x), slope}; }
-  IndexHessian hessian(const Vec3& x) const { return {excess(x), slope, Mat3::Zero()}; }
+  void gradients(const LaneVectors& x, LaneGradients& found) const {
+    const double at_origin = excess_at_origin, sx = slope[0], sy = slope[1], sz = slope[2];
+#pragma omp simd
+    for (int k = 0; k < lanes; ++k) {
+      found.excess[k] = at_origin + (sx * x.x[k] + sy * x.y[k] + sz * x.z[k]);
+      found.gradient.x[k] = sx;
+      found.gradient.y[k] = sy;
+      found.gradient.z[k] = sz;
+    }
+  }
+  IndexHessian hessian(const Vec3& x) const {
+    return {excess(x), slope, Mat3::Zero()};
+  }
 };
 
 inline FieldFacts facts(const LinearRamp& field) {

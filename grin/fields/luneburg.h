@@ -12,6 +12,7 @@ namespace flatspeckle::grin {
 /// goes on: a hair, so that a ray may start from the rim; up to 0.4 where rays are stopped there
 /// anyhow and steps that reach past it should stay smooth.
 struct LuneburgProfile {
+  static constexpr bool goes_in_lanes = true;
   static constexpr double for_stops = 0.4;
 
   double radius = 1;

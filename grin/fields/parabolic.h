@@ -9,6 +9,7 @@ namespace flatspeckle::grin {
 
 /// n^2 = n0^2 - alpha^2 rho^2 about the z axis, n0 = 1 + axis_excess: NaN where that is negative.
 struct ParabolicProfile {
+  static constexpr bool goes_in_lanes = true;
   double axis_excess, alpha;
 
   double excess(double u) const {

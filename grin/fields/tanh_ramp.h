@@ -2,7 +2,9 @@
 
 #include <cmath>
 
+#include "core/numbers/wide_functions.h"
 #include "grin/index/field_kind.h"
+#include "grin/index/lanes.h"
 
 namespace flatspeckle::grin {
 
@@ -16,6 +18,21 @@ struct TanhRamp {
   IndexGradient gradient(const Vec3& x) const {
     const auto [below, above] = fractions(x);
     return {low + (high - low) * above, first(below, above) * axis};
+  }
+  void gradients(const LaneVectors& x, LaneGradients& found) const {
+    const double base = low, rise = high - low, scale = 2 / width, middle = axis.dot(centre);
+    const double ax = axis[0], ay = axis[1], az = axis[2];
+#pragma omp simd
+    for (int k = 0; k < lanes; ++k) {
+      const double t = scale * (ax * x.x[k] + ay * x.y[k] + az * x.z[k] - middle);
+      const double down = t < 0 ? t : -t, e = wide_exp(down);  // the larger side is 1/(1 + e)
+      const double most = 1 / (1 + e), least = e * most;
+      const double slope = scale * rise * most * least;
+      found.excess[k] = base + rise * (t < 0 ? least : most);
+      found.gradient.x[k] = slope * ax;
+      found.gradient.y[k] = slope * ay;
+      found.gradient.z[k] = slope * az;
+    }
   }
   IndexHessian hessian(const Vec3& x) const {
     const auto [below, above] = fractions(x);

@@ -42,8 +42,8 @@ void add_keys(Keys& keys, UltrasoundValues& values) {
 
 StandingWave make_field(const Keys& keys, const UltrasoundValues& values, const FieldUse& use) {
   constexpr double longest_table = 1e3;  // in k rho; beyond it the wave is slow, not wrong
-  const double k = keys.required(values.sound_wavenumber);
-  return at_phase(StandingWave(background(keys, values.index, use), keys.required(values.amplitude),
+  const double k = wavenumber_of(keys, values, use);
+  return at_phase(StandingWave(background(keys, values.index, use), amplitude_of(keys, values),
                                static_cast<int>(keys.read(values.sound_order)), k,
                                std::min(use.reach, longest_table / k)),
                   phase_of(keys, values, use));

@@ -48,6 +48,23 @@ class StandingWave {
                  0)};
   }
 
+  void gradients(const LaneVectors& x, LaneGradients& found) const {
+    const double amplitude = amplitude_, background = background_, k2 = kr_ * kr_;
+    alignas(64) double u[lanes], value[lanes], slope[lanes];
+#pragma omp simd
+    for (int k = 0; k < lanes; ++k) u[k] = k2 * (x.x[k] * x.x[k] + x.y[k] * x.y[k]);
+    profile_->jets(u, value, slope);
+    if (m_ > 0) return angular_gradients(x, value, slope, found);
+#pragma omp simd
+    for (int k = 0; k < lanes; ++k) {
+      const double radial = 2 * amplitude * k2 * slope[k];
+      found.excess[k] = background + amplitude * value[k];
+      found.gradient.x[k] = radial * x.x[k];
+      found.gradient.y[k] = radial * x.y[k];
+      found.gradient.z[k] = 0;
+    }
+  }
+
   IndexHessian hessian(const Vec3& x) const {
     return m_ == 0 ? round_hessian(x) : angular_hessian(x);
   }
@@ -67,6 +84,41 @@ class StandingWave {
     return found;
   }
   IndexHessian angular_hessian(const Vec3& x) const;
+  /// As gradient().
+  void angular_gradients(const LaneVectors& x, const double* value, const double* slope,
+                         LaneGradients& found) const {
+    const double amplitude = amplitude_, background = background_, kr = kr_, m = m_;
+    alignas(64) double re[lanes], im[lanes], a[lanes], b[lanes];
+#pragma omp simd
+    for (int k = 0; k < lanes; ++k) {
+      re[k] = 1;
+      im[k] = 0;
+      a[k] = kr * x.x[k];
+      b[k] = kr * x.y[k];
+    }
+    for (int exponent = m_ - 1; exponent > 0; exponent >>= 1) {
+      const bool is_odd = exponent & 1;
+#pragma omp simd
+      for (int k = 0; k < lanes; ++k) {
+        const double next = re[k] * a[k] - im[k] * b[k], side = re[k] * b[k] + im[k] * a[k];
+        re[k] = is_odd ? next : re[k];
+        im[k] = is_odd ? side : im[k];
+        const double square = a[k] * a[k] - b[k] * b[k];
+        b[k] *= 2 * a[k];
+        a[k] = square;
+      }
+    }
+#pragma omp simd
+    for (int k = 0; k < lanes; ++k) {
+      const double whole = kr * (x.x[k] * re[k] - x.y[k] * im[k]);
+      const double turn = amplitude * value[k] * m * kr;
+      const double radial = 2 * amplitude * kr * kr * slope[k] * whole;
+      found.excess[k] = background + amplitude * value[k] * whole;
+      found.gradient.x[k] = radial * x.x[k] + turn * re[k];
+      found.gradient.y[k] = radial * x.y[k] - turn * im[k];
+      found.gradient.z[k] = 0;
+    }
+  }
 
   /// (kr (x + i y))^exponent, by squaring.
   std::complex<double> power(const Vec3& x, int exponent) const {

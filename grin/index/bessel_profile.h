@@ -3,6 +3,8 @@
 #include <cmath>
 #include <vector>
 
+#include "grin/index/lanes.h"
+
 namespace flatspeckle::grin {
 
 /// g_m(u) = J_m(x) / x^m with u = x^2: entire in u, so that J_m(x) cos(m phi) = g_m(u) Re (x e^{i
@@ -30,6 +32,50 @@ class BesselProfile {
     if (!(cell < cells_)) return far_jet(u);
     const double delta = u - centre(cell);
     return polynomial(table_[static_cast<std::size_t>(cell)], delta);
+  }
+  /// The same of u in lanes.
+  void jets(const double* u, double* value, double* slope) const {
+    alignas(64) double delta[lanes];
+    alignas(64) int number[lanes];
+    alignas(64) Cell in[lanes];
+    const double cells = cells_;
+    const Cell* const table = table_.data();
+    int far = 0;
+#pragma omp simd reduction(| : far)
+    for (int k = 0; k < lanes; ++k) {
+      const double place = std::sqrt(u[k]) * cells_per_unit;
+      const bool is_far = !(place < cells);
+      far |= is_far;
+      number[k] = static_cast<int>(is_far ? 0 : place);
+      delta[k] = u[k] - centre(number[k]);
+    }
+    for (int k = 0; k < lanes; ++k) in[k] = table[number[k]];
+#pragma omp simd
+    for (int k = 0; k < lanes; ++k) {
+      const double* const c = in[k].c;
+      const double t = delta[k];
+      double v = c[7], d = c[7];
+      v = v * t + c[6];
+      d = d * t + v;
+      v = v * t + c[5];
+      d = d * t + v;
+      v = v * t + c[4];
+      d = d * t + v;
+      v = v * t + c[3];
+      d = d * t + v;
+      v = v * t + c[2];
+      d = d * t + v;
+      v = v * t + c[1];
+      slope[k] = d * t + v;
+      value[k] = v * t + c[0];
+    }
+    if (far == 0) return;
+    for (int k = 0; k < lanes; ++k)
+      if (!(std::sqrt(u[k]) * cells_per_unit < cells)) {
+        const Jet at = far_jet(u[k]);
+        value[k] = at.value;
+        slope[k] = at.slope;
+      }
   }
   /// And the second: where x is past the first bend from Bessel's equation, 4 u g'' = -4 (m + 1)
   /// g' - g; it would cancel before, where the table's polynomials converge fastest.

@@ -31,9 +31,10 @@ struct FieldFacts {
 
 /// What a field is made for.
 struct FieldUse {
-  double reach;            ///< distance from the z axis that rays stay within
-  bool any_phase = false;  ///< each path meets sound at a phase of its own
-  bool is_added = false;   ///< to another field's index
+  double reach;                            ///< distance from the z axis that rays stay within
+  bool any_phase = false;                  ///< each path meets sound at a phase of its own
+  bool is_added = false;                   ///< to another field's index
+  std::optional<double> length_unit = {};  ///< metres, where that is known
 };
 
 /// Excess of the index that a field stands on.

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "grin/index/index_field.h"
+#include "grin/index/lanes.h"
 
 namespace flatspeckle::grin {
 
@@ -15,6 +15,10 @@ struct RadialJet {
 struct RadialSquare {
   double excess, slope;
 };
+
+/// A profile whose jet has no branch that vectors cannot take.
+template <class Profile>
+concept LaneProfile = Profile::goes_in_lanes;
 
 /// n = 1 + profile(r^2) about a centre (Dimension 3) or about the line through it along z
 /// (Dimension 2). Profile: excess(u), jet(u) with derivatives, and maybe
@@ -35,6 +39,19 @@ class RadialField {
     const Vec3 r = radius_vector(x);
     const RadialJet jet = profile_.jet(r.squaredNorm());
     return {jet.excess, 2 * jet.first * r};
+  }
+  void gradients(const LaneVectors& x, LaneGradients& found) const requires LaneProfile<Profile> {
+    const Profile profile = profile_;
+    const double cx = centre_[0], cy = centre_[1], cz = centre_[2];
+#pragma omp simd
+    for (int k = 0; k < lanes; ++k) {
+      const double rx = x.x[k] - cx, ry = x.y[k] - cy, rz = Dimension == 3 ? x.z[k] - cz : 0;
+      const RadialJet jet = profile.jet(rx * rx + ry * ry + rz * rz);
+      found.excess[k] = jet.excess;
+      found.gradient.x[k] = 2 * jet.first * rx;
+      found.gradient.y[k] = 2 * jet.first * ry;
+      found.gradient.z[k] = 2 * jet.first * rz;
+    }
   }
   IndexHessian hessian(const Vec3& x) const {
     const Vec3 r = radius_vector(x);

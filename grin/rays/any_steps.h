@@ -26,6 +26,9 @@ class RayLog {
   RayLog(const RaySteps& steps, bool keeps_path)
       : steps_(steps), next_(steps.longest / 16), keeps_path_(keeps_path) {}
 
+  /// What others have made of its steps.
+  void met(double index_mismatch) { index_mismatch_ = std::max(index_mismatch_, index_mismatch); }
+
   void start(const RayState& ray) {
     if (keeps_path_) path_.add(ray);
   }

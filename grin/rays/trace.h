@@ -62,7 +62,7 @@ TraceEnd trace(const F& field, std::span<const Surface> surfaces, const TraceLim
     return trace_straight(field, surfaces, limits, ray, tangent...);
   const Watch watch(surfaces, limits, ray);
   double clearance = watch.clearance(ray);
-  TraceEnd end{Stop::lost, -1, 0, 1};
+  TraceEnd end{Stop::steps, -1, 0, 1};
   while (end.steps < limits.max_steps) {
     ++end.steps;
     const std::tuple<Ray, Tangent...> before(ray, tangent...);
@@ -87,7 +87,10 @@ TraceEnd trace(const F& field, std::span<const Surface> surfaces, const TraceLim
       const TraceEnd found = trace_parts::end_at(watch, ray, limits);
       return {found.stop, found.surface, end.steps, end.looks};
     }
-    if (is_lost) return end;
+    if (is_lost) {
+      end.stop = Stop::lost;
+      return end;
+    }
   }
   return end;
 }

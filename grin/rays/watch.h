@@ -18,7 +18,8 @@ struct TraceLimits {
 enum class Stop {
   surface,  ///< on a surface, within the tolerance
   length,   ///< at the full arc length, within the tolerance
-  lost      ///< an index that is not positive, no step short enough, or too many of them
+  steps,    ///< after so many steps
+  lost      ///< an index that is not positive, or no step short enough
 };
 
 struct TraceEnd {

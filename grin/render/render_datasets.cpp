@@ -149,6 +149,12 @@ void write_sensor(const ResultGroup& group, const SensorPixels& pixels,
   group.put("image", result.picture.steady);
   group.put("mean", result.mean);
   if (result.total) group.put("total", *result.total);
+  if (result.within) {
+    group.put("disk_radius", result.within->radii);
+    group.put("other_disk_radius", result.within->radii);
+    group.put("power_within", result.within->power);
+    group.put("power_within_covariance", result.within->covariance);
+  }
   if (!result.pulse.value.empty()) {
     group.put("transient", result.picture.bins);
     group.put("transient_before", result.picture.before);
@@ -184,6 +190,9 @@ RenderResult render_result(const RenderScene& scene, const RenderJob& job,
   for (const Sensor& sensor : scene.sensors) {
     const Pixels pixels{pixels_of(sensor), first, job.bins};
     result.push_back(sensor_result(table_of(sensor), pixels, job, all, sums));
+    result.back().within = powers_within(
+        sensor, first, job.bins, sums,
+        [&](const GroupedSums& of, const Estimator& theta) { return job.estimate(of, theta); });
     first += pixels.count();
   }
   return result;

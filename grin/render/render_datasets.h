@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "core/result/dataset_row.h"
+#include "grin/render/powers_within.h"
 #include "grin/render/render_job.h"
 
 namespace flatspeckle::grin {
@@ -14,6 +15,7 @@ struct SensorResult {
   RenderedPicture picture;
   Estimate mean;                       ///< over the pixels
   std::optional<Estimate> total = {};  ///< a power, where the kind of sensor has it
+  std::optional<PowersWithin> within = {};
   /// Mean or total by bin and beyond the bins.
   Estimate pulse = {}, pulse_before = {}, pulse_after = {};
   /// Mean optical path and mean of its square, [pixel][2], and of all pixels.

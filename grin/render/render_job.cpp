@@ -13,8 +13,10 @@
 #include "core/numbers/random.h"
 #include "grin/estimators/method_choice.h"
 #include "grin/estimators/photon_map.h"
+#include "grin/index/lanes.h"
 #include "grin/render/map_datasets.h"
 #include "grin/render/picture_errors.h"
+#include "grin/render/powers_within.h"
 
 namespace flatspeckle::grin {
 
@@ -27,10 +29,11 @@ constexpr double few_of_pictures = 36;
 /// So many that adding up the picture takes little of the time, and so few that a batch ends soon
 /// and the number of batches from which errors are trusted is soon there: long paths are fewer.
 /// A power of two: no rounding of the flights changes it.
-int paths_per_batch(const Tracer& tracer, double cost_of_flight, std::size_t sums) {
+int paths_per_batch(const Tracer& tracer, bool scatters, double cost_of_flight, std::size_t sums) {
   constexpr double most = 16384, flights_soon_made = 8192;
   const double fewest = std::clamp(flights_soon_made / tracer.flights_per_pair, 4.0, 32.0);
   const bool is_map = tracer.method == RenderMethod::photon_map;
+  if (tracer.method == RenderMethod::analog && scatters) return 4 * lanes;  // lanes are to be full
   const double most_flights = is_map ? 1 << 20 : 1 << 17;
   const double paths =
       is_map ? photon_paths_per_batch
@@ -104,7 +107,8 @@ std::string described_map(const RenderScene& scene) {
 
 /// To their ends, booking where their power went.
 bool walks_light(RenderMethod method) {
-  return method == RenderMethod::light || method == RenderMethod::bidirectional;
+  return method == RenderMethod::light || method == RenderMethod::bidirectional ||
+         method == RenderMethod::analog;
 }
 
 /// A map alone asks for no picture.
@@ -113,15 +117,24 @@ Tracer tracer_of(const Tracers& tracers, const RenderScene& scene, const RenderR
   return request.method ? tracers.make(*request.method) : best_tracer(tracers);
 }
 
+using Estimating = std::function<Estimate(const GroupedSums&, const Estimator&)>;
+
 /// That of the sensor where it is largest: units of sensors differ.
-double largest_error(const std::vector<SensorEnd>& sensors, const Estimate& picture) {
+double largest_error(const Transport& transport, const std::vector<Sensor>& kinds,
+                     const TimeBins& bins, const Estimate& picture, const GroupedSums& sums,
+                     const Estimating& estimate) {
   double largest = 0;
   std::size_t first = 0;
-  for (const SensorEnd& sensor : sensors) {
-    const auto count = static_cast<std::size_t>(sensor.pixels().count());
-    Estimate own = part(picture, first, count);
-    bound_errors(own, sensor.pixels());
-    largest = std::max(largest, relative_error(own));
+  for (std::size_t i = 0; i < kinds.size(); ++i) {
+    const PixelGrid pixels = transport.sensors[i].pixels();
+    const auto count = static_cast<std::size_t>(pixels.count());
+    if (const auto powers = powers_within(kinds[i], first, bins, sums, estimate)) {
+      largest = std::max(largest, largest_error(*powers, transport.lights.power()));
+    } else {
+      Estimate own = part(picture, first, count);
+      bound_errors(own, pixels);
+      largest = std::max(largest, relative_error(own));
+    }
     first += count;
   }
   return largest;
@@ -138,8 +151,18 @@ std::string method_word(RenderMethod method) {
 }
 
 std::vector<std::string> method_words() {
-  return {"path", "light", "bidirectional", "photon_map"};
+  return {"path", "light", "bidirectional", "photon_map", "analog"};
 }
+
+namespace {
+
+void check_analog(const RenderScene& scene) {
+  if (!can_be_analog(scene))
+    throw InputError("method", method_word(RenderMethod::analog),
+                     "is of index fields, and of sensors that light can hit");
+}
+
+}  // namespace
 
 void check(const RenderScene& scene, const RenderRequest& request) {
   check(scene.stage);
@@ -149,6 +172,7 @@ void check(const RenderScene& scene, const RenderRequest& request) {
   const auto transport =
       transport_of(scene, request, request.method.value_or(RenderMethod::bidirectional));
   check_path_lengths(scene.stage, transport->max_scatterings);
+  if (request.method == RenderMethod::analog) check_analog(scene);
   if (scene.random_phase) make_ray_field(scene.field)->frozen(0);
 }
 
@@ -170,7 +194,8 @@ RenderJob render_job(const RenderScene& scene, const RenderRequest& request, std
   job.has_drift = books && tracers.has_drift();
   job.batches.size =
       job.first_of_map() + (map ? sums_per_cell * cells(*scene.map) : 0) + (job.has_drift ? 1 : 0);
-  const int paths = paths_per_batch(tracer, tracers.cost_of_flight(), job.batches.size);
+  const int paths =
+      paths_per_batch(tracer, tracers.plan().scatters, tracers.cost_of_flight(), job.batches.size);
   job.batches.samples_per_batch = paths;
   const auto counts = std::make_shared<TransportCounts>();
   job.counts = counts;
@@ -196,16 +221,22 @@ RenderJob render_job(const RenderScene& scene, const RenderRequest& request, std
   const EntrySums steady_sums{static_cast<std::size_t>(pixels),
                               static_cast<std::size_t>(scene.bins.sums()),
                               static_cast<std::size_t>(scene.bins.parts())};
-  job.batches.relative_error =
-      [=, cells = scene.map, steady = steady_picture(job.pictures, scene.bins),
-       has_drift = job.has_drift, first_of_map = job.first_of_map()](const GroupedSums& sums) {
-        const Estimate picture =
-            has_drift ? controlled_jackknife(sums, steady, sums.size() - 1, few_of_pictures)
-                      : jackknife(sums, steady_sums, few_of_pictures);
-        const double of_pictures = largest_error(tracer.transport->sensors, picture);
-        return cells ? std::max(of_pictures, relative_error(fluence(sums, first_of_map, *cells)))
-                     : of_pictures;
-      };
+  job.batches.relative_error = [=, kinds = scene.sensors, bins = scene.bins, cells = scene.map,
+                                steady = steady_picture(job.pictures, scene.bins),
+                                has_drift = job.has_drift,
+                                first_of_map = job.first_of_map()](const GroupedSums& sums) {
+    const Estimate picture =
+        has_drift ? controlled_jackknife(sums, steady, sums.size() - 1, few_of_pictures)
+                  : jackknife(sums, steady_sums, few_of_pictures);
+    const auto estimate = [&](const GroupedSums& of, const Estimator& theta) {
+      return has_drift ? controlled_jackknife(of, theta, of.size() - 1, few_of_pictures)
+                       : jackknife(of, theta, few_of_pictures);
+    };
+    const double of_pictures =
+        largest_error(*tracer.transport, kinds, bins, picture, sums, estimate);
+    return cells ? std::max(of_pictures, relative_error(fluence(sums, first_of_map, *cells)))
+                 : of_pictures;
+  };
   return job;
 }
 

@@ -1,7 +1,13 @@
 #include "grin/scene/ray_tracing.h"
 
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <span>
+
 #include "core/run/parallel.h"
 #include "grin/curved/ray_field.h"
+#include "grin/rays/lane_pool.h"
 
 namespace flatspeckle::grin {
 
@@ -40,44 +46,143 @@ class BundleTracer {
     if (scene.rim) surfaces_.push_back(*scene.rim);
   }
 
+  /// Rays of equal steps whose ways are not kept may go side by side.
+  bool has_lanes() const { return inside_->has_lanes() && !steps_.tolerance && path_points_ == 0; }
+
   TracedRay trace(std::size_t number, const RayStart& start) const {
-    RayLog log(steps_, path_points_ > 0);
-    RayState ray{start.x, index_at(scene_, start.x) * start.direction};
-    log.start(ray);
-    TracedRay traced{.first = invariants(ray)};
-    const TraceEnd end = follow(number, log, ray, traced.steps);
-    traced.end = ray;
-    traced.last = invariants(ray);
-    traced.index_mismatch = log.index_mismatch();
+    Going going(*this, number, start);
+    going.log.start(going.ray);
+    return finish(going, follow(going));
+  }
+  /// Rays [first, last).
+  void trace_in_lanes(std::span<const RayStart> starts, std::size_t first, std::size_t last,
+                      std::vector<TracedRay>& rays) const {
+    InLanes bundle(*this, starts, first, last, rays);
+    LanePool(bundle).run();
+  }
+
+ private:
+  struct Going {
+    Going(const BundleTracer& tracer, std::size_t number_of_ray, const RayStart& start)
+        : number(number_of_ray),
+          log(tracer.steps_, tracer.path_points_ > 0),
+          ray{start.x, index_at(tracer.scene_, start.x) * start.direction},
+          first(tracer.invariants(ray)) {}
+
+    std::size_t number;
+    RayLog log;
+    RayState ray;
+    RayInvariants first;
+    std::uint64_t steps = 0;
+  };
+
+  /// LanePool's work.
+  class InLanes {
+   public:
+    InLanes(const BundleTracer& tracer, std::span<const RayStart> starts, std::size_t first,
+            std::size_t last, std::vector<TracedRay>& rays)
+        : tracer_(tracer), starts_(starts), next_(first), last_(last), rays_(rays) {}
+
+    bool begin(int lane, RayState& ray) {
+      while (next_ < last_) {
+        const std::size_t number = next_++;
+        auto& going = going_[lane].emplace(tracer_, number, starts_[number]);
+        if (tracer_.comes_inside(going)) {
+          watch_[lane].emplace(tracer_.surfaces_, tracer_.limits(going), going.ray);
+          ray = going.ray;
+          return true;
+        }
+        rays_[number] = tracer_.trace(number, starts_[number]);
+      }
+      return false;
+    }
+    void go(RayLanes& rays, int steps) const {
+      tracer_.inside_->follow_lanes(tracer_.steps_.integrator, tracer_.steps_.longest, steps, rays);
+    }
+    double clearance(int lane, const RayState& ray) const { return watch_[lane]->clearance(ray); }
+    void passed(int lane) { going_[lane]->steps += steps_at_once; }
+
+    bool careful(int lane, RayState& ray, double& index_mismatch) {
+      Going& going = *going_[lane];
+      going.ray = ray;
+      going.log.met(index_mismatch);
+      TraceLimits few = tracer_.limits(going);
+      few.max_steps = steps_at_once;
+      TraceEnd end = tracer_.inside_->follow(tracer_.surfaces_, few, going.log, going.ray);
+      going.steps += static_cast<std::uint64_t>(end.steps);
+      if (end.stop == Stop::steps && going.steps < most_steps) {
+        ray = going.ray;
+        index_mismatch = going.log.index_mismatch();
+        return true;
+      }
+      end.steps = static_cast<long>(going.steps);
+      if (!tracer_.has_ended(going, end)) end = tracer_.follow(going);
+      rays_[going.number] = tracer_.finish(going, end);
+      return false;
+    }
+
+   private:
+    static constexpr int steps_at_once = LanePool<InLanes>::steps_at_once;
+
+    const BundleTracer& tracer_;
+    std::span<const RayStart> starts_;
+    std::size_t next_, last_;
+    std::vector<TracedRay>& rays_;
+    std::array<std::optional<Going>, lanes> going_;
+    std::array<std::optional<Watch>, lanes> watch_;
+  };
+
+  static constexpr std::uint64_t most_steps = TraceLimits{}.max_steps;
+
+  int number_of_stops() const { return static_cast<int>(stops_.surfaces.size()); }
+  RayInvariants invariants(const RayState& ray) const {
+    return ray_invariants(*inside_, ray, scene_.centre, scene_.axis);
+  }
+  TraceLimits limits(const Going& going) const {
+    return {stops_.max_length - going.ray.arc_length, stops_.location};
+  }
+
+  TracedRay finish(const Going& going, const TraceEnd& end) const {
+    TracedRay traced{.steps = going.steps,
+                     .end = going.ray,
+                     .index_mismatch = going.log.index_mismatch(),
+                     .first = going.first,
+                     .last = invariants(going.ray)};
     traced.status = end.stop == Stop::length          ? RayStatus::length
                     : end.surface < number_of_stops() ? RayStatus::surface
                                                       : RayStatus::edge_of_grid;
     const bool is_stop = traced.status == RayStatus::surface;
     traced.surface = static_cast<std::uint64_t>(is_stop ? end.surface : number_of_stops());
-    if (path_points_ > 0) traced.path = log.path().points(path_points_);
+    if (path_points_ > 0) traced.path = going.log.path().points(path_points_);
     return traced;
   }
 
- private:
-  int number_of_stops() const { return static_cast<int>(stops_.surfaces.size()); }
-  RayInvariants invariants(const RayState& ray) const {
-    return ray_invariants(*inside_, ray, scene_.centre, scene_.axis);
-  }
-
   /// From rim to rim, until the ray ends.
-  TraceEnd follow(std::size_t number, RayLog& log, RayState& ray, std::uint64_t& made) const {
+  TraceEnd follow(Going& going) const {
     constexpr int most_rims = 100'000;
-    if (leaves_grid(ray)) return {.stop = Stop::surface, .surface = number_of_stops()};
+    if (leaves_grid(going.ray)) return {.stop = Stop::surface, .surface = number_of_stops()};
     for (int i = 0; i < most_rims; ++i) {
-      const RayField& field = is_outside(ray) ? *outside_ : *inside_;
-      const TraceLimits limits{stops_.max_length - ray.arc_length, stops_.location};
-      const TraceEnd end = field.follow(surfaces_, limits, log, ray);
-      made += static_cast<std::uint64_t>(end.steps);
-      if (end.stop == Stop::lost) throw lost(number, end, ray);
-      const bool at_rim = scene_.rim && end.surface + 1 == static_cast<int>(surfaces_.size());
-      if (end.stop == Stop::length || !at_rim) return end;
+      const RayField& field = is_outside(going.ray) ? *outside_ : *inside_;
+      const TraceEnd end = field.follow(surfaces_, limits(going), going.log, going.ray);
+      going.steps += static_cast<std::uint64_t>(end.steps);
+      if (has_ended(going, end)) return end;
     }
-    throw InputError("max_length", stops_.max_length, name(number) + " meets the rim too often");
+    throw InputError("max_length", stops_.max_length,
+                     name(going.number) + " meets the rim too often");
+  }
+  /// Not at the rim.
+  bool has_ended(const Going& going, const TraceEnd& end) const {
+    if (end.stop == Stop::lost || end.stop == Stop::steps) throw lost(going, end);
+    const bool at_rim = scene_.rim && end.surface + 1 == static_cast<int>(surfaces_.size());
+    return end.stop == Stop::length || !at_rim;
+  }
+  /// Where it was outside of the rim, in one way.
+  bool comes_inside(Going& going) const {
+    if (leaves_grid(going.ray)) return false;
+    if (!is_outside(going.ray)) return true;
+    const TraceEnd end = outside_->follow(surfaces_, limits(going), going.log, going.ray);
+    going.steps += static_cast<std::uint64_t>(end.steps);
+    return !has_ended(going, end) && !is_outside(going.ray);
   }
 
   /// From its edge.
@@ -93,16 +198,17 @@ class BundleTracer {
     return ray.v.dot(scene_.rim->normal(ray.x)) >= 0;
   }
 
-  InputError lost(std::size_t number, const TraceEnd& end, const RayState& ray) const {
-    constexpr long most_steps = TraceLimits{}.max_steps;
-    if (end.steps >= most_steps)
-      return InputError("max_length", stops_.max_length,
-                        name(number) + " takes more than " + std::to_string(most_steps) +
-                            " steps; they may be longer");
-    const std::string where = ray.x.allFinite() ? ", near " + listed(ray.x) : "";
+  InputError lost(const Going& going, const TraceEnd& end) const {
+    const std::string ray = name(going.number);
+    if (end.stop == Stop::steps)
+      return InputError(
+          "max_length", stops_.max_length,
+          ray + " takes more than " + std::to_string(most_steps) + " steps; they may be longer");
+    const Vec3& x = going.ray.x;
+    const std::string where = x.allFinite() ? ", near " + listed(x) : "";
     return InputError(
-        name(number) +
-        " comes to where the index is not above 0, or changes too fast for the tolerance" + where);
+        ray + " comes to where the index is not above 0, or changes too fast for the tolerance" +
+        where);
   }
 
   const SceneField& scene_;
@@ -121,7 +227,15 @@ std::vector<TracedRay> trace_rays(const SceneField& scene, const RayStops& stops
   for (std::size_t i = 0; i < starts.size(); ++i) check_start(scene, stops, i, starts[i]);
   std::vector<TracedRay> rays(starts.size());
   const BundleTracer tracer(scene, stops, steps, path_points);
-  parallel_for(starts.size(), [&](std::size_t i) { rays[i] = tracer.trace(i, starts[i]); });
+  if (!tracer.has_lanes()) {
+    parallel_for(starts.size(), [&](std::size_t i) { rays[i] = tracer.trace(i, starts[i]); });
+    return rays;
+  }
+  constexpr std::size_t at_once = 16 * lanes;
+  parallel_for((starts.size() + at_once - 1) / at_once, [&](std::size_t i) {
+    const std::size_t last = std::min(starts.size(), (i + 1) * at_once);
+    tracer.trace_in_lanes(starts, i * at_once, last, rays);
+  });
   return rays;
 }
 

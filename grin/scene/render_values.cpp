@@ -178,7 +178,7 @@ void add_keys(Keys& keys, RenderRequestValues& values) {
   keys.group("Method");
   keys.add("method", values.method,
            "Path tracing is from the sensor; light tracing is best for powers on large areas; "
-           "auto: chosen by a pilot")
+           "analog: light paths that are joined to nothing; auto: chosen by a pilot")
       .one_of(words_for_methods());
   keys.add("photon_radius", values.photon_radius,
            "Radius of the estimate (default: chosen from the scene)")
@@ -192,7 +192,8 @@ void add_keys(Keys& keys, RenderRequestValues& values) {
 
 RenderScene make_render_scene(const Keys& keys, const RenderValues& values) {
   const bool any_phase = keys.read(values.random_phase);
-  const auto [stage, field] = make_stage(keys, values.stage, values.field, any_phase);
+  const auto [stage, field] =
+      make_stage(keys, values.stage, values.field, any_phase, keys.read(values.length_unit));
   const Box box = bounds(stage.boundary);
   const double size = (box.high - box.low).norm();
   const AnyIndexField heard = without_silence(field, stage);

@@ -102,7 +102,7 @@ void add_keys(Keys& keys, StageValues& values) {
 }
 
 FilledStage make_stage(const Keys& keys, const StageValues& values, const IndexFieldValues& field,
-                       bool any_phase) {
+                       bool any_phase, const std::optional<double>& length_unit) {
   const auto boundary = one_surface(keys, "stage", values.stage_box, values.stage_sphere);
   if (!boundary)
     throw InputError(
@@ -110,8 +110,10 @@ FilledStage make_stage(const Keys& keys, const StageValues& values, const IndexF
         "stage_sphere)");
   const auto given_body = one_surface(keys, "body", values.body_box, values.body_sphere);
   const double reach = reach_of(given_body ? *given_body : *boundary);
-  FilledStage filled{{.boundary = *boundary},
-                     make_scene_field(keys, field, {.reach = reach, .any_phase = any_phase})};
+  FilledStage filled{
+      {.boundary = *boundary},
+      make_scene_field(keys, field,
+                       {.reach = reach, .any_phase = any_phase, .length_unit = length_unit})};
   Stage& stage = filled.stage;
   if (const auto body = body_of(filled.field, *boundary, given_body)) {
     stage.bodies.push_back({*body, medium_in(keys, values.body_medium, *body, "body")});

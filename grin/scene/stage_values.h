@@ -28,6 +28,6 @@ struct FilledStage {
 /// A Luneburg ball in a larger stage is a body by itself. Throws InputError, also for a field that
 /// has no index above 0 somewhere in its part of the stage.
 FilledStage make_stage(const Keys& keys, const StageValues& values, const IndexFieldValues& field,
-                       bool any_phase);
+                       bool any_phase, const std::optional<double>& length_unit);
 
 }  // namespace flatspeckle::grin

@@ -38,7 +38,8 @@ void settle_field(TraceScene& scene, const Keys& keys, const TraceValues& values
     reach = std::max(reach, std::hypot(x[0], x[1]));
     farthest = std::max(farthest, x.cwiseAbs().maxCoeff());
   }
-  scene.field = make_scene_field(keys, values.field, {.reach = reach});
+  scene.field = make_scene_field(keys, values.field,
+                                 {.reach = reach, .length_unit = keys.read(values.length_unit)});
   if (scene.curves) scene.curves->ball = std::exchange(scene.field.rim, std::nullopt);
   scene.stops = make_ray_stops(keys, values.stops, scene.field.scale, farthest);
 }

@@ -1,23 +1,42 @@
 #include "grin/sensors/radial_detector.h"
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 
+#include "core/keys/number_text.h"
 #include "grin/sensors/sensor_table.h"
 
 namespace flatspeckle::grin {
 
 using std::numbers::pi;
 
-const DatasetTable radial_table = sensor_table(
-    {.name = "radial",
-     .axes = {{"radius", Data::scale, "", "length", "middle of the ring: distance from sensor_at"}},
-     .unit = "1/length^2",
-     .pixel = "irradiance averaged over the ring",
-     .mean = "irradiance averaged over the disk",
-     .total = "power on the disk"});
+namespace {
+
+DatasetTable table() {
+  DatasetTable table = sensor_table({.name = "radial",
+                                     .axes = {{"radius", Data::scale, "", "length",
+                                               "middle of the ring: distance from sensor_at"}},
+                                     .unit = "1/length^2",
+                                     .pixel = "irradiance averaged over the ring",
+                                     .mean = "irradiance averaged over the disk",
+                                     .total = "power on the disk"});
+  const auto add = [&](const DatasetRow& row) { table.rows.push_back(row); };
+  add({"disk_radius", Data::scale, "", "length", "radius of a disk, of those that radii lists"});
+  add({"other_disk_radius", Data::scale, "", "length", "the same"});
+  add({"power_within", Data::estimate, "disk_radius", "1", "power on the disk"});
+  add({"power_within_covariance", Data::real, "disk_radius other_disk_radius", "1",
+       "covariance of the errors of two of these powers"});
+  return table;
+}
+
+}  // namespace
+
+const DatasetTable radial_table = table();
 
 PixelRings picture_of(const RadialDetector& detector) {
+  if (!detector.radii.empty()) return PixelRings(detector.radii);
   return {PixelRings::Of::radius, detector.rings, detector.radius};
 }
 
@@ -52,6 +71,10 @@ void add_keys(Keys& keys, RadialValues& values) {
   add_vectors(keys, "sensor_at", values.sensor_at, "The middle of the disk, on the boundary")
       .unit("length");
   keys.add("sensor_radius", values.sensor_radius, "Of the disk").positive().unit("length");
+  keys.add("radii", values.radii,
+           "Of disks, increasing, in place of sensor_radius and rings: the power within each")
+      .positive()
+      .unit("length");
   keys.add("rings", values.rings, "Equal steps of the radius").from(1, 16384);
   keys.add("acceptance", values.acceptance, "Half angle about the normal")
       .positive_to(pi / 2)
@@ -59,6 +82,12 @@ void add_keys(Keys& keys, RadialValues& values) {
 }
 
 RadialDetector make_sensor(const OneSensor& of, const RadialValues& values) {
+  if (const auto& radii = of.all(values.radii); !radii.empty()) {
+    if (!std::is_sorted(radii.begin(), radii.end(), std::less_equal<double>()))
+      throw InputError("radii", number_text(radii), "must increase");
+    return {of.vector(values.sensor_at), radii.back(), static_cast<int>(radii.size()),
+            of.number(values.acceptance), radii};
+  }
   return {of.vector(values.sensor_at), of.number(values.sensor_radius),
           static_cast<int>(of.part(values.rings, 1)[0]), of.number(values.acceptance)};
 }

@@ -2,6 +2,7 @@
 
 #include <numbers>
 #include <optional>
+#include <vector>
 
 #include "grin/ends/boundary_patch.h"
 #include "grin/sensors/acceptance.h"
@@ -21,6 +22,8 @@ struct RadialDetector {
   double radius;
   int rings;
   double acceptance;  ///< half angle, rad, up to pi/2
+  /// Where given, rings from each to the next, and the powers within each: the last is `radius`.
+  std::vector<double> radii = {};
 };
 
 extern const DatasetTable radial_table;
@@ -58,7 +61,7 @@ class RadialDetectorEnd {
 struct RadialValues {
   using Sensor = RadialDetector;
   static constexpr const char* word = "radial";
-  std::vector<double> sensor_at{}, sensor_radius{};
+  std::vector<double> sensor_at{}, sensor_radius{}, radii{};
   std::vector<std::int64_t> rings{};
   std::vector<double> acceptance{std::numbers::pi / 2};
 };

@@ -56,6 +56,10 @@ class OneSensor {
                        std::to_string(sensors_));
     return std::span(member).subspan(given > size ? number_ * size : 0, size);
   }
+  /// The same of all sensors.
+  const std::vector<double>& all(const std::vector<double>& member) const {
+    return keys_.read(member);
+  }
   Vec3 vector(const std::vector<double>& member) const { return vector_of(part(member, 3)); }
   double number(const std::vector<double>& member) const { return part(member, 1)[0]; }
 

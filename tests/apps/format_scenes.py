@@ -142,6 +142,7 @@ RUNS = {
                                "mu_a": 0.1, "map_cylinder": [0, 0, 0, 0, 0, 4, 1], "map_cells": [3, 4]}),
     "sensors": ("render", {**STAGE, "sensor": ["area", "directional"], "sensor_at": [0, 0, 4],
                            "sensor_size": [1, 1], "sensor_name": ["through", "far"]}),
+    "disks": ("render", {**STAGE, "pixels": None, "sensor": "radial", "sensor_at": [0, 0, 4], "radii": [0.5, 1]}),
     "radial": ("render", {**STAGE, "pixels": None, "sensor": "radial", "sensor_at": [0, 0, 4],
                           "sensor_radius": 1, "rings": 4}),
     "polar": ("render", {**STAGE, "pixels": None, "sensor": "polar", "rings": 4}),

@@ -90,7 +90,7 @@ class Scenes(RenderTest):
 
     def test_curves_are_counted(self):
         """Where rays are curved or refracted, and there alone."""
-        found = self.render(**BOX, **BEAM, **FOG, **AREA, **FIBRE)
+        found = self.render(**BOX, **BEAM, **FOG, **AREA, **FIBRE, method="bidirectional")
         self.assertGreater(found["trials/found"], 0)
         self.assertLessEqual(found["trials/found"], found["trials/pairs"])
         self.assertLessEqual(found["trials/found"], found["trials/converged"])

@@ -404,6 +404,15 @@ class Refused(TraceTest):
         self.refuse("sound_wavenumber = -1", field="ultrasound", sound_wavenumber=-1, amplitude=1)
         self.refuse("emitters = 0", field="focused_sound", sound_wavenumber=1, amplitude=0,
                     emitters=0)
+        self.refuse("frequency", field="ultrasound", sound_wavenumber=1, frequency=1e6, amplitude=0)
+        self.refuse("pressure", field="ultrasound", sound_wavenumber=1, pressure=1, amplitude=0)
+        self.refuse("sound_speed", field="ultrasound", sound_wavenumber=1, sound_speed=1600, amplitude=0)
+        self.refuse("transducer", field="transducers")
+        self.refuse("transducer", field="transducers", transducer=[1e-3, 4, 0])
+        self.refuse("aperture of a transducer = 4", field="transducers",
+                    transducer=[1e-3, 4, 0, 0, 0, 15, 1, 0, 0, 4])
+        self.refuse("direction of a transducer", field="transducers",
+                    transducer=[1e-3, 4, 0, 0, 0, 15, 0, 0, 0, 0.4])
         self.refuse("sound_order = 65", field="ultrasound", sound_wavenumber=1, amplitude=0,
                     sound_order=65)
 

@@ -1,0 +1,13 @@
+#pragma once
+
+#include "grin/estimators/path_kernels.h"
+
+namespace flatspeckle::grin {
+
+/// Light paths that are counted where they hit sensors, and never joined to anything: each costs
+/// little, and none is worth more than its power. Of a space with lanes side by side; each path has
+/// random numbers of its own. Unscattered light of beams is left out (unscattered_beams.h).
+PathKernel analog_kernel(bool timed, std::shared_ptr<const Transport> transport,
+                         std::shared_ptr<const CurvedSpace> space, bool random_phase);
+
+}  // namespace flatspeckle::grin

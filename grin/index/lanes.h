@@ -1,0 +1,37 @@
+#pragma once
+
+#include "grin/index/index_field.h"
+
+namespace flatspeckle::grin {
+
+// Rays side by side in lanes, which loops over all of them make vectors of: nothing in such a loop
+// depends on another lane, so that what becomes of a ray depends neither on its lane nor on its
+// neighbours, nor on how wide vectors are.
+
+inline constexpr int lanes = 32;
+
+struct LaneVectors {
+  alignas(64) double x[lanes], y[lanes], z[lanes];
+
+  Vec3 at(int lane) const { return {x[lane], y[lane], z[lane]}; }
+  void put(int lane, const Vec3& v) {
+    x[lane] = v[0];
+    y[lane] = v[1];
+    z[lane] = v[2];
+  }
+};
+
+/// IndexGradient.
+struct LaneGradients {
+  alignas(64) double excess[lanes];
+  LaneVectors gradient;
+};
+
+/// A field that tells its gradients in lanes, for less than one by one.
+template <class F>
+concept LaneField = IndexField<F> &&
+    requires(const F& field, const LaneVectors& x, LaneGradients& found) {
+  field.gradients(x, found);
+};
+
+}  // namespace flatspeckle::grin

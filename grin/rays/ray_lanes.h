@@ -1,0 +1,137 @@
+#pragma once
+
+#include "core/numbers/every_width.h"
+#include "grin/index/lanes.h"
+#include "grin/rays/ray_step.h"
+
+namespace flatspeckle::grin {
+
+/// RayState in lanes, and the largest ||v| - n| at the ends of steps.
+struct RayLanes {
+  LaneVectors x, v;
+  alignas(64) double arc_length[lanes], optical_path[lanes], index_mismatch[lanes];
+
+  RayState at(int lane) const {
+    return {x.at(lane), v.at(lane), arc_length[lane], optical_path[lane]};
+  }
+  void put(int lane, const RayState& ray) {
+    x.put(lane, ray.x);
+    v.put(lane, ray.v);
+    arc_length[lane] = ray.arc_length;
+    optical_path[lane] = ray.optical_path;
+  }
+};
+
+namespace lane_parts {
+
+inline void drift(RayLanes& rays, double h) {
+#pragma omp simd
+  for (int k = 0; k < lanes; ++k) {
+    rays.x.x[k] += h * rays.v.x[k];
+    rays.x.y[k] += h * rays.v.y[k];
+    rays.x.z[k] += h * rays.v.z[k];
+  }
+}
+
+/// A whole kick, and half a drift after it.
+inline void kick(RayLanes& rays, const LaneGradients& at, double h) {
+#pragma omp simd
+  for (int k = 0; k < lanes; ++k) {
+    const double n = 1 + at.excess[k], path = h * n;
+    rays.arc_length[k] += path;
+    rays.optical_path[k] += n * path;
+    rays.v.x[k] += path * at.gradient.x[k];
+    rays.v.y[k] += path * at.gradient.y[k];
+    rays.v.z[k] += path * at.gradient.z[k];
+    rays.x.x[k] += h / 2 * rays.v.x[k];
+    rays.x.y[k] += h / 2 * rays.v.y[k];
+    rays.x.z[k] += h / 2 * rays.v.z[k];
+  }
+}
+
+/// x + h v + c n grad n
+inline void displaced(const RayLanes& rays, double h, double c, const LaneGradients& at,
+                      LaneVectors& to) {
+#pragma omp simd
+  for (int k = 0; k < lanes; ++k) {
+    const double force = c * (1 + at.excess[k]);
+    to.x[k] = rays.x.x[k] + h * rays.v.x[k] + force * at.gradient.x[k];
+    to.y[k] = rays.x.y[k] + h * rays.v.y[k] + force * at.gradient.y[k];
+    to.z[k] = rays.x.z[k] + h * rays.v.z[k] + force * at.gradient.z[k];
+  }
+}
+
+/// Of Sharma's step, from its three forces.
+inline void advance(RayLanes& rays, const LaneGradients& a, const LaneGradients& b,
+                    const LaneGradients& c, double h) {
+#pragma omp simd
+  for (int k = 0; k < lanes; ++k) {
+    const double na = 1 + a.excess[k], nb = 1 + b.excess[k], nc = 1 + c.excess[k];
+    rays.arc_length[k] += h / 6 * (na + 4 * nb + nc);
+    rays.optical_path[k] += h / 6 * (na * na + 4 * nb * nb + nc * nc);
+    const auto move = [&](double* x, double* v, const double* fa, const double* fb,
+                          const double* fc) {
+      const double at_a = na * fa[k], at_b = nb * fb[k], at_c = nc * fc[k];
+      x[k] += h * v[k] + h * h / 6 * (at_a + 2 * at_b);
+      v[k] += h / 6 * (at_a + 4 * at_b + at_c);
+    };
+    move(rays.x.x, rays.v.x, a.gradient.x, b.gradient.x, c.gradient.x);
+    move(rays.x.y, rays.v.y, a.gradient.y, b.gradient.y, c.gradient.y);
+    move(rays.x.z, rays.v.z, a.gradient.z, b.gradient.z, c.gradient.z);
+  }
+}
+
+template <LaneField F>
+void look(const F& field, RayLanes& rays) {
+  LaneGradients at;
+  field.gradients(rays.x, at);
+#pragma omp simd
+  for (int k = 0; k < lanes; ++k) {
+    const double vx = rays.v.x[k], vy = rays.v.y[k], vz = rays.v.z[k];
+    const double off = std::abs(std::sqrt(vx * vx + vy * vy + vz * vz) - (1 + at.excess[k]));
+    const double most = rays.index_mismatch[k];
+    rays.index_mismatch[k] = off > most ? off : most;
+  }
+}
+
+}  // namespace lane_parts
+
+// The steps of ray_step.h, of all lanes.
+
+template <LaneField F>
+void step(Leapfrog, const F& field, RayLanes& rays, double h) {
+  lane_parts::drift(rays, h / 2);
+  LaneGradients at;
+  field.gradients(rays.x, at);
+  lane_parts::kick(rays, at, h);
+}
+template <LaneField F>
+void step(Yoshida4, const F& field, RayLanes& rays, double h) {
+  for (const double part : {Yoshida4::outer, Yoshida4::inner, Yoshida4::outer})
+    step(Leapfrog(), field, rays, part * h);
+}
+template <LaneField F>
+void step(Sharma, const F& field, RayLanes& rays, double h) {
+  LaneGradients a, b, c;
+  LaneVectors x;
+  field.gradients(rays.x, a);
+  lane_parts::displaced(rays, h / 2, h * h / 8, a, x);
+  field.gradients(x, b);
+  lane_parts::displaced(rays, h, h * h / 2, b, x);
+  field.gradients(x, c);
+  lane_parts::advance(rays, a, b, c, h);
+}
+
+/// So many equal steps; looks: for the index mismatch, at each step's end.
+template <bool looks, class Integrator, LaneField F>
+FLATSPECKLE_EVERY_WIDTH void make_steps(Integrator by, const F& field, RayLanes& all, double h,
+                                        int steps) {
+  RayLanes rays = all;
+  for (int i = 0; i < steps; ++i) {
+    step(by, field, rays, h);
+    if constexpr (looks) lane_parts::look(field, rays);
+  }
+  all = rays;
+}
+
+}  // namespace flatspeckle::grin

@@ -1,0 +1,139 @@
+#include <cmath>
+#include <numbers>
+
+#include <doctest/doctest.h>
+
+#include "grin/estimators/analog_light.h"
+#include "grin/estimators/tracer.h"
+#include "grin/render/render_datasets.h"
+#include "tests/grin/render_tests.h"
+
+// Light paths without joins, side by side, and powers on disks within each other.
+
+namespace flatspeckle::grin::tests {
+
+namespace {
+
+using std::numbers::pi;
+
+ScatteringMedium tissue(double mu_s, double mu_a) {
+  ScatteringMedium medium{.mu_s = mu_s, .mu_a = mu_a};
+  medium.phase = SpacePhaseFunction{HgPhase{0.7}};
+  return medium;
+}
+
+/// A guide of sound in a box under a beam; `radii` of disks on the far side.
+RenderScene guide(double mu_s, double mu_a, std::vector<double> radii) {
+  RenderScene scene;
+  scene.field = StandingWave(0.33, 0.01, 0, 3, 6);
+  scene.step = 0.1;
+  scene.max_length = 200;
+  scene.stage = {.boundary = Box{{-3, -3, 0}, {3, 3, 6}}, .medium = tissue(mu_s, mu_a)};
+  scene.lights = {BeamLight{{0, 0, 0}, Vec3::UnitZ(), 0.5}};
+  scene.leapfrogs = true;
+  const double last = radii.back();
+  const int rings = static_cast<int>(radii.size());
+  scene.sensors = {RadialDetector{{0, 0, 6}, last, rings, pi / 2, std::move(radii)}};
+  return scene;
+}
+
+PowersWithin powers(const RenderScene& scene, RenderMethod method, double samples,
+                    std::uint64_t seed) {
+  const RenderJob job = render_job(scene, {method}, seed);
+  return *render_result(scene, job, run_render(job, samples).sums)[0].within;
+}
+
+}  // namespace
+
+TEST_CASE("analog light is that of light tracing and of bidirectional tracing") {
+  const RenderScene scene = guide(0.3, 0.05, {0.3, 1, 2.5});
+  const PowersWithin one = powers(scene, RenderMethod::analog, 60000, 1);
+  for (const RenderMethod method : {RenderMethod::light, RenderMethod::bidirectional}) {
+    CAPTURE(name(method));
+    const PowersWithin other = powers(scene, method, 8000, 2);
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double error = std::hypot(one.power.error[i], other.power.error[i]);
+      CAPTURE(one.power.value[i].real());
+      CHECK(std::abs(one.power.value[i] - other.power.value[i]) < 4 * error);
+      CHECK(one.power.error[i] < 0.02 * one.power.value[i].real());
+    }
+  }
+}
+
+TEST_CASE("all power of analog light is accounted for") {
+  const RenderScene scene = guide(0.3, 0.05, {2.5});
+  const RenderJob job = render_job(scene, {RenderMethod::analog}, 1);
+  const RunState state = run_render(job, 4000);
+  const auto fates = state.sums.total();
+  double ended = 0;
+  for (std::size_t fate = 1; fate < EnergyBalance::size; ++fate)
+    ended += fates[job.pictures + fate].real();
+  const double emitted = fates[job.pictures].real();
+  CHECK(emitted == doctest::Approx(state.sums.total_samples()).epsilon(1e-12));
+  CHECK(ended == doctest::Approx(emitted).epsilon(1e-12));
+}
+
+/// Each path has random numbers of its own, so that it goes the same way both times.
+TEST_CASE("light paths side by side are those that go one by one") {
+  const RenderScene scene = guide(0.5, 0.02, {0.5, 2});
+  const auto sums_of = [&](Spreading spreading) {
+    const auto transport = transport_of(scene, {RenderMethod::analog}, RenderMethod::analog);
+    const std::shared_ptr<const CurvedSpace> space = make_curved_space(
+        scene.field, scene.stage, {scene.step, scene.max_length, spreading, scene.leapfrogs});
+    CHECK(space->has_lanes() == (spreading == Spreading::none));
+    std::vector<Complex> sums(2);
+    Film film(2, scene.bins, sums);
+    TransportCounts counts;
+    RandomStream random(3, 0, 0);
+    analog_kernel(false, transport, space, false)(500, random, film, counts, nullptr);
+    return std::pair{sums, counts.flights};
+  };
+  const auto [together, flights] = sums_of(Spreading::none);
+  const auto [alone, same_flights] = sums_of(Spreading::all);
+  CHECK(flights == same_flights);
+  for (std::size_t i = 0; i < 2; ++i)
+    CHECK(together[i].real() == doctest::Approx(alone[i].real()).epsilon(1e-9));
+}
+
+TEST_CASE("powers on nested disks have the covariance of what they share") {
+  const RenderScene scene = guide(0.3, 0, {0.3, 0.6, 2});
+  const PowersWithin all = powers(scene, RenderMethod::analog, 40000, 5);
+  const auto covariance = [&](std::size_t i, std::size_t j) { return all.covariance[3 * i + j]; };
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double error = all.power.error[i];
+    CHECK(covariance(i, i) == doctest::Approx(error * error).epsilon(1e-12));
+    for (std::size_t j = 0; j < 3; ++j)
+      CHECK(covariance(i, j) == doctest::Approx(covariance(j, i)).epsilon(1e-12));
+  }
+  // of scattered light, a binomial of each path: cov = p_i (1 - p_j) / paths, p_i <= p_j
+  RenderScene dark = scene;
+  dark.lights = {PointLight{Vec3(0, 0, 3)}};
+  dark.field = StandingWave(0.33, 1e-9, 0, 3, 6);
+  const PowersWithin lit = powers(dark, RenderMethod::analog, 200000, 6);
+  const auto p = [&](std::size_t i) { return lit.power.value[i].real(); };
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = i; j < 3; ++j)
+      CHECK(lit.covariance[3 * i + j] == doctest::Approx(p(i) * (1 - p(j)) / 200000).epsilon(0.35));
+  // The whole is the picture's.
+  const RenderJob job = render_job(scene, {RenderMethod::analog}, 5);
+  const RenderResult result = render_result(scene, job, run_render(job, 40000).sums);
+  CHECK(result[0].total->value[0].real() ==
+        doctest::Approx(all.power.value[2].real()).epsilon(1e-12));
+}
+
+TEST_CASE("a target error is that of the powers within, where there are radii") {
+  const RenderScene scene = guide(0.3, 0, {0.3, 0.6, 2});
+  const RenderJob job = render_job(scene, {RenderMethod::analog}, 5);
+  const RunState state = run_render(job, 20000);
+  const PowersWithin all = *render_result(scene, job, state.sums)[0].within;
+  CHECK(job.batches.relative_error(state.sums) ==
+        doctest::Approx(largest_error(all, 1)).epsilon(1e-12));
+}
+
+TEST_CASE("analog light is refused where it cannot be") {
+  RenderScene scene = guide(0.3, 0, {1});
+  scene.field = Homogeneous{0.33};
+  CHECK_THROWS_AS(check(scene, {RenderMethod::analog}), InputError);
+}
+
+}  // namespace flatspeckle::grin::tests
