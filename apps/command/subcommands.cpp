@@ -9,6 +9,7 @@ int validate(const Arguments& arguments);
 int flux(const Arguments& arguments);
 int sweep(const Arguments& arguments);
 int merge(const Arguments& arguments);
+int optimise(const Arguments& arguments);
 int field(const Arguments& arguments);
 int image(const Arguments& arguments);
 int fit(const Arguments& arguments);
@@ -34,6 +35,8 @@ std::span<const SubcommandEntry> subcommands() {
        "memory-effect curves over grids or lists of g, albedo, optical depth, radius, index",
        sweep},
       {"merge", "the points of a sweep that ran in shares, as one result", merge},
+      {"optimise", "the values of keys that make a number of a result as large as can be, or small",
+       optimise},
       {"field", "speckle fields drawn with the covariance of a scene, also over tilts of the light",
        field},
       {"image",

@@ -2,12 +2,14 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "core/keys/keys.h"
 #include "core/result/result_file.h"
 #include "core/run/runner.h"
 #include "core/session/run_settings.h"
+#include "core/session/session.h"
 
 namespace flatspeckle::apps {
 
@@ -28,12 +30,19 @@ class Experiment {
  public:
   virtual ~Experiment() = default;
 
+  /// In place of the default; before add_keys(). What has no chance in it takes no seed that is
+  /// given, but any default.
+  void set_default_seed(std::uint64_t seed) { run_.seed = static_cast<std::int64_t>(seed); }
   /// Keys of all it reads, those of the run too; they are bound to this object.
   virtual void add_keys(Keys& keys) = 0;
   /// Makes the scene. All that can be refused is refused here: throws InputError.
   virtual void read(const Keys& keys) = 0;
+  /// What to know of the scene before it is run: on standard error.
+  virtual void note() const {}
   /// After read(). May take some time, as a pilot does.
   virtual PlannedExperiment plan() const = 0;
+  /// One run as a call of the program. Returns the exit status.
+  virtual int run_alone(Session& session, const std::string& label) const;
 
   const RunSettings& run() const { return run_; }
   const StopRule& stop() const { return stop_; }
@@ -46,6 +55,26 @@ class Experiment {
   RunSettings run_;
   StopRule stop_;
   std::string inputs_;
+};
+
+/// A result that is made in one go.
+class OneShot : public Experiment {
+ public:
+  OneShot() { stop_.samples = 2; }  // batches
+  /// That is its first batch; the second is empty.
+  PlannedExperiment plan() const override;
+  int run_alone(Session& session, const std::string& label) const override;
+
+ protected:
+  /// Nothing where a signal came. tells: on standard output, too.
+  virtual std::optional<Made> make(ResultFile& file, bool tells) const = 0;
+  /// Whether make() looks for signals; else they end the program at once.
+  virtual bool looks_for_signals() const { return false; }
+  /// Of a file of its own.
+  virtual ResultFile::Storage storage() const { return ResultFile::Storage::memory; }
+  int threads() const {
+    return run_.threads > 0 ? static_cast<int>(run_.threads) : default_threads();
+  }
 };
 
 /// A subcommand that makes one result.

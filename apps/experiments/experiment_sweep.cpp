@@ -10,13 +10,6 @@ namespace flatspeckle::apps {
 
 namespace {
 
-const ExperimentEntry& entry_of(const std::string& of) {
-  const ExperimentEntry* const entry = experiment_entry(of);
-  if (entry == nullptr)
-    throw InputError("of", of, "must be one of " + joined(experiment_names(), " "));
-  return *entry;
-}
-
 /// Of the sweep as a whole, not of its points.
 const std::set<std::string> keys_of_the_sweep{"of",  "vary",    "points",  "shard",
                                               "out", "threads", "seconds", "resume"};
@@ -50,11 +43,12 @@ bool is_corner(const SweepPoints& points, std::size_t point) {
 
 ExperimentSweep::ExperimentSweep(const std::string& of)
     : of_(of),
-      base_(entry_of(of).make()),
-      command_("sweep", std::string("A sweep of: ") + entry_of(of).purpose) {
+      family_(of),
+      base_(family_.unset()),
+      command_("sweep", std::string("A sweep of: ") + family_.purpose()) {
   Keys& keys = command_.keys();
   base_->add_keys(keys);
-  keys.remove("keep_state");  // of one run
+  add_run_keys_of_many(keys, run_);
   keys.group("Sweep");
   keys.add("of", of_, "The subcommand whose results these are");
   add_keys(keys, vary_);
@@ -93,22 +87,20 @@ void ExperimentSweep::check() {
 void ExperimentSweep::note_given() {
   std::set<std::string> noted = keys_of_the_sweep;
   for (const SweepAxis& axis : points_.axes) noted.insert(axis.key);
-  for (const Key& key : command_.keys().rows())
-    if (key.given() && noted.insert(key.name()).second)
-      given_.emplace_back(key.name(), key.value());
+  family_.take_given(command_.keys(), noted);
 }
 
 /// Values one by one, and scenes of as many points as can soon be made.
 void ExperimentSweep::check_points() {
-  const auto scratch = entry_of(of_).make();
+  const auto scratch = family_.unset();
   Keys all;
   scratch->add_keys(all);
-  for (const auto& [name, values] : given_) all.set(name, values);
+  family_.set_given(all);
   for (std::size_t axis = 0; axis < points_.axes.size(); ++axis) check_values(points_, axis, all);
   set_point(points_, points_.count() - 1, all);
-  for (const std::size_t point : points_to_check()) checked(point, &all);
+  for (const std::size_t point : points_to_check()) checked(point, {&all, &command_.keys()});
   all.refuse_unread();
-  inputs_ = checked(0, nullptr)->inputs();
+  inputs_ = experiment(0)->inputs();
 }
 
 std::vector<std::size_t> ExperimentSweep::points_to_check() const {
@@ -122,31 +114,21 @@ std::vector<std::size_t> ExperimentSweep::points_to_check() const {
   return some;
 }
 
-std::unique_ptr<Experiment> ExperimentSweep::checked(std::size_t point, const Keys* joined) const {
-  auto experiment = entry_of(of_).make();
-  Keys keys;
-  experiment->add_keys(keys);
-  for (const auto& [name, values] : given_) keys.set(name, values);
-  try {
-    set_point(points_, point, keys);
-    keys.check();
-    experiment->read(keys);
-  } catch (const InputError& error) {
-    throw InputError("point " + points_.name(point) + ": " + error.what());
-  }
-  if (joined == nullptr) return experiment;
-  joined->join_reads(keys);
-  command_.keys().join_reads(keys);
-  return experiment;
+std::unique_ptr<Experiment> ExperimentSweep::checked(std::size_t point,
+                                                     const std::vector<const Keys*>& joined) const
+    try {
+  return family_.run([&](const Keys& keys) { set_point(points_, point, keys); }, joined);
+} catch (const InputError& error) {
+  throw InputError("point " + points_.name(point) + ": " + error.what());
 }
 
 std::unique_ptr<Experiment> ExperimentSweep::experiment(std::size_t point) const {
-  return checked(point, nullptr);
+  return checked(point, {});
 }
 
 std::string ExperimentSweep::identity_of_points() const {
   std::string text = "flatspeckle " + version() + ", sweep of " + of_ + ", format 1\n";
-  for (const auto& [name, values] : given_) text += line(name, values);
+  text += family_.given();
   std::vector<std::string> axes;
   for (const SweepAxis& axis : points_.axes) axes.push_back(axis.key);
   return text + line("varied", axes) + inputs_;

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "apps/command/command_line.h"
-#include "apps/experiments/experiment.h"
+#include "apps/experiments/experiment_family.h"
 #include "apps/sweep/sweep_share.h"
 #include "apps/sweep/varied_points.h"
 #include "core/session/session.h"
@@ -33,7 +33,7 @@ class ExperimentSweep {
 
   const Session& session() const { return *session_; }
   const std::string& of() const { return of_; }
-  const RunSettings& settings() const { return base_->run(); }
+  const RunSettings& settings() const { return run_; }
   const SweepPoints& points() const { return points_; }
   const SweepShare& share() const { return share_; }
   bool is_share() const { return has_share_; }
@@ -54,16 +54,18 @@ class ExperimentSweep {
   void check();
   void check_points();
   std::vector<std::size_t> points_to_check() const;
-  std::unique_ptr<Experiment> checked(std::size_t point, const Keys* joined) const;
+  std::unique_ptr<Experiment> checked(std::size_t point,
+                                      const std::vector<const Keys*>& joined) const;
   void note_given();
 
   std::string of_, share_text_, out_, inputs_;
+  ExperimentFamily family_;
   std::unique_ptr<Experiment> base_;
+  RunSettings run_;
   VaryValues vary_;
   SweepPoints points_;
   SweepShare share_;
   bool has_share_ = false;
-  std::vector<std::pair<std::string, std::vector<std::string>>> given_;  ///< of every point
   Subcommand command_;
   std::optional<Session> session_;
 };

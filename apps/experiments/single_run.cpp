@@ -14,11 +14,8 @@ int single_run(const std::string& name, const Arguments& arguments) {
   Session session(command.text(), command.keys(), experiment->run(), command.only_prints());
   experiment->read(command.keys());
   if (!command.settle()) return ExitStatus::done;
-  const PlannedExperiment planned = experiment->plan();
-  const auto& write = planned.write_and_tell ? planned.write_and_tell : planned.write;
-  return session.run(planned.plan, {{"", name, planned.batches, experiment->stop()}},
-                     experiment->inputs(),
-                     [&](ResultFile& file) { write(file, session.sums("")); });
+  experiment->note();
+  return experiment->run_alone(session, name);
 }
 
 }  // namespace flatspeckle::apps

@@ -1,11 +1,10 @@
 #include <cstdio>
 
-#include "apps/command/subcommands.h"
+#include "apps/experiments/single_run.h"
 #include "apps/results/extras.h"
 #include "apps/results/moments_table.h"
 #include "apps/results/tilt_search.h"
 #include "core/session/identity.h"
-#include "core/session/session.h"
 #include "flatland/scene/scene_datasets.h"
 #include "mc/estimators/reflection_theory.h"
 #include "mc/slab/refinement.h"
@@ -32,74 +31,105 @@ StopRule stop_of(const std::string& method, const Keys& keys, const RunSettings&
   return stop;
 }
 
+class CovarianceExperiment : public Experiment {
+ public:
+  void add_keys(Keys& keys) override {
+    flatspeckle::add_keys(keys, spec_);
+    add_tilt_count_key(keys, tilt_count_);
+    add_q_depths_key(keys, q_depths_);
+    keys.group("Methods");
+    keys.add("method", method_,
+             "Monte Carlo, exactly, or of a slab by transport without chance; auto: transport "
+             "where it can be, unless samples or seconds are given")
+        .one_of({"mc", "wave", "transport", "auto"});
+    add_extra_keys(keys, extras_);
+    add_mc_keys(keys, methods_);
+    add_wave_keys(keys, methods_);
+    add_transport_keys(keys, methods_);
+    add_dimension_key(keys, spec_);
+    add_run_keys(keys, run_);
+  }
+
+  void read(const Keys& keys) override {
+    choose_method(keys, method_, spec_, run_);
+    if (method_ == "transport") read_transport(keys, methods_, spec_, run_);
+    stop_ = stop_of(method_, keys, run_, methods_);
+    const auto reversed =
+        method_ == "wave" ? mc::ReversedPaths::no : reversed_paths(keys, methods_);
+    if (method_ == "wave") keys.read(methods_.wave_tolerance);
+    if (method_ != "wave") keys.read(spec_.dimension);
+    read_extras(keys, extras_, method_);
+    take_q_depths(keys, q_depths_, spec_);
+    choose_tilts(keys, tilt_count_, spec_, method_, run_, seed());
+    scene_ = with_dimension(make_scene(keys, spec_), spec_);
+    extended_ = made_estimation(reversed);
+    disregard_unused(keys, spec_, {method_});
+    neglected_ = Neglected(*scene_);
+    if (method_ != "wave") refuse_absurd(methods_, neglected_);
+    inputs_ = inputs_text(*scene_) + inputs_text(keys);
+  }
+
+  void note() const override {
+    if (method_ != "wave")
+      apps::note(neglected_);
+    else
+      note_rounding(*scene_);
+  }
+
+  PlannedExperiment plan() const override {
+    const auto writer = [this](bool tells) {
+      return [this, tells](ResultFile& file, const GroupedSums& sums) { write(file, sums, tells); };
+    };
+    return {.plan = extended_.estimation.plan,
+            .batches = extended_.estimation.job.batches,
+            .write = writer(false),
+            .write_and_tell = writer(true)};
+  }
+
+ private:
+  ExtendedEstimation made_estimation(mc::ReversedPaths reversed) const {
+    if (method_ == "mc") return extended_estimation(*scene_, reversed, extras_, seed());
+    if (method_ == "wave") return extended_waves(*scene_, extras_, methods_.wave_tolerance, seed());
+    return extended_transport(*scene_, reversed, extras_, methods_.tolerance);
+  }
+
+  void write(ResultFile& file, const GroupedSums& sums, bool tells) const {
+    const FieldJob& job = extended_.estimation.job;
+    const CovarianceRequest& request = scene_->request;
+    const FieldMoments moments = field_moments(job, sums);
+    if (tells) {
+      print_medium(*scene_);
+      if (request.kind != CovarianceRequest::Kind::tilt_shift)
+        print_entries(request, moments.covariance);
+    }
+    write_medium(file, *scene_);
+    write_axes(file, *scene_);
+    const auto moves = mc::write_moments(file, "", job, *scene_, sums, moments);
+    if (tells) print_moves(request, moves);
+    mc::write_reflection_theory(file, *scene_);
+    if (extended_.write) extended_.write(file, sums);
+    if (method_ == "transport") mc::write_numerical(file);
+  }
+
+  SceneSpec spec_;
+  MethodSettings methods_;
+  Extras extras_;
+  std::string method_ = "auto";
+  std::optional<std::int64_t> tilt_count_;
+  std::vector<double> q_depths_;
+  std::optional<Scene> scene_;
+  ExtendedEstimation extended_;
+  Neglected neglected_;
+};
+
 }  // namespace
 
-int covariance(const Arguments& arguments) {
-  SceneSpec spec;
-  RunSettings run;
-  MethodSettings methods;
-  Extras extras;
-  std::string method = "auto";
-  Subcommand command("covariance", "Covariance and intensity of the speckle field of a scene");
-  Keys& keys = command.keys();
-  add_keys(keys, spec);
-  std::optional<std::int64_t> tilt_count;
-  add_tilt_count_key(keys, tilt_count);
-  std::vector<double> q_depths;
-  add_q_depths_key(keys, q_depths);
-  keys.group("Methods");
-  keys.add("method", method,
-           "Monte Carlo, exactly, or of a slab by transport without chance; auto: transport where "
-           "it can be, unless samples or seconds are given")
-      .one_of({"mc", "wave", "transport", "auto"});
-  add_extra_keys(keys, extras);
-  add_mc_keys(keys, methods);
-  add_wave_keys(keys, methods);
-  add_transport_keys(keys, methods);
-  add_dimension_key(keys, spec);
-  add_run_keys(keys, run);
-  if (!command.parse(arguments)) return ExitStatus::done;
+std::unique_ptr<Experiment> covariance_experiment() {
+  return std::make_unique<CovarianceExperiment>();
+}
 
-  Session session(command.text(), keys, run, command.only_prints());
-  choose_method(keys, method, spec, run);
-  if (method == "transport") read_transport(keys, methods, spec, run);
-  const StopRule stop = stop_of(method, keys, run, methods);
-  const auto reversed = method == "wave" ? mc::ReversedPaths::no : reversed_paths(keys, methods);
-  if (method == "wave") keys.read(methods.wave_tolerance);
-  if (method != "wave") keys.read(spec.dimension);
-  read_extras(keys, extras, method);
-  take_q_depths(keys, q_depths, spec);
-  choose_tilts(keys, tilt_count, spec, method, run, session.seed());
-  const Scene scene = with_dimension(make_scene(keys, spec), spec);
-  const auto [estimation, write_extras] =
-      method == "mc"     ? extended_estimation(scene, reversed, extras, session.seed())
-      : method == "wave" ? extended_waves(scene, extras, methods.wave_tolerance, session.seed())
-                         : extended_transport(scene, reversed, extras, methods.tolerance);
-  disregard_unused(keys, spec, {method});
-  const Neglected neglected(scene);
-  if (method != "wave") refuse_absurd(methods, neglected);
-  if (!command.settle()) return ExitStatus::done;
-  if (method != "wave") {
-    note(neglected);
-  } else {
-    note_rounding(scene);
-  }
-  return session.run(estimation.plan, {{"", "covariance", estimation.job.batches, stop}},
-                     inputs_text(scene) + inputs_text(keys),
-                     [&, &job = estimation.job, &write = write_extras](ResultFile& file) {
-                       const GroupedSums& sums = session.sums("");
-                       const FieldMoments moments = field_moments(job, sums);
-                       print_medium(scene);
-                       if (scene.request.kind != CovarianceRequest::Kind::tilt_shift)
-                         print_entries(scene.request, moments.covariance);
-                       write_medium(file, scene);
-                       write_axes(file, scene);
-                       print_moves(scene.request,
-                                   mc::write_moments(file, "", job, scene, sums, moments));
-                       mc::write_reflection_theory(file, scene);
-                       if (write) write(file, sums);
-                       if (method == "transport") mc::write_numerical(file);
-                     });
+int covariance(const Arguments& arguments) {
+  return single_run("covariance", arguments);
 }
 
 }  // namespace flatspeckle::apps

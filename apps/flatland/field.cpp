@@ -3,13 +3,11 @@
 #include <cstdio>
 #include <limits>
 
-#include "apps/command/subcommands.h"
+#include "apps/experiments/single_run.h"
 #include "apps/results/estimation.h"
 #include "core/error.h"
 #include "core/numbers/blas.h"
 #include "core/numbers/memory.h"
-#include "core/run/interrupt.h"
-#include "core/session/session.h"
 #include "flatland/scene/scene_datasets.h"
 #include "mc/speckle/field_datasets.h"
 #include "mc/speckle/speckle_field.h"
@@ -26,7 +24,6 @@ struct FieldKeys {
   double target_error = mc::FieldDemand().covariance_error;
   std::string method = "auto";
   MethodSettings estimation;
-  RunSettings run;
 };
 
 void add_keys(Keys& keys, FieldKeys& values) {
@@ -55,9 +52,6 @@ void add_keys(Keys& keys, FieldKeys& values) {
            "Relative error of the covariance that fields are drawn from")
       .between(0, 1);
   add_mc_keys(keys, values.estimation);
-  add_seed_key(keys, values.run, "Seed; field n of a seed is always the same");
-  add_thread_key(keys, values.run);
-  add_output_key(keys, values.run);
 }
 
 mc::FieldDemand demand_of(const Keys& keys, const FieldKeys& values) {
@@ -132,37 +126,57 @@ void print_summary(const mc::DrawnFields& drawn, const mc::FieldSummary& summary
       deviation, by_paths ? " and the excess kurtosis" : "");
 }
 
-}  // namespace
+class FieldExperiment : public OneShot {
+ public:
+  void add_keys(Keys& keys) override {
+    apps::add_keys(keys, values_);
+    add_seed_key(keys, run_, "Seed; field n of a seed is always the same");
+    add_thread_key(keys, run_);
+    add_output_key(keys, run_);
+  }
 
-int field(const Arguments& arguments) {
-  FieldKeys values;
-  Subcommand command("field", "Speckle fields of a scene, drawn with its covariance");
-  Keys& keys = command.keys();
-  add_keys(keys, values);
-  if (!command.parse(arguments)) return ExitStatus::done;
+  void read(const Keys& keys) override {
+    demand_ = demand_of(keys, values_);
+    settings_ = {reversed_paths(keys, values_.estimation), seed(), threads()};
+    scene_ = field_scene(keys, values_.spec);
+    refuse_absurd(values_.estimation, Neglected(*scene_));
+    check_memory(*scene_, demand_);
+  }
 
-  const Session session(command.text(), keys, values.run, command.only_prints());
-  const auto demand = demand_of(keys, values);
-  const mc::DrawingSettings settings{reversed_paths(keys, values.estimation), session.seed(),
-                                     session.threads()};
-  const Scene scene = field_scene(keys, values.spec);
-  refuse_absurd(values.estimation, Neglected(scene));
-  check_memory(scene, demand);
-  if (!command.settle()) return ExitStatus::done;
-  catch_interrupts();
-  ResultFile result(session.out(), ResultFile::Storage::disk);
-  return session.once(std::move(result), [&](ResultFile& file) -> std::optional<Made> {
-    const auto drawn = mc::draw_fields(scene, demand, settings, [](const mc::FieldPlan& chosen) {
+ private:
+  bool looks_for_signals() const override { return true; }
+  ResultFile::Storage storage() const override { return ResultFile::Storage::disk; }
+
+  std::optional<Made> make(ResultFile& file, bool tells) const override {
+    const auto tell_plan = [&](const mc::FieldPlan& chosen) {
+      if (!tells) return;
       std::printf("%s\n", chosen.describe().c_str());
       std::fflush(stdout);
-    });
+    };
+    const auto drawn = mc::draw_fields(*scene_, demand_, settings_, tell_plan);
     if (!drawn) return std::nullopt;
-    write_medium(file, scene);
-    print_summary(*drawn, mc::write_fields(file, scene, values.spec.tilts, *drawn));
-    return Made{
-        "mc: " + mc::make_plan(scene, settings.reversed).describe() + "; " + drawn->plan.describe(),
-        static_cast<double>(demand.fields)};
-  });
+    write_medium(file, *scene_);
+    const auto summary = mc::write_fields(file, *scene_, values_.spec.tilts, *drawn);
+    if (tells) print_summary(*drawn, summary);
+    return Made{"mc: " + mc::make_plan(*scene_, settings_.reversed).describe() + "; " +
+                    drawn->plan.describe(),
+                static_cast<double>(demand_.fields)};
+  }
+
+  FieldKeys values_;
+  mc::FieldDemand demand_;
+  mc::DrawingSettings settings_;
+  std::optional<Scene> scene_;
+};
+
+}  // namespace
+
+std::unique_ptr<Experiment> field_experiment() {
+  return std::make_unique<FieldExperiment>();
+}
+
+int field(const Arguments& arguments) {
+  return single_run("field", arguments);
 }
 
 }  // namespace flatspeckle::apps

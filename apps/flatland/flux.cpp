@@ -2,10 +2,10 @@
 
 #include <cstdio>
 
-#include "apps/command/subcommands.h"
+#include "apps/experiments/single_run.h"
 #include "apps/results/estimation.h"
+#include "core/error.h"
 #include "core/session/identity.h"
-#include "core/session/session.h"
 #include "flatland/scene/scene_datasets.h"
 #include "mc/slab/refinement.h"
 #include "mc/slab/slab_flux.h"
@@ -34,60 +34,87 @@ void print_table(const Scene& scene, const mc::FluxEstimates& flux) {
   }
 }
 
+class FluxExperiment : public Experiment {
+ public:
+  void add_keys(Keys& keys) override {
+    add_scatterer_keys(keys, spec_);
+    add_bulk_keys(keys, spec_);
+    add_medium_keys(keys, spec_);
+    add_profile_keys(keys, spec_);
+    keys.group("Lights and views");
+    keys.add("light_angles", spec_.light_angles, "Directions of the plane waves, from +z").angle();
+    keys.add("angle_bins", angle_bins_,
+             "Equal bins of the exit angle over (-pi, pi], in space over (0, pi)")
+        .from(1, 100000);
+    add_dimension_key(keys, spec_);
+    keys.add("method", method_,
+             "Monte Carlo, or of a slab by transport without chance; auto: the latter, unless "
+             "samples or seconds are given")
+        .one_of({"mc", "transport", "auto"});
+    add_transport_keys(keys, methods_);
+    add_run_keys(keys, run_);
+  }
+
+  void read(const Keys& keys) override {
+    choose_method(keys, method_, spec_, run_);
+    if (!by_mc() && !spec_.layers.empty())
+      throw InputError("layers", spec_.layers, "their flux is by method = mc");
+    if (!by_mc()) read_transport(keys, methods_, spec_, run_);
+    stop_ = by_mc() ? stop_rule(keys, run_) : both_batches();
+    keys.read(angle_bins_);
+    if (by_mc() && spec_.dimension == 3)
+      throw InputError("method", method_, "walks in the plane; flux in space is by transport");
+    keys.read(spec_.dimension);
+    scene_ = with_dimension(make_scene(keys, spec_), spec_);
+    job_ = made_job();
+    inputs_ = inputs_text(*scene_) + inputs_text(keys);
+  }
+
+  PlannedExperiment plan() const override {
+    const auto writer = [this](bool tells) {
+      return [this, tells](ResultFile& file, const GroupedSums& sums) { write(file, sums, tells); };
+    };
+    return {.plan = (by_mc() ? "mc: " : "transport: ") + job_.plan,
+            .batches = job_.batches,
+            .write = writer(false),
+            .write_and_tell = writer(true)};
+  }
+
+ private:
+  bool by_mc() const { return method_ == "mc"; }
+
+  mc::FluxJob made_job() const {
+    const auto bins = static_cast<std::size_t>(angle_bins_);
+    if (by_mc()) return mc::flux_job(*scene_, bins, seed());
+    const auto by_transport =
+        scene_->medium.dimension == 3 ? mc::space_flux_job : mc::slab_flux_job;
+    return by_transport(*scene_, bins, {methods_.tolerance});
+  }
+
+  void write(ResultFile& file, const GroupedSums& sums, bool tells) const {
+    const auto estimates = mc::flux_estimates(job_, sums);
+    if (tells) print_table(*scene_, estimates);
+    write_medium(file, *scene_);
+    mc::write_flux(file, *scene_, estimates);
+    if (!by_mc()) mc::write_numerical(file);
+  }
+
+  SceneSpec spec_;
+  MethodSettings methods_;
+  std::string method_ = "auto";
+  std::int64_t angle_bins_ = 90;
+  std::optional<Scene> scene_;
+  mc::FluxJob job_;
+};
+
 }  // namespace
 
-int flux(const Arguments& arguments) {
-  SceneSpec spec;
-  RunSettings run;
-  MethodSettings methods;
-  std::string method = "auto";
-  std::int64_t angle_bins = 90;
-  Subcommand command("flux",
-                     "Reflected, transmitted and absorbed power of a scene: intensity only");
-  Keys& keys = command.keys();
-  add_scatterer_keys(keys, spec);
-  add_bulk_keys(keys, spec);
-  add_medium_keys(keys, spec);
-  add_profile_keys(keys, spec);
-  keys.group("Lights and views");
-  keys.add("light_angles", spec.light_angles, "Directions of the plane waves, from +z").angle();
-  keys.add("angle_bins", angle_bins,
-           "Equal bins of the exit angle over (-pi, pi], in space over (0, pi)")
-      .from(1, 100000);
-  add_dimension_key(keys, spec);
-  keys.add(
-          "method", method,
-          "Monte Carlo, or of a slab by transport without chance; auto: the latter, unless samples "
-          "or seconds are given")
-      .one_of({"mc", "transport", "auto"});
-  add_transport_keys(keys, methods);
-  add_run_keys(keys, run);
-  if (!command.parse(arguments)) return ExitStatus::done;
+std::unique_ptr<Experiment> flux_experiment() {
+  return std::make_unique<FluxExperiment>();
+}
 
-  Session session(command.text(), keys, run, command.only_prints());
-  choose_method(keys, method, spec, run);
-  const bool by_mc = method == "mc";
-  if (!by_mc && !spec.layers.empty())
-    throw InputError("layers", spec.layers, "their flux is by method = mc");
-  if (!by_mc) read_transport(keys, methods, spec, run);
-  const StopRule stop = by_mc ? stop_rule(keys, run) : both_batches();
-  const auto bins = static_cast<std::size_t>(keys.read(angle_bins));
-  if (by_mc && spec.dimension == 3)
-    throw InputError("method", method, "walks in the plane; flux in space is by transport");
-  keys.read(spec.dimension);
-  const Scene scene = with_dimension(make_scene(keys, spec), spec);
-  const auto by_transport = scene.medium.dimension == 3 ? mc::space_flux_job : mc::slab_flux_job;
-  const mc::FluxJob job = by_mc ? mc::flux_job(scene, bins, session.seed())
-                                : by_transport(scene, bins, {methods.tolerance});
-  if (!command.settle()) return ExitStatus::done;
-  return session.run((by_mc ? "mc: " : "transport: ") + job.plan, {{"", "flux", job.batches, stop}},
-                     inputs_text(scene) + inputs_text(keys), [&](ResultFile& file) {
-                       const auto estimates = mc::flux_estimates(job, session.sums(""));
-                       print_table(scene, estimates);
-                       write_medium(file, scene);
-                       mc::write_flux(file, scene, estimates);
-                       if (!by_mc) mc::write_numerical(file);
-                     });
+int flux(const Arguments& arguments) {
+  return single_run("flux", arguments);
 }
 
 }  // namespace flatspeckle::apps

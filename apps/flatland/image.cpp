@@ -6,12 +6,11 @@
 #include <string>
 #include <utility>
 
-#include "apps/command/subcommands.h"
+#include "apps/experiments/single_run.h"
 #include "apps/results/estimation.h"
 #include "core/error.h"
 #include "core/numbers/memory.h"
 #include "core/run/interrupt.h"
-#include "core/session/session.h"
 #include "flatland/scene/scene_datasets.h"
 #include "mc/imaging/imaging_datasets.h"
 #include "mc/imaging/media_statistics.h"
@@ -36,7 +35,6 @@ struct ImageKeys {
   std::string method = "paths";
   std::int64_t prediction_paths = 20000;
   MethodSettings estimation;
-  RunSettings run;
 };
 
 void add_object_keys(Keys& keys, ImageKeys& values) {
@@ -103,9 +101,6 @@ void add_keys(Keys& keys, ImageKeys& values) {
   keys.add("prediction_paths", values.prediction_paths,
            "Light paths that predict the peaks of pairs")
       .positive();
-  add_seed_key(keys, values.run, "Seed; medium n of a seed is always the same");
-  add_thread_key(keys, values.run);
-  add_output_key(keys, values.run);
 }
 
 mc::LineObject object_of(const Keys& keys, const ImageKeys& values) {
@@ -276,55 +271,72 @@ void print_summary(const mc::LineScene& line, const mc::ImagingTask& task,
   if (expected.success) std::printf("success expected: %.3g\n", *expected.success);
 }
 
+class ImageExperiment : public OneShot {
+ public:
+  void add_keys(Keys& keys) override {
+    apps::add_keys(keys, values_);
+    add_seed_key(keys, run_, "Seed; medium n of a seed is always the same");
+    add_thread_key(keys, run_);
+    add_output_key(keys, run_);
+  }
+
+  void read(const Keys& keys) override {
+    if (keys.read(values_.method) == "wave")
+      keys.read(values_.estimation.wave_tolerance);
+    else
+      keys.read(values_.paths_per_field);
+    mc::LineObject object = object_of(keys, values_);
+    const double object_depth = keys.required(values_.object_depth);
+    const mc::LineCamera camera = camera_of(keys, values_);
+    const std::optional<double> reference = keys.read(values_.reference_x);
+    keys.read(values_.prediction_paths);
+    task_ = task_of(keys, values_, object.x.size());
+    if (by_waves() && task_.repeats * task_.average < 2)
+      throw InputError("repeats", task_.repeats, "the exact solver's mean field takes two or more");
+    task_.seed = seed();
+    task_.threads = threads();
+    const auto& object_extent = keys.read(values_.object_extent);
+    Scene medium = make_scene(keys, values_.spec);
+    if (medium.domain.kind == Domain::Kind::slab)
+      throw InputError("domain", "slab", "pictures need a box");
+    line_ = mc::line_scene(std::move(medium), std::move(object), object_depth, camera, reference);
+    task_.recovery.lags = lags_of(*line_, object_extent);
+    check_memory(*line_, task_, by_waves());
+  }
+
+ private:
+  bool by_waves() const { return values_.method == "wave"; }
+  bool looks_for_signals() const override { return true; }
+  ResultFile::Storage storage() const override { return ResultFile::Storage::disk; }
+
+  std::optional<Made> make(ResultFile& file, bool tells) const override {
+    const auto fields = fields_of(*line_, task_, values_.method, values_.estimation.wave_tolerance,
+                                  values_.paths_per_field);
+    if (!fields) return std::nullopt;
+    const auto prediction = mc::predicted(
+        *line_, static_cast<std::uint64_t>(values_.prediction_paths), task_.seed, task_.threads);
+    if (!prediction) return std::nullopt;
+    const auto media = mc::imaged(*line_, task_, fields->draw);
+    if (!media) return std::nullopt;
+    write_medium(file, line_->scene);
+    mc::write_imaging(file, *line_, task_, *media, *prediction);
+    if (tells) print_summary(*line_, task_, *media, *prediction);
+    return Made{fields->how, static_cast<double>(task_.repeats * task_.average)};
+  }
+
+  ImageKeys values_;
+  mc::ImagingTask task_;
+  std::optional<mc::LineScene> line_;
+};
+
 }  // namespace
 
-int image(const Arguments& arguments) {
-  ImageKeys values;
-  Subcommand command("image",
-                     "Pictures of hidden points through a scattering medium, and the points found "
-                     "in the autocorrelation of each");
-  Keys& keys = command.keys();
-  add_keys(keys, values);
-  if (!command.parse(arguments)) return ExitStatus::done;
+std::unique_ptr<Experiment> image_experiment() {
+  return std::make_unique<ImageExperiment>();
+}
 
-  const Session session(command.text(), keys, values.run, command.only_prints());
-  const std::string& method = keys.read(values.method);
-  const double wave_tolerance = method == "wave" ? keys.read(values.estimation.wave_tolerance) : 0;
-  const auto paths_per_field = method == "paths" ? keys.read(values.paths_per_field) : std::nullopt;
-  mc::LineObject object = object_of(keys, values);
-  const double object_depth = keys.required(values.object_depth);
-  const mc::LineCamera camera = camera_of(keys, values);
-  const std::optional<double> reference = keys.read(values.reference_x);
-  const auto prediction_paths = static_cast<std::uint64_t>(keys.read(values.prediction_paths));
-  mc::ImagingTask task = task_of(keys, values, object.x.size());
-  if (method == "wave" && task.repeats * task.average < 2)
-    throw InputError("repeats", task.repeats, "the exact solver's mean field takes two or more");
-  task.seed = session.seed();
-  task.threads = session.threads();
-  const auto& object_extent = keys.read(values.object_extent);
-  Scene medium = make_scene(keys, values.spec);
-  if (medium.domain.kind == Domain::Kind::slab)
-    throw InputError("domain", "slab", "pictures need a box");
-  const mc::LineScene line =
-      mc::line_scene(std::move(medium), std::move(object), object_depth, camera, reference);
-  task.recovery.lags = lags_of(line, object_extent);
-  check_memory(line, task, method == "wave");
-  if (!command.settle()) return ExitStatus::done;
-  catch_interrupts();
-  return session.once(
-      ResultFile(session.out(), ResultFile::Storage::disk),
-      [&](ResultFile& file) -> std::optional<Made> {
-        const auto fields = fields_of(line, task, method, wave_tolerance, paths_per_field);
-        if (!fields) return std::nullopt;
-        const auto prediction = mc::predicted(line, prediction_paths, task.seed, task.threads);
-        if (!prediction) return std::nullopt;
-        const auto media = mc::imaged(line, task, fields->draw);
-        if (!media) return std::nullopt;
-        write_medium(file, line.scene);
-        mc::write_imaging(file, line, task, *media, *prediction);
-        print_summary(line, task, *media, *prediction);
-        return Made{fields->how, static_cast<double>(task.repeats * task.average)};
-      });
+int image(const Arguments& arguments) {
+  return single_run("image", arguments);
 }
 
 }  // namespace flatspeckle::apps

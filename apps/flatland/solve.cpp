@@ -4,7 +4,7 @@
 #include <numbers>
 #include <sstream>
 
-#include "apps/command/subcommands.h"
+#include "apps/experiments/single_run.h"
 #include "apps/results/field_map_output.h"
 #include "apps/results/wavelengths.h"
 #include "core/error.h"
@@ -15,7 +15,6 @@
 #include "core/run/interrupt.h"
 #include "core/run/progress.h"
 #include "core/run/stopwatch.h"
-#include "core/session/session.h"
 #include "flatland/scene/index_fields.h"
 #include "flatland/scene/scene_datasets.h"
 #include "wave_solver/clusters/cluster_file.h"
@@ -32,7 +31,6 @@ namespace {
 /// What the user asks.
 struct SolveKeys {
   SceneSpec spec;
-  RunSettings run;
   MapSettings map;
   SpectrumSettings spectrum;
   double tolerance = wave::SolveOptions().tolerance;
@@ -76,9 +74,6 @@ void add_keys(Keys& keys, SolveKeys& values) {
   keys.add("cluster", values.cluster,
            "Result with a T-matrix: its cluster stands, as one object, at each of the places")
       .file();
-  add_thread_key(keys, values.run);
-  add_seed_key(keys, values.run, "Seed of a drawn placement");
-  add_output_key(keys, values.run);
 }
 
 bool is_placement_rule(const SceneSpec& spec) {
@@ -92,7 +87,7 @@ bool is_placement_rule(const SceneSpec& spec) {
 }
 
 /// A file brings its own positions: keys that would place scatterers find no use.
-Placement placement_of_file(const Keys& keys, const SceneSpec& spec, const RunSettings& run) {
+Placement placement_of_file(const Keys& keys, const SceneSpec& spec) {
   const Scatterer scatterer = make_scatterer(keys, spec);
   if (scatterer.is_bulk()) refuse_bulk(spec);
   const std::string& path = *keys.read(spec.placement);
@@ -104,7 +99,6 @@ Placement placement_of_file(const Keys& keys, const SceneSpec& spec, const RunSe
   const Table table = read_csv(path);
   if (table.has("radius")) keys.disregard(spec.radius);
   if (table.has("index_re")) keys.disregard(spec.index);
-  keys.disregard(run.seed);  // nothing is drawn
   return read_placement(path, scatterer);
 }
 
@@ -170,9 +164,10 @@ wave::WaveSolution solved(const SolveKeys& values, const Placement& placement, d
 
 /// One wavelength after the other; nothing where a signal came.
 std::optional<wave::Spectrum> spectrum(const SolveKeys& values, const Placement& placement,
-                                       const WavelengthList& wavelengths, const Sensors& sensors) {
+                                       const WavelengthList& wavelengths, const Sensors& sensors,
+                                       bool tells) {
   wave::Spectrum spectrum(sensors.angles, sensors.points);
-  Progress progress("solve", "wavelengths");
+  Progress progress(tells ? "solve" : "", "wavelengths");
   const Stopwatch watch;
   Progress::Figures figures;
   for (const double wavelength : wavelengths.values) {
@@ -189,36 +184,12 @@ std::optional<wave::Spectrum> spectrum(const SolveKeys& values, const Placement&
   return spectrum;
 }
 
-/// Copies of a cluster in place of scatterers: what it is comes from its file.
-int solve_clusters(const Subcommand& command, const SolveKeys& values, const Session& session,
-                   const Sensors& sensors) {
-  const Keys& keys = command.keys();
-  keys.read(values.tolerance);
-  keys.read(values.solver);
-  if (is_placement_rule(values.spec))
-    throw InputError("placement", values.spec.placement.value_or("none"),
-                     "must be a CSV with columns x, z [, angle], of the cluster's copies");
-  const auto places = wave::read_places(*keys.read(values.spec.placement));
-  const auto cluster = wave::read_cluster(keys.read(values.cluster));
-  if (values.tolerance < cluster.tolerance)
-    throw InputError("tolerance", values.tolerance,
-                     "must be at least that of the cluster, " + number_text(cluster.tolerance));
-  keys.disregard(values.run.seed);  // nothing is drawn
-  if (!command.settle()) return ExitStatus::done;
-  blas_single_thread();
-  const wave::ClusterSolution solution(
-      cluster.t_matrix, places, values.spec.light_angles,
-      {values.tolerance, sensors.points, true, solvers.at(values.solver)});
-  return session.once(ResultFile(session.out()), [&](ResultFile& file) -> std::optional<Made> {
-    wave::write_solution(file, solution, sensors.angles, sensors.points);
-    const double wavelength = 2 * std::numbers::pi / cluster.t_matrix.k;
-    ResultGroup(file, scene_table).attribute("wavelength", wavelength);
-    std::ostringstream plan;
-    plan << places.size() << " copies of a cluster, " << solution.equations().unknowns()
-         << " unknowns: " << solution.method();
-    std::printf("%s\nresidual %.1e\n", plan.str().c_str(), solution.diagnosis().residual);
-    return Made{plan.str(), 1};
-  });
+std::string plan_of(const wave::Spectrum& spectrum, const WavelengthList& wavelengths,
+                    const Placement& placement) {
+  std::ostringstream plan;
+  plan << placement.size() << " scatterers at " << wavelengths.values.size()
+       << " wavelengths, up to " << spectrum.unknowns() << " unknowns: ";
+  return plan.str();
 }
 
 /// Where scatterers of a file lie: the corners of the box around them.
@@ -231,126 +202,194 @@ std::vector<Vec2> corners_around(const Placement& placement) {
   return {low, {high.x, low.z}, {low.x, high.z}, high};
 }
 
-/// Point scatterers where the index varies.
-int solve_graded(const Subcommand& command, const SolveKeys& values, const Session& session) {
-  const Keys& keys = command.keys();
-  const SceneSpec& spec = values.spec;
-  const double k = 2 * std::numbers::pi / spec.wavelength;
-  Placement placement;
+/// What solves for point scatterers where the index varies.
+struct GradedWork {
   std::optional<wave::GradedFields> fields;
   Lights lights;
   std::vector<View> views;
-  if (is_placement_rule(spec)) {
-    const Scene scene = make_scene(keys, spec);
-    placement = drawn_placement(spec, scene, session.seed());
-    fields = wave::graded_fields(scene);
-    lights = scene.request.lights;
-    views = scene.request.views;
-  } else {
+};
+
+class SolveExperiment : public OneShot {
+ public:
+  void add_keys(Keys& keys) override {
+    apps::add_keys(keys, values_);
+    add_thread_key(keys, run_);
+    add_seed_key(keys, run_, "Seed of a drawn placement");
+    add_output_key(keys, run_);
+  }
+
+  void read(const Keys& keys) override {
+    keys.read(run_.seed);
+    if (keys.read(values_.spec.index_field) != "homogeneous") return read_graded(keys);
+    if (!values_.spec.near_sources.empty())
+      throw InputError("near_sources", values_.spec.near_sources,
+                       "are of media with an index_field");
+    sensors_ = sensors_of(keys, values_.spec);
+    if (values_.cluster.empty())
+      read_placement_and_work(keys);
+    else
+      read_cluster(keys);
+  }
+
+ private:
+  /// Copies of a cluster in place of scatterers: what it is comes from its file.
+  void read_cluster(const Keys& keys) {
+    keys.read(values_.tolerance);
+    keys.read(values_.solver);
+    if (is_placement_rule(values_.spec))
+      throw InputError("placement", values_.spec.placement.value_or("none"),
+                       "must be a CSV with columns x, z [, angle], of the cluster's copies");
+    places_ = wave::read_places(*keys.read(values_.spec.placement));
+    cluster_ = wave::read_cluster(keys.read(values_.cluster));
+    if (values_.tolerance < cluster_->tolerance)
+      throw InputError("tolerance", values_.tolerance,
+                       "must be at least that of the cluster, " + number_text(cluster_->tolerance));
+    keys.disregard(run_.seed);  // nothing is drawn
+  }
+
+  void read_placement_and_work(const Keys& keys) {
+    const SceneSpec& spec = values_.spec;
+    wavelengths_ = wavelength_list(keys, values_.spectrum);
+    if (wavelengths_->values.empty()) {
+      grid_ = map_grid(keys, values_.map, keys.read(spec.wavelength));
+      keys.read(values_.t_matrix_gap);
+    }
+    keys.read(values_.tolerance);
+    keys.read(values_.solver);
+    if (is_placement_rule(spec)) scene_ = make_scene(keys, spec);
+    placement_ = scene_ ? drawn_placement(spec, *scene_, seed()) : placement_of_file(keys, spec);
+    if (!scene_) keys.disregard(run_.seed);  // nothing is drawn
+    for (const Vec2& sensor : sensors_.points) require_outside(placement_, sensor);
+    if (wavelengths_->index) require_index_from_table(spec, placement_);
+  }
+
+  void read_graded(const Keys& keys) {
+    graded_.emplace();
+    if (is_placement_rule(values_.spec))
+      read_drawn_graded(keys);
+    else
+      read_graded_file(keys);
+    for (const View& view : graded_->views) require_outside(placement_, view.point);
+  }
+  void read_drawn_graded(const Keys& keys) {
+    const Scene scene = make_scene(keys, values_.spec);
+    placement_ = drawn_placement(values_.spec, scene, seed());
+    graded_->fields = wave::graded_fields(scene);
+    graded_->lights = scene.request.lights;
+    graded_->views = scene.request.views;
+  }
+  void read_graded_file(const Keys& keys) {
+    const SceneSpec& spec = values_.spec;
     const auto field = index_field(keys, spec);
     const auto sources = read_points(keys.required(spec.near_sources)),
                sensors = read_points(keys.required(spec.near_sensors));
-    keys.read(spec.wavelength);
-    placement = placement_of_file(keys, spec, values.run);
-    if (placement.empty() || placement.front().scatterer.is_disk())
+    const double k = 2 * std::numbers::pi / keys.read(spec.wavelength);
+    placement_ = placement_of_file(keys, spec);
+    keys.disregard(run_.seed);  // nothing is drawn
+    if (placement_.empty() || placement_.front().scatterer.is_disk())
       throw InputError("index_field", spec.index_field, "is of points, one at the least");
-    fields.emplace(*field, k, sources, sensors, corners_around(placement));
-    for (const Vec2 source : sources) lights.push_back(point_source(source));
-    for (const Vec2 sensor : sensors) views.push_back(near_sensor(sensor));
+    graded_->fields.emplace(*field, k, sources, sensors, corners_around(placement_));
+    for (const Vec2 source : sources) graded_->lights.push_back(point_source(source));
+    for (const Vec2 sensor : sensors) graded_->views.push_back(near_sensor(sensor));
   }
-  for (const View& view : views) require_outside(placement, view.point);
-  if (!command.settle()) return ExitStatus::done;
-  blas_single_thread();  // says now what it lacks
-  return session.once(ResultFile(session.out()), [&](ResultFile& file) -> std::optional<Made> {
-    write_light_axis(file, lights);
-    write_view_axis(file, views);
-    ResultGroup(file, wave::graded_table).put("near_source_field", fields->of(placement));
-    wave::write_placement(file, placement);
-    ResultGroup(file, scene_table).attribute("wavelength", spec.wavelength);
-    const std::string plan = std::to_string(placement.size()) +
+
+  bool looks_for_signals() const override { return wavelengths_ && !wavelengths_->values.empty(); }
+  ResultFile::Storage storage() const override {
+    return grid_ ? ResultFile::Storage::disk : ResultFile::Storage::memory;
+  }
+
+  std::optional<Made> make(ResultFile& file, bool tells) const override {
+    blas_single_thread();  // says now what it lacks
+    if (graded_) return make_graded(file, tells);
+    if (cluster_) return make_clusters(file, tells);
+    return wavelengths_->values.empty() ? make_fields(file, tells) : make_spectrum(file, tells);
+  }
+
+  Made make_graded(ResultFile& file, bool tells) const {
+    write_light_axis(file, graded_->lights);
+    write_view_axis(file, graded_->views);
+    ResultGroup(file, wave::graded_table).put("near_source_field", graded_->fields->of(placement_));
+    wave::write_placement(file, placement_);
+    ResultGroup(file, scene_table).attribute("wavelength", values_.spec.wavelength);
+    const std::string plan = std::to_string(placement_.size()) +
                              " points in a graded medium, coupled by its own Green function";
-    std::printf("%s\n", plan.c_str());
+    if (tells) std::printf("%s\n", plan.c_str());
     return Made{plan, 1};
-  });
-}
-
-Made spectrum_made(const wave::Spectrum& spectrum, const WavelengthList& wavelengths,
-                   const Placement& placement) {
-  std::ostringstream plan;
-  plan << placement.size() << " scatterers at " << wavelengths.values.size()
-       << " wavelengths, up to " << spectrum.unknowns() << " unknowns: ";
-  std::printf("%sresidual at most %.1e\n", plan.str().c_str(), spectrum.residual());
-  plan << "one solution after the other";
-  return {plan.str(), 1};
-}
-
-}  // namespace
-
-int solve(const Arguments& arguments) {
-  SolveKeys values;
-  Subcommand command("solve", "Exact fields of one placement of scatterers");
-  Keys& keys = command.keys();
-  add_keys(keys, values);
-  if (!command.parse(arguments)) return ExitStatus::done;
-
-  const Session session(command.text(), keys, values.run, command.only_prints());
-  const SceneSpec& spec = values.spec;
-  if (keys.read(spec.index_field) != "homogeneous") return solve_graded(command, values, session);
-  if (!spec.near_sources.empty())
-    throw InputError("near_sources", spec.near_sources, "are of media with an index_field");
-  const Sensors sensors = sensors_of(keys, spec);
-  if (!values.cluster.empty()) return solve_clusters(command, values, session, sensors);
-  const auto wavelengths = wavelength_list(keys, values.spectrum);
-  std::optional<wave::MapGrid> grid;
-  if (wavelengths.values.empty()) grid = map_grid(keys, values.map, keys.read(spec.wavelength));
-  if (wavelengths.values.empty()) keys.read(values.t_matrix_gap);
-  keys.read(values.tolerance);
-  keys.read(values.solver);
-  std::optional<Scene> scene;
-  if (is_placement_rule(spec)) scene = make_scene(keys, spec);
-  const Placement placement = scene ? drawn_placement(spec, *scene, session.seed())
-                                    : placement_of_file(keys, spec, values.run);
-  for (const Vec2& sensor : sensors.points) require_outside(placement, sensor);
-  if (wavelengths.index) require_index_from_table(spec, placement);
-  if (!command.settle()) return ExitStatus::done;
-  blas_single_thread();  // says now what it lacks
-  const auto write_scene = [&](ResultFile& file) {
-    if (scene)
-      write_medium(file, *scene);
-    else
-      ResultGroup(file, scene_table).attribute("wavelength", spec.wavelength);
-  };
-  if (!wavelengths.values.empty()) {
-    catch_interrupts();
-    return session.once(ResultFile(session.out()), [&](ResultFile& file) -> std::optional<Made> {
-      const auto found = spectrum(values, placement, wavelengths, sensors);
-      if (!found) return std::nullopt;
-      found->write(file);
-      write_scene(file);
-      return spectrum_made(*found, wavelengths, placement);
-    });
   }
-  const auto solution = solved(values, placement, spec.wavelength, grid, sensors.points);
-  std::optional<wave::KeptCluster> cluster;
-  if (values.t_matrix_gap)
-    cluster = wave::kept_cluster(placement, 2 * std::numbers::pi / spec.wavelength,
-                                 *values.t_matrix_gap, values.tolerance);
-  if (grid) catch_interrupts();  // which must not leave the file that a map is written to
-  ResultFile result(session.out(), grid ? ResultFile::Storage::disk : ResultFile::Storage::memory);
-  return session.once(std::move(result), [&](ResultFile& file) -> std::optional<Made> {
-    wave::write_solution(file, solution, sensors.angles, sensors.points);
+
+  Made make_clusters(ResultFile& file, bool tells) const {
+    const wave::ClusterSolution solution(
+        cluster_->t_matrix, places_, values_.spec.light_angles,
+        {values_.tolerance, sensors_.points, true, solvers.at(values_.solver)});
+    wave::write_solution(file, solution, sensors_.angles, sensors_.points);
+    const double wavelength = 2 * std::numbers::pi / cluster_->t_matrix.k;
+    ResultGroup(file, scene_table).attribute("wavelength", wavelength);
+    std::ostringstream plan;
+    plan << places_.size() << " copies of a cluster, " << solution.equations().unknowns()
+         << " unknowns: " << solution.method();
+    if (tells)
+      std::printf("%s\nresidual %.1e\n", plan.str().c_str(), solution.diagnosis().residual);
+    return Made{plan.str(), 1};
+  }
+
+  std::optional<Made> make_spectrum(ResultFile& file, bool tells) const {
+    const auto found = spectrum(values_, placement_, *wavelengths_, sensors_, tells);
+    if (!found) return std::nullopt;
+    found->write(file);
+    write_scene(file);
+    const std::string plan = plan_of(*found, *wavelengths_, placement_);
+    if (tells) std::printf("%sresidual at most %.1e\n", plan.c_str(), found->residual());
+    return Made{plan + "one solution after the other", 1};
+  }
+
+  std::optional<Made> make_fields(ResultFile& file, bool tells) const {
+    const double wavelength = values_.spec.wavelength;
+    const auto solution = solved(values_, placement_, wavelength, grid_, sensors_.points);
+    std::optional<wave::KeptCluster> cluster;
+    if (values_.t_matrix_gap)
+      cluster = wave::kept_cluster(placement_, 2 * std::numbers::pi / wavelength,
+                                   *values_.t_matrix_gap, values_.tolerance);
+    if (grid_) catch_interrupts();  // which must not leave the file that a map is written to
+    wave::write_solution(file, solution, sensors_.angles, sensors_.points);
     std::string map_method;
-    if (grid) {
-      const auto method = wave::write_map(file, solution, *grid, values.tolerance);
+    if (grid_) {
+      const auto method = wave::write_map(file, solution, *grid_, values_.tolerance);
       if (!method) return std::nullopt;
       map_method = *method;
     }
     if (cluster) wave::write_cluster(file, *cluster);
     write_scene(file);
-    print_summary(solution);
-    if (grid) std::printf("%s\n", map_method.c_str());
+    if (tells) print_summary(solution);
+    if (tells && grid_) std::printf("%s\n", map_method.c_str());
     return Made{plan_of(solution, map_method), 1};
-  });
+  }
+
+  void write_scene(ResultFile& file) const {
+    if (scene_)
+      write_medium(file, *scene_);
+    else
+      ResultGroup(file, scene_table).attribute("wavelength", values_.spec.wavelength);
+  }
+
+  SolveKeys values_;
+  Sensors sensors_;
+  std::optional<WavelengthList> wavelengths_;
+  std::optional<wave::MapGrid> grid_;
+  std::optional<Scene> scene_;
+  Placement placement_;
+  std::optional<wave::KeptCluster> cluster_;
+  std::vector<wave::ClusterPlace> places_;
+  std::optional<GradedWork> graded_;
+};
+
+}  // namespace
+
+std::unique_ptr<Experiment> solve_experiment() {
+  return std::make_unique<SolveExperiment>();
+}
+
+int solve(const Arguments& arguments) {
+  return single_run("solve", arguments);
 }
 
 }  // namespace flatspeckle::apps

@@ -4,9 +4,8 @@
 #include <iomanip>
 #include <sstream>
 
-#include "apps/command/subcommands.h"
+#include "apps/experiments/single_run.h"
 #include "core/result/result_group.h"
-#include "core/session/session.h"
 #include "grin/rays/light_speed.h"
 #include "grin/scene/trace_datasets.h"
 
@@ -20,24 +19,6 @@ using grin::TracedRay;
 using grin::TraceScene;
 using grin::Vec3;
 
-/// Ends of the rays that came to a stop surface; of all where none did.
-std::vector<RayState> ends_to_tell(const std::vector<TracedRay>& rays, std::size_t on_surface) {
-  std::vector<RayState> ends;
-  for (const TracedRay& ray : rays)
-    if (on_surface == 0 || ray.status == grin::RayStatus::surface) ends.push_back(ray.end);
-  return ends;
-}
-
-/// Root mean square distance from their mean.
-double spot_radius(const std::vector<RayState>& ends) {
-  const auto count = static_cast<double>(ends.size());
-  Vec3 mean = Vec3::Zero();
-  for (const RayState& end : ends) mean += end.x / count;
-  double square = 0;
-  for (const RayState& end : ends) square += (end.x - mean).squaredNorm() / count;
-  return std::sqrt(square);
-}
-
 std::string ends_of(const std::vector<TracedRay>& rays, double length_unit) {
   std::size_t ends[3] = {};
   for (const auto& ray : rays) ++ends[static_cast<std::size_t>(ray.status)];
@@ -45,12 +26,12 @@ std::string ends_of(const std::vector<TracedRay>& rays, double length_unit) {
   text << "ended: " << ends[1] << " at max_length, ";
   if (ends[2] > 0) text << ends[2] << " at the edge of the grid, ";
   text << ends[0] << " on a stop surface";
-  const auto told = ends_to_tell(rays, ends[0]);
+  const auto told = grin::ends_to_tell(rays);
   if (told.size() < rays.size()) text << "; of those:";
   const auto [least, most] =
       std::ranges::minmax(column(told, [](const RayState& end) { return end.v.norm(); }));
   text << std::setprecision(6) << "\nindex at the end " << least << " to " << most;
-  text << ", spot of radius " << spot_radius(told) << " (rms)";
+  text << ", spot of radius " << grin::spot_radius(told) << " (rms)";
   const auto path =  // clang 14 captures no structured bindings
       std::ranges::minmax(column(told, [](const RayState& end) { return end.optical_path; }));
   const auto range = [&](const char* what, double size, const char* unit) {
@@ -63,13 +44,13 @@ std::string ends_of(const std::vector<TracedRay>& rays, double length_unit) {
   return text.str();
 }
 
-Made trace_light(const TraceScene& scene, ResultFile& file) {
+Made trace_light(const TraceScene& scene, ResultFile& file, bool tells) {
   const auto rays = trace_rays(scene);
   write_rays(file, scene, rays);
   if (scene.path_points > 0) write_paths(file, scene.field, rays);
   std::string plan = std::to_string(rays.size()) + (rays.size() == 1 ? " ray: " : " rays: ") +
                      describe(scene.steps);
-  std::printf("%s\n%s\n", plan.c_str(), ends_of(rays, scene.length_unit).c_str());
+  if (tells) std::printf("%s\n%s\n", plan.c_str(), ends_of(rays, scene.length_unit).c_str());
   return {plan, static_cast<double>(rays.size())};
 }
 
@@ -107,37 +88,50 @@ std::string table_of(const FoundConnections& found) {
   return text.str() + trials_of(found);
 }
 
-Made trace_curves(const TraceScene& scene, ResultFile& file, std::uint64_t seed) {
+Made trace_curves(const TraceScene& scene, ResultFile& file, std::uint64_t seed, bool tells) {
   const auto found = find_connections(scene, seed);
   write_connections(file, scene, found);
   if (scene.path_points > 0 && !found.curves.empty())
     write_paths(file, scene.field, rays_along(scene, found));
   const auto trials = scene.curves->trials;
   std::string plan = std::to_string(trials) + " trials: " + describe(scene.steps);
-  std::printf("%s\n%s\n", plan.c_str(), table_of(found).c_str());
+  if (tells) std::printf("%s\n%s\n", plan.c_str(), table_of(found).c_str());
   return {plan, static_cast<double>(trials)};
 }
 
+class TraceExperiment : public OneShot {
+ public:
+  void add_keys(Keys& keys) override {
+    grin::add_keys(keys, values_);
+    add_seed_key(keys, run_, "Seed of the trials of connect");
+    add_thread_key(keys, run_);
+    add_output_key(keys, run_);
+  }
+
+  void read(const Keys& keys) override {
+    scene_ = make_trace_scene(keys, values_);
+    keys.read(run_.seed);
+    if (!scene_->curves) keys.disregard(run_.seed);
+  }
+
+ private:
+  std::optional<Made> make(ResultFile& file, bool tells) const override {
+    return scene_->curves ? trace_curves(*scene_, file, seed(), tells)
+                          : trace_light(*scene_, file, tells);
+  }
+
+  grin::TraceValues values_;
+  std::optional<TraceScene> scene_;
+};
+
 }  // namespace
 
-int trace(const Arguments& arguments) {
-  grin::TraceValues values;
-  RunSettings run;
-  Subcommand command("trace", "Rays and the curves between two points in a gradient-index field");
-  Keys& keys = command.keys();
-  add_keys(keys, values);
-  add_seed_key(keys, run, "Seed of the trials of connect");
-  add_thread_key(keys, run);
-  add_output_key(keys, run);
-  if (!command.parse(arguments)) return ExitStatus::done;
+std::unique_ptr<Experiment> trace_experiment() {
+  return std::make_unique<TraceExperiment>();
+}
 
-  const Session session(command.text(), keys, run, command.only_prints());
-  const TraceScene scene = make_trace_scene(keys, values);
-  if (!scene.curves) keys.disregard(run.seed);
-  if (!command.settle()) return ExitStatus::done;
-  return session.once(ResultFile(session.out()), [&](ResultFile& file) -> std::optional<Made> {
-    return scene.curves ? trace_curves(scene, file, session.seed()) : trace_light(scene, file);
-  });
+int trace(const Arguments& arguments) {
+  return single_run("trace", arguments);
 }
 
 }  // namespace flatspeckle::apps

@@ -124,6 +124,7 @@ std::vector<const DatasetTable*> all_tables() {
                                              &sweep_axes_table,
                                              &sweep_table,
                                              &stacked_table,
+                                             &optimum_table,
                                              &placement_table,
                                              &structure_factor_table,
                                              &grin::rays_table,

@@ -34,23 +34,6 @@ std::vector<std::string> values_of(const Key& key, const std::string& values) {
   return texts;
 }
 
-const Key& varied_key(const Keys& of, const std::string& name, const std::string& text) {
-  const Key* const key = of.find(key_of({name, {}}));
-  if (key == nullptr) refuse(text, name + " is no key of what is swept");
-  if (key->is_effort() || !key->is_in_files())
-    refuse(text, name + " says how to run, not what, and cannot be swept");
-  if (key->is_file()) refuse(text, name + " names a file, and cannot be swept");
-  return *key;
-}
-
-SweepAxis axis_of(const Keys& of, const std::string& text) {
-  const auto equals = text.find('=');
-  if (equals == std::string::npos || equals == 0)
-    refuse(text, "must be key=values: 1,2,3 or first:last:count or first:last:count:log");
-  const std::string name = text.substr(0, equals);
-  return {name, values_of(varied_key(of, name, text), text.substr(equals + 1))};
-}
-
 void refuse_twins(const SweepAxis& axis) {
   std::set<std::string> seen;
   for (const std::string& value : axis.values)
@@ -61,11 +44,10 @@ SweepPoints grid_of(const VaryValues& values, const Keys& of) {
   SweepPoints points;
   double count = 1;
   for (const std::string& text : values.vary) {
-    points.axes.push_back(axis_of(of, text));
+    points.axes.push_back(varied_axis(of, text));
     const SweepAxis& axis = points.axes.back();
     for (std::size_t i = 0; i + 1 < points.axes.size(); ++i)
       if (points.axes[i].key == axis.key) refuse(text, axis.key + " is varied already");
-    refuse_twins(axis);
     count *= static_cast<double>(axis.values.size());
   }
   if (count > most_points)
@@ -120,6 +102,25 @@ std::vector<std::string> with_component(const Keys& keys, const SweepAxis& axis,
 }
 
 }  // namespace
+
+const Key& varied_key(const Keys& of, const std::string& name, const std::string& text) {
+  const Key* const key = of.find(key_of({name, {}}));
+  if (key == nullptr) refuse(text, name + " is no key of what is swept");
+  if (key->is_effort() || !key->is_in_files())
+    refuse(text, name + " says how to run, not what, and cannot be swept");
+  if (key->is_file()) refuse(text, name + " names a file, and cannot be swept");
+  return *key;
+}
+
+SweepAxis varied_axis(const Keys& of, const std::string& text) {
+  const auto equals = text.find('=');
+  if (equals == std::string::npos || equals == 0)
+    refuse(text, "must be key=values: 1,2,3 or first:last:count or first:last:count:log");
+  const std::string name = text.substr(0, equals);
+  SweepAxis axis{name, values_of(varied_key(of, name, text), text.substr(equals + 1))};
+  refuse_twins(axis);
+  return axis;
+}
 
 void add_vary_key(Keys& keys, VaryValues& values) {
   keys.add("vary", values.vary,

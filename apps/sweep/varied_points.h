@@ -21,6 +21,13 @@ void add_keys(Keys& keys, VaryValues& values);
 /// are not or that change no result, and for values that come twice.
 SweepPoints varied_points(const Keys& keys, const VaryValues& values, const Keys& of);
 
+/// The row of a key that can be varied, by itself or as key.0; text: what asked for it. Throws
+/// InputError.
+const Key& varied_key(const Keys& of, const std::string& name, const std::string& text);
+
+/// "key=1,2,3" and the like. Throws InputError.
+SweepAxis varied_axis(const Keys& of, const std::string& text);
+
 /// Sets the keys of a point. Throws InputError.
 void set_point(const SweepPoints& points, std::size_t point, const Keys& keys);
 

@@ -100,6 +100,21 @@ bool CollectedResult::has_group(const std::string& name) const {
   });
 }
 
+void put(ResultFile& file, const CollectedResult& result) {
+  for (const CollectedDataset& set : result.datasets) {
+    if (set.is_scale)
+      file.scale(set.name, std::get<std::vector<double>>(set.values), set.units, set.long_name);
+    else
+      std::visit(
+          [&]<typename Value>(const std::vector<Value>& held) {
+            file.dataset(set.name, std::span<const Value>(held), set.axes, set.units,
+                         set.long_name);
+          },
+          set.values);
+  }
+  for (const auto& [object, name, value] : result.attributes) file.attribute(object, name, value);
+}
+
 std::vector<std::byte> layout_of(const CollectedResult& result) {
   ByteWriter bytes;
   bytes.put(std::uint64_t{result.datasets.size()});

@@ -40,6 +40,9 @@ struct CollectedResult {
   bool has_group(const std::string& name) const;
 };
 
+/// All of it into a file.
+void put(ResultFile& file, const CollectedResult& result);
+
 // A result as bytes: its layout, which many results share, and its values. Numbers as the machine
 // has them.
 

@@ -263,6 +263,36 @@ void collect(CollectedResult& all, CollectedDataset set) {
   all.datasets.push_back(std::move(set));
 }
 
+std::vector<std::size_t> extents(const CollectedResult& all, const CollectedDataset& set) {
+  std::vector<std::size_t> extents;
+  for (const Axis& axis : set.axes)
+    extents.push_back(all.find(std::get<std::string>(axis))->count());
+  return extents;
+}
+
+/// All zeros.
+void begin_blocks(CollectedResult& all, CollectedDataset set) {
+  std::size_t count = 1;
+  for (const std::size_t extent : extents(all, set)) count *= extent;
+  set.values = std::vector<Complex>(count);
+  collect(all, std::move(set));
+}
+
+void put_block(CollectedResult& all, const std::string& name, std::span<const Complex> values,
+               const std::vector<std::size_t>& start, const std::vector<std::size_t>& count) {
+  auto& set = *std::ranges::find(all.datasets, name, &CollectedDataset::name);
+  auto& held = std::get<std::vector<Complex>>(set.values);
+  const auto extent = extents(all, set);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    std::size_t place = 0, stride = 1, rest = i;
+    for (std::size_t axis = extent.size(); axis-- > 0; stride *= extent[axis]) {
+      place += (start[axis] + rest % count[axis]) * stride;
+      rest /= count[axis];
+    }
+    held[place] = values[i];
+  }
+}
+
 /// All that HDF5 can lack for a file in memory.
 struct NoMemory : std::bad_alloc {
   explicit NoMemory(const std::string& /*what*/) {}
@@ -363,7 +393,9 @@ void ResultFile::dataset(const std::string& name, const Values& values,
 void ResultFile::begin_dataset(const std::string& name, const std::vector<std::string>& axes,
                                const std::vector<std::size_t>& chunk, const std::string& units,
                                const std::string& long_name) {
-  if (collected_ != nullptr) throw std::logic_error(name + ": in blocks, which need a file");
+  if (collected_ != nullptr)
+    return begin_blocks(*collected_,
+                        {name, false, {axes.begin(), axes.end()}, units, long_name, {}});
   make_room(0);
   const Writer writer(file_.get(), path_.string(), name);
   writer.begin(axes, chunk);
@@ -373,6 +405,7 @@ void ResultFile::begin_dataset(const std::string& name, const std::vector<std::s
 void ResultFile::write_block(const std::string& name, std::span<const Complex> values,
                              const std::vector<std::size_t>& start,
                              const std::vector<std::size_t>& count) {
+  if (collected_ != nullptr) return put_block(*collected_, name, values, start, count);
   make_room(values.size_bytes());
   Writer(file_.get(), path_.string(), name).block(values, start, count);
 }

@@ -43,7 +43,7 @@ class ResultFile {
 
   /// Throws IoError. Where a path may be wrong, check_result_path says so before long work.
   explicit ResultFile(std::filesystem::path path, Storage storage = Storage::memory);
-  /// No file: what is put here goes there, and there is nothing to commit. Not in blocks.
+  /// No file: what is put here goes there, and there is nothing to commit.
   explicit ResultFile(CollectedResult& collected);
   ResultFile(ResultFile&&) noexcept;
   ResultFile& operator=(ResultFile&&) noexcept;

@@ -9,61 +9,66 @@ namespace flatspeckle::grin {
 
 const DatasetTable rays_table{
     .name = "rays",
-    .rows = {{"ray", Data::numbers, "", "1", "number of the ray"},
-             {"curve", Data::numbers, "", "1", "number of the curve, by optical path"},
-             {"start/x", Data::real, "ray", "length", "x of the start"},
-             {"start/y", Data::real, "ray", "length", "y of the start"},
-             {"start/z", Data::real, "ray", "length", "z of the start"},
-             {"start/dx", Data::real, "THING", "1", "x of the unit tangent at the start"},
-             {"start/dy", Data::real, "THING", "1", "y of the unit tangent at the start"},
-             {"start/dz", Data::real, "THING", "1", "z of the unit tangent at the start"},
-             {"exit/x", Data::real, "ray", "length", "x of the end"},
-             {"exit/y", Data::real, "ray", "length", "y of the end"},
-             {"exit/z", Data::real, "ray", "length", "z of the end"},
-             {"exit/dx", Data::real, "THING", "1", "x of the unit tangent at the end"},
-             {"exit/dy", Data::real, "THING", "1", "y of the unit tangent at the end"},
-             {"exit/dz", Data::real, "THING", "1", "z of the unit tangent at the end"},
-             {"arc_length", Data::real, "THING", "length", "length of the curve"},
-             {"optical_path", Data::real, "THING", "length",
-              "integral of the index along the curve"},
-             {"time", Data::real, "THING", "s", "optical path over the speed of light"},
-             {"status", Data::count, "ray", "1",
-              "0: ended on a stop surface, 1: at max_length, 2: at the edge of the grid"},
-             {"surface", Data::count, "ray", "1",
-              "number of the surface: planes, spheres, boxes; of status 1 and 2, how many there "
-              "are"},
-             {"steps", Data::count, "ray", "1", "steps of the integrator"},
-             {"invariants/index_mismatch", Data::real, "ray", "1",
-              "largest difference of |v| and the index at a step's end"},
-             {"invariants/angular_momentum", Data::real, "ray", "length",
-              "length of (x - centre) cross v, at the start"},
-             {"invariants/angular_momentum_change", Data::real, "ray", "length",
-              "how far it is off at the end"},
-             {"invariants/axial_momentum", Data::real, "ray", "1",
-              "size of v along the axis, at the start"},
-             {"invariants/axial_momentum_change", Data::real, "ray", "1",
-              "how far it is off at the end"},
-             {"invariants/axial_rotation", Data::real, "ray", "length",
-              "size of the angular momentum along the axis, at the start"},
-             {"invariants/axial_rotation_change", Data::real, "ray", "length",
-              "how far it is off at the end"},
-             {"invariants/transverse_momentum", Data::real, "ray", "1",
-              "length of v across the gradient, n sin(angle), at the start"},
-             {"invariants/transverse_momentum_change", Data::real, "ray", "1",
-              "how far it is off at the end"},
-             {"spreading", Data::real, "curve", "length^2",
-              "|J|: area across the curve at its end per solid angle at its start"},
-             {"caustics", Data::count, "curve", "1", "caustics on the way"},
-             {"found", Data::count, "curve", "1", "trials that ended on it"},
-             {"path_point", Data::numbers, "", "1", "number of a point, evenly in arc length"},
-             {"path/x", Data::real, "THING path_point", "length", "x of the points"},
-             {"path/y", Data::real, "THING path_point", "length", "y of the points"},
-             {"path/z", Data::real, "THING path_point", "length", "z of the points"},
-             {"map_z", Data::scale, "", "length", "depth of the index map's points"},
-             {"map_x", Data::scale, "", "length", "x of the index map's points"},
-             {"map_y", Data::scale, "", "length", "y of the index map's points"},
-             {"index_map", Data::real, "ACROSS map_z", "1",
-              "index in a plane, 0 where there is no field"}},
+    .rows =
+        {{"ray", Data::numbers, "", "1", "number of the ray"},
+         {"curve", Data::numbers, "", "1", "number of the curve, by optical path"},
+         {"start/x", Data::real, "ray", "length", "x of the start"},
+         {"start/y", Data::real, "ray", "length", "y of the start"},
+         {"start/z", Data::real, "ray", "length", "z of the start"},
+         {"start/dx", Data::real, "THING", "1", "x of the unit tangent at the start"},
+         {"start/dy", Data::real, "THING", "1", "y of the unit tangent at the start"},
+         {"start/dz", Data::real, "THING", "1", "z of the unit tangent at the start"},
+         {"exit/x", Data::real, "ray", "length", "x of the end"},
+         {"exit/y", Data::real, "ray", "length", "y of the end"},
+         {"exit/z", Data::real, "ray", "length", "z of the end"},
+         {"exit/dx", Data::real, "THING", "1", "x of the unit tangent at the end"},
+         {"exit/dy", Data::real, "THING", "1", "y of the unit tangent at the end"},
+         {"exit/dz", Data::real, "THING", "1", "z of the unit tangent at the end"},
+         {"spot_radius", Data::real, "", "length",
+          "root mean square distance from their mean of the ends on a stop surface; of all where "
+          "there are none"},
+         {"optical_path_spread", Data::real, "", "length",
+          "between the longest and the shortest optical path of the same rays"},
+         {"arc_length", Data::real, "THING", "length", "length of the curve"},
+         {"optical_path", Data::real, "THING", "length", "integral of the index along the curve"},
+         {"time", Data::real, "THING", "s", "optical path over the speed of light"},
+         {"status", Data::count, "ray", "1",
+          "0: ended on a stop surface, 1: at max_length, 2: at the edge of the grid"},
+         {"surface", Data::count, "ray", "1",
+          "number of the surface: planes, spheres, boxes; of status 1 and 2, how many there "
+          "are"},
+         {"steps", Data::count, "ray", "1", "steps of the integrator"},
+         {"invariants/index_mismatch", Data::real, "ray", "1",
+          "largest difference of |v| and the index at a step's end"},
+         {"invariants/angular_momentum", Data::real, "ray", "length",
+          "length of (x - centre) cross v, at the start"},
+         {"invariants/angular_momentum_change", Data::real, "ray", "length",
+          "how far it is off at the end"},
+         {"invariants/axial_momentum", Data::real, "ray", "1",
+          "size of v along the axis, at the start"},
+         {"invariants/axial_momentum_change", Data::real, "ray", "1",
+          "how far it is off at the end"},
+         {"invariants/axial_rotation", Data::real, "ray", "length",
+          "size of the angular momentum along the axis, at the start"},
+         {"invariants/axial_rotation_change", Data::real, "ray", "length",
+          "how far it is off at the end"},
+         {"invariants/transverse_momentum", Data::real, "ray", "1",
+          "length of v across the gradient, n sin(angle), at the start"},
+         {"invariants/transverse_momentum_change", Data::real, "ray", "1",
+          "how far it is off at the end"},
+         {"spreading", Data::real, "curve", "length^2",
+          "|J|: area across the curve at its end per solid angle at its start"},
+         {"caustics", Data::count, "curve", "1", "caustics on the way"},
+         {"found", Data::count, "curve", "1", "trials that ended on it"},
+         {"path_point", Data::numbers, "", "1", "number of a point, evenly in arc length"},
+         {"path/x", Data::real, "THING path_point", "length", "x of the points"},
+         {"path/y", Data::real, "THING path_point", "length", "y of the points"},
+         {"path/z", Data::real, "THING path_point", "length", "z of the points"},
+         {"map_z", Data::scale, "", "length", "depth of the index map's points"},
+         {"map_x", Data::scale, "", "length", "x of the index map's points"},
+         {"map_y", Data::scale, "", "length", "y of the index map's points"},
+         {"index_map", Data::real, "ACROSS map_z", "1",
+          "index in a plane, 0 where there is no field"}},
     .attributes = {{"index_map", "x", "float64", "where its plane lies, if across x"},
                    {"index_map", "y", "float64", "where its plane lies, if across y"}},
     .roles = {{"THING", {"ray", "curve"}}, {"ACROSS", {"map_x", "map_y"}}}};
@@ -180,6 +185,24 @@ void write_index_map(ResultFile& file, const SceneField& scene,
 
 }  // namespace
 
+std::vector<RayState> ends_to_tell(const std::vector<TracedRay>& rays) {
+  std::vector<RayState> all, on_surface;
+  for (const TracedRay& ray : rays) {
+    all.push_back(ray.end);
+    if (ray.status == RayStatus::surface) on_surface.push_back(ray.end);
+  }
+  return on_surface.empty() ? all : on_surface;
+}
+
+double spot_radius(const std::vector<RayState>& ends) {
+  const auto count = static_cast<double>(ends.size());
+  Vec3 mean = Vec3::Zero();
+  for (const RayState& end : ends) mean += end.x / count;
+  double square = 0;
+  for (const RayState& end : ends) square += (end.x - mean).squaredNorm() / count;
+  return std::sqrt(square);
+}
+
 void write_rays(ResultFile& file, const TraceScene& scene, const std::vector<TracedRay>& rays) {
   const ResultGroup root(file, rays_table);
   root.number("ray", rays.size());
@@ -189,6 +212,11 @@ void write_rays(ResultFile& file, const TraceScene& scene, const std::vector<Tra
   put_vectors(root, "exit/", rays, [](const TracedRay& r) { return r.end.x; });
   put_vectors(root, "exit/d", rays, [](const TracedRay& r) { return r.end.v.normalized(); });
   write_lengths(root, rays, std::mem_fn(&TracedRay::end), scene.length_unit);
+  const auto told = ends_to_tell(rays);
+  root.put("spot_radius", spot_radius(told));
+  const auto paths = column(told, &RayState::optical_path);
+  const auto [shortest, longest] = std::ranges::minmax(paths);
+  root.put("optical_path_spread", longest - shortest);
   root.put("status", column(rays, &TracedRay::status));
   root.put("surface", column(rays, &TracedRay::surface));
   root.put("steps", column(rays, &TracedRay::steps));

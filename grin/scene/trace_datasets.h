@@ -9,6 +9,11 @@ namespace flatspeckle::grin {
 
 extern const DatasetTable rays_table;
 
+/// Ends of the rays that came to a stop surface; of all where none did.
+std::vector<RayState> ends_to_tell(const std::vector<TracedRay>& rays);
+/// Root mean square distance from their mean.
+double spot_radius(const std::vector<RayState>& ends);
+
 /// Of any rays: optical paths, ends, invariants.
 void write_rays(ResultFile& file, const TraceScene& scene, const std::vector<TracedRay>& rays);
 

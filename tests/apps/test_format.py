@@ -88,8 +88,9 @@ def type_of(item):
 
 
 def swept_keys(file):
-    """As axes, of a sweep of another subcommand."""
-    return [key.replace(".", "_") for key in file.attrs.get("swept", [])]
+    """As axes, of a sweep of another subcommand, or of a search."""
+    search = file["search"].attrs["swept"] if "search" in file else []
+    return [key.replace(".", "_") for key in [*file.attrs.get("swept", []), *search]]
 
 
 def axes_of(dataset):
@@ -111,7 +112,7 @@ class Document(unittest.TestCase):
 class Format(ResultsTest):
     def check_datasets(self, file):
         for name, dataset in members(file).items():
-            if name.removesuffix("_word") in swept_keys(file):
+            if name.split("/")[-1].removesuffix("_word") in swept_keys(file):
                 continue
             found = [(of_method(name), type_of(dataset), axes, dataset.attrs.get("units", ""),
                       dataset.attrs["long_name"]) for axes in axes_of(dataset)]

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "apps/experiments/experiment.h"
+
+namespace flatspeckle::apps {
+
+/// In place of those of a single run, for many: where the result goes, the seed, on what and how
+/// long to work, whether to go on. How long each runs stays a key of its own.
+void add_run_keys_of_many(Keys& keys, RunSettings& run);
+
+/// Runs of one subcommand that have most keys alike.
+class ExperimentFamily {
+ public:
+  /// Throws InputError for the name of what makes no result of its own.
+  explicit ExperimentFamily(const std::string& of);
+
+  const std::string& of() const { return of_; }
+  const char* purpose() const { return entry_->purpose; }
+  /// With all keys at their defaults.
+  std::unique_ptr<Experiment> unset() const { return entry_->make(); }
+
+  /// What all runs have: all that is given here, but for some keys.
+  void take_given(const Keys& keys, std::set<std::string> without);
+  void set_given(const Keys& keys) const;
+  /// As text.
+  std::string given() const;
+
+  /// A run of its own, after `set` has set further keys. joined: count as read what it reads. seed:
+  /// where none is given. Throws InputError.
+  std::unique_ptr<Experiment> run(const std::function<void(const Keys&)>& set,
+                                  const std::vector<const Keys*>& joined = {},
+                                  std::uint64_t seed = 1) const;
+
+ private:
+  std::string of_;
+  const ExperimentEntry* entry_;
+  std::vector<std::pair<std::string, std::vector<std::string>>> given_;
+};
+
+}  // namespace flatspeckle::apps

@@ -1,0 +1,142 @@
+#include "apps/optimise/evaluations.h"
+
+#include <cmath>
+#include <mutex>
+
+#include "apps/sweep/varied_points.h"
+#include "core/error.h"
+#include "core/keys/number_text.h"
+#include "core/result/provenance.h"
+#include "core/run/interrupt.h"
+#include "core/run/run_merger.h"
+#include "core/search/sum_blocks.h"
+
+namespace flatspeckle::apps {
+
+namespace {
+
+constexpr std::uint64_t winner_draw = 2;
+
+std::string name_of(const SweepPoints& point, const SearchEffort& effort) {
+  return point.name(0) + "_effort=" + number_text(effort.samples) +
+         "_draw=" + std::to_string(effort.draw);
+}
+
+const std::vector<double>& numbers(const CollectedResult& result, const char* name) {
+  return std::get<std::vector<double>>(result.find(name)->values);
+}
+
+}  // namespace
+
+Evaluations::Evaluations(const ExperimentFamily& family, const Objective& objective,
+                         const EvaluationSettings& settings, PointJournal& journal)
+    : family_(family), objective_(objective), settings_(settings), journal_(journal) {}
+
+std::vector<Measured> Evaluations::measure(const std::vector<SweepPoints>& points,
+                                           const SearchEffort& effort) {
+  std::vector<SweepPoints> missing;
+  for (const SweepPoints& point : points)
+    if (!journal_.has(name_of(point, effort))) missing.push_back(point);
+  if (!missing.empty()) run(missing, effort);
+  std::vector<Measured> found;
+  for (const SweepPoints& point : points) {
+    const std::string name = name_of(point, effort);
+    const FinishedPoint finished = journal_.read(name);
+    found.push_back(measured(finished));
+    if (!dataset_) dataset_ = *finished.result.find("of");
+    if (known_.insert(name).second)
+      all_.push_back({point, effort, found.back(), finished.samples, finished.cpu_s});
+  }
+  return found;
+}
+
+CollectedResult Evaluations::result(const SweepPoints& point, double samples) const {
+  CollectedResult result = journal_.read(name_of(point, {samples, winner_draw})).result;
+  std::erase_if(result.datasets, [](const CollectedDataset& set) {
+    return set.name == "found" || set.name == "without" || set.name == "of";
+  });
+  return result;
+}
+
+/// Batches enough for an error, whatever their size.
+std::uint64_t Evaluations::samples_of(const BatchJob& job, const SearchEffort& effort) const {
+  constexpr double fewest = 32;
+  const double batches =
+      std::max(fewest, static_cast<double>(settings_.samples.value_or(0)) / job.samples_per_batch);
+  return static_cast<std::uint64_t>(std::ceil(batches * effort.samples) * job.samples_per_batch);
+}
+
+void Evaluations::run(const std::vector<SweepPoints>& points, const SearchEffort& effort) {
+  if (settings_.seconds && effort.draw == 0 && clock_.seconds() > *settings_.seconds)
+    throw SearchSpent{};
+  struct Open {
+    std::unique_ptr<Experiment> experiment;
+    PlannedExperiment planned;
+    RunState state;
+  };
+  std::vector<std::unique_ptr<Open>> open(points.size());
+  RunList list;
+  list.count = points.size();
+  list.open = [&](std::size_t i) -> std::optional<OpenRun> {
+    auto made = std::make_unique<Open>();
+    try {
+      made->experiment = family_.run([&](const Keys& keys) { set_point(points[i], 0, keys); }, {},
+                                     settings_.seed + effort.draw);
+    } catch (const InputError& error) {
+      throw InputError("at " + points[i].name(0) + ": " + error.what());
+    }
+    made->planned = made->experiment->plan();
+    const BatchJob& job = made->planned.batches;
+    const std::uint64_t samples = job.one_by_one ? fewest_batches : samples_of(job, effort);
+    open[i] = std::move(made);
+    return OpenRun{job, StopRule{samples, {}, {}}, &open[i]->state};
+  };
+  list.ended = [&](std::size_t i, StopReason) {
+    journal_.add(name_of(points[i], effort),
+                 finished(open[i]->planned, open[i]->state, effort.draw == winner_draw));
+    open[i].reset();
+  };
+  list.checkpoint = [](std::size_t) {};
+  const PoolEnd end = run_pool(list, PoolOptions{{}, settings_.threads, ""});
+  if (end.reason == StopReason::interrupted) throw Interrupted{};
+}
+
+/// The number and what it is without blocks of the batches; of the winner all else that was found.
+FinishedPoint Evaluations::finished(const PlannedExperiment& planned, const RunState& state,
+                                    bool keeps_result) {
+  constexpr std::size_t blocks = 32;
+  const auto result_of = [&](const GroupedSums& sums) {
+    CollectedResult result;
+    ResultFile collecting(result);
+    planned.write(collecting, sums);
+    return result;
+  };
+  CollectedResult result = result_of(state.sums);
+  std::vector<double> found{objective_.of(result)}, without;
+  if (!planned.batches.one_by_one)
+    for (const GroupedSums& sums : without_blocks(state.sums, blocks))
+      without.push_back(objective_.of(result_of(sums)));
+  FinishedPoint point{.plan = planned.plan,
+                      .started = utc_now(),
+                      .samples = planned.batches.one_by_one ? 1 : state.sums.total_samples(),
+                      .cpu_s = state.cpu_s,
+                      .wall_s = state.wall_s,
+                      .result = {}};
+  CollectedDataset of = objective_.dataset(result);
+  of.name = "of", of.axes.clear(), of.values = std::vector<double>{};
+  if (keeps_result) point.result = std::move(result);
+  point.result.datasets.push_back(std::move(of));
+  point.result.datasets.push_back({"found", false, {}, "", "", std::move(found)});
+  point.result.datasets.push_back({"without", false, {}, "", "", std::move(without)});
+  return point;
+}
+
+/// As the search takes it, which looks for what is greatest.
+Measured Evaluations::measured(const FinishedPoint& point) const {
+  const double sign = settings_.minimise ? -1 : 1;
+  Measured found{sign * numbers(point.result, "found").front()};
+  for (const double value : numbers(point.result, "without")) found.without.push_back(sign * value);
+  return found;
+}
+
+}  // namespace flatspeckle::apps

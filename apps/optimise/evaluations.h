@@ -1,0 +1,68 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/experiments/experiment_family.h"
+#include "apps/experiments/point_journal.h"
+#include "apps/optimise/objective.h"
+#include "apps/optimise/search_axes.h"
+#include "core/run/stopwatch.h"
+
+namespace flatspeckle::apps {
+
+/// How results are measured.
+struct EvaluationSettings {
+  bool minimise = false;
+  std::uint64_t seed = 1;
+  std::optional<std::uint64_t> samples;  ///< of the first measurements
+  std::optional<double> seconds;         ///< after which no new ones are begun
+  int threads = 1;
+};
+
+/// One of them: where, with how much effort, and what was found.
+struct Evaluation {
+  SweepPoints point;
+  SearchEffort effort;
+  Measured found;
+  double samples = 0, cpu_s = 0;
+};
+
+/// Numbers of results, measured once each: a journal keeps them from one call of the program to the
+/// next.
+class Evaluations {
+ public:
+  Evaluations(const ExperimentFamily& family, const Objective& objective,
+              const EvaluationSettings& settings, PointJournal& journal);
+
+  /// Of the number at each of these points. Throws Interrupted, SearchSpent once the time is up,
+  /// and InputError where a point is no scene or its result has no such number.
+  std::vector<Measured> measure(const std::vector<SweepPoints>& points, const SearchEffort& effort);
+  /// What a point's result holds, of those that were measured with draw 2. Throws InputError.
+  CollectedResult result(const SweepPoints& point, double samples) const;
+
+  /// In the order in which they were asked for first.
+  const std::vector<Evaluation>& all() const { return all_; }
+  /// The dataset that the number is in.
+  const CollectedDataset& dataset() const { return *dataset_; }
+
+ private:
+  void run(const std::vector<SweepPoints>& points, const SearchEffort& effort);
+  FinishedPoint finished(const PlannedExperiment& planned, const RunState& state,
+                         bool keeps_result);
+  Measured measured(const FinishedPoint& point) const;
+  std::uint64_t samples_of(const BatchJob& job, const SearchEffort& effort) const;
+
+  const ExperimentFamily& family_;
+  const Objective& objective_;
+  EvaluationSettings settings_;
+  PointJournal& journal_;
+  std::vector<Evaluation> all_;
+  std::set<std::string> known_;
+  std::optional<CollectedDataset> dataset_;
+  Stopwatch clock_;
+};
+
+}  // namespace flatspeckle::apps

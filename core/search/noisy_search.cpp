@@ -1,0 +1,252 @@
+#include "core/search/noisy_search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+namespace flatspeckle {
+
+namespace {
+
+constexpr double growth = 4;  ///< of samples, where differences are not seen
+
+/// The root of x^(d+1) = x + 1.
+double root_of(std::size_t dimensions) {
+  double x = 2;
+  for (int i = 0; i < 60; ++i) x = std::pow(1 + x, 1 / static_cast<double>(dimensions + 1));
+  return x;
+}
+
+std::vector<SearchPlace> scattered_places(const SearchTask& task, std::size_t count) {
+  const double root = root_of(task.dimensions);
+  std::vector<SearchPlace> places;
+  for (std::size_t i = 0; i < count; ++i) {
+    SearchPlace place{{}, i % task.choices};
+    double share = 1;
+    for (std::size_t k = 0; k < task.dimensions; ++k) {
+      share /= root;
+      const double at = 0.5 + static_cast<double>(i) * share;
+      place.at.push_back(at - std::floor(at));
+    }
+    places.push_back(std::move(place));
+  }
+  return places;
+}
+
+/// Largest of the distances along the axes; of other choices infinite.
+double distance(const SearchPlace& a, const SearchPlace& b) {
+  if (a.choice != b.choice) return std::numeric_limits<double>::infinity();
+  double largest = 0;
+  for (std::size_t i = 0; i < a.at.size(); ++i)
+    largest = std::max(largest, std::abs(a.at[i] - b.at[i]));
+  return largest;
+}
+
+bool is_better(const FoundPlace& a, const FoundPlace& b) {
+  return a.measured.value > b.measured.value;
+}
+
+bool is_away(const FoundPlace& one, const std::vector<FoundPlace>& all, double least) {
+  return std::ranges::all_of(
+      all, [&](const FoundPlace& other) { return distance(one.place, other.place) > least; });
+}
+
+std::vector<FoundPlace> measured_at(const SearchTask& task, const std::vector<SearchPlace>& places,
+                                    const SearchEffort& effort) {
+  const std::vector<Measured> measured = task.measure(places, effort);
+  std::vector<FoundPlace> found;
+  for (std::size_t i = 0; i < places.size(); ++i)
+    found.push_back({places[i], measured[i], effort.samples});
+  return found;
+}
+
+/// The search around one of the scattered places, round by round.
+class Refinement {
+ public:
+  Refinement(const SearchTask& task, const SearchSettings& settings, FoundPlace start, double step)
+      : task_(&task), settings_(&settings), best_(std::move(start)), step_(step) {}
+
+  const FoundPlace& best() const { return best_; }
+  double step() const { return step_; }
+  bool has_ended() const { return ended_; }
+
+  /// Goes to the maximum of a quadratic model, and judges what could be seen of it.
+  void go_on() {
+    constexpr double finest = 1.0 / 8;  // of a round's steps
+    const int most = 8 * static_cast<int>(task_->dimensions) + 8;
+    around_ = measured_at(*task_, {best_.place}, {best_.samples});
+    local_search(best_.place.at, step_, finest * step_, most, [&](const UnitPlace& at) {
+      const auto found = measured_at(*task_, {{at, best_.place.choice}}, {best_.samples});
+      around_.push_back(found.front());
+      return std::optional(found.front().measured.value);
+    });
+    best_ = *std::ranges::min_element(around_, is_better);
+    judge();
+  }
+
+ private:
+  void judge() {
+    const auto [seen, noise] = typical();
+    if (seen >= least_seen) {
+      step_ /= 4;
+    } else {
+      step_ /= 2;
+      ended_ = noise <= settings_->target_error / 2 * std::abs(best_.measured.value) ||
+               best_.samples * growth > settings_->most_samples;
+      if (!ended_) best_.samples *= growth;
+    }
+    ended_ = ended_ || step_ < settings_->tolerance;
+  }
+
+  /// How well the best is told from the others, in standard errors, and what those are.
+  std::pair<double, double> typical() const {
+    std::vector<double> seen{}, noise{};
+    for (const FoundPlace& other : around_) {
+      if (other.place == best_.place) continue;
+      const Difference lead = difference(best_.measured, other.measured);
+      seen.push_back(lead.error == 0 ? least_seen : lead.significance());
+      noise.push_back(lead.error);
+    }
+    if (seen.empty()) return {least_seen, 0};
+    return {median(seen), median(noise)};
+  }
+
+  static double median(std::vector<double>& values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::ranges::nth_element(values, middle);
+    return *middle;
+  }
+
+  static constexpr double least_seen = 2;
+
+  const SearchTask* task_;
+  const SearchSettings* settings_;
+  FoundPlace best_;
+  double step_;
+  std::vector<FoundPlace> around_;
+  bool ended_ = false;
+};
+
+/// The best, none of them close to another.
+std::vector<FoundPlace> starts_of(std::vector<FoundPlace> scattered, std::size_t count,
+                                  double apart) {
+  std::ranges::stable_sort(scattered, is_better);
+  std::vector<FoundPlace> starts;
+  for (FoundPlace& place : scattered)
+    if (starts.size() < count && is_away(place, starts, apart)) starts.push_back(std::move(place));
+  return starts;
+}
+
+std::string told(const FoundPlace& best) {
+  char text[80];
+  std::snprintf(text, sizeof text, "best %.4g +- %.2g", best.measured.value, error(best.measured));
+  return text;
+}
+
+/// Takes out those that are well below the best or have come to the same place.
+void drop_losers(std::vector<Refinement>& searches) {
+  constexpr double sure = 3;
+  std::ranges::stable_sort(searches, [](const Refinement& a, const Refinement& b) {
+    return is_better(a.best(), b.best());
+  });
+  const Refinement first = searches.front();
+  std::vector<Refinement> kept;
+  for (const Refinement& search : searches) {
+    const double lead = first.best().measured.value - search.best().measured.value;
+    const double noise = std::hypot(error(first.best().measured), error(search.best().measured));
+    const bool is_twin = std::ranges::any_of(kept, [&](const Refinement& other) {
+      return distance(other.best().place, search.best().place) < 2 * search.step();
+    });
+    if (kept.empty() || (!is_twin && lead <= sure * noise)) kept.push_back(search);
+  }
+  searches = std::move(kept);
+}
+
+void refine(std::vector<Refinement>& searches, const SearchTask& task) {
+  while (std::ranges::any_of(searches, [](const Refinement& one) { return !one.has_ended(); })) {
+    for (Refinement& search : searches)
+      if (!search.has_ended()) search.go_on();
+    drop_losers(searches);
+    task.tell(std::to_string(searches.size()) +
+              (searches.size() == 1 ? " search, " : " searches, ") + told(searches.front().best()));
+  }
+}
+
+}  // namespace
+
+SearchEnd noisy_search(const SearchTask& task, const SearchSettings& settings) {
+  const std::size_t count = std::max(settings.scattered, std::size_t{2});
+  const auto scattered = measured_at(task, scattered_places(task, count), {});
+  const double of_each = static_cast<double>(count) / static_cast<double>(task.choices);
+  const double apart = std::pow(of_each, -1 / static_cast<double>(task.dimensions));
+  std::vector<Refinement> searches;
+  for (const FoundPlace& start : starts_of(scattered, settings.starts, apart))
+    searches.emplace_back(task, settings, start, std::min(0.5 * apart, 0.25));
+  task.tell(std::to_string(count) + " scattered places, " + told(searches.front().best()));
+  SearchEnd end;
+  try {
+    refine(searches, task);
+  } catch (const SearchSpent&) {
+    end.finished = false;
+  }
+  for (const Refinement& search : searches) end.best.push_back(search.best());
+  std::ranges::stable_sort(end.best, is_better);
+  if (end.best.size() > 1) return end;
+  const auto others = starts_of(scattered, count, apart);
+  const auto other = std::ranges::find_if(
+      others, [&](const FoundPlace& one) { return is_away(one, end.best, apart / 2); });
+  if (other != others.end()) end.best.push_back(*other);
+  return end;
+}
+
+namespace {
+
+double relative_error_of(const FoundPlace& one) {
+  return error(one.measured) / std::abs(one.measured.value);
+}
+
+std::vector<FoundPlace> measured_again(const SearchTask& task, const std::vector<FoundPlace>& found,
+                                       const SearchEffort& effort) {
+  std::vector<SearchPlace> places;
+  for (const FoundPlace& one : found) places.push_back(one.place);
+  return measured_at(task, places, effort);
+}
+
+/// The two best, best first, by measurements that grow until they are told apart.
+std::vector<FoundPlace> two_best(const SearchTask& task, const SearchSettings& settings,
+                                 const std::vector<FoundPlace>& found) {
+  constexpr double sure = 3;
+  for (double samples = growth;; samples *= growth) {
+    auto again = measured_again(task, found, {samples, 1});
+    std::ranges::stable_sort(again, is_better);
+    if (again.size() == 1) return again;
+    again.resize(2);
+    const Difference lead = difference(again[0].measured, again[1].measured);
+    const bool is_told = lead.value >= sure * lead.error;
+    const double size = std::abs(again[0].measured.value);
+    if (is_told || lead.error <= settings.target_error / 2 * size ||
+        samples * growth > settings.most_samples)
+      return again;
+  }
+}
+
+}  // namespace
+
+Winner chosen_winner(const SearchTask& task, const SearchSettings& settings,
+                     const std::vector<FoundPlace>& found) {
+  const auto two = two_best(task, settings, found);
+  double samples = two.front().samples;
+  for (;;) {
+    const auto fresh = measured_again(task, two, {samples, 2});
+    Winner winner{fresh.front(), fresh.back()};
+    winner.lead = difference(winner.best.measured, winner.runner_up.measured);
+    const double over = relative_error_of(winner.best) / settings.target_error;
+    winner.reached = !(over > 1);
+    if (winner.reached || samples >= settings.most_samples) return winner;
+    const double needed = std::isfinite(over) ? 1.1 * over * over : growth;
+    samples = std::min(std::ceil(samples * std::max(needed, 1.2)), settings.most_samples);
+  }
+}
+
+}  // namespace flatspeckle

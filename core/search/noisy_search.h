@@ -1,0 +1,79 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/search/local_search.h"
+#include "core/search/measured.h"
+
+namespace flatspeckle {
+
+/// Where a number is measured: numbers scaled to the unit cube, and one of some choices.
+struct SearchPlace {
+  UnitPlace at;
+  std::size_t choice = 0;
+
+  bool operator==(const SearchPlace&) const = default;
+};
+
+/// How often to measure, and with which random numbers: those of a draw are the same everywhere.
+struct SearchEffort {
+  double samples = 1;  ///< in units of the first measurements'
+  std::uint64_t draw = 0;
+
+  bool operator==(const SearchEffort&) const = default;
+};
+
+/// A noisy number to be made as large as can be.
+struct SearchTask {
+  std::size_t dimensions = 1, choices = 1;
+  /// In the order of the places; the same number again where all is the same.
+  std::function<std::vector<Measured>(const std::vector<SearchPlace>&, const SearchEffort&)>
+      measure;
+  /// How it gets on, in words.
+  std::function<void(const std::string&)> tell = [](const std::string&) {};
+};
+
+struct SearchSettings {
+  std::size_t scattered = 64;     ///< places to begin with, spread evenly
+  std::size_t starts = 4;         ///< of these, so many of the best are searched around
+  double tolerance = 1e-3;        ///< of a place, as a share of its range
+  double target_error = 0.01;     ///< of the winner's value, relative
+  double most_samples = 1 << 20;  ///< of a measurement, in units of the first
+};
+
+/// A place and what was measured there.
+struct FoundPlace {
+  SearchPlace place;
+  Measured measured;
+  double samples = 1;
+};
+
+/// What measure() throws where it has done enough: the search ends with what there is.
+struct SearchSpent {};
+
+/// Maxima, best first, each as good as could be told; behind them the best of the scattered places
+/// away from these, if there are fewer than two. All by draw 0: their values are not to be
+/// believed, for what is chosen for its value has luck in it. Measurements near a maximum grow
+/// until differences show or are below the target error.
+///
+/// Scattered: the sequence of Roberts (2018), which fills a cube evenly in any dimension.
+struct SearchEnd {
+  std::vector<FoundPlace> best;
+  bool finished = true;
+};
+SearchEnd noisy_search(const SearchTask& task, const SearchSettings& settings);
+
+/// Which of these is best, by random numbers of their own, and how good it is, by others again
+/// (draws 1 and 2).
+struct Winner {
+  FoundPlace best, runner_up;
+  Difference lead{};    ///< of the best over the runner-up
+  bool reached = true;  ///< the target error
+};
+Winner chosen_winner(const SearchTask& task, const SearchSettings& settings,
+                     const std::vector<FoundPlace>& found);
+
+}  // namespace flatspeckle

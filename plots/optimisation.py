@@ -1,0 +1,68 @@
+#!/usr/bin/env python3
+"""How a search of `optimise` went: what was found, evaluation by evaluation, and where. Filled: by the random numbers of the search;
+open: by others. The star is the best place, with its value by random numbers of its own."""
+
+from lib import style
+from lib.result_file import Unusable
+
+import matplotlib.pyplot as plt
+import numpy as np
+
+DRAWS = ("search", "choice", "value")
+
+
+def keys_of(result):
+    if "search" not in result.file:
+        raise Unusable(f"{result.path}: no result of optimise")
+    return list(result.file["search"].attrs["swept"])
+
+
+def numbers_of(result, key):
+    values = result.values(f"search/{key}")
+    return values if np.issubdtype(values.dtype, np.number) else None
+
+
+def is_log(values):
+    return values.min() > 0 and values.max() > 20 * values.min()
+
+
+def draw_values(axis, place, result):
+    value, error, draw = (result.values(f"search/{name}") for name in ("value", "value_error", "draw"))
+    for number, word in enumerate(DRAWS):
+        of = draw == number
+        if of.any():
+            look = style.look(number)
+            axis.errorbar(place[of], value[of], error[of], marker=look["marker"], color=look["color"], linestyle="none",
+                          fillstyle="full" if number == 0 else "none", label=word)
+    axis.set_ylabel(result.attribute("objective"))
+
+
+def draw_progress(axis, result):
+    draw_values(axis, np.arange(len(result.values("search/value"))), result)
+    axis.set_xlabel("evaluation")
+    axis.legend(title="random numbers of")
+
+
+def draw_key(axis, result, key):
+    place = numbers_of(result, key)
+    draw_values(axis, place, result)
+    axis.plot(result.values(f"best/{key}"), result.values("best/value"), "*", color="black", markersize=9, zorder=5)
+    axis.set_xlabel(key)
+    if is_log(place):
+        axis.set_xscale("log")
+
+
+def draw(results):
+    result = results[0]
+    keys = [key for key in keys_of(result) if numbers_of(result, key) is not None]
+    figure, axes = plt.subplots(1, 1 + len(keys), figsize=(style.COLUMN * min(1 + len(keys), 4) * 0.85, 2.5), squeeze=False)
+    draw_progress(axes[0, 0], result)
+    for axis, key in zip(axes[0, 1:], keys):
+        draw_key(axis, result, key)
+    style.caption(figure, [f"best {result.values('best/value'):.4g} +- {result.values('best/value_error'):.2g}, better than the "
+                           f"runner-up with a confidence of {result.values('best/confidence'):.3g}"])
+    return figure
+
+
+if __name__ == "__main__":
+    style.main(draw, __doc__)

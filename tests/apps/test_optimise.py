@@ -1,0 +1,134 @@
+"""`optimise`: the best values of keys, seen by random numbers of their own, however often it was killed."""
+
+import signal
+import time
+import unittest
+
+import h5py
+import numpy as np
+
+from program import ProgramTest, datasets
+
+SOUND = {"field": "ultrasound", "index": 1.3333, "sound_wavenumber": 3.4851}
+# Sound that focuses a thin beam at the far side: near the axis in closed form.
+Q = (np.pi / 40) ** 2
+PARAXIAL = Q * 1.3333 / (3.4851 ** 2 / 2 - Q)
+FOCUS = {**SOUND, "of": "trace", "light": "line", "ray_count": 5, "beam_radius": 0.01,
+         "stop_plane": [0, 0, 20, 0, 0, 1], "max_length": 40, "step": 0.05, "integrator": "leapfrog",
+         "vary": [f"amplitude={PARAXIAL / 1.5}:{PARAXIAL * 1.4}"], "minimise": "spot_radius"}
+GUIDE = {**SOUND, "stage_box": [-2, -2, 0, 2, 2, 8], "mu_s": 0.2, "phase": "henyey_greenstein", "g": 0.8,
+         "beam_light": [0, 0, 0, 0, 0, 1, 0.3, 1], "sensor": "area", "sensor_at": [0, 0, 8], "sensor_size": [0.3, 0.3],
+         "pixels": [1, 1], "method": "light", "vary": ["amplitude=1e-4:1.2e-2:log", "sound_order=0,1"],
+         "maximise": "total", "scattered": 12, "target_error": 0.1, "threads": 2, "against": "amplitude=0"}
+
+
+class Optimise(ProgramTest):
+    def found(self, path):
+        return datasets(self.folder / path, ("wall_s", "cpu_s"))
+
+    def assert_same(self, a, b):
+        a, b = self.found(a), self.found(b)
+        self.assertEqual(a.keys(), b.keys())
+        for name, values in a.items():
+            if not name.endswith("cpu_s"):
+                np.testing.assert_array_equal(values, b[name], name)
+
+    def test_focus_in_closed_form(self):
+        """A thin beam near the axis: the paraxial amplitude."""
+        self.call("optimise", **FOCUS, out="focus.h5")
+        found = self.found("focus.h5")
+        self.assertAlmostEqual(float(found["best/amplitude"]) / PARAXIAL, 1, delta=0.002)
+        self.assertEqual(found["best/value_error"], 0)
+        self.assertLess(found["spot_radius"], 1e-4)
+
+    def test_the_result_is_that_of_the_best(self):
+        """Its datasets are those of a run of its own there, by a fresh seed."""
+        self.call("optimise", **GUIDE, out="guide.h5")
+        found = self.found("guide.h5")
+        keys = {key: GUIDE[key] for key in GUIDE if key not in ("vary", "maximise", "scattered", "target_error",
+                                                                "against")}
+        last = found["search/draw"] == 2
+        self.call("render", **{**keys, "amplitude": float(found["best/amplitude"]),
+                               "sound_order": int(found["best/sound_order"])},
+                  seed=3, samples=int(found["search/samples"][last].max()), out="one.h5")
+        one = self.found("one.h5")
+        self.assertEqual(found["total"], one["total"])
+        self.assertEqual(found["best/value"], one["total"])
+        self.assertAlmostEqual(float(found["best/value_error"] / one["total_error"]), 1, delta=0.5)
+        self.assertLess(found["best/value_error"] / found["best/value"], 0.1)
+        self.assertGreater(found["best/gain"], 1)
+        self.assertAlmostEqual(float(found["best/gain"] * found["against/value"]), float(found["best/value"]), 12)
+        with h5py.File(self.folder / "guide.h5") as file:
+            self.assertEqual(file.attrs["objective"], "total")
+            self.assertEqual(list(file["search"].attrs["swept"]), ["amplitude", "sound_order"])
+            self.assertEqual(len(file["search/amplitude"]), len(file["search/value"]))
+
+    def test_minimise_without_chance(self):
+        """Of a slab by transport: less reflectance, the thinner."""
+        self.call("optimise", of="flux", domain="slab", scatterer="hg", depth=100, albedo=0.99, light_angles=0, g=0.5,
+                  vary=["optical_depth=1:4", "g=0:0.9"], minimise="reflectance[0]", scattered=8, out="flux.h5")
+        found = self.found("flux.h5")
+        self.assertAlmostEqual(float(found["best/optical_depth"]), 1, delta=0.01)
+        self.assertAlmostEqual(float(found["best/g"]), 0.9, delta=0.01)
+        self.assertEqual(found["best/value_error"], 0)
+        self.assertEqual(found["best/confidence"], 1)
+
+    def test_threads(self):
+        self.call("optimise", **{**GUIDE, "threads": 1}, out="one.h5")
+        self.call("optimise", **GUIDE, out="two.h5")
+        self.assert_same("one.h5", "two.h5")
+
+    def test_killed_again_and_again(self):
+        self.call("optimise", **GUIDE, out="whole.h5")
+        for number in (signal.SIGKILL, signal.SIGTERM, signal.SIGKILL):
+            process = self.start("optimise", **GUIDE, out="killed.h5", resume=True)
+            time.sleep(0.3)
+            process.send_signal(number)
+            process.communicate(timeout=60)
+        self.call("optimise", **GUIDE, out="killed.h5", resume=True)
+        self.assert_same("killed.h5", "whole.h5")
+        self.assertFalse((self.folder / "killed.h5.evaluations").exists())
+        again = self.call("optimise", **GUIDE, out="killed.h5", resume=True)
+        self.assertIn("nothing to resume", again.stdout)
+
+    def test_time(self):
+        done = self.call("optimise", **GUIDE, seconds=1e-3, out="short.h5", status=3)
+        self.assertIn("--resume goes on", done.stdout)
+        self.assertFalse(self.attribute("short.h5", "complete"))
+        self.call("optimise", **GUIDE, resume=True, out="short.h5")
+        self.call("optimise", **GUIDE, out="whole.h5")
+        self.assert_same("short.h5", "whole.h5")
+
+    def attribute(self, path, name):
+        with h5py.File(self.folder / path) as file:
+            return bool(file.attrs[name])
+
+    def test_refused(self):
+        for change, words in (
+                ({"maximise": None}, ("maximise", "minimise")),
+                ({"minimise": "total"}, ("maximise", "minimise")),
+                ({"maximise": "totl"}, ("totl", "total", "mean")),
+                ({"maximise": "image[0]"}, ("image", "1 x 1", "image[0,0]")),
+                ({"maximise": "image[0"}, ("image[0", "must be")),
+                ({"vary": None}, ("vary",)),
+                ({"vary": ["amplitude=1:0"]}, ("amplitude=1:0", "low:high")),
+                ({"vary": ["amplitude=0:1:log"]}, ("amplitude", "above 0")),
+                ({"vary": ["amplitude"]}, ("amplitude", "low:high")),
+                ({"vary": ["sound_order=0,1"]}, ("sweep",)),
+                ({"vary": ["samples=1:2"]}, ("samples", "run")),
+                ({"vary": ["amplitude=0:1e-3", "amplitude=0:1e-3"]}, ("varied already",)),
+                ({"vary": ["amplitude=0:1e-3", "g=0:2"]}, ("g", "-1")),
+                ({"of": "place"}, ("of", "render")),
+                ({"against": "amplitude"}, ("amplitude",)),
+                ({"target_error": 2}, ("target_error",))):
+            with self.subTest(change=change):
+                failed = self.call("optimise", **{**GUIDE, **change}, out="no.h5", status=2)
+                lines = [line for line in failed.stderr.splitlines() if line.startswith("flatspeckle")]
+                self.assertEqual(len(lines), 1, failed.stderr)
+                for word in words:
+                    self.assertIn(word, lines[0])
+                self.assertEqual(list(self.folder.iterdir()), [])
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,182 @@
+#include <cmath>
+#include <map>
+
+#include <doctest/doctest.h>
+
+#include "core/numbers/random.h"
+#include "core/search/noisy_search.h"
+#include "core/search/sum_blocks.h"
+
+using namespace flatspeckle;
+
+namespace {
+
+/// Of two unequal hills, the higher at (0.3, 0.6) of height 1, the other at (0.8, 0.2) of `second`.
+double hills(const UnitPlace& at, double second = 0.9) {
+  const auto hill = [&](double x, double y, double width) {
+    const double dx = (at[0] - x) / width, dy = (at[1] - y) / width;
+    return std::exp(-(dx * dx + dy * dy) / 2);
+  };
+  return hill(0.3, 0.6, 0.12) + second * hill(0.8, 0.2, 0.12);
+}
+
+double normal(RandomStream& random) {
+  return std::sqrt(-2 * std::log(random.uniform())) *
+         std::cos(6.283185307179586 * random.uniform());
+}
+
+/// Measured with noise: a plane that is the same at all places of a draw, which differences hardly
+/// see, and some of each place's own.
+struct NoisyHills {
+  double common = 0.3, own = 0.03;
+  std::uint64_t seed = 1;
+  double second = 0.9;
+  mutable double samples = 0;
+
+  Measured at(const SearchPlace& place, const SearchEffort& effort) const {
+    constexpr std::size_t blocks = 32;
+    const double scale = std::sqrt(blocks / effort.samples);
+    RandomStream of_draw(seed, effort.draw, static_cast<std::uint64_t>(effort.samples));
+    const auto hash = [](double x) { return static_cast<std::uint64_t>(x * 1e15); };
+    RandomStream of_place(seed ^ hash(place.at[0]), hash(place.at[1]), effort.draw);
+    std::vector<double> values;
+    double mean = 0;
+    for (std::size_t b = 0; b < blocks; ++b) {
+      const double noise =
+          common * (normal(of_draw) + 0.2 * normal(of_draw) * place.at[0]) + own * normal(of_place);
+      values.push_back(hills(place.at, second) + scale * noise);
+      mean += values.back() / blocks;
+    }
+    Measured found{mean};
+    for (const double value : values)
+      found.without.push_back((blocks * mean - value) / (blocks - 1));
+    samples += effort.samples;
+    return found;
+  }
+  SearchTask task() const {
+    SearchTask task{.dimensions = 2, .choices = 1, .measure = {}};
+    task.measure = [this](const std::vector<SearchPlace>& places, const SearchEffort& effort) {
+      std::vector<Measured> found;
+      for (const SearchPlace& place : places) found.push_back(at(place, effort));
+      return found;
+    };
+    return task;
+  }
+};
+
+}  // namespace
+
+TEST_CASE("errors of differences know what is common") {
+  const NoisyHills noisy{.common = 0.3, .own = 0};
+  const SearchPlace a{{0.3, 0.6}}, b{{0.3, 0.5}};
+  const Measured at_a = noisy.at(a, {}), at_b = noisy.at(b, {});
+  CHECK(error(at_a) == doctest::Approx(0.3).epsilon(0.5));
+  const Difference found = difference(at_a, at_b);
+  CHECK(found.value == doctest::Approx(hills(a.at) - hills(b.at)).epsilon(1e-9));
+  CHECK(found.error < 1e-12);
+  CHECK(difference(at_b, at_a).confidence() < 1e-6);
+  CHECK(difference(at_a, at_a).confidence() == 0.5);
+  CHECK(error(Measured{2}) == 0);
+}
+
+TEST_CASE("a ratio has the error of what differs") {
+  const Measured a{4, {3.9, 4.1}}, b{2, {1.95, 2.05}};
+  CHECK(ratio(a, b).value == 2);
+  CHECK(error(ratio(a, b)) < 1e-15);
+}
+
+TEST_CASE("sums without blocks") {
+  GroupedSums sums(2);
+  for (int batch = 0; batch < 600; ++batch)
+    sums.add(3, std::vector<Complex>{Complex(batch), Complex(0, 1)});
+  const auto without = without_blocks(sums, 32);
+  REQUIRE(without.size() == 32);
+  Complex total = 0;
+  for (const GroupedSums& rest : without) total += rest.total()[0];
+  CHECK(std::abs(total - 31.0 * sums.total()[0]) < 1e-6);
+  // batches 0, 32, ... of group 0, 32, ..., and those that came to these groups later
+  double own = 0;
+  for (int batch = 0; batch < 600; ++batch)
+    if (batch % 256 % 32 == 0) own += batch;
+  CHECK(std::abs(without[0].total()[0] - (sums.total()[0] - own)) < 1e-9);
+  CHECK(without_blocks(sums, 1000).size() == 256);
+}
+
+TEST_CASE("the higher of two hills, without noise") {
+  NoisyHills exact{.common = 0, .own = 0};
+  SearchTask task = exact.task();
+  task.measure = [&](const std::vector<SearchPlace>& places, const SearchEffort&) {
+    std::vector<Measured> found;
+    for (const SearchPlace& place : places) found.push_back({hills(place.at)});
+    return found;
+  };
+  const SearchSettings settings{.scattered = 32};
+  const SearchEnd end = noisy_search(task, settings);
+  CHECK(end.finished);
+  const Winner winner = chosen_winner(task, settings, end.best);
+  CHECK(winner.best.place.at[0] == doctest::Approx(0.3).epsilon(3e-3));
+  CHECK(winner.best.place.at[1] == doctest::Approx(0.6).epsilon(3e-3));
+  CHECK(winner.best.measured.value == doctest::Approx(1).epsilon(1e-4));
+  CHECK(winner.runner_up.place.at[0] == doctest::Approx(0.8).epsilon(0.1));
+  CHECK(winner.lead.confidence() == 1);
+}
+
+TEST_CASE("one key alone, and a choice") {
+  SearchTask task{.dimensions = 1, .choices = 3, .measure = {}};
+  task.measure = [](const std::vector<SearchPlace>& places, const SearchEffort&) {
+    std::vector<Measured> found;
+    for (const auto& [at, choice] : places)
+      found.push_back({static_cast<double>(choice) - std::pow(at[0] - 0.1 - 0.3 * choice, 2)});
+    return found;
+  };
+  const SearchSettings settings{.scattered = 24};
+  const Winner winner = chosen_winner(task, settings, noisy_search(task, settings).best);
+  CHECK(winner.best.place.choice == 2);
+  CHECK(winner.best.place.at[0] == doctest::Approx(0.7).epsilon(3e-3));
+}
+
+/// The winner's value is fresh: its mean over searches is that of the place, where values that the
+/// search went by are too high.
+TEST_CASE("with noise") {
+  constexpr int searches = 40;
+  double pull = 0, pull2 = 0, luck = 0, least = 1;
+  int higher = 0;
+  for (int seed = 1; seed <= searches; ++seed) {
+    const NoisyHills noisy{.seed = static_cast<std::uint64_t>(seed)};
+    const SearchSettings settings{.scattered = 32, .target_error = 0.01};
+    const SearchEnd end = noisy_search(noisy.task(), settings);
+    const Winner winner = chosen_winner(noisy.task(), settings, end.best);
+    const double there = hills(winner.best.place.at);
+    const double deviation = (winner.best.measured.value - there) / error(winner.best.measured);
+    pull += deviation / searches;
+    pull2 += deviation * deviation / searches;
+    const FoundPlace& first = end.best.front();
+    luck += (first.measured.value - hills(first.place.at)) / searches;
+    higher += winner.best.place.at[0] < 0.55;
+    least = std::min(least, there);
+    CHECK(winner.reached);
+  }
+  CHECK(std::abs(pull) < 4 / std::sqrt(searches));
+  CHECK(pull2 == doctest::Approx(1).epsilon(0.6));
+  CHECK(luck > 0);
+  CHECK(higher == searches);
+  CHECK(least > 0.97);
+}
+
+/// How often the winner is the better one is what its confidence says.
+TEST_CASE("confidence") {
+  constexpr int searches = 60;
+  double expected = 0, better = 0, variance = 0;
+  for (int seed = 1; seed <= searches; ++seed) {
+    const NoisyHills noisy{
+        .common = 0, .own = 0.3, .seed = static_cast<std::uint64_t>(seed), .second = 0.98};
+    const SearchSettings settings{.target_error = 0.06, .most_samples = 16};
+    const std::vector<FoundPlace> both = {{{{0.3, 0.6}}, {}, 4}, {{{0.8, 0.2}}, {}, 4}};
+    const Winner winner = chosen_winner(noisy.task(), settings, both);
+    const double confidence = winner.lead.confidence();
+    expected += confidence;
+    variance += confidence * (1 - confidence);
+    better += winner.best.place.at[0] < 0.5;
+  }
+  CHECK(std::abs(better - expected) < 4 * std::sqrt(variance));
+}
