@@ -67,7 +67,7 @@ void add_keys(Keys& keys, OptimiseKeys& values) {
       .from(2, 100000);
   keys.add("starts", values.starts, "Of these the best, around which the search goes on")
       .from(1, 1000);
-  keys.add("tolerance", values.tolerance, "Of keys at the end, as a share of their ranges")
+  keys.add("key_tolerance", values.tolerance, "Of keys at the end, as a share of their ranges")
       .between(0, 1);
 }
 
@@ -147,7 +147,7 @@ class Optimisation {
   void take_scene() {
     const Keys& keys = command_.keys();
     std::set<std::string> own{"of",        "vary",    "maximise",     "minimise", "against",
-                              "scattered", "starts",  "tolerance",    "out",      "seed",
+                              "scattered", "starts", "key_tolerance",    "out",      "seed",
                               "samples",   "seconds", "target_error", "threads",  "resume"};
     family_.take_given(keys, own);
     for (std::size_t choice = 0; choice < std::min<std::size_t>(axes_->choices(), 64); ++choice)

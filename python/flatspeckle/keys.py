@@ -62,7 +62,7 @@ def keys_of(subcommand):
 
 
 def rows_for(subcommand, values):
-    """Those that a call may use: a sweep of another subcommand takes its keys as well."""
-    other = values.get("of") if subcommand == "sweep" else None
+    """Those that a call may use: sweeps and searches of another subcommand take its keys as well."""
+    other = {"sweep": values.get("of"), "optimise": values.get("of", "render")}.get(subcommand)
     known = program.table(program.path())["subcommands"]
     return {**(keys_of(other) if other in known else {}), **keys_of(subcommand)}

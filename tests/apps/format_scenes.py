@@ -129,7 +129,7 @@ RUNS = {
     "sweep_of": ("sweep", {**STAGE, "of": "render", "vary": ["method=light,path", "mu_a=0,0.1"],
                            "sensor": "area", "sensor_at": [0, 0, 4], "sensor_size": [1, 1]}),
     "optimise": ("optimise", {**STAGE, "of": "render", "vary": ["mu_a=0:0.1"], "maximise": "total", "scattered": 2,
-                              "against": "mu_a=0.2", "tolerance": 0.5, "target_error": 0.5, "sensor": "area",
+                              "against": "mu_a=0.2", "key_tolerance": 0.5, "target_error": 0.5, "sensor": "area",
                               "sensor_at": [0, 0, 4], "sensor_size": [1, 1]}),
     "ball": ("trace", {**RAYS, "field": "luneburg", "origin": [0, 0, -2], "beam_radius": 0.5}),
     "guide": ("trace", {**RAYS, "field": "sech", "alpha": 1, "light": "fan", "across": [0, 1, 0]}),

@@ -17,7 +17,7 @@ PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
 BLOCK = re.compile(r"```sh\n(.*?)```", re.DOTALL)
 INDENTED = re.compile(r"(?:^    .*\S.*\n)+", re.MULTILINE)
 RESOLVE = ("solve", "place", "covariance", "validate", "field", "image", "recover", "fit", "flux", "sweep", "trace",
-           "render", "design")
+           "render", "design", "optimise")
 # What is not run: it prepares the machine, or needs several of them, or hours.
 APART = re.compile(r"^\s*(scripts/|cmake|ctest|cpack|mpirun|#SBATCH|build/|bench_|export )|--method mc|merge |bench |"
                    r"--frames frames.csv|forward.csv|reflection", re.MULTILINE)

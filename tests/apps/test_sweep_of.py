@@ -45,6 +45,34 @@ class SweepOf(SweepTest):
                     found = swept[name] if name in ("row", "column") else swept[name][i, j]
                     np.testing.assert_array_equal(found, values, name)
 
+    def test_other_subcommands(self):
+        """Their points are runs of their own too, by batches, transport or at once."""
+        box = {"domain": "box", "width": 10, "depth": 6, "scatterer": "hg", "optical_depth": 1, "albedo": 1}
+        slab = {"domain": "slab", "depth": 50, "scatterer": "hg", "albedo": 0.9, "optical_depth": 2}
+        cylinders = {"width": 8, "depth": 6, "count": 4, "scatterer": "tm", "radius": 0.16, "index": 1.3}
+        for of, keys, vary, values in (
+                ("trace", {"field": "parabolic", "index": 1.5, "origin": [0, 0, 0], "ray_count": 3, "beam_radius": 0.2,
+                           "stop_plane": [0, 0, 3, 0, 0, 1], "max_length": 9}, "alpha", (0.1, 0.2)),
+                ("covariance", {**box, "view_angles": [0.3, 0.5], "samples": 2000}, "g", (0, 0.5)),
+                ("covariance", {**slab, "view_angles": 0.3, "covariance": "memory_effect", "tilts": [0, 0.01]},
+                 "g", (0, 0.5)),
+                ("flux", {**slab, "light_angles": 0}, "g", (0, 0.5)),
+                ("field", {**box, "g": 0, "view_angles": [0.1, 0.2], "fields": 4, "paths_per_field": 100,
+                           "method": "paths"}, "optical_depth", (0.5, 1)),
+                ("solve", {**cylinders, "view_angles": [0.1, 0.2]}, "radius", (0.1, 0.2))):
+            with self.subTest(of=of, keys=keys):
+                self.call("sweep", of=of, vary=f"{vary}={values[0]},{values[1]}", threads=2, **keys, out="sweep.h5")
+                swept = datasets(self.folder / "sweep.h5")
+                for number, value in enumerate(values):
+                    self.call(of, **{**keys, vary: value, "out": "one.h5"})
+                    one = datasets(self.folder / "one.h5", ("wall_s", "cpu_s", "state", "trace"))
+                    self.assertTrue(one)
+                    for name, expected in one.items():
+                        found = swept[name] if name not in swept or swept[name].shape == expected.shape else swept[name][number]
+                        np.testing.assert_array_equal(found, expected, f"{of} {name}")
+                for path in ("sweep.h5", "one.h5"):
+                    (self.folder / path).unlink()
+
     def test_axes(self):
         self.call("sweep", **GRID, out="sweep.h5")
         with h5py.File(self.folder / "sweep.h5") as file:
