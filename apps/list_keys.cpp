@@ -18,7 +18,7 @@ struct Frame {
   const char *form, *before, *between, *after;
 };
 
-constexpr Frame frames[] = {
+constexpr Frame frame_of_form[] = {
     {"json", "\"subcommands\": {\n", "},\n", "}\n}}\n"},
     {"markdown", "", "", ""},
     {"man",
@@ -44,7 +44,7 @@ constexpr Frame frames[] = {
     {"zsh", "#compdef flatspeckle\nlocal flags=", "", "  esac\ncompadd -- ${=flags}\n_files\n"}};
 
 const Frame& frame_named(const std::string& form) {
-  for (const Frame& frame : frames)
+  for (const Frame& frame : frame_of_form)
     if (form == frame.form) return frame;
   throw InputError("keys", form, "must be one of json markdown man dictionary completion zsh");
 }

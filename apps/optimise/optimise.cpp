@@ -146,9 +146,9 @@ class Optimisation {
   /// Whether the corners are scenes; what they read of the keys counts as read.
   void take_scene() {
     const Keys& keys = command_.keys();
-    std::set<std::string> own{"of",        "vary",    "maximise",     "minimise", "against",
-                              "scattered", "starts", "key_tolerance",    "out",      "seed",
-                              "samples",   "seconds", "target_error", "threads",  "resume"};
+    std::set<std::string> own{"of",        "vary",    "maximise",      "minimise", "against",
+                              "scattered", "starts",  "key_tolerance", "out",      "seed",
+                              "samples",   "seconds", "target_error",  "threads",  "resume"};
     family_.take_given(keys, own);
     for (std::size_t choice = 0; choice < std::min<std::size_t>(axes_->choices(), 64); ++choice)
       for (const double at : {0.0, 1.0})
@@ -190,13 +190,16 @@ class Optimisation {
     const std::string& out = values_.run.out;
     if (!values_.run.resume || !fs::exists(out)) return false;
     const ResultReader file(out);
-    if (!file.has_attribute("/", "identity") ||
-        file.attribute<std::string>("/", "identity") != identity())
-      return false;
-    if (!file.attribute<bool>("/", "complete")) return false;
+    const bool is_same = file.has_attribute("/", "identity") &&
+                         file.attribute<std::string>("/", "identity") == identity();
+    if (!is_same && !fs::exists(journal()))
+      throw InputError("resume: " + out + " holds another run; name another result file");
+    if (!is_same || !file.attribute<bool>("/", "complete")) return false;
     std::cout << out << " is complete; nothing to resume\n";
     return true;
   }
+
+  fs::path journal() const { return values_.run.out + ".evaluations"; }
 
   int search(const Session& session);
   Optimum found(Evaluations& evaluations) const;
@@ -218,7 +221,7 @@ class Optimisation {
 
 int Optimisation::search(const Session& session) {
   catch_interrupts();
-  const fs::path journal_path = values_.run.out + ".evaluations";
+  const fs::path journal_path = this->journal();
   if (fs::exists(journal_path) && !values_.run.resume)
     throw InputError(journal_path.string() +
                      " holds evaluations of an earlier search: --resume goes on with them; remove "
