@@ -25,7 +25,7 @@ namespace {
 struct ImageKeys {
   SceneSpec spec;
   std::vector<double> object_x, object_brightness;
-  std::optional<double> object_depth, object_extent, camera_depth, reference_x;
+  std::optional<double> object_depth, object_extent, camera_depth, reference_x, memory_range;
   std::vector<double> camera;
   std::int64_t pixels = 4096, repeats = 16, average = 1;
   std::optional<std::int64_t> points, paths_per_field;
@@ -98,6 +98,11 @@ void add_keys(Keys& keys, ImageKeys& values) {
   keys.add("resolution", values.resolution,
            "Least distance of points, and what counts as found, in grains of the speckle")
       .positive();
+  keys.add("memory_range", values.memory_range,
+           "Distance of points whose speckles have the correlation C_I = 1/2, for a search that "
+           "weighs pairs by it (default: all pairs alike)")
+      .positive()
+      .unit("length");
   keys.add("prediction_paths", values.prediction_paths,
            "Light paths that predict the peaks of pairs")
       .positive();
@@ -149,7 +154,9 @@ mc::ImagingTask task_of(const Keys& keys, const ImageKeys& values, std::size_t p
     task.deconvolution = deconvolution_task(keys, values.deconvolution);
   if (const auto& sought = keys.read(values.points)) points = static_cast<std::size_t>(*sought);
   if (points > 1) task.recovery.points = points;  // one point has no distances
-  if (task.recovery.points > 0) task.recovery.resolution_grains = keys.read(values.resolution);
+  if (task.recovery.points == 0) return task;
+  task.recovery.resolution_grains = keys.read(values.resolution);
+  task.recovery.memory_range = keys.read(values.memory_range).value_or(0);
   return task;
 }
 
@@ -301,6 +308,7 @@ class ImageExperiment : public OneShot {
       throw InputError("domain", "slab", "pictures need a box");
     line_ = mc::line_scene(std::move(medium), std::move(object), object_depth, camera, reference);
     task_.recovery.lags = lags_of(*line_, object_extent);
+    task_.recovery.memory_range *= std::abs(magnification(*line_));
     check_memory(*line_, task_, by_waves());
   }
 

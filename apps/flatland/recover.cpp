@@ -20,7 +20,7 @@ namespace {
 struct RecoverKeys {
   std::string frames, reference;
   std::optional<std::int64_t> points;
-  std::optional<double> longest;
+  std::optional<double> longest, memory_range;
   double resolution = 1;
   std::int64_t average = 1;
   mc::CameraNoise noise;
@@ -38,6 +38,10 @@ void add_keys(Keys& keys, RecoverKeys& values) {
       .from(8, std::numeric_limits<double>::infinity());
   keys.add("resolution", values.resolution, "Least distance of points, in grains of the speckle")
       .positive();
+  keys.add("memory_range", values.memory_range,
+           "Distance of points whose speckles have the correlation C_I = 1/2, pixels, for a search "
+           "that weighs pairs by it (default: all pairs alike)")
+      .positive();
   mc::add_average_key(keys, values.average);
   add_camera_keys(keys, values.noise);
   keys.add("reference", values.reference,
@@ -52,6 +56,7 @@ mc::RecoveryTask task_of(const Keys& keys, const RecoverKeys& values, std::size_
   mc::RecoveryTask task;
   task.points = static_cast<std::size_t>(keys.required(values.points));
   task.resolution_grains = keys.read(values.resolution);
+  task.memory_range = keys.read(values.memory_range).value_or(0);
   read_camera_keys(keys, values.noise, task.noise);
   if (pixels < 64) throw InputError("frames", pixels, "pixels: a frame has at least 64");
   const auto most = static_cast<double>(pixels) / 4;

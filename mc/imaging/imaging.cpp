@@ -187,24 +187,6 @@ std::optional<ImagingPrediction> predicted(const LineScene& line, std::uint64_t 
   return prediction;
 }
 
-std::vector<double> peaks_over_noise(const LineObject& object,
-                                     const std::vector<double>& correlation,
-                                     const FrameGrains& frame) {
-  const std::vector<double>& b = object.brightness;
-  const double all = std::reduce(b.begin(), b.end()) * (1 + frame.noise.background),
-               alone = std::inner_product(b.begin(), b.end(), b.begin(), 0.0) / (all * all),
-               white = noise_variance(frame.noise);
-  std::vector<double> peaks;
-  for (std::size_t i = 0; i < b.size(); ++i)
-    for (std::size_t j = i + 1; j < b.size(); ++j)
-      peaks.push_back(correlation[peaks.size()] * b[i] * b[j] / (all * all));
-  const double squares = std::inner_product(peaks.begin(), peaks.end(), peaks.begin(), 0.0),
-               noise = std::sqrt((alone * alone + 2 * squares) / frame.grains +
-                                 (2 * alone + white) * white / frame.pixels);
-  for (double& peak : peaks) peak /= noise;
-  return peaks;
-}
-
 std::optional<std::uint64_t> paths_for_fields(const LineScene& line, std::uint64_t seed,
                                               int threads) {
   const LineScene some = with_fewer_pixels(line, 64);

@@ -6,6 +6,7 @@
 
 #include "core/numbers/statistics.h"
 #include "mc/imaging/line_camera.h"
+#include "mc/imaging/pair_signals.h"
 #include "mc/recovery/deconvolution.h"
 #include "mc/recovery/image_score.h"
 #include "mc/recovery/recovery.h"
@@ -48,23 +49,6 @@ struct ImagingPrediction {
 /// By so many light paths. Averaged over a few places of the camera.
 std::optional<ImagingPrediction> predicted(const LineScene& line, std::uint64_t paths,
                                            std::uint64_t seed, int threads);
-
-/// What a frame is measured by.
-struct FrameGrains {
-  double grains = 0;       ///< independent ones in it
-  CameraNoise noise = {};  ///< of its
-  double pixels = 1;
-};
-
-/// Heights of the pairs' peaks in the autocorrelation over its noise. A peak is a_ij = C_I b_i b_j
-/// / (sum of b)^2, that at lag 0 a_0 = (sum of b^2) / (sum of b)^2, both less by (1 +
-/// background)^2; the noise of an estimated autocorrelation is that of all its peaks and of the
-/// camera, whose variance w stands at lag 0 alone: sqrt((a_0^2 + 2 sum of a_ij^2) / grains + (2 a_0
-/// w + w^2) / pixels) (Bartlett's formula; distances distinct). For N equal points of C_I without
-/// camera that is C_I sqrt(grains) / N / sqrt(1 + C_I^2 (1 - 1/N)).
-std::vector<double> peaks_over_noise(const LineObject& object,
-                                     const std::vector<double>& correlation,
-                                     const FrameGrains& frame);
 
 /// Light paths of one field: as many as a pixel's excess kurtosis of 0.01 asks for, by a survey of
 /// a few pixels, and four for each grain that can be seen, or the frame's autocorrelation would

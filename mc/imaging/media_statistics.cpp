@@ -77,10 +77,12 @@ ExpectedPeaks expected_peaks(const LineScene& line, const ImagingTask& task,
   ExpectedPeaks expected;
   expected.signals = peaks_over_noise(line.object, real_parts(prediction.correlation.value), frame);
   const std::size_t points = line.object.x.size();
-  if (points > 1 && task.recovery.points == points)
-    expected.success =
-        predicted_success(expected.signals, points,
-                          static_cast<double>(task.recovery.lags) * frame.grains / frame.pixels);
+  if (points < 2 || task.recovery.points != points) return expected;
+  const double band = most_grains(line) / static_cast<double>(line.camera.pixels),
+               places = band * static_cast<double>(task.recovery.lags);
+  const auto searched =
+      filtered_peaks_over_noise(line.object, real_parts(prediction.correlation.value), frame, band);
+  expected.success = predicted_success(searched, points, places, task.recovery.memory_range > 0);
   return expected;
 }
 

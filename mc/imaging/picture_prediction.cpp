@@ -8,6 +8,7 @@
 
 #include "mc/recovery/deconvolution.h"
 #include "mc/recovery/line_spectrum.h"
+#include "mc/recovery/speckle_band.h"
 
 namespace flatspeckle::mc {
 
@@ -28,15 +29,6 @@ struct FilterMeans {
     }
   }
 };
-
-/// Power of speckle of unit variance by frequency, in cycles per pixel: a triangle, folded where
-/// pixels are too coarse for it.
-double speckle_power(double frequency, double highest) {
-  double power = 0;
-  for (int fold = -2; fold <= 2; ++fold)
-    power += std::max(1 - std::abs(frequency + fold) / highest, 0.0) / highest;
-  return power;
-}
 
 /// Of a picture before it is made.
 struct Expected {

@@ -11,13 +11,18 @@ namespace flatspeckle::mc {
 
 namespace {
 
-/// Of the largest of exp(log_count) normal numbers: where each is larger with the probability
-/// ln 2 / count, from the leading terms of the normal distribution's tail.
-double median_of_largest(double log_count) {
-  const double tail = log_count - std::log(std::numbers::ln2);
-  if (tail < 1) return 0;
-  const double leading = 2 * tail;
-  return std::sqrt(std::max(leading - std::log(2 * std::numbers::pi * leading), 0.0));
+/// Level that the largest of a Gaussian field of unit variance exceeds with a probability of one
+/// half, where the logarithm of the expected number of maxima above u is log_volume + (m - 1) ln(u)
+/// - u^2 / 2 (Adler, The Geometry of Random Fields).
+double median_of_largest(double log_volume, double m) {
+  const double wanted = log_volume - std::log(std::numbers::ln2);
+  double low = std::sqrt(std::max(m - 1, 0.0)), high = low + 100;
+  const auto more = [&](double u) {
+    return wanted + (m - 1) * std::log(std::max(u, 1e-9)) - u * u / 2 > 0;
+  };
+  if (!more(low + 1e-9)) return 0;
+  while (high - low > 1e-6) (more((low + high) / 2) ? low : high) = (low + high) / 2;
+  return low;
 }
 
 using PairTable = std::vector<std::vector<double>>;
@@ -52,17 +57,38 @@ double normal_distribution(double x) {
   return std::erfc(-x / std::numbers::sqrt2) / 2;
 }
 
+double log_binomial(double n, double m) {
+  return std::lgamma(n + 1) - std::lgamma(m + 1) - std::lgamma(n - m + 1);
+}
+
+/// Pairs of n points of which at least one is among m of them.
+double pairs_of(double n, double m) {
+  return m * (2 * n - m - 1) / 2;
+}
+
+/// As median_of_largest() wants it, of objects that have m of n points elsewhere.
+double log_volume(double n, double m, double places) {
+  const double which = m + 1 < n ? log_binomial(n, m) : -std::numbers::ln2,
+               determinant = (m - 1) * std::log(n) + std::log(n - m) - m * std::log(pairs_of(n, m)),
+               turns = 2 * std::numbers::pi;
+  return which + m * std::log(std::max(places, 1e-9)) - std::lgamma(m + 1) + determinant / 2 +
+         m * std::log(turns / std::sqrt(10.0)) - (m + 1) / 2 * std::log(turns);
+}
+
 }  // namespace
 
-double predicted_success(std::span<const double> signals, std::size_t points, double places) {
+double predicted_success(std::span<const double> signals, std::size_t points, double places,
+                         bool weighted) {
+  std::vector<double> evidence(signals.begin(), signals.end());
+  if (weighted)
+    for (double& each : evidence) each *= each;
   double success = 1;
   std::size_t elsewhere = 0;
-  for (const double sum : least_sums(by_points(signals, points))) {
-    const auto m = static_cast<double>(++elsewhere), n = static_cast<double>(points),
-               pairs = std::sqrt(m * (2 * n - m - 1) / 2),
-               mirrored = elsewhere + 1 == points ? std::numbers::ln2 : 0,
-               others = m * std::log(std::max(places, 1.0)) - std::lgamma(m + 1) - mirrored;
-    success = std::min(success, normal_distribution(sum / pairs - median_of_largest(others)));
+  for (const double sum : least_sums(by_points(evidence, points))) {
+    const auto m = static_cast<double>(++elsewhere), n = static_cast<double>(points);
+    const double truth = weighted ? std::sqrt(sum) : sum / std::sqrt(pairs_of(n, m));
+    success = std::min(success,
+                       normal_distribution(truth - median_of_largest(log_volume(n, m, places), m)));
   }
   return success;
 }

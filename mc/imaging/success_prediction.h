@@ -6,19 +6,26 @@
 namespace flatspeckle::mc {
 
 /// Probability that a search for so many points finds all of them, from what their pairs' peaks are
-/// over the noise of the autocorrelation (peaks_over_noise(); pairs (0, 1), (0, 2), ...), and how
-/// many distances it tells apart: the longest over a grain. Nothing in it is fitted.
+/// over the noise of the autocorrelation (filtered_peaks_over_noise(); pairs (0, 1), (0, 2), ...),
+/// and how many distances it tells apart: the longest times the band of frequencies. Nothing in it
+/// is fitted.
 ///
 /// The search takes the object with the largest sum of the autocorrelation over its pairs. Let an
 /// object have m of its N points elsewhere: all but D = m (2N - m - 1) / 2 of the pairs are the
 /// true ones. Those D bring S, the sum of their peaks, and noise of variance D in the true object,
-/// and noise of variance D alone in the other. There are K = places^m / m! others (half where m = N
-/// - 1, since an object and its mirror image are one), of which the luckiest brings sqrt(D) z, z
-/// the median of the largest of K normal numbers. So the truth wins with the probability Phi(S /
-/// sqrt(D)
-/// - z), for the m points whose pairs bring least; success is the least of these over m = 1 .. N
-/// - 1. Where all N points are the same the whole object decides, at peaks of about sqrt(4
-/// ln(places) / N).
-double predicted_success(std::span<const double> signals, std::size_t points, double places);
+/// and noise of variance D alone in the other. The others are a Gaussian field over the m places,
+/// places^m / m! of them for each of C(N, m) choices (for m = N - 1 one half: wherever the one
+/// point is, and mirrored, the object is the same). The noise has the spectrum of the squared
+/// triangle, T^2, so that a lag has the second moment q = (2 pi band)^2 / 10, the field that of the
+/// matrix (q / D) (N
+/// - J) of m rows, J of ones, whose determinant is (q / D)^m N^(m-1) (N - m). With z the median of
+/// the field's largest maximum the truth wins with the probability Phi(S / sqrt(D) - z), for the m
+/// points whose pairs bring least; success is the least of these over m = 1 .. N - 1. Where all N
+/// points are the same the whole object decides, at peaks of about sqrt(4 ln(places) / N).
+///
+/// weighted: the search knows how high each peak is, and weighs pairs by that: S / sqrt(D) is the
+/// root of the sum of the peaks' squares.
+double predicted_success(std::span<const double> signals, std::size_t points, double places,
+                         bool weighted = false);
 
 }  // namespace flatspeckle::mc

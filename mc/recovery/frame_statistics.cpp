@@ -6,6 +6,7 @@
 
 #include "core/error.h"
 #include "mc/recovery/line_spectrum.h"
+#include "mc/recovery/speckle_band.h"
 #include "mc/speckle/field_statistics.h"
 
 namespace flatspeckle::mc {
@@ -54,20 +55,6 @@ double standard_deviation(std::span<const double> values) {
   return std::sqrt(std::max(squares / n - sum / n * sum / n, 0.0));
 }
 
-/// The integral of the square of the normalised peak about lag 0, up to where it first falls to the
-/// noise, or rises again, to the peak of a pair or for a wide base.
-double central_peak(std::span<const double> autocorrelation, double noise) {
-  double sum = 0.5;
-  for (std::size_t lag = 1; lag < autocorrelation.size(); ++lag) {
-    const double value = autocorrelation[lag] / autocorrelation[0];
-    const bool has_passed_a_minimum =
-        value < 0.25 && value > autocorrelation[lag - 1] / autocorrelation[0];
-    if (value < std::max(noise / autocorrelation[0], 0.02) || has_passed_a_minimum) break;
-    sum += value * value;
-  }
-  return 2 * sum;
-}
-
 }  // namespace
 
 std::vector<double> without_envelope(std::span<const double> frame, double width) {
@@ -78,8 +65,9 @@ std::vector<double> without_envelope(std::span<const double> frame, double width
   return over(frame, envelope);
 }
 
-double squared_contrast(std::span<const double> frame) {
-  const std::size_t width = std::max<std::size_t>(frame.size() / 32, 1), margin = 4 * width;
+double squared_contrast(std::span<const double> frame, std::size_t lags) {
+  const std::size_t narrow = std::max<std::size_t>(frame.size() / 32, 1),
+                    width = std::clamp(lags, narrow, 2 * narrow), margin = 4 * width;
   const auto by = [&](std::size_t one_width) {
     const auto w = static_cast<double>(one_width);
     auto envelope = envelope_of(frame, w, Envelope::cubics);
@@ -103,15 +91,20 @@ FrameStatistics frame_statistics(std::span<const std::vector<double>> frames, st
   for (const auto& frame : frames) {
     const auto own = autocorrelation(without_envelope(frame, 2.0 * static_cast<double>(lags)));
     for (std::size_t lag = 0; lag < pixels; ++lag) values[lag] += own[lag] / count;
-    square += squared_contrast(frame) / count;
+    square += squared_contrast(frame, lags) / count;
   }
   FrameStatistics found;
   found.noise = standard_deviation(std::span(values).subspan(lags, std::min(lags, pixels - lags)));
-  values.resize(lags);
   values[0] -= noise_variance;
   found.contrast = std::sqrt(std::max(square, 0.0));
-  found.grain = values[0] > 0 ? central_peak(values, found.noise) : 0;
-  found.grains = found.grain > 0 ? static_cast<double>(pixels) * count / found.grain : 0;
+  const double band = fitted_band(std::span(values).first(lags));
+  if (band > 0) {
+    found.grain = grain_of(band);
+    found.grains = static_cast<double>(pixels) * count / found.grain;
+    found.peaks =
+        pair_peaks(values, lags, {std::max(values[0], 0.0), std::max(noise_variance, 0.0), band});
+  }
+  values.resize(lags);
   found.autocorrelation = std::move(values);
   return found;
 }

@@ -3,16 +3,18 @@
 #include <span>
 #include <vector>
 
+#include "mc/recovery/pair_peaks.h"
+
 namespace flatspeckle::mc {
 
 /// What the pixels of a frame tell without a reference.
 struct FrameStatistics {
   double contrast = 0;  ///< standard deviation over mean, of what is left of the envelope
-  double grain = 0;     ///< pixels: the integral of the square of the autocorrelation's central
-                        ///< peak over its height, by which averages over the frame get better
+  double grain = 0;     ///< pixels, as grain_of()
   double grains = 0;    ///< in the frames
   double noise = 0;     ///< standard deviation of the autocorrelation where nothing is expected
   std::vector<double> autocorrelation;  ///< by lag in pixels, from 0
+  PairPeaks peaks;
 };
 
 /// The frame over its smooth envelope, less 1: what varies within `width` pixels (standard
@@ -21,8 +23,9 @@ std::vector<double> without_envelope(std::span<const double> frame, double width
 
 /// Variance over the square of the mean of what is left of the envelope, in the inner three
 /// quarters of at least 64 pixels. An envelope that is taken from the speckle itself follows it a
-/// little: the variance lacks a part as 1/width, which is seen in two widths and put back.
-double squared_contrast(std::span<const double> frame);
+/// little: the variance lacks a part as 1/width, which is seen in two widths and put back. lags: of
+/// the longest distance of peaks in its autocorrelation, which the width should exceed.
+double squared_contrast(std::span<const double> frame, std::size_t lags = 0);
 
 /// Of frames of one object, of the same pixels: the mean autocorrelation, the rms contrast, and the
 /// grains of all. lags: so many of the autocorrelation, at most half of the pixels; the noise is

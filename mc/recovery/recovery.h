@@ -15,6 +15,7 @@ struct RecoveryTask {
   std::size_t lags = 0;          ///< pixels: longer distances are not looked for
   std::size_t points = 0;        ///< that are looked for; 0: none
   double resolution_grains = 1;  ///< least distance of points
+  double memory_range = 0;       ///< as that of SparseTask
 };
 
 struct Recovered {

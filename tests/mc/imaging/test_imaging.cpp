@@ -65,16 +65,18 @@ LineObject object_of(const Positions& x) {
 }
 
 /// Peaks of height b_i b_j and half width 1.
-std::vector<double> ideal_autocorrelation(const LineObject& object, std::size_t lags) {
-  std::vector<double> values(lags);
+PairPeaks ideal_peaks(const LineObject& object, std::size_t lags) {
+  PairPeaks peaks{.step = 1, .height = std::vector<double>(lags)};
   for (std::size_t i = 0; i < object.x.size(); ++i)
     for (std::size_t j = 0; j < object.x.size(); ++j) {
-      const double distance = object.x[i] - object.x[j];
-      for (std::size_t lag = 0; lag < lags; ++lag)
+      const double brightness = object.brightness[i] * object.brightness[j],
+                   distance = object.x[i] - object.x[j];
+      if (i == j) peaks.alone += brightness;
+      for (std::size_t lag = 0; i != j && lag < lags; ++lag)
         if (const double off = std::abs(static_cast<double>(lag) - distance); off < 2)
-          values[lag] += object.brightness[i] * object.brightness[j] * (1 - off / 2);
+          peaks.height[lag] += brightness * (1 - off / 2);
     }
-  return values;
+  return peaks;
 }
 
 Scene forward_box(double width, double depth, double optical_depth) {
@@ -98,7 +100,7 @@ TEST_CASE("points are found in what their autocorrelation would be without noise
       if (!equal)
         for (double& b : object.brightness)
           b = std::uniform_real_distribution<double>(1, 3)(random);
-      const SparseFit fit = sparse_search(ideal_autocorrelation(object, 420), {points, 2, 300});
+      const SparseFit fit = sparse_search(ideal_peaks(object, 420), {points, 2, 300});
       const ImageScore match = score(object, fit.object, 1);
       CHECK(match.found == 1);
       CHECK(fit.explained > 0.99);
@@ -108,8 +110,7 @@ TEST_CASE("points are found in what their autocorrelation would be without noise
 }
 
 TEST_CASE("a search that cannot succeed finds nothing") {
-  const std::vector<double> few(8, 1.0);
-  CHECK(sparse_search(few, {6, 1}).object.x.empty());
+  CHECK(sparse_search({1, std::vector<double>(8, 1.0), 1, 1}, {6, 1}).object.x.empty());
   const LineObject none;
   CHECK(score(object_of({0, 4, 9}), none, 1).found == 0);
 }
@@ -188,7 +189,7 @@ TEST_CASE("points in the speckle of one frame are found") {
     const auto frame = shifted_speckle(x, 10000, 1, random);
     const auto statistics = frame_statistics(frame, 220);
     CHECK(statistics.grain == doctest::Approx(1).epsilon(0.1));
-    const auto fit = sparse_search(statistics.autocorrelation, {x.size(), 1, 300});
+    const auto fit = sparse_search(statistics.peaks, {x.size(), 1, 300});
     found += score(object_of(x), fit.object, 0.5).found == 1;
   }
   CHECK(found >= 18);

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <vector>
+
+#include "mc/recovery/sparse_search.h"
+
+namespace flatspeckle::mc {
+
+/// What is expected of a pair of points of mean brightness at each lag of the peaks.
+std::vector<double> expected_heights(const PairPeaks& peaks, const SparseTask& task);
+
+/// Points at these lags with the brightness, and the places about them, that are most likely.
+struct RulerFit {
+  std::vector<double> marks, brightness;  ///< marks in steps
+  double explained = 0;
+  double gain = 0;  ///< twice the logarithm of the likelihood, over that of nothing
+};
+RulerFit fitted_ruler(const PairPeaks& peaks, const std::vector<double>& expected,
+                      std::vector<double> marks, bool between_steps);
+
+}  // namespace flatspeckle::mc

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <span>
+
+namespace flatspeckle::mc {
+
+/// Speckle of light from an even band of directions: its autocorrelation is sinc^2(band lag), whose
+/// power spectrum is a triangle that ends at `band` cycles per pixel.
+
+/// Autocorrelation of unit variance at a lag in pixels.
+double speckle_peak(double lag, double band);
+/// Power of unit variance at a frequency in cycles per pixel, folded where pixels are too coarse.
+double speckle_power(double frequency, double band);
+/// Pixels of a grain: sum over all lags of the square of the autocorrelation, by which averages
+/// over a frame get better; 2 / (3 band) where grains are larger than pixels.
+double grain_of(double band);
+
+/// The band whose peak about lag 0 has most of an autocorrelation in it; 0 where nothing has.
+double fitted_band(std::span<const double> autocorrelation);
+
+}  // namespace flatspeckle::mc
