@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "core/keys/csv.h"
 #include "core/session/session.h"
+#include "mc/recovery/phase_retrieval.h"
 #include "mc/recovery/recovery_datasets.h"
 #include "mc/recovery/recovery_keys.h"
 
@@ -25,6 +26,8 @@ struct RecoverKeys {
   std::int64_t average = 1;
   mc::CameraNoise noise;
   mc::DeconvolutionKeys deconvolution;
+  std::string recovery = "search";
+  mc::PhaseTask phases;
   RunSettings run;
 };
 
@@ -43,6 +46,16 @@ void add_keys(Keys& keys, RecoverKeys& values) {
            "that weighs pairs by it (default: all pairs alike)")
       .positive();
   mc::add_average_key(keys, values.average);
+  keys.add("recovery", values.recovery,
+           "search: points; phases: also a picture whose autocorrelation is the frame's, by hybrid "
+           "input-output and error reduction")
+      .one_of({"search", "phases"});
+  keys.add("starts", values.phases.starts, "phases: from random ones, the best is taken")
+      .from(1, 10000);
+  keys.add("phase_iterations", values.phases.iterations, "phases: of each start").from(4, 100000);
+  keys.add("sparsity", values.phases.sparsity,
+           "phases: what is below this share of the largest value is 0 in error reduction")
+      .from(0, 1);
   add_camera_keys(keys, values.noise);
   keys.add("reference", values.reference,
            "CSV file of a reference point's frame: one column, or one for each frame; frames are "
@@ -66,6 +79,16 @@ mc::RecoveryTask task_of(const Keys& keys, const RecoverKeys& values, std::size_
         "longest", longest,
         "must be less than a quarter of the frame's " + std::to_string(pixels) + " pixels");
   task.lags = static_cast<std::size_t>(longest) + 1;
+  return task;
+}
+
+/// Nothing where only points are looked for.
+std::optional<mc::PhaseTask> phase_task(const Keys& keys, const RecoverKeys& values) {
+  if (keys.read(values.recovery) == "search") return std::nullopt;
+  mc::PhaseTask task;
+  task.starts = keys.read(values.phases.starts);
+  task.iterations = keys.read(values.phases.iterations);
+  task.sparsity = keys.read(values.phases.sparsity);
   return task;
 }
 
@@ -140,11 +163,13 @@ int recover(const Arguments& arguments) {
   const mc::RecoveryTask task = task_of(keys, values, table.rows());
   const std::size_t average = average_of(keys, values, table.names().size());
   const References references = references_of(keys, values, table);
+  const auto phases = phase_task(keys, values);
   keys.refuse_unread();
   if (!command.settle()) return ExitStatus::done;
   return session.once(ResultFile(session.out()), [&](ResultFile& file) -> std::optional<Made> {
     std::vector<mc::Recovered> all;
     std::vector<mc::Deconvolved> pictures;
+    std::vector<mc::PhasedPicture> phased;
     std::vector<std::string> names;
     const auto frames = frames_of(table);
     for (std::size_t i = 0; i < frames.size(); i += average) {
@@ -152,10 +177,13 @@ int recover(const Arguments& arguments) {
         pictures.push_back(
             mc::deconvolved(frames[i], references.of_frame[i], task.lags, references.task));
       all.push_back(mc::recovered(std::span(frames).subspan(i, average), task));
+      if (phases)
+        phased.push_back(mc::retrieved_phases(all.back().statistics.autocorrelation, *phases));
       names.push_back(table.names()[i]);
     }
     mc::write_recovery(file, names, task, all);
     if (!pictures.empty()) mc::write_deconvolved(file, task, pictures);
+    if (!phased.empty()) mc::write_phased(file, task, phased);
     print_summary(all);
     return Made{"autocorrelation of each frame, sparse search", static_cast<double>(all.size())};
   });

@@ -26,8 +26,9 @@ struct AutocorrelationTerms {
 /// whose noise has the spectrum P^2 / pixels (Bartlett's formula); the peak of a pair has T. Of
 /// filters T / P^n, n = 2 is the best in Gaussian noise, but rings where the camera has none and a
 /// pair stands beside another; n = 1, which is taken here, passes an autocorrelation without noise
-/// of the camera as it is. The peak about lag 0 is taken off. autocorrelation: by lag in pixels, the camera's noise taken off lag 0;
-/// of as many lags beyond the first `lags` nothing is expected but noise.
+/// of the camera as it is. The peak about lag 0 is taken off. autocorrelation: by lag in pixels,
+/// the camera's noise taken off lag 0; of as many lags beyond the first `lags` nothing is expected
+/// but noise.
 PairPeaks pair_peaks(std::span<const double> autocorrelation, std::size_t lags,
                      const AutocorrelationTerms& terms);
 

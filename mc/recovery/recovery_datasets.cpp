@@ -23,7 +23,12 @@ const DatasetTable recovery_table{
         {"picture", Data::real, "frame shift", "1", "frames divided by their reference"},
         {"iteration", Data::numbers, "", "1", "number of the step (richardson_lucy)"},
         {"residual", Data::real, "frame iteration", "1",
-         "rms of what the frame differs by from picture and reference, over its mean"}}};
+         "rms of what the frame differs by from picture and reference, over its mean"},
+        {"phased_picture", Data::real, "frame lag", "1",
+         "object by phase retrieval, shifted and mirrored or not; the sum is 1"},
+        {"phase_iteration", Data::numbers, "", "1", "number of the step of phase retrieval"},
+        {"phase_residual", Data::real, "frame phase_iteration", "1",
+         "rms of the amplitudes that positive objects within the lags lack, over theirs"}}};
 
 void write_recovery(ResultFile& file, const std::vector<std::string>& names,
                     const RecoveryTask& task, const std::vector<Recovered>& all) {
@@ -50,6 +55,17 @@ void write_deconvolved(ResultFile& file, const RecoveryTask& task,
   if (steps == 0) return;
   root.number("iteration", steps);
   root.put("residual", of_each(all, steps, [](const Deconvolved& one) { return one.residual; }));
+}
+
+void write_phased(ResultFile& file, const RecoveryTask& task,
+                  const std::vector<PhasedPicture>& all) {
+  const ResultGroup root(file, recovery_table);
+  root.put("phased_picture",
+           of_each(all, task.lags, [](const PhasedPicture& one) { return one.picture; }));
+  const std::size_t steps = all.front().residual.size();
+  root.number("phase_iteration", steps);
+  root.put("phase_residual",
+           of_each(all, steps, [](const PhasedPicture& one) { return one.residual; }));
 }
 
 }  // namespace flatspeckle::mc

@@ -5,6 +5,7 @@
 
 #include "core/result/result_group.h"
 #include "mc/recovery/deconvolution.h"
+#include "mc/recovery/phase_retrieval.h"
 #include "mc/recovery/recovery.h"
 
 namespace flatspeckle::mc {
@@ -54,5 +55,9 @@ void write_recovery(ResultFile& file, const std::vector<std::string>& names,
 /// Of frames that were divided by a reference, beside what write_recovery() has written.
 void write_deconvolved(ResultFile& file, const RecoveryTask& task,
                        const std::vector<Deconvolved>& all);
+
+/// Pictures by phase retrieval, beside what write_recovery() has written.
+void write_phased(ResultFile& file, const RecoveryTask& task,
+                  const std::vector<PhasedPicture>& all);
 
 }  // namespace flatspeckle::mc

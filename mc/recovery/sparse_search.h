@@ -37,8 +37,8 @@ struct SparseFit {
 /// height h at a place where a is expected adds (2 h a - a^2) / (2 s^2) to the logarithm of the
 /// likelihood: for points that are equal and share their speckle that is the sum of the heights. Of
 /// the last that are kept, the most likely with a brightness of each point, whose prior is a normal
-/// distribution with a standard deviation of a third of its mean, and places between the steps. Nothing
-/// where none fits into the lags.
+/// distribution with a standard deviation of a third of its mean, and places between the steps.
+/// Nothing where none fits into the lags.
 SparseFit sparse_search(const PairPeaks& peaks, const SparseTask& task);
 
 }  // namespace flatspeckle::mc

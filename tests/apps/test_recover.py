@@ -66,6 +66,20 @@ class Recover(ProgramTest):
         self.refused("deconvolution = richardson_lucy: nothing", **both,
                      deconvolution="richardson_lucy")
 
+    def test_phases(self):
+        """A picture whose largest values are the points'."""
+        self.call("recover", frames="frames.csv", points=3, longest=80, out="r.h5",
+                  recovery="phases", starts=30)
+        found = datasets(self.folder / "r.h5")
+        self.assertEqual(found["phase_residual"].shape, (2, 400))
+        for number, places in enumerate(PLACES.values()):
+            picture = found["phased_picture"][number]
+            self.assertAlmostEqual(picture.sum(), 1)
+            at = sorted(np.argsort(picture)[-3:])
+            at = [x - at[0] for x in at]
+            self.assertIn(places, [at, sorted(at[-1] - x for x in at)])
+        self.refused("starts = 3: nothing", frames="frames.csv", points=3, longest=80, starts=3)
+
     def refused(self, words, status=2, **keys):
         line = self.call("recover", **keys, out="r.h5", status=status).stderr
         self.assertIn(words, line)

@@ -59,6 +59,34 @@ TEST_CASE("points are found from the signal on at which they are predicted to be
   }
 }
 
+TEST_CASE("who knows how far the memory effect reaches finds objects beyond") {
+  std::mt19937 random(2);
+  std::normal_distribution<double> noise(0, 1);
+  const LineObject object{{0, 41, 111, 163, 240}, {1, 1, 1, 1, 1}};
+  constexpr double signal = 7, range = 120;
+  constexpr int runs = 40;
+  double alike = 0, weighed = 0;
+  for (int run = 0; run < runs; ++run) {
+    PairPeaks peaks{.step = 1, .height = std::vector<double>(300), .noise = 1, .alone = 5 * signal};
+    for (double& value : peaks.height) value = noise(random);
+    for (std::size_t i = 0; i < object.x.size(); ++i)
+      for (std::size_t j = 0; j < i; ++j) {
+        const double distance = object.x[i] - object.x[j];
+        peaks.height[static_cast<std::size_t>(distance)] +=
+            signal * memory_correlation(distance, range);
+      }
+    const auto found = [&](double known) {
+      const SparseFit fit = sparse_search(peaks, {.points = 5, .memory_range = known});
+      return score(object, fit.object, 1).found == 1;
+    };
+    alike += found(0);
+    weighed += found(range);
+  }
+  CHECK(memory_correlation(range, range) == doctest::Approx(0.5).epsilon(1e-4));
+  CHECK(weighed > 0.7 * runs);
+  CHECK(weighed > alike + 8);
+}
+
 TEST_CASE("of many equal points the whole object decides") {
   CHECK(half(10, 1e6) == doctest::Approx(std::sqrt(4 * std::log(1e6) / 10)).epsilon(0.2));
   CHECK(half(4, 1e8) == doctest::Approx(std::sqrt(4 * std::log(1e8) / 4)).epsilon(0.1));

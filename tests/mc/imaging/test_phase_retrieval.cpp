@@ -1,0 +1,60 @@
+// Pictures whose autocorrelation is known.
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include <doctest/doctest.h>
+
+#include "mc/recovery/phase_retrieval.h"
+
+namespace flatspeckle::mc {
+
+namespace {
+
+constexpr std::size_t lags = 100;
+
+/// Points as Gaussians.
+std::vector<double> picture_of(const std::vector<double>& x,
+                               const std::vector<double>& brightness) {
+  std::vector<double> picture(lags);
+  for (std::size_t i = 0; i < x.size(); ++i)
+    for (std::size_t p = 0; p < lags; ++p)
+      picture[p] += brightness[i] * std::exp(-std::pow((static_cast<double>(p) - x[i]) / 1.5, 2));
+  return picture;
+}
+
+std::vector<double> autocorrelation_of(const std::vector<double>& picture) {
+  std::vector<double> values(picture.size());
+  for (std::size_t lag = 0; lag < values.size(); ++lag)
+    for (std::size_t p = lag; p < picture.size(); ++p) values[lag] += picture[p] * picture[p - lag];
+  return values;
+}
+
+}  // namespace
+
+TEST_CASE("a picture is found from its autocorrelation, shifted and mirrored or not") {
+  const auto truth = picture_of({8, 19, 52}, {1, 3, 2});
+  const auto found = retrieved_phases(autocorrelation_of(truth), {});
+  CHECK(best_correlation(truth, found.picture) > 0.98);
+  CHECK(std::reduce(found.picture.begin(), found.picture.end()) == doctest::Approx(1));
+  CHECK(*std::min_element(found.picture.begin(), found.picture.end()) >= 0);
+}
+
+TEST_CASE("error reduction does what it says, and more starts are no worse") {
+  const auto values = autocorrelation_of(picture_of({5, 13, 44, 61}, {1, 1, 1, 1}));
+  const PhaseTask one{.starts = 1, .iterations = 200, .sparsity = 0};
+  const auto few = retrieved_phases(values, one),
+             many = retrieved_phases(values, {.starts = 8, .iterations = 200, .sparsity = 0});
+  REQUIRE(few.residual.size() == 200);
+  CHECK(std::is_sorted(few.residual.rbegin(), few.residual.rbegin() + 45));
+  CHECK(many.residual.back() <= few.residual.back());
+}
+
+TEST_CASE("pictures are compared at their best shift, mirrored or not") {
+  const std::vector<double> truth{0, 1, 2, 0, 0, 5}, mirrored{5, 0, 0, 2, 1, 0, 0},
+      other{1, 0, 0, 0, 0, 1};
+  CHECK(best_correlation(truth, mirrored) == doctest::Approx(1));
+  CHECK(best_correlation(truth, other) < 0.95);
+}
+
+}  // namespace flatspeckle::mc
