@@ -66,6 +66,8 @@ RUNS = {
                           "tilts": [0.002], "samples": None}),
     "image_reference": ("image", {**IMAGE, "reference_x": 5}),
     "image_lucy": ("image", {**IMAGE, "reference_x": 5, "deconvolution": "richardson_lucy"}),
+    "recover_phases": ("recover", {"frames": "frames.csv", "points": 2, "recovery": "phases", "samples": None,
+                                   "threads": None}),
     "recover_reference": ("recover", {"frames": "frames.csv", "reference": "frames.csv", "points": 2,
                                       "samples": None, "threads": None}),
     "recover_lucy": ("recover", {"frames": "frames.csv", "reference": "frames.csv", "points": 2,
