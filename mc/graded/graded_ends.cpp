@@ -67,22 +67,28 @@ void GradedEnds<phases>::attenuate(Vec2 x, std::span<Complex> out) {
 template class GradedEnds<false>;
 template class GradedEnds<true>;
 
+namespace {
+
+std::string text_of(Vec2 place) {
+  return '(' + number_text(place.x) + ", " + number_text(place.z) + ')';
+}
+
+}  // namespace
+
 void require_one_ray(const Scene& scene, const Wavefront& wave, const std::string& whose) {
   Domain domain = scene.domain;
   if (domain.kind == Domain::Kind::slab) domain.width = 0;
   constexpr std::size_t per_side = 64;
   for (const Vec2 place : edge_places(domain, per_side))
     if (!wave.at(place))
-      throw InputError("index_field: light of " + whose + " does not come to (" +
-                       number_text(place.x) + ", " + number_text(place.z) +
-                       ") of the medium before a caustic; take a weaker field, a smaller box or "
+      throw InputError("index_field: light of " + whose + " does not come to " + text_of(place) +
+                       " of the medium before a caustic; take a weaker field, a smaller box or "
                        "other ends");
 }
 
 void check_graded_ends(const Scene& scene, const GradedMedium& medium) {
   const auto name = [](const End& end) {
-    return end.near ? "(" + number_text(end.point.x) + ", " + number_text(end.point.z) + ")"
-                    : "direction " + number_text(angle_of(end.towards));
+    return end.near ? text_of(end.point) : "direction " + number_text(angle_of(end.towards));
   };
   for (const auto& ends : {light_ends(scene), view_ends(scene)})
     for (const End& end : ends) require_one_ray(scene, *wave_from(end, medium), name(end));
