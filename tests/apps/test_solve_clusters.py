@@ -30,12 +30,17 @@ def copies():
 def motif(test, **keys):
     test.write("motif.csv", table(MOTIF))
     test.write("places.csv", TURNED)
-    test.call("solve", placement="motif.csv", **DISK, t_matrix_gap=1.5, out="motif.h5", **keys)
+    test.call("solve", placement="motif.csv", **DISK, **{"t_matrix_gap": 1.5, **keys}, out="motif.h5")
 
 
 class Clusters(ProgramTest):
     def test_copies_are_as_all_disks(self):
-        motif(self)
+        for keys in ({}, {"t_matrix_gap": 0.1}):  # of so many orders that nothing inverts it
+            with self.subTest(keys=keys):
+                self.check_copies(**keys)
+
+    def check_copies(self, **keys):
+        motif(self, **keys)
         rows = list(copies())
         self.write("all.csv", table(np.column_stack([np.concatenate(rows[0::2]), np.concatenate(rows[1::2])])))
         self.write("sensors.csv", "x,z\n0,-4\n7,9\n")
@@ -58,6 +63,13 @@ class Clusters(ProgramTest):
 
 
 class Refused(RefusingTest):
+    def test_fast_needs_the_inverse(self):
+        motif(self, t_matrix_gap=0.1)
+        for solver in ("fast", "krylov"):
+            self.assert_refused_both_ways(
+                "solve", {}, {"cluster": "motif.h5", "placement": "places.csv", "solver": solver},
+                ["nearly singular", "dense"])
+
     def test_refused(self):
         motif(self, tolerance=1e-10)
         self.write("close.csv", "x,z\n0,0\n0,3\n")

@@ -5,6 +5,7 @@
 #include <limits>
 #include <map>
 #include <memory>
+#include <stdexcept>
 #include <utility>
 
 #include "core/error.h"
@@ -63,16 +64,12 @@ std::vector<Complex> inverted(Entries matrix, std::size_t size) {
 
 }  // namespace
 
-// What is inverted is accretive, as M is.
-ScaledInverse scaled_inverse(const ClusterTMatrix& cluster) {
-  ScaledInverse found{sizes_of(cluster), {}, 0};
+namespace {
+
+// How far the inverse of the inverse is from the response, as fields see it.
+double lost_by(const ClusterTMatrix& cluster, const ScaledInverse& found) {
   const auto& sigma = found.sizes;
   const std::size_t size = sigma.size();
-  Entries scaled(size * size);
-  for (std::size_t j = 0; j < size; ++j)
-    for (std::size_t i = 0; i < size; ++i)
-      scaled[i + size * j] = -cluster.response[i + size * j] / (sigma[i] * sigma[j]);
-  found.inverse = inverted(std::move(scaled), size);
   const auto back = inverted({found.inverse.begin(), found.inverse.end()}, size);
   const auto reach = reaches_of(cluster);
   double wrong = 0, all = 0;
@@ -83,7 +80,26 @@ ScaledInverse scaled_inverse(const ClusterTMatrix& cluster) {
       wrong += std::norm(weight * (whole + sigma[i] * sigma[j] * back[i + size * j]));
       all += std::norm(weight * whole);
     }
-  found.lost = all > 0 ? std::sqrt(wrong / all) : 0;
+  return all > 0 ? std::sqrt(wrong / all) : 0;
+}
+
+}  // namespace
+
+// What is inverted is accretive, as M is. Where orders that hardly scatter leave no inverse at all,
+// all is lost.
+ScaledInverse scaled_inverse(const ClusterTMatrix& cluster) {
+  ScaledInverse found{sizes_of(cluster), {}, std::numeric_limits<double>::infinity()};
+  const auto& sigma = found.sizes;
+  const std::size_t size = sigma.size();
+  Entries scaled(size * size);
+  for (std::size_t j = 0; j < size; ++j)
+    for (std::size_t i = 0; i < size; ++i)
+      scaled[i + size * j] = -cluster.response[i + size * j] / (sigma[i] * sigma[j]);
+  try {
+    found.inverse = inverted(std::move(scaled), size);
+    found.lost = lost_by(cluster, found);
+  } catch (const std::runtime_error&) {
+  }
   return found;
 }
 
