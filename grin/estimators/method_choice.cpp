@@ -174,13 +174,19 @@ bool has_finite_variance(const RenderScene& scene, RenderMethod method) {
 
 namespace {
 
+/// Where it is strong, joins are by curves that are rare and worth much.
+bool is_sound(const AnyIndexField& field) {
+  return std::visit([]<class F>(const F&) { return goes_by_leapfrog<F>; }, field);
+}
+
 /// Bidirectional tracing first, if it can be tried; then so can the others.
 std::vector<Candidate> candidates(const Tracers& tracers) {
   std::vector<Candidate> found;
   for (const RenderMethod method :
        {RenderMethod::bidirectional, RenderMethod::path, RenderMethod::light})
     if (has_finite_variance(tracers.scene(), method)) found.push_back({tracers.make(method)});
-  if (can_be_analog(tracers.scene())) found.push_back({tracers.make(RenderMethod::analog)});
+  if (is_sound(tracers.scene().field) && can_be_analog(tracers.scene()))
+    found.push_back({tracers.make(RenderMethod::analog)});
   return found;
 }
 
