@@ -32,7 +32,7 @@ class ParabolicRays final : public RayFieldOf<ParabolicGuide> {
     ParabolicWays(n0_, alpha_, from, to)
         .each(longest(to[2] - from[2], options), [&](double t, const Vec3& v) {
           Connection curve;
-          const TrialOutcome outcome = follow({n0_, alpha_, from, v}, t, ends, options, curve);
+          const TrialOutcome outcome = judge({n0_, alpha_, from, v}, t, ends, options, curve);
           if (!found.curve) found.outcome = outcome;
           if (outcome != TrialOutcome::converged) return;
           if (random.uniform() * ++found.multiplicity < 1) found.curve = curve;
@@ -52,8 +52,8 @@ class ParabolicRays final : public RayFieldOf<ParabolicGuide> {
     return std::min(by_length, std::max(std::numbers::pi, std::abs(along) / std::sqrt(on_axis)));
   }
 
-  TrialOutcome follow(const ParabolicOrbit& orbit, double t, const CurveEnds& ends,
-                      const ConnectionOptions& options, Connection& curve) const {
+  TrialOutcome judge(const ParabolicOrbit& orbit, double t, const CurveEnds& ends,
+                     const ConnectionOptions& options, Connection& curve) const {
     const RayState start = orbit.at(0), end = orbit.at(t);
     if (!(end.arc_length <= options.max_length)) return TrialOutcome::too_long;
     const double sigma = t / alpha_, n = start.v.norm();
