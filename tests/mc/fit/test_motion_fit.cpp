@@ -29,7 +29,7 @@ TEST_CASE("diffusion and mean free path follow from decays, and from contrasts")
 }
 
 TEST_CASE("shear and diffusion are told apart by light in several views") {
-  check_found(bench::ShearedSlab().task(1, 0.02),
+  check_found(bench::ShearedSlab().task(1, 0.03),
               VectorXd{{bench::ShearedSlab::diffusion, bench::ShearedSlab::shear}}, 4);
 }
 

@@ -52,7 +52,7 @@ TEST_CASE("pulls of diffusion and beta from contrasts are standard normal") {
 }
 
 TEST_CASE("pulls of diffusion and shear by Monte Carlo are standard normal") {
-  const bench::ShearedSlab slab;
+  const bench::ShearedSlab slab(4000000);
   check_pulls(VectorXd{{bench::ShearedSlab::diffusion, bench::ShearedSlab::shear}},
               [&](unsigned seed) { return slab.task(seed, 0.03); });
 }
