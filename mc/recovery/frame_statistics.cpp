@@ -97,7 +97,8 @@ FrameStatistics frame_statistics(std::span<const std::vector<double>> frames, st
   found.noise = standard_deviation(std::span(values).subspan(lags, std::min(lags, pixels - lags)));
   values[0] -= noise_variance;
   found.contrast = std::sqrt(std::max(square, 0.0));
-  const double band = fitted_band(std::span(values).first(lags));
+  const double band =
+      fitted_band(std::span(values).first(lags), found.noise, std::max(noise_variance, 0.0));
   if (band > 0) {
     found.grain = grain_of(band);
     found.grains = static_cast<double>(pixels) * count / found.grain;

@@ -28,26 +28,43 @@ double grain_of(double band) {
 
 namespace {
 
-/// Of the main lobe: the part of an autocorrelation along a peak of unit norm.
-double part_along(std::span<const double> autocorrelation, double band) {
-  double product = autocorrelation[0] / 2, square = 0.5;
-  for (std::size_t lag = 1; lag < autocorrelation.size() && static_cast<double>(lag) * band < 1;
-       ++lag) {
-    const double peak = speckle_peak(static_cast<double>(lag), band);
-    product += autocorrelation[lag] * peak;
-    square += peak * peak;
+/// An autocorrelation along a peak, of which what stands beside the main lobe is taken off.
+struct PeakFit {
+  double height = 0;
+  double part = 0;  ///< over its standard deviation where all lags have one of 1
+};
+
+PeakFit fitted_peak(std::span<const double> autocorrelation, double band, double white) {
+  constexpr std::size_t least = 64;
+  const double at_zero = 1 / (1 + white / 2);
+  double product = at_zero * autocorrelation[0] / 2, square = at_zero / 2, sum = at_zero / 2;
+  double beside = 0, count = 0;
+  for (std::size_t lag = 1; lag < autocorrelation.size(); ++lag) {
+    const double lobes = static_cast<double>(lag) * band;
+    if (lobes < 1) {
+      const double peak = speckle_peak(static_cast<double>(lag), band);
+      product += autocorrelation[lag] * peak;
+      square += peak * peak;
+      sum += peak;
+    } else if (lobes < 6 || lag < least) {
+      beside += autocorrelation[lag];
+      ++count;
+    }
   }
-  return product / std::sqrt(square);
+  const double own = product - sum * beside / count, norm = square + sum * sum / count;
+  return {own / norm, own / std::sqrt(norm)};
 }
 
 }  // namespace
 
-double fitted_band(std::span<const double> autocorrelation) {
+double fitted_band(std::span<const double> autocorrelation, double noise, double white) {
   constexpr double finer = 1.02;
+  const double height = (autocorrelation[0] - 4 * noise * std::sqrt(2 + white)) / 2;
   double found = 0, most = 0;
   for (double band = 1; band * static_cast<double>(autocorrelation.size()) > 4; band /= finer)
-    if (const double part = part_along(autocorrelation, band); part > most) {
-      most = part;
+    if (const PeakFit fit = fitted_peak(autocorrelation, band, white);
+        fit.part > most && fit.height > height) {
+      most = fit.part;
       found = band;
     }
   return found;

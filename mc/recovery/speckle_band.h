@@ -15,7 +15,10 @@ double speckle_power(double frequency, double band);
 /// over a frame get better; 2 / (3 band) where grains are larger than pixels.
 double grain_of(double band);
 
-/// The band whose peak about lag 0 has most of an autocorrelation in it; 0 where nothing has.
-double fitted_band(std::span<const double> autocorrelation);
+/// The band whose peak about lag 0 has most of an autocorrelation in it, and at least half of its
+/// height; 0 where nothing has. Speckle of few paths has a wide base besides. noise: standard
+/// deviation at any lag but 0; there the variance is larger by 2 + white, where white is the
+/// variance of the camera's photons over the square of their mean (Poisson's distribution).
+double fitted_band(std::span<const double> autocorrelation, double noise, double white = 0);
 
 }  // namespace flatspeckle::mc

@@ -10,6 +10,7 @@
 #include "mc/imaging/camera_frame.h"
 #include "mc/imaging/imaging.h"
 #include "mc/imaging/media_statistics.h"
+#include "mc/recovery/speckle_band.h"
 #include "tests/mc/estimates.h"
 
 namespace flatspeckle::mc {
@@ -108,6 +109,18 @@ TEST_CASE("points are found in what their autocorrelation would be without noise
       CHECK(fit.explained > 0.99);
       if (points > 2) CHECK(match.correlation > 0.99);
     }
+  }
+}
+
+TEST_CASE("grains are those of the peak about lag 0, whatever its wide base and the noise are") {
+  std::mt19937 random(6);
+  std::normal_distribution<double> noise(0, 0.003);
+  for (const double band : {1.0, 0.6, 0.3, 0.1}) {
+    std::vector<double> values(1000);
+    for (std::size_t lag = 0; lag < values.size(); ++lag)
+      values[lag] = 0.2 * speckle_peak(static_cast<double>(lag), band) +
+                    0.02 * std::exp(-static_cast<double>(lag) / 300) + noise(random);
+    CHECK(grain_of(fitted_band(values, 0.003)) == doctest::Approx(grain_of(band)).epsilon(0.1));
   }
 }
 
