@@ -126,7 +126,8 @@ TEST_CASE("one key alone, and a choice") {
   task.measure = [](const std::vector<SearchPlace>& places, const SearchEffort&) {
     std::vector<Measured> found;
     for (const auto& [at, choice] : places)
-      found.push_back({static_cast<double>(choice) - std::pow(at[0] - 0.1 - 0.3 * choice, 2)});
+      found.push_back({static_cast<double>(choice) -
+                       std::pow(at[0] - 0.1 - 0.3 * static_cast<double>(choice), 2)});
     return found;
   };
   const SearchSettings settings{.scattered = 24};
