@@ -8,6 +8,14 @@
 
 namespace flatspeckle::grin {
 
+/// Whether closed forms keep their digits: in a weaker guide two places have one curve, nearly
+/// straight, which any trial finds.
+inline bool bends_within(const ParabolicGuide& field, const Surface& room) {
+  constexpr double least_turn = 1e-2;
+  const Box box = bounds(room);
+  return field.profile().alpha * (box.high - box.low).norm() > least_turn;
+}
+
 /// Rays of the parabolic guide in a room, by steps, but for the curves between two points: closed
 /// forms, one at random of all that there are.
 class ParabolicRays final : public RayFieldOf<ParabolicGuide> {

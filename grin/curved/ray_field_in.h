@@ -13,7 +13,8 @@ std::unique_ptr<const RayField> ray_field_within(const F& field, std::span<const
   if constexpr (goes_by_leapfrog<F>)
     if (leapfrogs) return std::make_unique<RayFieldOf<F, Leapfrog>>(field);
   if constexpr (std::same_as<F, ParabolicGuide>)
-    if (!room.empty()) return std::make_unique<ParabolicRays>(field, room[0]);
+    if (!room.empty() && bends_within(field, room[0]))
+      return std::make_unique<ParabolicRays>(field, room[0]);
   if constexpr (requires { smooth_within(field, Sphere()); })
     if (const Sphere* sphere = room.empty() ? nullptr : std::get_if<Sphere>(&room[0])) {
       const F smooth = smooth_within(field, *sphere);
