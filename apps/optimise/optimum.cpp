@@ -23,7 +23,7 @@ const DatasetTable optimum_table{
              {"best/lead", Data::estimate, "", "", "by how much it is better than the runner-up"},
              {"best/confidence", Data::real, "", "1", "that it is better"},
              {"best/gain", Data::estimate, "", "1",
-              "value at the best place over that of `against`"},
+              "value at the best place over with the keys of against"},
              {"runner_up/value", Data::estimate, "", "", "the value there"},
              {"against/value", Data::estimate, "", "", "the value there"}},
     .attributes = {{"", "of", "text", "the subcommand whose results these are"},

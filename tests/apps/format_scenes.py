@@ -49,6 +49,10 @@ FIT = {"free": ["g=0:0.8"], "depth": 100, "optical_depth": 2, "measurement": "cu
 RUNS = {
     "intensity": ("covariance", {**BOX, **FAR}),
     "intensity_near": ("covariance", {**BOX, **NEAR}),
+    "graded": ("solve", {**BOX, "near_sources": "sources.csv", "near_sensors": "sensors.csv",
+                         "index_field": "linear", "index_slope": [0, 0.05]}),
+    "graded_paths": ("covariance", {**BOX, "view_angles": 0.4, "index_field": "linear", "index_slope": [0, 0.01], "method": "mc",
+                                    "samples": 2000}),
     "layers": ("covariance", {"domain": "box", "width": 20, "layers": "layers.csv"}),
     "density": ("covariance", {"width": 20, "depth": 10, "density": 0.155, "density_blobs": "blobs.csv"}),
     "flow": ("covariance", {**SLAB, "delays": [0, 0.1, 0.2, 0.4, 0.6, 1], "velocity": [1, 0], "method": "mc",
