@@ -19,7 +19,7 @@ DOCS = ROOT / "docs"
 # What stands in the sidebar, in this order; a test sees that every guide is here.
 CHAPTERS = {
     "First": ["tour", "questions", "tutorials", "gallery"],
-    "Speckle": ["monte_carlo", "exact_solver", "media", "sweeps", "imaging", "fit"],
+    "Speckle": ["monte_carlo", "exact_solver", "media", "sweeps", "experiments", "imaging", "fit"],
     "Rays and light": ["rays", "design", "render"],
     "Reference": ["commands", "scenes", "keys", "format", "conventions", "python", "library"],
     "About": ["report/report", "development", "contributing", "changelog", "sources"],
