@@ -7,6 +7,7 @@
 
 #include "core/result/result_group.h"
 #include "mc/numbers/gauss.h"
+#include "mc/numbers/log_sinh.h"
 #include "mc/theory/diffusion.h"
 #include "mc/theory/memory_effect.h"
 #include "mc/walk/walks.h"
@@ -76,9 +77,6 @@ class ReflectedLight {
                     log_sinh(rate * (depth_ + 2 * beyond))) /
            rate;
   }
-
-  /// Without overflow.
-  static double log_sinh(double a) { return a + std::log(-std::expm1(-2 * a) / 2); }
 
   double depth_, k_;
   const BulkMedium& medium_;

@@ -221,10 +221,7 @@ class StackRefiner {
       for (std::size_t i = 0; i < part.value.size(); ++i)
         if (const double size = scale[part.group.links[i].entry]; size > 0)
           worst = std::max(worst, std::abs(part.value[i] - part.before[i]) / size);
-      const double tolerance = refinement_.tolerance / 2;
-      part.done =
-          (worst <= tolerance && part.near) || 4 * part.size > 3 * refinement_.most_ordinates;
-      part.near = worst <= 100 * tolerance;
+      mc::settle(part, worst, refinement_);
     }
   }
 

@@ -25,6 +25,16 @@ struct Refinement {
   static int next_order(int order) { return (4 * order + 2) / 3; }
 };
 
+/// Marks a part of a solution whose last two orders differ by at most `worst`, relative: it is done
+/// where they agree twice, as one small difference may be chance, or where it would become too
+/// large.
+template <typename Part>
+void settle(Part& part, double worst, const Refinement& refinement) {
+  const double tolerance = refinement.tolerance / 2;
+  part.done = (worst <= tolerance && part.near) || 4 * part.size > 3 * refinement.most_ordinates;
+  part.near = worst <= 100 * tolerance;
+}
+
 /// Values and their difference from those of fewer ordinates, which is more than their error.
 struct Refined {
   std::vector<Complex> value, difference;

@@ -174,11 +174,7 @@ class Refiner {
       for (std::size_t i = 0; i < part.value.size(); ++i)
         if (const double size = scale[entry_of(part.group, i)]; size > 0)
           worst = std::max(worst, std::abs(part.value[i] - part.before[i]) / size);
-      // One small difference may be chance: the one before must have been small too.
-      const double tolerance = refinement_.tolerance / 2;
-      part.done =
-          (worst <= tolerance && part.near) || 4 * part.size > 3 * refinement_.most_ordinates;
-      part.near = worst <= 100 * tolerance;
+      mc::settle(part, worst, refinement_);
     }
   }
 

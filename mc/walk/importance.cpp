@@ -10,6 +10,7 @@
 #include "grin/media/diffusion_rate.h"
 #include "grin/media/phase_function.h"
 #include "mc/ends/space_scattering.h"
+#include "mc/numbers/log_sinh.h"
 #include "mc/theory/diffusion.h"
 #include "mc/walk/representatives.h"
 
@@ -24,10 +25,6 @@ constexpr int nodes = 512;  ///< of the table of importance
 /// log [sinh(a) / sinh(b)], 0 < a <= b.
 double log_sinh_ratio(double a, double b) {
   return a - b + std::log(std::expm1(-2 * a) / std::expm1(-2 * b));
-}
-
-double log_sinh(double x) {
-  return x + std::log(-std::expm1(-2 * x) / 2);
 }
 
 /// exp(-x), more or less and in a third of the time.

@@ -1,6 +1,9 @@
 #include "tests/mc/estimates.h"
 
+#include <memory>
 #include <sstream>
+
+#include "flatland/media/layers.h"
 
 namespace flatspeckle::mc::tests {
 
@@ -34,6 +37,22 @@ Scene hg_slab(double depth, const HgBulk& bulk, const CovarianceRequest& request
   spec.domain = "slab";
   Scene scene = make_scene(spec);
   scene.request = request;
+  return scene;
+}
+
+Scene layered(const std::vector<Layer>& layers, const CovarianceRequest& request) {
+  std::vector<Material> materials;
+  std::vector<double> thicknesses;
+  double depth = 0;
+  for (const auto& [thickness, optical_depth, g, albedo] : layers) {
+    const Scene alone = hg_slab(thickness, {thickness / optical_depth, g, albedo}, request);
+    materials.push_back({alone.scatterer, alone.medium});
+    thicknesses.push_back(thickness);
+    depth += thickness;
+  }
+  Scene scene = hg_slab(depth, {1, 0, 1}, request);
+  scene.profile = std::make_shared<const Layers>(materials, thicknesses);
+  scene.medium = scene.profile->mean();
   return scene;
 }
 

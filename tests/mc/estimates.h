@@ -21,6 +21,12 @@ Scene hg_box(double width, double depth, const HgBulk& bulk, const CovarianceReq
 Scene hg_slab(double depth, const HgBulk& bulk, const CovarianceRequest& request,
               double wavelength = 1);
 
+/// Henyey-Greenstein layers of a slab, from z = 0 on.
+struct Layer {
+  double thickness, optical_depth, g, albedo;
+};
+Scene layered(const std::vector<Layer>& layers, const CovarianceRequest& request);
+
 std::vector<View> far_views(const std::vector<double>& angles);
 
 /// What a run left behind: entries with errors, or any function of them.

@@ -12,27 +12,9 @@ namespace flatspeckle::mc {
 
 namespace {
 
+using tests::Layer;
+using tests::layered;
 using tests::pi;
-
-struct Layer {
-  double thickness, optical_depth, g, albedo;
-};
-
-Scene layered(const std::vector<Layer>& layers, const CovarianceRequest& request) {
-  std::vector<Material> materials;
-  std::vector<double> thicknesses;
-  double depth = 0;
-  for (const auto& [thickness, optical_depth, g, albedo] : layers) {
-    const Scene alone = tests::hg_slab(thickness, {thickness / optical_depth, g, albedo}, request);
-    materials.push_back({alone.scatterer, alone.medium});
-    thicknesses.push_back(thickness);
-    depth += thickness;
-  }
-  Scene scene = tests::hg_slab(depth, {1, 0, 1}, request);
-  scene.profile = std::make_shared<const Layers>(materials, thicknesses);
-  scene.medium = scene.profile->mean();
-  return scene;
-}
 
 /// Intensities and a tilt, in transmission, reflection and near backscattering.
 CovarianceRequest some_pairs() {

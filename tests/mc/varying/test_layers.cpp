@@ -10,28 +10,11 @@ namespace flatspeckle::mc {
 
 namespace {
 
+using tests::Layer;
+using tests::layered;
 using tests::pi;
 
-struct Layer {
-  double thickness, optical_depth, g, albedo;
-};
 const std::vector<Layer> three = {{20, 2, 0.9, 0.99}, {30, 3, 0.7, 0.9}, {10, 1, 0, 1}};
-
-Scene layered(const std::vector<Layer>& layers, const CovarianceRequest& request) {
-  std::vector<Material> materials;
-  std::vector<double> thicknesses;
-  double depth = 0;
-  for (const auto& [thickness, optical_depth, g, albedo] : layers) {
-    const Scene alone = tests::hg_slab(thickness, {thickness / optical_depth, g, albedo}, request);
-    materials.push_back({alone.scatterer, alone.medium});
-    thicknesses.push_back(thickness);
-    depth += thickness;
-  }
-  Scene scene = tests::hg_slab(depth, {1, 0, 1}, request);
-  scene.profile = std::make_shared<const Layers>(materials, thicknesses);
-  scene.medium = scene.profile->mean();
-  return scene;
-}
 
 oracles::SlabTransport theory_of(const std::vector<Layer>& layers,
                                  const std::vector<double>& angles) {

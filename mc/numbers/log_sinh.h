@@ -1,0 +1,12 @@
+#pragma once
+
+#include <cmath>
+
+namespace flatspeckle::mc {
+
+/// log sinh(a), a > 0, without overflow.
+inline double log_sinh(double a) {
+  return a + std::log(-std::expm1(-2 * a) / 2);
+}
+
+}  // namespace flatspeckle::mc
