@@ -100,7 +100,7 @@ PlanRow reciprocity(double cpu_seconds) {
     const TMatrixSystem system(points, k, 1e-9);
     EquationSolver solver(system, Method::dense, 1e-9);
     const auto x = solver.solve(system.right_sides(lights));
-    const auto seen = system.far_row(view);
+    const auto seen = system.far_rows(std::vector{view});
     std::vector<Complex> fields(lights.size());
     for (std::size_t l = 0; l < lights.size(); ++l)
       for (std::size_t i = 0; i < seen.size(); ++i) fields[l] += seen[i] * x[l * seen.size() + i];

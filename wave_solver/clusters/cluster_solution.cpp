@@ -134,7 +134,7 @@ std::vector<Complex> ClusterSolution::fields(const std::vector<View>& views) con
   std::vector<Complex> rows;
   for (const View& view : views) {
     const auto row =
-        view.near ? equations_.outside_row(view.point) : equations_.far_row(view.angle);
+        view.near ? equations_.outside_row(view.point) : equations_.far_rows({&view.angle, 1});
     rows.insert(rows.end(), row.begin(), row.end());
   }
   return transposed_product(rows, found_.coefficients.data(), light_angles_.size(),

@@ -17,6 +17,7 @@ namespace flatspeckle::wave {
 namespace {
 
 constexpr double good = 1e-14;  // backward error
+constexpr std::size_t probes = 4;
 
 double squared_norm(const Complex* values, std::size_t n) {
   const auto* parts = reinterpret_cast<const double*>(values);
@@ -34,6 +35,13 @@ double frobenius_norm(const Entries& symmetric, std::size_t n) {
     square += std::norm(*diagonal) + 2 * squared_norm(diagonal + 1, n - j - 1);
   }
   return std::sqrt(square);
+}
+
+void append_probes(std::vector<Complex>& columns, std::size_t n) {
+  RandomStream random(0, 0, 0);
+  columns.reserve(columns.size() + probes * n);
+  for (std::size_t i = 0; i < probes * n; ++i)
+    columns.push_back(std::polar(1.0, 2 * std::numbers::pi * random.uniform()));
 }
 
 }  // namespace
@@ -121,33 +129,31 @@ bool DenseFactor::refine(const std::vector<Complex>& b, std::vector<Complex>& x)
   }
 }
 
+// What M^-1 makes of vectors of random phases, the last columns, is on average its norm.
+void DenseFactor::take_condition(std::vector<Complex>& x) {
+  const std::size_t kept = x.size() - probes * n_;
+  condition_ = norm_ * std::sqrt(squared_norm(x.data() + kept, probes * n_) / probes);
+  x.resize(kept);
+}
+
 // Empty if it does not do.
-std::vector<Complex> DenseFactor::attempt(const std::vector<Complex>& b) {
+std::vector<Complex> DenseFactor::attempt(const std::vector<Complex>& b, bool condition) {
   std::vector<Complex> x = b;
+  if (condition) append_probes(x, n_);
   solve_once(x);
+  if (condition) take_condition(x);
   if (!is_good(b, x) && !(refine(b, x) && is_good(b, x))) x.clear();
   return x;
 }
 
-std::vector<Complex> DenseFactor::solve(const std::vector<Complex>& columns) {
+std::vector<Complex> DenseFactor::solve(const std::vector<Complex>& columns, bool condition) {
   if (columns.empty() || n_ == 0) return columns;
   std::vector<Complex> x;
-  if (factored_) x = attempt(columns);
-  if (x.empty() && !pivoted_ && (factored_ = factor_pivoted())) x = attempt(columns);
+  if (factored_) x = attempt(columns, condition);
+  if (x.empty() && !pivoted_ && (factored_ = factor_pivoted())) x = attempt(columns, condition);
   if (x.empty())
     throw std::runtime_error("the multiple-scattering equations have no solution in reach");
   return x;
-}
-
-// What M^-1 makes of vectors of random phases is on average its norm.
-double DenseFactor::condition() const {
-  if (n_ == 0) return 1;
-  constexpr std::size_t probes = 4;
-  RandomStream random(0, 0, 0);
-  std::vector<Complex> x(probes * n_);
-  for (Complex& value : x) value = std::polar(1.0, 2 * std::numbers::pi * random.uniform());
-  solve_once(x);
-  return norm_ * std::sqrt(squared_norm(x.data(), x.size()) / probes);
 }
 
 }  // namespace flatspeckle::wave

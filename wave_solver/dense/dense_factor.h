@@ -22,20 +22,22 @@ class DenseFactor {
   /// matrix: both triangles, column-major.
   DenseFactor(Entries matrix, std::size_t unknowns);
 
-  /// columns: [column][unknown]. Throws std::runtime_error if no finite solution of small backward
-  /// error is found.
-  std::vector<Complex> solve(const std::vector<Complex>& columns);
+  /// columns: [column][unknown]; condition: also estimate it, beside them, for a few columns
+  /// more. Throws std::runtime_error if no finite solution of small backward error is found.
+  std::vector<Complex> solve(const std::vector<Complex>& columns, bool condition = false);
 
   /// Whether rows had to be exchanged.
   bool is_pivoted() const { return pivoted_; }
   /// B - M X of combinations (combinations.h) of the last columns B and their solution X.
   const std::vector<Complex>& remainder() const { return remainder_; }
   /// Condition number of M in the Frobenius norm, about: at least that in the 2-norm. Four random
-  /// vectors tell it within a factor of two or so (Kenney and Laub 1994). After a solve.
-  double condition() const;
+  /// vectors tell it within a factor of two or so (Kenney and Laub 1994). Of the last solve that
+  /// was asked for it.
+  double condition() const { return condition_; }
 
  private:
-  std::vector<Complex> attempt(const std::vector<Complex>& b);
+  std::vector<Complex> attempt(const std::vector<Complex>& b, bool condition);
+  void take_condition(std::vector<Complex>& x);
   bool factor_pivoted();
   void solve_once(std::vector<Complex>& x) const;
   std::vector<Complex> residual(const std::vector<Complex>& b, const std::vector<Complex>& x) const;
@@ -53,6 +55,7 @@ class DenseFactor {
   std::vector<Complex> remainder_;
   std::vector<int> pivots_;
   double norm_ = 0;  // Frobenius
+  double condition_ = 1;
   bool factored_ = false, pivoted_ = false;
 };
 

@@ -25,7 +25,7 @@ bool factor_small(Complex* a, std::size_t n, std::size_t ld) {
   return true;
 }
 
-constexpr std::size_t small = 48, block = 96;
+constexpr std::size_t small = 48, block = 96, strip = 384;
 
 // Halves down to small ones, so that the panels of a block are made by BLAS too.
 bool factor_block(Complex* a, std::size_t n, std::size_t ld) {
@@ -35,6 +35,18 @@ bool factor_block(Complex* a, std::size_t n, std::size_t ld) {
   triangular_solve(CblasRight, CblasLower, CblasTrans, n - half, half, a, ld, a + half, ld);
   subtract_square(n - half, half, a + half, a + half * (ld + 1), ld);
   return factor_block(a + half * (ld + 1), n - half, ld);
+}
+
+// C -= W W^T in the lower triangle, in strips of columns: what lies below their squares by three
+// real products in place of four.
+void subtract_in_strips(std::size_t n, std::size_t depth, const Complex* w, Complex* c,
+                        std::size_t ld) {
+  for (std::size_t first = 0; first < n; first += strip) {
+    const std::size_t size = std::min(strip, n - first), end = first + size;
+    subtract_square(size, depth, w + first, c + first * (ld + 1), ld);
+    if (end < n)
+      subtract_product(n - end, size, depth, w + end, w + first, c + first * ld + end, ld);
+  }
 }
 
 }  // namespace
@@ -48,7 +60,7 @@ bool factor_symmetric(Complex* a, std::size_t n, std::size_t ld) {
     if (!factor_block(corner, size, ld)) return false;
     if (rest == 0) break;
     triangular_solve(CblasRight, CblasLower, CblasTrans, rest, size, corner, ld, corner + size, ld);
-    subtract_square(rest, size, corner + size, corner + size * (ld + 1), ld);
+    subtract_in_strips(rest, size, corner + size, corner + size * (ld + 1), ld);
   }
   return true;
 }

@@ -235,6 +235,7 @@ void expand_plane_wave(double k, std::span<const ModeSet> receivers, Vec2 w, Com
                        std::span<Complex> out) {
   int highest = 0;
   std::vector<double> phases;
+  phases.reserve(receivers.size());
   for (const ModeSet& receiver : receivers) {
     highest = std::max(highest, receiver.order);
     phases.push_back(k * dot(w, receiver.centre));

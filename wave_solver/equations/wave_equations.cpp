@@ -111,6 +111,7 @@ void WaveEquations::outgoing(std::span<const Vec2> points, std::span<const std::
 
 std::vector<ModeSet> WaveEquations::all_modes() const {
   std::vector<ModeSet> all;
+  all.reserve(bodies_.size());
   for (std::size_t j = 0; j < bodies_.size(); ++j) all.push_back(modes(j));
   return all;
 }
@@ -210,25 +211,24 @@ std::vector<Complex> WaveEquations::apply(std::span<const Complex> x) const {
   return y;
 }
 
-void WaveEquations::plane_wave(Vec2 w, Complex factor, std::span<Complex> column) const {
-  std::vector<ModeSet> receivers;
-  for (std::size_t j = 0; j < bodies_.size(); ++j) receivers.push_back(modes(j));
-  expand_plane_wave(k_, receivers, w, factor, column);
+// Of `factor` times waves that go by `sign` times the angles' directions: [wave][unknown].
+std::vector<Complex> WaveEquations::plane_waves(std::span<const double> angles, double sign,
+                                                Complex factor) const {
+  std::vector<Complex> waves(angles.size() * unknowns());
+  const auto receivers = all_modes();
+  for (std::size_t wave = 0; wave < angles.size(); ++wave)
+    expand_plane_wave(k_, receivers, sign * direction(angles[wave]), factor,
+                      std::span(waves).subspan(wave * unknowns(), unknowns()));
+  return waves;
 }
 
 std::vector<Complex> WaveEquations::right_sides(std::span<const double> light_angles) const {
-  std::vector<Complex> sides(light_angles.size() * unknowns());
-  for (std::size_t light = 0; light < light_angles.size(); ++light)
-    plane_wave(direction(light_angles[light]), -1,
-               std::span(sides).subspan(light * unknowns(), unknowns()));
-  return sides;
+  return plane_waves(light_angles, 1, -1);
 }
 
-std::vector<Complex> WaveEquations::far_row(double view_angle) const {
-  std::vector<Complex> row(unknowns());
+std::vector<Complex> WaveEquations::far_rows(std::span<const double> view_angles) const {
   const double size = std::sqrt(2 / (std::numbers::pi * k_));
-  plane_wave(-direction(view_angle), std::polar(size, -std::numbers::pi / 4), row);
-  return row;
+  return plane_waves(view_angles, -1, std::polar(size, -std::numbers::pi / 4));
 }
 
 std::vector<Complex> WaveEquations::outside_row(Vec2 point) const {

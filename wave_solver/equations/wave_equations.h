@@ -56,9 +56,9 @@ class WaveEquations {
 
   /// -sigma a of unit plane waves (C6): [light][unknown].
   std::vector<Complex> right_sides(std::span<const double> light_angles) const;
-  /// What each unknown adds to the far-field amplitude at an angle (C6). By reciprocity a multiple
-  /// of the right side of the light that comes from there.
-  std::vector<Complex> far_row(double view_angle) const;
+  /// What each unknown adds to the far-field amplitude at angles (C6): [view][unknown]. By
+  /// reciprocity a multiple of the right side of the light that comes from there.
+  std::vector<Complex> far_rows(std::span<const double> view_angles) const;
   /// What each unknown adds to the scattered field at a point off all bodies.
   std::vector<Complex> outside_row(Vec2 point) const;
 
@@ -87,7 +87,8 @@ class WaveEquations {
   // M, in parts of columns with what is symmetric to them.
   void point_columns(Complex* matrix) const;
   void multipole_columns(Complex* matrix) const;
-  void plane_wave(Vec2 w, Complex factor, std::span<Complex> column) const;
+  std::vector<Complex> plane_waves(std::span<const double> angles, double sign,
+                                   Complex factor) const;
 
   double k_;
   std::vector<Body> bodies_;

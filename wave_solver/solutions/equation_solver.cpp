@@ -53,9 +53,9 @@ EquationSolver::EquationSolver(const WaveEquations& system, Method method, doubl
 
 EquationSolver::~EquationSolver() = default;
 
-std::vector<Complex> EquationSolver::solve(const std::vector<Complex>& sides) {
+std::vector<Complex> EquationSolver::solve(const std::vector<Complex>& sides, bool condition) {
   if (!dense_) return iterate(sides);
-  auto x = dense_->solve(sides);
+  auto x = dense_->solve(sides, condition);
   remainder_ = dense_->remainder();
   description_ = dense_->is_pivoted() ? "dense LU with pivoting" : "dense L L^T without pivoting";
   return x;

@@ -31,14 +31,16 @@ class EquationSolver {
   EquationSolver(const WaveEquations& system, Method method, double tolerance);
   ~EquationSolver();
 
-  /// sides: [column][unknown]. Throws std::runtime_error where no finite solution is found, or a
-  /// residual stays more than a hundred times above the tolerance.
-  std::vector<Complex> solve(const std::vector<Complex>& sides);
+  /// sides: [column][unknown]; condition: also estimate it, where the method can. Throws
+  /// std::runtime_error where no finite solution is found, or a residual stays more than a hundred
+  /// times above the tolerance.
+  std::vector<Complex> solve(const std::vector<Complex>& sides, bool condition = false);
 
   /// What is left of the last sides, by combinations() of them; by the fast product or, where the
   /// method is dense, by the matrix that was factored.
   const std::vector<Complex>& remainder() const { return remainder_; }
-  /// In the Frobenius norm, an estimate; -1 for methods that do not tell. After a solve.
+  /// In the Frobenius norm, an estimate; -1 for methods that do not tell. Of the last solve that
+  /// was asked for it.
   double condition() const;
   /// What was done, in words.
   const std::string& description() const { return description_; }

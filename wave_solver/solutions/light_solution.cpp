@@ -48,7 +48,7 @@ LightSolution solve_lights(const WaveEquations& equations, const std::vector<dou
   const auto basis = light_basis(light_angles, equations.k(), circle, options.tolerance);
   EquationSolver solver = solver_of(equations, options);
   const auto sides = equations.right_sides(basis.angles);
-  LightSolution found{solver.solve(sides), {}, {}};
+  LightSolution found{solver.solve(sides, options.diagnose), {}, {}};
   if (options.diagnose) {
     std::vector<double> weights;  // those times their roots are rows of the unscaled equations
     for (std::size_t i = 0; i < equations.unknowns(); ++i) weights.push_back(equations.strength(i));

@@ -38,12 +38,17 @@ std::vector<Complex> transposed(const std::vector<Complex>& matrix, std::size_t 
   return result;
 }
 
+bool all_far(std::span<const View> views) {
+  return std::none_of(views.begin(), views.end(), [](const View& view) { return view.near; });
+}
+
 // What each unknown adds in each view: [view][unknown].
 std::vector<Complex> view_rows(const TMatrixSystem& system, std::span<const View> views) {
+  if (all_far(views)) return system.far_rows(column(views, &View::angle));
   std::vector<Complex> rows;
   rows.reserve(views.size() * system.unknowns());
   for (const View& view : views) {
-    const auto row = view.near ? system.near_row(view.point) : system.far_row(view.angle);
+    const auto row = view.near ? system.near_row(view.point) : system.far_rows({&view.angle, 1});
     rows.insert(rows.end(), row.begin(), row.end());
   }
   return rows;
@@ -57,10 +62,6 @@ std::vector<Complex> right_sides(const TMatrixSystem& system, const LightBasis& 
     sides.insert(sides.end(), side.begin(), side.end());
   }
   return sides;
-}
-
-bool all_far(const std::vector<View>& views) {
-  return std::none_of(views.begin(), views.end(), [](const View& view) { return view.near; });
 }
 
 void write_views(ResultFile& file, const std::string& name, const WaveSolution& solution,
