@@ -82,11 +82,10 @@ class SyntheticSlab {
     }
     return all;
   }
-  /// Without noise.
-  std::vector<mc::Measurement> exact() const {
+  /// Without noise; with errors of a share of each value.
+  std::vector<mc::Measurement> exact(double share = 0.01) const {
     auto all = exact_;
-    for (mc::Measurement& one : all)
-      one.covariance = (share_ * one.values).cwiseAbs2().asDiagonal();
+    for (mc::Measurement& one : all) one.covariance = (share * one.values).cwiseAbs2().asDiagonal();
     return all;
   }
 

@@ -65,7 +65,6 @@ LeastSquaresFit levenberg_marquardt(const LeastSquares& problem, const VectorXd&
   at.parameters = within(problem, start);
   at.residuals = problem.residuals(at.parameters);
   at.jacobian = problem.jacobian(at.parameters, at.residuals);
-  const VectorXd range = problem.upper - problem.lower;
   const auto note = [&] {
     at.trace.push_back({at.parameters, at.chi_squared(), process_cpu_seconds()});
   };
@@ -73,8 +72,7 @@ LeastSquaresFit levenberg_marquardt(const LeastSquares& problem, const VectorXd&
   double damping = first_damping;
   for (; at.iterations < most_iterations && damping < most_damping; ++at.iterations) {
     const VectorXd step = damped_step(problem, at, damping), next = at.parameters + step;
-    const double length = step.cwiseQuotient(range).cwiseAbs().maxCoeff();
-    at.converged = length < tolerance && damping <= 1;
+    at.converged = (at.jacobian * step).squaredNorm() < tolerance && damping <= 1;
     if (at.converged) return at;
     const VectorXd residuals = problem.residuals(next);
     const double gain = at.chi_squared() - residuals.squaredNorm();

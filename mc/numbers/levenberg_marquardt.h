@@ -32,8 +32,8 @@ struct LeastSquaresFit {
 };
 
 /// Levenberg's and Marquardt's steps, cut off at the bounds; a parameter that its bound holds back
-/// takes no part in a step. Converged: the step that is left is less than `tolerance` of the
-/// distance of the bounds, or lessens chi^2 by less than `tolerance`.
+/// takes no part in a step. Converged: the last step has lessened chi^2 by less than `tolerance`,
+/// or the next one would be shorter than its root, in standard errors.
 LeastSquaresFit levenberg_marquardt(const LeastSquares& problem, const Eigen::VectorXd& start,
                                     int most_iterations = 60, double tolerance = 1e-6);
 

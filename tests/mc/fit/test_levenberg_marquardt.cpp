@@ -77,6 +77,17 @@ TEST_CASE("a bound holds a parameter back, and the others are best there") {
             .epsilon(1e-6));
 }
 
+TEST_CASE("wide bounds do not end a search early") {
+  constexpr double error = 1e-4, tolerance = 1e-3;
+  const VectorXd x = VectorXd::LinSpaced(20, 0, 3), truth{{2, 0.8}};
+  auto problem = decay(x, truth[0] * (-truth[1] * x.array()).exp(), error);
+  problem.upper *= 1000;
+  const auto fit = levenberg_marquardt(problem, VectorXd{{1, 0.2}}, most_iterations, tolerance);
+  REQUIRE(fit.converged);
+  const VectorXd errors = information(problem, fit.jacobian).errors();
+  CHECK((fit.parameters - truth).cwiseQuotient(errors).cwiseAbs().maxCoeff() < 0.1);
+}
+
 TEST_CASE("pulls of an exponential's parameters are standard normal") {
   constexpr double error = 0.01;
   constexpr int runs = 400;

@@ -1,0 +1,128 @@
+// Media found from measurements.
+
+#include <numbers>
+
+#include "bench/plan/plan_rooms.h"
+#include "bench/plan/plan_timing.h"
+#include "bench/scenes/synthetic_slab.h"
+#include "mc/estimators/covariance_estimator.h"
+#include "mc/estimators/gradient.h"
+#include "mc/fit/model/slab_model.h"
+#include "mc/fit/task/fit_data.h"
+
+namespace flatspeckle::bench {
+
+namespace {
+
+/// A slab's curves, and the model of them.
+struct Curves {
+  std::vector<mc::Curve> curves;
+  mc::Media media;
+
+  explicit Curves(const mc::FitTask& task)
+      : curves(mc::curves_of(task)), media(mc::media_at(task, mc::middle(task))) {}
+
+  std::vector<Complex> joint() const {
+    const auto values = mc::SlabModel(curves, media).values(media);
+    return {values.begin(), values.end()};
+  }
+  std::vector<Complex> one_by_one() const {
+    std::vector<Complex> all;
+    for (std::size_t i = 0; i < curves.size(); ++i) {
+      const mc::Media medium{media[i]};
+      const auto values = mc::SlabModel({curves[i]}, medium).values(medium);
+      all.insert(all.end(), values.begin(), values.end());
+    }
+    return all;
+  }
+};
+
+/// Transport to views that curves share, done again for each.
+PlanRow curves_one_by_one(double cpu_seconds) {
+  constexpr double rounding = 1e-11;
+  PlanRow row{.per = "model"};
+  const Curves of(slab_task(standard_slab().exact()));
+  compare_values(
+      row, [&] { return of.one_by_one(); }, [&] { return of.joint(); }, rounding, cpu_seconds);
+  return row;
+}
+
+/// Light that goes paths backwards, where views are far from backscattering.
+PlanRow reversed_paths(double cpu_seconds) {
+  constexpr double negligible = 2e-3;
+  PlanRow row{.per = "model"};
+  const Curves of(slab_task(standard_slab().exact()));
+  const Scene& scene = of.media[2].scene;
+  const auto covariance = [&](bool reversed) {
+    return mc::slab_covariance(scene, reversed, {1e-4}).value;
+  };
+  compare_values(
+      row, [&] { return covariance(true); }, [&] { return covariance(false); }, negligible,
+      cpu_seconds);
+  return row;
+}
+
+SceneSpec slab_of(double optical_depth) {
+  SceneSpec spec;
+  spec.domain = "slab";
+  spec.depth = 2000;
+  spec.scatterer = "hg";
+  spec.g = 0.8;
+  spec.optical_depth = optical_depth;
+  spec.view_angles = {-0.6, 0.2, 0.5};
+  return spec;
+}
+
+/// By the optical depth, from runs of other random numbers on both sides.
+SampledKernel difference_of_runs() {
+  constexpr double optical_depth = 4, step = 0.2;
+  const auto job = [&](double at, std::uint64_t seed) {
+    const Scene scene = make_scene(slab_of(at));
+    return mc::covariance_job(scene, mc::make_plan(scene, mc::ReversedPaths::no), seed);
+  };
+  const FieldJob above = job(optical_depth + step, 2), below = job(optical_depth - step, 3);
+  const std::size_t half = above.batches.size;
+  return {2 * half, above.batches.samples_per_batch,
+          [=](std::uint64_t number, std::span<Complex> sums) {
+            above.batches.run(number, sums.first(half));
+            below.batches.run(number, sums.last(half));
+          },
+          [=](double samples, std::span<const Complex> sums) {
+            auto slopes = above.covariance(samples, sums.first(half));
+            const auto low = below.covariance(samples, sums.last(half));
+            for (std::size_t i = 0; i < slopes.size(); ++i)
+              slopes[i] = (slopes[i] - low[i]) / (2 * step);
+            return slopes;
+          }};
+}
+
+/// The same from the paths of one run.
+SampledKernel slopes_of_run() {
+  const Scene scene = make_scene(slab_of(4));
+  const auto job = mc::gradient_job(scene, mc::gradient_plan(scene, mc::ReversedPaths::no), 1);
+  return {
+      job.field.batches.size, job.field.batches.samples_per_batch, job.field.batches.run,
+      [=, entries = scene.request.entries.size()](double samples, std::span<const Complex> sums) {
+        const auto all = job.gradient(samples, sums);
+        return std::vector<Complex>(all.end() - static_cast<std::ptrdiff_t>(entries), all.end());
+      }};
+}
+
+PlanRow differences_of_runs(double cpu_seconds) {
+  PlanRow row{.per = "1 % error"};
+  compare_sampled(row, difference_of_runs(), slopes_of_run(), Numbers::other, Measure::error,
+                  cpu_seconds);
+  return row;
+}
+
+}  // namespace
+
+std::vector<PlanCase> fit_plan_cases() {
+  const std::string room = "fit", slab = "slab, 4 curves and transmittance";
+  return {named(room, "curves one by one", slab, curves_one_by_one),
+          named(room, "reversed paths", "slab, a view in reflection", reversed_paths),
+          named(room, "differences of two runs", "slab, intensities by optical depth",
+                differences_of_runs)};
+}
+
+}  // namespace flatspeckle::bench
