@@ -36,6 +36,8 @@ constexpr Drawing drawings[] = {{"squared_contrast", "contrast"},
                                 {"exit/x", "rays"},
                                 {"ball_spline", "design"},
                                 {"radial_spline", "design"},
+                                {"graded_spline", "design"},
+                                {"history/rms", "design"},
                                 {"total_field", "field_map"},
                                 {"image", "render"}};
 

@@ -13,7 +13,7 @@ install(FILES ${PROJECT_BINARY_DIR}/flatspeckle-config.cmake
 install(EXPORT flatspeckle NAMESPACE flatspeckle:: FILE flatspeckle-targets.cmake
         DESTINATION ${package_dir})
 
-install(DIRECTORY plots octave data/scenes DESTINATION ${CMAKE_INSTALL_DATADIR}/flatspeckle
+install(DIRECTORY plots octave data/scenes data/pictures DESTINATION ${CMAKE_INSTALL_DATADIR}/flatspeckle
         PATTERN __pycache__ EXCLUDE)
 # Debian's own place for packages of python3; under another prefix PYTHONPATH names it.
 set(FLATSPECKLE_PYTHON_DIR lib/python3/dist-packages CACHE STRING "Where the Python package goes, under the prefix")

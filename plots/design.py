@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """A field that `flatspeckle design` found: index over a slice with rays before and after, profile beside
-the closed form of a lens with that focus, and how the search went."""
+the closed form, pictures beside what was asked for, and how the search went."""
 
 from lib import style
 
@@ -64,8 +64,54 @@ def draw_search(axis, result):
     axis.legend(loc="upper right", handlelength=1.2, fontsize=6)
 
 
+def draw_guide(axis, result):
+    """Distance of n from the parabola n^2 = n0^2 (1 - 2 delta q), over the index step, beside n0 sech(alpha rho)."""
+    r, index = result.values("profile/r"), result.values("profile/index")
+    n0, delta, radius = (result.attribute(name, group="graded_spline") for name in ("index", "delta", "radius"))
+    step = n0 * (1 - np.sqrt(1 - 2 * delta))
+    parabola = n0 * np.sqrt(1 - 2 * delta * (r / radius)**2)
+    alpha = np.arccosh(1 / np.sqrt(1 - 2 * delta)) / radius
+    axis.plot(r, (index - parabola) / step, color=style.COLOURS[0], label="found")
+    axis.plot(r, (n0 / np.cosh(alpha * r) - parabola) / step, color="black", linestyle=":", label="sech")
+    axis.set(xlabel=r"$\rho$", ylabel=r"$(n - n_\mathrm{parabola})/\Delta n$")
+    axis.legend(handlelength=1.2)
+
+
+def draw_pictures(figure, axes, result):
+    asked, shown = result.values("picture/asked"), result.values("picture/shown")
+    for view, (top, bottom) in enumerate(zip(axes[0], axes[1])):
+        brightest = asked[view].max()
+        for axis, picture in ((top, asked[view]), (bottom, shown[view])):
+            axis.imshow(picture / brightest, cmap="gray", vmin=0, vmax=1, interpolation="nearest")
+            axis.set(xticks=[], yticks=[])
+        bottom.set_xlabel(f"{result.values('picture/psnr_db')[view]:.1f} dB")
+    axes[0][0].set_ylabel("asked")
+    axes[1][0].set_ylabel("shown")
+
+
+def draw_picture_design(result):
+    views = len(result.values("picture/psnr_db"))
+    figure = plt.figure(figsize=(style.PAGE, 2.4))
+    left, middle, right = figure.subfigures(1, 3, width_ratios=[1.5, 0.6 * views, 1])
+    draw_slice(left, left.subplots(), result)
+    draw_pictures(middle, middle.subplots(2, views, squeeze=False), result)
+    draw_search(right.subplots(), result)
+    return figure
+
+
+def draw_guide_design(result):
+    figure, axes = plt.subplots(1, 2, figsize=(style.PAGE * 0.75, 2.4))
+    draw_guide(axes[0], result)
+    draw_search(axes[1], result)
+    return figure
+
+
 def draw(results):
     result = results[0]
+    if result.has("picture/shown"):
+        return draw_picture_design(result)
+    if result.has("graded_spline"):
+        return draw_guide_design(result)
     figure, axes = plt.subplots(1, 3, figsize=(style.PAGE, 2.4), width_ratios=[1.6, 1, 1])
     draw_slice(figure, axes[0], result)
     draw_profile(axes[1], result)

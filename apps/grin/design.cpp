@@ -1,11 +1,13 @@
-#include <cmath>
 #include <cstdio>
+#include <filesystem>
 
 #include "apps/command/subcommands.h"
+#include "core/result/version.h"
 #include "core/run/interrupt.h"
 #include "core/run/progress.h"
 #include "core/session/session.h"
-#include "grin/design/design_datasets.h"
+#include "grin/design/scene/design_datasets.h"
+#include "grin/design/scene/design_state_file.h"
 
 namespace flatspeckle::apps {
 
@@ -23,20 +25,39 @@ std::string progress_of(const DesignState& state) {
   return text;
 }
 
-/// Nothing where a signal came.
-std::optional<DesignState> search(Designer& designer) {
+/// Where a search that is cut off is kept, and what tells it from others.
+struct Kept {
+  std::filesystem::path path;
+  std::string identity;
+  bool resumes;
+};
+
+DesignState start(Designer& designer, const Kept& kept) {
+  if (kept.resumes)
+    if (auto state = grin::design::read_state(kept.path, kept.identity)) return std::move(*state);
+  return designer.begin();
+}
+
+/// Until it ends or a signal comes; about once a second what it goes on from is kept.
+DesignState search(Designer& designer, const Kept& kept) {
+  constexpr double pause = 1;
   Progress progress("design", "steps");
   const Stopwatch clock;
-  DesignState state = designer.begin();
+  double saved = 0;
+  DesignState state = start(designer, kept);
+  const std::size_t before = state.history.rms.size();
   while (!state.ended && !interrupted()) {
     designer.advance(state);
-    const double steps = static_cast<double>(state.history.rms.size() - 1);
+    const double steps = static_cast<double>(state.history.rms.size() - before);
     const Progress::Figures figures{
         .done = progress_of(state), .samples = steps, .rate = steps / clock.seconds()};
     state.ended ? progress.finish(clock.seconds(), figures)
                 : progress.update(clock.seconds(), figures);
+    if (state.ended || clock.seconds() < saved + pause) continue;
+    grin::design::save_state(kept.path, kept.identity, state);
+    saved = clock.seconds();
   }
-  if (!state.ended) return std::nullopt;
+  if (!state.ended) grin::design::save_state(kept.path, kept.identity, state);
   return state;
 }
 
@@ -52,6 +73,20 @@ void print_summary(const DesignState& state, const DesignCheck& check) {
               state.history.traces.back());
   print("rays of the search", check.seen, check.seen_half_step);
   print("held-out rays", check.held_out, check.held_out_half_step);
+  if (check.held_out_half_step)
+    std::printf("at the start they missed by %.3g: %.3g times as much\n", check.start_held_out,
+                check.start_held_out / *check.held_out_half_step);
+}
+
+void tell_bounds(std::size_t count, const DesignScene& scene) {
+  if (count == 0) return;
+  if (std::holds_alternative<grin::design::GuideForm>(scene.start.form))
+    std::fprintf(stderr, "note: %zu coefficients stand at the end of their range\n", count);
+  else
+    std::fprintf(
+        stderr,
+        "note: %zu coefficients stand at least_index or most_index: other bounds may do better\n",
+        count);
 }
 
 bool is_reached(const DesignScene& scene, const DesignState& state, const DesignCheck& check) {
@@ -59,18 +94,26 @@ bool is_reached(const DesignScene& scene, const DesignState& state, const Design
   return scene.target == 0 || state.history.rms.back() <= scene.target;
 }
 
-std::optional<Made> make(const DesignScene& scene, ResultFile& file) {
+std::string method_of(const DesignScene& scene) {
+  const std::string by = "; derivatives by reversed rays";
+  if (scene.method == "lbfgs") return "quasi-Newton steps (L-BFGS)" + by;
+  if (scene.method == "adam") return "steps of Adam" + by;
+  return "Gauss-Newton steps, damped" + by;
+}
+
+/// Nothing where a signal came.
+std::optional<Made> make(const DesignScene& scene, const Kept& kept, ResultFile& file) {
   Designer designer(scene);
-  const auto state = search(designer);
-  if (!state) return std::nullopt;
-  const DesignCheck check = designer.check(*state);
-  write_design(file, scene, designer.form(*state), *state, check);
-  print_summary(*state, check);
-  const bool reached = is_reached(scene, *state, check);
+  const DesignState state = search(designer, kept);
+  if (!state.ended) return std::nullopt;
+  const DesignCheck check = designer.check(state);
+  write_design(file, scene, designer, state, check);
+  print_summary(state, check);
+  tell_bounds(designer.at_bounds(state), scene);
+  const bool reached = is_reached(scene, state, check);
   if (!reached)
-    std::puts(state->stalled ? "the search stalled" : "stopped before the target was reached");
-  return Made{"Gauss-Newton steps, damped; derivatives by reversed rays",
-              state->history.traces.back(),
+    std::puts(state.stalled ? "the search stalled" : "stopped before the target was reached");
+  return Made{method_of(scene), state.history.traces.back(),
               reached ? ExitStatus::done : ExitStatus::error_not_reached};
 }
 
@@ -83,6 +126,9 @@ int design(const Arguments& arguments) {
   Keys& keys = command.keys();
   add_keys(keys, values);
   add_thread_key(keys, run);
+  keys.add("resume", run.resume,
+           "Go on from the search that was cut off before it ended, if there is one")
+      .effort();
   add_output_key(keys, run);
   if (!command.parse(arguments)) return ExitStatus::done;
 
@@ -90,8 +136,16 @@ int design(const Arguments& arguments) {
   const DesignScene scene = make_design_scene(keys, values);
   if (!command.settle()) return ExitStatus::done;
   catch_interrupts();
-  return session.once(ResultFile(session.out()),
-                      [&](ResultFile& file) { return make(scene, file); });
+  const Kept kept{grin::design::state_path(session.out()),
+                  "flatspeckle " + version() + '\n' + keys.identity(), run.resume};
+  const int status = session.once(ResultFile(session.out()),
+                                  [&](ResultFile& file) { return make(scene, kept, file); });
+  if (status != ExitStatus::interrupted_for_good) {
+    std::filesystem::remove(kept.path);
+    return status;
+  }
+  std::printf("interrupted; %s holds what is done, --resume goes on\n", kept.path.c_str());
+  return ExitStatus::interrupted_resumable;
 }
 
 }  // namespace flatspeckle::apps

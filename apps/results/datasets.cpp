@@ -10,7 +10,7 @@
 #include "flatland/media/layers.h"
 #include "flatland/media/structure_factor.h"
 #include "flatland/scene/scene_datasets.h"
-#include "grin/design/design_datasets.h"
+#include "grin/design/scene/design_datasets.h"
 #include "grin/render/energy_datasets.h"
 #include "grin/render/map_datasets.h"
 #include "grin/render/render_datasets.h"

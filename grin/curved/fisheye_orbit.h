@@ -5,6 +5,8 @@
 #include <limits>
 #include <numbers>
 
+#include <Eigen/Geometry>
+
 #include "grin/geometry/vec3.h"
 
 namespace flatspeckle::grin {

@@ -7,6 +7,7 @@
 #include "grin/fields/fisheye.h"
 #include "grin/fields/focused_sound.h"
 #include "grin/fields/gaussian_blobs.h"
+#include "grin/fields/graded_guide.h"
 #include "grin/fields/homogeneous.h"
 #include "grin/fields/linear_ramp.h"
 #include "grin/fields/luneburg.h"
@@ -25,7 +26,8 @@ namespace flatspeckle::grin {
 using IndexFieldKinds = std::tuple<HomogeneousValues, LuneburgValues, FisheyeValues,
                                    ParabolicValues, SechValues, LinearValues, TanhValues,
                                    BlobsValues, UltrasoundValues, FocusedSoundValues,
-                                   TransducersValues, GridValues, BallValues, RadialSplineValues>;
+                                   TransducersValues, GridValues, BallValues, RadialSplineValues,
+                                   GradedValues>;
 
 template <class Kinds>
 struct FieldsOf;

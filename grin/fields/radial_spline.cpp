@@ -30,12 +30,9 @@ RadialSpline read_radial_spline(const std::string& path) {
 }  // namespace
 
 RadialSplineProfile::RadialSplineProfile(double radius, std::vector<double> coefficients)
-    : radius_(positive("radius", radius)), coefficients_(std::move(coefficients)) {
-  if (coefficients_.size() < 4)
-    throw InputError("coefficients of a radial spline", coefficients_.size(), "must be at least 4");
-  for (const double c : coefficients_)
-    if (!(c > -1 && std::isfinite(c)))
-      throw InputError("coefficient of a radial spline", c, "must be finite and above -1");
+    : radius_(positive("radius", radius)), spline_(std::move(coefficients)) {
+  for (const double c : spline_.coefficients())
+    if (!(c > -1)) throw InputError("coefficient of a radial spline", c, "must be above -1");
 }
 
 FieldFacts facts(const RadialSpline& field) {

@@ -1,72 +1,62 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <string>
 #include <vector>
 
+#include "grin/fields/profile_spline.h"
 #include "grin/index/field_kind.h"
 #include "grin/index/radial_field.h"
 
 namespace flatspeckle::grin {
 
-/// n - 1 = (1 - q) s(q), q = r^2/R^2: s a cubic spline of equal cells from q = 0 to 1, which goes
-/// on for one cell beyond.
+/// n - 1 = (1 - q) s, q = r^2/R^2: s a cubic spline of equal cells in t, q = t (5 - t)/4, which are
+/// narrower towards the rim, where a lens bends most; it goes on for one cell beyond.
 class RadialSplineProfile {
  public:
-  /// coefficients: three more than cells. Throws InputError for fewer than 4.
+  /// coefficients: three more than cells. Throws InputError for fewer than 4 or one that is not
+  /// finite and above -1.
   RadialSplineProfile(double radius, std::vector<double> coefficients);
 
   double radius() const { return radius_; }
-  const std::vector<double>& coefficients() const { return coefficients_; }
+  const std::vector<double>& coefficients() const { return spline_.coefficients(); }
 
   double excess(double u) const {
-    const Four at = four(u);
-    return (1 - at.q) * sum(at, at.w);
+    const Place at = place(u);
+    const ProfileSpline::Four four = spline_.four(at.t);
+    return (1 - at.q) * spline_.sum(four, four.w);
   }
   RadialJet jet(double u) const {
-    const Four at = four(u);
-    const double s = sum(at, at.w), ds = sum(at, at.d), dds = sum(at, at.dd),
-                 area = radius_ * radius_;
+    const Place at = place(u);
+    const ProfileSpline::Four four = spline_.four(at.t);
+    const double s = spline_.sum(four, four.w), by_t = spline_.sum(four, four.d);
+    const double ds = by_t * at.slope,
+                 dds = spline_.sum(four, four.dd) * at.slope * at.slope + by_t * at.bend;
+    const double area = radius_ * radius_;
     return {(1 - at.q) * s, ((1 - at.q) * ds - s) / area,
             ((1 - at.q) * dds - 2 * ds) / (area * area)};
   }
   /// Adds the derivatives of a excess + b d(excess)/du by the coefficients.
   void add_derivative(double u, double a, double b, double* row) const {
-    const Four at = four(u);
+    const Place at = place(u);
     const double area = radius_ * radius_;
-    const double value = a * (1 - at.q) - b / area, slope = b * (1 - at.q) / area;
-    for (std::size_t i = 0; i < 4; ++i) row[at.cell + i] += value * at.w[i] + slope * at.d[i];
+    ProfileSpline::add(spline_.four(at.t), a * (1 - at.q) - b / area,
+                       b * (1 - at.q) * at.slope / area, row);
   }
 
  private:
-  /// The four splines that are there: the first, their values and derivatives by q.
-  struct Four {
-    double q;
-    std::size_t cell;
-    std::array<double, 4> w, d, dd;
+  /// t and its derivatives by q.
+  struct Place {
+    double q, t, slope, bend;
   };
-  Four four(double u) const {
-    const double cells = static_cast<double>(coefficients_.size() - 3);
-    const double q = u / (radius_ * radius_), held = std::clamp(q * cells, 0.0, cells + 1);
-    const double cell = held > 0 ? std::min(std::floor(held), cells - 1) : 0;  // 0 also for NaN
-    const double t = held - cell, s = 1 - t, c = cells, cc = c * c;
-    return {
-        q,
-        static_cast<std::size_t>(cell),
-        {s * s * s / 6, 2 / 3. - t * t * (2 - t) / 2, 2 / 3. - s * s * (2 - s) / 2, t * t * t / 6},
-        {-c * s * s / 2, c * t * (3 * t - 4) / 2, -c * s * (3 * s - 4) / 2, c * t * t / 2},
-        {cc * s, cc * (3 * t - 2), cc * (3 * s - 2), cc * t}};
-  }
-  double sum(const Four& at, const std::array<double, 4>& weights) const {
-    double sum = 0;
-    for (std::size_t i = 0; i < 4; ++i) sum += weights[i] * coefficients_[at.cell + i];
-    return sum;
+  Place place(double u) const {
+    const double q = u / (radius_ * radius_), root = std::sqrt(std::max(25 - 16 * q, 1.0));
+    return {q, (5 - root) / 2, 4 / root, 32 / (root * root * root)};
   }
 
   double radius_;
-  std::vector<double> coefficients_;
+  ProfileSpline spline_;
 };
 
 using RadialSpline = RadialField<RadialSplineProfile, 3>;

@@ -1,5 +1,6 @@
 """Bad input: status 2, one line that names the key or file and what is accepted, no file."""
 
+import re
 import unittest
 
 import h5py
@@ -424,7 +425,9 @@ class AcceptedScenes(ProgramTest):
                                ("design",) if "\ndesign = " in text else
                                ("covariance",) if '"hg"' in text else ("validate", "covariance")):
                 with self.subTest(scene=scene.name, subcommand=subcommand):
-                    text = self.call(subcommand, "--config", scene, "--print-config").stdout
+                    pictures = [DATA / name for name in re.findall(r'"data/(pictures/[^"]+)"', text)]
+                    text = self.call(subcommand, "--config", scene, "--print-config",
+                                     *(["--pictures", *pictures] if pictures else [])).stdout
                     if tilts:
                         listed = text.split("tilts = ")[1].split("]")[0]
                         self.assertEqual(len(listed.split(",")), tilts)

@@ -1,14 +1,33 @@
 """Index fields from what their light should do."""
 
+import signal
+import time
+
 import h5py
 import numpy as np
 
 from program import attributes, datasets
 from refusing import RefusingTest
 
+FIBRE = {"design": "guide", "goal": "equal_path", "index": 1.47, "delta": 0.01, "radius": 25, "coefficients": 0,
+         "ray_count": 60}
+PICTURE = {"design": "box", "nodes": [11], "goal": "irradiance", "rays_across": 16, "roughness": 1e-4}
 SMALL = {"nodes": [5], "directions": 12, "rays_per_direction": 20}
 TRACED = {"light": "disk", "origin": [0, 0, -1.2], "beam_radius": 0.9, "ray_count": 30,
           "stop_plane": [0, 0, 1.00001, 0, 0, 1], "max_length": 6}
+
+
+def views(count, across):
+    """Parallel rays of so many directions in the plane y = 0."""
+    rows = ["x,y,z,dx,dy,dz"]
+    places = 1.2 * ((np.arange(across) + 0.5) / across - 0.5) * 2
+    for angle in np.pi * np.arange(count) / count:
+        along, right = np.array([np.sin(angle), 0, np.cos(angle)]), np.array([np.cos(angle), 0, -np.sin(angle)])
+        for u in places:
+            for v in places:
+                x = u * right + np.array([0, v, 0]) - 1.9 * along
+                rows.append(",".join(f"{value:.9g}" for value in (*x, *along)))
+    return "\n".join(rows) + "\n"
 
 
 class Design(RefusingTest):
@@ -37,6 +56,79 @@ class Design(RefusingTest):
         self.assertLess(np.hypot(rays["exit/x"], rays["exit/y"]).max(), 1e-4)
         self.assertLess(rays["invariants/angular_momentum_change"].max(), 1e-8)
 
+    def test_fibre_that_trace_reads(self):
+        """The exponent of least dispersion, seen by rays of trace over many turns."""
+        self.design("fibre.h5", **FIBRE)
+        law = {"index": 1.47, "delta": 0.01, "core_radius": 25}
+        for name, field in (("parabola", law), ("found", {"graded_spline": "fibre.h5"})):
+            self.call("trace", field="graded", **field, light="fan", origin=[0, 0, 0], half_angle=0.09, ray_count=25,
+                      stop_plane=[0, 0, 1e5, 0, 0, 1], max_length=2e5, tolerance=1e-9, out=name + ".h5")
+        spread = [np.ptp(datasets(self.folder / f"{name}.h5")["optical_path"]) for name in ("parabola", "found")]
+        self.assertLess(spread[1], 0.6 * spread[0])
+
+    def test_box_that_trace_reads(self):
+        """Its grid, with margins, is the same field: rays of trace hit where those of the search do."""
+        self.write("picture.csv", "\n".join(",".join(str(1 + (i > 3) + j % 3) for i in range(8)) for j in range(8)))
+        self.design("box.h5", **PICTURE, pictures="picture.csv")
+        found = datasets(self.folder / "box.h5")
+        self.assertEqual(found["excess"].shape, (15, 15, 15))
+        self.assertLess(found["rms/held_out_half_step"], 0.5 * found["rms/start_held_out"])
+        self.call("trace", field="grid", grid="box.h5", light="line", origin=[0, 0, -1], beam_radius=0.5, ray_count=9,
+                  max_length=6, out="rays.h5")
+        rays = datasets(self.folder / "rays.h5")
+        self.assertTrue((rays["status"] == 2).all())
+        self.assertGreater(np.abs(rays["exit/dx"]).max(), 1e-4)
+
+    def test_deflections_of_trace(self):
+        """Blobs are found again from what rays in four views did."""
+        self.write("blobs.csv", "x,y,z,height,width\n0.2,0.1,-0.1,0.001,0.3\n-0.3,0,0.2,0.0015,0.25\n")
+        self.write("views.csv", views(6, 12))
+        self.call("trace", field="blobs", blobs="blobs.csv", rays="views.csv", stop_box=[-2, -2, -2, 2, 2, 2],
+                  max_length=9, out="measured.h5")
+        _, found = self.design("found.h5", design="box", nodes=[9], goal="deflections", measured="measured.h5",
+                               noise=1e-6)
+        shape = found["excess"].shape[0]
+        middle = shape // 2
+        with h5py.File(self.folder / "found.h5") as file:
+            at = dict(file["excess"].attrs)
+        x = at["origin"][0] + at["spacing"][0] * np.arange(shape)
+        X, Y, Z = np.meshgrid(x, x, x, indexing="ij")
+        truth = sum(h * np.exp(-((X - a)**2 + (Y - b)**2 + (Z - c)**2) / (2 * w * w)) for a, b, c, h, w in
+                    ((0.2, 0.1, -0.1, 0.001, 0.3), (-0.3, 0, 0.2, 0.0015, 0.25)))
+        inside = np.s_[middle - 3:middle + 4, middle - 3:middle + 4, middle - 3:middle + 4]
+        error = np.sqrt(np.mean((found["excess"] - truth)[inside]**2) / np.mean(truth[inside]**2))
+        self.assertLess(error, 0.1)
+
+    def test_methods(self):
+        for method in ("lbfgs", "adam"):
+            with self.subTest(method=method):
+                _, found = self.design(method + ".h5", method=method, iterations=150, design="radial", directions=1,
+                                       rays_per_direction=30)
+                self.assertLess(found["rms/seen"], 0.2 * found["history/rms"][0])
+
+    def test_bounds_are_told(self):
+        done = self.call("design", out="held.h5", **SMALL, most_index=1.3)
+        self.assertIn("stand at", done.stderr)
+        self.assertGreater(datasets(self.folder / "held.h5")["at_bounds"], 0)
+
+    def test_resumed(self):
+        """Cut off after some steps and gone on with: the same bits."""
+        keys = {**SMALL, "nodes": [5, 9], "directions": 40, "rays_per_direction": 60, "threads": 1}
+        self.design("whole.h5", **keys)
+        run = self.start("design", out="cut.h5", **keys)
+        time.sleep(1.5)
+        run.send_signal(signal.SIGINT)
+        run.communicate()
+        self.assertIn(run.returncode, (0, 75))
+        if run.returncode == 75:
+            self.assertTrue((self.folder / "cut.h5.state").exists())
+            self.assert_refused(["another search"], "design", out="cut.h5", resume=True, **{**keys, "nodes": [5]})
+            self.design("cut.h5", resume=True, **keys)
+        self.assertFalse((self.folder / "cut.h5.state").exists())
+        whole, cut = (datasets(self.folder / name) for name in ("whole.h5", "cut.h5"))
+        for name in ("ball_spline", "history/rms", "rms/held_out"):
+            np.testing.assert_array_equal(whole[name], cut[name])
+
     def test_threads_do_not_matter(self):
         for threads in (1, 2, 4):
             self.design(f"{threads}.h5", threads=threads, **SMALL)
@@ -50,6 +142,9 @@ class Design(RefusingTest):
         self.design("one.h5", status=3, target=1e-9, iterations=1, **SMALL)
 
     def test_bad_input(self):
+        even = "\n".join(["1,1,1,1"] * 4)
+        for name, text in (("row.csv", "1,1,1,1\n"), ("dark.csv", even.replace("1", "0")), ("even.csv", even)):
+            self.write(name, text)
         for words, keys in [
                 (["nodes = 8", "must be 9"], {"nodes": [5, 8]}),
                 (["nodes", "from 2"], {"nodes": [1]}),
@@ -63,7 +158,24 @@ class Design(RefusingTest):
                 (["aperture"], {"aperture": 1.5}),
                 (["coefficients"], {"coefficients": 9}),
                 (["nodes"], {"design": "radial", "nodes": [5, 9]}),
-                (["design = lens", "ball radial"], {"design": "lens"})]:
+                (["design = lens", "ball radial"], {"design": "lens"}),
+                (["goal", "box"], {"goal": "irradiance", "design": "guide", "delta": 0.01}),
+                (["goal", "guide"], {"goal": "equal_path"}),
+                (["delta"], {"goal": "equal_path", "design": "guide"}),
+                (["coefficients = 2"], {"goal": "equal_path", "design": "guide", "delta": 0.01, "coefficients": 2}),
+                (["pictures"], {"goal": "irradiance", "design": "box"}),
+                (["pictures", "cannot be read"], {"goal": "irradiance", "design": "box", "pictures": "none.csv"}),
+                (["square"], {"goal": "irradiance", "design": "box", "pictures": "row.csv"}),
+                (["dark"], {"goal": "irradiance", "design": "box", "pictures": "dark.csv"}),
+                (["as many"], {"goal": "irradiance", "design": "box", "pictures": ["even.csv", "even.csv"]}),
+                (["beam_width = 3", "fit"],
+                 {"goal": "irradiance", "design": "box", "pictures": "even.csv", "beam_width": 3}),
+                (["screen_distance"],
+                 {"goal": "irradiance", "design": "box", "pictures": "even.csv", "screen_distance": 1}),
+                (["measured"], {"goal": "deflections", "design": "box"}),
+                (["nodes = 5", "at least 7"], {"goal": "deflections", "design": "box", "nodes": [5, 9]}),
+                (["rate"], {"rate": 0.1}),
+                (["noise", "target"], {"target": 0.1, "noise": 0.1})]:
             with self.subTest(keys=keys):
                 self.assert_refused(words, "design", **keys)
 

@@ -35,8 +35,10 @@ KEYS = {
                       "integrator", "step", "tolerance", "connect", "trials", "path_points",
                       "length_unit", "seed", "threads"],
     "design": ["design", "radius", "nodes", "coefficients", "start_excess", "least_index",
-               "most_index", "focus", "directions", "rays_per_direction", "aperture", "step",
-               "iterations", "target", "roughness", "threads"],
+               "most_index", "index", "delta", "goal", "focus", "directions", "rays_per_direction",
+               "aperture", "modes", "ray_count", "pictures", "view_directions", "beam_width",
+               "beam_waist", "screen_width", "screen_distance", "rays_across", "measured", "method",
+               "rate", "step", "iterations", "target", "noise", "roughness", "threads", "resume"],
     "render": FIELD + SPACE_MEDIUM + ["body_" + key for key in SPACE_MEDIUM] + RUN + [
         "stage_box", "stage_sphere", "body_box", "body_sphere", "index_around", "ball", "block", "point_light",
         "beam_light", "face_light", "environment", "sensor", "sensor_at", "sensor_direction",

@@ -1,0 +1,99 @@
+#include "grin/design/forms/field_form.h"
+
+namespace flatspeckle::grin::design {
+
+namespace {
+
+/// Along the axis of an array of coefficients, n of them become 2 n - 3.
+std::vector<double> with_knots(const std::vector<double>& values, std::array<int, 3>& extent,
+                               int axis) {
+  std::size_t inner = 1, outer = 1;
+  for (int a = 0; a < axis; ++a) outer *= extent[a];
+  for (int a = axis + 1; a < 3; ++a) inner *= extent[a];
+  const std::size_t n = extent[axis], m = 2 * n - 3;
+  std::vector<double> fine(outer * m * inner);
+  for (std::size_t o = 0; o < outer; ++o)
+    for (std::size_t j = 0; j < m; ++j)
+      for (std::size_t i = 0; i < inner; ++i) {
+        const auto c = [&](std::size_t at) { return values[(o * n + at) * inner + i]; };
+        const std::size_t at = j / 2;
+        fine[(o * m + j) * inner + i] =
+            j % 2 == 0 ? (c(at) + c(at + 1)) / 2 : (c(at) + 6 * c(at + 1) + c(at + 2)) / 8;
+      }
+  extent[axis] = static_cast<int>(m);
+  return fine;
+}
+
+/// Coefficients in many cells of the cubic that four make in one: its blossom at three knots each.
+std::vector<double> in_cells(std::span<const double> c, int cells) {
+  const double value = (c[0] + 4 * c[1] + c[2]) / 6, slope = (c[2] - c[0]) / 2;
+  const double square = (c[0] - 2 * c[1] + c[2]) / 2;
+  const double cube = (c[3] - c[0]) / 6 + (c[1] - c[2]) / 2;
+  std::vector<double> fine;
+  for (int j = 0; j < cells + 3; ++j) {
+    const double h = 1.0 / cells, u = (j - 2) * h, v = (j - 1) * h, w = j * h;
+    fine.push_back(value + slope * v + square * (u * v + v * w + w * u) / 3 + cube * u * v * w);
+  }
+  return fine;
+}
+
+Bounds evenly_bounded(const CoefficientShape& shape, double least, double most) {
+  return {std::vector<double>(shape.size(), least), std::vector<double>(shape.size(), most)};
+}
+
+void hold_faces(const CoefficientShape& shape, Bounds& bounds) {
+  const auto is_free = [&](int i, int axis) {
+    return i >= BoxForm::held && i < shape.extent[axis] - BoxForm::held;
+  };
+  std::size_t at = 0;
+  for (int i = 0; i < shape.extent[0]; ++i)
+    for (int j = 0; j < shape.extent[1]; ++j)
+      for (int k = 0; k < shape.extent[2]; ++k, ++at)
+        if (!is_free(i, 0) || !is_free(j, 1) || !is_free(k, 2))
+          bounds.least[at] = bounds.most[at] = 0;
+}
+
+}  // namespace
+
+Bounds bounds_of(const FieldForm& form, double least_index, double most_index) {
+  if (const auto* guide = std::get_if<GuideForm>(&form))
+    return guide->coefficients > 0 ? evenly_bounded(guide->shape(), -3, 3)
+                                   : evenly_bounded(guide->shape(), 1, 10);
+  Bounds bounds = evenly_bounded(shape_of(form), least_index - 1, most_index - 1);
+  if (std::holds_alternative<BoxForm>(form)) hold_faces(shape_of(form), bounds);
+  return bounds;
+}
+
+bool is_within(const FieldForm& form, std::size_t coefficient) {
+  const auto* ball = std::get_if<BallForm>(&form);
+  if (!ball) return true;
+  const FieldGrid grid = ball->grid();
+  const auto along = static_cast<std::size_t>(ball->nodes) + 2;
+  const auto number = [&](std::size_t stride) {
+    return static_cast<double>(coefficient / stride % along) - 1;
+  };
+  const Vec3 knot(number(along * along), number(along), number(1));
+  return (grid.origin + grid.spacing.cwiseProduct(knot) - ball->centre).norm() < ball->radius;
+}
+
+std::optional<Surface> hull_of(const FieldForm& form) {
+  if (const auto* box = std::get_if<BoxForm>(&form))
+    return Box{box->centre - Vec3::Constant(box->radius),
+               box->centre + Vec3::Constant(box->radius)};
+  if (const auto* ball = std::get_if<BallForm>(&form)) return Sphere{ball->centre, ball->radius};
+  if (const auto* radial = std::get_if<RadialForm>(&form))
+    return Sphere{radial->centre, radial->radius};
+  return std::nullopt;
+}
+
+FinerField finer(const FieldForm& form, std::span<const double> coefficients) {
+  if (const auto* radial = std::get_if<RadialForm>(&form))
+    return {radial->finer(), in_cells(coefficients, radial->finest - 3)};
+  std::array<int, 3> extent = shape_of(form).extent;
+  std::vector<double> values(coefficients.begin(), coefficients.end());
+  for (int axis = 0; axis < 3; ++axis)
+    if (extent[axis] > 1) values = with_knots(values, extent, axis);
+  return {std::visit([](const auto& f) -> FieldForm { return f.finer(); }, form), values};
+}
+
+}  // namespace flatspeckle::grin::design

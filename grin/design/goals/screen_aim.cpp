@@ -1,0 +1,168 @@
+#include "grin/design/goals/screen_aim.h"
+
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include <Eigen/Geometry>
+
+#include "grin/design/goals/even_points.h"
+#include "grin/design/goals/passage.h"
+#include "grin/design/goals/picture_file.h"
+#include "grin/geometry/vector_values.h"
+
+namespace flatspeckle::grin::design {
+
+namespace {
+
+/// To the right and up on a screen, for who looks along the light with y upwards (light along y:
+/// with x to the right).
+Frame upright(const Vec3& along) {
+  Vec3 right = along.cross(Vec3::UnitY());
+  if (right.norm() < 1e-6) right = Vec3::UnitX();
+  right.normalize();
+  Frame frame;
+  frame << right, right.cross(along);
+  return frame;
+}
+
+/// The middle of the i-th of so many cells from -1/2 to 1/2.
+double in_cell(int i, int count) {
+  return even_share(i, count) - 0.5;
+}
+
+}  // namespace
+
+double ScreenAim::rays() const {
+  return static_cast<double>(views_.size()) * light_.rays_across * light_.rays_across;
+}
+
+/// Of the rays of a beam, row after row.
+std::vector<double> ScreenAim::powers(int across) const {
+  std::vector<double> powers;
+  for (int j = 0; j < across; ++j)
+    for (int i = 0; i < across; ++i) {
+      const double x = light_.beam_width * in_cell(i, across);
+      const double y = light_.beam_width * in_cell(j, across);
+      const double waist = light_.beam_waist;
+      powers.push_back(waist > 0 ? std::exp(-2 * (x * x + y * y) / (waist * waist)) : 1);
+    }
+  const double sum = std::accumulate(powers.begin(), powers.end(), 0.0);
+  for (double& power : powers) power /= sum;
+  return powers;
+}
+
+DesignTask ScreenAim::task(const RayWalk& walk, bool held_out) const {
+  const int across = this->across(held_out);
+  std::vector<DesignRay> rays;
+  std::vector<ScreenReading> readings;
+  std::vector<Beam> beams;
+  for (const View& view : views_) {
+    const Frame frame = upright(view.direction);
+    const ScreenReading screen{centre_ + light_.screen_distance * view.direction, view.direction,
+                               frame};
+    for (int j = 0; j < across; ++j)
+      for (int i = 0; i < across; ++i) {
+        const Eigen::Vector2d in_beam(in_cell(i, across), in_cell(j, across));
+        const Vec3 x = centre_ + light_.beam_width * (frame * in_beam);
+        const auto way = passage(hull_, x, view.direction);
+        rays.push_back({x + way->first * view.direction, view.direction, hull_});
+        readings.push_back(screen);
+      }
+    beams.push_back({shown(view.picture), powers(across)});
+  }
+  return {make_ray_system(std::move(rays), std::move(readings), walk),
+          make_picture_goal(std::move(beams))};
+}
+
+std::vector<Picture> ScreenAim::shown_by(std::span<const double> readings, bool held_out) const {
+  const auto power = powers(across(held_out));
+  std::vector<Picture> pictures;
+  for (std::size_t v = 0; v < views_.size(); ++v) {
+    Picture picture = views_[v].picture;
+    picture.values =
+        irradiance_of(picture, readings.subspan(2 * power.size() * v, 2 * power.size()), power);
+    pictures.push_back(std::move(picture));
+  }
+  return pictures;
+}
+
+void add_keys(Keys& keys, ScreenValues& values) {
+  keys.add("pictures", values.pictures,
+           "Files of numbers, a line for each row of a square picture from the top; one for each "
+           "direction");
+  keys.add("view_directions", values.view_directions, "Of the parallel beams, one for each picture")
+      .each_of(3, "a direction");
+  keys.add("beam_width", values.beam_width,
+           "Side of the square beams, through the field's centre (default: 1.2 times the radius)")
+      .positive()
+      .unit("length");
+  keys.add("beam_waist", values.beam_waist,
+           "1/e^2 radius of Gaussian beams, cut off by that square (default: even)")
+      .positive()
+      .unit("length");
+  keys.add("screen_width", values.screen_width, "Side of the pictures (default: beam_width)")
+      .positive()
+      .unit("length");
+  keys.add("screen_distance", values.screen_distance,
+           "Of the screens from the centre of the field (default: 8 times the radius)")
+      .positive()
+      .unit("length");
+  keys.add("rays_across", values.rays_across, "Rays along a side of each beam").from(4, 2000);
+}
+
+namespace {
+
+struct Hull {
+  Surface surface;
+  Vec3 centre;
+  double radius;
+};
+Hull solid_hull(const FieldForm& form) {
+  const auto hull = hull_of(form);
+  if (!hull) throw InputError("goal", "irradiance", "needs design = box, ball or radial");
+  if (const auto* ball = std::get_if<Sphere>(&*hull)) return {*hull, ball->centre, ball->radius};
+  const auto& box = std::get<Box>(*hull);
+  return {*hull, (box.low + box.high) / 2, (box.high - box.low)[0] / 2};
+}
+
+std::vector<ScreenAim::View> views_of(const Keys& keys, const ScreenValues& values, double width) {
+  std::vector<ScreenAim::View> views;
+  const auto directions = parts_of(keys.read(values.view_directions), 3);
+  for (const std::string& path : keys.required(values.pictures)) {
+    if (views.size() == directions.size()) break;
+    views.push_back({unit_direction("view_directions", vector_of(directions[views.size()])),
+                     read_picture(path, width)});
+    if (const int pixels = views.back().picture.pixels; pixels != views.front().picture.pixels)
+      throw InputError("pictures", path,
+                       "has " + std::to_string(pixels) + " rows, the first " +
+                           std::to_string(views.front().picture.pixels));
+  }
+  if (values.pictures.size() != directions.size())
+    throw InputError("pictures", values.pictures.size(),
+                     "must be as many as view_directions, " + std::to_string(directions.size()));
+  return views;
+}
+
+}  // namespace
+
+std::unique_ptr<Aim> make_aim(const Keys& keys, const ScreenValues& values, const FieldForm& form) {
+  const Hull hull = solid_hull(form);
+  const double width = keys.read(values.beam_width).value_or(1.2 * hull.radius);
+  const double most = std::holds_alternative<Sphere>(hull.surface) ? 1.4 : 2.0;
+  if (width > most * hull.radius)
+    throw InputError(
+        "beam_width", width,
+        "does not fit into the field; must be at most " + std::to_string(most * hull.radius));
+  const ScreenAim::Light light{width, keys.read(values.beam_waist).value_or(0),
+                               keys.read(values.screen_distance).value_or(8 * hull.radius),
+                               static_cast<int>(keys.read(values.rays_across))};
+  if (light.screen_distance < 2 * hull.radius)
+    throw InputError("screen_distance", light.screen_distance,
+                     "must be at least twice the radius, behind the field");
+  const double side = keys.read(values.screen_width).value_or(width);
+  return std::make_unique<ScreenAim>(hull.surface, hull.centre, light,
+                                     views_of(keys, values, side));
+}
+
+}  // namespace flatspeckle::grin::design
