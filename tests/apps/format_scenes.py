@@ -36,6 +36,7 @@ FILES = {
     "blobs.csv": "x,z,radius,amplitude\n-2,4,2,-1\n5,7,1.5,2\n",
     "disks.csv": "x,z,radius\n0,0,0.3\n1,2,0.2\n",
     "places.csv": "x,z,angle\n0,0,0\n9,1,2\n",
+    "picture.csv": "1,2,3,4\n" * 4,
     "disk_points.csv": "density,radius,index,index_imaginary\n0.1,0.2,1.5,0\n0.2,0.1,1.4,0.01\n",
 }
 
@@ -159,6 +160,9 @@ RUNS = {
                               "body_sphere": [0, 0, 2, 0.5], "index_around": 1.3, "max_scatterings": 9}),
     "lens": ("design", {"nodes": [2], "directions": 4, "rays_per_direction": 5}),
     "lens_radial": ("design", {"design": "radial", "directions": 1, "rays_per_direction": 9}),
+    "lens_graded": ("design", {"design": "guide", "goal": "equal_path", "delta": 0.01, "ray_count": 9}),
+    "display": ("design", {"design": "box", "nodes": [7], "goal": "irradiance", "pictures": "picture.csv", "rays_across": 4,
+                           "iterations": 2}),
     **{f"bench_{kind}": (f"bench {kind}", {"quick": True})
        for kind in ("error", "stability", "plan")},
 }

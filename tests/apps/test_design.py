@@ -61,7 +61,7 @@ class Design(RefusingTest):
         self.design("fibre.h5", **FIBRE)
         law = {"index": 1.47, "delta": 0.01, "core_radius": 25}
         for name, field in (("parabola", law), ("found", {"graded_spline": "fibre.h5"})):
-            self.call("trace", field="graded", **field, light="fan", origin=[0, 0, 0], half_angle=0.09, ray_count=25,
+            self.call("trace", field="graded", **field, light="fan", origin=[0, 0, 0], half_angle=0.14, ray_count=25,
                       stop_plane=[0, 0, 1e5, 0, 0, 1], max_length=2e5, tolerance=1e-9, out=name + ".h5")
         spread = [np.ptp(datasets(self.folder / f"{name}.h5")["optical_path"]) for name in ("parabola", "found")]
         self.assertLess(spread[1], 0.6 * spread[0])
@@ -86,7 +86,7 @@ class Design(RefusingTest):
         self.call("trace", field="blobs", blobs="blobs.csv", rays="views.csv", stop_box=[-2, -2, -2, 2, 2, 2],
                   max_length=9, out="measured.h5")
         _, found = self.design("found.h5", design="box", nodes=[9], goal="deflections", measured="measured.h5",
-                               noise=1e-6)
+                               noise=1e-4)
         shape = found["excess"].shape[0]
         middle = shape // 2
         with h5py.File(self.folder / "found.h5") as file:

@@ -54,6 +54,9 @@ KINDS = {
                         "optical_depth": 4, "tilts": [0.0002, 0.0006]}),
     "rays": ("trace", RAYS),
     "lens": ("design", {"nodes": [3], "directions": 6, "rays_per_direction": 8, "threads": 1}),
+    "display": ("design", {"design": "box", "nodes": [7], "goal": "irradiance", "pictures": "asked.csv", "rays_across": 8,
+                           "iterations": 2, "threads": 1}),
+    "core": ("design", {"design": "guide", "goal": "equal_path", "delta": 0.01, "coefficients": 0, "ray_count": 9}),
     "picture": ("render", {**SPACE, "pixels": [4, 4]}),
     "pulse": ("render", {**SPACE, "pixels": [4, 4], "path_bins": [1, 3, 4]}),
     "light": ("render", {**SPACE, "pixels": [1, 1], "map_cylinder": [0, 0, -1, 0, 0, 1, 1],
@@ -68,7 +71,7 @@ OWN = {"memory_effect": {"grid", "points", "curve", "moves", "layers", "graded"}
        "dws": {"delays", "exposed"}, "contrast": {"exposed"}, "layer_range": {"layers"}, "graded_range": {"graded"},
        "frequency": {"frequencies"}, "validation": {"both"}, "speckle_field": {"fields"},
        "image": {"frames"}, "fit": {"fitted"}, "fit_plan": {"planned"}, "rays": {"rays"},
-       "design": {"lens"}, "render": {"picture", "pulse"}, "render_time": {"pulse"},
+       "design": {"lens", "display", "core"}, "render": {"picture", "pulse"}, "render_time": {"pulse"},
        "light_map": {"light"}, "reflection_image": {"spectrum"}, "field_map": {"near"}}
 
 
@@ -95,6 +98,7 @@ def run_script(name, *words):
 class Plots(ProgramTest):
     def make(self, kind):
         subcommand, keys = KINDS[kind]
+        self.write("asked.csv", "1,2,3,4\n" * 4)
         self.write("points.csv", "g,optical_depth\n0,1\n0.5,3\n")
         self.write("rows.csv", "thickness,optical_depth\n4,1\n6,2\n")
         self.call(subcommand, out=f"{kind}.h5", **keys)

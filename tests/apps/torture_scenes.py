@@ -69,6 +69,7 @@ SCENES = [
                "stop_sphere": [0, 0, 0, 0.9]}),
     ("design", {"nodes": [3, 5], "directions": 4, "rays_per_direction": 9, "iterations": 4}),
     ("design", {"design": "radial", "directions": 1, "rays_per_direction": 20, "focus": 0.8}),
+    ("design", {"design": "guide", "goal": "equal_path", "delta": 0.01, "coefficients": 0, "ray_count": 20}),
     ("render", {**STAGE, **AREA, "samples": 2000}),
     ("render", {**STAGE, **CAMERA, **FIBRE, "samples": 500, "path_bins": [3, 8, 5]}),
     ("render", {**STAGE, **AREA, "samples": 2000, "density": "density.h5", "phase":

@@ -23,7 +23,7 @@ inline std::optional<std::pair<double, double>> passage(const Box& box, const Ve
   double in = -HUGE_VAL, out = HUGE_VAL;
   for (int a = 0; a < 3; ++a) {
     const auto [near, far] =
-        std::minmax((box.low[a] - x[a]) / along[a], (box.high[a] - x[a]) / along[a]);
+        std::minmax({(box.low[a] - x[a]) / along[a], (box.high[a] - x[a]) / along[a]});
     if (along[a] == 0) {
       if (x[a] < box.low[a] || x[a] > box.high[a]) return std::nullopt;
       continue;

@@ -78,8 +78,9 @@ void Designer::advance(DesignState& state) {
   const double before = state.search.loss;
   const SearchStep step = search->advance(state.search);
   note(state);
-  state.stalled = step == SearchStep::stalled;
   const double rms = std::sqrt(state.search.loss);
+  constexpr double rounding = 1e-9;  // of what was missed at the start
+  state.stalled = step == SearchStep::stalled && rms > rounding * state.history.rms.front();
   const bool is_enough = rms <= scene_.target;
   const bool gained = step == SearchStep::better && rms < slow * std::sqrt(before);
   state.slow_steps = gained ? 0 : state.slow_steps + 1;
