@@ -3,6 +3,8 @@
 
 #include "bench/plan/plan_rooms.h"
 #include "bench/plan/plan_timing.h"
+#include "bench/scenes/copied_cluster.h"
+#include "wave_solver/clusters/cluster_solution.h"
 #include "wave_solver/dense/blas.h"
 #include "wave_solver/dense/dense_factor.h"
 #include "wave_solver/equations/t_matrix_system.h"
@@ -178,6 +180,24 @@ PlanRow pixels_one_by_one(double cpu_seconds) {
   return row;
 }
 
+/// All disks of copies of a cluster against its T-matrix, made once.
+PlanRow disks_of_copies(double cpu_seconds) {
+  constexpr double tolerance = 1e-9;
+  PlanRow row{.per = "placement"};
+  const Scatterer dense{.kind = Scatterer::Kind::tm, .radius = 0.1, .index = 1.5};
+  Placement disks;
+  for (int i = 0; i < 16; ++i)
+    disks.push_back({{0.25 * (i % 4) - 0.4, 0.25 * (i / 4) - 0.4}, dense});
+  const auto cluster = cluster_t_matrix(disks, k, 0.8, tolerance);
+  const auto places = rows_of_places(3, 4, 2 * cluster.radius + 1);
+  const auto views = far_views(angles(16, -1, 3));
+  compare_values(
+      row, [&] { return solve(copies(disks, places), k, {0}, to(tolerance)).fields(views); },
+      [&] { return ClusterSolution(cluster, places, {0}, to(tolerance)).fields(views); }, 1e-7,
+      cpu_seconds);
+  return row;
+}
+
 }  // namespace
 
 std::vector<PlanCase> wave_plan_cases() {
@@ -192,7 +212,8 @@ std::vector<PlanCase> wave_plan_cases() {
           row("lights that others make up", "200 points, 1024 x 1024", lights_that_others_make),
           row("diagnosis", "box_cylinders", diagnosis),
           row("the matrix", "4000 points (500 in a quick look)", whole_matrix),
-          row("sums pixel by pixel", "100 cylinders, 26400 pixels", pixels_one_by_one)};
+          row("sums pixel by pixel", "100 cylinders, 26400 pixels", pixels_one_by_one),
+          row("disks of copies", "12 copies of 16 cylinders", disks_of_copies)};
 }
 
 }  // namespace flatspeckle::bench

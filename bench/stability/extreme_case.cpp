@@ -12,10 +12,10 @@ namespace flatspeckle::bench {
 
 std::vector<ExtremeCase> extreme_cases() {
   std::vector<ExtremeCase> all;
-  for (const auto& room :
-       {function_extremes, flatland_extremes, wave_extremes, wave_point_extremes,
-        mc_theory_extremes, mc_slab_extremes, mc_transport_extremes, mc_box_extremes,
-        index_extremes, ray_extremes, connection_extremes, flight_extremes, render_extremes})
+  for (const auto& room : {function_extremes, flatland_extremes, wave_extremes, wave_point_extremes,
+                           wave_cluster_extremes, mc_theory_extremes, mc_slab_extremes,
+                           mc_transport_extremes, mc_box_extremes, index_extremes, ray_extremes,
+                           connection_extremes, flight_extremes, render_extremes})
     for (ExtremeCase& row : room()) all.push_back(std::move(row));
   return all;
 }
@@ -31,6 +31,15 @@ Finding examine(const ExtremeCase& extreme) {
 bool passes(const ExtremeCase& extreme, const Finding& finding) {
   if (!extreme.must_say.empty()) return finding.refusal.find(extreme.must_say) != std::string::npos;
   return finding.refusal.empty() && finding.figure <= finding.limit;
+}
+
+double relative_difference(const std::vector<Complex>& a, const std::vector<Complex>& b) {
+  double difference = 0, size = 0;
+  for (std::size_t i = 0; i < b.size(); ++i) {
+    difference += std::norm(a[i] - b[i]);
+    size += std::norm(b[i]);
+  }
+  return std::sqrt(difference / size);
 }
 
 Finding in_errors(Complex found, double error, Complex expected, double largest_error,

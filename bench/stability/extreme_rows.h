@@ -45,6 +45,7 @@ std::vector<ExtremeCase> function_extremes();
 std::vector<ExtremeCase> flatland_extremes();
 std::vector<ExtremeCase> wave_extremes();
 std::vector<ExtremeCase> wave_point_extremes();
+std::vector<ExtremeCase> wave_cluster_extremes();
 std::vector<ExtremeCase> mc_theory_extremes();
 std::vector<ExtremeCase> mc_slab_extremes();
 std::vector<ExtremeCase> mc_transport_extremes();
@@ -71,6 +72,9 @@ inline double larger(std::initializer_list<double> figures) {
 }
 /// The worse of two rows with one limit.
 Finding worse(const Finding& a, const Finding& b);
+
+/// |a - b| / |b|
+double relative_difference(const std::vector<Complex>& a, const std::vector<Complex>& b);
 
 /// As few characters as tell it, 1e-7 and 100: for the names of rows.
 std::string short_number(double value);

@@ -45,22 +45,13 @@ std::vector<View> views_around() {
   return views;
 }
 
-double distance(const std::vector<Complex>& a, const std::vector<Complex>& b) {
-  double difference = 0, size = 0;
-  for (std::size_t i = 0; i < b.size(); ++i) {
-    difference += std::norm(a[i] - b[i]);
-    size += std::norm(b[i]);
-  }
-  return std::sqrt(difference / size);
-}
-
 // Far fields at two tolerances: the basis orders differ.
 Finding convergence(const Placement& placement, double tolerance, double finer) {
   const auto views = views_around();
-  return {
-      distance(solved(placement, tolerance).fields(views), solved(placement, finer).fields(views)),
-      tolerance,
-      {}};
+  return {relative_difference(solved(placement, tolerance).fields(views),
+                              solved(placement, finer).fields(views)),
+          tolerance,
+          {}};
 }
 
 Finding reciprocity(const Placement& placement, double limit) {
@@ -162,7 +153,7 @@ Finding independent(const Scatterer& faint, double limit) {
       phases += std::polar(1.0, k * dot(direction(lights[0]) - direction(view.angle), position));
     expected.push_back(lone.far_field(view.angle) * phases);
   }
-  return {distance(found, expected), limit, {}};
+  return {relative_difference(found, expected), limit, {}};
 }
 
 // The size parameter near `guess` at which order n of a disk of index 10 resonates: T_n = -1.
