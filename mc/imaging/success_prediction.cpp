@@ -57,6 +57,20 @@ double normal_distribution(double x) {
   return std::erfc(-x / std::numbers::sqrt2) / 2;
 }
 
+/// What the peaks of pairs, each as wide as a place, add to the autocorrelation at a lag that is
+/// none of them: mean and variance.
+struct Crowd {
+  double mean = 0, square = 0;
+
+  Crowd(std::span<const double> signals, double places) {
+    constexpr double of_square = 2.0 / 3;  // integral of a peak's square over that of the peak
+    for (const double signal : signals) {
+      mean += signal / std::max(places, 1.0);
+      square += of_square * signal * signal / std::max(places, 1.0);
+    }
+  }
+};
+
 double log_binomial(double n, double m) {
   return std::lgamma(n + 1) - std::lgamma(m + 1) - std::lgamma(n - m + 1);
 }
@@ -82,13 +96,18 @@ double predicted_success(std::span<const double> signals, std::size_t points, do
   std::vector<double> evidence(signals.begin(), signals.end());
   if (weighted)
     for (double& each : evidence) each *= each;
+  const Crowd crowd(signals, places);
   double success = 1;
   std::size_t elsewhere = 0;
   for (const double sum : least_sums(by_points(evidence, points))) {
     const auto m = static_cast<double>(++elsewhere), n = static_cast<double>(points);
-    const double truth = weighted ? std::sqrt(sum) : sum / std::sqrt(pairs_of(n, m));
-    success = std::min(success,
-                       normal_distribution(truth - median_of_largest(log_volume(n, m, places), m)));
+    const double pairs = pairs_of(n, m), share = pairs / pairs_of(n, n - 1),
+                 truth = weighted ? std::sqrt(sum) : sum / std::sqrt(pairs),
+                 mean = share * crowd.mean,
+                 variance = std::max(share * crowd.square - mean * mean, 0.0),
+                 others = mean * std::sqrt(pairs) +
+                          std::sqrt(1 + variance) * median_of_largest(log_volume(n, m, places), m);
+    success = std::min(success, normal_distribution(truth - others));
   }
   return success;
 }

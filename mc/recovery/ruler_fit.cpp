@@ -78,9 +78,20 @@ double gain_of(const Pairs& pairs, const std::vector<double>& b, std::size_t i, 
   return gain;
 }
 
-/// Each mark by quarters of a step, one at most, while that makes the object likelier.
-void improve_marks(const PairPeaks& peaks, const std::vector<double>& expected, double variance,
-                   const std::vector<double>& b, std::vector<double>& marks) {
+/// Whether marks, and all distances of two, are so far from each other.
+bool are_distinct(const std::vector<double>& marks, double apart) {
+  std::vector<double> distances{0};
+  for (std::size_t i = 0; i < marks.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j) distances.push_back(std::abs(marks[i] - marks[j]));
+  std::sort(distances.begin(), distances.end());
+  const auto nearer = [apart](double a, double b) { return b - a < apart; };
+  return std::adjacent_find(distances.begin(), distances.end(), nearer) == distances.end();
+}
+
+/// Each mark by quarters of a step, one at most, while that makes the object likelier, and leaves
+/// it distinct: else two pairs would have the same peak.
+void improve_marks(const PairPeaks& peaks, const std::vector<double>& expected, double apart,
+                   double variance, const std::vector<double>& b, std::vector<double>& marks) {
   constexpr int sweeps = 4;
   constexpr double shift = 0.25;
   for (int sweep = 0; sweep < sweeps; ++sweep)
@@ -89,6 +100,7 @@ void improve_marks(const PairPeaks& peaks, const std::vector<double>& expected, 
       double best = from, most = -1e300;
       for (const double mark : {from, from - shift, from + shift}) {
         marks[i] = mark;
+        if (mark != from && !are_distinct(marks, apart)) continue;
         const double gain = gain_of(Pairs(peaks, expected, marks), b, i, variance);
         if (gain > most) {
           most = gain;
@@ -102,14 +114,14 @@ void improve_marks(const PairPeaks& peaks, const std::vector<double>& expected, 
 }  // namespace
 
 RulerFit fitted_ruler(const PairPeaks& peaks, const std::vector<double>& expected,
-                      std::vector<double> marks, bool between_steps) {
+                      std::vector<double> marks, std::optional<double> apart) {
   const double variance = std::max(peaks.noise * peaks.noise, 1e-12 * peaks.alone * peaks.alone);
   RulerFit fit;
   fit.brightness.assign(marks.size(), 1);
   improve_brightness(Pairs(peaks, expected, marks), variance, fit.brightness);
-  if (between_steps) improve_marks(peaks, expected, variance, fit.brightness, marks);
+  if (apart) improve_marks(peaks, expected, *apart, variance, fit.brightness, marks);
   const Pairs pairs(peaks, expected, marks);
-  if (between_steps) improve_brightness(pairs, variance, fit.brightness);
+  if (apart) improve_brightness(pairs, variance, fit.brightness);
   double product = 0, squares = 0, heights = 0;
   for (std::size_t i = 0; i < marks.size(); ++i) {
     fit.gain += gain_of(pairs, fit.brightness, i, variance) / 2 -

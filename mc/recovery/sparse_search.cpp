@@ -168,16 +168,17 @@ LineObject object_of(const RulerFit& fit, double step) {
 
 SparseFit sparse_search(const PairPeaks& peaks, const SparseTask& task) {
   const auto expected = expected_heights(peaks, task);
-  const int apart = std::max(1, static_cast<int>(std::ceil(task.resolution / peaks.step)));
+  const double resolution = task.resolution / peaks.step;
+  const int apart = std::max(1, static_cast<int>(std::ceil(resolution)));
   std::vector<RulerFit> fits;
   for (const Ruler& ruler :
        Search(scores_of(peaks, expected), task.points, apart, task.beam).grown())
-    fits.push_back(fitted_ruler(peaks, expected, {ruler.marks.begin(), ruler.marks.end()}, false));
+    fits.push_back(fitted_ruler(peaks, expected, {ruler.marks.begin(), ruler.marks.end()}));
   const auto likelier = [](const RulerFit& a, const RulerFit& b) { return a.gain > b.gain; };
   std::stable_sort(fits.begin(), fits.end(), likelier);
   constexpr std::size_t finalists = 20;
   if (fits.size() > finalists) fits.resize(finalists);
-  for (RulerFit& fit : fits) fit = fitted_ruler(peaks, expected, std::move(fit.marks), true);
+  for (RulerFit& fit : fits) fit = fitted_ruler(peaks, expected, std::move(fit.marks), resolution);
   std::stable_sort(fits.begin(), fits.end(), likelier);
   if (fits.empty()) return {};
   return {object_of(fits.front(), peaks.step), fits.front().explained};

@@ -1,4 +1,5 @@
 // Whether all points are found, predicted from the pairs' signals alone.
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -56,6 +57,27 @@ TEST_CASE("points are found from the signal on at which they are predicted to be
     CAPTURE(signal);
     CHECK(found_share(object, signal / 2, lags, 40, random) < 0.2);
     CHECK(found_share(object, 1.5 * signal, lags, 40, random) > 0.5);
+  }
+}
+
+TEST_CASE("no two pairs of what is found share a peak") {
+  std::mt19937 random(3);
+  std::normal_distribution<double> noise(0, 1);
+  constexpr double resolution = 3.2;
+  for (int run = 0; run < 20; ++run) {
+    std::vector<double> white(304), wide(300);
+    for (double& value : white) value = noise(random);
+    for (std::size_t i = 0; i < wide.size(); ++i)
+      for (std::size_t j = 0; j < 5; ++j) wide[i] += white[i + j] / std::sqrt(5.0);
+    const SparseFit fit =
+        sparse_search({.step = 1, .height = wide, .noise = 1, .alone = 12}, {6, resolution, 300});
+    std::vector<double> distances{0};
+    for (const double a : fit.object.x)
+      for (const double b : fit.object.x)
+        if (a > b) distances.push_back(a - b);
+    std::sort(distances.begin(), distances.end());
+    for (std::size_t i = 1; i < distances.size(); ++i)
+      CHECK(distances[i] - distances[i - 1] > resolution - 1e-9);
   }
 }
 
