@@ -22,6 +22,8 @@ namespace flatspeckle::apps {
 namespace {
 
 constexpr const char* length_unit_key = "length_unit";
+/// Keys whose texts are values of others: depth=10um:1mm.
+const std::set<std::string> assigning{"vary", "free", "against"};
 
 /// -.4 and -pi are numbers; CLI11 would take them for the flags "." and "p" with a value.
 std::string with_figure(const std::string& argument) {
@@ -144,12 +146,22 @@ std::optional<double> Subcommand::take_length_unit() {
   return metres;
 }
 
+/// Without units of length, in values that a text gives to another key too.
+std::string Subcommand::in_numbers(const Key& key, const std::string& text,
+                                   const std::optional<double>& metres) const {
+  if (!assigning.contains(key.name())) return in_unit_of_length(key, text, metres);
+  const Key* const other = keys_.find(text.substr(0, text.find_first_of(".=")));
+  const auto equals = text.find('=');
+  if (other == nullptr || equals == std::string::npos) return text;
+  return text.substr(0, equals + 1) + in_unit_of_length(*other, text.substr(equals + 1), metres);
+}
+
 void Subcommand::take_results() {
   const auto metres = take_length_unit();
   for (const Key& key : keys_.rows()) {
     auto given = results_of(key);
     if (given.empty() || key.name() == length_unit_key) continue;
-    for (std::string& text : given) text = in_unit_of_length(key, text, metres);
+    for (std::string& text : given) text = in_numbers(key, text, metres);
     key.set(given);
   }
 }

@@ -47,6 +47,8 @@ class Subcommand {
   void add_flags();
   std::vector<std::string> results_of(const Key& key) const;
   std::optional<double> take_length_unit();
+  std::string in_numbers(const Key& key, const std::string& text,
+                         const std::optional<double>& metres) const;
   void take_results();
   void print_help() const;
   template <typename Parser>

@@ -30,6 +30,16 @@ class UnitsTest(ProgramTest):
         for line in ("width = 20", "depth = 10", "density = 0.1", "shifts = [0, 1, 2]"):
             self.assertIn(line, printed)
 
+    def test_swept_and_searched_lengths(self):
+        scene = dict(domain="slab", scatterer="hg", g=0.5, optical_depth=2, light_angles=0, view_angles=0.1, samples=2000, length_unit="um")
+        self.call("sweep", of="covariance", **scene, vary="depth=0.01mm:40um:2", out="depths.h5")
+        np.testing.assert_allclose(self.open("depths.h5")["depth"][()], [10, 40])
+        self.call("sweep", of="covariance", **scene, depth=10, vary="wavelength=500nm,1", out="wavelengths.h5")
+        np.testing.assert_allclose(self.open("wavelengths.h5")["wavelength"][()], [0.5, 1])
+        printed = self.config_of("optimise", of="flux", domain="slab", scatterer="hg", g=0.5, mean_free_path="5um", light_angles=0,
+                                 length_unit="um", maximise="reflectance", vary="depth=0.01mm:40um")
+        self.assertIn('vary = ["depth=10:40"]', [line.replace("'", '"') for line in printed])
+
     def test_scene_files_and_inverse_lengths(self):
         self.write("body.toml", 'length_unit = "mm"\nfield = ["homogeneous"]\nstage_box = ["-1cm", "-10", "-10", "1cm", "10", "10mm"]\n'
                                 'mu_s = "10/cm"\npoint_light = [0, 0, -5, 1]\nsensor = "area"\nsensor_at = [0, 0, 10]\n'
