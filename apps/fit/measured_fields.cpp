@@ -6,8 +6,7 @@
 #include "apps/fit/measurement_file.h"
 #include "core/error.h"
 #include "core/keys/number_text.h"
-#include "core/numbers/statistics.h"
-#include "mc/fit/task/correlated_errors.h"
+#include "mc/fit/task/intensity_pairs.h"
 
 namespace flatspeckle::apps {
 
@@ -162,30 +161,6 @@ Curve correlation_curve(const mc::MovingSpec& medium, const SeenView& seen) {
   return curve;
 }
 
-/// C_I of tilts against the first: <I I'> / (<I> <I'>) - 1, of sums of I and I I'.
-Estimator intensity_correlations(std::size_t tilts) {
-  return [tilts](double samples, std::span<const Complex> sums) {
-    std::vector<Complex> found;
-    for (std::size_t t = 1; t < tilts; ++t)
-      found.push_back(sums[tilts + t] * samples / (sums[0] * sums[t]) - 1.0);
-    return found;
-  };
-}
-
-GroupedSums sums_of(const SeenView& seen) {
-  const std::size_t tilts = seen.tilts.size();
-  GroupedSums sums(2 * tilts);
-  std::vector<Complex> one(2 * tilts);
-  for (std::size_t first = 0; first < seen.values.size(); first += tilts) {
-    for (std::size_t t = 0; t < tilts; ++t) {
-      one[t] = seen.values[first + t];
-      one[tilts + t] = seen.values[first] * seen.values[first + t];
-    }
-    sums.add(1, one);
-  }
-  return sums;
-}
-
 }  // namespace
 
 Measurement measurement_of_fields(const std::string& path, const Table& table,
@@ -216,16 +191,13 @@ Measurement measurement_of_intensities(const std::string& path, const Table& tab
   for (const SeenView& seen : Patterns(path, table, intensities).views()) {
     if (seen.tilts.front() != 0)
       throw InputError("measurement", path, "every view must have intensities of tilt 0");
-    const GroupedSums sums = sums_of(seen);
-    const Estimator correlations = intensity_correlations(seen.tilts.size());
-    const MatrixXd errors = mc::correlated_errors(sums, correlations);
-    if (errors.size() == 0)
+    const std::size_t tilts = seen.tilts.size(), patterns = seen.values.size() / tilts;
+    constexpr std::size_t more = 10;
+    if (patterns <= tilts + more)
       throw InputError("measurement", path,
-                       std::to_string(seen.values.size() / seen.tilts.size()) +
-                           " patterns: must be more than the tilts and ten");
-    const auto values = real_parts(correlations(sums.total_samples(), sums.total()));
-    append(found, correlation_curve(medium, seen),
-           Eigen::Map<const VectorXd>(values.data(), std::ssize(values)), errors);
+                       std::to_string(patterns) + " patterns: must be more than the tilts and ten");
+    const auto pairs = mc::likeliest_correlations(real_parts(seen.values), tilts);
+    append(found, correlation_curve(medium, seen), pairs.values, pairs.covariance);
   }
   return found;
 }

@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
-#include <numeric>
 #include <vector>
 
 namespace flatspeckle::mc {
@@ -35,41 +33,43 @@ PairTable by_points(std::span<const double> signals, std::size_t points) {
   return of;
 }
 
+/// Of pairs' signals.
+struct Sums {
+  double plain = 0, squares = 0;
+
+  void add(double signal, double sign = 1) {
+    plain += sign * signal;
+    squares += sign * signal * signal;
+  }
+  double evidence(bool weighted) const { return weighted ? squares : plain; }
+};
+
 /// Takes the points away one by one, each the one whose remaining pairs bring least; the sums of
 /// what is taken, after each.
-std::vector<double> least_sums(const PairTable& signal) {
+std::vector<Sums> least_sums(const PairTable& signal, bool weighted) {
   const std::size_t n = signal.size();
-  std::vector<double> left(n);
-  for (std::size_t i = 0; i < n; ++i) left[i] = std::reduce(signal[i].begin(), signal[i].end());
-  std::vector<double> sums;
-  double sum = 0;
+  std::vector<Sums> left(n), taken;
+  for (std::size_t i = 0; i < n; ++i)
+    for (const double each : signal[i]) left[i].add(each);
+  std::vector<bool> gone(n);
+  Sums sum;
   for (std::size_t m = 1; m < n; ++m) {
-    const auto least =
-        static_cast<std::size_t>(std::min_element(left.begin(), left.end()) - left.begin());
-    sums.push_back(sum += left[least]);
-    for (std::size_t i = 0; i < n; ++i) left[i] -= signal[least][i];
-    left[least] = std::numeric_limits<double>::infinity();
+    std::size_t least = n;
+    for (std::size_t i = 0; i < n; ++i)
+      if (!gone[i] && (least == n || left[i].evidence(weighted) < left[least].evidence(weighted)))
+        least = i;
+    gone[least] = true;
+    sum.plain += left[least].plain;
+    sum.squares += left[least].squares;
+    taken.push_back(sum);
+    for (std::size_t i = 0; i < n; ++i) left[i].add(signal[least][i], -1);
   }
-  return sums;
+  return taken;
 }
 
 double normal_distribution(double x) {
   return std::erfc(-x / std::numbers::sqrt2) / 2;
 }
-
-/// What the peaks of pairs, each as wide as a place, add to the autocorrelation at a lag that is
-/// none of them: mean and variance.
-struct Crowd {
-  double mean = 0, square = 0;
-
-  Crowd(std::span<const double> signals, double places) {
-    constexpr double of_square = 2.0 / 3;  // integral of a peak's square over that of the peak
-    for (const double signal : signals) {
-      mean += signal / std::max(places, 1.0);
-      square += of_square * signal * signal / std::max(places, 1.0);
-    }
-  }
-};
 
 double log_binomial(double n, double m) {
   return std::lgamma(n + 1) - std::lgamma(m + 1) - std::lgamma(n - m + 1);
@@ -89,26 +89,30 @@ double log_volume(double n, double m, double places) {
          m * std::log(turns / std::sqrt(10.0)) - (m + 1) / 2 * std::log(turns);
 }
 
+/// That noise and chance meetings with the true peaks do not raise another object, with m of the
+/// points elsewhere, above the true one.
+double truth_wins(const Sums& lost, double m, double n, double places, bool weighted) {
+  constexpr double of_square = 2.0 / 3;  // integral of a peak's square over that of the peak
+  const double root = weighted ? std::sqrt(lost.squares) : std::sqrt(pairs_of(n, m));
+  if (root == 0) return 0;
+  const double met = lost.plain / std::max(places, 1.0),
+               variance =
+                   std::max(of_square * lost.squares / std::max(places, 1.0) - met * met, 0.0),
+               truth = lost.evidence(weighted) / root,
+               others = met * (weighted ? lost.plain : pairs_of(n, m)) / root +
+                        std::sqrt(1 + variance) * median_of_largest(log_volume(n, m, places), m);
+  return normal_distribution(truth - others);
+}
+
 }  // namespace
 
 double predicted_success(std::span<const double> signals, std::size_t points, double places,
                          bool weighted) {
-  std::vector<double> evidence(signals.begin(), signals.end());
-  if (weighted)
-    for (double& each : evidence) each *= each;
-  const Crowd crowd(signals, places);
   double success = 1;
   std::size_t elsewhere = 0;
-  for (const double sum : least_sums(by_points(evidence, points))) {
-    const auto m = static_cast<double>(++elsewhere), n = static_cast<double>(points);
-    const double pairs = pairs_of(n, m), share = pairs / pairs_of(n, n - 1),
-                 truth = weighted ? std::sqrt(sum) : sum / std::sqrt(pairs),
-                 mean = share * crowd.mean,
-                 variance = std::max(share * crowd.square - mean * mean, 0.0),
-                 others = mean * std::sqrt(pairs) +
-                          std::sqrt(1 + variance) * median_of_largest(log_volume(n, m, places), m);
-    success = std::min(success, normal_distribution(truth - others));
-  }
+  for (const Sums& lost : least_sums(by_points(signals, points), weighted))
+    success = std::min(success, truth_wins(lost, static_cast<double>(++elsewhere),
+                                           static_cast<double>(points), places, weighted));
   return success;
 }
 

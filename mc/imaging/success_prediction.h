@@ -17,14 +17,18 @@ namespace flatspeckle::mc {
 /// places^m / m! of them for each of C(N, m) choices (for m = N - 1 one half: wherever the one
 /// point is, and mirrored, the object is the same). The noise has the spectrum of the squared
 /// triangle, T^2, so that a lag has the second moment q = (2 pi band)^2 / 10, the field that of the
-/// matrix (q / D) (N
-/// - J) of m rows, J of ones, whose determinant is (q / D)^m N^(m-1) (N - m). With z the median of
-/// the field's largest maximum the truth wins with the probability Phi(S / sqrt(D) - z), for the m
-/// points whose pairs bring least; success is the least of these over m = 1 .. N - 1. Where all N
-/// points are the same the whole object decides, at peaks of about sqrt(4 ln(places) / N).
+/// matrix (q / D) (N - J) of m rows, J of ones, whose determinant is (q / D)^m N^(m-1) (N - m).
+/// Pairs of the other object meet peaks of those D true ones by chance, which are as wide as a
+/// place: each has c = S / places in the mean, with a variance v that is two thirds of the sum of
+/// the peaks' squares over the places, less c^2. With z the median of the field's largest maximum
+/// the truth wins with the probability
+///   Phi((S - D c) / sqrt(D) - z sqrt(1 + v)),
+/// for the m points whose pairs bring least; success is the least of these over m = 1 .. N - 1.
+/// Where all N points are the same and places many, the whole object decides, at peaks of about
+/// sqrt(4 ln(places) / N).
 ///
-/// weighted: the search knows how high each peak is, and weighs pairs by that: S / sqrt(D) is the
-/// root of the sum of the peaks' squares.
+/// weighted: the search knows how high each peak is, and weighs pairs by that: with the peaks'
+/// squares for S, and their sum for D in D c, over the root of the sum of squares.
 double predicted_success(std::span<const double> signals, std::size_t points, double places,
                          bool weighted = false);
 
