@@ -15,8 +15,11 @@ SHIPPED = pathlib.Path(__file__).parent.parent / "data" / "bias_map.csv"
 
 
 def read_rows(path):
-    with open(path, newline="") as file:
-        return list(csv.DictReader(line for line in file if not line.startswith("#")))
+    try:
+        with open(path, newline="") as file:
+            return list(csv.DictReader(line for line in file if not line.startswith("#")))
+    except (OSError, UnicodeDecodeError):
+        raise SystemExit(f"{path}: is not the table that scripts/bias_map.py makes")
 
 
 def columns(rows, *names):

@@ -17,7 +17,9 @@ const ExperimentEntry& entry_of(const std::string& of) {
 }  // namespace
 
 void add_run_keys_of_many(Keys& keys, RunSettings& run) {
-  for (const char* const name : {"out", "seed", "seconds", "threads", "resume", "keep_state"})
+  // tilt_count: results beside each other have one axis of tilts
+  for (const char* const name :
+       {"out", "seed", "seconds", "threads", "resume", "keep_state", "tilt_count"})
     if (keys.find(name) != nullptr) keys.remove(name);
   add_output_key(keys, run);
   add_seed_key(keys, run, "Seed; the same seed gives the same numbers");

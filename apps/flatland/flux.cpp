@@ -18,8 +18,8 @@ namespace {
 void print_table(const Scene& scene, const mc::FluxEstimates& flux) {
   const bool box = scene.domain.kind == Domain::Kind::box;
   const auto direct = mc::direct_transmittances(scene);
-  std::printf("%8s  %-22s %-22s %-12s %s%s\n", "light", "reflectance", "transmittance", "direct",
-              box ? "side_loss              " : "", "absorptance");
+  std::printf("%8s  %-22s %-22s %-12s %s%s\n", "light", "reflectance", "diffuse transmittance",
+              "direct", box ? "side_loss              " : "", "absorptance");
   const auto print = [](const Estimate& share, std::size_t light) {
     std::printf("%-12.6g %-9.2g ", share.value[light].real(), share.error[light]);
   };

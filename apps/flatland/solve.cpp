@@ -222,8 +222,9 @@ class SolveExperiment : public OneShot {
     keys.read(run_.seed);
     if (keys.read(values_.spec.index_field) != "homogeneous") return read_graded(keys);
     if (!values_.spec.near_sources.empty())
-      throw InputError("near_sources", values_.spec.near_sources,
-                       "are of media with an index_field");
+      throw InputError(
+          "near_sources", values_.spec.near_sources,
+          "are of media with an index_field here (covariance --method wave takes them)");
     sensors_ = sensors_of(keys, values_.spec);
     if (values_.cluster.empty())
       read_placement_and_work(keys);

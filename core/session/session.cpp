@@ -108,7 +108,7 @@ int Session::once(ResultFile file,
   provenance.plan = made->plan;
   provenance.samples = made->samples;
   provenance.wall_s = clock_.seconds();
-  provenance.cpu_s = process_cpu_seconds();
+  provenance.cpu_s = process_cpu_seconds() - cpu_before_;
   provenance.converged = made->status == ExitStatus::done;
   commit(file, provenance);
   return made->status;

@@ -94,6 +94,7 @@ class Session {
   std::uint64_t seed_;
   std::string started_;
   Stopwatch clock_;
+  double cpu_before_ = process_cpu_seconds();
   std::unique_ptr<const OutputLock> lock_;
 
   std::string plan_, identity_;

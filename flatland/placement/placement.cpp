@@ -157,7 +157,7 @@ void require_outside(const Placement& placement, Vec2 sensor) {
     if (scatterer.is_disk() ? distance >= scatterer.radius : distance > 0) continue;
     throw InputError("near_sensors",
                      "(" + std::to_string(sensor.x) + ", " + std::to_string(sensor.z) + ")",
-                     "must lie outside every scatterer");
+                     "must lie outside every scatterer (a map shows the field inside)");
   }
 }
 
