@@ -68,6 +68,7 @@ class FisheyeRays final : public RayFieldOf<Fisheye> {
   }
 
   double cost_of_curve() const override { return 0.5; }
+  double cost_of_closed_curve() const override { return 2.5; }
   ConnectionEstimate connect(const CurveEnds& ends, const ConnectionOptions& options,
                              RandomStream& random,
                              ConnectionStatistics& statistics) const override {

@@ -39,6 +39,7 @@ class LuneburgRays final : public RayFieldOf<Luneburg> {
   }
 
   double cost_of_curve() const override { return 0.5; }
+  double cost_of_closed_curve() const override { return 2.5; }
   ConnectionEstimate connect(const CurveEnds& ends, const ConnectionOptions& options,
                              RandomStream& /*random*/,
                              ConnectionStatistics& statistics) const override {

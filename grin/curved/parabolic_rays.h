@@ -31,6 +31,7 @@ class ParabolicRays final : public RayFieldOf<ParabolicGuide> {
   }
 
   double cost_of_curve() const override { return 1; }
+  double cost_of_closed_curve() const override { return 2; }
   ConnectionEstimate connect(const CurveEnds& ends, const ConnectionOptions& options,
                              RandomStream& random,
                              ConnectionStatistics& statistics) const override {

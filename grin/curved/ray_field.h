@@ -58,8 +58,11 @@ class RayField {
   virtual double ratio_tracked(const LegRoom& room, const RayState& ray, double arc_length,
                                RandomStream& random) const = 0;
 
-  /// In flights, roughly, what connect() costs.
+  /// In flights, no more than what connect() costs.
   virtual double cost_of_curve() const = 0;
+  /// What it costs by clocks where it is a closed form; 0 where it is iterations, which are
+  /// counted.
+  virtual double cost_of_closed_curve() const { return 0; }
   /// connect_chord_first().
   virtual ConnectionEstimate connect(const CurveEnds& ends, const ConnectionOptions& options,
                                      RandomStream& random,

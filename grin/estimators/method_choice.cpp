@@ -25,19 +25,26 @@ struct Trial {
   double work = 0;
 };
 
-/// What costs time, in flights of cost 1.
-double work(const TransportCounts& counts, const Tracers& tracers, RenderMethod method) {
-  const bool curved = tracers.plan().curved;
-  // without |J|: all, and side by side; most
-  const double per_flight = method == RenderMethod::analog            ? 0.25
-                            : curved && method == RenderMethod::light ? 0.7
-                                                                      : 1;
-  const double per_promise = curved ? 0.03 : 0.3, per_iteration = curved ? 2 : 1;
-  const double steps = per_flight * static_cast<double>(counts.flights) +
+/// In flights that tell |J|.
+double flown(const TransportCounts& counts, const Tracers& tracers, const Tracer& tracer) {
+  constexpr double steps_alone = 20;  // at both ends of a flight in lanes
+  const double side_by_side = tracers.scene().leapfrogs ? 0.25 : 1.2;
+  const auto all = static_cast<double>(counts.flights);
+  if (tracer.method == RenderMethod::analog)
+    return all * (side_by_side + steps_alone / tracers.steps_of_flight());
+  if (tracer.spreading == Spreading::all) return all;
+  const double again = all - static_cast<double>(counts.light_collisions);
+  return 0.7 * all + 2 * again;  // to the boundary is further than to collisions
+}
+
+/// What costs time, in flights of cost 1, by clocks of the shipped scenes.
+double work(const TransportCounts& counts, const Tracers& tracers, const Tracer& tracer) {
+  const double per_promise = 0.3, per_join = 0.7, per_iteration = tracers.plan().curved ? 2 : 4;
+  const auto joins = static_cast<double>(counts.joins);
+  const double steps = flown(counts, tracers, tracer) + tracer.cost_of_closed_join * joins +
                        per_iteration * static_cast<double>(counts.connections.iterations);
   return tracers.cost_of_flight() * steps +
-         per_promise * static_cast<double>(counts.joins_weighed) +
-         0.1 * static_cast<double>(counts.joins);
+         per_promise * static_cast<double>(counts.joins_weighed) + per_join * joins;
 }
 
 /// Of the groups of one sensor's picture: the variance is that of the differences between a group
@@ -88,7 +95,7 @@ std::optional<Trial> tried(const Tracers& tracers, const Tracer& tracer, int pai
     std::vector<Complex> values(pixels * static_cast<std::size_t>(bins.sums()));
     Film film(static_cast<int>(pixels), bins, values);
     tracer.add(pairs_per_group, random, film, counts);
-    if (work(counts, tracers, tracer.method) > most_work) return std::nullopt;
+    if (work(counts, tracers, tracer) > most_work) return std::nullopt;
     std::vector<double> steady(pixels);
     for (std::size_t pixel = 0; pixel < pixels; ++pixel)
       for (int part = 0; part < bins.parts(); ++part)
@@ -100,7 +107,7 @@ std::optional<Trial> tried(const Tracers& tracers, const Tracer& tracer, int pai
       first += picture.pixels();
     }
   }
-  Trial trial{{}, work(counts, tracers, tracer.method)};
+  Trial trial{{}, work(counts, tracers, tracer)};
   for (const PictureSums& picture : pictures) trial.pictures.push_back(picture.moments());
   return trial;
 }
@@ -208,7 +215,7 @@ struct Best {
   Needed needed = {std::numeric_limits<double>::infinity(), false};
 };
 Best best_of(const std::vector<Candidate>& all, bool of_known) {
-  constexpr double clearly = 0.8;
+  constexpr double clearly = 0.9;
   Best best;
   const auto light = light_of_pictures(all);
   for (const Candidate& candidate : all) {

@@ -81,15 +81,15 @@ double known_flights(const Pilot& pilot) {
   return pilot.is_cut ? std::numeric_limits<double>::infinity() : pilot.flights_per_pair();
 }
 
-/// Without the few that promise most: what is near an end is rare, and would decide alone.
+/// Without the few that promise most: what is near an end is rare, and would decide alone. 0 to
+/// rounding where all are the same: so is the level of joins then.
 double trimmed_variance(std::vector<double> promises) {
   std::sort(promises.begin(), promises.end());
   promises.resize(promises.size() - std::max<std::size_t>(1, promises.size() / 64));
   const double n = static_cast<double>(promises.size());
   const double mean = std::accumulate(promises.begin(), promises.end(), 0.0) / n;
-  const double square =
-      std::inner_product(promises.begin(), promises.end(), promises.begin(), 0.0) / n;
-  return std::max(square - mean * mean, 0.0);
+  const auto add_square = [&](double sum, double x) { return sum + (x - mean) * (x - mean); };
+  return std::accumulate(promises.begin(), promises.end(), 0.0, add_square) / n;
 }
 
 }  // namespace

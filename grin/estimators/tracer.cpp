@@ -133,6 +133,12 @@ double Tracers::cost_of_flight() const {
   return std::max(1.0, steps / 20) + tentative / 5;
 }
 
+double Tracers::steps_of_flight() const {
+  const Box box = bounds(scene_.stage.boundary);
+  const double across = (box.high - box.low).norm();
+  return across / (1 + scene_.stage.medium.mu_s * across) / scene_.step;
+}
+
 Tracer Tracers::straight(RenderMethod method) const {
   const double excess = std::get<Homogeneous>(scene_.field).n_excess;
   const auto transport = transport_of(scene_, request_, method);
@@ -147,16 +153,17 @@ CurvedSpaceOptions Tracers::options(Spreading spreading) const {
   return {scene_.step, scene_.max_length, spreading, scene_.leapfrogs};
 }
 
-namespace {
-
-/// Of its flights: weights of light tracing ask for it at the last one alone.
-Spreading spreading_of(RenderMethod method) {
-  return method == RenderMethod::photon_map || method == RenderMethod::analog ? Spreading::none
-         : method == RenderMethod::light ? Spreading::to_boundary
-                                         : Spreading::all;
+/// Of its flights: weights of light tracing ask for it at the last one alone. That is flown a
+/// second time, which pays where many come before it.
+Spreading Tracers::spreading_of(RenderMethod method) const {
+  if (method == RenderMethod::photon_map || method == RenderMethod::analog) return Spreading::none;
+  if (method != RenderMethod::light) return Spreading::all;
+  constexpr double many = 6;  // scattering depth
+  const Part part = scene_.stage.field_part();
+  const Box box = bounds(scene_.stage.surface(part));
+  const double depth = scene_.stage.medium_in(part).mu_s * (box.high - box.low).minCoeff();
+  return depth > many ? Spreading::to_boundary : Spreading::all;
 }
-
-}  // namespace
 
 Tracer Tracers::curved(RenderMethod method) const {
   const auto transport = transport_of(scene_, request_, method);
@@ -170,6 +177,8 @@ Tracer Tracers::curved(RenderMethod method) const {
     return {method, transport, analog_kernel(plan_.timed, transport, space, scene_.random_phase)};
   Tracer tracer{method, transport, curved_kernel(plan_, transport, space, scene_.random_phase)};
   tracer.flights_per_join = space->cost_of_join();
+  tracer.cost_of_closed_join = space->cost_of_closed_join();
+  tracer.spreading = spreading_of(method);
   return tracer;
 }
 

@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 
+#include "grin/curved/curved_space.h"
 #include "grin/estimators/map_kernel.h"
 #include "grin/estimators/path_kernels.h"
 #include "grin/estimators/render_scene.h"
@@ -29,6 +30,8 @@ struct Tracer {
   double flights_per_pair = 1;
   /// Less than what one costs, as a level of joins too low only costs time.
   double flights_per_join = 0.1;
+  double cost_of_closed_join = 0;  ///< in flights; 0 of joins by iterations
+  Spreading spreading = Spreading::all;
 
   void add(int paths, RandomStream& random, Film& film, TransportCounts& counts) const;
 };
@@ -47,6 +50,8 @@ class Tracers {
   /// At the most, against a flight of twenty steps, or of none in uniform media: long curved ones
   /// cost more, and those through grids with many tentative collisions.
   double cost_of_flight() const;
+  /// Of curved rays in the stage's medium, roughly.
+  double steps_of_flight() const;
 
   /// Whether light paths book their drift.
   bool has_drift() const { return depth_ && depth_->drift(); }
@@ -60,6 +65,7 @@ class Tracers {
   Tracer straight(RenderMethod method) const;
   Tracer curved(RenderMethod method) const;
   CurvedSpaceOptions options(Spreading spreading) const;
+  Spreading spreading_of(RenderMethod method) const;
 
   const RenderScene& scene_;
   const RenderRequest& request_;

@@ -68,7 +68,7 @@ TEST_CASE("the method that is chosen is nearly as cheap as any, by the clock too
          {RenderMethod::path, RenderMethod::light, RenderMethod::bidirectional}) {
       CAPTURE(method_word(other));
       if (other == best || !has_finite_variance(row.scene, other)) continue;
-      CHECK(cost(row.scene, best) < 2 * cost(row.scene, other));  // by clocks, under load
+      CHECK(cost(row.scene, best) < 1.4 * cost(row.scene, other));  // by clocks, under load
     }
   }
   CHECK(chosen(rows[0].scene) == RenderMethod::light);
