@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
+#include <regex>
 #include <set>
 
 #include "apps/command/command_line.h"
@@ -86,20 +87,49 @@ void print_row(const ResultReader& file, const std::string& path, const DatasetR
   std::cout << '\n';
 }
 
+/// Axes of what a sweep of a subcommand varied, key=values in its scene: sensor_at.2 as
+/// sensor_at_2.
+void print_swept(const ResultReader& file) {
+  if (!file.has_attribute("/", "of")) return;
+  static const std::regex varied(R"re("(\w+)\.?(\w*)=)re");
+  const auto config = file.attribute<std::string>("/", "config");
+  for (std::sregex_iterator found(config.begin(), config.end(), varied), end; found != end;
+       ++found) {
+    const std::string component = (*found)[2],
+                      name = (*found)[1].str() + (component.empty() ? "" : "_") + component;
+    if (file.has_attribute(name, "long_name"))
+      std::cout << "  " << name << " (" << shape_text(file.shape(name))
+                << "): " << file.attribute<std::string>(name, "long_name") << "; swept\n";
+  }
+}
+
 /// Rows of several tables may share a name; what it is here the file itself says.
 void print_datasets(const ResultReader& file) {
   std::cout << "Holds\n";
+  print_swept(file);
   std::set<std::string> told;
   for (const DatasetTable* table : all_tables())
     for (const DatasetRow& row : table->rows)
       for (const char* group : groups) {
         const std::string path = group + row.path;
-        if (!path.starts_with("state") && file.has(path) && told.insert(path).second)
+        if (!path.starts_with("state") && file.has_attribute(path, "long_name") &&
+            told.insert(path).second)
           print_row(file, path, row);
       }
 }
 
+// Of sweeps of a subcommand and of searches in one: numbers of many of its results.
+void print_map(const ResultReader& file) {
+  const std::string name = file.path().string();
+  if (file.has("search"))
+    std::cout << "\nTo draw it\n  plots/optimisation.py " << name << '\n';
+  else
+    std::cout << "\nTo draw it\n  plots/experiment_map.py " << name
+              << " --value NAME, one that it holds, over the keys that were swept\n";
+}
+
 void print_drawings(const ResultReader& file) {
+  if (file.has_attribute("/", "of")) return print_map(file);
   const char* title = "\nTo draw it\n";
   std::set<std::string> told;
   for (const Drawing& drawing : drawings) {

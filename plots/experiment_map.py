@@ -9,25 +9,40 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 
-def axes_of(result, name):
-    """The swept keys of more than one value, with their values, in the order of the dataset's axes."""
-    axes = [(scales[0].name.strip("/"), scales[0][...]) for scales in result.dataset(name).dims]
-    if any(key == "point" for key, _ in axes):
-        raise Unusable(f"{result.path}: a list of points or a part of a sweep; a map needs all of a grid")
-    return axes
+def points_of(result, name):
+    """A list of points as the grid that it is part of, with holes: keys with their values, values, errors."""
+    keys = [key.replace(".", "_") for key in result.swept()]
+    columns = [result.values(key) for key in keys]
+    own = [np.unique(column) for column in columns]
+    shape = [len(values) for values in own]
+    if np.prod(shape) > 4 * len(columns[0]):
+        raise Unusable(f"{result.path}: a list of points that make no grid")
+    places = tuple(np.searchsorted(values, column) for values, column in zip(own, columns))
+    grids = np.full((2, *shape), np.nan)
+    for grid, values in zip(grids, values_of(result, name)):
+        grid[places] = values.reshape(len(columns[0]))
+    return list(zip(keys, own)), *grids
+
+
+def values_of(result, name):
+    values = result.values(name)
+    return values, result.values(f"{name}_error") if result.has(f"{name}_error") else np.zeros_like(values)
 
 
 def grid_of(result, arguments):
+    name = arguments.value
     if not result.swept():
         raise Unusable(f"{result.path}: no sweep of another subcommand")
-    axes = axes_of(result, arguments.value)
-    values, keep = result.values(arguments.value), []
-    errors = result.values(f"{arguments.value}_error") if result.has(f"{arguments.value}_error") else np.zeros_like(values)
-    for number, (key, own) in enumerate(axes):
-        if len(own) > 1:
-            keep.append((key, own))
+    if not result.has(name):
+        raise Unusable(f"{result.path}: has no dataset {name}; --value takes one of {', '.join(result.numbers())}")
+    axes = [(scales[0].name.strip("/"), scales[0][...]) for scales in result.dataset(name).dims]
+    if any(key == "point" for key, _ in axes):
+        axes, values, errors = points_of(result, name)
+    else:
+        values, errors = values_of(result, name)
+    keep = [(key, own) for key, own in axes if len(own) > 1]
     if len(keep) not in (1, 2):
-        raise Unusable(f"{result.path}: {arguments.value} varies with {', '.join(key for key, _ in keep) or 'nothing'}; a map has two keys")
+        raise Unusable(f"{result.path}: {name} varies with {', '.join(key for key, _ in keep) or 'nothing'}; a map has two keys")
     shape = [len(own) for _, own in keep]
     return keep, values.reshape(shape), errors.reshape(shape)
 
@@ -38,7 +53,7 @@ def is_log(values):
 
 def draw_curve(axis, key, place, values, errors):
     axis.errorbar(place, values, errors, **style.look(0))
-    best = int(np.argmax(values))
+    best = int(np.nanargmax(values))
     axis.plot(place[best], values[best], "*", color="black", markersize=9, zorder=5)
     axis.set_xlabel(key)
     if is_log(place):
@@ -48,9 +63,9 @@ def draw_curve(axis, key, place, values, errors):
 def draw_map(figure, axis, keys, values, name):
     (down, y), (across, x) = keys
     mesh = axis.pcolormesh(x, y, values, cmap="cividis", shading="nearest")
-    if min(values.shape) > 3 and np.ptp(values) > 0:
+    if min(values.shape) > 3 and np.nanmax(values) > np.nanmin(values):
         axis.contour(x, y, values, colors="white", linewidths=0.6, levels=6)
-    row, column = np.unravel_index(np.argmax(values), values.shape)
+    row, column = np.unravel_index(np.nanargmax(values), values.shape)
     axis.plot(x[column], y[row], "*", color="white", markeredgecolor="black", markersize=10)
     axis.set(xlabel=across, ylabel=down, xscale="log" if is_log(x) else "linear", yscale="log" if is_log(y) else "linear")
     figure.colorbar(mesh, ax=axis, label=name)
@@ -65,7 +80,7 @@ def draw(results, arguments):
         axis.set_ylabel(arguments.value)
         return figure
     best = draw_map(figure, axis, keys, values, arguments.value)
-    at = np.argmax(values)
+    at = np.nanargmax(values)
     style.caption(figure, ["star: largest, " + ", ".join(f"{key} = {value:.3g}" for key, value in best.items()) +
                            f", {values.flat[at]:.4g} +- {errors.flat[at]:.2g}; the largest of noisy values is too large"])
     return figure

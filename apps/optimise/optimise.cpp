@@ -247,7 +247,10 @@ int Optimisation::search(const Session& session) {
 }
 
 Optimum Optimisation::found(Evaluations& evaluations) const {
-  SearchTask task{.dimensions = axes_->dimensions(), .choices = axes_->choices(), .measure = {}};
+  SearchTask task{.dimensions = axes_->dimensions(),
+                  .choices = axes_->choices(),
+                  .measure = {},
+                  .negated = settings_.minimise};
   task.measure = [&](const std::vector<SearchPlace>& places, const SearchEffort& effort) {
     std::vector<SweepPoints> points;
     for (const SearchPlace& place : places) points.push_back(axes_->point(place));

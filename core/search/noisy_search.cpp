@@ -138,9 +138,10 @@ std::vector<FoundPlace> starts_of(std::vector<FoundPlace> scattered, std::size_t
   return starts;
 }
 
-std::string told(const FoundPlace& best) {
+std::string told(const FoundPlace& best, const SearchTask& task) {
   char text[80];
-  std::snprintf(text, sizeof text, "best %.4g +- %.2g", best.measured.value, error(best.measured));
+  std::snprintf(text, sizeof text, "best %.4g +- %.2g",
+                task.negated ? -best.measured.value : best.measured.value, error(best.measured));
   return text;
 }
 
@@ -169,7 +170,8 @@ void refine(std::vector<Refinement>& searches, const SearchTask& task) {
       if (!search.has_ended()) search.go_on();
     drop_losers(searches);
     task.tell(std::to_string(searches.size()) +
-              (searches.size() == 1 ? " search, " : " searches, ") + told(searches.front().best()));
+              (searches.size() == 1 ? " search, " : " searches, ") +
+              told(searches.front().best(), task));
   }
 }
 
@@ -183,7 +185,7 @@ SearchEnd noisy_search(const SearchTask& task, const SearchSettings& settings) {
   std::vector<Refinement> searches;
   for (const FoundPlace& start : starts_of(scattered, settings.starts, apart))
     searches.emplace_back(task, settings, start, std::min(0.5 * apart, 0.25));
-  task.tell(std::to_string(count) + " scattered places, " + told(searches.front().best()));
+  task.tell(std::to_string(count) + " scattered places, " + told(searches.front().best(), task));
   SearchEnd end;
   try {
     refine(searches, task);

@@ -32,6 +32,7 @@ struct SearchTask {
   /// In the order of the places; the same number again where all is the same.
   std::function<std::vector<Measured>(const std::vector<SearchPlace>&, const SearchEffort&)>
       measure;
+  bool negated = false;  ///< values are those of what is minimised, times -1
   /// How it gets on, in words.
   std::function<void(const std::string&)> tell = [](const std::string&) {};
 };

@@ -37,7 +37,7 @@ class Result:
     def dataset(self, name):
         if not isinstance(self.file.get(name), h5py.Dataset):
             why = ("is not complete: the same command with --resume goes on; "
-                   if self.attribute("complete") == 0 else "")
+                   if self.attribute("complete") == 0 or "state" in self.file else "")
             raise Unusable(f"{self.path}: {why}has no dataset {name}")
         return self.file[name]
 
@@ -45,10 +45,19 @@ class Result:
         """Keys that vary in a sweep of another subcommand; none of other results."""
         return list(self.attribute("swept", [])) if self.attribute("of") else []
 
+    def numbers(self):
+        """Names of datasets of numbers over what was swept, errors and times apart."""
+        names = []
+        self.file.visititems(lambda name, thing: names.append(name) if isinstance(thing, h5py.Dataset) else None)
+        swept = {key.replace(".", "_") for key in self.swept()}
+        hidden = ("_error", "_rare", "_s", "samples")
+        return [name for name in names if 0 < self.file[name].ndim <= max(1, len(swept)) and self.file[name].dtype.kind == "f"
+                and name not in swept and not name.endswith(hidden) and not name.startswith("state") and self.file[name].attrs.get("CLASS") != b"DIMENSION_SCALE"]
+
     def refuse_sweep(self):
         if self.swept():
             raise Unusable(f"{self.path}: a sweep over {', '.join(self.swept())}, no one picture; "
-                           "plots/throughput.py draws its powers")
+                           "plots/experiment_map.py --value NAME draws a number of it")
 
     def values(self, name):
         return self.dataset(name)[...]

@@ -42,13 +42,19 @@ class Explain(PackageTest):
         return [(name, item) for name, item in found
                 if "state" not in name.split("/") and not name.endswith(("_error", "_rare"))]
 
+    def display(self):
+        picture = self.folder / "picture.csv"
+        picture.write_text("\n".join("1,1,1,1" for _ in range(4)) + "\n")
+        return fs.design(design="box", nodes=[7], goal="irradiance", pictures=str(picture), rays_across=4, iterations=2)
+
     def test_results_of_all_kinds(self):
         runs = [fs.covariance(CURVE), fs.validate(BOX, wave_samples=4, view_angles=[0.1, 0.5], **FEW),
                 fs.covariance(SLAB, delays=[0, 0.1, 1]), fs.covariance(SLAB, frequency_shifts=[0, 1e-4]),
                 fs.render(STAGE), fs.design(design="radial", directions=1, rays_per_direction=9),
                 fs.trace(field="luneburg", origin=[0, 0, -2], beam_radius=0.5, ray_count=3, path_points=5, max_length=5),
                 fs.field(BOX, view_angles=[0.1, 0.2, 0.3], light_angles=[0, 0.01], fields=4),
-                fs.solve(BOX, map=[-5, 5, 0, 4], map_pixels=[8, 6])]
+                fs.solve(BOX, map=[-5, 5, 0, 4], map_pixels=[8, 6]), self.display(),
+                fs.sweep(of="render", vary="mu_s=0.5,1", **STAGE)]
         for result in runs:
             with self.subTest(made_by=result.attrs["command_line"]):
                 self.check(result.encoding["source"])
