@@ -16,6 +16,7 @@ std::vector<PlanCase> fit_plan_cases();
 std::vector<PlanCase> wave_plan_cases();
 std::vector<PlanCase> ray_plan_cases();
 std::vector<PlanCase> render_plan_cases();
+std::vector<PlanCase> design_plan_cases();
 
 /// A case whose row gets its names from here.
 PlanCase named(const std::string& room, const std::string& left_out, const std::string& scene,

@@ -55,6 +55,7 @@ std::vector<ExtremeCase> ray_extremes();
 std::vector<ExtremeCase> connection_extremes();
 std::vector<ExtremeCase> flight_extremes();
 std::vector<ExtremeCase> render_extremes();
+std::vector<ExtremeCase> design_extremes();
 
 /// A random figure: how many standard errors it is off, limit 4, beyond the relative accuracy of
 /// what is expected. Infinite where the error is above `largest_error` of that, as then nothing was

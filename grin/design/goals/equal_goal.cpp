@@ -14,28 +14,34 @@ class EqualGoal : public Goal {
  public:
   std::vector<double> residuals(std::span<const double> readings) override {
     mean_ = mean_of(readings);
-    count_ = readings.size();
-    return apart(readings);
-  }
-  /// What the mean that divides changes is of second order.
-  std::vector<double> times(std::span<const double> readings) const override {
-    return apart(readings);
-  }
-  std::vector<double> transposed(std::span<const double> residuals) const override {
-    return apart(residuals);
-  }
-  std::vector<double> weights() const override { return std::vector<double>(count_, 1 / mean_); }
-
- private:
-  std::vector<double> apart(std::span<const double> values) const {
-    const double mean = mean_of(values);
-    std::vector<double> apart(values.begin(), values.end());
-    for (double& v : apart) v = (v - mean) / mean_;
+    of_mean_.clear();
+    for (const double reading : readings) of_mean_.push_back(reading / mean_);
+    std::vector<double> apart;
+    for (const double reading : readings) apart.push_back((reading - mean_) / mean_);
     return apart;
   }
+  std::vector<double> times(std::span<const double> readings) const override {
+    const double mean = mean_of(readings);
+    std::vector<double> changes;
+    for (std::size_t i = 0; i < readings.size(); ++i)
+      changes.push_back((readings[i] - of_mean_[i] * mean) / mean_);
+    return changes;
+  }
+  std::vector<double> transposed(std::span<const double> residuals) const override {
+    double sum = 0;  // by the mean
+    for (std::size_t i = 0; i < residuals.size(); ++i) sum += of_mean_[i] * residuals[i];
+    std::vector<double> by_readings;
+    for (const double r : residuals)
+      by_readings.push_back((r - sum / static_cast<double>(residuals.size())) / mean_);
+    return by_readings;
+  }
+  std::vector<double> weights() const override {
+    return std::vector<double>(of_mean_.size(), 1 / mean_);
+  }
 
+ private:
   double mean_ = 1;
-  std::size_t count_ = 0;
+  std::vector<double> of_mean_;  ///< readings over their mean
 };
 
 }  // namespace

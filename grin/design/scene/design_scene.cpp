@@ -44,7 +44,7 @@ void make_search(const Keys& keys, const DesignValues& values, DesignScene& scen
   if (scene.target > 0)
     throw InputError("target", scene.target, "must not be given beside noise, which sets it");
   scene.target = *values.noise * std::sqrt(scene.aim->readings());
-  if (scene.roughness == 0) scene.roughness = 1;
+  if (scene.roughness == 0) scene.roughness = 1e3;
 }
 
 }  // namespace

@@ -16,6 +16,7 @@ template <class State, class Use>
 void each_member(State& state, const Use& use) {
   use(state.level);
   use(state.slow_steps);
+  use(state.rms_as_smooth);
   use(state.search.coefficients);
   use(state.search.damping);
   use(state.search.roughness);

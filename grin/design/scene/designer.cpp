@@ -1,6 +1,7 @@
 #include "grin/design/scene/designer.h"
 
 #include <cmath>
+#include <utility>
 
 #include "core/run/stopwatch.h"
 
@@ -57,34 +58,47 @@ void Designer::refine(DesignState& state) {
   ++state.level;
 }
 
-/// With less weight of the roughness, as long as there is noise to come down to.
+/// With less weight of the roughness, as long as there is noise to come down to and the last time
+/// did something: else the field's own knots are what is left. (Of much weight nothing is found.)
 bool Designer::smoothes_on(DesignState& state) const {
   constexpr double least = 1e-12, factor = 0.3;
   if (!scene_.has_noise || state.search.roughness < least) return false;
+  const double rms = std::sqrt(state.search.loss);
+  const double last = std::exchange(state.rms_as_smooth, rms);
+  if (rms < 0.5 * state.history.rms.front() && rms > 0.98 * last) return false;
   state.search.roughness *= factor;
   state.search.damping = search_in(form(state)).first_damping;
   state.slow_steps = 0;
   return true;
 }
 
+/// Whether rays miss by less than their steps are off: then a search only cancels their error.
+bool Designer::leans_on_steps(DesignState& state) {
+  if (scene_.method != "gauss_newton") return false;
+  const auto by_half = rms(seen_, seen_.rays->trace(form(state), state.search.coefficients, 2));
+  state.search.traces += 2;
+  return by_half && *by_half > 2 * std::sqrt(state.search.loss);
+}
+
 void Designer::advance(DesignState& state) {
   const bool is_last = state.level + 1 == scene_.start.levels;
   // of the root mean square, in a step; by its gradient alone a search goes on and on
   const double slow = scene_.method != "gauss_newton" ? 1 : is_last ? 0.97 : 0.7;
-  const int most_slow_steps = scene_.method == "adam" ? 200 : 2;
+  const int most_slow_steps = scene_.method == "adam" ? 200 : scene_.has_noise ? 1 : 2;
   const FieldForm form = this->form(state);
   const auto search =
       make_optimiser(scene_.method, {*seen_.rays, *seen_.goal, form}, search_in(form));
   const double before = state.search.loss;
   const SearchStep step = search->advance(state.search);
-  note(state);
   const double rms = std::sqrt(state.search.loss);
   constexpr double rounding = 1e-9;  // of what was missed at the start
   state.stalled = step == SearchStep::stalled && rms > rounding * state.history.rms.front();
   const bool is_enough = rms <= scene_.target;
   const bool gained = step == SearchStep::better && rms < slow * std::sqrt(before);
   state.slow_steps = gained ? 0 : state.slow_steps + 1;
-  const bool is_slow = step != SearchStep::better || state.slow_steps == most_slow_steps;
+  const bool is_slow = step != SearchStep::better || state.slow_steps == most_slow_steps ||
+                       (is_last && rms > 0.8 * std::sqrt(before) && leans_on_steps(state));
+  note(state);
   const bool is_spent = static_cast<int>(state.history.rms.size()) > scene_.iterations;
   const bool may_end = is_last && (is_enough || (is_slow && !smoothes_on(state)));
   state.ended = is_spent || may_end;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cmath>
+
 #include "grin/design/scene/design_scene.h"
 
 namespace flatspeckle::grin::design {
@@ -15,6 +17,7 @@ struct DesignState {
   int level = 0, slow_steps = 0;  ///< in turn
   SearchState search;
   DesignHistory history;
+  double rms_as_smooth = HUGE_VAL;  ///< where the roughness' weight was lowered last
   bool ended = false, stalled = false;
   double cpu_before = 0;  ///< of the runs that this one goes on from
 };
@@ -46,6 +49,7 @@ class Designer {
   void note(DesignState& state) const;
   void refine(DesignState& state);
   bool smoothes_on(DesignState& state) const;
+  bool leans_on_steps(DesignState& state);
   static std::optional<double> rms(DesignTask& task,
                                    const std::optional<std::vector<double>>& readings);
 

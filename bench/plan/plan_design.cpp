@@ -1,0 +1,73 @@
+// Derivatives of rays that a search of a field needs.
+
+#include "bench/plan/plan_rooms.h"
+#include "bench/plan/plan_timing.h"
+#include "grin/design/scene/designer.h"
+
+namespace flatspeckle::bench {
+
+namespace {
+
+using namespace grin::design;
+
+/// The loss of rays that are to meet, and its derivatives.
+class Lens {
+ public:
+  explicit Lens(int coefficients)
+      : scene_(scene(coefficients)), task_(scene_.aim->task(scene_.walk, false)) {}
+
+  std::vector<Complex> by_reversed_rays() {
+    objective().loss(start_);  // the last trace is remembered
+    const auto gradient = objective().gradient(*objective().residuals(at_));
+    return {gradient.begin(), gradient.end()};
+  }
+  /// Central ones of each coefficient.
+  std::vector<Complex> by_differences() {
+    constexpr double step = 1e-5;
+    std::vector<Complex> all;
+    for (std::size_t i = 0; i < at_.size(); ++i) {
+      const auto loss = [&](double by) {
+        auto moved = at_;
+        moved[i] += by;
+        return objective().loss(moved);
+      };
+      all.emplace_back((loss(step) - loss(-step)) / (2 * step));
+    }
+    return all;
+  }
+
+ private:
+  static DesignScene scene(int coefficients) {
+    DesignValues values;
+    values.form.design = "radial";
+    values.form.coefficients = coefficients;
+    auto& light = std::get<FocusValues>(values.aim.kinds);
+    light.directions = 1;
+    light.rays_per_direction = 30;
+    return make_design_scene(values);
+  }
+  Objective objective() { return {*task_.rays, *task_.goal, form_}; }
+
+  DesignScene scene_;
+  DesignTask task_;
+  FieldForm form_ = finer(scene_.start.form, scene_.start.coefficients).form;
+  std::vector<double> start_ = std::vector<double>(shape_of(form_).size(), 0.0);
+  std::vector<double> at_ = std::vector<double>(shape_of(form_).size(), 0.3);
+};
+
+PlanRow differences(double cpu_seconds) {
+  PlanRow row{.per = "gradient"};
+  Lens lens(40);
+  compare_values(
+      row, [&] { return lens.by_differences(); }, [&] { return lens.by_reversed_rays(); }, 1e-6,
+      cpu_seconds);
+  return row;
+}
+
+}  // namespace
+
+std::vector<PlanCase> design_plan_cases() {
+  return {named("design", "a trace for each coefficient", "lens of 40 coefficients", differences)};
+}
+
+}  // namespace flatspeckle::bench
