@@ -47,7 +47,7 @@ def curve_rows(error, scene):
         if not has_slope(curve):
             seconds = seconds_to_target(curve)
             yield [curve["method"], "", "", number_text.seconds(seconds),
-                   number_text.factor(seconds / time_to_target(ours["efficiency"]))]
+                   number_text.factor(seconds / time_to_target(ours["efficiency"])) if ours["efficiency"] else ""]
             continue
         row = [curve["method"], number_text.with_error(curve["slope"], curve["slope_error"])]
         if not curve["is_monte_carlo"]:  # no law to go by

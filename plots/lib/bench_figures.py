@@ -54,9 +54,12 @@ def render_scenes(error):
 
 
 def draw_guide(axis, curves):
-    """Slope -1/2, above the curve that is highest at equal times."""
+    """Slope -1/2, above the curve that is highest at equal times; none where nothing is random."""
+    random = [curve for curve in curves if curve["is_monte_carlo"]]
+    if not random:
+        return
     level = lambda curve: np.max(curve["relative_error"] * np.sqrt(curve["cpu_s"]))
-    highest = max((curve for curve in curves if curve["is_monte_carlo"]), key=level)
+    highest = max(random, key=level)
     ends = highest["cpu_s"][[0, -1]]
     axis.loglog(ends, 1.6 * level(highest) / np.sqrt(ends), **GUIDE)
 
