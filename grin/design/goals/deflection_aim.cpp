@@ -77,14 +77,16 @@ class DeflectionAim : public Aim {
   std::vector<MeasuredRay> measured_;
 };
 
-/// Those whose way through the field is long enough to tell anything: near corners there is none.
+/// Those whose way through the field is long enough, and not along its face, to tell anything.
 std::vector<MeasuredRay> through(const Surface& hull, double radius,
                                  const std::vector<MeasuredRay>& rays) {
   std::vector<MeasuredRay> through;
-  for (const MeasuredRay& ray : rays)
-    if (const auto way = passage(hull, ray.start, ray.direction);
-        way && way->second - way->first > 0.3 * radius)
-      through.push_back(ray);
+  for (const MeasuredRay& ray : rays) {
+    const auto way = passage(hull, ray.start, ray.direction);
+    if (!way || way->second - way->first < 0.3 * radius) continue;
+    const Vec3 middle = ray.start + (way->first + way->second) / 2 * ray.direction;
+    if (distance(hull, middle) < -1e-3 * radius) through.push_back(ray);
+  }
   return through;
 }
 
