@@ -12,7 +12,7 @@ namespace flatspeckle::grin {
 
 namespace {
 
-constexpr int groups = 64;
+constexpr int groups = 128;
 
 /// Of one sensor's picture, by a group of paths.
 struct PictureMoments {
@@ -47,8 +47,8 @@ double work(const TransportCounts& counts, const Tracers& tracers, const Tracer&
          per_promise * static_cast<double>(counts.joins_weighed) + per_join * joins;
 }
 
-/// Of the groups of one sensor's picture: the variance is that of the differences between a group
-/// and the next, pair by pair.
+/// Of the groups of one sensor's picture: the variance is that of the differences between each group
+/// and the next.
 class PictureSums {
  public:
   explicit PictureSums(const SensorEnd& sensor)
@@ -59,7 +59,7 @@ class PictureSums {
     const double light = std::reduce(group.begin(), group.end());
     light_ += light;
     light_square_ += light * light;
-    if (++count_ % 2 == 0) {
+    if (++count_ > 1) {
       const double apart = std::transform_reduce(
           group.begin(), group.end(), last_.begin(), 0.0, std::plus(),
           [](double now, double before) { return (now - before) * (now - before) / 2; });
@@ -70,7 +70,7 @@ class PictureSums {
   }
   PictureMoments moments() const {
     return {.total = light_ / groups,
-            .variance = apart_ / (groups / 2),
+            .variance = apart_ / (groups - 1),
             .lit = light_ > 0 ? light_ * light_ / light_square_ : 0,
             .doubt = apart_ > 0 ? std::sqrt(apart_square_) / apart_ : 0};
   }
@@ -141,7 +141,7 @@ std::vector<double> light_of_pictures(const std::vector<Candidate>& candidates) 
 /// Fewer groups with the light tell nothing of the variance.
 constexpr double fewest_lit = groups / 4.0;
 /// With more doubt the strongest paths are likely still missing.
-constexpr double most_doubt = 0.4;
+constexpr double most_doubt = 0.2;
 
 /// Work to a given error, of the sensor for which it is most, and whether the trial knows it well.
 struct Needed {
