@@ -276,6 +276,12 @@ void print_summary(const mc::LineScene& line, const mc::ImagingTask& task,
                 error);
   }
   if (expected.success) std::printf("success expected: %.3g\n", *expected.success);
+  const std::size_t alike = mc::alike_pairs(line, task.recovery.resolution_grains);
+  if (expected.success && alike > 0)
+    std::printf(
+        "%zu pairs of points are as far apart as another within a grain: the search, which wants "
+        "distances to be distinct, may miss them\n",
+        alike);
 }
 
 class ImageExperiment : public OneShot {

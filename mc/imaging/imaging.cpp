@@ -96,10 +96,12 @@ Pairs pairs_of(const LineScene& line) {
   return pairs;
 }
 
-double distance_of(const LineScene& line, std::pair<std::size_t, std::size_t> pair) {
+/// x of either.
+std::pair<double, double> places_of(const LineScene& line,
+                                    std::pair<std::size_t, std::size_t> pair) {
   std::vector<double> x = line.object.x;
   if (line.reference) x.push_back(*line.reference);
-  return x[pair.second] - x[pair.first];
+  return {x[pair.first], x[pair.second]};
 }
 
 /// Pairs of channels, then the intensities of either, for each place and pair.
@@ -108,7 +110,6 @@ CovarianceRequest pair_request(const LineScene& line, const Pairs& pairs,
   CovarianceRequest request;
   request.kind = CovarianceRequest::Kind::pairs;
   request.lights = line.scene.request.lights;
-  const double moved = magnification(line);
   const auto channel = [&](std::size_t light, double pixel) {
     request.channels.push_back(
         {static_cast<std::uint32_t>(light), static_cast<std::uint32_t>(request.views.size())});
@@ -117,7 +118,8 @@ CovarianceRequest pair_request(const LineScene& line, const Pairs& pairs,
   };
   for (const double place : places)
     for (const auto& pair : pairs) {
-      const double shift = moved * distance_of(line, pair);
+      const auto [x, other] = places_of(line, pair);
+      const double shift = shift_of(line, other) - shift_of(line, x);
       const std::uint32_t a = channel(pair.first, place - shift / 2),
                           b = channel(pair.second, place + shift / 2);
       request.entries.insert(request.entries.end(), {{a, b}, {a, a}, {b, b}});
@@ -164,8 +166,8 @@ std::optional<std::vector<ImagedMedium>> imaged(const LineScene& line, const Ima
 
 std::optional<ImagingPrediction> predicted(const LineScene& line, std::uint64_t paths,
                                            std::uint64_t seed, int threads) {
-  const auto middle = static_cast<double>(line.camera.pixels - 1) / 2;
-  const std::vector<double> places{0.8 * middle, middle, 1.2 * middle};
+  const auto last = static_cast<double>(line.camera.pixels - 1);
+  const std::vector<double> places{0.1 * last, 0.3 * last, 0.5 * last, 0.7 * last, 0.9 * last};
   Scene scene = line.scene;
   const Pairs pairs = pairs_of(line);
   scene.request = pair_request(line, pairs, places);
@@ -175,8 +177,10 @@ std::optional<ImagingPrediction> predicted(const LineScene& line, std::uint64_t 
   if (!run(field.batches, paths, threads, "correlations", state)) return std::nullopt;
   const std::size_t of_object = pairs.size() - (line.reference ? line.object.x.size() : 0);
   ImagingPrediction prediction;
-  for (std::size_t i = 0; i < of_object; ++i)
-    prediction.distance.push_back(std::abs(distance_of(line, pairs[i])));
+  for (std::size_t i = 0; i < of_object; ++i) {
+    const auto [x, other] = places_of(line, pairs[i]);
+    prediction.distance.push_back(std::abs(other - x));
+  }
   const Estimate all =
       jackknife(state.sums, [&, covariance = field.covariance, count = places.size()](
                                 double samples, std::span<const Complex> sums) {

@@ -46,7 +46,7 @@ struct ImagingPrediction {
   Estimate to_reference;         ///< C_I of each point and the reference
 };
 
-/// By so many light paths. Averaged over a few places of the camera.
+/// By so many light paths. Averaged over places all along the camera.
 std::optional<ImagingPrediction> predicted(const LineScene& line, std::uint64_t paths,
                                            std::uint64_t seed, int threads);
 

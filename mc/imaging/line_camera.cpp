@@ -60,9 +60,14 @@ double magnification(const LineScene& line) {
   return tilt * length_of_sine(line) / line.camera.step();
 }
 
+double shift_of(const LineScene& line, double x) {
+  const double distance = distance_to(line.scene.domain, line.object_depth);
+  return magnification(line) * distance * x / std::hypot(x, distance);
+}
+
 LineObject shifts(const LineScene& line) {
   LineObject object = line.object;
-  for (double& x : object.x) x = magnification(line) * (x - line.reference.value_or(0));
+  for (double& x : object.x) x = shift_of(line, x) - shift_of(line, line.reference.value_or(0));
   return object;
 }
 

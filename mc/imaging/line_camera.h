@@ -33,11 +33,15 @@ struct LineScene {
 LineScene line_scene(Scene medium, LineObject object, double object_depth, const LineCamera& camera,
                      std::optional<double> reference = std::nullopt);
 
-/// Pixels that the speckle of a point moves by where the point moves by 1; the sign is that of a
-/// picture. A source that moves by s at the distance d from the box tilts its light there by -s/d,
-/// and light that leaves the box tilts alike (the memory effect): by -s/d in the sine, by -s c/d on
-/// a line at the distance c.
+/// Pixels that the speckle of a point near the axis moves by where the point moves by 1; the sign
+/// is that of a picture. A source that moves by s at the distance d from the box tilts its light
+/// there by -s/d, and light that leaves the box tilts alike (the memory effect): by -s/d in the
+/// sine, by -s c/d on a line at the distance c.
 double magnification(const LineScene& line);
+
+/// Pixels by which the speckle of a point at x is shifted against that of a point on the axis: by
+/// its sine, which is less than x / d.
+double shift_of(const LineScene& line, double x);
 
 /// The object in pixels by which its points' speckle is shifted against the reference's.
 LineObject shifts(const LineScene& line);

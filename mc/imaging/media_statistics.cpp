@@ -86,6 +86,19 @@ ExpectedPeaks expected_peaks(const LineScene& line, const ImagingTask& task,
   return expected;
 }
 
+std::size_t alike_pairs(const LineScene& line, double grains) {
+  const LineObject at = shifts(line);
+  std::vector<double> distances;
+  for (std::size_t i = 0; i < at.x.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j) distances.push_back(std::abs(at.x[i] - at.x[j]));
+  std::sort(distances.begin(), distances.end());
+  const double grain = static_cast<double>(line.camera.pixels) / most_grains(line) * 2 / 3;
+  std::size_t alike = 0;
+  for (std::size_t i = 1; i < distances.size(); ++i)
+    alike += distances[i] - distances[i - 1] < grains * grain;
+  return alike;
+}
+
 Measured mean_psnr(const std::vector<ImagedMedium>& media) {
   constexpr double unknown = std::numeric_limits<double>::infinity();
   return mean_of(media, unknown, [](const ImagedMedium& m) { return m.psnr; });

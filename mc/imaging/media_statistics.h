@@ -43,6 +43,10 @@ struct ExpectedPeaks {
 ExpectedPeaks expected_peaks(const LineScene& line, const ImagingTask& task,
                              const ImagingPrediction& prediction);
 
+/// Pairs of points as far apart, within so many grains, as another pair: a search that wants
+/// distances to be distinct is not to find all of them.
+std::size_t alike_pairs(const LineScene& line, double grains);
+
 /// dB.
 Measured mean_psnr(const std::vector<ImagedMedium>& media);
 

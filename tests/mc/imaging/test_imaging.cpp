@@ -238,12 +238,18 @@ TEST_CASE("a camera's noise is what was asked for, and leaves the contrast") {
 }
 
 TEST_CASE("the speckle of a point that moves is shifted, and as alike as predicted") {
-  const LineObject object{{0, 30}, {1, 1}};
-  for (const bool near : {false, true}) {
+  struct Case {
+    bool near;
+    double x;
+  };
+  for (const auto& [near, x] : {Case{false, 0}, Case{true, 0}, Case{false, 1500}}) {
+    CAPTURE(x);
+    const LineObject object{{x, x + 30}, {1, 1}};
     LineCamera camera{std::nullopt, -0.3, 0.3, 700};
     if (near) camera = {3020.0, -900, 900, 700};
     const LineScene line = line_scene(forward_box(300, 20, 5), object, -3000, camera);
-    const double shift = magnification(line) * 30;
+    const double shift = shift_of(line, x + 30) - shift_of(line, x);
+    if (x == 0) CHECK(shift == doctest::Approx(magnification(line) * 30).epsilon(1e-3));
     const auto expected = predicted(line, 20000, 1, 2);
     REQUIRE(expected);
     const FieldDraw draw =
