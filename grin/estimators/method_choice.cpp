@@ -12,7 +12,7 @@ namespace flatspeckle::grin {
 
 namespace {
 
-constexpr int groups = 128;
+constexpr int groups = 256;
 
 /// Of one sensor's picture, by a group of paths.
 struct PictureMoments {
@@ -114,7 +114,7 @@ std::optional<Trial> tried(const Tracers& tracers, const Tracer& tracer, int pai
 
 /// A few pairs of paths, then as many as the work allows, `effort` times the usual.
 std::optional<Trial> tried(const Tracers& tracers, const Tracer& tracer, double effort) {
-  const double usual = tracers.plan().curved ? 1 << 15 : 1 << 17;
+  const double usual = tracers.plan().curved ? 1 << 16 : 1 << 18;
   if (!(tracer.flights_per_pair * tracers.cost_of_flight() * groups < usual)) return std::nullopt;
   const auto few = tried(tracers, tracer, 1, usual);
   if (!few) return few;
@@ -141,7 +141,7 @@ std::vector<double> light_of_pictures(const std::vector<Candidate>& candidates) 
 /// Fewer groups with the light tell nothing of the variance.
 constexpr double fewest_lit = groups / 4.0;
 /// With more doubt the strongest paths are likely still missing.
-constexpr double most_doubt = 0.2;
+constexpr double most_doubt = 0.15;
 
 /// Work to a given error, of the sensor for which it is most, and whether the trial knows it well.
 struct Needed {
@@ -235,7 +235,7 @@ Best best_of(const std::vector<Candidate>& all, bool of_known) {
 Tracer best_tracer(const Tracers& tracers) {
   auto all = candidates(tracers);
   Best best;
-  for (const double effort : {1, 8, 32}) {
+  for (const double effort : {1, 4, 16}) {
     try_all(tracers, effort, all);
     if (all.empty()) break;
     best = best_of(all, false);
