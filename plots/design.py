@@ -29,8 +29,12 @@ def draw_slice(figure, axis, result):
     for name, colour, width in (("before", "0.6", 0.5), ("after", style.COLOURS[1], 0.7)):
         for px, pz in zip(result.values(f"{name}/x"), result.values(f"{name}/z")):
             axis.plot(pz, px, color=colour, linewidth=width)
-    turn = np.linspace(0, 2 * np.pi, 200)
-    axis.plot(radius * np.cos(turn), radius * np.sin(turn), color="black", linewidth=0.8)
+    if result.has("excess"):
+        around = radius * np.array([(-1, -1), (-1, 1), (1, 1), (1, -1), (-1, -1)]).T
+    else:
+        turn = np.linspace(0, 2 * np.pi, 200)
+        around = radius * np.array([np.cos(turn), np.sin(turn)])
+    axis.plot(*around, color="black", linewidth=0.8)
     axis.set(xlabel="$z$", ylabel="$x$", xlim=(-1.3 * radius, 1.5 * radius),
              ylim=(-1.2 * radius, 1.2 * radius), aspect="equal")
 

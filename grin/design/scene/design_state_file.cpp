@@ -17,6 +17,7 @@ void each_member(State& state, const Use& use) {
   use(state.level);
   use(state.slow_steps);
   use(state.rms_as_smooth);
+  use(state.rms_by_half_steps);
   use(state.search.coefficients);
   use(state.search.damping);
   use(state.search.roughness);

@@ -22,6 +22,7 @@ FieldForm Designer::form(const DesignState& state) const {
 Search Designer::search_in(const FieldForm& form) const {
   Search search{bounds_of(form, scene_.start.least_index, scene_.start.most_index)};
   search.rate = scene_.rate;
+  if (scene_.has_noise) search.solver_steps = 100;  // hardly more than linear, and not well posed
   const auto& extent = shape_of(form).extent;
   if (extent[0] == 1) search.smooth_damping = 0;  // all of a profile is seen
   return search;
@@ -73,11 +74,14 @@ bool Designer::smoothes_on(DesignState& state) const {
 }
 
 /// Whether rays miss by less than their steps are off: then a search only cancels their error.
+/// Looked at again where they miss by half as much.
 bool Designer::leans_on_steps(DesignState& state) {
-  if (scene_.method != "gauss_newton") return false;
+  const double now = std::sqrt(state.search.loss);
+  if (scene_.method != "gauss_newton" || now > 0.5 * state.rms_by_half_steps) return false;
   const auto by_half = rms(seen_, seen_.rays->trace(form(state), state.search.coefficients, 2));
-  state.search.traces += 2;
-  return by_half && *by_half > 2 * std::sqrt(state.search.loss);
+  state.search.traces += 3;  // and once more as they were
+  state.rms_by_half_steps = by_half.value_or(now);
+  return state.rms_by_half_steps > 2 * now;
 }
 
 void Designer::advance(DesignState& state) {

@@ -17,7 +17,8 @@ struct DesignState {
   int level = 0, slow_steps = 0;  ///< in turn
   SearchState search;
   DesignHistory history;
-  double rms_as_smooth = HUGE_VAL;  ///< where the roughness' weight was lowered last
+  double rms_as_smooth = HUGE_VAL;      ///< where the roughness' weight was lowered last
+  double rms_by_half_steps = HUGE_VAL;  ///< where that was looked at last
   bool ended = false, stalled = false;
   double cpu_before = 0;  ///< of the runs that this one goes on from
 };
