@@ -139,9 +139,9 @@ std::vector<double> light_of_pictures(const std::vector<Candidate>& candidates) 
 }
 
 /// Fewer groups with the light tell nothing of the variance.
-constexpr double fewest_lit = groups / 4.0;
+constexpr double fewest_lit = 16;
 /// With more doubt the strongest paths are likely still missing.
-constexpr double most_doubt = 0.15;
+constexpr double most_doubt = 0.25;
 
 /// Work to a given error, of the sensor for which it is most, and whether the trial knows it well.
 struct Needed {
