@@ -45,7 +45,8 @@ void print_row(const char* name, const Estimate& estimate, std::size_t entry,
 /// bring may be any multiple of that.
 bool is_found(const Estimate& one) {
   const bool is_rare = !one.rare.empty() && one.rare[0];
-  return !is_rare || one.error[0] < one.value[0].real() / 2;
+  const double value = one.value[0].real();
+  return !is_rare || value == 0 || one.error[0] < value / 2;
 }
 
 /// Of one entry.

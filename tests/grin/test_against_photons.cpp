@@ -8,6 +8,7 @@
 #include "grin/render/render_datasets.h"
 #include "tests/grin/photon_comparison.h"
 #include "tests/grin/render_tests.h"
+#include "tests/grin/seen_from_outside.h"
 
 // Estimators against analog photons, on detectors that photons hit.
 
@@ -246,132 +247,22 @@ TEST_CASE("diffuse reflectance by polar angle: as photons see it") {
   check_methods(tissue(rings, polar_sensor(rings)), two_methods, 200000, 0.02, 60000);
 }
 
-namespace {
-
-const Camera small_lens{.x = {2, 0, 0},
-                        .forward = {-1, 0, 0},
-                        .up = {0, 1, 0},
-                        .field_of_view = 1.2,
-                        .pixels = {1, 1},
-                        .lens_radius = 0.15,
-                        .focus_distance = 2};
-
-/// A body in a clear room, seen from its side.
-TwoScenes body_from_outside(const AnyIndexField& field, const WalkScene& walk, const Light& light,
-                            const PhotonSource& source) {
-  return {
-      .scene = {.field = field,
-                .step = 0.1,
-                .max_length = 100,
-                .stage = {.boundary = Box{{-2, -2, -2}, {2, 2, 2}},
-                          .bodies = std::vector<Body>(1, {Sphere{}, {.mu_s = 0.5, .mu_a = 0.5}})},
-                .lights = {light},
-                .sensors = {small_lens}},
-      .walk = walk,
-      .source = source,
-      .sensor = lens_sensor(small_lens)};
-}
-
-WalkScene ball_walk(double inside) {
-  return {.boundary = {{-2, -2, -2}, {2, 2, 2}},
-          .balls = {{Vec3::Zero(), 1, {.mu_s = 0.5, .mu_a = 0.5}, inside}}};
-}
-
-/// The lens against photons; and the pinhole in its middle against the lens.
-void check_lens_and_pinhole(TwoScenes scenes, std::uint64_t photons, unsigned samples,
-                            double precision = 0.03) {
-  const PhotonPicture picture = photon_picture(scenes, photons, 6);
-  check_against(picture, scenes, {RenderMethod::bidirectional}, samples, precision);
-  const auto mean = [&](RenderMethod method) {
-    const RenderJob job = render_job(scenes.scene, {.method = method}, 12);
-    const Estimate found = pixel_mean(job, run_render(job, samples));
-    return std::pair(found.value[0].real(), found.error[0]);
-  };
-  const auto by_lens = mean(RenderMethod::light);
-  const double lens = by_lens.first, lens_error = by_lens.second;
-  Camera pinhole = small_lens;
-  pinhole.x[0] -= 1e-3;
-  pinhole.lens_radius = 0;
-  scenes.scene.sensors = {pinhole};
-  for (const RenderMethod method : two_methods) {
-    const auto seen = mean(method);
-    const double value = seen.first, error = seen.second;
-    CAPTURE(value);
-    CAPTURE(error);
-    CAPTURE(lens);
-    CAPTURE(lens_error);
-    CHECK(std::abs(value - lens) < 4 * std::hypot(error, lens_error) + 0.005 * lens);
-    CHECK(error < 1.5 * precision * lens);
-  }
-}
-
-const Light point = PointLight{{0, 0, -1.5}};
-const Light beam = BeamLight{{0, 0, -1.9}, {0, 0, 1}, 0.8};
-
-}  // namespace
-
 TEST_CASE("a glass ball that scatters, seen from outside by a lens and a pinhole") {
   for (const double index : {1.0, 1.4, 0.8})  // the last: faint ways that are seldom found
-    check_lens_and_pinhole(body_from_outside(Homogeneous{index - 1}, ball_walk(index), point,
+    check_lens_and_pinhole(body_from_outside(Homogeneous{index - 1}, ball_walk(index), side_point,
                                              point_source({0, 0, -1.5})),
                            6000000, 400000, index < 1 ? 0.15 : 0.03);
-  check_lens_and_pinhole(body_from_outside(Homogeneous{0.4}, ball_walk(1.4), beam,
+  check_lens_and_pinhole(body_from_outside(Homogeneous{0.4}, ball_walk(1.4), side_beam,
                                            beam_source({0, 0, -1.9}, {0, 0, 1}, 0.8)),
                          3000000, 200000);
 }
 
 TEST_CASE("a Luneburg ball that scatters, seen from outside by a lens and a pinhole") {
-  WalkScene walk = ball_walk(1);
-  const auto n = [](const Vec3& x) { return std::sqrt(2 - x.squaredNorm()); };
-  walk.curved = WalkIndex{n, [=](const Vec3& x) { return Vec3(-x / n(x)); }, 0.05};
-  check_lens_and_pinhole(body_from_outside(Luneburg({}), walk, point, point_source({0, 0, -1.5})),
-                         1500000, 100000);
+  const WalkScene walk = luneburg_walk();
   check_lens_and_pinhole(
-      body_from_outside(Luneburg({}), walk, beam, beam_source({0, 0, -1.9}, {0, 0, 1}, 0.8)),
+      body_from_outside(Luneburg({}), walk, side_point, point_source({0, 0, -1.5})), 1500000,
+      100000);
+  check_lens_and_pinhole(
+      body_from_outside(Luneburg({}), walk, side_beam, beam_source({0, 0, -1.9}, {0, 0, 1}, 0.8)),
       600000, 50000);
-}
-
-namespace {
-
-/// The same ball twice: for the estimators and for the oracle.
-void add_ball(TwoScenes& scenes, const Vec3& centre, double radius, double index, double mu_s,
-              double mu_a) {
-  scenes.scene.stage.bodies.push_back(
-      {Sphere{centre, radius}, {.mu_s = mu_s, .mu_a = mu_a}, index - 1});
-  scenes.walk.balls.push_back({centre, radius, {.mu_s = mu_s, .mu_a = mu_a}, index});
-}
-
-/// A ball within a ball, and one beside them.
-TwoScenes three_balls(const AnyIndexField& field, const WalkScene& walk, const Light& light,
-                      const PhotonSource& source) {
-  TwoScenes scenes = body_from_outside(field, walk, light, source);
-  add_ball(scenes, {0.2, 0.1, -0.3}, 0.5, 1.6, 2, 0.5);
-  add_ball(scenes, {1.1, 0.2, 1.1}, 0.5, 1.2, 1, 0);
-  return scenes;
-}
-
-}  // namespace
-
-TEST_CASE("a ball within a ball and one beside, seen from outside by a lens and a pinhole") {
-  check_lens_and_pinhole(
-      three_balls(Homogeneous{0.4}, ball_walk(1.4), point, point_source({0, 0, -1.5})), 6000000,
-      400000, 0.06);
-  check_lens_and_pinhole(three_balls(Homogeneous{0.4}, ball_walk(1.4), beam,
-                                     beam_source({0, 0, -1.9}, {0, 0, 1}, 0.8)),
-                         3000000, 200000, 0.06);
-}
-
-TEST_CASE("a ball of the same index as the one around it, seen from outside") {
-  TwoScenes scenes =
-      body_from_outside(Homogeneous{0.4}, ball_walk(1.4), point, point_source({0, 0, -1.5}));
-  add_ball(scenes, {0.2, 0.1, -0.3}, 0.5, 1.4, 3, 1);
-  check_lens_and_pinhole(scenes, 6000000, 400000);
-}
-
-TEST_CASE("a glass ball in a Luneburg ball, seen from outside by a lens and a pinhole") {
-  WalkScene walk = ball_walk(1);
-  const auto n = [](const Vec3& x) { return std::sqrt(2 - x.squaredNorm()); };
-  walk.curved = WalkIndex{n, [=](const Vec3& x) { return Vec3(-x / n(x)); }, 0.05};
-  check_lens_and_pinhole(three_balls(Luneburg({}), walk, point, point_source({0, 0, -1.5})),
-                         1500000, 100000, 0.1);
 }
