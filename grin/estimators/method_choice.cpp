@@ -47,8 +47,8 @@ double work(const TransportCounts& counts, const Tracers& tracers, const Tracer&
          per_promise * static_cast<double>(counts.joins_weighed) + per_join * joins;
 }
 
-/// Of the groups of one sensor's picture: the variance is that of the differences between each group
-/// and the next.
+/// Of the groups of one sensor's picture: the variance is that of the differences between each
+/// group and the next.
 class PictureSums {
  public:
   explicit PictureSums(const SensorEnd& sensor)
@@ -115,8 +115,9 @@ std::optional<Trial> tried(const Tracers& tracers, const Tracer& tracer, int pai
 /// A few pairs of paths, then as many as the work allows, `effort` times the usual.
 std::optional<Trial> tried(const Tracers& tracers, const Tracer& tracer, double effort) {
   const double usual = tracers.plan().curved ? 1 << 16 : 1 << 18;
-  if (!(tracer.flights_per_pair * tracers.cost_of_flight() * groups < usual)) return std::nullopt;
-  const auto few = tried(tracers, tracer, 1, usual);
+  const double most = 2 * usual;
+  if (!(tracer.flights_per_pair * tracers.cost_of_flight() * groups < most)) return std::nullopt;
+  const auto few = tried(tracers, tracer, 1, most);
   if (!few) return few;
   const auto pairs = static_cast<int>(effort * usual / few->work);
   return pairs > 1 ? tried(tracers, tracer, pairs, 8 * effort * usual) : few;

@@ -41,6 +41,18 @@ RenderScene tissue() {
   return scene;
 }
 
+/// A hundred mean free paths, with light that comes through and light that comes back.
+RenderScene deep_slab() {
+  RenderScene scene = tissue();
+  const auto face = [](double z) {
+    return AreaDetector{{0, 0, z}, Vec3::UnitY(), 1e4, 1e4, {}, std::numbers::pi / 2};
+  };
+  scene.stage.boundary = Box{{-5000, -5000, 0}, {5000, 5000, 100}};
+  scene.stage.medium.mu_s = 1;
+  scene.sensors = {face(100), face(0)};
+  return scene;
+}
+
 /// Variance by pixel times processor seconds.
 double cost(const RenderScene& scene, RenderMethod method) {
   const double samples = scene.stage.medium.mu_s > 1 ? 5000 : 30000;
@@ -72,6 +84,7 @@ TEST_CASE("the method that is chosen is nearly as cheap as any, by the clock too
     }
   }
   CHECK(chosen(rows[0].scene) == RenderMethod::light);
+  CHECK(chosen(deep_slab()) == RenderMethod::light);
 }
 
 TEST_CASE("methods without finite variance are not chosen, and say so") {
