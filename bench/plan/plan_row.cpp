@@ -8,8 +8,9 @@ namespace flatspeckle::bench {
 
 std::vector<PlanCase> plan_cases() {
   std::vector<PlanCase> cases;
-  for (const auto& room : {mc_plan_cases, transport_plan_cases, field_plan_cases, fit_plan_cases,
-                           wave_plan_cases, ray_plan_cases, render_plan_cases, design_plan_cases})
+  for (const auto& room :
+       {mc_plan_cases, transport_plan_cases, field_plan_cases, fit_plan_cases, imaging_plan_cases,
+        wave_plan_cases, ray_plan_cases, render_plan_cases, design_plan_cases})
     for (PlanCase& plan_case : room()) cases.push_back(std::move(plan_case));
   return cases;
 }

@@ -23,7 +23,7 @@ struct PlanCase {
   std::function<PlanRow(double cpu_seconds)> run;
 };
 
-/// Rows of mc, transport, fields, fit, wave solver, rays and render.
+/// Rows of mc, transport, fields, fit, imaging, wave solver, rays and render.
 std::vector<PlanCase> plan_cases();
 
 /// Whether both kernels have the same result.

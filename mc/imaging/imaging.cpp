@@ -165,7 +165,7 @@ std::optional<std::vector<ImagedMedium>> imaged(const LineScene& line, const Ima
 }
 
 std::optional<ImagingPrediction> predicted(const LineScene& line, std::uint64_t paths,
-                                           std::uint64_t seed, int threads) {
+                                           std::uint64_t seed, int threads, const char* label) {
   const auto last = static_cast<double>(line.camera.pixels - 1);
   const std::vector<double> places{0.1 * last, 0.3 * last, 0.5 * last, 0.7 * last, 0.9 * last};
   Scene scene = line.scene;
@@ -174,7 +174,7 @@ std::optional<ImagingPrediction> predicted(const LineScene& line, std::uint64_t 
   if (scene.request.entries.empty()) return ImagingPrediction{};
   const FieldJob field = covariance_job(scene, make_plan(scene, ReversedPaths::automatic), seed);
   RunState state;
-  if (!run(field.batches, paths, threads, "correlations", state)) return std::nullopt;
+  if (!run(field.batches, paths, threads, label, state)) return std::nullopt;
   const std::size_t of_object = pairs.size() - (line.reference ? line.object.x.size() : 0);
   ImagingPrediction prediction;
   for (std::size_t i = 0; i < of_object; ++i) {

@@ -46,9 +46,11 @@ struct ImagingPrediction {
   Estimate to_reference;         ///< C_I of each point and the reference
 };
 
-/// By so many light paths. Averaged over places all along the camera.
+/// By so many light paths. Averaged over places all along the camera. label: of the progress, none
+/// where it is empty.
 std::optional<ImagingPrediction> predicted(const LineScene& line, std::uint64_t paths,
-                                           std::uint64_t seed, int threads);
+                                           std::uint64_t seed, int threads,
+                                           const char* label = "correlations");
 
 /// Light paths of one field: as many as a pixel's excess kurtosis of 0.01 asks for, by a survey of
 /// a few pixels, and four for each grain that can be seen, or the frame's autocorrelation would

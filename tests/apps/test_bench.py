@@ -64,7 +64,7 @@ class Bench(ProgramTest):
         path, printed = self.bench("plan")
         with h5py.File(path) as file:
             self.assertEqual(set(texts(file, "room")),
-                             {"mc", "transport", "fields", "fit", "wave solver", "grin rays", "render", "design"})
+                             {"mc", "transport", "fields", "fit", "imaging", "wave solver", "grin rays", "render", "design"})
             ratio = file["general_s"][...] / file["special_s"][...]
             np.testing.assert_allclose(ratio, file["ratio"][...], rtol=3)  # medians of few
             self.assertTrue(np.all(file["difference"][...] <= file["limit"][...]))

@@ -1,0 +1,70 @@
+#include "bench/error/error_imaging.h"
+
+#include <cmath>
+
+#include <omp.h>
+
+#include "bench/error/error_measure.h"
+#include "bench/measure/power_fit.h"
+#include "bench/scenes/imaged_points.h"
+#include "core/run/stopwatch.h"
+
+namespace flatspeckle::bench {
+
+namespace {
+
+constexpr double fewest_paths = 1000;
+
+Estimate correlations(const mc::LineScene& line, double paths, std::uint64_t seed) {
+  return mc::predicted(line, static_cast<std::uint64_t>(paths), seed, 1, "")->correlation;
+}
+
+ErrorReference reference_of(const mc::LineScene& line) {
+  constexpr double paths = 400000;
+  constexpr std::uint64_t seed = 1000;
+  const Estimate many = correlations(line, paths, seed);
+  return {many.value, relative_error(many), "400,000 paths"};
+}
+
+/// RMS over some runs.
+ErrorPoint point(const mc::LineScene& line, const ErrorReference& reference, double paths) {
+  constexpr std::uint64_t runs = 16;
+  double squares = 0;
+  const double start = thread_cpu_seconds();
+  for (std::uint64_t seed = 1; seed <= runs; ++seed)
+    squares += std::pow(relative_distance(correlations(line, paths, seed).value, reference), 2);
+  const double error = std::sqrt(squares / runs);
+  return {(thread_cpu_seconds() - start) / runs, paths, error, error / std::sqrt(2.0 * runs)};
+}
+
+ErrorCurve by_paths(double cpu_seconds) {
+  constexpr std::size_t fewest = 3;
+  omp_set_num_threads(1);
+  const mc::LineScene line = imaged_points();
+  const ErrorReference reference = reference_of(line);
+  ErrorCurve curve{"image, C_I of pairs", "paths", reference.how, reference.relative_error, {}};
+  curve.is_monte_carlo = false;  // a ratio
+  const double start = thread_cpu_seconds();
+  std::vector<double> time, error;
+  for (double paths = fewest_paths, spent = 0; time.size() < fewest || 3 * spent < cpu_seconds;
+       paths *= 2) {
+    curve.points.push_back(point(line, reference, paths));
+    time.push_back(curve.points.back().cpu_s);
+    error.push_back(curve.points.back().error);
+    spent = thread_cpu_seconds() - start;
+    if (error.back() < 2 * reference.relative_error) break;
+  }
+  const PowerFit slope = fit_power(time, error);
+  curve.slope = slope.exponent;
+  curve.slope_error = slope.exponent_error;
+  curve.efficiency = 1 / (error.back() * error.back() * time.back());
+  return curve;
+}
+
+}  // namespace
+
+std::vector<ErrorRun> imaging_error_runs() {
+  return {{"image, C_I of pairs", "paths", by_paths, true}};
+}
+
+}  // namespace flatspeckle::bench

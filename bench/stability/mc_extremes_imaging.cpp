@@ -1,0 +1,60 @@
+#include "bench/scenes/imaged_points.h"
+#include "bench/stability/extreme_rows.h"
+#include "mc/imaging/success_prediction.h"
+
+namespace flatspeckle::bench {
+
+namespace {
+
+/// Distances of what is found, from true ones.
+Finding search(const std::vector<double>& marks, double signal) {
+  const auto fit = mc::sparse_search(noisy_peaks(marks, signal, 1), {marks.size(), 1, 1000});
+  const mc::LineObject truth{marks, std::vector<double>(marks.size(), 1)};
+  return {1 - mc::score(truth, fit.object, 1).found, 0};
+}
+
+/// How far the success of peaks that grow by a factor of 10 each is from rising from 0 to 1.
+Finding success(std::size_t points, double places, bool weighted) {
+  double last = 0, figure = 0;
+  for (double signal = 1e-6; signal < 1e7; signal *= 10) {
+    const std::vector<double> signals(points * (points - 1) / 2, signal);
+    const double now = mc::predicted_success(signals, points, places, weighted);
+    figure = larger({figure, last - now, now - 1, now > -1e-12 ? 0 : 1});
+    last = now;
+  }
+  return {larger(figure, 1 - last), 1e-9};
+}
+
+/// Contrast of speckle without correlation under an envelope that falls by so much, off 1 in errors
+/// of so many pixels.
+Finding steep_envelope(double decades) {
+  constexpr std::size_t pixels = 20000;
+  std::mt19937 random(1);
+  std::exponential_distribution<double> intensity;
+  std::vector<double> frame;
+  for (std::size_t p = 0; p < pixels; ++p)
+    frame.push_back(intensity(random) * std::pow(10, -decades * static_cast<double>(p) / pixels));
+  const double error = std::sqrt(8.0 / (0.75 * pixels));  // of the square of the contrast
+  return {std::abs(mc::squared_contrast(frame) - 1) / error, 4};
+}
+
+}  // namespace
+
+std::vector<ExtremeCase> mc_imaging_extremes() {
+  ExtremeRows rows("mc imaging");
+  rows.add("search, 2 points", "share of points not found", [] { return search({0, 317}, 9); });
+  rows.add_slow("search, 12 points, peaks 1e6 times the noise", "share of points not found", [] {
+    return search({0, 2, 6, 24, 29, 40, 43, 55, 68, 75, 76, 85}, 1e6);
+  });
+  for (const std::size_t points : {2, 64})
+    for (const double places : {1e5, 1e9})
+      rows.add(
+          "success, " + std::to_string(points) + " points in " + short_number(places) + " places",
+          "rises from 0 to 1 as peaks grow by 1e13",
+          [=] { return worse(success(points, places, false), success(points, places, true)); });
+  rows.add("frame whose light falls by 100", "contrast 1, in standard errors",
+           [] { return steep_envelope(2); });
+  return std::move(rows).rows();
+}
+
+}  // namespace flatspeckle::bench
