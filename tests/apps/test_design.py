@@ -83,7 +83,7 @@ class Design(RefusingTest):
         """Blobs are found again from what rays in four views did."""
         self.write("blobs.csv", "x,y,z,height,width\n0.2,0.1,-0.1,0.001,0.3\n-0.3,0,0.2,0.0015,0.25\n")
         self.write("views.csv", views(6, 12) + "0,1,-1.9,0,0,1\n1,0.2,-1.9,0,0,1\n")  # the last go along faces
-        self.call("trace", field="blobs", blobs="blobs.csv", rays="views.csv", stop_box=[-2, -2, -2, 2, 2, 2],
+        self.call("trace", field="blobs", blobs="blobs.csv", rays="views.csv", stop_box=[-3, -3, -3, 3, 3, 3],
                   max_length=9, out="measured.h5")
         _, found = self.design("found.h5", design="box", nodes=[9], goal="deflections", measured="measured.h5",
                                noise=6e-5)

@@ -22,7 +22,6 @@ FieldForm Designer::form(const DesignState& state) const {
 Search Designer::search_in(const FieldForm& form) const {
   Search search{bounds_of(form, scene_.start.least_index, scene_.start.most_index)};
   search.rate = scene_.rate;
-  if (scene_.has_noise) search.solver_steps = 100;  // hardly more than linear, and not well posed
   const auto& extent = shape_of(form).extent;
   if (extent[0] == 1) search.smooth_damping = 0;  // all of a profile is seen
   return search;
