@@ -19,7 +19,7 @@ Finding success(std::size_t points, double places, bool weighted) {
   for (double signal = 1e-6; signal < 1e7; signal *= 10) {
     const std::vector<double> signals(points * (points - 1) / 2, signal);
     const double now = mc::predicted_success(signals, points, places, weighted);
-    figure = larger({figure, last - now, now - 1, now > -1e-12 ? 0 : 1});
+    figure = larger({figure, last - now, now - 1, now > -1e-12 ? 0.0 : 1.0});
     last = now;
   }
   return {larger(figure, 1 - last), 1e-9};
