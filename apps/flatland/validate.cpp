@@ -205,8 +205,9 @@ int validate(const Arguments& arguments) {
                           : by_waves(keys, methods, run, session.seed());
   if (slab) keys.read(spec.dimension);
   keys.read(shifts);
-  note_rounding(make_scene(keys, spec));
-  const Scene scene = with_dimension(rounded_scene(keys, spec), spec);
+  const Scene given = make_scene(keys, spec);
+  note_rounding(given);
+  const Scene scene = with_dimension(rounded_scene(given, spec), spec);
   if (scene.medium.mu_s == 0)
     throw InputError("scatterer", spec.scatterer,
                      "this scene does not scatter, there is nothing to compare");

@@ -134,8 +134,7 @@ void note(const Neglected& neglected) {
                  "takes both in)\n";
 }
 
-Scene rounded_scene(const Keys& keys, const SceneSpec& spec) {
-  const Scene scene = make_scene(keys, spec);
+Scene rounded_scene(const Scene& scene, const SceneSpec& spec) {
   if (scene.placement.kind == PlacementRule::Kind::poisson || spec.count || scene.profile)
     return scene;
   SceneSpec rounded = spec;

@@ -77,7 +77,7 @@ void refuse_absurd(const MethodSettings& settings, const Neglected& neglected);
 void note(const Neglected& neglected);
 
 /// The scene with the rounded number in place of its density, so that both solvers have the same.
-Scene rounded_scene(const Keys& keys, const SceneSpec& spec);
+Scene rounded_scene(const Scene& scene, const SceneSpec& spec);
 
 /// The scene of the plane, or with `dimension` = 3 the one of space that has the same keys. Throws
 /// InputError for what is no slab.

@@ -157,9 +157,9 @@ void SweepPlan::with_point(std::size_t run,
 }
 
 Scene SweepPlan::scene_of(const Keyed<SceneSpec>& point) const {
-  const Scene scene = method_words.size() > 1 ? rounded_scene(point.keys, point.values)
-                                              : make_scene(point.keys, point.values);
-  return with_dimension(scene, point.values);
+  const Scene scene = make_scene(point.keys, point.values);
+  return with_dimension(method_words.size() > 1 ? rounded_scene(scene, point.values) : scene,
+                        point.values);
 }
 
 Scene SweepPlan::scene(std::size_t run) const {

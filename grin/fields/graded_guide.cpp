@@ -4,6 +4,7 @@
 
 #include "core/result/guarded_read.h"
 #include "core/result/result_reader.h"
+#include "grin/index/field_file.h"
 
 namespace flatspeckle::grin {
 
@@ -70,13 +71,7 @@ GradedGuide make_field(const Keys& keys, const GradedValues& values, const Field
         GradedProfile({keys.read(values.index) - 1, keys.required(values.delta),
                        keys.required(values.core_radius), keys.read(values.exponent)}),
         centre);
-  try {
-    return GradedGuide(read_graded(path), centre);
-  } catch (const InputError& error) {
-    const std::string message = error.what();
-    const bool names = message.find(path) != std::string::npos;
-    throw InputError(keys.name(values.graded) + ": " + (names ? "" : path + ": ") + message);
-  }
+  return GradedGuide(read_field(keys, path, read_graded), centre);
 }
 
 }  // namespace flatspeckle::grin

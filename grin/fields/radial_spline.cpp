@@ -4,6 +4,7 @@
 
 #include "core/result/guarded_read.h"
 #include "core/result/result_reader.h"
+#include "grin/index/field_file.h"
 
 namespace flatspeckle::grin {
 
@@ -51,14 +52,7 @@ void add_keys(Keys& keys, RadialSplineValues& values) {
 }
 
 RadialSpline make_field(const Keys& keys, const RadialSplineValues& values, const FieldUse&) {
-  const std::string& path = keys.required(values.radial);
-  try {
-    return read_radial_spline(path);
-  } catch (const InputError& error) {
-    const std::string message = error.what();
-    const bool names = message.find(path) != std::string::npos;
-    throw InputError(keys.name(values.radial) + ": " + (names ? "" : path + ": ") + message);
-  }
+  return read_field(keys, keys.required(values.radial), read_radial_spline);
 }
 
 }  // namespace flatspeckle::grin

@@ -5,6 +5,7 @@
 
 #include <doctest/doctest.h>
 
+#include "bench/scenes/copied_cluster.h"
 #include "core/error.h"
 #include "reference.h"
 #include "wave_solver/clusters/cluster_solution.h"
@@ -28,20 +29,7 @@ Placement five_disks() {
 }
 
 std::vector<ClusterPlace> six_places(double pitch) {
-  std::vector<ClusterPlace> places;
-  for (int i = 0; i < 6; ++i) places.push_back({{pitch * (i % 3), 1 + pitch * (i / 3)}, 0.7 * i});
-  return places;
-}
-
-Placement copies(const Placement& cluster, const std::vector<ClusterPlace>& places) {
-  Placement all;
-  for (const auto& [centre, angle] : places)
-    for (std::size_t j = 0; j < cluster.size(); ++j) {
-      const auto [x, z] = cluster[j].position;
-      const double c = std::cos(angle), s = std::sin(angle);
-      all.push_back({centre + Vec2{c * x + s * z, c * z - s * x}, cluster[j].scatterer});
-    }
-  return all;
+  return bench::rows_of_places(2, 3, pitch);
 }
 
 // w_n of ClusterTMatrix.
@@ -88,7 +76,7 @@ TEST_CASE("copies of a cluster scatter as all their disks do") {
   const std::vector<double> lights{0.3, -2.0}, views{0, 0.5, 1.9, -0.8, 3.0};
   for (const auto& places :
        {std::vector<ClusterPlace>{{{0.4, 2}, 1.1}}, six_places(2 * cluster.radius + gap)}) {
-    const auto expected = full_far_fields(copies(disks, places), lights, views);
+    const auto expected = full_far_fields(bench::copies(disks, places), lights, views);
     const ClusterSolution solution(cluster, places, lights);
     CHECK(relative_distance(solution.fields(far_views(views)), expected) < 1e-9);
     CHECK(solution.diagnosis().residual < 1e-11);
@@ -102,7 +90,7 @@ TEST_CASE("copies of a cluster far apart are solved densely and fast") {
   const auto cluster = cluster_t_matrix(disks, k, wide, tolerance);
   const auto places = six_places(2 * cluster.radius + wide);
   const std::vector<double> lights{0.3, -2.0}, views{0, 0.5, 1.9, -0.8, 3.0};
-  const auto expected = full_far_fields(copies(disks, places), lights, views);
+  const auto expected = full_far_fields(bench::copies(disks, places), lights, views);
   for (const Method method : {Method::dense, Method::fast}) {
     const ClusterSolution solution(cluster, places, lights, {tolerance, {}, true, method});
     CHECK(relative_distance(solution.fields(far_views(views)), expected) < 1e-9);

@@ -5,6 +5,7 @@
 #include "core/result/guarded_read.h"
 #include "core/result/result_reader.h"
 #include "grin/design/goals/passage.h"
+#include "grin/design/goals/solid_hull.h"
 
 namespace flatspeckle::grin::design {
 
@@ -78,14 +79,13 @@ class DeflectionAim : public Aim {
 };
 
 /// Those whose way through the field is long enough, and not along its face, to tell anything.
-std::vector<MeasuredRay> through(const Surface& hull, double radius,
-                                 const std::vector<MeasuredRay>& rays) {
+std::vector<MeasuredRay> through(const SolidHull& hull, const std::vector<MeasuredRay>& rays) {
   std::vector<MeasuredRay> through;
   for (const MeasuredRay& ray : rays) {
-    const auto way = passage(hull, ray.start, ray.direction);
-    if (!way || way->second - way->first < 0.3 * radius) continue;
+    const auto way = passage(hull.surface, ray.start, ray.direction);
+    if (!way || way->second - way->first < 0.3 * hull.radius) continue;
     const Vec3 middle = ray.start + (way->first + way->second) / 2 * ray.direction;
-    if (distance(hull, middle) < -1e-3 * radius) through.push_back(ray);
+    if (distance(hull.surface, middle) < -1e-3 * hull.radius) through.push_back(ray);
   }
   return through;
 }
@@ -101,17 +101,13 @@ void add_keys(Keys& keys, DeflectionValues& values) {
 
 std::unique_ptr<Aim> make_aim(const Keys& keys, const DeflectionValues& values,
                               const FieldForm& form) {
-  const auto hull = hull_of(form);
-  if (!hull) throw InputError("goal", "deflections", "needs design = box, ball or radial");
-  const auto* ball = std::get_if<Sphere>(&*hull);
-  const double radius =
-      ball ? ball->radius : (std::get<Box>(*hull).high - std::get<Box>(*hull).low)[0] / 2;
-  auto rays = through(*hull, radius, read_measured(keys.required(values.measured)));
+  const SolidHull hull = solid_hull(form, DeflectionValues::word);
+  auto rays = through(hull, read_measured(keys.required(values.measured)));
   if (rays.size() < 20)
     throw InputError(
         "measured", values.measured,
         "has " + std::to_string(rays.size()) + " rays through the field; must have at least 20");
-  return std::make_unique<DeflectionAim>(*hull, std::move(rays));
+  return std::make_unique<DeflectionAim>(hull.surface, std::move(rays));
 }
 
 }  // namespace flatspeckle::grin::design

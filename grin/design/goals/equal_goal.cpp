@@ -1,19 +1,15 @@
 #include "grin/design/goals/equal_goal.h"
 
-#include <numeric>
+#include "grin/design/search/vectors.h"
 
 namespace flatspeckle::grin::design {
 
 namespace {
 
-double mean_of(std::span<const double> values) {
-  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-}
-
 class EqualGoal : public Goal {
  public:
   std::vector<double> residuals(std::span<const double> readings) override {
-    mean_ = mean_of(readings);
+    mean_ = mean(readings);
     of_mean_.clear();
     for (const double reading : readings) of_mean_.push_back(reading / mean_);
     std::vector<double> apart;
@@ -21,10 +17,10 @@ class EqualGoal : public Goal {
     return apart;
   }
   std::vector<double> times(std::span<const double> readings) const override {
-    const double mean = mean_of(readings);
+    const double change = mean(readings);
     std::vector<double> changes;
     for (std::size_t i = 0; i < readings.size(); ++i)
-      changes.push_back((readings[i] - of_mean_[i] * mean) / mean_);
+      changes.push_back((readings[i] - of_mean_[i] * change) / mean_);
     return changes;
   }
   std::vector<double> transposed(std::span<const double> residuals) const override {

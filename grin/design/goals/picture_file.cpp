@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "core/error.h"
+#include "core/keys/number_text.h"
 
 namespace flatspeckle::grin::design {
 
@@ -15,15 +16,10 @@ std::vector<double> numbers_of(std::string line, const std::string& where) {
   std::istringstream text(line);
   std::vector<double> numbers;
   for (std::string word; text >> word;) {
-    std::size_t end = 0;
-    double value = -1;
-    try {
-      value = std::stod(word, &end);
-    } catch (const std::exception&) {
-    }
-    if (end != word.size() || !(value >= 0 && value <= 1e50))
+    const auto value = read_number(word);
+    if (!value || !(*value >= 0 && *value <= 1e50))
       throw InputError(where + ": '" + word + "' must be a number from 0 to 1e50");
-    numbers.push_back(value);
+    numbers.push_back(*value);
   }
   return numbers;
 }

@@ -48,15 +48,16 @@ class PictureGoal : public Goal {
       pixels_ += beam.picture.values.size();
       rays_ += beam.power.size();
     }
+    for (const Beam& beam : beams_) scales_.push_back(scale_of(beam));
   }
 
   Numbers residuals(std::span<const double> readings) override {
     hits_.assign(readings.begin(), readings.end());
     Numbers all;
-    each_beam([&](const Beam& beam, std::span<const double> hits, std::size_t) {
+    each_beam([&](const Beam& beam, double scale, std::span<const double> hits, std::size_t) {
       const Numbers light = irradiance_of(beam.picture, hits, beam.power);
       for (std::size_t p = 0; p < light.size(); ++p)
-        all.push_back(scale(beam) * (light[p] - beam.picture.values[p]));
+        all.push_back(scale * (light[p] - beam.picture.values[p]));
     });
     return all;
   }
@@ -93,16 +94,17 @@ class PictureGoal : public Goal {
 
  private:
   /// The loss is a mean over rays, of which there are other numbers than of pixels.
-  double scale(const Beam& beam) const {
+  double scale_of(const Beam& beam) const {
     const double largest = std::ranges::max(beam.picture.values);
     return std::sqrt(static_cast<double>(rays_) / static_cast<double>(pixels_)) / largest;
   }
-  /// use(beam, its hits, its first pixel)
+  /// use(beam, its scale, its hits, its first pixel)
   template <class Use>
   void each_beam(const Use& use) const {
     std::size_t ray = 0, pixel = 0;
-    for (const Beam& beam : beams_) {
-      use(beam, std::span(hits_).subspan(2 * ray, 2 * beam.power.size()), pixel);
+    for (std::size_t b = 0; b < beams_.size(); ++b) {
+      const Beam& beam = beams_[b];
+      use(beam, scales_[b], std::span(hits_).subspan(2 * ray, 2 * beam.power.size()), pixel);
       ray += beam.power.size();
       pixel += beam.picture.values.size();
     }
@@ -111,13 +113,14 @@ class PictureGoal : public Goal {
   template <class Use>
   void each_ray(const Use& use) const {
     std::size_t ray = 0;
-    each_beam([&](const Beam& beam, std::span<const double>, std::size_t first) {
-      for (const double power : beam.power) use(beam, ray++, first, power * scale(beam));
+    each_beam([&](const Beam& beam, double scale, std::span<const double>, std::size_t first) {
+      for (const double power : beam.power) use(beam, ray++, first, power * scale);
     });
   }
 
   std::vector<Beam> beams_;
   std::size_t pixels_ = 0, rays_ = 0;
+  Numbers scales_;  ///< of each beam
   Numbers hits_;
 };
 

@@ -9,6 +9,7 @@
 #include "grin/design/goals/even_points.h"
 #include "grin/design/goals/passage.h"
 #include "grin/design/goals/picture_file.h"
+#include "grin/design/goals/solid_hull.h"
 #include "grin/geometry/vector_values.h"
 
 namespace flatspeckle::grin::design {
@@ -113,19 +114,6 @@ void add_keys(Keys& keys, ScreenValues& values) {
 
 namespace {
 
-struct Hull {
-  Surface surface;
-  Vec3 centre;
-  double radius;
-};
-Hull solid_hull(const FieldForm& form) {
-  const auto hull = hull_of(form);
-  if (!hull) throw InputError("goal", "irradiance", "needs design = box, ball or radial");
-  if (const auto* ball = std::get_if<Sphere>(&*hull)) return {*hull, ball->centre, ball->radius};
-  const auto& box = std::get<Box>(*hull);
-  return {*hull, (box.low + box.high) / 2, (box.high - box.low)[0] / 2};
-}
-
 std::vector<ScreenAim::View> views_of(const Keys& keys, const ScreenValues& values, double width) {
   std::vector<ScreenAim::View> views;
   const auto directions = parts_of(keys.read(values.view_directions), 3);
@@ -147,7 +135,7 @@ std::vector<ScreenAim::View> views_of(const Keys& keys, const ScreenValues& valu
 }  // namespace
 
 std::unique_ptr<Aim> make_aim(const Keys& keys, const ScreenValues& values, const FieldForm& form) {
-  const Hull hull = solid_hull(form);
+  const SolidHull hull = solid_hull(form, ScreenValues::word);
   const double width = keys.read(values.beam_width).value_or(1.2 * hull.radius);
   const double most = std::holds_alternative<Sphere>(hull.surface) ? 1.4 : 2.0;
   if (width > most * hull.radius)

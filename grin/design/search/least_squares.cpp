@@ -24,6 +24,9 @@ struct LeastSquares::Model {
   double rough_unit, mean_curvature;
   double roughness_weight;
   std::vector<char> is_held;  ///< at a bound that it would cross
+
+  /// Of D^T D in the normal matrix.
+  double rough(double damping) const { return (damping + roughness_weight) * rough_unit; }
 };
 
 LeastSquares::Model LeastSquares::model_at(SearchState& state) const {
@@ -65,8 +68,7 @@ Numbers LeastSquares::curved(const Model& model, double damping,
   model.rows.transposed(goal.transposed(goal.times(readings)), result);
   for (std::size_t i = 0; i < step.size(); ++i)
     result[i] += (damping * model.curvature[i] + least_curvature * model.mean_curvature) * step[i];
-  const double rough =
-      (search_.smooth_damping * damping + model.roughness_weight) * model.rough_unit;
+  const double rough = model.rough(search_.smooth_damping * damping);
   model.roughness.add_times(step, rough, result);
   for (std::size_t i = 0; i < step.size(); ++i)
     if (model.is_held[i]) result[i] = 0;
@@ -76,8 +78,7 @@ Numbers LeastSquares::curved(const Model& model, double damping,
 /// Conjugate gradients, preconditioned by the diagonal.
 Numbers LeastSquares::solve(const Model& model, double damping) const {
   const std::size_t count = model.gradient.size();
-  const double rough =
-      (search_.smooth_damping * damping + model.roughness_weight) * model.rough_unit;
+  const double rough = model.rough(search_.smooth_damping * damping);
   Numbers inverse(count), step(count, 0.0), rest(count), along(count);
   for (std::size_t i = 0; i < count; ++i) {
     inverse[i] = 1 / (model.curvature[i] * (1 + damping) + rough * model.rough_diagonal[i] +

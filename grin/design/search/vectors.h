@@ -1,6 +1,7 @@
 #pragma once
 
 #include <numeric>
+#include <span>
 #include <vector>
 
 namespace flatspeckle::grin::design {
@@ -14,7 +15,7 @@ inline double dot(const Numbers& a, const Numbers& b) {
 inline void add(Numbers& a, double factor, const Numbers& b) {
   for (std::size_t i = 0; i < a.size(); ++i) a[i] += factor * b[i];
 }
-inline double mean(const Numbers& a) {
+inline double mean(std::span<const double> a) {
   return std::accumulate(a.begin(), a.end(), 0.0) / static_cast<double>(a.size());
 }
 
