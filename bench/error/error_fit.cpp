@@ -6,7 +6,7 @@
 
 #include <omp.h>
 
-#include "bench/measure/power_fit.h"
+#include "bench/error/error_measure.h"
 #include "bench/scenes/synthetic_slab.h"
 #include "core/run/stopwatch.h"
 
@@ -86,15 +86,7 @@ ErrorCurve by_paths_against_time(double cpu_seconds) {
     last = thread_cpu_seconds() - start - spent;
     spent += last;
   }
-  std::vector<double> time, error;
-  for (const ErrorPoint& point : curve.points) {
-    time.push_back(point.cpu_s);
-    error.push_back(point.error);
-  }
-  const PowerFit slope = fit_power(time, error);
-  curve.slope = slope.exponent;
-  curve.slope_error = slope.exponent_error;
-  curve.efficiency = 1 / (error.back() * error.back() * time.back());
+  set_plain_slope(curve);
   return curve;
 }
 

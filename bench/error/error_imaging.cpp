@@ -5,7 +5,6 @@
 #include <omp.h>
 
 #include "bench/error/error_measure.h"
-#include "bench/measure/power_fit.h"
 #include "bench/scenes/imaged_points.h"
 #include "core/run/stopwatch.h"
 
@@ -45,19 +44,13 @@ ErrorCurve by_paths(double cpu_seconds) {
   ErrorCurve curve{"image, C_I of pairs", "paths", reference.how, reference.relative_error, {}};
   curve.is_monte_carlo = false;  // a ratio
   const double start = thread_cpu_seconds();
-  std::vector<double> time, error;
-  for (double paths = fewest_paths, spent = 0; time.size() < fewest || 3 * spent < cpu_seconds;
-       paths *= 2) {
+  for (double paths = fewest_paths, spent = 0;
+       curve.points.size() < fewest || 3 * spent < cpu_seconds; paths *= 2) {
     curve.points.push_back(point(line, reference, paths));
-    time.push_back(curve.points.back().cpu_s);
-    error.push_back(curve.points.back().error);
     spent = thread_cpu_seconds() - start;
-    if (error.back() < 2 * reference.relative_error) break;
+    if (curve.points.back().error < 2 * reference.relative_error) break;
   }
-  const PowerFit slope = fit_power(time, error);
-  curve.slope = slope.exponent;
-  curve.slope_error = slope.exponent_error;
-  curve.efficiency = 1 / (error.back() * error.back() * time.back());
+  set_plain_slope(curve);
   return curve;
 }
 

@@ -187,4 +187,16 @@ ErrorCurve measure_error(const Method& method, const ErrorReference& reference,
   return curve;
 }
 
+void set_plain_slope(ErrorCurve& curve) {
+  std::vector<double> time, error;
+  for (const ErrorPoint& point : curve.points) {
+    time.push_back(point.cpu_s);
+    error.push_back(point.error);
+  }
+  const PowerFit slope = fit_power(time, error);
+  curve.slope = slope.exponent;
+  curve.slope_error = slope.exponent_error;
+  curve.efficiency = 1 / (error.back() * error.back() * time.back());
+}
+
 }  // namespace flatspeckle::bench

@@ -41,4 +41,8 @@ double relative_distance(const std::vector<Complex>& values, const ErrorReferenc
 /// errors; its error by leaving one run out at a time, with what the reference may be off by.
 ErrorCurve measure_error(const Method& method, const ErrorReference& reference, double cpu_seconds);
 
+/// Slope by plain least squares through all points, and the efficiency of the last: of curves whose
+/// points have nothing in common.
+void set_plain_slope(ErrorCurve& curve);
+
 }  // namespace flatspeckle::bench
