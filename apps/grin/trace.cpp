@@ -47,7 +47,7 @@ std::string ends_of(const std::vector<TracedRay>& rays, double length_unit) {
 Made trace_light(const TraceScene& scene, ResultFile& file, bool tells) {
   const auto rays = trace_rays(scene);
   write_rays(file, scene, rays);
-  if (scene.path_points > 0) write_paths(file, scene.field, rays);
+  if (scene.path_points > 0) write_paths(file, scene, rays);
   std::string plan = std::to_string(rays.size()) + (rays.size() == 1 ? " ray: " : " rays: ") +
                      describe(scene.steps);
   if (tells) std::printf("%s\n%s\n", plan.c_str(), ends_of(rays, scene.length_unit).c_str());
@@ -92,7 +92,7 @@ Made trace_curves(const TraceScene& scene, ResultFile& file, std::uint64_t seed,
   const auto found = find_connections(scene, seed);
   write_connections(file, scene, found);
   if (scene.path_points > 0 && !found.curves.empty())
-    write_paths(file, scene.field, rays_along(scene, found));
+    write_paths(file, scene, rays_along(scene, found));
   const auto trials = scene.curves->trials;
   std::string plan = std::to_string(trials) + " trials: " + describe(scene.steps);
   if (tells) std::printf("%s\n%s\n", plan.c_str(), table_of(found).c_str());

@@ -97,7 +97,7 @@ double traced(const F& field, const std::vector<RayStart>& from) {
   const SceneField scene{facts(field), field};
   const RayStops stops{{Plane{{0, 0, 2}, Vec3::UnitZ()}}, 10, 1e-10};
   double made = 0;
-  for (const TracedRay& ray : trace_rays(scene, stops, {Integrator(), step}, from, 0)) {
+  for (const TracedRay& ray : trace_rays(scene, {}, stops, {Integrator(), step}, from, 0)) {
     made += static_cast<double>(ray.steps);
     sink += ray.end.optical_path;
   }

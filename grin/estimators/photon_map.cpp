@@ -215,6 +215,9 @@ double half_width(const Surface& surface) {
     double operator()(const Sphere& sphere) const { return sphere.radius; }
     double operator()(const Plane&) const { return std::numeric_limits<double>::infinity(); }
     double operator()(const Box& box) const { return (box.high - box.low).minCoeff() / 2; }
+    double operator()(const Lens& lens) const {
+      return (lens.bounds().high - lens.bounds().low).minCoeff() / 2;
+    }
     double operator()(const DistanceGrid& grid) const {
       return (grid.high() - grid.low()).minCoeff() / 2;
     }

@@ -41,6 +41,11 @@ double size(const Plane& plane) {
 double size(const Box& box) {
   return box.low.cwiseAbs().cwiseMax(box.high.cwiseAbs()).maxCoeff();
 }
+double size(const Lens& lens) {
+  double most = size(lens.bounds());
+  for (const LensFace& face : lens.faces()) most = std::max(most, size(face.sphere()));
+  return most;
+}
 double size(const DistanceGrid& grid) {
   return size(Box{grid.low(), grid.high()});
 }
@@ -75,15 +80,16 @@ void add_keys(Keys& keys, RayStopValues& values) {
 }
 
 RayStops make_ray_stops(const Keys& keys, const RayStopValues& values, double scale,
-                        double farthest) {
+                        double farthest, std::span<const Surface> others) {
   RayStops stops{surfaces_of(keys, values), keys.required(values.max_length)};
   constexpr std::size_t seams = 2;  // the rim of a ball and the box of a grid
   constexpr auto most = Watch::max_surfaces - seams;
-  if (stops.surfaces.size() > most)
-    throw InputError("stop surfaces", stops.surfaces.size(),
+  if (stops.surfaces.size() + others.size() > most)
+    throw InputError("stop surfaces and bodies", stops.surfaces.size() + others.size(),
                      "must be at most " + std::to_string(most));
-  for (const auto& surface : stops.surfaces)
-    farthest = std::max(farthest, std::visit([](const auto& s) { return size(s); }, surface));
+  for (const std::span<const Surface> surfaces : {std::span<const Surface>(stops.surfaces), others})
+    for (const auto& surface : surfaces)
+      farthest = std::max(farthest, std::visit([](const auto& s) { return size(s); }, surface));
   const double rounding = std::max(1e-14 * stops.max_length, 4e-15 * farthest);
   stops.location = std::max(1e-10 * std::min(scale, stops.max_length), rounding);
   return stops;

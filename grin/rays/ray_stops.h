@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -27,9 +28,9 @@ struct RayStops {
 };
 
 /// Both throw InputError. scale: over which the index varies, 0: nowhere; farthest: the largest
-/// coordinate of where rays start, which sets their rounding.
+/// coordinate of where rays start, which sets their rounding; others: what they pass on their way.
 RayStops make_ray_stops(const Keys& keys, const RayStopValues& values, double scale,
-                        double farthest);
+                        double farthest, std::span<const Surface> others = {});
 RaySteps make_ray_steps(const Keys& keys, const RayStopValues& values, double scale);
 /// In words.
 std::string describe(const RaySteps& steps);

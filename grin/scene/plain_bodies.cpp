@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "core/keys/number_text.h"
+#include "grin/geometry/lens_values.h"
 #include "grin/geometry/vector_values.h"
 
 namespace flatspeckle::grin {
@@ -21,12 +22,8 @@ ScatteringMedium medium_of(const std::string& keys, double mu_s, double mu_a, do
 }
 
 /// material: index mu_s mu_a g.
-Body body_of(const char* keys, const Surface& surface, Numbers material, const Surface& boundary) {
+Body body_of(const char* keys, const Surface& surface, Numbers material) {
   const std::string prefix = keys;
-  const auto [low, high] = bounds(surface);
-  if (!lies_in(surface, boundary))
-    throw InputError(prefix + "from " + listed(low) + " to " + listed(high) +
-                     ": must be inside of the stage");
   return {.surface = surface,
           .medium = medium_of(prefix, material[1], material[2], material[3]),
           .excess = positive(prefix + "index", material[0]) - 1,
@@ -53,22 +50,35 @@ void add_keys(Keys& keys, PlainBodyValues& values) {
       .each_of(8, ball);
   keys.add("block", values.block, std::string(block) + ": the same between two corners")
       .each_of(10, block);
+  const std::string lens = std::string(lens_words) + " index mu_s mu_a g";
+  keys.add("lens", values.lens,
+           lens + ": the same with a lens about an axis along z: front vertex, radius, radii of " +
+               "curvature, positive where the centre is at larger z; 0: plane")
+      .each_of(lens_numbers + 4, lens);
 }
 
-std::vector<Body> make_plain_bodies(const Keys& keys, const PlainBodyValues& values,
-                                    const Surface& boundary) {
+std::vector<Body> make_plain_bodies(const Keys& keys, const PlainBodyValues& values) {
   std::vector<Body> bodies;
   for (const Numbers row : parts_of(keys.read(values.ball), 8))
     bodies.push_back(body_of("ball, ", Sphere{vector_of(row), positive("ball, radius", row[3])},
-                             row.subspan(4), boundary));
+                             row.subspan(4)));
   for (const Numbers row : parts_of(keys.read(values.block), 10)) {
     const Box box{vector_of(row), vector_of(row, 3)};
     if (!((box.high - box.low).minCoeff() > 0))
       throw InputError("block", number_text({row.begin(), row.begin() + 6}),
                        "must have its low corner first");
-    bodies.push_back(body_of("block, ", box, row.subspan(6), boundary));
+    bodies.push_back(body_of("block, ", box, row.subspan(6)));
   }
+  for (const Numbers row : parts_of(keys.read(values.lens), lens_numbers + 4))
+    bodies.push_back(body_of("lens, ", lens_of("lens", row), row.subspan(lens_numbers)));
   return bodies;
+}
+
+void check_within(const Body& body, const Surface& region, const std::string& name) {
+  const auto [low, high] = bounds(body.surface);
+  if (!lies_in(body.surface, region))
+    throw InputError(std::string(body.keys) + "from " + listed(low) + " to " + listed(high) +
+                     ": must be inside of the " + name);
 }
 
 void sort_by_size(std::vector<Body>& bodies) {

@@ -8,6 +8,9 @@
 #include "core/run/parallel.h"
 #include "grin/curved/ray_field.h"
 #include "grin/rays/lane_pool.h"
+#include "grin/scene/ray_bodies.h"
+#include "grin/space/regions.h"
+#include "grin/surfaces/interface.h"
 
 namespace flatspeckle::grin {
 
@@ -17,13 +20,13 @@ std::string name(std::size_t ray) {
   return "ray " + std::to_string(ray);
 }
 
-void check_start(const SceneField& scene, const RayStops& stops, std::size_t number,
-                 const RayStart& start) {
+void check_start(const SceneField& scene, const Stage& stage, const RayStops& stops,
+                 std::size_t number, const RayStart& start) {
   const auto refuse = [&](const std::string& where) {
     throw InputError(name(number) + " starts at " + listed(start.x) + ": " + where);
   };
   if (scene.grid && scene.grid->distance(start.x) > 0) refuse("outside of the grid");
-  if (!(index_at(scene, start.x) > 0)) refuse("the field has no index above 0 there");
+  if (!(index_at(scene, stage, start.x) > 0)) refuse("the field has no index above 0 there");
   for (const auto& surface : stops.surfaces)
     if (const auto* plane = std::get_if<Plane>(&surface);
         plane && plane->distance(start.x) > stops.location)
@@ -32,9 +35,11 @@ void check_start(const SceneField& scene, const RayStops& stops, std::size_t num
 
 class BundleTracer {
  public:
-  BundleTracer(const SceneField& scene, const RayStops& stops, const RaySteps& steps,
-               std::size_t path_points)
+  BundleTracer(const SceneField& scene, const Stage& stage, const RayStops& stops,
+               const RaySteps& steps, std::size_t path_points)
       : scene_(scene),
+        stage_(stage),
+        regions_(stage),
         stops_(stops),
         steps_(steps),
         path_points_(path_points),
@@ -42,12 +47,19 @@ class BundleTracer {
         inside_(make_ray_field(scene.field)),
         outside_(
             std::visit([](const auto& field) { return make_ray_field(field); }, scene.outside)) {
+    for (const Body& body : stage.bodies) surfaces_.push_back(body.surface);
     if (scene.grid) surfaces_.push_back(*scene.grid);
     if (scene.rim) surfaces_.push_back(*scene.rim);
+    for (Part part = around; part < stage.parts(); ++part)
+      plain_.push_back(part == stage.field_part()
+                           ? nullptr
+                           : make_ray_field(Homogeneous{stage.excess_in(part)}));
   }
 
   /// Rays of equal steps whose ways are not kept may go side by side.
-  bool has_lanes() const { return inside_->has_lanes() && !steps_.tolerance && path_points_ == 0; }
+  bool has_lanes() const {
+    return inside_->has_lanes() && stage_.bodies.empty() && !steps_.tolerance && path_points_ == 0;
+  }
 
   TracedRay trace(std::size_t number, const RayStart& start) const {
     Going going(*this, number, start);
@@ -66,12 +78,15 @@ class BundleTracer {
     Going(const BundleTracer& tracer, std::size_t number_of_ray, const RayStart& start)
         : number(number_of_ray),
           log(tracer.steps_, tracer.path_points_ > 0),
-          ray{start.x, index_at(tracer.scene_, start.x) * start.direction},
+          part(tracer.part_at(start)),
+          ray{start.x, (1 + tracer.excess(part, start.x, start.direction)) * start.direction},
           first(tracer.invariants(ray)) {}
 
     std::size_t number;
     RayLog log;
+    Part part;
     RayState ray;
+    double transmittance = 1;
     RayInvariants first;
     std::uint64_t steps = 0;
   };
@@ -153,28 +168,76 @@ class BundleTracer {
                                                       : RayStatus::edge_of_grid;
     const bool is_stop = traced.status == RayStatus::surface;
     traced.surface = static_cast<std::uint64_t>(is_stop ? end.surface : number_of_stops());
+    traced.transmittance = going.transmittance;
+    traced.end_slope = field_of(going.part, going.ray).gradient(going.ray.x).gradient.norm();
     if (path_points_ > 0) traced.path = going.log.path().points(path_points_);
     return traced;
   }
 
-  /// From rim to rim, until the ray ends.
+  /// From rim to rim and from body to body, until the ray ends.
   TraceEnd follow(Going& going) const {
-    constexpr int most_rims = 100'000;
+    constexpr int most_seams = 100'000;
     if (leaves_grid(going.ray)) return {.stop = Stop::surface, .surface = number_of_stops()};
-    for (int i = 0; i < most_rims; ++i) {
-      const RayField& field = is_outside(going.ray) ? *outside_ : *inside_;
-      const TraceEnd end = field.follow(surfaces_, limits(going), going.log, going.ray);
-      going.steps += static_cast<std::uint64_t>(end.steps);
+    for (int i = 0; i < most_seams; ++i) {
+      const TraceEnd end = follow_part(going);
       if (has_ended(going, end)) return end;
+      if (is_body(end.surface)) cross(going, end.surface - number_of_stops() + 1);
     }
     throw InputError("max_length", stops_.max_length,
-                     name(going.number) + " meets the rim too often");
+                     name(going.number) + " meets the rim, or bodies, too often");
   }
-  /// Not at the rim.
+  TraceEnd follow_part(Going& going) const {
+    const double before = going.ray.arc_length;
+    const TraceEnd end =
+        field_of(going.part, going.ray).follow(surfaces_, limits(going), going.log, going.ray);
+    going.steps += static_cast<std::uint64_t>(end.steps);
+    const double mu_t = stage_.medium_in(going.part).mu_t();
+    going.transmittance *= std::exp(-mu_t * (going.ray.arc_length - before));
+    return end;
+  }
+  /// Not at the rim or a body.
   bool has_ended(const Going& going, const TraceEnd& end) const {
     if (end.stop == Stop::lost || end.stop == Stop::steps) throw lost(going, end);
     const bool at_rim = scene_.rim && end.surface + 1 == static_cast<int>(surfaces_.size());
-    return end.stop == Stop::length || !at_rim;
+    return end.stop == Stop::length || !(at_rim || is_body(end.surface));
+  }
+  bool is_body(int surface) const {
+    const int body = surface - number_of_stops();
+    return body >= 0 && body < static_cast<int>(stage_.bodies.size());
+  }
+
+  /// A body's surface, where the index jumps unless what is seen there is covered by another.
+  void cross(Going& going, Part body) const {
+    RayState& ray = going.ray;
+    const Part to = regions_.beyond(going.part, body, ray.x, ray.v.normalized());
+    if (to == going.part) return;
+    const Interface face(ray.v, normal(regions_.surface(body), ray.x),
+                         excess(going.part, ray.x, ray.v), excess(to, ray.x, ray.v));
+    if (const auto refracted = face.refracted()) {
+      going.transmittance *= 1 - face.reflectance();
+      going.part = to;
+      ray.v = *refracted;
+    } else {
+      ray.v = face.reflected();
+    }
+    going.log.start(ray);
+  }
+  double excess(Part part, const Vec3& x, const Vec3& towards) const {
+    return field_of(part, {x, towards}).excess(x);
+  }
+  const RayField& field_of(Part part, const RayState& ray) const {
+    if (plain_[part]) return *plain_[part];
+    return is_outside(ray) ? *outside_ : *inside_;
+  }
+  /// On a body's surface, that which the ray goes into.
+  Part part_at(const RayStart& start) const {
+    for (Part part = regions_.parts() - 1; part > around; --part) {
+      const double outside = distance(regions_.surface(part), start.x);
+      if (outside < -stops_.location) return part;
+      if (outside > stops_.location) continue;
+      if (normal(regions_.surface(part), start.x).dot(start.direction) < 0) return part;
+    }
+    return around;
   }
   /// Where it was outside of the rim, in one way.
   bool comes_inside(Going& going) const {
@@ -212,21 +275,24 @@ class BundleTracer {
   }
 
   const SceneField& scene_;
+  const Stage& stage_;
+  Regions regions_;
   const RayStops& stops_;
   const RaySteps& steps_;
   std::size_t path_points_;
   std::vector<Surface> surfaces_;
-  std::unique_ptr<const RayField> inside_, outside_;  ///< of the rim
+  std::unique_ptr<const RayField> inside_, outside_;    ///< of the rim
+  std::vector<std::unique_ptr<const RayField>> plain_;  ///< of each part but that of the field
 };
 
 }  // namespace
 
-std::vector<TracedRay> trace_rays(const SceneField& scene, const RayStops& stops,
-                                  const RaySteps& steps, const std::vector<RayStart>& starts,
-                                  std::size_t path_points) {
-  for (std::size_t i = 0; i < starts.size(); ++i) check_start(scene, stops, i, starts[i]);
+std::vector<TracedRay> trace_rays(const SceneField& scene, const Stage& stage,
+                                  const RayStops& stops, const RaySteps& steps,
+                                  const std::vector<RayStart>& starts, std::size_t path_points) {
+  for (std::size_t i = 0; i < starts.size(); ++i) check_start(scene, stage, stops, i, starts[i]);
   std::vector<TracedRay> rays(starts.size());
-  const BundleTracer tracer(scene, stops, steps, path_points);
+  const BundleTracer tracer(scene, stage, stops, steps, path_points);
   if (!tracer.has_lanes()) {
     parallel_for(starts.size(), [&](std::size_t i) { rays[i] = tracer.trace(i, starts[i]); });
     return rays;

@@ -7,6 +7,7 @@
 #include "grin/rays/ray_invariants.h"
 #include "grin/rays/ray_starts.h"
 #include "grin/rays/ray_stops.h"
+#include "grin/space/stage.h"
 
 namespace flatspeckle::grin {
 
@@ -19,15 +20,18 @@ struct TracedRay {
   std::uint64_t steps = 0;
   RayState end = {};
   double index_mismatch = 0;  ///< largest ||v| - n| on the way
+  double transmittance = 1;   ///< what the surfaces and media of bodies leave of unpolarised light
+  double end_slope = 0;       ///< |grad n| at the end
   RayInvariants first = {}, last = {};
   std::vector<Vec3> path = {};
 };
 
+/// At the bodies of the stage rays are refracted (Snell), or reflected where that is total.
 /// path_points: so many of each ray, evenly over its arc length, first and last included; or none.
 /// Throws InputError for a ray that starts behind a plane or outside of the field, or comes to
 /// where the index is not positive.
-std::vector<TracedRay> trace_rays(const SceneField& scene, const RayStops& stops,
-                                  const RaySteps& steps, const std::vector<RayStart>& starts,
-                                  std::size_t path_points);
+std::vector<TracedRay> trace_rays(const SceneField& scene, const Stage& stage,
+                                  const RayStops& stops, const RaySteps& steps,
+                                  const std::vector<RayStart>& starts, std::size_t path_points);
 
 }  // namespace flatspeckle::grin

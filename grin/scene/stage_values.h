@@ -3,16 +3,15 @@
 #include <optional>
 #include <vector>
 
-#include "grin/fields/scene_field.h"
+#include "grin/scene/field_body.h"
 #include "grin/scene/plain_bodies.h"
 #include "grin/space/stage.h"
 
 namespace flatspeckle::grin {
 
 /// The stage of light and the bodies in it as keys have them.
-struct StageValues {
-  std::vector<double> stage_box{}, stage_sphere{}, body_box{}, body_sphere{};
-  double index_around = 1;
+struct StageValues : FieldBodyValues {
+  std::vector<double> stage_box{}, stage_sphere{};
   MediumValues medium{}, body_medium{};
   PlainBodyValues plain_bodies{};
 };

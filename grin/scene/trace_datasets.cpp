@@ -37,6 +37,9 @@ const DatasetTable rays_table{
          {"surface", Data::count, "ray", "1",
           "number of the surface: planes, spheres, boxes; of status 1 and 2, how many there "
           "are"},
+         {"transmittance", Data::real, "ray", "1",
+          "part of unpolarised light's power that is left by reflection at bodies and by their "
+          "media"},
          {"steps", Data::count, "ray", "1", "steps of the integrator"},
          {"invariants/index_mismatch", Data::real, "ray", "1",
           "largest difference of |v| and the index at a step's end"},
@@ -160,7 +163,7 @@ std::vector<double> evenly(double low, double high, std::size_t count) {
   return values;
 }
 
-void write_index_map(ResultFile& file, const SceneField& scene,
+void write_index_map(ResultFile& file, const TraceScene& scene,
                      const std::vector<TracedRay>& rays) {
   constexpr std::size_t pixels = 201;
   const MapPlane plane = plane_of(rays);
@@ -173,7 +176,7 @@ void write_index_map(ResultFile& file, const SceneField& scene,
       Vec3 x(0, 0, w);
       x[plane.up] = u;
       x[plane.out] = plane.at;
-      map.push_back(index_at(scene, x));
+      map.push_back(index_at(scene.field, scene.stage, x));
     }
   const ResultGroup root(file, rays_table);
   root.put("map_z", z);
@@ -219,6 +222,8 @@ void write_rays(ResultFile& file, const TraceScene& scene, const std::vector<Tra
   root.put("optical_path_spread", longest - shortest);
   root.put("status", column(rays, &TracedRay::status));
   root.put("surface", column(rays, &TracedRay::surface));
+  if (!scene.stage.bodies.empty())
+    root.put("transmittance", column(rays, &TracedRay::transmittance));
   root.put("steps", column(rays, &TracedRay::steps));
   write_invariants(root, scene.field.symmetry, rays);
 }
@@ -239,7 +244,7 @@ void write_connections(ResultFile& file, const TraceScene& scene, const FoundCon
   root.put("found", column(found.curves, &FoundConnection::found));
 }
 
-void write_paths(ResultFile& file, const SceneField& field, const std::vector<TracedRay>& rays) {
+void write_paths(ResultFile& file, const TraceScene& scene, const std::vector<TracedRay>& rays) {
   const ResultGroup root(file, rays_table);
   root.number("path_point", rays.front().path.size());
   for (int i = 0; i < 3; ++i) {
@@ -248,7 +253,7 @@ void write_paths(ResultFile& file, const SceneField& field, const std::vector<Tr
       for (const Vec3& x : ray.path) values.push_back(x[i]);
     root.put(std::string("path/") + "xyz"[i], values);
   }
-  write_index_map(file, field, rays);
+  write_index_map(file, scene, rays);
 }
 
 }  // namespace flatspeckle::grin

@@ -22,6 +22,6 @@ void write_connections(ResultFile& file, const TraceScene& scene, const FoundCon
 
 /// Stored points of rays or curves, and the index over the rectangle in z and the transverse axis
 /// that they span most, so that they can be drawn. The rays or curves must have been written.
-void write_paths(ResultFile& file, const SceneField& field, const std::vector<TracedRay>& rays);
+void write_paths(ResultFile& file, const TraceScene& scene, const std::vector<TracedRay>& rays);
 
 }  // namespace flatspeckle::grin

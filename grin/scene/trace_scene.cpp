@@ -32,6 +32,12 @@ std::vector<Vec3> points_of(const TraceScene& scene) {
   return points;
 }
 
+std::vector<Surface> surfaces_of(const Stage& stage) {
+  std::vector<Surface> surfaces;
+  for (const Body& body : stage.bodies) surfaces.push_back(body.surface);
+  return surfaces;
+}
+
 void settle_field(TraceScene& scene, const Keys& keys, const TraceValues& values) {
   double reach = keys.required(values.stops.max_length), farthest = 0;
   for (const Vec3& x : points_of(scene)) {
@@ -40,8 +46,12 @@ void settle_field(TraceScene& scene, const Keys& keys, const TraceValues& values
   }
   scene.field = make_scene_field(keys, values.field,
                                  {.reach = reach, .length_unit = keys.read(values.length_unit)});
-  if (scene.curves) scene.curves->ball = std::exchange(scene.field.rim, std::nullopt);
-  scene.stops = make_ray_stops(keys, values.stops, scene.field.scale, farthest);
+  if (scene.curves)
+    scene.curves->ball = std::exchange(scene.field.rim, std::nullopt);
+  else
+    scene.stage = make_ray_stage(keys, values.bodies, scene.field);
+  scene.stops =
+      make_ray_stops(keys, values.stops, scene.field.scale, farthest, surfaces_of(scene.stage));
 }
 
 /// Curves want shorter steps than rays, by default.
@@ -59,6 +69,7 @@ void settle_steps(TraceScene& scene, const Keys& keys, const TraceValues& values
 
 void add_keys(Keys& keys, TraceValues& values) {
   add_keys(keys, values.field);
+  add_keys(keys, values.bodies);
   add_keys(keys, values.starts);
   add_keys(keys, values.curves);
   add_keys(keys, values.stops);
@@ -93,7 +104,8 @@ TraceScene make_trace_scene(const TraceValues& values) {
 }
 
 std::vector<TracedRay> trace_rays(const TraceScene& scene) {
-  return trace_rays(scene.field, scene.stops, scene.steps, scene.starts, scene.path_points);
+  return trace_rays(scene.field, scene.stage, scene.stops, scene.steps, scene.starts,
+                    scene.path_points);
 }
 
 FoundConnections find_connections(const TraceScene& scene, std::uint64_t seed) {
@@ -105,7 +117,8 @@ std::vector<TracedRay> rays_along(const TraceScene& scene, const FoundConnection
   for (const auto& [curve, times] : found.curves) {
     const RayStops stops{{}, curve.arc_length, 1e-12 * curve.arc_length};
     const RayStart start{scene.curves->from, curve.start_direction};
-    rays.push_back(trace_rays(scene.field, stops, scene.steps, {start}, scene.path_points)[0]);
+    rays.push_back(
+        trace_rays(scene.field, scene.stage, stops, scene.steps, {start}, scene.path_points)[0]);
   }
   return rays;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "grin/scene/curve_search.h"
+#include "grin/scene/ray_bodies.h"
 #include "grin/scene/ray_tracing.h"
 
 namespace flatspeckle::grin {
@@ -8,6 +9,7 @@ namespace flatspeckle::grin {
 /// Rays through an index field, or the curves between two points of it, as keys have them.
 struct TraceValues {
   IndexFieldValues field{};
+  RayBodyValues bodies{};
   RayStartValues starts{};
   RayStopValues stops{};
   CurveValues curves{};
@@ -19,6 +21,7 @@ void add_keys(Keys& keys, TraceValues& values);
 
 struct TraceScene {
   SceneField field;
+  Stage stage;  ///< of the bodies; its boundary stops nothing
   RayStops stops;
   RaySteps steps;
   std::vector<RayStart> starts = {};  ///< none where curves are sought

@@ -18,6 +18,9 @@ Box bounds(const Sphere& s) {
 Box bounds(const Box& b) {
   return b;
 }
+Box bounds(const Lens& lens) {
+  return lens.bounds();
+}
 Box bounds(const DistanceGrid& g) {  // the surface is a cell or more inside its grid
   return {g.low() + Vec3::Constant(g.spacing()), g.high() - Vec3::Constant(g.spacing())};
 }

@@ -27,6 +27,7 @@ inline bool has_curvature(const Surface& surface) {
 /// 0 where there is none.
 inline Mat3 curvature(const Surface& surface, const Vec3& x) {
   if (const auto* sphere = std::get_if<Sphere>(&surface)) return curvature(*sphere, x);
+  if (const auto* lens = std::get_if<Lens>(&surface)) return lens->curvature(x);
   return Mat3::Zero();
 }
 

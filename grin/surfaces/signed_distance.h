@@ -2,6 +2,7 @@
 
 #include <variant>
 
+#include "grin/geometry/lens.h"
 #include "grin/geometry/shapes.h"
 #include "grin/surfaces/distance_grid.h"
 
@@ -10,7 +11,7 @@ namespace flatspeckle::grin {
 /// A surface is where distance(x) is 0; it is negative inside. |distance| is nowhere more than the
 /// true distance, so that a ray may go that far without looking. normal(x) is a unit vector
 /// outwards, meant for points on the surface.
-using Surface = std::variant<Sphere, Plane, Box, DistanceGrid>;
+using Surface = std::variant<Sphere, Plane, Box, Lens, DistanceGrid>;
 
 inline double distance(const Surface& surface, const Vec3& x) {
   return std::visit([&](const auto& s) { return s.distance(x); }, surface);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "grin/surfaces/lens_way.h"
 #include "grin/surfaces/signed_distance.h"
 
 namespace flatspeckle::grin {
@@ -96,6 +97,7 @@ inline double way_in(const Surface& surface, const Vec3& x, const Vec3& d) {
 
 /// The inside: a straight line between two points of it stays in it.
 inline bool is_convex(const Surface& surface) {
+  if (const auto* lens = std::get_if<Lens>(&surface)) return lens->is_convex();
   return !std::holds_alternative<DistanceGrid>(surface);
 }
 

@@ -83,7 +83,7 @@ void trace_grid(const std::string& integrator) {
     if (stop_spec.step && n < 1e-3) return;  // thousands of short steps
   }
   for (const TracedRay& ray :
-       trace_rays(scene, stops, make_ray_steps(keyed.keys, keyed.values, scene.scale), starts, 2)) {
+       trace_rays(scene, {}, stops, make_ray_steps(keyed.keys, keyed.values, scene.scale), starts, 2)) {
     fuzz::require_finite(ray.end.x.sum() + ray.end.v.sum());
     fuzz::require_finite(ray.end.arc_length + ray.end.optical_path);
     for (const Vec3& x : ray.path) fuzz::require_finite(x.sum());

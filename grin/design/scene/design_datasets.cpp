@@ -206,7 +206,7 @@ std::vector<TracedRay> drawn_rays(const F& field, double radius, std::size_t poi
   for (int i = 0; i < rays; ++i)
     starts.push_back({{0.98 * radius * (2.0 * i / (rays - 1) - 1), 0, start}, Vec3::UnitZ()});
   const Plane stop{{0, 0, 1.5 * radius}, Vec3::UnitZ()};
-  return trace_rays(scene, {{stop}, 8 * radius, 1e-10 * radius}, {Sharma(), radius / 20, 1e-8},
+  return trace_rays(scene, {}, {{stop}, 8 * radius, 1e-10 * radius}, {Sharma(), radius / 20, 1e-8},
                     starts, points);
 }
 

@@ -1,0 +1,76 @@
+#include "grin/scene/field_body.h"
+
+#include <cmath>
+
+#include "grin/geometry/lens_values.h"
+#include "grin/geometry/vector_values.h"
+#include "grin/space/stage.h"
+
+namespace flatspeckle::grin {
+
+namespace {
+
+void check_index(const SceneField& field, const Surface& region, const std::string& name) {
+  constexpr int nodes = 33;
+  const Box box = bounds(region);
+  std::visit(
+      [&](const auto& medium) {
+        for (int node = 0; node < nodes * nodes * nodes; ++node) {
+          const Vec3 share = Vec3(node / nodes / nodes, node / nodes % nodes, node % nodes);
+          const Vec3 x = box.low + (box.high - box.low).cwiseProduct(share) / (nodes - 1);
+          if (distance(region, x) > 0) continue;
+          const double n = index(medium, x);
+          if (!(n > 0 && std::isfinite(n)))
+            throw InputError("index at " + listed(x), n, "must be positive in all of the " + name);
+        }
+      },
+      field.field);
+}
+
+}  // namespace
+
+void add_body_keys(Keys& keys, FieldBodyValues& values) {
+  keys.add("body_box", values.body_box,
+           "x y z x y z of two corners: the index field fills this body alone")
+      .each_of(6, "two opposite corners, the low one first");
+  keys.add("body_sphere", values.body_sphere,
+           "x y z radius: the same with a sphere; luneburg in a larger stage needs none")
+      .each_of(4, "centre and radius");
+  keys.add("body_lens", values.body_lens,
+           std::string(lens_words) + ": the same with a lens of spherical faces about an axis " +
+               "along z: front vertex, radius, radii of curvature (positive where the centre is " +
+               "at larger z; 0: plane); a rod, where both are 0")
+      .each_of(lens_numbers, lens_words);
+}
+
+void add_index_around(Keys& keys, FieldBodyValues& values) {
+  keys.add("index_around", values.index_around, "Index around the body").positive();
+}
+
+std::optional<Surface> one_surface(const std::string& name, const std::string& keys,
+                                   const std::vector<Surface>& given) {
+  if (given.size() > 1) throw InputError(keys + ": give one " + name);
+  if (given.empty()) return std::nullopt;
+  return given.front();
+}
+
+std::optional<Surface> given_body(const Keys& keys, const FieldBodyValues& values) {
+  std::vector<Surface> given;
+  for (const Box& box : boxes_of(keys, values.body_box)) given.push_back(box);
+  for (const Sphere& sphere : spheres_of(keys, values.body_sphere)) given.push_back(sphere);
+  for (const Lens& lens : lenses_of(keys, values.body_lens)) given.push_back(lens);
+  return one_surface("body", "body_box, body_sphere, body_lens", given);
+}
+
+void check_field(const SceneField& field, const Surface& region, const std::string& name) {
+  if (field.grid && !lies_in(region, *field.grid))
+    throw InputError("grid: ends inside of the " + name + ", and light needs a field in all of it");
+  check_index(field, region, name);
+}
+
+void check_rim(const SceneField& field, const Surface& body) {
+  if (field.rim && !lies_in(body, *field.rim))
+    throw InputError("body: must be inside of the rim of luneburg");
+}
+
+}  // namespace flatspeckle::grin
