@@ -6,6 +6,7 @@
 
 #include "apps/experiments/single_run.h"
 #include "core/result/result_group.h"
+#include "grin/geometry/vector_values.h"
 #include "grin/rays/light_speed.h"
 #include "grin/scene/trace_datasets.h"
 
@@ -44,13 +45,30 @@ std::string ends_of(const std::vector<TracedRay>& rays, double length_unit) {
   return text.str();
 }
 
+std::string text_of(const grin::RayImage& image) {
+  std::ostringstream text;
+  text << std::setprecision(6) << "image: spot of radius " << image.spot_radius << " (rms), "
+       << image.spot_extent << " (largest)";
+  if (image.distance != 0) text << ", at " << image.distance << " from image_plane";
+  if (image.focus && image.distance == 0) text << "; least at " << *image.focus;
+  using Ray = grin::RayImage::Ray;
+  text << "\npath differences " << root_mean_square(image, &Ray::path_difference) << " (rms)";
+  if (image.best_point)
+    text << ", about " << grin::listed(*image.best_point) << ' '
+         << root_mean_square(image, &Ray::least_path_difference);
+  return text.str();
+}
+
 Made trace_light(const TraceScene& scene, ResultFile& file, bool tells) {
   const auto rays = trace_rays(scene);
   write_rays(file, scene, rays);
   if (scene.path_points > 0) write_paths(file, scene, rays);
+  std::optional<grin::RayImage> image;
+  if (scene.image) write_image(file, image.emplace(make_ray_image(*scene.image, rays)));
   std::string plan = std::to_string(rays.size()) + (rays.size() == 1 ? " ray: " : " rays: ") +
                      describe(scene.steps);
   if (tells) std::printf("%s\n%s\n", plan.c_str(), ends_of(rays, scene.length_unit).c_str());
+  if (tells && image) std::printf("%s\n", text_of(*image).c_str());
   return {plan, static_cast<double>(rays.size())};
 }
 

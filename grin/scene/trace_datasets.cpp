@@ -59,6 +59,32 @@ const DatasetTable rays_table{
           "length of v across the gradient, n sin(angle), at the start"},
          {"invariants/transverse_momentum_change", Data::real, "ray", "1",
           "how far it is off at the end"},
+         {"image/ray", Data::scale, "", "1", "numbers of the rays that the image is of"},
+         {"image/x", Data::real, "image/ray", "length",
+          "of where rays meet the plane, from its point"},
+         {"image/y", Data::real, "image/ray", "length", "the same across"},
+         {"image/slope_x", Data::real, "image/ray", "1", "dx by the way along the normal"},
+         {"image/slope_y", Data::real, "image/ray", "1", "dy by the way along the normal"},
+         {"image/path_difference", Data::real, "image/ray", "length",
+          "optical path to the foot of the perpendicular from the spot's mean, less the mean of "
+          "those paths"},
+         {"image/least_path_difference", Data::real, "image/ray", "length",
+          "the same about image/best, where its mean square is least"},
+         {"image/distance", Data::real, "", "length",
+          "of the plane along its normal from image_plane"},
+         {"image/focus", Data::real, "", "length",
+          "the same of the plane where the spot is least; not of parallel rays"},
+         {"image/best_x", Data::real, "", "length",
+          "x of the point about which path differences are least; not of parallel rays"},
+         {"image/best_y", Data::real, "", "length", "y of it"},
+         {"image/best_z", Data::real, "", "length", "z of it"},
+         {"image/spot_radius", Data::real, "", "length",
+          "root mean square distance from their mean on the plane"},
+         {"image/spot_extent", Data::real, "", "length", "the largest distance from it"},
+         {"image/path_difference_rms", Data::real, "", "length",
+          "root mean square of image/path_difference"},
+         {"image/least_path_difference_rms", Data::real, "", "length",
+          "root mean square of image/least_path_difference"},
          {"spreading", Data::real, "curve", "length^2",
           "|J|: area across the curve at its end per solid angle at its start"},
          {"caustics", Data::count, "curve", "1", "caustics on the way"},
@@ -226,6 +252,30 @@ void write_rays(ResultFile& file, const TraceScene& scene, const std::vector<Tra
     root.put("transmittance", column(rays, &TracedRay::transmittance));
   root.put("steps", column(rays, &TracedRay::steps));
   write_invariants(root, scene.field.symmetry, rays);
+}
+
+void write_image(ResultFile& file, const RayImage& image) {
+  const ResultGroup root(file, rays_table);
+  using Ray = RayImage::Ray;
+  const auto put = [&](const char* name, const auto& value) {
+    root.put(std::string("image/") + name, column(image.rays, value));
+  };
+  put("ray", [](const Ray& ray) { return static_cast<double>(ray.number); });
+  put("x", [](const Ray& ray) { return ray.at[0]; });
+  put("y", [](const Ray& ray) { return ray.at[1]; });
+  put("slope_x", [](const Ray& ray) { return ray.slope[0]; });
+  put("slope_y", [](const Ray& ray) { return ray.slope[1]; });
+  put("path_difference", &Ray::path_difference);
+  put("least_path_difference", &Ray::least_path_difference);
+  root.put("image/distance", image.distance);
+  if (image.focus) root.put("image/focus", *image.focus);
+  if (image.best_point)
+    for (int i = 0; i < 3; ++i)
+      root.put(std::string("image/best_") + "xyz"[i], (*image.best_point)[i]);
+  root.put("image/spot_radius", image.spot_radius);
+  root.put("image/spot_extent", image.spot_extent);
+  root.put("image/path_difference_rms", root_mean_square(image, &Ray::path_difference));
+  root.put("image/least_path_difference_rms", root_mean_square(image, &Ray::least_path_difference));
 }
 
 void write_connections(ResultFile& file, const TraceScene& scene, const FoundConnections& found) {

@@ -17,6 +17,8 @@ double spot_radius(const std::vector<RayState>& ends);
 /// Of any rays: optical paths, ends, invariants.
 void write_rays(ResultFile& file, const TraceScene& scene, const std::vector<TracedRay>& rays);
 
+void write_image(ResultFile& file, const RayImage& image);
+
 /// Curves between two points, in the order of their optical paths, and how the trials went.
 void write_connections(ResultFile& file, const TraceScene& scene, const FoundConnections& found);
 

@@ -73,6 +73,7 @@ void add_keys(Keys& keys, TraceValues& values) {
   add_keys(keys, values.starts);
   add_keys(keys, values.curves);
   add_keys(keys, values.stops);
+  add_keys(keys, values.image);
   keys.group("Result");
   keys.add("path_points", values.path_points,
            "Points of each ray in the file, to be drawn, and an index map; 0: none")
@@ -92,6 +93,7 @@ TraceScene make_trace_scene(const Keys& keys, const TraceValues& values) {
   if (!scene.curves) {
     check_memory(values);
     scene.starts = make_ray_starts(keys, values.starts);
+    scene.image = make_image_plane(keys, values.image);
   }
   settle_field(scene, keys, values);
   settle_steps(scene, keys, values);

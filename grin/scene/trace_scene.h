@@ -2,6 +2,7 @@
 
 #include "grin/scene/curve_search.h"
 #include "grin/scene/ray_bodies.h"
+#include "grin/scene/ray_image.h"
 #include "grin/scene/ray_tracing.h"
 
 namespace flatspeckle::grin {
@@ -12,6 +13,7 @@ struct TraceValues {
   RayBodyValues bodies{};
   RayStartValues starts{};
   RayStopValues stops{};
+  RayImageValues image{};
   CurveValues curves{};
   std::int64_t path_points = 0;
   double length_unit = 1;
@@ -26,8 +28,9 @@ struct TraceScene {
   RaySteps steps;
   std::vector<RayStart> starts = {};  ///< none where curves are sought
   std::optional<CurveSearch> curves = {};
-  std::size_t path_points = 0;  ///< of each ray or curve; 0: none
-  double length_unit = 1;       ///< metres in a unit of length
+  std::optional<ImagePlane> image = {};  ///< of rays
+  std::size_t path_points = 0;           ///< of each ray or curve; 0: none
+  double length_unit = 1;                ///< metres in a unit of length
 };
 
 /// Both throw InputError; of values alone, all must be of use.

@@ -139,6 +139,8 @@ RUNS = {
                               "against": "mu_a=0.2", "key_tolerance": 0.5, "target_error": 0.5, "sensor": "area",
                               "sensor_at": [0, 0, 4], "sensor_size": [1, 1]}),
     "ball": ("trace", {**RAYS, "field": "luneburg", "origin": [0, 0, -2], "beam_radius": 0.5}),
+    "singlet": ("trace", {**RAYS, "lens": [0, 0, 0, 1, 5, 0, 0.5, 1.5, 0, 0, 0], "origin": [0, 0, -1], "beam_radius": 0.5,
+                          "stop_plane": [0, 0, 2, 0, 0, 1], "image_plane": [0, 0, 9, 0, 0, 1], "refocus": True}),
     "guide": ("trace", {**RAYS, "field": "sech", "alpha": 1, "light": "fan", "across": [0, 1, 0]}),
     "ramp": ("trace", {**RAYS, "field": "linear", "slope": [0, 0, 0.1],
                        "stop_plane": [0, 0, 2, 0, 0, 1]}),

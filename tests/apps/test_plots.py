@@ -53,6 +53,7 @@ KINDS = {
     "planned": ("fit", {"plan": True, "free": ["g=0.5:0.95", "optical_depth=1:20"], "depth": 2000, "g": 0.8,
                         "optical_depth": 4, "tilts": [0.0002, 0.0006]}),
     "rays": ("trace", RAYS),
+    "spot": ("trace", {"config": DATA / "scenes/trace_singlet.toml", "ray_count": 50}),
     "lens": ("design", {"nodes": [3], "directions": 6, "rays_per_direction": 8, "threads": 1}),
     "display": ("design", {"design": "box", "nodes": [7], "goal": "irradiance", "pictures": "asked.csv", "rays_across": 8,
                            "iterations": 2, "threads": 1}),
@@ -70,7 +71,7 @@ OWN = {"memory_effect": {"grid", "points", "curve", "moves", "layers", "graded"}
        "range_map": {"grid"}, "convergence": {"grid", "points"}, "tilt_shift": {"map"},
        "dws": {"delays", "exposed"}, "contrast": {"exposed"}, "layer_range": {"layers"}, "graded_range": {"graded"},
        "frequency": {"frequencies"}, "validation": {"both"}, "speckle_field": {"fields"},
-       "image": {"frames"}, "fit": {"fitted"}, "fit_plan": {"planned"}, "rays": {"rays"},
+       "image": {"frames"}, "fit": {"fitted"}, "fit_plan": {"planned"}, "rays": {"rays"}, "spot": {"spot"},
        "design": {"lens", "display", "core"}, "render": {"picture", "pulse"}, "render_time": {"pulse"},
        "light_map": {"light"}, "reflection_image": {"spectrum"}, "field_map": {"near"}}
 

@@ -19,6 +19,7 @@
 #include "grin/fields/ultrasound.h"
 #include "grin/rays/ray_invariants.h"
 #include "grin/rays/trace.h"
+#include "grin/scene/trace_scene.h"
 
 namespace flatspeckle::bench {
 
@@ -296,6 +297,57 @@ Finding sound_too_far() {
   return yes(trace(wave, nothing, {10, 1e-9}, steps, ray).stop == Stop::lost);
 }
 
+/// A ray through bodies, to z = 2 or the length 10.
+RayState through(const PlainBodyValues& bodies, const Vec3& from, const Vec3& towards) {
+  TraceValues values;
+  values.bodies.plain_bodies = bodies;
+  values.starts.origin = {from[0], from[1], from[2]};
+  values.starts.direction = {towards[0], towards[1], towards[2]};
+  values.starts.across = {0, 1, 0};
+  values.starts.ray_count = 1;
+  values.stops.stop_plane = {0, 0, 2, 0, 0, 1};
+  values.stops.max_length = 10;
+  return trace_rays(make_trace_scene(values))[0].end;
+}
+
+/// Refracted twice, a ray at this height is turned by 2 (asin h - asin h/n).
+Finding ball_lens(double height, double excess, double limit) {
+  const RayState end =
+      through({.ball = {0, 0, 0, 1, 1 + excess, 0, 0, 0}}, {height, 0, -2}, Vec3::UnitZ());
+  const double turn = 2 * (std::asin(height) - std::asin(height / (1 + excess)));
+  return {std::abs(std::atan2(-end.v[0], end.v[2]) / turn - 1), limit};
+}
+
+/// From within a plate, at so much more than the critical angle: out of the other side, or back.
+Finding at_critical_angle(double beyond) {
+  const double angle = std::asin(1 / 1.5) + beyond;
+  const RayState end = through({.block = {-1e6, -1e6, 0, 1e6, 1e6, 1, 1.5, 0, 0, 0}}, {0, 0, 0.5},
+                               {std::sin(angle), 0, std::cos(angle)});
+  const bool is_inside = std::abs(end.v.norm() - 1.5) < 1e-9;
+  return yes(is_inside == (beyond > 0));
+}
+
+/// A face of so large a radius turns a ray at height 1 by (n - 1)/R.
+Finding weak_lens(double radius) {
+  const RayState end =
+      through({.lens = {0, 0, 0, 2, radius, 0, 0.5, 1.5, 0, 0, 0}}, {1, 0, -1}, Vec3::UnitZ());
+  return {std::abs(-end.v[0] * radius / 0.5 - 1), 1e-16 * radius + 1 / (radius * radius)};
+}
+
+void add_bodies(ExtremeRows& rows) {
+  for (const double height : {1e-9, 0.7, 1 - 1e-9})
+    rows.add("ball of glass, beam at height " + short_number(height), "angle it is turned by",
+             [=] { return ball_lens(height, 0.5, 1e-7); });
+  rows.add("ball of n - 1 = 1e-9", "angle it is turned by",
+           [] { return ball_lens(0.7, 1e-9, 1e-6); });
+  for (const double beyond : {-1e-12, 1e-12})
+    rows.add("plate, " + short_number(beyond) + " beyond the critical angle",
+             "leaves, or stays for ever", [=] { return at_critical_angle(beyond); });
+  for (const double radius : {1e3, 1e9})
+    rows.add("lens of a face of radius " + short_number(radius), "angle it is turned by",
+             [=] { return weak_lens(radius); });
+}
+
 void add_lenses(ExtremeRows& rows) {
   for (const double height : {0.0, 0.7, 0.999})
     rows.add("Luneburg lens, beam at height " + short_number(height), "focus, optical path",
@@ -344,6 +396,7 @@ void add_guides(ExtremeRows& rows) {
 std::vector<ExtremeCase> ray_extremes() {
   ExtremeRows rows("grin");
   add_lenses(rows);
+  add_bodies(rows);
   add_ramps(rows);
   add_guides(rows);
   return std::move(rows).rows();

@@ -1,0 +1,124 @@
+#!/usr/bin/env python3
+"""The image of rays of `flatspeckle trace` (with image_plane): where they meet the plane, how far from
+the mean by where they start (of rays near the axes of the pupil), optical path differences about the
+point where these are least, and the spot by the plane's place. --wavelength: path differences in
+wavelengths, and how they dim the peak (Strehl ratio of Marechal, for small ones)."""
+
+from lib import style
+from lib.result_file import Unusable
+
+import matplotlib.pyplot as plt
+import numpy as np
+
+NEAR_AXIS = 0.1  # of the pupil's radius
+
+
+def add_options(parser):
+    parser.add_argument("--wavelength", type=float, metavar="LENGTH", help="in the unit of lengths")
+
+
+def pupil(result):
+    """Where the rays of the image start, from -1 to 1 along two axes across their mean direction: by
+    place, or of rays from a point by direction."""
+    numbers = result.values("image/ray").astype(int)
+    place, direction = (np.stack([result.values(f"start/{letter}{axis}")[numbers] for axis in "xyz"], axis=-1)
+                        for letter in ("", "d"))
+    along = direction.mean(axis=0) / np.linalg.norm(direction.mean(axis=0))
+    guide = np.array([1, 0, 0] if abs(along[0]) < 0.9 else [0, 1, 0])
+    first = guide - along * (guide @ along)
+    first /= np.linalg.norm(first)
+    axes = np.stack([first, np.cross(along, first)], axis=-1)
+    spread = place if np.ptp(place, axis=0).max() > 0 else direction
+    across = (spread - spread.mean(axis=0)) @ axes
+    return across / max(np.hypot(*across.T).max(), 1e-300)
+
+
+def scale_of(values):
+    """A power of ten that values are shown in, and what to write of it."""
+    most = np.abs(values).max()
+    decade = int(np.floor(np.log10(most))) if most > 0 else 0
+    decade = 0 if -2 < decade < 3 else decade
+    return 10.0**decade, (f" ($10^{{{decade}}}$)" if decade else "")
+
+
+def draw_spot(axis, at, radius):
+    size, power = scale_of(at)
+    axis.plot(*(at / size).T, "o", markersize=1.5, color=style.COLOURS[0])
+    turn = np.linspace(0, 2 * np.pi, 100)
+    axis.plot(radius / size * np.cos(turn), radius / size * np.sin(turn), color=style.COLOURS[1],
+              label="rms")
+    axis.set(xlabel="$x$ from the mean" + power, ylabel="$y$" + power, aspect="equal",
+             title="spot")
+    axis.margins(0.15)
+    axis.legend(loc="upper right", handlelength=1)
+
+
+def fans(start):
+    """Rays near each axis of the pupil, in order; of rays in a line, all of it."""
+    for axis in (0, 1):
+        near = np.flatnonzero(np.abs(start[:, 1 - axis]) < NEAR_AXIS)
+        near = near[np.argsort(start[near, axis])]
+        if np.ptp(start[near, axis]) > NEAR_AXIS:
+            yield axis, near
+
+
+def draw_fan(axis, start, at):
+    size, power = scale_of(at)
+    for number, rays in fans(start):
+        axis.plot(start[rays, number], at[rays, number] / size, label="$" + "xy"[number] + "$",
+                  **style.look(number) | {"linestyle": "", "markersize": 2})
+    axis.set(xlabel="pupil", ylabel="off the mean" + power, title="ray fan")
+    axis.legend(handlelength=1)
+
+
+def draw_paths(axis, start, difference, wavelength):
+    if wavelength:
+        difference = difference / wavelength
+        dimmed = np.exp(-(2 * np.pi * difference.std())**2)
+        axis.set_title(f"path difference, Strehl {dimmed:.2f}")
+    else:
+        axis.set_title(f"path difference, rms {difference.std():.2g}")
+    size, power = scale_of(difference)
+    for number, rays in fans(start):
+        axis.plot(start[rays, number], difference[rays] / size,
+                  **style.look(number) | {"linestyle": "", "markersize": 2})
+    axis.set(xlabel="pupil", ylabel=("wavelengths" if wavelength else "length") + power)
+
+
+def draw_focus(axis, result, at, slope):
+    """The spot grows as a hyperbola."""
+    here, focus = result.values("image/distance"), result.values("image/focus")
+    width = max(2 * abs(here - focus), 3 * np.std(at - at.mean(axis=0)) / max(np.std(slope - slope.mean(axis=0)), 1e-300))
+    where = np.linspace(focus - width, focus + width, 101)
+    spots = at + (where - here)[:, None, None] * slope
+    spots -= spots.mean(axis=1, keepdims=True)
+    radius = np.sqrt((spots**2).sum(axis=2).mean(axis=1))
+    size, power = scale_of(radius)
+    axis.plot(where, radius / size, color=style.COLOURS[0])
+    axis.axvline(here, color="black", linestyle=":", label="plane")
+    axis.set(xlabel="along the normal", ylabel="rms radius" + power, ylim=(0, None),
+             title="through focus")
+    axis.legend(handlelength=1.2)
+
+
+def draw(results, arguments):
+    result = results[0]
+    if not result.has("image/x"):
+        raise Unusable(f"{result.path}: holds no image; trace with --image_plane")
+    at, slope = (np.stack([result.values(f"image/{name}{axis}") for axis in "xy"], axis=-1)
+                 for name in ("", "slope_"))
+    figure, axes = plt.subplots(2, 2, figsize=(style.PAGE * 0.75, 4.4))
+    start, off = pupil(result), at - at.mean(axis=0)
+    draw_spot(axes[0, 0], off, result.values("image/spot_radius"))
+    draw_fan(axes[0, 1], start, off)
+    draw_paths(axes[1, 0], start, result.values("image/least_path_difference"),
+               arguments.wavelength)
+    if result.has("image/focus"):
+        draw_focus(axes[1, 1], result, at, slope)
+    else:
+        axes[1, 1].set_axis_off()
+    return figure
+
+
+if __name__ == "__main__":
+    style.main(draw, __doc__, add_options=add_options)

@@ -1,0 +1,208 @@
+"""Rays through bodies and lenses, and their image, against closed forms; what is refused."""
+
+import unittest
+
+import numpy as np
+
+from program import DATA, datasets
+from refusing import RefusingTest
+
+GLASS = [1.5, 0, 0, 0]
+PARALLEL = {"field": "homogeneous", "light": "line", "max_length": 100}
+
+
+def plane(z):
+    return [0, 0, z, 0, 0, 1]
+
+
+class BodiesTest(RefusingTest):
+    def trace(self, **keys):
+        self.output = self.call("trace", **keys, out="rays.h5").stdout
+        return datasets(self.folder / "rays.h5")
+
+    def ends(self, found):
+        return np.stack([found["exit/" + axis] for axis in "xyz"], axis=-1)
+
+
+class Bodies(BodiesTest):
+    def test_ball_lens(self):
+        """Twice refracted, a ray leaves at the distance h from the centre that it came at, turned by
+        2 (asin h - asin h/n)."""
+        found = self.trace(**PARALLEL, ball=[0, 0, 0, 1, *GLASS], origin=[0, 0, -3], beam_radius=0.95,
+                           stop_plane=plane(2))
+        h = found["start/x"]
+        turn = 2 * (np.arcsin(h) - np.arcsin(h / 1.5))
+        np.testing.assert_allclose(found["exit/dx"], -np.sin(turn), atol=1e-13)
+        np.testing.assert_allclose(found["exit/x"], h / np.cos(turn) - 2 * np.tan(turn), atol=1e-13)
+        after = (2 - h * np.sin(turn)) / np.cos(turn)
+        path = 3 + after - 2 * np.sqrt(1 - h**2) + 3 * np.sqrt(1 - (h / 1.5)**2)
+        np.testing.assert_allclose(found["optical_path"], path, rtol=1e-13)
+
+    def test_lens_of_two_half_balls_is_a_ball(self):
+        ball, lens = (self.trace(**PARALLEL, **body, origin=[0, 0, -3], beam_radius=0.9, stop_plane=plane(2))
+                      for body in ({"ball": [0, 0, 0, 1, *GLASS]}, {"lens": [0, 0, -1, 1, 1, -1, 2, *GLASS]}))
+        np.testing.assert_allclose(self.ends(lens), self.ends(ball), atol=1e-13)
+        np.testing.assert_allclose(lens["optical_path"], ball["optical_path"], rtol=1e-13)
+
+    def test_thick_lens_and_cemented_pair_on_the_axis(self):
+        """Back focal distances by paraxial refraction, n' u' = n u - y (n' - n)/R."""
+        for lenses in ([[0, 0, 0, 1, 6, -4, 0.6, 1.52, 0, 0, 0]],
+                       [[0, 0, 0, 1, -6, 4, 0.6, 1.52, 0, 0, 0]],
+                       [[0, 0, 0, 1, 6, -4, 0.6, 1.52, 0, 0, 0], [0, 0, 0.6, 1, -4, -40, 0.3, 1.62, 0, 0, 0]]):
+            y, nu, index = 1, 0, 1
+            for lens in lenses:
+                nu -= y * (lens[7] - index) / lens[4]
+                index = lens[7]
+                y += nu / index * lens[6]
+            nu -= y * (1 - index) / lens[5]
+            back = lens[2] + lens[6]
+            found = self.trace(**PARALLEL, lens=sum(lenses, []), origin=[0, 0, -1], beam_radius=1e-4,
+                               stop_plane=plane(back + 1), image_plane=plane(back))
+            self.assertAlmostEqual(found["image/focus"] / (-y / nu), 1, delta=1e-7)
+            np.testing.assert_allclose(found["optical_path"][5], 2 + sum(lens[6] * lens[7] for lens in lenses),
+                                       rtol=1e-14)
+
+    def test_plate(self):
+        """Shifted by d sin(t - t')/cos(t'), and dimmed by Fresnel's reflections and by the medium."""
+        found = self.trace(**PARALLEL, block=[-9, -9, 0, 9, 9, 1, 1.5, 0.2, 0.1, 0], ray_count=1,
+                           direction=[np.sin(0.7), 0, np.cos(0.7)], origin=[-1, 0, -1], stop_plane=plane(4))
+        inside = np.arcsin(np.sin(0.7) / 1.5)
+        np.testing.assert_allclose(found["exit/x"], -1 + 4 * np.tan(0.7) + np.tan(inside), rtol=1e-13)
+        s = (np.sin(0.7 - inside) / np.sin(0.7 + inside))**2
+        p = (np.tan(0.7 - inside) / np.tan(0.7 + inside))**2
+        left = (1 - (s + p) / 2)**2 * np.exp(-0.3 / np.cos(inside))
+        np.testing.assert_allclose(found["transmittance"], left, rtol=1e-13)
+
+    def test_total_reflection(self):
+        """In a plate a steep ray goes to and fro, and nothing is lost."""
+        found = self.trace(**PARALLEL, block=[-9, -9, 0, 9, 9, 1, *GLASS], ray_count=1, direction=[1, 0, 1],
+                           origin=[0, 0, 0.25], stop_plane=[7, 0, 0, 1, 0, 0])
+        np.testing.assert_allclose(self.ends(found), [[7, 0, 0.75]], atol=1e-13)
+        self.assertEqual(found["transmittance"], 1)
+        np.testing.assert_allclose(found["optical_path"], 1.5 * 7 * np.sqrt(2), rtol=1e-14)
+
+    def test_bodies_in_bodies(self):
+        """What lies over a thing of the same index is not seen; a bubble is."""
+        keys = {**PARALLEL, "origin": [0, 0.1, -3], "beam_radius": 0.8, "stop_plane": plane(2)}
+        plain = self.trace(**keys, ball=[0, 0, 0, 1, *GLASS])
+        same = self.trace(**keys, ball=[0, 0, 0, 1, *GLASS, 0.2, 0, 0.1, 0.3, *GLASS])
+        np.testing.assert_allclose(self.ends(same), self.ends(plain), atol=1e-13)
+        hollow = self.trace(**keys, ball=[0, 0, 0, 1, *GLASS, 0, 0, 0, 0.999999, 1, 0, 0, 0])
+        np.testing.assert_allclose(hollow["exit/x"][:1], keys["beam_radius"] * -1, atol=0.01)
+        self.assertGreater(np.abs(self.ends(hollow) - self.ends(plain)).max(), 0.1)
+
+    def test_rod_of_parabolic_index(self):
+        """Within, x = h cos(alpha sigma), sigma = L/beta; at the plane face v_x is kept."""
+        found = self.trace(**PARALLEL | {"field": "parabolic"}, index=1.6, alpha=0.5, body_lens=[0, 0, 0, 0.9, 0, 0, 3],
+                           origin=[0, 0, -1], beam_radius=0.4, stop_plane=plane(4))
+        h = found["start/x"]
+        turn = 0.5 * 3 / np.sqrt(1.6**2 - (0.5 * h)**2)
+        vx = -h * 0.5 * np.sin(turn)
+        np.testing.assert_allclose(found["exit/dx"], vx, atol=1e-10)
+        np.testing.assert_allclose(found["exit/x"], h * np.cos(turn) + vx / np.sqrt(1 - vx**2), atol=1e-9)
+
+    def test_luneburg_in_air_has_no_surface(self):
+        keys = {**PARALLEL | {"field": "luneburg"}, "origin": [0, 0, -2], "beam_radius": 0.9, "stop_plane": plane(1)}
+        bare, body = self.trace(**keys), self.trace(**keys, body_sphere=[0, 0, 0, 1])
+        np.testing.assert_allclose(self.ends(body), np.tile([0, 0, 1], (11, 1)), atol=1e-8)
+        np.testing.assert_allclose(body["optical_path"], bare["optical_path"], rtol=1e-10)
+        np.testing.assert_allclose(body["transmittance"], 1, atol=1e-12)
+
+    def test_luneburg_in_water_keeps_the_distance_from_the_centre(self):
+        """n r sin(angle) is kept at a sphere as in the field: rays leave at the distance that they came at."""
+        found = self.trace(**PARALLEL | {"field": "luneburg"}, body_sphere=[0, 0, 0, 1], index_around=1.33,
+                           origin=[0, 0, -2], beam_radius=0.7, stop_plane=plane(2))
+        along = np.stack([found["exit/d" + axis] for axis in "xyz"], axis=-1)
+        np.testing.assert_allclose(np.linalg.norm(np.cross(self.ends(found), along), axis=1),
+                                   abs(found["start/x"]), atol=1e-9)
+
+    def test_field_around_bodies(self):
+        """A ball as dense as the ramp around it where a ray passes bends nothing but by its even index."""
+        found = self.trace(**PARALLEL | {"field": "linear"}, index=1.5, slope=[0, 0, 0], ray_count=3,
+                           ball=[0, 0, 0, 1, *GLASS], origin=[0, 0, -2], stop_plane=plane(2))
+        np.testing.assert_allclose(found["exit/x"], found["start/x"], atol=1e-12)
+
+
+class Image(BodiesTest):
+    def test_aplanatic_points(self):
+        """From R/n beside a ball's centre all rays seem to come from n R: no spot, and by Fermat no
+        difference of paths."""
+        found = self.trace(field="homogeneous", light="cone", half_angle=1.5, origin=[0, 0, -2 / 3],
+                           ball=[0, 0, 0, 1, *GLASS], ray_count=100, stop_sphere=[0, 0, 0, 3], max_length=20,
+                           image_plane=plane(-1.4), refocus=True)
+        self.assertAlmostEqual(float(found["image/distance"]), -0.1, delta=1e-12)
+        self.assertLess(found["image/spot_extent"], 1e-12)
+        self.assertLess(abs(found["image/path_difference"]).max(), 1e-13)
+        self.assertLess(abs(found["image/least_path_difference"]).max(), 1e-13)
+        self.assertAlmostEqual(float(found["image/best_z"]), -1.5, delta=1e-12)
+
+    def test_path_differences_have_the_slopes_of_the_wave(self):
+        """dW/dh = -dx sin'... of a fan: rays are normal to the wave, so that the derivative of W by the
+        direction cosine is the height at which the ray passes the point."""
+        found = self.trace(**PARALLEL, lens=[0, 0, 0, 1, 5, 0, 0.5, *GLASS], origin=[0, 0, -1], beam_radius=0.8,
+                           ray_count=401, stop_plane=plane(5), image_plane=plane(9))
+        off = found["image/x"] - found["image/x"].mean()
+        cosine = found["exit/dx"]
+        slope = np.gradient(found["image/path_difference"], cosine)
+        np.testing.assert_allclose(slope[1:-1], -(off * np.sqrt(1 - cosine**2)
+                                                  * np.sqrt(1 + found["image/slope_x"]**2))[1:-1], atol=2e-6)
+
+    def test_refocus(self):
+        """A wave of focus 10: the spot is least there, and elsewhere as wide as the cone."""
+        keys = {**PARALLEL, "lens": [0, 0, 0, 1, 5, 0, 0.5, *GLASS], "origin": [0, 0, -1], "beam_radius": 0.5,
+                "light": "disk", "ray_count": 200, "stop_plane": plane(5)}
+        moved = self.trace(**keys, image_plane=plane(9), refocus=True)
+        still = self.trace(**keys, image_plane=plane(9 + moved["image/distance"]))
+        np.testing.assert_allclose(still["image/spot_radius"], moved["image/spot_radius"], rtol=1e-10)
+        self.assertAlmostEqual(float(still["image/focus"]), 0, delta=1e-10)
+        for beside in (-0.01, 0.01):
+            other = self.trace(**keys, image_plane=plane(9 + moved["image/distance"] + beside))
+            self.assertGreater(other["image/spot_radius"], moved["image/spot_radius"])
+        self.assertLess(moved["image/least_path_difference_rms"], moved["image/path_difference_rms"])
+
+    def test_parallel_rays_have_no_focus(self):
+        found = self.trace(**PARALLEL, ray_count=5, stop_plane=plane(1), image_plane=plane(2))
+        self.assertNotIn("image/focus", found)
+        self.assertLess(found["image/path_difference_rms"], 1e-14)
+
+    def test_scenes(self):
+        for name in ("singlet", "rod_lens"):
+            found = self.trace(config=DATA / "scenes" / f"trace_{name}.toml")
+            self.assertLess(found["image/spot_radius"], 0.02)
+
+
+class Refused(BodiesTest):
+    KEYS = {**PARALLEL, "stop_plane": plane(5)}
+
+    def test_bodies(self):
+        for keys, message in (
+                ({"lens": [0, 0, 0, 1, 0.5, 0, 1, *GLASS]}, "radii of curvature must not be below the radius"),
+                ({"lens": [0, 0, 0, 1, 1, -1, 1, *GLASS]}, "faces not meet within it"),
+                ({"lens": [0, 0, 0, 1, 1, -1, 0, *GLASS]}, "lens, thickness = 0: must be positive"),
+                ({"body_lens": [0, 0, 0, -1, 1, -1, 1]}, "body_lens, radius = -1: must be positive"),
+                ({"lens": [0, 0, 0, 1, 5]}, "lens"),
+                ({"lens": [0, 0, 0, 1, 5, 0, 1, -1.5, 0, 0, 0]}, "lens, index = -1.5: must be positive"),
+                ({"ball": [0, 0, 0, 1, 1.5, -1, 0, 0]}, "ball, mu_s = -1: must not be negative"),
+                ({"index_around": 1.3}, "index_around = 1.3: is a key of a body"),
+                ({"body_box": [0, 0, 0, 1, 1, 1], "body_sphere": [0, 0, 0, 1]}, "give one body"),
+                ({"body_sphere": [0, 0, 0, 2], "field": "luneburg"}, "inside of the rim of luneburg"),
+                ({"body_sphere": [0, 0, 0, 2], "field": "parabolic", "index": 1.5, "alpha": 1}, "must be positive"),
+                ({"ball": [0, 0, 0, 1, *GLASS] * 63}, "stop surfaces and bodies = 64: must be at most 62"),
+                ({"body_sphere": [0, 0, 0, 1], "connect": [0, 0, 0, 0, 0, 1], "light": None, "stop_plane": None},
+                 "body_sphere")):
+            self.assert_refused([message], "trace", **self.KEYS | keys)
+
+    def test_images(self):
+        for keys, message in (
+                ({"image_plane": [0, 0, 1, 0, 0, 0]}, "image_plane, normal = 0 0 0: must not be 0"),
+                ({"image_plane": [0, 0, 1]}, "image_plane"),
+                ({"refocus": True}, "refocus"),
+                ({"image_plane": plane(9), "refocus": True}, "the rays are parallel, and meet nowhere"),
+                ({"image_plane": [0, 0, 9, 1, 0, 0]}, "ray 0 runs along the plane"),
+                ({"image_plane": plane(9), "field": "parabolic", "index": 1.5, "alpha": 0.1},
+                 "rays end at different indices")):
+            self.assert_refused([message], "trace", **self.KEYS | keys)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,109 @@
+#include <cmath>
+#include <random>
+
+#include <Eigen/Geometry>
+#include <doctest/doctest.h>
+
+#include "grin/geometry/lens.h"
+#include "grin/surfaces/straight_way.h"
+
+using namespace flatspeckle::grin;
+
+namespace {
+
+struct Shape {
+  const char* name;
+  double front, back;
+};
+constexpr Shape shapes[] = {{"biconvex", 2, -3},        {"biconcave", -2, 3},
+                            {"meniscus", 2, 2.5},       {"plano-convex", 0, -1.5},
+                            {"plano-concave", -1.2, 0}, {"rod", 0, 0}};
+
+Lens lens_of(const Shape& shape) {
+  return *Lens::make({0.3, -0.2, 0.1}, 1, shape.front, shape.back, 0.8);
+}
+Vec3 random_point(std::mt19937& random, double size) {
+  std::uniform_real_distribution<double> even(-size, size);
+  return {even(random), even(random), even(random)};
+}
+Vec3 random_direction(std::mt19937& random) {
+  std::normal_distribution<double> normal;
+  return Vec3(normal(random), normal(random), normal(random)).normalized();
+}
+/// By small steps, to where the side changes.
+double marched(const Lens& lens, const Vec3& x, const Vec3& d) {
+  const bool inside = lens.distance(x) < 0;
+  for (double way = 0; way < 12; way += 1e-3)
+    if ((lens.distance(x + way * d) < 0) != inside) return way;
+  return no_way;
+}
+
+}  // namespace
+
+TEST_CASE("the distance from a lens has slope 1 at most, and its normal is its gradient") {
+  std::mt19937 random(1);
+  for (const Shape& shape : shapes) {
+    CAPTURE(shape.name);
+    const Lens lens = lens_of(shape);
+    for (int i = 0; i < 300; ++i) {
+      const Vec3 x = random_point(random, 2), y = random_point(random, 2);
+      CHECK(std::abs(lens.distance(x) - lens.distance(y)) <= (x - y).norm() * (1 + 1e-12));
+    }
+  }
+}
+
+TEST_CASE("ways into and out of a lens are those of small steps, and end where it does") {
+  std::mt19937 random(2);
+  for (const Shape& shape : shapes) {
+    CAPTURE(shape.name);
+    const Lens lens = lens_of(shape);
+    int met = 0;
+    for (int i = 0; i < 600; ++i) {
+      const Vec3 x = random_point(random, 1.8), d = random_direction(random);
+      const bool inside = lens.distance(x) < 0;
+      const double way = inside ? way_out(lens, x, d) : way_in(lens, x, d);
+      const double seen = marched(lens, x, d);
+      CAPTURE(i);
+      if (way == no_way) {
+        CHECK(seen == no_way);
+        continue;
+      }
+      ++met;
+      CHECK(std::abs(lens.distance(x + way * d)) < 1e-13);
+      if (seen != no_way) CHECK(std::abs(way - seen) < 1.1e-3);  // steps may miss an edge
+    }
+    CHECK(met > 60);
+  }
+}
+
+TEST_CASE(
+    "a ray that has left a hollow face meets the lens again at the other side of the hollow") {
+  const Lens lens = *Lens::make({0, 0, 0}, 1, -1.2, 0, 0.2);
+  const Vec3 x(-0.9, 0, -lens.faces()[0].sphere().radius + std::sqrt(1.44 - 0.81));
+  CHECK(std::abs(lens.distance(x)) < 1e-14);
+  CHECK(way_in(lens, x, Vec3::UnitX()) == doctest::Approx(1.8));
+}
+
+TEST_CASE("the normal of a lens turns as its curvature says") {
+  constexpr double h = 1e-5;
+  for (const Shape& shape : shapes) {
+    CAPTURE(shape.name);
+    const Lens lens = lens_of(shape);
+    for (const Vec3& from : {Vec3(0.4, 0.1, -3), Vec3(0.4, 0.1, 3), Vec3(4, 0.3, 0.5)}) {
+      const Vec3 towards = (Vec3(0.4, 0, 0.5) - from).normalized();
+      const Vec3 x = from + way_in(lens, from, towards) * towards;
+      const Vec3 n = lens.normal(x);
+      const Vec3 along = n.cross(Vec3(0.3, 0.5, 0.8)).normalized();
+      const Vec3 turn = (lens.normal(x + h * along) - lens.normal(x - h * along)) / (2 * h);
+      CHECK((lens.curvature(x) * along - turn).norm() < 1e-8);
+      CHECK(n.dot(towards) < 0);
+    }
+  }
+}
+
+TEST_CASE("what is no lens") {
+  CHECK_FALSE(Lens::make({0, 0, 0}, 1, 0.9, 0, 1));
+  CHECK_FALSE(Lens::make({0, 0, 0}, 1, 1, -1, 1.9));  // faces meet within the radius
+  CHECK(Lens::make({0, 0, 0}, 1, 1, -1, 2));          // a ball
+  CHECK_FALSE(Lens::make({0, 0, 0}, 1, -1, 1, 0));
+}
