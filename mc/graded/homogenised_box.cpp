@@ -37,6 +37,14 @@ Complex hankel_order_0(double x) {
   return {::j0(x), ::y0(x)};
 }
 
+/// Dedekind's eta(i y).
+double eta(double y) {
+  using std::numbers::pi;
+  double product = std::exp(-pi * y / 12);
+  for (int n = 1; n * y < 7; ++n) product *= -std::expm1(-2 * pi * n * y);
+  return product;
+}
+
 Complex hermitian_product(const std::vector<Complex>& a, const std::vector<Complex>& b) {
   Complex sum = 0;
   for (std::size_t i = 0; i < a.size(); ++i) sum += std::conj(a[i]) * b[i];
@@ -99,14 +107,13 @@ Vec2 HomogenisedBox::centre(std::size_t column, std::size_t row) const {
           (static_cast<double>(row) + 0.5) * dz_};
 }
 
-/// Cells count as disks of their area (Richmond 1965).
+/// Midpoint rule on a lattice. The cell of the logarithm itself counts
+/// ln(dx / (2 pi eta(i dz/dx)^2)) (Kronecker's limit; Duan and Rokhlin 2009 for squares).
 void HomogenisedBox::find_spectrum() {
   using std::numbers::pi;
-  const double radius = std::sqrt(dx_ * dz_ / pi), x = k_ * radius;
-  const Complex imaginary(0, 1);
-  const Complex own =
-      imaginary * (pi * radius / (2 * k_)) * Complex(::j1(x), ::y1(x)) - 1 / (k_ * k_);
-  const Complex other = imaginary / 4.0 * (2 * pi * radius / k_ * ::j1(x));
+  const double log_of_cell = std::log(dx_ / (2 * pi * std::pow(eta(dz_ / dx_), 2)));
+  const Complex cell(0, dx_ * dz_ / 4),
+      own = cell * Complex(1, 2 / pi * (std::numbers::egamma + std::log(k_ / 2) + log_of_cell));
   spectrum_.assign(wide_ * high_, 0);
   for (std::size_t row = 0; row < high_; ++row)
     for (std::size_t column = 0; column < wide_; ++column) {
@@ -114,7 +121,7 @@ void HomogenisedBox::find_spectrum() {
         return static_cast<double>(std::min(i, size - i));
       };
       const double r = std::hypot(dx_ * away(column, wide_), dz_ * away(row, high_));
-      spectrum_[row * wide_ + column] = r == 0 ? own : other * hankel_order_0(k_ * r);
+      spectrum_[row * wide_ + column] = r == 0 ? own : cell * hankel_order_0(k_ * r);
     }
   transform(spectrum_, wide_, high_, LineTransform::Direction::forward);
   for (Complex& value : spectrum_) value /= static_cast<double>(wide_ * high_);

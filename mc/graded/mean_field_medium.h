@@ -4,9 +4,11 @@
 
 namespace flatspeckle::mc {
 
-/// A medium whose mean field is refracted: waves travel with K = k + k_shift + i mu_t / 2 (C15) in
-/// the end factors, between scatterers with k as ever. In a slab by Snell and Fresnel, to leading
-/// order in the reflection; in a box by the field of the homogenised box (homogenised_box.h).
+/// A medium whose mean field is refracted: of index n = 1 + k_shift/k, with attenuation in sigma as
+/// in other media of an index (C31), K^2 = k^2 n^2 + i k mu_t. Plane waves come into a slab by
+/// Snell and Fresnel, to leading order in the reflection; into a box as the field of the
+/// homogenised box (homogenised_box.h). Flights between scatterers are straight and end at the
+/// edge.
 class MeanFieldMedium : public GradedMedium {
  public:
   explicit MeanFieldMedium(const Scene& scene)
@@ -15,8 +17,8 @@ class MeanFieldMedium : public GradedMedium {
         mu_t_(scene.medium.mu_t),
         index_(1 + scene.medium.k_shift / scene.k) {}
 
-  double square(Vec2) const override { return 1; }
-  double inside(Vec2 x, Vec2 w) const override { return domain_.distance_to_edge(x, w); }
+  double square(Vec2) const override { return index_ * index_; }
+  double inside(Vec2 x, Vec2 w) const override { return domain_.distance_to_edge(x, w) / index_; }
   std::optional<RayPlace> flown(Vec2 x, Vec2 w, double sigma) const override;
 
  private:

@@ -68,11 +68,37 @@ class Graded(ProgramTest):
             with h5py.File(self.folder / "result.h5") as file:
                 self.assertTrue(np.all(file["intensity"][()] > 0))
 
-    def test_the_mean_field_refracts(self):
-        self.call("covariance", domain="box", width=5, depth=10, scatterer="tm", radius=0.1, index=1.5, count=33,
-                  index_field="mean_field", view_angles=[0.4, 2], samples=2000, out="result.h5")
+
+class Guiding(ProgramTest):
+    """Boxes deeper than wide, whose scatterers shift the phase: weak guides of the mean field."""
+
+    VIEWS = [0.4, 0.8, 1.3, 2, 2.6]
+    RODS = {"width": 5, "depth": 30, "scatterer": "tm", "radius": 0.1, "index": 1.5, "count": 100,
+            "structure": "hard_disks", "wave_tolerance": 1e-3}
+    POINTS = {"width": 5, "depth": 20, "scatterer": "point", "phase_shift": 0.5, "count": 20}
+
+    def deviations(self, wave_samples, **keys):
+        """Of Monte Carlo from exact placements, relative; errors of these; what is allowed."""
+        self.call("validate", **keys, view_angles=self.VIEWS, samples=40000, wave_samples=wave_samples,
+                  out="result.h5")
         with h5py.File(self.folder / "result.h5") as file:
-            self.assertTrue(np.all(file["intensity"][()] > 0))
+            mc, exact = file["mc/intensity"][()], file["wave/intensity"][()]
+            error = np.hypot(file["mc/intensity_error"], file["wave/intensity_error"])
+            return mc / exact - 1, error / exact, file.attrs["bias_allowance"]
+
+    def check(self, wave_samples, **keys):
+        straight, error, allowance = self.deviations(wave_samples, **keys)
+        self.assertTrue(np.all(np.abs(straight) < allowance + 4 * error), (straight, allowance, error))
+        refracted, error, allowance = self.deviations(wave_samples, **keys, index_field="mean_field")
+        self.assertTrue(np.all(np.abs(refracted) < allowance + 4 * error), (refracted, error))
+        rms = lambda values: np.sqrt(np.mean(values**2))
+        self.assertLess(rms(refracted), rms(straight) / 2)
+
+    def test_rods(self):
+        self.check(200, **self.RODS)
+
+    def test_points(self):
+        self.check(12000, **self.POINTS)
 
 
 class Refused(RefusingTest):

@@ -1,0 +1,65 @@
+#include <cmath>
+
+#include <boost/math/quadrature/gauss.hpp>
+#include <doctest/doctest.h>
+
+#include "mc/graded/graded_medium.h"
+#include "mc/graded/homogenised_box.h"
+#include "tests/mc/estimates.h"
+
+namespace flatspeckle::mc {
+
+namespace {
+
+constexpr double k = 2 * std::numbers::pi;
+const Domain box{Domain::Kind::box, 2.1, 1.2};
+
+/// f(u) du from 0 to 1, by Gauss.
+template <typename F>
+Complex integral(const F& f) {
+  using Rule = boost::math::quadrature::gauss<double, 30>;
+  Complex sum = 0;
+  for (std::size_t i = 0; i < Rule::abscissa().size(); ++i)
+    for (const double node : {Rule::abscissa()[i], -Rule::abscissa()[i]})
+      sum += Rule::weights()[i] / 2 * f((1 + node) / 2);
+  return sum;
+}
+
+/// int (i/4) H_0(k |x - y|) exp(i k w.y) dy over the box, by parts that have x as a corner: there
+/// u^3 and v^3 take out the logarithm.
+Complex scattered_once(Vec2 x, Vec2 w) {
+  const auto part = [&](Vec2 size) {
+    return std::abs(size.x * size.z) * integral([&](double u) {
+             return integral([&](double v) {
+               const Vec2 way{u * u * u * size.x, v * v * v * size.z};
+               const double r = k * length(way);
+               return 9 * u * u * v * v * Complex(0, 0.25) * Complex(::j0(r), ::y0(r)) *
+                      std::polar(1.0, k * dot(w, x + way));
+             });
+           });
+  };
+  Complex sum = 0;
+  for (const double side : {-box.width / 2, box.width / 2})
+    for (const double face : {0.0, box.depth}) sum += part(Vec2{side, face} - x);
+  return sum;
+}
+
+}  // namespace
+
+TEST_CASE("A box that hardly differs adds one scattering, cells of any shape") {
+  constexpr double differs = 1e-3, angle = 0.7;
+  const HomogenisedBox more(box, k, k * (1 + differs)), less(box, k, k * (1 - differs));
+  const auto added = more.field(angle), taken = less.field(angle);
+  double largest = 0, worst = 0;
+  for (const std::size_t column : {0U, 7U, 15U})
+    for (const std::size_t row : {1U, 6U, 11U}) {
+      const std::size_t cell = row * more.columns() + column;
+      const Complex expected =
+          4 * differs * k * k * scattered_once(more.centre(column, row), direction(angle));
+      worst = std::max(worst, std::abs(added[cell] - taken[cell] - expected));
+      largest = std::max(largest, std::abs(expected));
+    }
+  CHECK(worst < 0.007 * largest);
+}
+
+}  // namespace flatspeckle::mc
