@@ -65,6 +65,24 @@ std::size_t largest_of(const Estimate& estimate) {
   return static_cast<std::size_t>(largest - estimate.value.begin());
 }
 
+void print_pixels(const Estimate& image) {
+  std::printf("pixels: relative error %.2g %%", 100 * relative_error(image));
+  double all = 0, marked = 0;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < image.rare.size(); ++i) {
+    const double light = image.value[i].real();
+    all += light;
+    if (!image.rare[i]) continue;
+    marked += light;
+    ++count;
+  }
+  if (count > 0)
+    std::printf("; %.2g %% of them, with %.2g %% of the light, rest on few paths and have bounds",
+                100 * static_cast<double>(count) / static_cast<double>(image.rare.size()),
+                100 * marked / all);
+  std::puts("");
+}
+
 /// Total, mean and brightest pixel. Returns whether there is light.
 bool print_sensor(const grin::Sensor& sensor, const grin::SensorResult& result) {
   const std::string& units = row_of(grin::table_of(sensor), "image").unit;
@@ -78,7 +96,7 @@ bool print_sensor(const grin::Sensor& sensor, const grin::SensorResult& result) 
   print_found("mean of pixels", result.mean, units);
   print_row("brightest pixel", image, brightest, units);
   const bool is_lit = image.value[brightest].real() > 0;
-  if (is_lit) std::printf("pixels: relative error %.2g %%\n", 100 * relative_error(image));
+  if (is_lit) print_pixels(image);
   return is_lit;
 }
 

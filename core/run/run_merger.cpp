@@ -73,8 +73,15 @@ void RunMerger::add(std::span<const Complex> sums, double cpu_s) {
   if (state_.sums.batches() == next_checkpoint_) {
     record_error();
     next_checkpoint_ = checkpoint_after(next_checkpoint_);
+    if (is_in_vain()) ended_ = StopReason::samples;
   }
   decide();
+}
+
+/// Where many batches found nothing, and nothing but an error of it would end the run.
+bool RunMerger::is_in_vain() const {
+  constexpr std::uint64_t many = 16 * trusted_batches;
+  return state_.sums.batches() >= many && std::isinf(error()) && !stop_.seconds && !stop_.samples;
 }
 
 void RunMerger::decide() {

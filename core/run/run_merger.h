@@ -35,6 +35,7 @@ class RunMerger {
 
  private:
   void decide();
+  bool is_in_vain() const;
   void record_error();
   void drop_odd_row();
 

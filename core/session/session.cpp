@@ -46,11 +46,11 @@ void tell_few_batches(const std::string& label, std::uint64_t batches) {
 void tell_rare(const std::vector<std::string>& estimates) {
   if (estimates.empty()) return;
   constexpr std::size_t most = 5;
-  std::cerr << "note: a few strong paths carry errors, which are not to be relied on: ";
+  std::cerr << "note: errors that rest on a few strong paths, and are rough themselves: ";
   for (std::size_t i = 0; i < std::min(most, estimates.size()); ++i)
     std::cerr << (i == 0 ? "" : ", ") << estimates[i];
   if (estimates.size() > most) std::cerr << " and " << estimates.size() - most << " more";
-  std::cerr << "; more samples tell, NAME_rare marks them\n";
+  std::cerr << " (NAME_rare marks them; more samples tell)\n";
 }
 
 }  // namespace

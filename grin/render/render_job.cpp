@@ -119,6 +119,12 @@ Tracer tracer_of(const Tracers& tracers, const RenderScene& scene, const RenderR
 
 using Estimating = std::function<Estimate(const GroupedSums&, const Estimator&)>;
 
+/// Infinite in the dark, which is no knowledge of it.
+double error_of_light(const Estimate& light) {
+  const bool is_lit = std::ranges::any_of(light.value, [](Complex x) { return x.real() > 0; });
+  return is_lit ? relative_error(light) : std::numeric_limits<double>::infinity();
+}
+
 /// That of the sensor where it is largest: units of sensors differ.
 double largest_error(const Transport& transport, const std::vector<Sensor>& kinds,
                      const TimeBins& bins, const Estimate& picture, const GroupedSums& sums,
@@ -133,7 +139,7 @@ double largest_error(const Transport& transport, const std::vector<Sensor>& kind
     } else {
       Estimate own = part(picture, first, count);
       bound_errors(own, pixels);
-      largest = std::max(largest, relative_error(own));
+      largest = std::max(largest, error_of_light(own));
     }
     first += count;
   }
@@ -234,7 +240,7 @@ RenderJob render_job(const RenderScene& scene, const RenderRequest& request, std
     };
     const double of_pictures =
         largest_error(*tracer.transport, kinds, bins, picture, sums, estimate);
-    return cells ? std::max(of_pictures, relative_error(fluence(sums, first_of_map, *cells)))
+    return cells ? std::max(of_pictures, error_of_light(fluence(sums, first_of_map, *cells)))
                  : of_pictures;
   };
   return job;

@@ -106,6 +106,13 @@ class Scenes(RenderTest):
         self.assertEqual(self.call("render", **dark, **BEAM).stderr.count(note), 1)
         self.assertNotIn(note, self.call("render", **dark, **BEAM, **FOG).stderr)
 
+    def test_darkness_is_no_result(self):
+        """It has no error, and what asks for one alone ends."""
+        dark = {**BOX, **CAMERA, "sensor_at": [0.5, 0, 3.9], "out": "dark.h5"}
+        for limit in ({}, {"seconds": 0.2}):
+            ended = self.call("render", **dark, **BEAM, target_error=0.1, **limit, status=3)
+            self.assertNotIn("error 0", ended.stderr)
+
     def test_a_light_is_seen_through_a_body(self):
         """By a pinhole, whatever the method."""
         keys = {**BOX, **CAMERA, "body_sphere": [0, 0, 2, 0.5], "index": 1.5,
