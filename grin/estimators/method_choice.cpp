@@ -28,10 +28,11 @@ struct Trial {
 /// In flights that tell |J|.
 double flown(const TransportCounts& counts, const Tracers& tracers, const Tracer& tracer) {
   constexpr double steps_alone = 20;  // at both ends of a flight in lanes
-  const double side_by_side = tracers.scene().leapfrogs ? 0.25 : 1.2;
+  constexpr double alone = 1.5;       // one that sees no others
+  const double side_by_side = tracers.scene().leapfrogs ? 0.25 : 0.35;
   const auto all = static_cast<double>(counts.flights);
   if (tracer.method == RenderMethod::analog)
-    return all * (side_by_side + steps_alone / tracers.steps_of_flight());
+    return all * std::min(side_by_side + steps_alone / tracers.steps_of_flight(), alone);
   if (tracer.spreading == Spreading::all) return all;
   const double again = all - static_cast<double>(counts.light_collisions);
   return 0.7 * all + 2 * again;  // to the boundary is further than to collisions
@@ -182,19 +183,13 @@ bool has_finite_variance(const RenderScene& scene, RenderMethod method) {
 
 namespace {
 
-/// Where it is strong, joins are by curves that are rare and worth much.
-bool is_sound(const AnyIndexField& field) {
-  return std::visit([]<class F>(const F&) { return goes_by_leapfrog<F>; }, field);
-}
-
 /// Bidirectional tracing first, if it can be tried; then so can the others.
 std::vector<Candidate> candidates(const Tracers& tracers) {
   std::vector<Candidate> found;
   for (const RenderMethod method :
        {RenderMethod::bidirectional, RenderMethod::path, RenderMethod::light})
     if (has_finite_variance(tracers.scene(), method)) found.push_back({tracers.make(method)});
-  if (is_sound(tracers.scene().field) && can_be_analog(tracers.scene()))
-    found.push_back({tracers.make(RenderMethod::analog)});
+  if (can_be_analog(tracers.scene())) found.push_back({tracers.make(RenderMethod::analog)});
   return found;
 }
 
@@ -209,22 +204,29 @@ void try_all(const Tracers& tracers, double effort, std::vector<Candidate>& all)
   all.erase(std::remove_if(all.begin() + 1, all.end(), is_beyond), all.end());
 }
 
-/// With the least work, known or not; bidirectional where that is nearly the same, as it misses
-/// least where the trial is too short. Nothing where no trial tells.
+/// What else speaks for or against a method, as a factor of its work. Bidirectional tracing misses
+/// least where the trial is too short. Of light that is joined to nothing few paths hit a pixel:
+/// it stays marked for long (picture_errors.h), with bounds in place of errors.
+double preference(const Tracer& tracer) {
+  if (tracer.method == RenderMethod::bidirectional) return 0.9;
+  const bool are_pixels =
+      tracer.transport->pixels() > static_cast<int>(tracer.transport->sensors.size());
+  return tracer.method == RenderMethod::analog && are_pixels ? 2 : 1;
+}
+
+/// With the least work, known or not. Nothing where no trial tells.
 struct Best {
   const Candidate* candidate = nullptr;
   Needed needed = {std::numeric_limits<double>::infinity(), false};
 };
 Best best_of(const std::vector<Candidate>& all, bool of_known) {
-  constexpr double clearly = 0.9;
   Best best;
   const auto light = light_of_pictures(all);
   for (const Candidate& candidate : all) {
     Needed own = needed(candidate.trial, light);
     if (of_known && !own.is_known) continue;
-    if (!(own.work < best.needed.work)) continue;
-    if (candidate.tracer.method == RenderMethod::bidirectional) own.work *= clearly;
-    best = {&candidate, own};
+    own.work *= preference(candidate.tracer);
+    if (own.work < best.needed.work) best = {&candidate, own};
   }
   return best;
 }

@@ -50,13 +50,12 @@ BesselProfile::Cell BesselProfile::fit(int order, double cell) {
   return result;
 }
 
+/// By the C library's, good to rounding.
 BesselProfile::Jet BesselProfile::far_jet(double u) const {
   const double x = std::sqrt(u);
   if (!std::isfinite(x)) return {u, u};
-  const std::vector<long double> j = bessel_j(order_ + 1, x);
-  const long double scale = std::pow(static_cast<long double>(x), -order_);
-  return {static_cast<double>(j[order_] * scale),
-          static_cast<double>(-j[order_ + 1] * scale / (2 * x))};
+  const double scale = std::pow(x, -order_);
+  return {::jn(order_, x) * scale, -::jn(order_ + 1, x) * scale / (2 * x)};
 }
 
 }  // namespace flatspeckle::grin

@@ -10,8 +10,8 @@ namespace flatspeckle::grin {
 /// g_m(u) = J_m(x) / x^m with u = x^2: entire in u, so that J_m(x) cos(m phi) = g_m(u) Re (x e^{i
 /// phi})^m is smooth on the axis for every m. By u, g_m' = -g_{m+1}/2.
 ///
-/// A table of polynomials in u over equal steps in x, up to x = reach; beyond, the series of
-/// core/bessel, slowly. Errors, relative to the envelope of J_m: value 1e-15, slope 1e-13.
+/// A table of polynomials in u over equal steps in x, up to x = reach; beyond, those of the C
+/// library, slowly. Errors, relative to the envelope of J_m: value 1e-15, slope 1e-13.
 class BesselProfile {
  public:
   static constexpr int max_order = 64;

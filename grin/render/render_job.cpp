@@ -33,14 +33,15 @@ int paths_per_batch(const Tracer& tracer, bool scatters, double cost_of_flight, 
   constexpr double most = 16384, flights_soon_made = 8192;
   const double fewest = std::clamp(flights_soon_made / tracer.flights_per_pair, 4.0, 32.0);
   const bool is_map = tracer.method == RenderMethod::photon_map;
-  if (tracer.method == RenderMethod::analog && scatters) return 4 * lanes;  // lanes are to be full
   const double most_flights = is_map ? 1 << 20 : 1 << 17;
   const double paths =
       is_map ? photon_paths_per_batch
              : std::clamp(static_cast<double>(sums) / (16 * cost_of_flight), fewest, most);
   const auto short_enough =
       static_cast<std::size_t>(std::min(paths, most_flights / tracer.flights_per_pair));
-  return static_cast<int>(std::bit_floor(std::max<std::size_t>(short_enough, 1)));
+  const bool fills_lanes = tracer.method == RenderMethod::analog && scatters;
+  return static_cast<int>(
+      std::bit_floor(std::max<std::size_t>(short_enough, fills_lanes ? 4 * lanes : 1)));
 }
 
 std::string described(const RenderScene& scene, const RenderRequest& request, RenderMethod method) {

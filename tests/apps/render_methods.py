@@ -2,7 +2,9 @@
 """Methods of render on the shipped scenes: what each needs in processor time to an error of the picture and of the
 total, against that which the pilot chooses, and photon maps of six radii.
 
-    tests/apps/render_methods.py PROGRAM [--seconds T] [--reference R] [--seeds N] [--scenes NAME ...]
+    tests/apps/render_methods.py PROGRAM [--seconds T] [--reference R] [--seeds N] [--scenes NAME ...] [--power]
+
+--power: of a single pixel, for which the pilot may choose otherwise.
 
 Errors are those of runs of T seconds against a reference of R seconds by the chosen method, not those that runs claim.
 That of an unbiased method falls as 1 / sqrt(time); that of a photon map is a bias and such a part, told apart by runs of
@@ -20,18 +22,19 @@ SCENES = pathlib.Path(__file__).resolve().parents[2] / "data" / "scenes"
 RADII = {"luneburg": 0.05, "luneburg_pulse": 0.05, "slab": 0.005, "waveguide": 0.5, "fisheye": 0.06,
          "grin_fibre": 0.045, "glass_ball": 0.25}  # the program's own: a twentieth of the shortest length
 FACTORS = (0.25, 0.5, 1, 2, 4, 8)
-UNBIASED = ("path", "light", "bidirectional")
+UNBIASED = ("path", "light", "bidirectional", "analog")
+NO_ANALOG = ("luneburg", "slab", "fisheye", "glass_ball")  # no index field, or a camera
 ERRORS = (0.1, 0.05, 0.02, 0.01, 0.005)
 
 
 class Scene:
-    def __init__(self, program, name, folder):
-        self.program, self.name, self.out = program, name, folder / "out.h5"
+    def __init__(self, program, name, folder, extra):
+        self.program, self.name, self.out, self.extra = program, name, folder / "out.h5", extra
 
     def run(self, seconds, seed, *flags):
         """Picture, total, processor seconds of the batches, and the plan."""
         subprocess.run([self.program, "render", "--config", SCENES / f"render_{self.name}.toml", "--threads", "1",
-                        "--seconds", str(seconds), "--seed", str(seed), "--out", self.out, *map(str, flags)],
+                        "--seconds", str(seconds), "--seed", str(seed), "--out", self.out, *self.extra, *map(str, flags)],
                        check=True, capture_output=True)
         with h5py.File(self.out) as file:
             total = np.atleast_1d(file["total" if "total" in file else "mean"][...])
@@ -66,7 +69,7 @@ def map_times(short, long, reference, of):
 
 def measure(scene, arguments):
     auto = scene.run(arguments.reference, 1000)
-    flags = [("--method", method) for method in UNBIASED]
+    flags = [("--method", method) for method in UNBIASED if method != "analog" or scene.name not in NO_ANALOG]
     radii = [("--method", "photon_map", "--photon_radius", factor * RADII[scene.name]) for factor in FACTORS]
     runs = {flag: [] for flag in flags}
     short, long = {flag: [] for flag in radii}, {flag: [] for flag in radii}
@@ -92,10 +95,12 @@ def main():
     parser.add_argument("--reference", type=float, default=20)
     parser.add_argument("--seeds", type=int, default=2)
     parser.add_argument("--scenes", nargs="+", default=list(RADII))
+    parser.add_argument("--power", action="store_true")
     arguments = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
         for name in arguments.scenes:
-            measure(Scene(arguments.program, name, pathlib.Path(folder)), arguments)
+            measure(Scene(arguments.program, name, pathlib.Path(folder), ["--pixels", "1", "1"] * arguments.power),
+                    arguments)
 
 
 if __name__ == "__main__":

@@ -13,7 +13,7 @@ from renders import RenderTest
 class Picture(RenderTest):
     def test_it_is_that_of_the_rays(self):
         truth = fibre_picture(6, blocks=1)
-        for method in ("path", "light", "bidirectional"):
+        for method in ("path", "light", "bidirectional", "analog"):
             with self.subTest(method=method):
                 found = self.scene("grin_fibre", pixels=[6, 6], path_bins=[80.42, 80.74, 2], method=method, samples=15000)
                 self.assert_within(found["image"], found["image_error"], truth)
