@@ -7,6 +7,7 @@
 
 #include "grin/estimators/light_map.h"
 #include "grin/fields/any_index_field.h"
+#include "grin/index/index_range.h"
 #include "grin/lights/light.h"
 #include "grin/paths/film.h"
 #include "grin/sensors/sensor.h"
@@ -28,6 +29,7 @@ struct RenderScene {
   std::optional<LightMap> map = {};
   std::optional<double> length_unit = {};  ///< metres in a unit of length, for times
   bool leapfrogs = false;                  ///< steps are of Leapfrog (make_ray_field)
+  std::optional<IndexRange> index = {};    ///< where it is known
 };
 
 /// Of a scene with several sensors; a number where it has no names.

@@ -88,7 +88,9 @@ Estimator some_sums(const RenderJob& job, int first, int count) {
 
 std::string described_steps(const RenderScene& scene, const RenderPlan& plan) {
   std::ostringstream text;
-  if (plan.curved) text << (scene.leapfrogs ? "; leapfrog steps of " : "; steps of ") << scene.step;
+  if (!plan.curved) return {};
+  text << (scene.leapfrogs ? "; leapfrog steps of " : "; steps of ") << scene.step;
+  if (scene.index) text << "; index " << scene.index->lowest << " to " << scene.index->highest;
   return text.str();
 }
 

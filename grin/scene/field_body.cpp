@@ -1,6 +1,8 @@
 #include "grin/scene/field_body.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "grin/geometry/lens_values.h"
 #include "grin/geometry/vector_values.h"
@@ -10,9 +12,11 @@ namespace flatspeckle::grin {
 
 namespace {
 
-void check_index(const SceneField& field, const Surface& region, const std::string& name) {
+IndexRange index_range(const SceneField& field, const Surface& region, const std::string& name) {
   constexpr int nodes = 33;
+  constexpr double infinity = std::numeric_limits<double>::infinity();
   const Box box = bounds(region);
+  IndexRange range{infinity, -infinity};
   std::visit(
       [&](const auto& medium) {
         for (int node = 0; node < nodes * nodes * nodes; ++node) {
@@ -22,9 +26,11 @@ void check_index(const SceneField& field, const Surface& region, const std::stri
           const double n = index(medium, x);
           if (!(n > 0 && std::isfinite(n)))
             throw InputError("index at " + listed(x), n, "must be positive in all of the " + name);
+          range = {std::min(range.lowest, n), std::max(range.highest, n)};
         }
       },
       field.field);
+  return range;
 }
 
 }  // namespace
@@ -62,10 +68,10 @@ std::optional<Surface> given_body(const Keys& keys, const FieldBodyValues& value
   return one_surface("body", "body_box, body_sphere, body_lens", given);
 }
 
-void check_field(const SceneField& field, const Surface& region, const std::string& name) {
+IndexRange check_field(const SceneField& field, const Surface& region, const std::string& name) {
   if (field.grid && !lies_in(region, *field.grid))
     throw InputError("grid: ends inside of the " + name + ", and light needs a field in all of it");
-  check_index(field, region, name);
+  return index_range(field, region, name);
 }
 
 void check_rim(const SceneField& field, const Surface& body) {

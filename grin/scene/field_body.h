@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "grin/fields/scene_field.h"
+#include "grin/index/index_range.h"
 #include "grin/surfaces/signed_distance.h"
 
 namespace flatspeckle::grin {
@@ -24,8 +25,8 @@ std::optional<Surface> one_surface(const std::string& name, const std::string& k
 std::optional<Surface> given_body(const Keys& keys, const FieldBodyValues& values);
 
 /// Throws InputError for a field that ends, or has no index above 0, somewhere in a region; name:
-/// of that.
-void check_field(const SceneField& field, const Surface& region, const std::string& name);
+/// of that. Returns the range of its index there.
+IndexRange check_field(const SceneField& field, const Surface& region, const std::string& name);
 /// And for a body beyond the rim of a ball.
 void check_rim(const SceneField& field, const Surface& body);
 

@@ -192,7 +192,7 @@ void add_keys(Keys& keys, RenderRequestValues& values) {
 
 RenderScene make_render_scene(const Keys& keys, const RenderValues& values) {
   const bool any_phase = keys.read(values.random_phase);
-  const auto [stage, field] =
+  const auto [stage, field, index] =
       make_stage(keys, values.stage, values.field, any_phase, keys.read(values.length_unit));
   const Box box = bounds(stage.boundary);
   const double size = (box.high - box.low).norm();
@@ -209,7 +209,8 @@ RenderScene make_render_scene(const Keys& keys, const RenderValues& values) {
                     .bins = time_bins(keys, values),
                     .map = light_map(keys, values, box),
                     .length_unit = keys.read(values.length_unit),
-                    .leapfrogs = steps.leapfrogs};
+                    .leapfrogs = steps.leapfrogs,
+                    .index = index};
   check_size(scene.sensors, scene.bins);
   if (scene.sensors.empty() && !scene.map)
     throw InputError("sensor", "none", "wants a map (map_box, map_cylinder)");

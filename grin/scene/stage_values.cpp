@@ -93,7 +93,8 @@ FilledStage make_stage(const Keys& keys, const StageValues& values, const IndexF
   stage.medium = medium_in(keys, values.medium, *boundary, "stage");
   check(stage);
   const Part filled_part = stage.field_part();
-  check_field(filled.field, stage.surface(filled_part), filled_part == around ? "stage" : "body");
+  filled.index = check_field(filled.field, stage.surface(filled_part),
+                             filled_part == around ? "stage" : "body");
   return filled;
 }
 

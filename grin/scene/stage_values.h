@@ -3,6 +3,7 @@
 #include <optional>
 #include <vector>
 
+#include "grin/index/index_range.h"
 #include "grin/scene/field_body.h"
 #include "grin/scene/plain_bodies.h"
 #include "grin/space/stage.h"
@@ -22,6 +23,7 @@ void add_keys(Keys& keys, StageValues& values);
 struct FilledStage {
   Stage stage;
   SceneField field;
+  IndexRange index = {};
 };
 
 /// A Luneburg ball in a larger stage is a body by itself. Throws InputError, also for a field that

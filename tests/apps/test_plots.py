@@ -62,6 +62,8 @@ KINDS = {
     "pulse": ("render", {**SPACE, "pixels": [4, 4], "path_bins": [1, 3, 4]}),
     "light": ("render", {**SPACE, "pixels": [1, 1], "map_cylinder": [0, 0, -1, 0, 0, 1, 1],
                          "map_cells": [3, 4]}),
+    "rings": ("render", {**SPACE, "sensor": ["radial", "polar"], "sensor_at": [0, 0, 1], "sensor_size": None,
+                         "sensor_radius": 0.9, "sensor_direction": [0, 0, 1], "rings": 5}),
     "spectrum": ("solve", {**BOX, "wavelengths": [0.9, 1.1], "view_angles": [3.0, 3.1]}),
     "near": ("solve", {"placement": DATA / "reference/g10/placement.csv", "scatterer": "soft",
                        "map": [-2, 2, -2, 2], "map_pixels": [6, 5]}),
@@ -73,7 +75,7 @@ OWN = {"memory_effect": {"grid", "points", "curve", "moves", "layers", "graded"}
        "frequency": {"frequencies"}, "validation": {"both"}, "speckle_field": {"fields"},
        "image": {"frames"}, "fit": {"fitted"}, "fit_plan": {"planned"}, "rays": {"rays"}, "spot": {"spot"},
        "design": {"lens", "display", "core"}, "render": {"picture", "pulse"}, "render_time": {"pulse"},
-       "light_map": {"light"}, "reflection_image": {"spectrum"}, "field_map": {"near"}}
+       "light_map": {"light"}, "ring_profile": {"rings"}, "reflection_image": {"spectrum"}, "field_map": {"near"}}
 
 
 def run_script(name, *words):

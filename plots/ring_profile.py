@@ -1,0 +1,69 @@
+#!/usr/bin/env python3
+"""Light of `flatspeckle render` by rings: irradiance over the distance from the middle of a disk (sensor radial), power
+per solid angle over the polar angle (sensor polar) beside that of a Lambertian surface of the same power, and the power
+within radii; of several results or sensors in one figure. Open symbols: few paths carry the value, and the bar is a bound."""
+
+from lib import style
+from lib import pictures
+from lib.result_file import Unusable
+
+import matplotlib.pyplot as plt
+import numpy as np
+
+QUANTITIES = {"radius": "irradiance", "angle": "power per solid angle", "disk_radius": "power within the radius"}
+
+
+def kinds(result):
+    """What the sensor is drawn over, with the dataset that is drawn."""
+    if result.has("power_within"):
+        return {"disk_radius": "power_within"}
+    return {axis: "image" for axis in ("radius", "angle") if result.has(axis)}
+
+
+def draw_values(axis, result, over, name, number):
+    at, value, error = result.values(over), result.values(name), result.values(f"{name}_error")
+    lit = value > 0
+    rare = result.values(f"{name}_rare") > 0 if result.has(f"{name}_rare") else np.zeros(len(value), bool)
+    look = style.look(number)
+    for those, face in ((lit & ~rare, look["color"]), (lit & rare, "white")):
+        axis.errorbar(at[those], value[those], np.minimum(error, 0.999 * value)[those], fmt=look["marker"],
+                      color=look["color"], markerfacecolor=face, label=result.path if face != "white" else None)
+
+
+def draw_lambert(axis, result, number):
+    angles = np.linspace(0, min(result.values("angle")[-1], np.pi / 2), 200)
+    axis.plot(angles, result.values("total") / np.pi * np.cos(angles), color=style.look(number)["color"], linestyle="--",
+              label="Lambert")
+
+
+def draw_kind(axis, results, over):
+    for number, result in enumerate(results):
+        name = kinds(result)[over]
+        draw_values(axis, result, over, name, number)
+        if over == "angle":
+            draw_lambert(axis, result, number)
+    units = pictures.unit_name(results[0], kinds(results[0])[over])
+    unit = "rad" if over == "angle" else pictures.length_name(results[0])
+    axis.set(xlabel=f"{over.replace('disk_', '')} ({unit})", ylabel=QUANTITIES[over] + (f" ({units})" if units else ""),
+             yscale="linear" if over == "angle" else "log")
+    axis.legend()
+
+
+def draw(results):
+    for result in results:
+        result.refuse_sweep()
+    by_kind = {}
+    for result in pictures.sensors(results):
+        for over in kinds(result):
+            by_kind.setdefault(over, []).append(result)
+    if not by_kind:
+        raise Unusable(f"{results[0].path}: has no rings; render with sensor radial or polar")
+    figure, axes = plt.subplots(1, len(by_kind), squeeze=False,
+                                figsize=(style.PAGE if len(by_kind) > 1 else style.COLUMN, 2.5))
+    for axis, (over, own) in zip(axes[0], by_kind.items()):
+        draw_kind(axis, own, over)
+    return figure
+
+
+if __name__ == "__main__":
+    style.main(draw, __doc__, several=True)
