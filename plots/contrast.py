@@ -3,9 +3,7 @@
 `covariance --exposures` results: each curve over the time at which its |g1| has fallen to 1/e, or
 all over the exposure itself where the delays of one do not show that time."""
 
-import pathlib
-
-from lib import style
+from lib import labels, style
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -32,14 +30,14 @@ def draw(results):
             raise style.Unusable(f"{result.path}: has no squared_contrast; needs --exposures")
     times = [decay_time(result) for result in results]
     scaled = all(time is not None for time in times)
-    for number, (result, time) in enumerate(zip(results, times)):
+    for number, (result, time, name) in enumerate(zip(results, times, labels.labels(results))):
         look = style.look(number)
         x = result.axis("squared_contrast", 0) / (time if scaled else 1)
         order = np.argsort(x)
         axis.errorbar(x[order], result.values("squared_contrast")[order, 0, 0],
                       result.values("squared_contrast_error")[order, 0, 0], elinewidth=0.7,
                       color=look["color"], marker=look["marker"], markersize=3, linewidth=0.7,
-                      linestyle=look["linestyle"], label=pathlib.Path(result.path).stem.replace("_", " "))
+                      linestyle=look["linestyle"], label=name or "Monte Carlo")
     if scaled:
         x = np.geomspace(0.1, 30, 200)
         axis.plot(x, (np.expm1(-2 * x) + 2 * x) / (2 * x**2), color=style.GREY, linewidth=0.7,

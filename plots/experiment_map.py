@@ -51,38 +51,49 @@ def is_log(values):
     return values.min() > 0 and np.allclose(np.diff(np.log(values)), np.log(values[1] / values[0]), rtol=1e-3)
 
 
-def draw_curve(axis, key, place, values, errors):
+def with_unit(result, name):
+    """A name with the unit that the file says."""
+    dataset = result.dataset(name if result.has(name) else name.replace(".", "_"))
+    unit = dataset.attrs.get("units", "1")
+    return name if unit in ("", "1") else f"{name} ({unit})"
+
+
+def draw_curve(axis, label, place, values, errors):
     axis.errorbar(place, values, errors, **style.look(0))
     best = int(np.nanargmax(values))
     axis.plot(place[best], values[best], "*", color="black", markersize=9, zorder=5)
-    axis.set_xlabel(key)
+    axis.set_xlabel(label)
     if is_log(place):
         axis.set_xscale("log")
 
 
-def draw_map(figure, axis, keys, values, name):
+def draw_map(figure, axis, result, keys, values, name):
     (down, y), (across, x) = keys
     mesh = axis.pcolormesh(x, y, values, cmap="cividis", shading="nearest")
     if min(values.shape) > 3 and np.nanmax(values) > np.nanmin(values):
-        axis.contour(x, y, values, colors="white", linewidths=0.6, levels=6)
+        lines = axis.contour(x, y, values, colors="white", linewidths=0.6, levels=6)
+        axis.clabel(lines, fontsize=5.5, fmt="%.3g")
     row, column = np.unravel_index(np.nanargmax(values), values.shape)
     axis.plot(x[column], y[row], "*", color="white", markeredgecolor="black", markersize=10)
-    axis.set(xlabel=across, ylabel=down, xscale="log" if is_log(x) else "linear", yscale="log" if is_log(y) else "linear")
-    figure.colorbar(mesh, ax=axis, label=name)
-    return {across: x[column], down: y[row]}
+    axis.set(xlabel=with_unit(result, across), ylabel=with_unit(result, down), xscale="log" if is_log(x) else "linear", yscale="log" if is_log(y) else "linear")
+    figure.colorbar(mesh, ax=axis, label=with_unit(result, name))
+    return {across: x[column], down: y[row]}, row in (0, len(y) - 1) or column in (0, len(x) - 1)
 
 
 def draw(results, arguments):
     keys, values, errors = grid_of(results[0], arguments)
     figure, axis = plt.subplots(figsize=(style.COLUMN, 2.6))
     if len(keys) == 1:
-        draw_curve(axis, keys[0][0], keys[0][1], values, errors)
-        axis.set_ylabel(arguments.value)
+        draw_curve(axis, with_unit(results[0], keys[0][0]), keys[0][1], values, errors)
+        axis.set_ylabel(with_unit(results[0], arguments.value))
         return figure
-    best = draw_map(figure, axis, keys, values, arguments.value)
+    best, at_edge = draw_map(figure, axis, results[0], keys, values, arguments.value)
     at = np.nanargmax(values)
+    edge = ["at the edge of the map"] if at_edge else []
+    axis.set_title(", ".join([f"star: {values.flat[at]:.3g} $\\pm$ {errors.flat[at]:.1g}", *edge]), fontsize=7)
     style.caption(figure, ["star: largest, " + ", ".join(f"{key} = {value:.3g}" for key, value in best.items()) +
-                           f", {values.flat[at]:.4g} +- {errors.flat[at]:.2g}; the largest of noisy values is too large"])
+                           f", {values.flat[at]:.4g} +- {errors.flat[at]:.2g}; the largest of noisy values is too large",
+                           *(f"it lies {text}: larger ones may lie beyond" for text in edge)])
     return figure
 
 

@@ -5,6 +5,8 @@ open: by others. The star is the best place, with its value by random numbers of
 from lib import style
 from lib.result_file import Unusable
 
+import tomllib
+
 import matplotlib.pyplot as plt
 import numpy as np
 
@@ -22,8 +24,14 @@ def numbers_of(result, key):
     return values if np.issubdtype(values.dtype, np.number) else None
 
 
-def is_log(values):
-    return values.min() > 0 and values.max() > 20 * values.min()
+def is_log(result, key):
+    """Whether it was searched in ratios."""
+    vary = tomllib.loads(result.attribute("config", "")).get("vary", [])
+    return any(text.replace(".", "_").startswith(f"{key}=") and text.endswith(":log") for text in vary)
+
+
+def with_unit(name, unit):
+    return name if unit in (None, "", "1") else f"{name} ({unit})"
 
 
 def draw_values(axis, place, result):
@@ -34,7 +42,7 @@ def draw_values(axis, place, result):
             look = style.look(number)
             axis.errorbar(place[of], value[of], error[of], marker=look["marker"], color=look["color"], linestyle="none",
                           fillstyle="full" if number == 0 else "none", label=word)
-    axis.set_ylabel(result.attribute("objective"))
+    axis.set_ylabel(with_unit(result.attribute("objective"), result.attribute("objective_unit")))
 
 
 def draw_progress(axis, result):
@@ -47,8 +55,8 @@ def draw_key(axis, result, key):
     place = numbers_of(result, key)
     draw_values(axis, place, result)
     axis.plot(result.values(f"best/{key}"), result.values("best/value"), "*", color="black", markersize=9, zorder=5)
-    axis.set_xlabel(key)
-    if is_log(place):
+    axis.set_xlabel(with_unit(key, result.dataset(f"search/{key}").attrs.get("units")))
+    if is_log(result, key):
         axis.set_xscale("log")
 
 
@@ -59,8 +67,10 @@ def draw(results):
     draw_progress(axes[0, 0], result)
     for axis, key in zip(axes[0, 1:], keys):
         draw_key(axis, result, key)
+    lead, doubt = result.values("best/lead"), result.values("best/lead_error")
+    apart = "" if abs(lead) >= 2 * doubt else " (not told apart)"
     style.caption(figure, [f"best {result.values('best/value'):.4g} +- {result.values('best/value_error'):.2g}, better than the "
-                           f"runner-up with a confidence of {result.values('best/confidence'):.3g}"])
+                           f"runner-up with a confidence of {result.values('best/confidence'):.3g}{apart}"])
     return figure
 
 

@@ -4,7 +4,7 @@ several results or sensors a row each, with one scale where they measure the sam
 0.1 % of the pixels share one colour."""
 
 from lib import style
-from lib import pictures
+from lib import labels, pictures
 from lib.result_file import Unusable
 
 import matplotlib.pyplot as plt
@@ -92,6 +92,8 @@ def norms(results, arguments):
 def draw(results, arguments):
     for result in results:
         result.refuse_sweep()
+    names = [", ".join(filter(None, [label, sensor])) for result, label in zip(results, labels.labels(results))
+             for sensor in (result.file["sensors"] if result.has("sensors") else [""])]
     results = pictures.sensors(results)
     for result in results:
         if result.values("image").size == 1:
@@ -103,10 +105,12 @@ def draw(results, arguments):
     figure, axes = plt.subplots(len(results), 2, squeeze=False,
                                 figsize=(style.PAGE, len(results) * height))
     errors = error_norm(results)
-    for row, result, norm in zip(axes, results, norms(results, arguments)):
+    for row, result, label, norm in zip(axes, results, names, norms(results, arguments)):
         draw_row(figure, row, result, norm, errors)
         if len(results) > 1:
-            row[0].set_title(result.path)
+            row[0].set_title(label, loc="left")
+    if any(result.has("image_rare") for result in results):
+        style.caption(figure, ["errors of pixels that few strong paths make, and of their neighbours, are upper bounds (image_rare)"])
     return figure
 
 

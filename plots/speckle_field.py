@@ -13,6 +13,7 @@ from matplotlib.ticker import MaxNLocator
 BRIGHTEST = 5  # times the mean: 0.7 % of a Gaussian field's intensities are above
 UNEVEN = 1.5  # widest over narrowest step from which on cells stand side by side by number
 MOST_NAMES = 9  # of values along an axis by number
+MOST_ROWS = 24  # of realizations side by side
 FEWEST_EXPECTED = 10  # in a bin, for its error bar to mean something
 plt.rcParams["savefig.dpi"] = 150
 
@@ -62,7 +63,7 @@ def picture(result):
     mean = np.where(mean > 0, mean, 1)
     if field.shape[1] > 1:
         return np.abs(field[0])**2 / mean, np.sin(result.values("light_angle")), r"$\sin i$"
-    rows = min(len(field), 64)
+    rows = min(len(field), MOST_ROWS)
     return np.abs(field[:rows, 0])**2 / mean, np.arange(rows, dtype=float), "realization"
 
 
@@ -83,6 +84,9 @@ def draw_picture(figure, axis, result):
     across, up = Cells(x), Cells(y)
     mesh = axis.pcolormesh(across.edges, up.edges, intensity, cmap="inferno", vmin=0,
                            vmax=BRIGHTEST, rasterized=True)
+    if y_label == "realization":  # rows have nothing to do with each other
+        axis.hlines(up.edges[1:-1], *across.edges[[0, -1]], color="white", linewidth=0.7)
+        y_label = "realization (one field in each row)"
     if y_label == r"$\sin i$" and result.has("view_angle") and across.even and up.even:
         draw_shear(axis, x, y)
     axis.set(xlabel=x_label, ylabel=y_label, xlim=across.edges[[0, -1]], ylim=up.edges[[0, -1]])
@@ -115,6 +119,14 @@ def draw_histogram(axis, result):
     axis.legend(loc="upper right")
 
 
+def mark_grain(axis, result, unit, peak):
+    """The width of a speckle, twice the lag of half the maximum."""
+    width, error = (float(result.values(name)) / unit for name in ("grain_width", "grain_width_error"))
+    axis.plot([0, width / 2], [peak / 2] * 2, color="black", linewidth=0.8, marker="|", markersize=5)
+    axis.text(0.97, 0.35, f"grain {width:.3g} $\\pm$ {error:.1g}\n(full width, half maximum)", ha="right",
+              transform=axis.transAxes, fontsize=6.5)
+
+
 def draw_autocorrelation(axis, result):
     if not result.has("intensity_autocorrelation"):
         axis.text(0.5, 0.5, "views are not equally spaced", ha="center", va="center",
@@ -133,6 +145,8 @@ def draw_autocorrelation(axis, result):
     axis.errorbar(lag[reach], found[reach], error[reach], color=style.COLOURS[0], marker="o",
                   markersize=2.5, linestyle="none", elinewidth=0.7,
                   label=r"$\langle I I'\rangle/\langle I\rangle\langle I'\rangle-1$")
+    if result.has("grain_width"):
+        mark_grain(axis, result, 1 if far else result.attribute("wavelength"), found[0])
     axis.set_xlabel(r"$\sin v'-\sin v$" if far else r"distance of sensors$/\lambda$")
     axis.set_ylabel("autocorrelation")
     axis.xaxis.set_major_locator(MaxNLocator(4))

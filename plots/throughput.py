@@ -45,10 +45,37 @@ def key_of(result, key):
     raise Unusable(f"{result.path}: its scene has no number {key}; --key takes one that has")
 
 
+MOST_CURVES = len(style.COLOURS)
+
+
+def second_key(result, arguments):
+    """What sets curves apart: as asked for, or the second of two keys that vary."""
+    if arguments.curves:
+        return arguments.curves
+    others = [key for key in result.swept() if key != key_name(result, arguments)]
+    if not others:
+        return None
+    if len(others) > 1 or len(np.unique(key_of(result, others[0]))) > MOST_CURVES:
+        raise Unusable(f"{result.path}: {', '.join(others)} vary too; --curves KEY draws a curve for each value of one key, "
+                       "of at most 8; plots/experiment_map.py draws a map over two")
+    return others[0]
+
+
+def check_others(result, arguments):
+    """Refuses to join points that differ in what is not drawn."""
+    drawn = (key_name(result, arguments), second_key(result, arguments))
+    hidden = [key for key in result.swept() if key not in drawn]
+    if hidden:
+        raise Unusable(f"{result.path}: varies {', '.join(hidden)} besides {' and '.join(filter(None, drawn))}; "
+                       "sweep over two keys at most")
+
+
 def rows_of(result, arguments):
     """Second key, key, power and error of each point that there is."""
     power, error = result.values("total").ravel(), result.values("total_error").ravel()
-    second = key_of(result, arguments.curves) if arguments.curves else 0.0
+    check_others(result, arguments)
+    curves = second_key(result, arguments)
+    second = key_of(result, curves) if curves else 0.0
     key = key_of(result, key_name(result, arguments))
     rows = np.array(np.broadcast_arrays(second, key, power, error)).T
     return rows[np.isfinite(rows[:, 2])]
@@ -64,12 +91,12 @@ def curves(results, arguments):
     return {curve: np.array(sorted(rows)) for curve, rows in sorted(found.items())}
 
 
-def labels_of(found, arguments):
+def labels_of(found, curves_of):
     """What tells the curves apart."""
     labels = {curve: [] for curve in found}
     for (second, is_mean), label in labels.items():
-        if arguments.curves:
-            label.append(f"{NAMES.get(arguments.curves, arguments.curves)} = {second:g}")
+        if curves_of:
+            label.append(f"{NAMES.get(curves_of, curves_of)} = {second:.4g}")
         if len({phase for _, phase in found}) > 1:
             label.append("mean over the period" if is_mean else "at one instant")
     return {curve: ", ".join(label) for curve, label in labels.items()}
@@ -82,12 +109,21 @@ def over_the_first(power, error):
                            ratio * np.hypot(error / power, error[0] / power[0]))
 
 
+def scale_key(axis, values):
+    """A logarithm of what was swept in equal ratios."""
+    if len(values) > 2 and values[0] > 0 and np.allclose(np.diff(np.log(values)), np.log(values[1] / values[0]), rtol=1e-3):
+        axis.set_xscale("log")
+    else:
+        axis.xaxis.set_major_locator(MaxNLocator(4))
+        axis.ticklabel_format(axis="x", scilimits=(-2, 4), useMathText=True)
+
+
 def draw(results, arguments):
     figure, axis = plt.subplots(figsize=(style.COLUMN, 2.4))
     found = curves(results, arguments)
     key = key_name(results[0], arguments)
     relative = all(rows[0, 0] == 0 and rows[0, 1] > 0 for rows in found.values())
-    labels = labels_of(found, arguments)
+    labels = labels_of(found, second_key(results[0], arguments))
     for number, (curve, rows) in enumerate(found.items()):
         place, power, error = rows.T
         if relative:
@@ -95,10 +131,9 @@ def draw(results, arguments):
         axis.errorbar(place, power, error, **style.look(number), label=labels[curve])
     axis.set_xlabel(NAMES.get(key, key))
     axis.set_ylabel("power / power at 0" if relative else "power on the detector")
-    axis.xaxis.set_major_locator(MaxNLocator(4))
-    axis.ticklabel_format(axis="x", scilimits=(-2, 4), useMathText=True)
+    scale_key(axis, np.unique(np.concatenate([rows[:, 0] for rows in found.values()])))
     if any(labels.values()):
-        axis.legend()
+        figure.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncol=2)
     return figure
 
 

@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 """Validation: Monte Carlo against the exact wave solver, or of a slab against transport, entry by
-entry: values, relative deviations, and these in standard errors."""
+entry: values, relative deviations, and these in standard errors. Of a placement of the user's own: its
+speckle pattern over the mean intensity, and the distribution of their ratio."""
 
 from dataclasses import dataclass
 
-from lib import style
+from lib import speckle_ratio, style
 from lib.sweep_file import METHODS
 
 import matplotlib.pyplot as plt
@@ -14,7 +15,8 @@ from matplotlib.ticker import MaxNLocator
 SIGMAS = 4  # agreement is judged at so many combined standard errors
 BAND = "0.92"
 PEAKED = 8  # highest over lowest value from which on a logarithmic axis shows more
-MOST_RELATIVE = 100  # % of deviation that are drawn: beyond, values are all noise
+MOST_RELATIVE, MOST_SIGMAS = 100, 5 * SIGMAS  # that are drawn in place: beyond stand arrows with numbers
+FORWARD = {"color": "#E69F00", "alpha": 0.25, "linewidth": 0}
 ENTRIES, SENSORS = "number of the entry", "number of the sensor"
 
 
@@ -31,13 +33,12 @@ class Comparison:
     mc_error: np.ndarray
     exact: np.ndarray
     exact_error: np.ndarray
+    forward: np.ndarray = None  # where a fixed number of scatterers tells (conventions, C12)
 
     def residual(self):
-        """mc - reference in combined standard errors, and those. A complex residual: its magnitude."""
+        """|mc - reference| in combined standard errors, and those."""
         combined = np.hypot(self.mc_error, self.exact_error)
-        difference = self.mc - self.exact
-        if np.iscomplexobj(difference):
-            difference = np.abs(difference)
+        difference = np.abs(self.mc - self.exact)
         # Entries that are exactly 0 for both have no errors and agree.
         return np.divide(difference, combined, out=np.zeros(combined.shape),
                          where=combined > 0), combined
@@ -55,12 +56,26 @@ def reference_of(result):
 
 
 def read_entries(result, name):
+    """Of both methods values and errors, and which are forward ones."""
     methods = ("mc", reference_of(result))
     entries = [result.values(f"{method}/{name}{ending}")
                for method in methods for ending in ("", "_error")]
     if len({entry.shape for entry in entries}) > 1:
         raise style.Unusable(f"{result.path}: {name} of {' and '.join(methods)} is not of one shape")
-    return entries
+    return [*entries, read_forward(result, entries[0])]
+
+
+def read_forward(result, entries):
+    """In the order of the request's entries, of which a full covariance has the lower triangle."""
+    if not result.has("forward"):
+        return np.zeros(entries.shape, bool)
+    stored = result.values("forward") > 0
+    if entries.ndim < 4:
+        return stored[:entries.size].reshape(entries.shape)
+    size = entries.shape[0] * entries.shape[1]
+    forward = np.zeros((size, size), bool)
+    forward[np.tril_indices(size)] = stored
+    return forward.reshape(entries.shape)
 
 
 def numbered(reference, entries):
@@ -85,8 +100,10 @@ def read_comparison(result):
         kind = result.dataset("mc/intensity").dims[0][0].name.strip("/")
         curves = [f"light {style.angle(light) if kind == 'light_angle' else f'{light:g}'}"
                   for light in lights]
+        unit = result.dataset("mc/intensity").attrs.get("units", "1")
         return Comparison(reference, *views_of(result, "mc/intensity"), curves,
-                          r"intensity $C_{vv}$", *read_entries(result, "intensity"))
+                          r"intensity $C_{vv}$" + ("" if unit == "1" else f" ({unit})"),
+                          *read_entries(result, "intensity"))
     if not result.has("mc/covariance"):
         raise style.Unusable(f"{result.path}: has neither mc/intensity nor mc/covariance")
     entries = read_entries(result, "covariance")
@@ -106,19 +123,25 @@ def shifted(x, number, count):
     return x + step * (number - (count - 1) / 2)
 
 
+def colours(data, number):
+    """Of Monte Carlo and the reference: of one curve two colours, of several one for each curve."""
+    return style.COLOURS[:2] if len(data.curve_labels) == 1 else [style.look(number)["color"]] * 2
+
+
 def draw_values(axis, data, allowance):
     for number, label in enumerate(data.curve_labels):
         look, order = style.look(number), np.argsort(data.x)
+        own, other = colours(data, number)
         x = shifted(data.x, number, len(data.curve_labels))[order]
         mc, exact = np.abs(data.mc[number][order]), np.abs(data.exact[number][order])
-        common = {"color": look["color"], "marker": look["marker"], "elinewidth": 0.7}
-        axis.vlines(x, mc * (1 - allowance), mc * (1 + allowance), color=look["color"], alpha=0.15,
+        common = {"marker": look["marker"], "elinewidth": 0.7}
+        axis.vlines(x, mc * (1 - allowance), mc * (1 + allowance), color=own, alpha=0.15,
                     linewidth=4, zorder=0)
-        axis.plot(x, mc, color=look["color"], linestyle=look["linestyle"], linewidth=0.5, alpha=0.6)
+        axis.plot(x, mc, color=own, linestyle=look["linestyle"], linewidth=0.5, alpha=0.6)
         axis.errorbar(x, mc, data.mc_error[number][order], linestyle="none", **common,
-                      markerfacecolor="white", markersize=5)
+                      color=own, markerfacecolor="white", markersize=5)
         axis.errorbar(x, exact, data.exact_error[number][order], linestyle="none", **common,
-                      markersize=2.5, label=label)
+                      color=other, markersize=2.5, label=label if len(data.curve_labels) > 1 else None)
     axis.set_ylabel(data.y_label)
     scale_values(axis, np.abs(np.concatenate([data.mc, data.exact])))
 
@@ -132,57 +155,84 @@ def scale_values(axis, values):
         axis.set_ylim(bottom=-0.03 * axis.get_ylim()[1])
 
 
+def draw_within(axis, x, values, errors, limit, look):
+    """Values up to a limit; those beyond as arrows at the edge, with their numbers."""
+    inside = np.abs(values) <= limit
+    axis.errorbar(x[inside], values[inside], errors[inside], linestyle="none", elinewidth=0.7, **look)
+    for place, value in zip(x[~inside], values[~inside]):
+        if np.isfinite(value):
+            side = np.sign(value)
+            axis.annotate(f"{value:.0f}", (place, side * limit), xytext=(0, -7 * side), textcoords="offset points",
+                          ha="center", va="top" if side > 0 else "bottom", fontsize=6, color=look["color"],
+                          arrowprops={"arrowstyle": "<|-", "color": look["color"], "linewidth": 0.7, "shrinkA": 0,
+                                      "shrinkB": 0, "mutation_scale": 6})
+
+
+def reach_of(values, forward, least, most):
+    """Of an axis: that of what should agree, between limits."""
+    return np.clip(1.15 * np.nanmax(np.abs(values[~forward]), initial=0), least, most)
+
+
+def shade_forward(axes, data):
+    """Behind the places of forward entries."""
+    places = np.unique(data.x[data.forward.any(axis=0)])
+    steps = np.diff(np.unique(data.x))
+    half = 0.5 * (steps.min() if len(steps) else 1)
+    for axis in axes:
+        for place in places:
+            axis.axvspan(place - half, place + half, zorder=-1, **FORWARD)
+    return len(places) > 0
+
+
 def draw_relative(axis, data, allowance):
     deviation, error = data.relative()
     axis.axhspan(-100 * allowance, 100 * allowance, color="black", alpha=0.12, linewidth=0, zorder=0)
     axis.axhline(0, color="black", linewidth=0.5, zorder=1)
+    limit = reach_of(np.abs(deviation) + error, data.forward, max(100 * allowance, 1), MOST_RELATIVE)
     for number in range(len(deviation)):
-        look = style.look(number)
-        axis.errorbar(shifted(data.x, number, len(deviation)), deviation[number], error[number],
-                      color=look["color"], marker=look["marker"], linestyle="none", markersize=2.5,
-                      elinewidth=0.7)
-    reach = np.nanmax(np.abs(deviation) + error, initial=100 * allowance)
-    limit = 1.1 * min(reach, MOST_RELATIVE)
+        draw_within(axis, shifted(data.x, number, len(deviation)), deviation[number], error[number], limit,
+                    {"color": colours(data, number)[0], "marker": style.look(number)["marker"], "markersize": 2.5})
     axis.set_ylim(-limit, limit)
     axis.set_ylabel("deviation (%)")
 
 
 def draw_residual(axis, data, allowance):
     residual, combined = data.residual()
-    signed = not np.iscomplexobj(data.mc)
-    axis.axhspan(-SIGMAS if signed else 0, SIGMAS, color=BAND, zorder=0)
-    axis.axhline(0, color="black", linewidth=0.5, zorder=1)
+    axis.axhspan(0, SIGMAS, color=BAND, zorder=0)
+    limit = reach_of(residual, data.forward, 1.25 * SIGMAS, MOST_SIGMAS)
     for number in range(len(residual)):
-        look, x = style.look(number), shifted(data.x, number, len(residual))
+        colour, x = colours(data, number)[0], shifted(data.x, number, len(residual))
         sigma = np.where(combined[number] > 0, combined[number], 1)
-        bias = allowance * np.abs(data.mc[number]) / sigma
-        axis.vlines(x, -bias if signed else 0 * bias, bias, color=look["color"],
-                    alpha=0.2, linewidth=3, zorder=1)
-        axis.plot(x, residual[number], color=look["color"], marker=look["marker"],
-                  linestyle="none", markersize=3)
-    largest = max(SIGMAS, np.abs(residual).max()) * 1.25
-    axis.set_ylim(-largest if signed else 0, largest)
-    difference = rf"mc $-$ {data.reference}"
-    axis.set_ylabel(rf"({difference}) / $\sigma$" if signed else rf"|{difference}| / $\sigma$")
+        axis.vlines(x, 0, allowance * np.abs(data.mc[number]) / sigma, color=colour, alpha=0.2, linewidth=3,
+                    zorder=1)
+        draw_within(axis, x, residual[number], 0 * x, limit,
+                    {"color": colour, "marker": style.look(number)["marker"], "markersize": 3})
+    axis.set_ylim(0, limit)
+    axis.set_ylabel(rf"|mc $-$ {data.reference}| / $\sigma$")
 
 
-def add_legend(figure, axis, data, allowance):
+def add_legend(figure, axis, data, allowance, is_forward):
     handles, labels = axis.get_legend_handles_labels()
-    kinds = (("white", 5, "open: Monte Carlo"), ("black", 2.5, f"filled: {METHODS[data.reference]}"))
-    for fill, size, label in kinds:
-        handles.append(plt.Line2D([], [], color="black", marker="o", markerfacecolor=fill,
+    own, other = colours(data, 0) if len(data.curve_labels) == 1 else ("black", "black")
+    kinds = ((own, "white", 5, "Monte Carlo"), (other, other, 2.5, METHODS[data.reference]))
+    for colour, fill, size, label in kinds:
+        handles.append(plt.Line2D([], [], color=colour, marker="o", markerfacecolor=fill,
                                   markersize=size, linestyle="none"))
         labels.append(label)
     handles.append(plt.Rectangle((0, 0), 1, 1, color=BAND))
-    sign = "" if np.iscomplexobj(data.mc) else r"$\pm$"
-    labels.append(f"{sign}{SIGMAS} standard errors ($\\sigma$)")
-    if allowance > 0:
+    labels.append(f"{SIGMAS} standard errors ($\\sigma$)")
+    if is_forward:
+        handles.append(plt.Rectangle((0, 0), 1, 1, **FORWARD))
+        labels.append("forward: a fixed number tells (C12)")
+    if allowance > 0 and data.reference == "wave":
         handles.append(plt.Line2D([], [], color="black", alpha=0.2, linewidth=4))
         labels.append(f"size of what Monte Carlo neglects, {100 * allowance:.2g} %")
     figure.legend(handles, labels, loc="lower center", bbox_to_anchor=(0.5, 1.0), ncol=3)
 
 
 def draw(results):
+    if results[0].has("intensity_ratio"):
+        return speckle_ratio.draw(results[0])
     data = read_comparison(results[0])
     allowance = float(results[0].attribute("bias_allowance", 0))
     figure, (values, relative, residual) = plt.subplots(
@@ -195,7 +245,11 @@ def draw(results):
         residual.xaxis.set_major_locator(MaxNLocator(integer=True))
     else:
         style.angle_axis(residual, data.x, data.x_label)
-    add_legend(figure, values, data, allowance)
+    is_forward = shade_forward((values, relative, residual), data)
+    add_legend(figure, values, data, allowance, is_forward)
+    if is_forward:
+        style.caption(figure, ["forward: there a fixed number of scatterers takes a fluctuation of the coherent field "
+                               "away from the exact covariance, which Monte Carlo has (conventions, C12)"])
     if len(data.curve_labels) > 1:
         style.caption(figure, ["symbols of one place stand a little apart, side by side"])
     return figure

@@ -26,6 +26,7 @@ CHAPTERS = {
 }
 PICTURE = re.compile(r"!\[([^\]]*)\]\(([^)]+\.(?:png|jpg))\)")
 LINK = re.compile(r"(\]\()(?:docs/)?([^):]+\))")
+NAMED_BY_FILE = re.compile(r"\[(?:docs/)?[\w/]+\.md\]\(([\w/]+)\.md\)")
 
 
 def flattened(text):
@@ -36,6 +37,13 @@ def flattened(text):
 
 def title_of(page):
     return next(line[2:] for line in page.read_text().splitlines() if line.startswith("# "))
+
+
+def name_links(source):
+    """Links that a checkout's reader knows by the file have the page's title here."""
+    for page in source.rglob("*.md"):
+        text = NAMED_BY_FILE.sub(lambda link: f"[{title_of(source / f'{link[1]}.md')}]({link[1]}.md)", page.read_text())
+        page.write_text(text)
 
 
 def sidebar():
@@ -87,6 +95,7 @@ def write_source(source):
     library.write_text(library.read_text()
                        + '\n<p><a href="api/annotated.html">Classes and functions of the libraries</a></p>\n')
     (source / "gallery.md").write_text(gallery(source))
+    name_links(source)
 
 
 def run(*command, **more):

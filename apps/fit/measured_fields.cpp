@@ -6,6 +6,7 @@
 #include "apps/fit/measurement_file.h"
 #include "core/error.h"
 #include "core/keys/number_text.h"
+#include "core/numbers/statistics.h"
 #include "mc/fit/task/intensity_pairs.h"
 
 namespace flatspeckle::apps {

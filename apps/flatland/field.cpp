@@ -107,10 +107,13 @@ void check_memory(const Scene& scene, const mc::FieldDemand& demand) {
 
 /// How the statistics of all fields compare with those of a circular Gaussian field.
 void print_summary(const mc::DrawnFields& drawn, const mc::FieldSummary& summary) {
-  const auto& [contrast, circularity, found] = summary;
+  const auto& [contrast, circularity, found, grain] = summary;
   std::printf("contrast %.4f +- %.2g, |<u u>| / <I> %.2g +- %.2g (Gaussian: 1 and 0)\n",
               contrast.value[0].real(), contrast.error[0], std::abs(circularity.value[0]),
               circularity.error[0]);
+  if (grain)
+    std::printf("grain width %.4g +- %.2g (of its autocorrelation, at half maximum)\n",
+                grain->value[0].real(), grain->error[0]);
   const Estimate& siegert = drawn.siegert;
   if (found.value.empty() || siegert.value.empty()) return;
   const bool by_paths = drawn.plan.method == mc::FieldMethod::paths;

@@ -1,5 +1,6 @@
 #include "apps/optimise/optimum.h"
 
+#include <cmath>
 #include <cstdio>
 
 #include "apps/results/datasets.h"
@@ -122,7 +123,13 @@ void print_optimum(const Optimum& optimum, const EvaluationSettings& settings) {
   };
   print("best", optimum.best, best.measured);
   print("runner-up", optimum.runner_up, runner_up.measured);
-  std::printf("better with a confidence of %.4g\n", lead.confidence());
+  std::printf("better by %.3g +- %.2g, with a confidence of %.4g\n", lead.value, lead.error,
+              lead.confidence());
+  if (std::abs(lead.value) < 2 * lead.error)
+    std::puts(
+        "not told apart: their values are equal within the errors, as on a plateau; either will "
+        "do (the best\nwas chosen by earlier random numbers, of which these know nothing; a "
+        "smaller target_error tells more)");
   if (!optimum.there) return;
   print("against", *optimum.against, *optimum.there);
   if (optimum.there->value == 0) return;

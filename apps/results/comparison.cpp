@@ -31,6 +31,22 @@ double Comparison::scale(std::size_t e) const {
   return correlations ? 1 : std::abs(reference.value[e]);
 }
 
+Comparison::Whole Comparison::whole() const {
+  double differences = 0, errors = 0, references = 0;
+  std::size_t entries = 0, within = 0;
+  for (std::size_t e = 0; e < mc.value.size(); ++e) {
+    if (is_apart(e)) continue;
+    differences += std::norm(mc.value[e] - reference.value[e]);
+    errors += error(e) * error(e);
+    references += std::norm(reference.value[e]);
+    within += within_errors(e) || within_bias(e) ? 1 : 0;
+    ++entries;
+  }
+  if (entries == 0 || references == 0) return {};
+  return {std::sqrt(differences / references), std::sqrt(errors / references),
+          static_cast<double>(within) / static_cast<double>(entries)};
+}
+
 namespace {
 
 void print_row(const Comparison& comparison, std::size_t e, const RowNames& names) {
@@ -39,9 +55,10 @@ void print_row(const Comparison& comparison, std::size_t e, const RowNames& name
               shown_value(comparison.mc.value[e]).c_str(), comparison.mc.error[e],
               shown_value(comparison.reference.value[e]).c_str(), comparison.reference.error[e],
               100 * comparison.difference(e) / scale, comparison.deviation(e),
-              comparison.within_errors(e) ? ""
-              : comparison.within_bias(e) ? "  within"
-                                          : "  *");
+              comparison.is_apart(e)        ? "  forward"
+              : comparison.within_errors(e) ? ""
+              : comparison.within_bias(e)   ? "  within"
+                                            : "  *");
 }
 
 }  // namespace
@@ -53,7 +70,9 @@ Agreement print_comparison(const Comparison& comparison, std::size_t values,
   Agreement agreement;
   for (std::size_t e = 0; e < values; ++e) {
     if (e < most_rows) print_row(comparison, e, names);
-    if (comparison.within_errors(e))
+    if (comparison.is_apart(e))
+      ++agreement.apart;
+    else if (comparison.within_errors(e))
       ++agreement.in_errors;
     else if (comparison.within_bias(e))
       ++agreement.in_bias;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
@@ -15,6 +16,8 @@ struct Comparison {
   Estimate reference, mc;
   double bias = 0;            ///< of what differs without chance
   bool correlations = false;  ///< the bias is a share of 1, not of the value
+  /// 1 where an entry is not to agree, for a reason that is known; empty: nowhere.
+  std::vector<std::uint64_t> apart = {};
 
   /// Not below what rounding leaves.
   double error(std::size_t e) const;
@@ -23,10 +26,18 @@ struct Comparison {
   double deviation(std::size_t e) const;
   std::vector<double> deviations() const;
 
+  bool is_apart(std::size_t e) const { return !apart.empty() && apart[e] != 0; }
   bool within_errors(std::size_t e) const { return deviation(e) <= 4; }
   bool within_bias(std::size_t e) const { return difference(e) <= bias * scale(e); }
   /// What a bias is a share of.
   double scale(std::size_t e) const;
+
+  /// Differences, combined errors and how many are within errors or bias, of all but those apart.
+  /// Sizes are RMS, over the RMS of the reference.
+  struct Whole {
+    double difference = 0, error = 0, share_within = 1;
+  };
+  Whole whole() const;
 };
 
 /// How the rows of a printed comparison begin.
@@ -35,9 +46,9 @@ struct RowNames {
   std::function<std::string(std::size_t)> of;
 };
 
-/// How many values of the first so many are within errors, and only within the bias.
+/// How many values of the first so many are within errors, only within the bias, and apart.
 struct Agreement {
-  std::size_t in_errors = 0, in_bias = 0;
+  std::size_t in_errors = 0, in_bias = 0, apart = 0;
 };
 /// Prints the table of as many values.
 Agreement print_comparison(const Comparison& comparison, std::size_t values, const RowNames& names);

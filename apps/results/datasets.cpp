@@ -108,6 +108,7 @@ std::vector<const DatasetTable*> all_tables() {
                                              &mc::frequency_table,
                                              &mc::numerical_table,
                                              &validate_table,
+                                             &own_places_table,
                                              &wave::solution_table,
                                              &wave::spectrum_table,
                                              &wave::cluster_table,

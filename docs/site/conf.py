@@ -4,6 +4,7 @@ project = "flatspeckle"
 extensions = ["myst_parser"]
 myst_heading_anchors = 3
 myst_enable_extensions = ["colon_fence"]
+myst_disable_syntax = ["html_inline"]  # "<u u'>" is a mean; blocks, as of the gallery, stay
 root_doc = "index"
 html_theme = "furo"
 html_title = "flatspeckle"

@@ -31,6 +31,8 @@ const DatasetTable field_table{
               "difference of the sines of two views, or distance of two sensors"},
              {"intensity_autocorrelation", Data::estimate, "view_lag", "1",
               "<I I'> / (<I> <I'>) - 1 over the first light's views"},
+             {"grain_width", Data::estimate, "", "LAG",
+              "full width of intensity_autocorrelation at half its maximum: the size of a speckle"},
              {"siegert", Data::estimate, "view_lag", "1",
               "|<u u'*>|^2 / (<I> <I'>) over the same views, from light paths"}},
     .attributes = {{"field", "method", "text",
@@ -126,7 +128,12 @@ FieldSummary write_fields(ResultFile& file, const Scene& scene, const std::vecto
   const ResultGroup root(file, field_table);
   write_plan(root, drawn.plan);
   FieldSummary summary{statistics.mean_contrast(), statistics.circularity(),
-                       step ? statistics.autocorrelation() : Estimate{}};
+                       step ? statistics.autocorrelation() : Estimate{},
+                       step ? statistics.grain_width() : std::nullopt};
+  if (summary.grain_width) {
+    summary.grain_width->value.front() *= *step;
+    summary.grain_width->error.front() *= *step;
+  }
   root.put("intensity", drawn.intensity);
   root.put("contrast", statistics.contrast());
   root.put("mean_contrast", summary.mean_contrast);
@@ -136,6 +143,7 @@ FieldSummary write_fields(ResultFile& file, const Scene& scene, const std::vecto
   file.bind("LAG", {views.front().near ? "length" : "1"});
   root.put("view_lag", steps(views.size(), *step));
   root.put("intensity_autocorrelation", summary.autocorrelation);
+  if (summary.grain_width) root.put("grain_width", *summary.grain_width);
   if (!drawn.siegert.value.empty()) root.put("siegert", drawn.siegert);
   return summary;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "core/result/dataset_row.h"
@@ -13,6 +14,7 @@ extern const DatasetTable field_table;
 /// spaced.
 struct FieldSummary {
   Estimate mean_contrast, circularity, autocorrelation;
+  std::optional<Estimate> grain_width;  ///< in sines, or lengths
 };
 
 /// Writes axes, fields and their statistics. tilts: rotations of the light that make the light

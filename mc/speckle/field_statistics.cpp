@@ -159,6 +159,29 @@ Estimate FieldStatistics::autocorrelation() const {
   });
 }
 
+namespace {
+
+/// Lag at which a curve from its first value falls to half of it; 0 where it does not.
+double half_lag(std::span<const Complex> curve) {
+  const double half = curve.front().real() / 2;
+  if (half <= 0) return 0;
+  for (std::size_t d = 1; d < curve.size(); ++d) {
+    const double before = curve[d - 1].real(), here = curve[d].real();
+    if (here <= half) return static_cast<double>(d) - (half - here) / (before - here);
+  }
+  return 0;
+}
+
+}  // namespace
+
+std::optional<Estimate> FieldStatistics::grain_width() const {
+  Estimate width = jackknife(sums_, [this](double, std::span<const Complex> sums) {
+    return std::vector<Complex>{2 * half_lag(sums.subspan(lags_at, views_))};
+  });
+  if (width.value.front().real() < 2) return std::nullopt;
+  return width;
+}
+
 double FieldStatistics::values() const {
   return sums_.total()[number_at].real();
 }

@@ -46,6 +46,10 @@ class FieldStatistics {
   Estimate histogram() const;
   Estimate autocorrelation() const;  ///< mean of (x_v - 1)(x_{v+d} - 1), per d
 
+  /// Full width at half maximum of that, in steps between views, by straight lines between lags;
+  /// nothing where it does not fall so far, or before its second lag, for lack of views.
+  std::optional<Estimate> grain_width() const;
+
   double values() const;  ///< how many x there are
   static constexpr std::size_t bins = 33;
   static constexpr double bin_width = 0.25;

@@ -20,7 +20,7 @@ def making(bench):
                   f"{file.made.cpu_s:.0f}", str(file.made.threads)]
                  for name, file in bench.files().items()], "lrrr",
                 f"flatspeckle {made.version}, commit {made.short_commit}, {made.date}, {made.machine}")
-    yield Paragraph("Times are processor seconds of one thread. On another machine they are "
+    yield Paragraph("All of it is of that commit, not of later ones. Times are processor seconds of one thread. On another machine they are "
                     "others; ratios, slopes and exponents travel.")
 
 

@@ -126,10 +126,3 @@ def add_q_axis(axis, result, tilt):
     if axis.get_xscale() == "log" and np.divide(*reversed(axis.get_xlim())) < FEW_DECADES:
         style.few_decades(top.xaxis)
     axis.tick_params(which="both", top=False)
-
-
-def write_title(axis, text, curves):
-    """In the corner that the curves leave free."""
-    falls = all(curve[-1]**2 < 0.6 for curve in curves) and axis.get_yscale() == "linear"
-    place = (0.95, 0.95, "right", "top") if falls else (0.06, 0.05, "left", "bottom")
-    axis.text(*place[:2], text, ha=place[2], va=place[3], transform=axis.transAxes)

@@ -1,11 +1,10 @@
 """Memory-effect curves of any number of results of `covariance`, `validate` and `sweep` in one panel:
 over tilts, or over translations."""
 
-import pathlib
 import tomllib
 from dataclasses import dataclass
 
-from lib import correlation_panel, page, smooth, style, sweep_file, theory
+from lib import correlation_panel, labels, page, smooth, style, sweep_file, theory
 from lib.curve_looks import method_look
 from lib.sweep_file import METHODS
 
@@ -73,9 +72,13 @@ def sides(result, prefix):
     return [(first, ", transmitted"), (reflected, ", reflected")]
 
 
-def result_series(result, number, unit):
+def joined(*words):
+    return ", ".join(word for word in words if word)
+
+
+def result_series(result, label, number, unit):
     """Of one result; a side of the medium is a curve. unit: what a move of 1 is drawn as."""
-    series, stem, groups = [], pathlib.Path(result.path).stem, read_groups(result)
+    series, groups = [], read_groups(result)
     for side, (_, of_side) in enumerate(sides(result, groups[0][1])):
         for method, prefix in groups:
             name = sides(result, prefix)[side][0]
@@ -83,22 +86,22 @@ def result_series(result, number, unit):
                 raise style.Unusable(f"{result.path}: {name} is not a curve over tilts")
             line = None if method != groups[0][0] else \
                 reflection_line(result) if side or only_reflected(result) else diffusion_line(result)
-            series.append(Series(f"{stem}, {METHODS[method]}{of_side}",
+            series.append(Series(joined(label, METHODS[method]) + of_side,
                                  unit * result.axis(name, 0), np.real(result.values(name)),
                                  result.values(f"{name}_error"), file_look(method, number + side), line))
     return series
 
 
-def sweep_series(result, number, arguments):
+def sweep_series(result, label, number, arguments):
     """A curve for each point of a sweep."""
     sweep, series = sweep_file.read([result], arguments), []
-    tilt, stem = result.values("tilt"), pathlib.Path(result.path).stem
+    tilt = result.values("tilt")
     fine, stored = np.linspace(tilt.min(), tilt.max(), STEPS), sweep.optional("diffusion_theory")
     for place, row in enumerate(sweep.rows):
-        words = ", ".join([stem, *([sweep.label(sweep.varying(), row)] if sweep.varying() else [])])
+        words = joined(label, sweep.label(sweep.varying(), row) if sweep.varying() else "")
         for method in sweep.prefixes:
             line = None if stored is None else theory.curve(sweep, theory.diffusion, row, stored[row], fine)
-            series.append(Series(f"{words}, {METHODS[method]}" if method else words, 1000 * tilt,
+            series.append(Series(joined(words, METHODS[method]) if method else words, 1000 * tilt,
                                  sweep.of(method, "field_correlation")[row],
                                  sweep.of(method, "field_correlation_error")[row],
                                  file_look(method, number + place),
@@ -107,13 +110,20 @@ def sweep_series(result, number, arguments):
 
 
 def read_series(results, unit, arguments):
-    series = []
-    for result in results:
-        number = len({s.look["color"] for s in series})
-        series += sweep_series(result, number, arguments) if is_sweep(result) else \
-            result_series(result, number, unit)
+    series = series_of(results, labels.labels(results), unit, arguments)
+    if len({s.label for s in series}) < len(series):
+        series = series_of(results, labels.stems(results), unit, arguments)
     if len(series) > MOST_CURVES and len(results) > 1 and any(map(is_sweep, results)):
         raise style.Unusable(f"{len(series)} curves, a panel holds {MOST_CURVES}: choose some by --select")
+    return series
+
+
+def series_of(results, names, unit, arguments):
+    series = []
+    for result, label in zip(results, names):
+        number = len({s.look["color"] for s in series})
+        series += sweep_series(result, label, number, arguments) if is_sweep(result) else \
+            result_series(result, label, number, unit)
     return series
 
 
@@ -145,12 +155,30 @@ def reflection_line(result):
     return 1000 * fine, smooth.cubic(tilt, known, fine)
 
 
+def same_line(one, other):
+    return all(len(a) == len(b) and np.allclose(a, b, rtol=1e-9, atol=1e-12) for a, b in zip(one.line, other.line))
+
+
 def draw_theory(axis, series):
-    """Whether there is any."""
+    """Each line once, in grey where it is of several curves. Returns whether there is any."""
+    drawn = []
     lines = [s for s in series if s.line is not None]
     for s in lines:
-        axis.plot(s.line[0], s.line[1]**2, color=s.look["color"], linewidth=0.7, zorder=1)
-    return bool(lines)
+        if any(same_line(s, other) for other in drawn):
+            continue
+        shared_by = sum(same_line(s, other) for other in lines)
+        axis.plot(s.line[0], s.line[1]**2, color=s.look["color"] if shared_by == 1 and len(lines) > 1 else style.GREY,
+                  linewidth=0.9, zorder=1)
+        drawn.append(s)
+    return bool(drawn)
+
+
+def theory_name(results):
+    """Of light that goes through, or comes back (conventions, C20 and C44)."""
+    if all(result.has("reflection_theory") for result in results) and \
+            all(labels.side(result) for result in results):
+        return "lines: diffusion and single scattering"
+    return "lines: diffusion theory"
 
 
 def shared(results, name):
@@ -170,8 +198,16 @@ def share_q(results):
 def title(results):
     names = {"optical_depth": "OD", "g": "$g$", "albedo": "albedo"}
     values = {name: shared(results, name) for name in names}
-    return "\n".join(f"{names[name]} = {value:.3g}" for name, value in values.items()
-                     if value is not None)
+    words = [f"{names[name]} = {value:.3g}" for name, value in values.items() if value is not None]
+    return ", ".join(words + view_words(results))
+
+
+def view_words(results):
+    """[The view and its side, where all results have the same one]."""
+    views = [tuple(result.values("view_angle")) if result.has("view_angle") else () for result in results]
+    if len(set(views)) > 1 or len(views[0]) != 1:
+        return []
+    return [f"view {style.angle(views[0][0])}{labels.side(results[0])}"]
 
 
 def draw(results, arguments):
@@ -185,16 +221,14 @@ def draw(results, arguments):
     unseen = correlation_panel.Unseen()
     for s in series:
         correlation_panel.draw_curve(axis, s.moves, s.correlation, s.error, s.look, unseen)
-    correlation_panel.write_title(axis, title(results), [s.correlation for s in series])
     if not tilts:
         axis.set_xlabel("translation (unit of length)")
     elif share_q(results):
         correlation_panel.add_q_axis(axis, results[0], series[0].moves)
     entries = [(plt.Line2D([], [], linestyle="none", **s.look), s.label) for s in series]
     if tilts and draw_theory(axis, series):
-        entries.append((plt.Line2D([], [], color="black", linewidth=0.7),
-                        "lines: diffusion theory"))
-    page.legend_outside(figure, entries)
+        entries.append((plt.Line2D([], [], color=style.GREY, linewidth=0.9), theory_name(results)))
+    page.legend_outside(figure, entries, [text for text in [title(results)] if text])
     reflected = ["theory of reflected light: diffusion and single scattering"] \
         if any(result.has("reflection_theory") for result in results) else []
     style.caption(figure, [*unseen.notes(arguments), *reflected])

@@ -37,7 +37,7 @@ class Result:
     def dataset(self, name):
         if not isinstance(self.file.get(name), h5py.Dataset):
             why = ("is not complete: the same command with --resume goes on; "
-                   if self.attribute("complete") == 0 or "state" in self.file else "")
+                   if self.attribute("complete") == 0 or set(self.file) == {"state"} else "")
             raise Unusable(f"{self.path}: {why}has no dataset {name}")
         return self.file[name]
 

@@ -30,6 +30,7 @@ MARKERS = ["o", "s", "^", "D", "v", "P", "X", "p"]
 LINES = ["-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (7, 2)), (0, (1, 1)), (0, (3, 1, 1, 1))]
 GREY = "0.5"
 COLUMN, PAGE, PAGE_HEIGHT = 3.4, 7.0, 8.6  # of a journal, inches
+PAD = 0.02  # of paper around what is drawn, inches
 
 LOOK = {
     "font.size": 8, "axes.labelsize": 8, "axes.titlesize": 8, "legend.fontsize": 7,
@@ -39,7 +40,7 @@ LOOK = {
     "xtick.major.width": 0.6, "ytick.major.width": 0.6,
     "errorbar.capsize": 1.5, "legend.frameon": False, "legend.handlelength": 2.4,
     "pdf.fonttype": 42, "savefig.dpi": 300, "figure.constrained_layout.use": True,
-    "savefig.bbox": "tight", "savefig.pad_inches": 0.02,
+    "savefig.bbox": "tight", "savefig.pad_inches": PAD,
 }
 plt.rcParams.update(LOOK)
 
@@ -97,6 +98,26 @@ def few_decades(side):
 def caption(figure, sentences):
     """Keeps what a figure's caption has to say: it is printed, and stands in both files' metadata."""
     figure.caption = "; ".join([*filter(None, [getattr(figure, "caption", "")]), *sentences])
+
+
+def whole(figure):
+    """Makes the page larger by what stands outside of it, legends above all, and leaves the panels as
+    they are: so that nothing is cut off however the figure is saved."""
+    figure.canvas.draw()
+    width, height = figure.get_size_inches()
+    box = figure.get_tightbbox(figure.canvas.get_renderer())
+    left, bottom = (max(0, PAD - low) for low in (box.x0, box.y0))
+    right, top = max(0, box.x1 + PAD - width), max(0, box.y1 + PAD - height)
+    if max(left, bottom, right, top) <= PAD:
+        return figure
+    wide, high = width + left + right, height + bottom + top
+    places = [legend.get_bbox_to_anchor().transformed(figure.dpi_scale_trans.inverted()) for legend in figure.legends]
+    figure.set_size_inches(wide, high)
+    figure.get_layout_engine().set(rect=(left / wide, bottom / high, width / wide, height / high))
+    for legend, place in zip(figure.legends, places):
+        legend.set_bbox_to_anchor(((place.x0 + left) / wide, (place.y0 + bottom) / high), figure.transFigure)
+    figure.canvas.draw()
+    return figure
 
 
 def save(figure, prefix):

@@ -5,7 +5,7 @@ from lib import correlation_panel, curve_looks, style, sweep_file, theory
 import matplotlib.pyplot as plt
 import numpy as np
 
-BAND = 2  # standard errors
+BAND = 4  # standard errors, as everywhere
 STEPS = 300  # of a line
 
 
@@ -107,4 +107,4 @@ class Drawing:
             yield plt.Line2D([], [], color="0.55", linewidth=1.6), "single scattering alone"
         if result.has("deviation"):
             yield plt.Rectangle((0, 0), 1, 1, color="0.9"), \
-                f"deviation of $C_E$: $\\pm${BAND} standard errors"
+                f"deviation of $C_E$ in standard errors, $\\pm${BAND}"

@@ -29,6 +29,10 @@ Of Python alone:
   cache     True: a call like an earlier one is answered from its result; with `out`, there is none.
   progress  True or False; None: on terminals and in notebooks.
 """
+OTHERS = """
+With of="render" (or covariance, flux, field, image, solve, trace) all keys of that subcommand are keys here too:
+help(flatspeckle.render) lists them. `vary` may be a dict: {"mu_s": [0.5, 1]} of values and, in optimise,
+{"amplitude": (1e-4, 4e-3, "log")} of bounds, with "log" to search in ratios."""
 _temporary = []  # folders of uncached results, which plots may still read
 
 
@@ -114,6 +118,8 @@ def description(key):
 def documentation(subcommand):
     purpose = program.table(program.path())["subcommands"][subcommand]["purpose"]
     parts, group = [purpose[0].upper() + purpose[1:] + ".\n" + OWN.format(name=subcommand)], None
+    if "of" in keys.keys_of(subcommand):
+        parts.append(OTHERS)
     for key in sorted_by_group(keys.keys_of(subcommand).values()):
         if key.group != group:
             parts.append(f"\n{key.group}\n{'-' * len(key.group)}")

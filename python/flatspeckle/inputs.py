@@ -8,8 +8,9 @@ import h5py
 import numpy as np
 import xarray
 
-from flatspeckle import cache
+from flatspeckle import cache, keys, program
 from flatspeckle.errors import InputError
+from flatspeckle.result import source_of
 
 COLUMNS = re.compile(r"columns (\w+(?:, \w+)*)")
 DATASET = re.compile(r"HDF5 (?:file )?with (\w+)")
@@ -62,12 +63,30 @@ def is_array(value):
     return isinstance(value, (dict, np.ndarray, xarray.DataArray, xarray.Dataset)) or hasattr(value, "columns")
 
 
+def shown(value):
+    return f"array of shape {np.shape(value)}" if isinstance(value, np.ndarray) else type(value).__name__
+
+
+def elsewhere(key):
+    """Which subcommands take a table for a key of this name."""
+    rows = {name: keys.keys_of(name).get(key.name) for name in program.table(program.path())["subcommands"]}
+    found = [name for name, row in rows.items() if row and COLUMNS.search(" ".join(row.helps))]
+    return f" here (in {' and '.join(found)} it does)" if found else ""
+
+
+def source_of_dataset(key, value):
+    try:
+        return source_of(value)
+    except InputError as problem:
+        raise InputError(f"{key.name} = Dataset: {problem}") from None
+
+
 def file_of(key, value):
     """The path of a file with a table, grid or result in it."""
     if isinstance(value, xarray.Dataset):
-        if "source" not in value.encoding:
-            raise InputError(f"{key.name} = Dataset: must be a result as it was read, or a path")
-        return value.encoding["source"]
+        return source_of_dataset(key, value)
+    if key.words:
+        raise InputError(f"{key.name} = {shown(value)}: takes no table{elsewhere(key)}; {key.accepted}")
     grid = DATASET.search(" ".join(key.helps))
     if grid and not (isinstance(value, dict) and grid[1] not in value):
         parts = value if isinstance(value, dict) else {grid[1]: value}

@@ -13,14 +13,15 @@ from unittest import mock
 
 from flatspeckle import program
 from flatspeckle.errors import InputError
+from flatspeckle.result import source_of
 
 _libraries = {}  # the scripts' own modules, which they know as `lib`
 
 
 def folder():
     """Where the scripts are: in this checkout, beside the program, in the checkout that it was built in."""
-    parents = pathlib.Path(program.path()).resolve().parents
-    for place in (program.HERE.parents[1], parents[1] / "share/flatspeckle", parents[3]):
+    binary = pathlib.Path(program.path()).resolve()
+    for place in (program.HERE.parents[1], binary.parents[1] / "share/flatspeckle", *binary.parents[3:4]):
         if (place / "plots/lib/style.py").is_file():
             return place / "plots"
     raise FileNotFoundError("the plot scripts are neither beside the program nor in its checkout")
@@ -82,12 +83,7 @@ def parsed(add_options, options):
 
 def file_of(result):
     """A path, or a Dataset as it was read."""
-    if isinstance(result, (str, os.PathLike)):
-        return os.fspath(result)
-    source = result.encoding.get("source")
-    if source is None:
-        raise InputError("a plot draws whole results, as a run or read() returned them")
-    return source
+    return os.fspath(result) if isinstance(result, (str, os.PathLike)) else source_of(result)
 
 
 def figure(name, results, options):
@@ -102,7 +98,7 @@ def figure(name, results, options):
             drawn = draw(files, parsed(add_options, options)) if add_options else draw(files)
         except style.Unusable as problem:
             raise InputError(str(problem)) from None
-        drawn.canvas.draw()  # while the look is theirs
+        style.whole(drawn)  # while the look is theirs
         style.plt.close(drawn)  # it is returned: a notebook need not show it twice
     for file in files:
         file.file.close()
@@ -132,4 +128,4 @@ def __getattr__(name):
 
 
 def __dir__():
-    return [*globals(), *scripts()]
+    return scripts()

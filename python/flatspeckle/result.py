@@ -6,6 +6,8 @@ import h5py
 import numpy as np
 import xarray
 
+from flatspeckle.errors import InputError
+
 STATES = "state"  # what --resume goes on from
 OF_SCALES = {"CLASS", "NAME", "REFERENCE_LIST", "DIMENSION_LIST", "DIMENSION_LABELS"}
 
@@ -77,6 +79,21 @@ def read_placement(path):
     result = xarray.Dataset({name: ("scatterer", column) for name, column in zip(names, columns)})
     result.encoding["source"] = path
     return result
+
+
+def source_of(result):
+    """The file that a Dataset was read from. Raises InputError for a part of it, and where it was changed."""
+    path = result.encoding.get("source")
+    if path is None or not os.path.isfile(path) or not holds(result, read(path)):
+        raise InputError("a Dataset stands for its file as a run or read() returned it: this one is a part of it, was "
+                         "computed from it, or was changed; draw parts with xarray's own .plot()")
+    return path
+
+
+def holds(result, whole):
+    """Whether all that is in the file is in the Dataset, as it is there."""
+    return all(name in result.variables and result.variables[name].equals(variable)
+               for name, variable in whole.variables.items())
 
 
 def group(result, name):

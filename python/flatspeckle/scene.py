@@ -1,6 +1,7 @@
 """Scenes: keys and their values, from keyword arguments, scene files and results, and as scene files."""
 
 import os
+import re
 import tomllib
 from collections.abc import Mapping
 
@@ -10,7 +11,7 @@ import numpy as np
 from flatspeckle import inputs
 from flatspeckle.errors import InputError
 
-BETWEEN = {"vary": ",", "free": ":"}  # of a dict {key: values}, as "key=1,2" and "key=0:1"
+OF_KEYS = ("vary", "free", "against")  # take dicts {key: values}
 
 
 class Scene(Mapping):
@@ -56,12 +57,21 @@ def scene_of(value):
     return Scene.load(value) if isinstance(value, (str, os.PathLike)) else Scene(value or ())
 
 
+def values_of(key, values):
+    """Of one key in such a dict: "1,2" of a list, "0:1" of bounds where there are bounds. A tuple is bounds,
+    (low, high) or (low, high, "log"); an array or list is values."""
+    if isinstance(values, str):
+        return values
+    bounds = key is not None and re.search(r"\bbounds\b", " ".join(key.helps))
+    if bounds and (key.name == "free" or isinstance(values, tuple)):
+        return ":".join(map(text_of, values))
+    return ",".join(map(text_of, np.ravel(values)))
+
+
 def texts(key, name, value):
     """A value as the program's own texts: one, or a list of them."""
-    if name in BETWEEN and isinstance(value, Mapping):
-        join = BETWEEN[name].join
-        return [f"{one}={several if isinstance(several, str) else join(map(text_of, np.ravel(several)))}"
-                for one, several in value.items()]
+    if name in OF_KEYS and isinstance(value, Mapping):
+        return [f"{one}={values_of(key, several)}" for one, several in value.items()]
     is_text = key is not None and key.type is str
     if is_text and inputs.is_array(value) and not (key.is_list and isinstance(value, np.ndarray)):
         return inputs.file_of(key, value)

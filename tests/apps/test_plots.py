@@ -43,6 +43,9 @@ KINDS = {
     "layers": ("covariance", {"domain": "slab", "layers": "rows.csv", "scatterer": "hg", **TILTS, **FEW}),
     "graded": ("covariance", {**SLAB, "method": "mc", "index_field": "linear", "index_slope": [0, 1e-4], **TILTS, **FEW}),
     "both": ("validate", {**BOX, "view_angles": [0.1, 0.3], "wave_samples": 40, **FEW}),
+    "own_places": ("validate", {"scatterer": "soft", "radius": 0.2, "width": 20, "depth": 10, "placement": "three.csv",
+                                "view_angles": [0.1, 0.4, 0.9], **FEW}),
+    "grains": ("field", {**BOX, "view_angles": [0.005 * i for i in range(40)], "fields": 8, "threads": 1}),
     "fields": ("field", {**BOX, "view_angles": [0.1, 0.2, 0.3], "light_angles": [0, 0.01, 0.2],
                          "fields": 4, "threads": 1}),
     "frames": ("image", {**BOX, "count": None, "scatterer": "hg", "optical_depth": 1,
@@ -72,7 +75,7 @@ KINDS = {
 OWN = {"memory_effect": {"grid", "points", "curve", "moves", "layers", "graded"}, "memory_range": {"grid", "points"},
        "range_map": {"grid"}, "convergence": {"grid", "points"}, "tilt_shift": {"map"},
        "dws": {"delays", "exposed"}, "contrast": {"exposed"}, "layer_range": {"layers"}, "graded_range": {"graded"},
-       "frequency": {"frequencies"}, "validation": {"both"}, "speckle_field": {"fields"},
+       "frequency": {"frequencies"}, "validation": {"both", "own_places"}, "speckle_field": {"fields", "grains"},
        "image": {"frames"}, "fit": {"fitted"}, "fit_plan": {"planned"}, "rays": {"rays"}, "spot": {"spot"},
        "design": {"lens", "display", "core"}, "render": {"picture", "pulse"}, "render_time": {"pulse"},
        "light_map": {"light"}, "ring_profile": {"rings"}, "reflection_image": {"spectrum"}, "field_map": {"near"}}
@@ -102,6 +105,7 @@ class Plots(ProgramTest):
     def make(self, kind):
         subcommand, keys = KINDS[kind]
         self.write("asked.csv", "1,2,3,4\n" * 4)
+        self.write("three.csv", "x,z\n0,1\n3,4\n-5,9\n")
         self.write("points.csv", "g,optical_depth\n0,1\n0.5,3\n")
         self.write("rows.csv", "thickness,optical_depth\n4,1\n6,2\n")
         self.call(subcommand, out=f"{kind}.h5", **keys)

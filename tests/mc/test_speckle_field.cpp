@@ -399,6 +399,10 @@ TEST_CASE("the autocorrelation of Gaussian intensities is Siegert's relation") {
     const double expected = std::exp(-static_cast<double>(d * d) / 4);
     CHECK_WITHIN_4_SIGMA(found.value[d], found.error[d], expected, 0);
   }
+  // Straight lines between exp(-1/4) and exp(-1) cross 1/2 at lag 1.6785.
+  const Estimate width = ensemble.statistics(views).grain_width().value();
+  CHECK_WITHIN_4_SIGMA(width.value[0], width.error[0], 2 * 1.6785, 0);
+  CHECK(width.error[0] < 0.1);
   GroupedSums exact(lower.size());
   for (int batch = 0; batch < 2; ++batch) exact.add(1, lower);
   const Estimate relation = siegert_relation(exact, sample_mean, views);

@@ -70,6 +70,24 @@ class Arrays(PackageTest):
                          view_angles=np.linspace(0, 3, 4))
         self.assertEqual(solved.encoding["source"], again.encoding["source"])
 
+    def test_places_of_ones_own(self):
+        places = np.array([[0, 1], [3, 4], [-5, 9]])
+        result = fs.validate(width=20, depth=10, scatterer="soft", radius=0.2, placement=places, view_angles=[0.3, 1, 2], **FEW)
+        np.testing.assert_array_equal(np.stack([result["placement/x"], result["placement/z"]], 1), places)
+        with self.assertRaisesRegex(fs.InputError, "^placement = array of shape .3, 2.: takes no table here .in solve and validate"):
+            fs.covariance(BOX, placement=places)
+
+    def test_bounds_and_values_of_searches(self):
+        from flatspeckle import keys, scene
+        rows = keys.rows_for("optimise", {"of": "render"})
+        vary = {"amplitude": (1e-4, 4e-3, "log"), "mu_s": (0.5, 1), "sound_order": [0, 1], "index": "1.3:1.4"}
+        self.assertEqual(scene.all_texts({"vary": vary, "against": {"amplitude": 0}}, rows),
+                         {"vary": ["amplitude=0.0001:0.004:log", "mu_s=0.5:1", "sound_order=0,1", "index=1.3:1.4"],
+                          "against": ["amplitude=0"]})
+        of_sweep = keys.rows_for("sweep", {"of": "render"})
+        self.assertEqual(scene.all_texts({"vary": {"mu_s": (0.5, 1)}}, of_sweep), {"vary": ["mu_s=0.5,1"]})
+        self.assertIn("help(flatspeckle.render)", fs.sweep.__doc__)
+
     def test_sensors(self):
         at = np.array([[0, 13], [3, 15 + 1 / 3]])
         result = fs.covariance(BOX, near_sensors=at, **FEW)

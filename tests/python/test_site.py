@@ -1,5 +1,6 @@
 """The site is built without a warning and without a dead link, and has every guide, key and dataset."""
 
+import html
 import importlib.util
 import pathlib
 import re
@@ -35,6 +36,15 @@ class SiteTest(unittest.TestCase):
             shown = (self.site / f"{page}.html").read_text()
             for name in re.findall(r"^\| `([\w/]+)` \|", (ROOT / "docs" / f"{page}.md").read_text(), re.MULTILINE):
                 self.assertIn(f">{name}</span>", shown)
+
+    def test_what_looks_like_html_is_shown(self):
+        for page, text in (("conventions", "g = <cos theta>"), ("format", "<I I'> / (<I> <I'>) - 1")):
+            shown = html.unescape(re.sub(r"<[^>]*>", "", (self.site / f"{page}.html").read_text()))
+            self.assertIn(text, shown.replace("\u2019", "'"))
+
+    def test_links_have_titles(self):
+        for page in self.site.glob("*.html"):
+            self.assertNotRegex(page.read_text(), r">(docs/)?\w+\.md</a>")
 
     def test_libraries(self):
         self.assertTrue((self.site / "api" / "annotated.html").exists())

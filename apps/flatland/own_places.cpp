@@ -1,0 +1,255 @@
+#include "apps/flatland/own_places.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "apps/results/datasets.h"
+#include "core/error.h"
+#include "core/keys/number_text.h"
+#include "core/numbers/blas.h"
+#include "core/result/result_group.h"
+#include "flatland/scene/scene_datasets.h"
+#include "mc/theory/allowance.h"
+#include "mc/theory/forward_lobe.h"
+#include "mc/theory/moments_datasets.h"
+#include "wave_solver/solutions/wave_solution.h"
+
+namespace flatspeckle::apps {
+
+const DatasetTable own_places_table{
+    .name = "own places",
+    .rows = {{"intensity_ratio", Data::real, "LIGHT VIEW", "1", "|far_field|^2 over mc/intensity"},
+             {"forward", Data::count, "LIGHT VIEW", "1",
+              "1: in the forward lobe, where the coherent field is; counts in nothing below"},
+             {"mean_ratio", Data::estimate, "", "1", "mean of intensity_ratio; 1 to expect"},
+             {"ratio_contrast", Data::estimate, "", "1",
+              "standard deviation of intensity_ratio over its mean; 1 to expect"},
+             {"independent_grains", Data::real, "", "1",
+              "(sum I)^2 / sum |C|^2 of I = 1, C of Monte Carlo: independent values that as many "
+              "channels are worth"}}};
+
+void add_places_key(Keys& keys, SceneSpec& spec) {
+  keys.remove("placement");
+  keys.add("placement", spec.placement,
+           "How each is drawn: poisson, hard_disk (default of disks) or equilibrium; or one of "
+           "your own, CSV with columns x, z, of `count` scatterers: its intensities over those of "
+           "Monte Carlo");
+}
+
+bool has_own_places(const SceneSpec& spec) {
+  return spec.placement &&
+         std::ranges::find(placement_words, *spec.placement) == placement_words.end();
+}
+
+namespace {
+
+/// More take Monte Carlo gigabytes, and grains are resolved by fewer.
+constexpr std::size_t most_channels = 512;
+
+Placement read_places(const std::string& path, const Scatterer& scatterer) {
+  Placement placement = read_placement(path, scatterer);
+  if (placement.empty()) throw InputError("placement", path, "holds no scatterer");
+  for (std::size_t row = 0; row < placement.size(); ++row)
+    if (placement[row].scatterer != scatterer)
+      throw InputError("placement", path,
+                       "row " + std::to_string(row + 1) +
+                           " has another radius or index than the keys; Monte Carlo is of equal "
+                           "scatterers (solve takes unequal ones)");
+  return placement;
+}
+
+void require_in_box(const Placement& placement, const Domain& box, const std::string& path) {
+  for (std::size_t row = 0; row < placement.size(); ++row) {
+    const auto [x, z] = placement[row].position;
+    if (std::abs(x) <= box.width / 2 && z >= 0 && z <= box.depth) continue;
+    throw InputError("placement", path,
+                     "row " + std::to_string(row + 1) + ", (" + number_text(x) + ", " +
+                         number_text(z) +
+                         "), lies outside of the box |x| <= width / 2, 0 <= z <= "
+                         "depth");
+  }
+}
+
+/// How many there are follows from the table.
+void refuse_numbers(const Keys& keys, const SceneSpec& spec) {
+  if (keys.given(spec.count) || keys.given(spec.density) || keys.given(spec.mean_free_path) ||
+      keys.given(spec.optical_depth))
+    throw InputError("placement", *spec.placement,
+                     "says how many scatterers there are: leave out count, density, "
+                     "mean_free_path and optical_depth");
+}
+
+void require_simple(const Scene& scene) {
+  if (scene.profile || scene.index || !scene.medium.has_scatterers ||
+      has_near_ends(scene.request) || scene.request.kind != CovarianceRequest::Kind::intensity)
+    throw InputError(
+        "placement: a table of places is of one box, plane waves, far views and covariance = "
+        "intensity");
+}
+
+/// All covariances, which say how many of the views are independent.
+CovarianceRequest all_pairs(const CovarianceRequest& request) {
+  if (request.channels.size() > most_channels)
+    throw InputError("view_angles", std::to_string(request.views.size()) + " of them",
+                     "with a placement of your own lights and views make at most " +
+                         std::to_string(most_channels) + " pairs");
+  return full_request(request.lights, request.views);
+}
+
+std::size_t diagonal(std::size_t channel) {
+  return channel * (channel + 3) / 2;
+}
+
+Estimate intensities_of(const Estimate& triangle, std::size_t channels) {
+  Estimate found;
+  for (std::size_t c = 0; c < channels; ++c) append(found, part(triangle, diagonal(c), 1));
+  return found;
+}
+
+/// A target error is that of intensities.
+BatchJob steered(FieldJob job, std::size_t channels) {
+  job.batches.relative_error = relative_error_of(
+      [covariance = job.covariance, channels](double samples, std::span<const Complex> sums) {
+        const auto triangle = covariance(samples, sums);
+        std::vector<Complex> intensities;
+        for (std::size_t c = 0; c < channels; ++c) intensities.push_back(triangle[diagonal(c)]);
+        return intensities;
+      });
+  return job.batches;
+}
+
+/// What one pattern shows.
+struct Pattern {
+  std::vector<double> ratio;           ///< of each channel
+  std::vector<std::uint64_t> forward;  ///< 1: left out of what follows
+  double mean = 0, contrast = 0, grains = 0, mean_error = 0, contrast_error = 0;
+};
+
+/// Intensities of Gaussian fields have the covariance |C|^2 (Siegert), of which noise is taken off.
+double independent_grains(const Estimate& triangle, const Pattern& pattern) {
+  const std::size_t channels = pattern.ratio.size();
+  double sum = 0, used = 0;
+  for (std::size_t a = 0, e = 0; a < channels; ++a)
+    for (std::size_t b = 0; b <= a; ++b, ++e) {
+      if (pattern.forward[a] || pattern.forward[b]) continue;
+      const double product =
+          triangle.value[diagonal(a)].real() * triangle.value[diagonal(b)].real();
+      const double noise = a == b ? 0 : triangle.error[e] * triangle.error[e];
+      sum += (a == b ? 1 : 2) * (std::norm(triangle.value[e]) - noise) / product;
+      used += a == b ? 1 : 0;
+    }
+  return std::clamp(used * used / sum, 1.0, used);
+}
+
+/// Mean and contrast; of N independent exponential values both have the variance 1/N.
+void add_statistics(Pattern& pattern, const Estimate& triangle) {
+  double used = 0, squares = 0, mc_error = 0;
+  for (std::size_t c = 0; c < pattern.ratio.size(); ++c) {
+    if (pattern.forward[c]) continue;
+    pattern.mean += pattern.ratio[c];
+    squares += pattern.ratio[c] * pattern.ratio[c];
+    mc_error += triangle.error[diagonal(c)] / triangle.value[diagonal(c)].real();
+    used += 1;
+  }
+  pattern.mean /= used;
+  pattern.grains = independent_grains(triangle, pattern);
+  const double variance = squares / used - pattern.mean * pattern.mean,
+               unbiased = pattern.grains > 1 ? pattern.grains / (pattern.grains - 1) : 1;
+  pattern.contrast = std::sqrt(std::max(0.0, variance * unbiased)) / pattern.mean;
+  pattern.contrast_error = 1 / std::sqrt(pattern.grains);
+  pattern.mean_error = std::hypot(pattern.contrast_error, mc_error / used);
+}
+
+Pattern pattern_of(const Scene& scene, const std::vector<Complex>& fields,
+                   const Estimate& triangle) {
+  Pattern pattern;
+  for (std::size_t c = 0; c < fields.size(); ++c) {
+    pattern.ratio.push_back(std::norm(fields[c]) / triangle.value[diagonal(c)].real());
+    pattern.forward.push_back(mc::in_forward_lobe(scene, scene.request.channels[c]) ? 1 : 0);
+  }
+  add_statistics(pattern, triangle);
+  return pattern;
+}
+
+void print(const Pattern& pattern, const Scene& scene, std::size_t scatterers) {
+  const auto left_out = std::ranges::count(pattern.forward, 1U);
+  std::printf(
+      "%zu scatterers, one speckle pattern: %zu intensities of about %.0f independent grains\n"
+      "|u|^2 over the mean intensity of Monte Carlo: mean %.3f +- %.2g, contrast %.3f +- %.2g\n"
+      "both are 1 of a speckle pattern; Monte Carlo neglects %.1f %%\n",
+      scatterers, pattern.ratio.size() - static_cast<std::size_t>(left_out), pattern.grains,
+      pattern.mean, pattern.mean_error, pattern.contrast, pattern.contrast_error,
+      100 * mc::Allowance(scene).total());
+  if (left_out > 0)
+    std::printf("%td views in the forward lobe are left out, where the coherent field is\n",
+                left_out);
+}
+
+void write(ResultFile& file, const Pattern& pattern, const Scene& scene) {
+  const ResultGroup root(file, own_places_table);
+  root.put("intensity_ratio", std::span<const double>(pattern.ratio));
+  root.put("forward", std::span<const std::uint64_t>(pattern.forward));
+  root.put("mean_ratio", pattern.mean, pattern.mean_error);
+  root.put("ratio_contrast", pattern.contrast, pattern.contrast_error);
+  root.put("independent_grains", pattern.grains);
+  ResultGroup(file, validate_table).attribute("bias_allowance", mc::Allowance(scene).total());
+}
+
+/// The table, for the identity of the run.
+std::string places_text(const Placement& placement) {
+  std::string text;
+  for (const auto& [x, scatterer] : placement)
+    text += "place " + number_text(x.x) + ' ' + number_text(x.z) + '\n';
+  return text;
+}
+
+}  // namespace
+
+OwnPlaces::OwnPlaces(const Keys& keys, SceneSpec& spec, const MethodSettings& methods)
+    : tolerance_(keys.read(methods.wave_tolerance)) {
+  if (spec.domain != "box")
+    throw InputError("domain", spec.domain, "a placement of your own lies in a box");
+  refuse_numbers(keys, spec);
+  const std::optional<std::string> path = keys.read(spec.placement);
+  placement_ = read_places(*path, make_scatterer(keys, spec));
+  spec.placement.reset();  // what is left is the scene of any such placement
+  spec.count = static_cast<std::int64_t>(placement_.size());
+  scene_ = make_scene(keys, spec);
+  spec.placement = path;  // the keys stay as they were given
+  spec.count.reset();
+  require_simple(scene_);
+  require_in_box(placement_, scene_.domain, *path);
+  refuse_absurd(methods, Neglected(scene_));
+  scene_.request = all_pairs(scene_.request);
+  if (std::ranges::all_of(scene_.request.channels, [&](const Channel& channel) {
+        return mc::in_forward_lobe(scene_, channel);
+      }))
+    throw InputError("view_angles", number_text(spec.view_angles),
+                     "all lie in the forward lobe, where the coherent field is: give others, many "
+                     "of them, as 0.3:2.8:200");
+}
+
+int OwnPlaces::compare(Session& session, mc::ReversedPaths reversed, const StopRule& stop) const {
+  blas_single_thread();  // says now what it lacks
+  const auto solution = wave::solve(placement_, scene_.k, scene_.request.lights.angles(),
+                                    {.tolerance = tolerance_, .sensors = {}});
+  const auto fields = solution.fields(scene_.request.views);
+  const Estimation mc = mc_estimation(scene_, reversed, session.seed());
+  return session.run(
+      mc.plan + "\nwave: " + solution.method(),
+      {{"mc", "mc", steered(mc.job, fields.size()), stop}},
+      inputs_text(scene_) + places_text(placement_), [&](ResultFile& file) {
+        const Estimate triangle = field_moments(mc.job, session.sums("mc")).covariance;
+        const Pattern pattern = pattern_of(scene_, fields, triangle);
+        print(pattern, scene_, placement_.size());
+        write_medium(file, scene_);
+        wave::write_solution(file, solution, column(scene_.request.views, &View::angle), {});
+        bind_units(file, scene_);
+        ResultGroup(file, mc::intensity_table, "mc")
+            .put("intensity", intensities_of(triangle, fields.size()));
+        write(file, pattern, scene_);
+      });
+}
+
+}  // namespace flatspeckle::apps

@@ -1,0 +1,51 @@
+"""One speckle pattern, of a placement of the user's own, over the mean intensity of Monte Carlo."""
+
+from lib import style
+
+import matplotlib.pyplot as plt
+import numpy as np
+
+FORWARD = {"color": "#E69F00", "alpha": 0.25, "linewidth": 0}
+
+
+def draw_pattern(axis, result):
+    """|u|^2 and its mean of the first light."""
+    order = np.argsort(result.values("view_angle"))
+    view, mean, error = (values[order] for values in (
+        result.values("view_angle"), result.values("mc/intensity")[0], result.values("mc/intensity_error")[0]))
+    axis.plot(view, np.abs(result.values("far_field")[0][order])**2, color=style.COLOURS[1],
+              label="your places, exactly: $|u|^2$")
+    axis.fill_between(view, mean - error, mean + error, color=style.COLOURS[0], alpha=0.3, linewidth=0)
+    axis.plot(view, mean, color=style.COLOURS[0], linestyle="--", label="mean over placements, Monte Carlo")
+    forward = view[result.values("forward")[0][order] > 0]
+    if len(forward):
+        axis.axvspan(forward.min(), forward.max(), label="forward lobe: not counted", zorder=-1, **FORWARD)
+    axis.set_yscale("log")
+    axis.set_ylim(mean.min() / 100, None)
+    axis.set_ylabel(f"intensity ({result.dataset('mc/intensity').attrs['units']})")
+    style.angle_axis(axis, view, "view angle")
+
+
+def draw_distribution(axis, result):
+    """Share of ratios above a value, and the law of speckle."""
+    counted = result.values("forward") == 0
+    ratio = np.sort(result.values("intensity_ratio")[counted])
+    axis.step(ratio, 1 - np.arange(len(ratio)) / len(ratio), where="pre", color=style.COLOURS[1])
+    fine = np.linspace(0, ratio[-1], 200)
+    axis.plot(fine, np.exp(-fine), color="black", linestyle=":", label=r"$\exp(-r)$, Gaussian fields")
+    axis.set_yscale("log")
+    axis.set(xlabel=r"$r = |u|^2$ / mean intensity", ylabel="share above $r$", ylim=(0.5 / len(ratio), 1.3))
+
+
+def draw(result):
+    figure, (pattern, distribution) = plt.subplots(2, 1, figsize=(1.3 * style.COLUMN, 4.2), height_ratios=[1.5, 1])
+    draw_pattern(pattern, result)
+    draw_distribution(distribution, result)
+    numbers = [f"{word} {result.values(name):.3f} $\\pm$ {result.values(name + '_error'):.2g}"
+               for word, name in (("mean", "mean_ratio"), ("contrast", "ratio_contrast"))]
+    distribution.text(0.97, 0.93, "\n".join([*numbers, f"{float(result.values('independent_grains')):.0f} grains"]),
+                      transform=distribution.transAxes, ha="right", va="top")
+    handles = [entry for axis in (pattern, distribution) for entry in zip(*axis.get_legend_handles_labels())]
+    figure.legend(*zip(*handles), loc="lower center", bbox_to_anchor=(0.5, 1.0), ncol=2)
+    style.caption(figure, ["errors of mean and contrast: 1 over the root of the number of independent grains"])
+    return figure
