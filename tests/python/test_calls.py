@@ -85,7 +85,7 @@ class Arrays(PackageTest):
                          {"vary": ["amplitude=0.0001:0.004:log", "mu_s=0.5:1", "sound_order=0,1", "index=1.3:1.4"],
                           "against": ["amplitude=0"]})
         of_sweep = keys.rows_for("sweep", {"of": "render"})
-        self.assertEqual(scene.all_texts({"vary": {"mu_s": (0.5, 1)}}, of_sweep), {"vary": ["mu_s=0.5,1"]})
+        self.assertEqual(scene.all_texts({"vary": {"mu_s": (0.5, 1)}}, of_sweep), {"vary": ["mu_s=0.5,1.0"]})
         self.assertIn("help(flatspeckle.render)", fs.sweep.__doc__)
 
     def test_sensors(self):

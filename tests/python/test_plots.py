@@ -51,7 +51,7 @@ class Plots(PackageTest):
         curve = fs.covariance(CURVE)
         changed = curve.copy(deep=True)
         changed["field_correlation"][:] = 0.5
-        for other in (curve.isel(tilt=slice(0, 2)), changed, curve * 1, curve.drop_vars("covariance")):
+        for other in (curve.isel(tilt=slice(0, 2)), changed, curve * 2, curve.drop_vars("covariance")):
             with self.assertRaisesRegex(fs.InputError, "part of it"):
                 fs.plots.memory_effect(other)
             with self.assertRaisesRegex(fs.InputError, "measurement = Dataset"):
@@ -82,10 +82,10 @@ class Plots(PackageTest):
 
     def test_a_sweep_over_two_keys_makes_several_curves_or_is_refused(self):
         scene = {"stage_box": [-1, -1, -1, 1, 1, 1], "point_light": [0, 0, -0.5, 1], "sensor": "area",
-                 "sensor_at": [0, 0, 1], "sensor_size": [2, 2], "pixels": [1, 1], "samples": 500}
+                 "sensor_at": [0, 0, 1], "sensor_size": [2, 2], "pixels": [1, 1], "phase": "henyey_greenstein", "samples": 500}
         two = fs.sweep(scene, of="render", vary={"mu_s": [0.5, 1, 2], "mu_a": [0.1, 0.2]})
         self.assertEqual([len(bars.lines[0].get_xdata()) for bars in fs.plots.throughput(two).axes[0].containers], [3, 3])
-        three = fs.sweep(scene, of="render", vary={"mu_s": [0.5, 1], "mu_a": [0.1, 0.2], "seed": [1, 2]})
+        three = fs.sweep(scene, of="render", vary={"mu_s": [0.5, 1], "mu_a": [0.1, 0.2], "g": [0, 0.5]})
         many = fs.sweep(scene, of="render", vary={"mu_s": [0.5, 1], "mu_a": list(np.linspace(0.1, 1, 9))})
         for result in (three, many):
             with self.assertRaisesRegex(fs.InputError, "experiment_map"):
