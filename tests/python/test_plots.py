@@ -90,6 +90,8 @@ class Plots(PackageTest):
         for result in (three, many):
             with self.assertRaisesRegex(fs.InputError, "experiment_map"):
                 fs.plots.throughput(result)
+        with self.assertRaisesRegex(fs.InputError, "varies g besides mu_s and mu_a"):
+            fs.plots.throughput(three, curves="mu_a")
 
     def test_what_a_script_refuses(self):
         power = fs.flux(BOX, **FEW)
