@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 
 #include "apps/results/datasets.h"
 #include "core/error.h"
@@ -31,10 +32,11 @@ const DatasetTable own_places_table{
 
 void add_places_key(Keys& keys, SceneSpec& spec) {
   keys.remove("placement");
-  keys.add("placement", spec.placement,
-           "How each is drawn: poisson, hard_disk (default of disks) or equilibrium; or one of "
-           "your own, CSV with columns x, z, of `count` scatterers: its intensities over those of "
-           "Monte Carlo");
+  keys.add(
+      "placement", spec.placement,
+      "How each is drawn: poisson, hard_disk (default of disks) or equilibrium; or one of "
+      "your own, CSV with columns x, z (without count then): its intensities over those of Monte "
+      "Carlo");
 }
 
 bool has_own_places(const SceneSpec& spec) {
@@ -208,6 +210,9 @@ std::string places_text(const Placement& placement) {
 
 OwnPlaces::OwnPlaces(const Keys& keys, SceneSpec& spec, const MethodSettings& methods)
     : tolerance_(keys.read(methods.wave_tolerance)) {
+  if (!std::filesystem::exists(*spec.placement))
+    throw InputError("placement", *spec.placement,
+                     "must be one of " + joined(placement_words, " ") + ", or a table (no such file)");
   if (spec.domain != "box")
     throw InputError("domain", spec.domain, "a placement of your own lies in a box");
   refuse_numbers(keys, spec);

@@ -58,7 +58,7 @@ class OwnPlaces(RefusingTest):
                                ({"domain": "slab"}, ["domain"]),
                                ({"depth": 3}, ["mine.csv", "row 2", "outside"]),
                                ({"wave_samples": 9}, ["wave_samples"]),
-                               ({"placement": "nothing.csv"}, ["nothing.csv"])):
+                               ({"placement": "poison", "count": 3}, ["placement = poison", "must be one of poisson hard_disk"])):
             with self.subTest(changes=changes):
                 self.assert_refused(words, "validate", *flags({**own, **changes}))
         self.write("unequal.csv", "x,z,radius\n0,1,0.16\n3,4,0.2\n")
