@@ -55,15 +55,20 @@ def error_norm(results):
     return LogNorm(min(10 ** np.floor(np.log10(best)), MOST / 10), MOST, clip=True)
 
 
-def mark_unlit(axis, error):
-    """Hatches show through where the picture is masked."""
+def say_what_is_no_error(axis, result, error):
+    """Hatches show through where the picture is masked; pixels of rare strong paths, and those beside them,
+    have bounds."""
+    notes = []
+    if result.has("image_rare") and np.any(result.values("image_rare")):
+        notes.append("blocks: upper bounds by rare paths")
     if np.ma.is_masked(error):
         axis.patch.set(hatch="xxxx", facecolor="white", edgecolor="0.6")
-        axis.set_title("hatched: no light yet", fontsize=7, loc="right", pad=2)
+        notes.append("hatched: no light yet")
+    axis.set_title("; ".join(notes), fontsize=7, loc="right", pad=2)
 
 
 def draw_error(figure, axis, result, norm):
-    mark_unlit(axis, relative_error(result))
+    say_what_is_no_error(axis, result, relative_error(result))
     bar = panel(figure, axis, result, relative_error(result), "relative standard error", "both", cmap="cividis",
                 norm=norm)
     bar.ax.yaxis.set_major_formatter(FuncFormatter(lambda share, _: f"{100 * share:g} %"))
