@@ -26,21 +26,14 @@ struct Drawing {
   const char *dataset, *script;
 };
 
-constexpr Drawing drawings[] = {{"squared_contrast", "contrast"},
-                                {"delay", "dws"},
-                                {"frequency_shift", "frequency"},
-                                {"deviation", "validation"},
-                                {"tilt_q", "memory_effect"},
-                                {"field", "speckle_field"},
-                                {"frame", "image"},
-                                {"parameter_name", "fit"},
-                                {"exit/x", "rays"},
-                                {"ball_spline", "design"},
-                                {"radial_spline", "design"},
-                                {"graded_spline", "design"},
-                                {"history/rms", "design"},
-                                {"total_field", "field_map"},
-                                {"image", "render"}};
+constexpr Drawing drawings[] = {{"squared_contrast", "contrast"},  {"delay", "dws"},
+                                {"frequency_shift", "frequency"},  {"deviation", "validation"},
+                                {"intensity_ratio", "validation"}, {"tilt_q", "memory_effect"},
+                                {"field", "speckle_field"},        {"frame", "image"},
+                                {"parameter_name", "fit"},         {"exit/x", "rays"},
+                                {"ball_spline", "design"},         {"radial_spline", "design"},
+                                {"graded_spline", "design"},       {"history/rms", "design"},
+                                {"total_field", "field_map"},      {"image", "render"}};
 
 /// As text, whatever its type; empty where there is none.
 std::string attribute_text(const ResultReader& file, const AttributeRow& row) {

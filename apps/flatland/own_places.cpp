@@ -20,15 +20,16 @@ namespace flatspeckle::apps {
 
 const DatasetTable own_places_table{
     .name = "own places",
-    .rows = {{"intensity_ratio", Data::real, "LIGHT VIEW", "1", "|far_field|^2 over mc/intensity"},
-             {"forward", Data::count, "LIGHT VIEW", "1",
-              "1: in the forward lobe, where the coherent field is; counts in nothing below"},
-             {"mean_ratio", Data::estimate, "", "1", "mean of intensity_ratio; 1 to expect"},
-             {"ratio_contrast", Data::estimate, "", "1",
-              "standard deviation of intensity_ratio over its mean; 1 to expect"},
-             {"independent_grains", Data::real, "", "1",
-              "(sum I)^2 / sum |C|^2 of I = 1, C of Monte Carlo: independent values that as many "
-              "channels are worth"}}};
+    .rows = {
+        {"intensity_ratio", Data::real, "LIGHT VIEW", "1", "|far_field|^2 over mc/intensity"},
+        {"forward", Data::count, "LIGHT VIEW", "1",
+         "1: in the forward lobe, where the coherent field is; counts in nothing below"},
+        {"mean_ratio", Data::estimate, "", "1", "mean of intensity_ratio; 1 to expect"},
+        {"ratio_contrast", Data::estimate, "", "1",
+         "standard deviation of intensity_ratio over its mean; 1 to expect"},
+        {"independent_grains", Data::real, "", "1",
+         "n^2 over the sum of |C|^2 / (I I') of n channels, by Monte Carlo: how many independent "
+         "values they are worth"}}};
 
 void add_places_key(Keys& keys, SceneSpec& spec) {
   keys.remove("placement");
@@ -211,8 +212,9 @@ std::string places_text(const Placement& placement) {
 OwnPlaces::OwnPlaces(const Keys& keys, SceneSpec& spec, const MethodSettings& methods)
     : tolerance_(keys.read(methods.wave_tolerance)) {
   if (!std::filesystem::exists(*spec.placement))
-    throw InputError("placement", *spec.placement,
-                     "must be one of " + joined(placement_words, " ") + ", or a table (no such file)");
+    throw InputError(
+        "placement", *spec.placement,
+        "must be one of " + joined(placement_words, " ") + ", or a table (no such file)");
   if (spec.domain != "box")
     throw InputError("domain", spec.domain, "a placement of your own lies in a box");
   refuse_numbers(keys, spec);

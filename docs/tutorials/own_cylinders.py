@@ -11,7 +11,7 @@ import flatspeckle as fs
 
 radius = 1 / (2 * np.pi)
 fibres = fs.Scene(domain="box", width=20, depth=10, scatterer="tm", radius=radius, index=1.5)
-random, places = np.random.default_rng(1), []  # in their place yours: np.loadtxt("mine.csv", delimiter=",")
+random, places = np.random.default_rng(1), []  # in their place yours: np.loadtxt("mine.csv", delimiter=",", skiprows=1)
 while len(places) < 50:
     place = random.uniform([-10, 0], [10, 10])
     if all(np.hypot(*(place - other)) > 2.1 * radius for other in places):
