@@ -1,5 +1,7 @@
-"""An index that varies around the scatterers: exact placements, Monte Carlo, and what is refused."""
+"""An index that varies around the scatterers: exact placements, Monte Carlo, and what is refused. By night, with the
+argument Night: speckle of slabs whose mean field is refracted."""
 
+import sys
 import unittest
 
 import h5py
@@ -21,7 +23,7 @@ class Graded(ProgramTest):
         self.write("sources.csv", SOURCES)
         self.write("sensors.csv", SENSORS)
 
-    def check_agreement(self, samples=40000, wave_samples=1500, **keys):
+    def check_agreement(self, samples=40000, wave_samples=1000, **keys):
         self.call("validate", **{**BOX, **keys}, samples=samples, wave_samples=wave_samples, out="result.h5")
         with h5py.File(self.folder / "result.h5") as file:
             mc, exact = file["mc/intensity"][()], file["wave/intensity"][()]
@@ -101,6 +103,37 @@ class Guiding(ProgramTest):
         self.check(12000, **self.POINTS)
 
 
+class Night(ProgramTest):
+    """Slabs of cylinders against exact placements: minutes."""
+
+    TILTS = [-0.06, -0.04, -0.02, 0.02, 0.04, 0.06]
+    SLAB = {"domain": "box", "width": 24, "depth": 6, "scatterer": "tm", "radius": 0.1, "index": 1.5, "count": 355,
+            "light_angles": 0.8, "view_angles": [0.5, 0.65, 0.95, 1.1, 2, 2.3, 2.6, 2.9], "covariance": "memory_effect",
+            "tilts": [0, *TILTS]}
+
+    def seen(self, **keys):
+        """Phases of the covariances of tilted lights and their errors, intensities and theirs."""
+        self.call("covariance", **self.SLAB, **keys, out="result.h5")
+        with h5py.File(self.folder / "result.h5") as file:
+            found = file["covariance"][()]
+            error = file["covariance_error"][()] / np.abs(found) / np.sqrt(2)
+            return (np.angle(found)[1:], error[1:], file["reference_intensity"][()],
+                    file["reference_intensity_error"][()])
+
+    def test_speckle_is_refracted(self):
+        """k_shift/k is 0.05."""
+        exact, error, bright, bright_error = self.seen(method="wave", wave_samples=1000, wave_tolerance=1e-3)
+        keys = {"samples": 100000, "structure": "hard_disks"}
+        refracted, _, intensity, _ = self.seen(**keys, index_field="mean_field")
+        straight, _, _, _ = self.seen(**keys)
+        self.assertLess(np.abs((refracted - exact) / error).max(), 4)
+        self.assertTrue(np.all(np.abs(intensity - bright) < 4 * bright_error + 0.05 * bright))
+        transmitted = np.cos(self.SLAB["view_angles"]) > 0
+        off = lambda phases: np.sqrt(np.mean(((phases - exact) / error)[:, transmitted]**2))
+        self.assertLess(off(refracted), 1.5)
+        self.assertGreater(off(straight), 1.5)
+
+
 class Refused(RefusingTest):
     def check(self, words, command="covariance", **changes):
         self.write("sources.csv", SOURCES)
@@ -141,4 +174,4 @@ class Refused(RefusingTest):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    unittest.main(defaultTest=["Graded", "Guiding", "Refused"] if len(sys.argv) < 2 else None)

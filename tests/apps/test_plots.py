@@ -75,6 +75,7 @@ KINDS = {
 OWN = {"memory_effect": {"grid", "points", "curve", "moves", "layers", "graded"}, "memory_range": {"grid", "points"},
        "range_map": {"grid"}, "convergence": {"grid", "points"}, "tilt_shift": {"map"},
        "dws": {"delays", "exposed"}, "contrast": {"exposed"}, "layer_range": {"layers"}, "graded_range": {"graded"},
+       "refraction": {"curve", "layers", "graded"},
        "frequency": {"frequencies"}, "validation": {"both", "own_places"}, "speckle_field": {"fields", "grains"},
        "image": {"frames"}, "fit": {"fitted"}, "fit_plan": {"planned"}, "rays": {"rays"}, "spot": {"spot"},
        "design": {"lens", "display", "core"}, "render": {"picture", "pulse"}, "render_time": {"pulse"},

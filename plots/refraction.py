@@ -1,0 +1,64 @@
+#!/usr/bin/env python3
+"""How far beside the light the light leaves that is seen: d arg C / dq of the covariance of matched views under
+small tilts, the mean distance along x, at z = 0, of the ray that leaves from the ray that comes. Results of
+`covariance --covariance memory_effect` with far views, say exact placements first, then Monte Carlo with and
+without --index_field mean_field; below, less the first."""
+
+from lib import style
+
+import matplotlib.pyplot as plt
+import numpy as np
+
+
+def name_of(result):
+    plan = str(result.attribute("plan", ""))
+    if plan.startswith("wave"):
+        return f"{result.attribute('samples'):.0f} exact placements"
+    refracted = 'index_field = "mean_field"' in str(result.attribute("config", ""))
+    return plan.split(":")[0] + (", mean field refracted" if refracted else ", straight")
+
+
+def displacement(result):
+    """View angles, displacements and their errors, which take tilts as independent: they are too large."""
+    if not (result.has("tilt_q") and result.has("view_angle") and result.has("covariance")):
+        raise style.Unusable(f"{result.path}: has no tilts of far views; needs --covariance memory_effect")
+    views, q, found = (result.values(name) for name in ("view_angle", "tilt_q", "covariance"))
+    if found.shape != (q.size, views.size):
+        raise style.Unusable(f"{result.path}: its covariance is not one of tilts and views")
+    error = result.values("covariance_error") / np.abs(found)
+    if found.dtype.names:
+        found = found["r"] + 1j * found["i"]
+    phase = np.angle(found)
+    small = (q != 0) & np.all(np.abs(phase) < 1.3, axis=1)
+    if not np.any(small):
+        raise style.Unusable(f"{result.path}: no tilt turns all phases by less than 1.3 rad")
+    q, phase, error = q[small, None], phase[small], error[small]
+    return views, np.sum(q * phase, 0) / np.sum(q**2), np.sqrt(np.sum(q**2 * error**2 / 2, 0)) / np.sum(q**2)
+
+
+def draw(results):
+    figure, (axis, below) = plt.subplots(2, sharex=True, figsize=(style.COLUMN, 3.6), height_ratios=[3, 2])
+    curves = [displacement(result) for result in results]
+    views, first, error = curves[0]
+    for number, (result, (angles, found, _)) in enumerate(zip(results, curves)):
+        look = {**style.look(number), "linewidth": 0.7}
+        if not np.array_equal(angles, views):
+            raise style.Unusable(f"{result.path}: has other views than {results[0].path}")
+        transmitted = np.cos(angles) > 0
+        for side, label in ((transmitted, name_of(result)), (~transmitted, None)):
+            axis.plot(angles[side], found[side], **look, label=label)
+            if number > 0:
+                below.plot(angles[side], (found - first)[side], **look)
+    below.errorbar(views, 0 * views, error, color=style.COLOURS[0], marker=style.MARKERS[0], linestyle="none",
+                   elinewidth=0.7)
+    axis.set_ylabel("displacement")
+    below.set_ylabel("less the first")
+    style.angle_axis(below, views, "view")
+    axis.legend()
+    shift = results[0].attribute("k_shift", 0) * results[0].attribute("wavelength", 1) / (2 * np.pi)
+    style.caption(figure, [f"k_shift/k {shift:.3g}; bars: errors of the first, of tilts as if they were independent"])
+    return figure
+
+
+if __name__ == "__main__":
+    style.main(draw, __doc__, several=True)
