@@ -33,7 +33,7 @@ const DatasetTable validate_table{
               "covariance lacks what Monte Carlo has (conventions, C12); of boxes"},
              {"rms_difference", Data::estimate, "", "1",
               "RMS of mc - reference over that of the reference, of all entries but forward ones, "
-              "and what of it combined standard errors are"},
+              "if there are others, and what of it combined standard errors are"},
              {"share_within", Data::real, "", "1",
               "of these entries, those within 4 combined standard errors or bias_allowance"},
              {"frequency_deviation", Data::real, "frequency_shift LIGHT VIEW", "1",
@@ -73,7 +73,7 @@ RowNames shift_names(const CovarianceRequest& request, const std::vector<double>
           }};
 }
 
-/// Only those parts that there are.
+/// Only those parts that are more than 0.0 %.
 std::string allowance_text(const Scene& scene) {
   const mc::Allowance part(scene);
   const double packing = scene.medium.packing_fraction;
@@ -82,7 +82,7 @@ std::string allowance_text(const Scene& scene) {
     char words[96];
     std::snprintf(words, sizeof words, "%s%.1f %% %s %.3g", text.empty() ? "" : "; ", 100 * share,
                   what, because);
-    if (share > 0) text += words;
+    if (share >= 5e-4) text += words;
   };
   add(part.crossed_paths,
       "crossed paths: 2/(k mfp), k mfp =", scene.k * scene.medium.mean_free_path());
@@ -111,9 +111,11 @@ void print_agreement(const Scene& scene, const Comparison& comparison, const Row
         "takes a\nfluctuation of the coherent field away that Monte Carlo has (conventions, "
         "C12)%s\n",
         scene.scatterer.is_disk() ? "" : "; density in place of count has it in both");
-  const auto [difference, error, share] = comparison.whole();
-  std::printf("all%s: RMS difference %.3g %% of the RMS, of which errors %.3g %%; %.4g %% within\n",
-              apart > 0 ? " but those" : "", 100 * difference, 100 * error, 100 * share);
+  if (const auto whole = comparison.whole())
+    std::printf(
+        "all%s: RMS difference %.3g %% of the RMS, of which errors %.3g %%; %.4g %% within\n",
+        apart > 0 ? " but those" : "", 100 * whole->difference, 100 * whole->error,
+        100 * whole->share_within);
 }
 
 std::vector<std::uint64_t> forward_entries(const Scene& scene) {
@@ -128,9 +130,10 @@ void write_comparison(ResultFile& file, const Comparison& comparison) {
   root.number("entry", deviations.size());
   root.put("deviation", deviations);
   if (!comparison.apart.empty()) root.put("forward", std::span(comparison.apart));
-  const auto [difference, error, share] = comparison.whole();
-  root.put("rms_difference", difference, error);
-  root.put("share_within", share);
+  if (const auto whole = comparison.whole()) {
+    root.put("rms_difference", whole->difference, whole->error);
+    root.put("share_within", whole->share_within);
+  }
   root.attribute("bias_allowance", comparison.bias);
 }
 

@@ -31,7 +31,7 @@ double Comparison::scale(std::size_t e) const {
   return correlations ? 1 : std::abs(reference.value[e]);
 }
 
-Comparison::Whole Comparison::whole() const {
+std::optional<Comparison::Whole> Comparison::whole() const {
   double differences = 0, errors = 0, references = 0;
   std::size_t entries = 0, within = 0;
   for (std::size_t e = 0; e < mc.value.size(); ++e) {
@@ -42,9 +42,9 @@ Comparison::Whole Comparison::whole() const {
     within += within_errors(e) || within_bias(e) ? 1 : 0;
     ++entries;
   }
-  if (entries == 0 || references == 0) return {};
-  return {std::sqrt(differences / references), std::sqrt(errors / references),
-          static_cast<double>(within) / static_cast<double>(entries)};
+  if (entries == 0 || references == 0) return std::nullopt;
+  return Whole{std::sqrt(differences / references), std::sqrt(errors / references),
+               static_cast<double>(within) / static_cast<double>(entries)};
 }
 
 namespace {

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,11 +34,11 @@ struct Comparison {
   double scale(std::size_t e) const;
 
   /// Differences, combined errors and how many are within errors or bias, of all but those apart.
-  /// Sizes are RMS, over the RMS of the reference.
+  /// Sizes are RMS, over the RMS of the reference. Nothing where all are apart.
   struct Whole {
-    double difference = 0, error = 0, share_within = 1;
+    double difference, error, share_within;
   };
-  Whole whole() const;
+  std::optional<Whole> whole() const;
 };
 
 /// How the rows of a printed comparison begin.

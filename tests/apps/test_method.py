@@ -5,7 +5,7 @@ import unittest
 import h5py
 import numpy as np
 
-from program import BOX, SLAB, ProgramTest
+from program import BOX, CYLINDERS, SLAB, ProgramTest
 
 SWEEP = {"g": [0, 0.5], "optical_depth": 4, "depth": 50, "tilts": [0, 0.01, 0.02, 0.03, 0.05]}
 
@@ -65,8 +65,21 @@ class Method(ProgramTest):
             taken = {name: file[f"{name}/trace/wall_s"][-1] for name in ("mc", "wave")}
         self.assertLess(taken["mc"], taken["wave"])
         self.assertIn("placements: its errors are rough", done.stderr)
-        for words in ("crossed paths", "refraction", "correlated positions"):
-            self.assertIn(words, done.stdout)
+
+    def test_the_allowance_is_what_there_is(self):
+        """Of resonant points crossed paths alone; view 0 is forward, and of no other is anything to be said."""
+        parts = ("crossed paths", "refraction", "correlated positions")
+        few = {"samples": 2000, "wave_samples": 4, "threads": 1}
+        said = self.call("validate", **BOX, **few, out="x.h5").stdout
+        self.assertEqual([words in said for words in parts], [True, False, False])
+        self.assertIn("1 forward, 0 beyond", said)
+        with h5py.File(self.folder / "x.h5") as file:
+            self.assertEqual((list(file["forward"]), "rms_difference" in file), ([1], False))
+        said = self.call("validate", **CYLINDERS, index=1.5, view_angles=1, **few, out="x.h5").stdout
+        self.assertTrue(all(words in said for words in parts), said)
+        with h5py.File(self.folder / "x.h5") as file:
+            difference = abs(file["mc/intensity"][0, 0] - file["wave/intensity"][0, 0])
+            self.assertAlmostEqual(file["rms_difference"][()], difference / file["wave/intensity"][0, 0], 12)
 
     def test_near_ends_beside_a_slab(self):
         (self.folder / "sensors.csv").write_text("x,z\n0,105\n")
