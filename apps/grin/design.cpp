@@ -38,6 +38,16 @@ DesignState start(Designer& designer, const Kept& kept) {
   return designer.begin();
 }
 
+/// What an interrupted search has done is not thrown away without a word.
+void tell_unfinished(const Kept& kept) {
+  if (!kept.resumes && grin::design::holds(kept.path, kept.identity))
+    std::fprintf(
+        stderr,
+        "note: %s holds a part of this search, which begins anew; --resume would go on with "
+        "it\n",
+        kept.path.c_str());
+}
+
 /// Until it ends or a signal comes; about once a second what it goes on from is kept.
 DesignState search(Designer& designer, const Kept& kept) {
   constexpr double pause = 1;
@@ -78,6 +88,11 @@ void print_summary(const DesignState& state, const DesignCheck& check) {
                 check.start_held_out / *check.held_out_half_step);
 }
 
+void tell_throughput(const DesignScene& scene, const DesignCheck& check) {
+  if (scene.goal == grin::design::ThroughputValues::word)
+    std::printf("of held-out rays %.4g %% pass through the aperture\n", 100 * check.in_place);
+}
+
 void tell_bounds(std::size_t count, const DesignScene& scene) {
   if (count == 0) return;
   if (std::holds_alternative<grin::design::GuideForm>(scene.start.form))
@@ -86,6 +101,15 @@ void tell_bounds(std::size_t count, const DesignScene& scene) {
     std::fprintf(
         stderr,
         "note: %zu coefficients stand at least_index or most_index: other bounds may do better\n",
+        count);
+}
+
+void tell_unseen(std::size_t count) {
+  if (count > 0)
+    std::fprintf(
+        stderr,
+        "note: %zu coefficients within the field are seen by no ray, and only smooth; more "
+        "rays or fewer nodes mend that\n",
         count);
 }
 
@@ -109,7 +133,9 @@ std::optional<Made> make(const DesignScene& scene, const Kept& kept, ResultFile&
   const DesignCheck check = designer.check(state);
   write_design(file, scene, designer, state, check);
   print_summary(state, check);
+  tell_throughput(scene, check);
   tell_bounds(designer.at_bounds(state), scene);
+  tell_unseen(check.unseen);
   const bool reached = is_reached(scene, state, check);
   if (!reached)
     std::puts(state.stalled ? "the search stalled" : "stopped before the target was reached");
@@ -138,6 +164,7 @@ int design(const Arguments& arguments) {
   catch_interrupts();
   const Kept kept{grin::design::state_path(session.out()),
                   "flatspeckle " + version() + '\n' + keys.identity(), run.resume};
+  tell_unfinished(kept);
   const int status = session.once(ResultFile(session.out()),
                                   [&](ResultFile& file) { return make(scene, kept, file); });
   if (status != ExitStatus::interrupted_for_good) {

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <vector>
 
 #include "core/error.h"
+#include "grin/index/cubic_splines.h"
 
 namespace flatspeckle::grin {
 
@@ -26,13 +26,10 @@ class ProfileSpline {
   Four four(double t) const {
     const double cells = static_cast<double>(coefficients_.size() - 3);
     const double held = std::clamp(t * cells, 0.0, cells + 1);
-    const double cell = held > 0 ? std::min(std::floor(held), cells - 1) : 0;  // 0 also for NaN
-    const double u = held - cell, s = 1 - u, c = cells, cc = c * c;
-    return {
-        static_cast<std::size_t>(cell),
-        {s * s * s / 6, 2 / 3. - u * u * (2 - u) / 2, 2 / 3. - s * s * (2 - s) / 2, u * u * u / 6},
-        {-c * s * s / 2, c * u * (3 * u - 4) / 2, -c * s * (3 * s - 4) / 2, c * u * u / 2},
-        {cc * s, cc * (3 * u - 2), cc * (3 * s - 2), cc * u}};
+    const double cell = cell_of(held, cells);
+    const CubicSplines splines{held - cell};
+    return {static_cast<std::size_t>(cell), splines.values(), splines.slopes(cells),
+            splines.turns(cells * cells)};
   }
   double sum(const Four& at, const std::array<double, 4>& weights) const {
     double sum = 0;

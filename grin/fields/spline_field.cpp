@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "grin/index/cubic_splines.h"
+
 namespace flatspeckle::grin {
 
 namespace {
@@ -43,7 +45,7 @@ void interpolate(std::vector<double>& c, std::vector<double>& pivot) {
 }  // namespace
 
 SplineField::SplineField(const FieldGrid& grid, std::size_t samples, int least_nodes)
-    : grid_(grid) {
+    : grid_(grid), per_length_(grid.spacing.cwiseInverse()) {
   check(grid, samples, least_nodes);
   for (int a = 0; a < 3; ++a) extent_[a] = grid.nodes[a] + 2;
   coefficients_.resize(static_cast<std::size_t>(extent_[0]) * extent_[1] * extent_[2]);
@@ -84,22 +86,19 @@ SplineField::SplineField(const FieldGrid& grid, std::span<const double> excess)
 
 template <int Derivatives>
 SplineField::Axis SplineField::axis(const Vec3& x, int which) const {
-  const double scale = 1 / grid_.spacing[which], cells = grid_.nodes[which] - 1;
+  const double scale = per_length_[which], cells = grid_.nodes[which] - 1;
   const double position = (x[which] - grid_.origin[which]) * scale;
   const double held = std::clamp(position, -margin, cells + margin);
-  const bool inside = position == held;
-  const double cell = held > 0 ? std::min(std::floor(held), cells - 1) : 0;  // 0 also for NaN
-  const double t = held - cell, s = 1 - t;
+  const double cell = cell_of(held, cells), slope = position == held ? scale : 0;
+  const CubicSplines splines{held - cell};
+  const auto four = [](const CubicSplines::Four& values) {
+    return Eigen::Map<const Axis::Four>(values.data());
+  };
   Axis result;
   result.cell = static_cast<int>(cell);
-  result.w = {s * s * s / 6, 2 / 3. - t * t * (2 - t) / 2, 2 / 3. - s * s * (2 - s) / 2,
-              t * t * t / 6};
-  const double slope = inside ? scale : 0, turn = slope * slope;
-  if constexpr (Derivatives >= 1)
-    result.d = {-slope * s * s / 2, slope * t * (3 * t - 4) / 2, -slope * s * (3 * s - 4) / 2,
-                slope * t * t / 2};
-  if constexpr (Derivatives >= 2)
-    result.dd = {turn * s, turn * (3 * t - 2), turn * (3 * s - 2), turn * t};
+  result.w = four(splines.values());
+  if constexpr (Derivatives >= 1) result.d = four(splines.slopes(slope));
+  if constexpr (Derivatives >= 2) result.dd = four(splines.turns(slope * slope));
   return result;
 }
 

@@ -75,6 +75,7 @@ class SplineField {
   }
 
   FieldGrid grid_;
+  Vec3 per_length_;            ///< cells
   std::array<int, 3> extent_;  ///< nodes + 2
   std::vector<double> coefficients_;
 };

@@ -163,6 +163,8 @@ RUNS = {
     "polar": ("render", {**STAGE, "pixels": None, "sensor": "polar", "rings": 4}),
     "ball_power": ("render", {**STAGE, "field": None, "alpha": None, "index": None, "sensor": "directional",
                               "body_sphere": [0, 0, 2, 0.5], "index_around": 1.3, "max_scatterings": 9}),
+    "aperture": ("design", {"nodes": [3], "goal": "throughput", "sources": [0, 0, -1], "aperture_radius": 0.3,
+                            "rays_per_source": 10}),
     "lens": ("design", {"nodes": [2], "directions": 4, "rays_per_direction": 5}),
     "lens_radial": ("design", {"design": "radial", "directions": 1, "rays_per_direction": 9}),
     "lens_graded": ("design", {"design": "guide", "goal": "equal_path", "delta": 0.01, "ray_count": 9}),

@@ -111,6 +111,33 @@ class Design(RefusingTest):
         self.assertIn("stand at", done.stderr)
         self.assertGreater(datasets(self.folder / "held.h5")["at_bounds"], 0)
 
+    def test_coefficients_that_no_ray_sees_are_told(self):
+        done = self.call("design", out="narrow.h5", **{**SMALL, "directions": 1, "aperture": 0.2, "nodes": [9]})
+        self.assertIn("seen by no ray", done.stderr)
+        self.assertGreater(datasets(self.folder / "narrow.h5")["unseen"], 50)
+        done = self.call("design", out="all.h5", **SMALL)
+        self.assertNotIn("seen by no ray", done.stderr)
+        self.assertEqual(datasets(self.folder / "all.h5")["unseen"], 0)
+
+    def test_light_of_a_point_leaves_parallel(self):
+        """As trace sees it too."""
+        point = {"sources": [0, 0, -1], "half_angle": 0.7, "rays_per_source": 200}
+        _, found = self.design("parallel.h5", design="ball", nodes=[5], goal="collimation", **point)
+        self.assertLess(found["rms/held_out_half_step"], 2e-3)
+        self.call("trace", field="ball", ball_spline="parallel.h5", light="cone", origin=[0, 0, -1], half_angle=0.6,
+                  ray_count=20, stop_plane=[0, 0, 2, 0, 0, 1], max_length=9, out="rays.h5")
+        rays = datasets(self.folder / "rays.h5")
+        self.assertLess(np.hypot(rays["exit/dx"], rays["exit/dy"]).max(), 1e-2)
+
+    def test_light_passes_through_an_aperture(self):
+        keys = {"design": "ball", "nodes": [5], "goal": "throughput", "sources": [0, 0, -1.5, 0.4, 0, -1.5],
+                "half_angle": 0.3, "aperture_radius": 0.05, "aperture_distance": 2}
+        said, found = self.design("through.h5", **keys)
+        self.assertGreater(found["throughput"], 0.98)
+        self.assertIn("pass through the aperture", said)
+        start = self.call("design", out="start.h5", iterations=1, **keys, most_index=1.0001)
+        self.assertLess(datasets(self.folder / "start.h5")["throughput"], 0.1)
+
     def test_resumed(self):
         """Cut off after some steps and gone on with: the same bits."""
         keys = {**SMALL, "nodes": [5, 9], "directions": 40, "rays_per_direction": 60, "threads": 1}
@@ -123,6 +150,9 @@ class Design(RefusingTest):
         if run.returncode == 75:
             self.assertTrue((self.folder / "cut.h5.state").exists())
             self.assert_refused(["another search"], "design", out="cut.h5", resume=True, **{**keys, "nodes": [5]})
+            kept = (self.folder / "cut.h5.state").read_bytes()
+            (self.folder / "new.h5.state").write_bytes(kept)
+            self.assertIn("--resume would go on", self.call("design", out="new.h5", **keys).stderr)
             self.design("cut.h5", resume=True, **keys)
         self.assertFalse((self.folder / "cut.h5.state").exists())
         whole, cut = (datasets(self.folder / name) for name in ("whole.h5", "cut.h5"))
@@ -175,7 +205,13 @@ class Design(RefusingTest):
                 (["measured"], {"goal": "deflections", "design": "box"}),
                 (["nodes = 5", "at least 7"], {"goal": "deflections", "design": "box", "nodes": [5, 9]}),
                 (["rate"], {"rate": 0.1}),
-                (["noise", "target"], {"target": 0.1, "noise": 0.1})]:
+                (["noise", "target"], {"target": 0.1, "noise": 0.1}),
+                (["sources is not given"], {"goal": "collimation"}),
+                (["sources = 0 0 0.5", "outside"], {"goal": "collimation", "sources": [0, 0, 0.5]}),
+                (["half_angle", "beside"], {"goal": "collimation", "sources": [0, 0, -9]}),
+                (["aperture_radius"], {"goal": "throughput", "sources": [0, 0, -1]}),
+                (["aperture_distance = 1", "behind"],
+                 {"goal": "throughput", "sources": [0, 0, -1], "aperture_radius": 0.1, "aperture_distance": 1})]:
             with self.subTest(keys=keys):
                 self.assert_refused(words, "design", **keys)
 

@@ -78,7 +78,8 @@ OWN = {"memory_effect": {"grid", "points", "curve", "moves", "layers", "graded"}
        "refraction": {"curve", "layers", "graded"},
        "frequency": {"frequencies"}, "validation": {"both", "own_places"}, "speckle_field": {"fields", "grains"},
        "image": {"frames"}, "fit": {"fitted"}, "fit_plan": {"planned"}, "rays": {"rays"}, "spot": {"spot"},
-       "design": {"lens", "display", "core"}, "render": {"picture", "pulse"}, "render_time": {"pulse"},
+       "design": {"lens", "display", "core"}, "design_methods": {"lens", "display", "core"},
+       "render": {"picture", "pulse"}, "render_time": {"pulse"},
        "light_map": {"light"}, "ring_profile": {"rings"}, "reflection_image": {"spectrum"}, "field_map": {"near"}}
 
 

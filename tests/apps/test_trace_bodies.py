@@ -117,11 +117,13 @@ class Bodies(BodiesTest):
                                    abs(found["start/x"]), atol=1e-9)
 
     def test_field_around_bodies(self):
-        """A ball as dense as the ramp around it where a ray passes bends nothing but by its even index."""
-        found = self.trace(**PARALLEL | {"field": "linear"}, index=1.5, slope=[0, 0, 0], ray_count=3,
-                           ball=[0, 0, 0, 1, *GLASS], origin=[0, 0, -2], stop_plane=plane(2))
-        np.testing.assert_allclose(found["exit/x"], found["start/x"], atol=1e-12)
-
+        """What is transverse of n times the direction is kept where a ray comes from a guide into a block."""
+        keys = {**PARALLEL | {"field": "parabolic"}, "index": 1.5, "alpha": 0.3, "ray_count": 1, "origin": [0.4, 0, 0],
+                "stop_plane": plane(1)}
+        found = self.trace(**keys, block=[-1, -1, 0.5, 1, 1, 1, 1.7, 0, 0, 0])
+        guide = self.trace(**keys | {"stop_plane": plane(0.5)})
+        momentum = guide["exit/dx"] * np.sqrt(1.5**2 - (0.3 * guide["exit/x"])**2)
+        np.testing.assert_allclose(found["exit/dx"], momentum / 1.7, rtol=1e-9)
 
 class Image(BodiesTest):
     def test_aplanatic_points(self):
@@ -137,15 +139,14 @@ class Image(BodiesTest):
         self.assertAlmostEqual(float(found["image/best_z"]), -1.5, delta=1e-12)
 
     def test_path_differences_have_the_slopes_of_the_wave(self):
-        """dW/dh = -dx sin'... of a fan: rays are normal to the wave, so that the derivative of W by the
-        direction cosine is the height at which the ray passes the point."""
+        """Rays are normal to the wave: the derivative of the path difference by the direction cosine is
+        how far beside the mean a ray meets the plane."""
         found = self.trace(**PARALLEL, lens=[0, 0, 0, 1, 5, 0, 0.5, *GLASS], origin=[0, 0, -1], beam_radius=0.8,
                            ray_count=401, stop_plane=plane(5), image_plane=plane(9))
         off = found["image/x"] - found["image/x"].mean()
         cosine = found["exit/dx"]
         slope = np.gradient(found["image/path_difference"], cosine)
-        np.testing.assert_allclose(slope[1:-1], -(off * np.sqrt(1 - cosine**2)
-                                                  * np.sqrt(1 + found["image/slope_x"]**2))[1:-1], atol=2e-6)
+        np.testing.assert_allclose(slope[1:-1], -off[1:-1], atol=2e-6)
 
     def test_refocus(self):
         """A wave of focus 10: the spot is least there, and elsewhere as wide as the cone."""

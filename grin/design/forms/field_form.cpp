@@ -1,5 +1,8 @@
 #include "grin/design/forms/field_form.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace flatspeckle::grin::design {
 
 namespace {
@@ -37,6 +40,13 @@ std::vector<double> in_cells(std::span<const double> c, int cells) {
   return fine;
 }
 
+/// Of a guide's correction: no more than leaves n^2 = n0^2 (1 - 2 delta p) above 0, where p is at
+/// most (1 + s)^2 / (4 s).
+double most_correction(double delta) {
+  const double c = 1 / delta - 1;
+  return std::min(3.0, 0.99 * (c + std::sqrt(c * c - 1)));
+}
+
 Bounds evenly_bounded(const CoefficientShape& shape, double least, double most) {
   return {std::vector<double>(shape.size(), least), std::vector<double>(shape.size(), most)};
 }
@@ -57,8 +67,9 @@ void hold_faces(const CoefficientShape& shape, Bounds& bounds) {
 
 Bounds bounds_of(const FieldForm& form, double least_index, double most_index) {
   if (const auto* guide = std::get_if<GuideForm>(&form))
-    return guide->coefficients > 0 ? evenly_bounded(guide->shape(), -3, 3)
-                                   : evenly_bounded(guide->shape(), 1, 10);
+    return guide->coefficients > 0
+               ? evenly_bounded(guide->shape(), -3, most_correction(guide->core.delta))
+               : evenly_bounded(guide->shape(), 1, 10);
   Bounds bounds = evenly_bounded(shape_of(form), least_index - 1, most_index - 1);
   if (std::holds_alternative<BoxForm>(form)) hold_faces(shape_of(form), bounds);
   return bounds;

@@ -8,7 +8,8 @@ void add_keys(Keys& keys, AimValues& values) {
   keys.group("Light and goal");
   keys.add("goal", values.goal,
            "Parallel light meets in points (focus); rays of a fibre go at one speed (equal_path); "
-           "beams show pictures (irradiance); rays leave as was measured (deflections)")
+           "beams show pictures (irradiance); rays leave as was measured (deflections); light of "
+           "points leaves parallel (collimation), or passes through an aperture (throughput)")
       .one_of(kind_words(values.kinds));
   each_kind(values.kinds, [&](auto& kind) {
     keys.group(std::string("Goal: ") + kind.word, kind.word);

@@ -21,6 +21,7 @@ class TargetGoal : public Goal {
   std::vector<double> transposed(std::span<const double> residuals) const override {
     return {residuals.begin(), residuals.end()};
   }
+  bool is_plain() const override { return true; }
   std::vector<double> weights() const override { return std::vector<double>(targets_.size(), 1.0); }
 
  private:

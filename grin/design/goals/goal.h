@@ -15,6 +15,8 @@ class Goal {
   virtual std::vector<double> residuals(std::span<const double> readings) = 0;
   virtual std::vector<double> times(std::span<const double> readings) const = 0;
   virtual std::vector<double> transposed(std::span<const double> residuals) const = 0;
+  /// Whether these do nothing: residuals are readings less what they should be.
+  virtual bool is_plain() const { return false; }
   /// By how much a reading counts, roughly.
   virtual std::vector<double> weights() const = 0;
 };

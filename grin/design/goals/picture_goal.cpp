@@ -6,6 +6,8 @@
 #include <numeric>
 #include <utility>
 
+#include "grin/index/cubic_splines.h"
+
 namespace flatspeckle::grin::design {
 
 namespace {
@@ -20,12 +22,9 @@ struct Spread {
 Spread spread(const Picture& screen, double x) {
   const double pixel = screen.width / screen.pixels;
   const double at = x / pixel + 0.5 * screen.pixels - 0.5;  // a pixel's number at its middle
-  const double cell = std::floor(std::clamp(at, -1e6, 1e6)), t = at - cell, s = 1 - t;
-  const double by = 1 / pixel;
-  return {
-      static_cast<int>(cell) - 1,
-      {s * s * s / 6, 2 / 3. - t * t * (2 - t) / 2, 2 / 3. - s * s * (2 - s) / 2, t * t * t / 6},
-      {-by * s * s / 2, by * t * (3 * t - 4) / 2, -by * s * (3 * s - 4) / 2, by * t * t / 2}};
+  const double cell = std::floor(std::clamp(at, -1e6, 1e6));
+  const CubicSplines splines{at - cell};
+  return {static_cast<int>(cell) - 1, splines.values(), splines.slopes(1 / pixel)};
 }
 
 /// use(number of a pixel, weight, its derivatives by x and y) of those that a hit falls on.

@@ -13,8 +13,10 @@ const DatasetTable design_table{
     .rows =
         {{"history/step", Data::numbers, "", "1", "number of a step of the search; 0: the start"},
          {"history/rms", Data::real, "history/step", "1",
-          "what rays miss by after it, root mean square: a length (focus), a part of the delay "
-          "(equal_path), of a picture's largest value (irradiance), an angle (deflections)"},
+          "what rays miss by after it, root mean square: a length (focus, throughput), a part of "
+          "the delay "
+          "(equal_path), of a picture's largest value (irradiance), an angle (deflections, "
+          "collimation)"},
          {"history/traces", Data::real, "history/step", "1",
           "how often each ray was traced by then, forward or backward"},
          {"history/cpu_s", Data::real, "history/step", "s", "processor time by then"},
@@ -25,7 +27,12 @@ const DatasetTable design_table{
          {"rms/held_out_half_step", Data::real, "", "1", "the same by steps of half the length"},
          {"rms/start_held_out", Data::real, "", "1",
           "what these miss by in the field at the start"},
+         {"throughput", Data::real, "", "1",
+          "share of the rays that the search has not seen that pass through the aperture, by steps "
+          "of half the length"},
          {"at_bounds", Data::count, "", "1", "coefficients that stand at a bound"},
+         {"unseen", Data::count, "", "1",
+          "coefficients within the field that no ray of the search depends on"},
          {"coefficient_x", Data::numbers, "", "1", "number of a coefficient along x"},
          {"coefficient_y", Data::numbers, "", "1", "number of a coefficient along y"},
          {"coefficient_z", Data::numbers, "", "1", "number of a coefficient along z"},
@@ -267,6 +274,8 @@ void write_design(ResultFile& file, const DesignScene& scene, const Designer& de
   write_history(root, state.history);
   write_check(root, check);
   root.put("at_bounds", static_cast<std::uint64_t>(designer.at_bounds(state)));
+  root.put("unseen", static_cast<std::uint64_t>(check.unseen));
+  if (scene.goal == ThroughputValues::word) root.put("throughput", check.in_place);
   root.attribute("goal", scene.goal);
   if (scene.focus) root.attribute("focus", *scene.focus);
   root.attribute("stalled", state.stalled);

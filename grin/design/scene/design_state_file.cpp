@@ -53,6 +53,12 @@ void save_state(const std::filesystem::path& path, const std::string& identity,
   replace_file(path, bytes, Durable::no);
 }
 
+bool holds(const std::filesystem::path& path, const std::string& identity) {
+  if (!is_sealed(path)) return false;
+  const auto bytes = bytes_of(path);
+  return ByteReader(bytes).get<std::string>() == identity;
+}
+
 std::optional<DesignState> read_state(const std::filesystem::path& path,
                                       const std::string& identity) {
   if (!std::filesystem::exists(path)) return std::nullopt;

@@ -15,6 +15,9 @@ std::filesystem::path state_path(const std::filesystem::path& out);
 void save_state(const std::filesystem::path& path, const std::string& identity,
                 const DesignState& state);
 
+/// Whether it is there and whole, and of this search.
+bool holds(const std::filesystem::path& path, const std::string& identity);
+
 /// Nothing where there is no such file. Throws InputError for one that is damaged, or of another
 /// search.
 std::optional<DesignState> read_state(const std::filesystem::path& path,

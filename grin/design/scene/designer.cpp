@@ -1,11 +1,21 @@
 #include "grin/design/scene/designer.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "core/run/stopwatch.h"
 
 namespace flatspeckle::grin::design {
+
+namespace {
+
+double share_of_zeros(const std::vector<double>& residuals) {
+  return static_cast<double>(std::ranges::count(residuals, 0.0)) /
+         static_cast<double>(residuals.size());
+}
+
+}  // namespace
 
 Designer::Designer(const DesignScene& scene)
     : scene_(scene),
@@ -123,6 +133,7 @@ DesignCheck Designer::check(const DesignState& state) {
   };
   DesignCheck check;
   check.seen = rms_by(seen_, 1);
+  check.unseen = unseen(state);
   check.seen_half_step = rms_by(seen_, 2);
   check.held_out = rms_by(held_out_, 1);
   check.start_held_out =
@@ -130,19 +141,35 @@ DesignCheck Designer::check(const DesignState& state) {
           .value_or(0);
   check.readings = held_out_.rays->trace(form(state), coefficients, 2);
   check.held_out_half_step = rms(held_out_, check.readings);
+  if (check.readings) check.in_place = share_of_zeros(held_out_.goal->residuals(*check.readings));
   return check;
 }
 
-std::size_t Designer::at_bounds(const DesignState& state) const {
+/// Of coefficients within the field that are not held; is(number, bounds).
+template <class Is>
+std::size_t Designer::count_free(const DesignState& state, const Is& is) const {
   const FieldForm form = this->form(state);
   const Bounds bounds = bounds_of(form, scene_.start.least_index, scene_.start.most_index);
-  const auto& values = state.search.coefficients;
   std::size_t count = 0;
-  for (std::size_t i = 0; i < values.size(); ++i)
-    if (is_within(form, i) && bounds.least[i] < bounds.most[i] &&
-        (values[i] <= bounds.least[i] || values[i] >= bounds.most[i]))
-      ++count;
+  for (std::size_t i = 0; i < state.search.coefficients.size(); ++i)
+    if (is_within(form, i) && bounds.least[i] < bounds.most[i] && is(i, bounds)) ++count;
   return count;
+}
+
+std::size_t Designer::at_bounds(const DesignState& state) const {
+  const auto& values = state.search.coefficients;
+  return count_free(state, [&](std::size_t i, const Bounds& bounds) {
+    return values[i] <= bounds.least[i] || values[i] >= bounds.most[i];
+  });
+}
+
+std::size_t Designer::unseen(const DesignState& state) {
+  const auto& values = state.search.coefficients;
+  const auto readings = seen_.rays->trace(form(state), values);
+  if (!readings) return 0;
+  std::vector<double> squares(values.size());
+  seen_.rays->linearised().squares(std::vector<double>(readings->size(), 1.0), squares);
+  return count_free(state, [&](std::size_t i, const Bounds&) { return squares[i] == 0; });
 }
 
 }  // namespace flatspeckle::grin::design

@@ -28,8 +28,10 @@ struct DesignState {
 /// Nothing where a ray is lost.
 struct DesignCheck {
   std::optional<double> seen, seen_half_step, held_out, held_out_half_step;
-  double start_held_out = 0;                         ///< of the field at the start
+  double start_held_out = 0;  ///< of the field at the start
+  std::size_t unseen = 0;  ///< coefficients within the field that no ray of the search depends on
   std::optional<std::vector<double>> readings = {};  ///< of the held-out rays, by the half steps
+  double in_place = 0;  ///< share of these that miss by nothing
 };
 
 /// Level after level, step after step.
@@ -46,6 +48,9 @@ class Designer {
   std::size_t at_bounds(const DesignState& state) const;
 
  private:
+  template <class Is>
+  std::size_t count_free(const DesignState& state, const Is& is) const;
+  std::size_t unseen(const DesignState& state);
   Search search_in(const FieldForm& form) const;
   void note(DesignState& state) const;
   void refine(DesignState& state);

@@ -63,9 +63,14 @@ Numbers LeastSquares::curved(const Model& model, double damping,
                              std::span<const double> step) const {
   const RaySystem& rays = objective_.rays();
   const Goal& goal = objective_.goal();
-  Numbers readings(rays.rays() * rays.readings()), result(step.size());
-  model.rows.times(step, readings);
-  model.rows.transposed(goal.transposed(goal.times(readings)), result);
+  Numbers result(step.size());
+  if (goal.is_plain()) {
+    model.rows.normal(step, result);
+  } else {
+    Numbers readings(rays.rays() * rays.readings());
+    model.rows.times(step, readings);
+    model.rows.transposed(goal.transposed(goal.times(readings)), result);
+  }
   for (std::size_t i = 0; i < step.size(); ++i)
     result[i] += (damping * model.curvature[i] + least_curvature * model.mean_curvature) * step[i];
   const double rough = model.rough(search_.smooth_damping * damping);

@@ -69,10 +69,9 @@ class RaySystemOf : public RaySystem {
         pull_back<Pefrl>(field, rays_[i], walk_, ends_[i], read_(i, ends_[i].state).by, sums);
         RayRows::Block& block = rows.block(b);
         sums.take([&](std::size_t number, const std::array<double, K>& derivatives) {
-          block.index.push_back(static_cast<std::uint32_t>(number));
-          for (const double d : derivatives) block.values.push_back(static_cast<float>(d));
+          block.add(number, derivatives);
         });
-        block.end.push_back(block.index.size());
+        block.end_ray();
       }
     });
     return rows;

@@ -126,6 +126,25 @@ TEST_CASE("The loss of rays that are to meet has its exact derivative") {
   }
 }
 
+TEST_CASE("The same of light of points, to leave parallel or to pass through an aperture") {
+  DesignValues values;
+  values.form.nodes = {6};
+  const auto light = [](SourceValues& of) {
+    of.sources = {0, 0, -1, 1.2, 0.3, 0};
+    of.half_angle = 0.4;
+    of.rays_per_source = 9;
+  };
+  light(std::get<CollimationValues>(values.aim.kinds));
+  values.aim.goal = CollimationValues::word;
+  check_gradient(case_of(values, 0.3, 0.05));
+  values.aim.kinds = {};
+  auto& through = std::get<ThroughputValues>(values.aim.kinds);
+  light(through);
+  through.aperture_radius = 0.1;
+  values.aim.goal = ThroughputValues::word;
+  check_gradient(case_of(values, 0.3, 0.05));
+}
+
 TEST_CASE("The same of rays of a fibre") {
   LossCase profile = case_of(fibre(8), 0, 0.05), power = case_of(fibre(0), 1.9, 0.05);
   profile.difference = power.difference = 3e-3;
