@@ -89,9 +89,8 @@ class Refinement {
   void judge() {
     const auto [seen, noise] = typical();
     if (seen >= least_seen) {
-      step_ /= 4;
-    } else {
-      step_ /= 2;
+      step_ /= noise > 0 ? 2 : 4;
+    } else {  // a smaller step would see less, and go astray
       ended_ = noise <= settings_->target_error / 2 * std::abs(best_.measured.value) ||
                best_.samples * growth > settings_->most_samples;
       if (!ended_) best_.samples *= growth;
@@ -99,14 +98,20 @@ class Refinement {
     ended_ = ended_ || step_ < settings_->tolerance;
   }
 
-  /// How well the best is told from the others, in standard errors, and what those are.
+  /// How well places that the search came to are told from those that it came to before, in
+  /// standard errors, and what those are. The best is left out: chosen for its value, it seems to
+  /// be told from all others where there is noise alone.
   std::pair<double, double> typical() const {
     std::vector<double> seen{}, noise{};
-    for (const FoundPlace& other : around_) {
-      if (other.place == best_.place) continue;
-      const Difference lead = difference(best_.measured, other.measured);
-      seen.push_back(lead.error == 0 ? least_seen : lead.significance());
-      noise.push_back(lead.error);
+    const FoundPlace* before = nullptr;
+    for (const FoundPlace& one : around_) {
+      if (one.place == best_.place) continue;
+      if (before) {
+        const Difference apart = difference(before->measured, one.measured);
+        seen.push_back(apart.error == 0 ? least_seen : std::abs(apart.significance()));
+        noise.push_back(apart.error);
+      }
+      before = &one;
     }
     if (seen.empty()) return {least_seen, 0};
     return {median(seen), median(noise)};

@@ -7,6 +7,7 @@
 
 #include "grin/paths/light_family.h"
 #include "grin/paths/light_tally.h"
+#include "grin/paths/path_score.h"
 #include "grin/rays/ray_lanes.h"
 
 namespace flatspeckle::grin {
@@ -49,6 +50,7 @@ class AnalogPath {
       tally_.lost(here_, flight);
       return false;
     }
+    score_.flew(flight.arc_length);
     PathVertex next = moved(here_, flight, batch_.space.index(flight.point));
     if (flight.end == Flight::End::boundary) {
       tally_.left(here_, flight);
@@ -65,6 +67,7 @@ class AnalogPath {
     if (!absorption_.collide(here_, flight, medium, next, random_, counts, tally_)) return false;
     here_ = next;
     direction_ = medium.phase.sample(here_.arrived, random_);
+    if (batch_.film.has_derivatives()) score_.turned(medium, here_.arrived.dot(direction_));
     return here_.weight > 0;
   }
 
@@ -72,8 +75,11 @@ class AnalogPath {
   void arrive(const PathVertex& last) {
     for (const SensorEnd& sensor : batch_.transport.sensors)
       sensor.hit(batch_.space, last.point.x, last.arrived, [&](const EndHit& hit) {
-        deposit<timed>(batch_.film, batch_.counts, hit.direction.pixel, last.weight * hit.value,
-                       last.optical_path);
+        const double value = last.weight * hit.value;
+        deposit<timed>(batch_.film, batch_.counts, hit.direction.pixel, value, last.optical_path);
+        if (batch_.film.has_derivatives())
+          score_.add_to(batch_.film, hit.direction.pixel, value,
+                        batch_.transport.medium(last.point.part));
       });
   }
 
@@ -83,6 +89,7 @@ class AnalogPath {
   PathVertex here_;
   Vec3 direction_;
   LonePath absorption_;
+  PathScore score_;
   LightTally tally_;
 };
 

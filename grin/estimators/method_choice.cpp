@@ -236,6 +236,7 @@ Best best_of(const std::vector<Candidate>& all, bool of_known) {
 /// Trials go on, longer and longer, until what seems best is known well: an estimate that still
 /// lacks the strongest paths is too good. After the last, one that is known goes before others.
 Tracer best_tracer(const Tracers& tracers) {
+  if (!tracers.walks()) return tracers.make(RenderMethod::light);
   auto all = candidates(tracers);
   Best best;
   for (const double effort : {1, 4, 16}) {

@@ -70,7 +70,7 @@ std::shared_ptr<Transport> transport_of(const RenderScene& scene, const RenderRe
 }
 
 void Tracer::add(int paths, RandomStream& random, Film& film, TransportCounts& counts) const {
-  kernel(paths, random, film, counts, nullptr);
+  if (kernel) kernel(paths, random, film, counts, nullptr);
   if (unscattered_beams) unscattered_beams(paths, random, film, counts, nullptr);
 }
 
@@ -91,18 +91,24 @@ void Tracers::find_depth() {
 void Tracers::find_beams() {
   const auto transport = transport_of(scene_, request_, RenderMethod::bidirectional);
   if (!(transport->lights.beam_power() > 0)) return;
+  walks_ = plan_.scatters || !transport->lights.are_beams() || !are_followed(*transport);
+  const BeamsRequest asked{plan_.timed, scene_.random_phase, !walks_};
   if (const auto* homogeneous = std::get_if<Homogeneous>(&scene_.field))
-    unscattered_beams_ = beams_kernel(plan_.timed, transport, homogeneous->n_excess);
+    unscattered_beams_ = beams_kernel(asked, transport, homogeneous->n_excess);
   else
-    unscattered_beams_ = beams_kernel(
-        plan_.timed, transport,
-        make_curved_space(scene_.field, without_scattering(scene_.stage), options(Spreading::none)),
-        scene_.random_phase);
+    unscattered_beams_ =
+        beams_kernel(asked, transport,
+                     make_curved_space(scene_.field, without_scattering(scene_.stage),
+                                       options(Spreading::none)));
 }
 
 Tracer Tracers::make(RenderMethod method) const {
   Tracer tracer = plan_.curved ? curved(method) : straight(method);
   if (method != RenderMethod::photon_map) tracer.unscattered_beams = unscattered_beams_;
+  if (!walks_ && method != RenderMethod::photon_map) {
+    tracer.kernel = nullptr;
+    return tracer;
+  }
   tracer.flights_per_pair =
       method == RenderMethod::photon_map || method == RenderMethod::analog
           ? flights_per_pair(*tracer.transport, tracer.kernel, scene_.bins)

@@ -24,7 +24,7 @@ std::shared_ptr<Transport> transport_of(const RenderScene& scene, const RenderRe
 struct Tracer {
   RenderMethod method;
   std::shared_ptr<Transport> transport;
-  PathKernel kernel;
+  PathKernel kernel;                  ///< empty where paths would bring nothing
   PathKernel unscattered_beams = {};  ///< where the kernel leaves that out and there is some
   /// Of a light path and its sensor paths; infinity where they were too long to be walked.
   double flights_per_pair = 1;
@@ -56,6 +56,9 @@ class Tracers {
   /// Whether light paths book their drift.
   bool has_drift() const { return depth_ && depth_->drift(); }
 
+  /// Light paths, but of photon maps: else beams are all the light, and nothing scatters it.
+  bool walks() const { return walks_; }
+
   const RenderScene& scene() const { return scene_; }
   const RenderPlan& plan() const { return plan_; }
 
@@ -70,6 +73,7 @@ class Tracers {
   const RenderScene& scene_;
   const RenderRequest& request_;
   RenderPlan plan_;
+  bool walks_ = true;
   std::shared_ptr<const DepthImportance> depth_;  ///< where the plan is deep
   PathKernel unscattered_beams_ = {};             ///< where there are beams
 };

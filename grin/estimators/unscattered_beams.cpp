@@ -6,6 +6,8 @@
 #include <limits>
 #include <numbers>
 
+#include "grin/paths/light_tally.h"
+#include "grin/paths/path_score.h"
 #include "grin/straight/straight_space.h"
 
 namespace flatspeckle::grin {
@@ -110,6 +112,13 @@ BeamSeeds all_seeds(const Transport& transport, const S& space, int trials) {
   return seeds;
 }
 
+/// What all batches have.
+struct BeamsSetup {
+  BeamSeeds seeds;
+  double ways_per_ray;
+  bool books;  ///< where the power of rays goes
+};
+
 /// Light of beams that meets no collision: rays from the beams that hit sensors, and ways from
 /// places of the sensors back to the beams, ways_per_ray of them. A way that the body's surface
 /// refracts or reflects can be found by both, and is shared by multiple importance sampling; of
@@ -117,29 +126,32 @@ BeamSeeds all_seeds(const Transport& transport, const S& space, int trials) {
 template <bool timed, Space S>
 class UnscatteredBeams {
  public:
-  UnscatteredBeams(const Transport& transport, const BeamSeeds& seeds, double ways_per_ray,
-                   const S& space, RandomStream& random, Film& film, TransportCounts& counts)
+  UnscatteredBeams(const Transport& transport, const BeamsSetup& setup, const S& space,
+                   RandomStream& random, Film& film, TransportCounts& counts)
       : transport_(transport),
-        seeds_(seeds),
-        ways_per_ray_(ways_per_ray),
+        setup_(setup),
         space_(space),
         random_(random),
         film_(film),
         counts_(counts) {}
 
   void add_ray(const EndPosition& start, double stratum) {
-    add_ray(space_.fly(start.point, start.inward, random_), stratum);
+    add_ray(start, space_.fly(start.point, start.inward, random_), stratum);
   }
   /// That has gone so.
-  void add_ray(const Flight& flight, double stratum) {
+  void add_ray(const EndPosition& start, const Flight& flight, double stratum) {
     counts_.add_flight(flight.end == Flight::End::lost);
+    if (setup_.books) book(start, flight);
     if (flight.end == Flight::End::lost) return;
     for (const SensorEnd& sensor : transport_.sensors)
       sensor.hit(space_, flight.point.x, flight.direction, [&](const EndHit& hit) {
-        add(hit.direction.pixel,
-            transport_.lights.beam_power() * flight.weight * hit.value *
-                weight_of_ray(flight, hit, transport_.lights.beam(stratum)),
-            flight.optical_path);
+        const double value = transport_.lights.beam_power() * flight.weight * hit.value *
+                             weight_of_ray(flight, hit, transport_.lights.beam(stratum));
+        add(hit.direction.pixel, value, flight.optical_path);
+        if (!film_.has_derivatives()) return;
+        PathScore score;
+        score.flew(flight.arc_length);
+        score.add_to(film_, hit.direction.pixel, value, transport_.medium(start.point.part));
       });
   }
 
@@ -150,10 +162,20 @@ class UnscatteredBeams {
     for (std::size_t i = 0; i < transport_.sensors.size(); ++i)
       if (needs_ways(space_, transport_.sensors[i]))
         add_ways(transport_.sensors[i], beam,
-                 seeds_.of_pair[i * transport_.lights.beams() + beam.number]);
+                 setup_.seeds.of_pair[i * transport_.lights.beams() + beam.number]);
   }
 
  private:
+  void book(const EndPosition& start, const Flight& flight) {
+    PathVertex from;
+    from.point = start.point;
+    from.end = &start;
+    from.weight = transport_.lights.beam_power();
+    LightTally tally(film_.energy);
+    tally.emitted(from);
+    flight.end == Flight::End::lost ? tally.lost(from, flight) : tally.left(from, flight);
+    tally.end_path();
+  }
   void add_ways(const SensorEnd& sensor, const Lights::Beam& beam,
                 std::span<const BeamSeed> seeds) {
     const EndPosition z = sensor.sample_position(space_, random_);
@@ -173,7 +195,7 @@ class UnscatteredBeams {
       if (way.passages.count == 0) return;
       weight = 1 / (1 + 1 / heuristic(ways_over_rays(z, way, beam)));
     }
-    add(to.pixel, value * weight * way.multiplicity / ways_per_ray_, way.optical_path);
+    add(to.pixel, value * weight * way.multiplicity / setup_.ways_per_ray, way.optical_path);
   }
 
   double weight_of_ray(const Flight& flight, const EndHit& hit, const Lights::Beam& beam) const {
@@ -187,15 +209,14 @@ class UnscatteredBeams {
   double ways_over_rays(const EndPosition& z, const BeamWay& way, const Lights::Beam& beam) const {
     const double by_rays = beam.disk.density(way.place);
     const double by_ways = z.position_density * way.thinning / z.inward.dot(way.start_direction);
-    return ways_per_ray_ * by_ways / by_rays;
+    return setup_.ways_per_ray * by_ways / by_rays;
   }
   void add(int pixel, double value, double optical_path) {
     deposit<timed>(film_, counts_, pixel, value, optical_path);
   }
 
   const Transport& transport_;
-  const BeamSeeds& seeds_;
-  double ways_per_ray_;
+  const BeamsSetup& setup_;
   const S& space_;
   RandomStream& random_;
   Film& film_;
@@ -225,40 +246,48 @@ template <bool timed>
 void add_rays(const CurvedSpace& space, int rays, const EvenRays& from, RandomStream& random,
               UnscatteredBeams<timed, CurvedSpace>& light) {
   std::array<int, lanes> number{};
+  std::array<EndPosition, lanes> starts{};
   int next = 0;
   space.fly_side_by_side(
       [&](int lane, const Flight* flown) -> std::optional<CurvedSpace::FlightStart> {
         int& own = number[static_cast<std::size_t>(lane)];
-        if (flown) light.add_ray(*flown, from.stratum(own));
+        EndPosition& start = starts[static_cast<std::size_t>(lane)];
+        if (flown) light.add_ray(start, *flown, from.stratum(own));
         if (next == rays) return std::nullopt;
         own = next++;
-        const EndPosition start = from.start(own);
+        start = from.start(own);
         return CurvedSpace::FlightStart{start.point, start.inward, &random};
       });
+}
+
+/// Whether light can hit a sensor, so that rays of beams are followed.
+bool has_area(const Transport& transport) {
+  return std::any_of(transport.sensors.begin(), transport.sensors.end(),
+                     [](const SensorEnd& sensor) { return sensor.can_be_hit(); });
 }
 
 /// with_space(use): calls use(space), the same or another for each ray. in_lanes: the space of all
 /// rays, if they may go side by side.
 template <bool timed, class WithSpace>
-PathKernel kernel(std::shared_ptr<const Transport> transport, const BeamSeeds& seeds,
+PathKernel kernel(std::shared_ptr<const Transport> transport, const BeamsSetup& setup,
                   const WithSpace& with_space, std::shared_ptr<const CurvedSpace> in_lanes) {
-  const double ways_per_ray = share_of_ways(seeds.is_any_seen);
   return [=](int rays, RandomStream& random, Film& film, TransportCounts& counts, JoinPromises*) {
     const EvenRays from(transport->lights, rays, random);
     const double beam_of_way = random.uniform(), first_way = random.uniform();
-    const auto ways_before = [=](int ray) { return std::floor(ray * ways_per_ray + first_way); };
-    const bool has_area = std::any_of(transport->sensors.begin(), transport->sensors.end(),
-                                      [](const SensorEnd& sensor) { return sensor.can_be_hit(); });
-    if (has_area && in_lanes) {
-      UnscatteredBeams<timed, CurvedSpace> light(*transport, seeds, ways_per_ray, *in_lanes, random,
-                                                 film, counts);
+    const auto ways_before = [=](int ray) {
+      return std::floor(ray * setup.ways_per_ray + first_way);
+    };
+    const bool follows_rays = has_area(*transport);
+    if (follows_rays && in_lanes) {
+      UnscatteredBeams<timed, CurvedSpace> light(*transport, setup, *in_lanes, random, film,
+                                                 counts);
       add_rays<timed>(*in_lanes, rays, from, random, light);
     }
     for (int ray = 0; ray < rays; ++ray)
       with_space(random, [&](const auto& space) {
-        UnscatteredBeams<timed, std::decay_t<decltype(space)>> light(
-            *transport, seeds, ways_per_ray, space, random, film, counts);
-        if (has_area && !in_lanes) light.add_ray(from.start(ray), from.stratum(ray));
+        UnscatteredBeams<timed, std::decay_t<decltype(space)>> light(*transport, setup, space,
+                                                                     random, film, counts);
+        if (follows_rays && !in_lanes) light.add_ray(from.start(ray), from.stratum(ray));
         if (const double way = ways_before(ray); ways_before(ray + 1) > way)
           light.add_ways(fraction(beam_of_way + way * golden));
       });
@@ -266,33 +295,39 @@ PathKernel kernel(std::shared_ptr<const Transport> transport, const BeamSeeds& s
 }
 
 template <class WithSpace>
-PathKernel kernel(bool timed, std::shared_ptr<const Transport> transport, const BeamSeeds& seeds,
-                  const WithSpace& with_space,
+PathKernel kernel(const BeamsRequest& request, std::shared_ptr<const Transport> transport,
+                  const BeamSeeds& seeds, const WithSpace& with_space,
                   std::shared_ptr<const CurvedSpace> in_lanes = nullptr) {
-  return timed ? kernel<true>(transport, seeds, with_space, in_lanes)
-               : kernel<false>(transport, seeds, with_space, in_lanes);
+  const BeamsSetup setup{seeds, share_of_ways(seeds.is_any_seen), request.books};
+  return request.timed ? kernel<true>(transport, setup, with_space, in_lanes)
+                       : kernel<false>(transport, setup, with_space, in_lanes);
 }
 
 }  // namespace
 
-PathKernel beams_kernel(bool timed, std::shared_ptr<const Transport> transport, double excess) {
+bool are_followed(const Transport& transport) {
+  return transport.lights.beam_power() > 0 && has_area(transport);
+}
+
+PathKernel beams_kernel(const BeamsRequest& request, std::shared_ptr<const Transport> transport,
+                        double excess) {
   using Straight = StraightSpace<RenderPlan{.curved = false, .scatters = false}>;
   const Straight space(without_scattering(transport->stage), excess);
-  return kernel(timed, transport, all_seeds(*transport, space, 32768),
+  return kernel(request, transport, all_seeds(*transport, space, 32768),
                 [=](RandomStream&, const auto& use) { use(space); });
 }
 
-PathKernel beams_kernel(bool timed, std::shared_ptr<const Transport> transport,
-                        std::shared_ptr<const CurvedSpace> space, bool random_phase) {
+PathKernel beams_kernel(const BeamsRequest& request, std::shared_ptr<const Transport> transport,
+                        std::shared_ptr<const CurvedSpace> space) {
   const auto seeds = all_seeds(*transport, *space, 512);
-  const bool goes_in_lanes = !random_phase && space->has_lanes();
+  const bool goes_in_lanes = !request.random_phase && space->has_lanes();
   const auto with_space = [=](RandomStream& random, const auto& use) {
-    if (random_phase)
+    if (request.random_phase)
       use(*space->frozen(2 * std::numbers::pi * random.uniform()));
     else
       use(*space);
   };
-  return kernel(timed, transport, seeds, with_space, goes_in_lanes ? space : nullptr);
+  return kernel(request, transport, seeds, with_space, goes_in_lanes ? space : nullptr);
 }
 
 }  // namespace flatspeckle::grin

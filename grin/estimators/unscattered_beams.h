@@ -15,10 +15,18 @@ namespace flatspeckle::grin {
 //
 // The space is that of without_scattering(stage), where each flight goes to the boundary.
 
-PathKernel beams_kernel(bool timed, std::shared_ptr<const Transport> transport, double excess);
+struct BeamsRequest {
+  bool timed = false;
+  bool random_phase = false;  ///< each ray meets its own phase of the sound
+  bool books = false;         ///< where the power of rays goes, as nothing else does
+};
 
-/// random_phase: each ray meets its own phase of the sound.
-PathKernel beams_kernel(bool timed, std::shared_ptr<const Transport> transport,
-                        std::shared_ptr<const CurvedSpace> space, bool random_phase);
+PathKernel beams_kernel(const BeamsRequest& request, std::shared_ptr<const Transport> transport,
+                        double excess);
+PathKernel beams_kernel(const BeamsRequest& request, std::shared_ptr<const Transport> transport,
+                        std::shared_ptr<const CurvedSpace> space);
+
+/// Whether there are beams, and a sensor that their rays can hit.
+bool are_followed(const Transport& transport);
 
 }  // namespace flatspeckle::grin

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cassert>
+#include <mutex>
 #include <numbers>
 
 #include "core/error.h"
@@ -23,7 +24,19 @@ BesselProfile::BesselProfile(int order, double reach)
   assert(order >= 0 && order <= max_order);
   if (!(reach > 0 && reach <= 1e4))
     throw InputError("reach of the sound wave in radians", reach, "must be from 0 to 1e4");
-  for (double cell = 0; cell < cells_; ++cell) table_.push_back(fit(order, cell));
+  table_ = table_of(order, static_cast<std::size_t>(cells_));
+}
+
+/// The longest that has been made, or a longer one.
+std::shared_ptr<const BesselProfile::Table> BesselProfile::table_of(int order, std::size_t cells) {
+  static std::mutex mutex;
+  static std::array<std::shared_ptr<const Table>, max_order + 1> longest;
+  const std::lock_guard lock(mutex);
+  auto& made = longest[static_cast<std::size_t>(order)];
+  if (made && made->size() >= cells) return made;
+  auto longer = std::make_shared<Table>(made ? *made : Table());
+  while (longer->size() < cells) longer->push_back(fit(order, static_cast<double>(longer->size())));
+  return made = longer;
 }
 
 /// Newton's interpolation in Chebyshev nodes, expanded in powers of u - centre.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <memory>
 #include <vector>
 
 #include "grin/index/lanes.h"
@@ -11,7 +12,8 @@ namespace flatspeckle::grin {
 /// phi})^m is smooth on the axis for every m. By u, g_m' = -g_{m+1}/2.
 ///
 /// A table of polynomials in u over equal steps in x, up to x = reach; beyond, those of the C
-/// library, slowly. Errors, relative to the envelope of J_m: value 1e-15, slope 1e-13.
+/// library, slowly. Errors, relative to the envelope of J_m: value 1e-15, slope 1e-13. All of an
+/// order share one table, which takes longer to make than many rays to follow.
 class BesselProfile {
  public:
   static constexpr int max_order = 64;
@@ -31,20 +33,20 @@ class BesselProfile {
     const double cell = std::floor(std::sqrt(u) * cells_per_unit);
     if (!(cell < cells_)) return far_jet(u);
     const double delta = u - centre(cell);
-    return polynomial(table_[static_cast<std::size_t>(cell)], delta);
+    return polynomial(cells()[static_cast<std::size_t>(cell)], delta);
   }
   /// The same of u in lanes.
   void jets(const double* u, double* value, double* slope) const {
     alignas(64) double delta[lanes];
     alignas(64) int number[lanes];
     alignas(64) Cell in[lanes];
-    const double cells = cells_;
-    const Cell* const table = table_.data();
+    const double count = cells_;
+    const Cell* const table = cells();
     int far = 0;
 #pragma omp simd reduction(| : far)
     for (int k = 0; k < lanes; ++k) {
       const double place = std::sqrt(u[k]) * cells_per_unit;
-      const bool is_far = !(place < cells);
+      const bool is_far = !(place < count);
       far |= is_far;
       number[k] = static_cast<int>(is_far ? 0 : place);
       delta[k] = u[k] - centre(number[k]);
@@ -71,7 +73,7 @@ class BesselProfile {
     }
     if (far == 0) return;
     for (int k = 0; k < lanes; ++k)
-      if (!(std::sqrt(u[k]) * cells_per_unit < cells)) {
+      if (!(std::sqrt(u[k]) * cells_per_unit < count)) {
         const Jet at = far_jet(u[k]);
         value[k] = at.value;
         slope[k] = at.slope;
@@ -85,7 +87,7 @@ class BesselProfile {
   BentJet bent_jet(double u) const {
     const double cell = std::floor(std::sqrt(u) * cells_per_unit);
     if (!(cell < cells_)) return bent(far_jet(u), u);
-    const Cell& in = table_[static_cast<std::size_t>(cell)];
+    const Cell& in = cells()[static_cast<std::size_t>(cell)];
     const double t = u - centre(cell);
     const Jet at = polynomial(in, t);
     return u > 4 * (order_ + 1) ? bent(at, u) : BentJet{at, bend(in, t)};
@@ -121,12 +123,17 @@ class BesselProfile {
   BentJet bent(const Jet& at, double u) const {
     return {at, -((order_ + 1) * at.slope + at.value / 4) / u};
   }
+  const Cell* cells() const {
+    return table_->data();
+  }
   static Cell fit(int order, double cell);
+  using Table = std::vector<Cell>;
+  static std::shared_ptr<const Table> table_of(int order, std::size_t cells);
   Jet far_jet(double u) const;
 
   int order_;
   double reach_, cells_;
-  std::vector<Cell> table_;
+  std::shared_ptr<const Table> table_;  ///< of these cells or more
 };
 
 }  // namespace flatspeckle::grin

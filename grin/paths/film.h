@@ -7,17 +7,20 @@
 
 namespace flatspeckle::grin {
 
-/// What is kept of optical paths: equal bins, beside them what is before the first and beyond the
-/// last, so that the sum of all is the steady picture; and moments.
+/// What is kept of a pixel's light: by optical path, in equal bins, beside them what is before the
+/// first and beyond the last, so that the sum of all is the steady picture; moments of it; and
+/// derivatives by parameters of the medium (path_score.h).
 struct TimeBins {
   double first = 0, last = 0;  ///< edges
   int count = 1;               ///< 1: steady state
   bool moments = false;        ///< also value times path, and times its square
+  int derivatives = 0;         ///< by so many parameters
 
   bool keeps_paths() const { return count > 1 || moments; }
   /// Sums of a pixel: [before, bins, beyond] or one, then the moments.
   int parts() const { return count > 1 ? count + 2 : 1; }
-  int sums() const { return parts() + (moments ? 2 : 0); }
+  int first_derivative() const { return parts() + (moments ? 2 : 0); }
+  int sums() const { return first_derivative() + derivatives; }
 };
 
 /// Sums of a batch: [pixel][TimeBins::sums].
@@ -38,6 +41,12 @@ class Film {
   /// Steady state.
   void add(int pixel, double value) {
     sums_[static_cast<std::size_t>(pixel) * per_pixel_] += value;
+  }
+
+  bool has_derivatives() const { return bins_.derivatives > 0; }
+  void add_derivative(int pixel, int parameter, double value) {
+    Complex* const own = sums_.data() + static_cast<std::size_t>(pixel) * per_pixel_;
+    own[bins_.first_derivative() + parameter] += value;
   }
 
   EnergyBalance energy;  ///< of light paths that are walked to their ends

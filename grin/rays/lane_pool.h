@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 
@@ -18,7 +19,7 @@ namespace flatspeckle::grin {
 template <class Work>
 class LanePool {
  public:
-  static constexpr int steps_at_once = 8;
+  static constexpr int steps_at_once = 4;
 
   explicit LanePool(Work& work) : work_(work) {}
 
@@ -29,10 +30,28 @@ class LanePool {
       work_.go(rays_, steps_at_once);
       for (int lane = 0; lane < lanes; ++lane)
         if (is_active_[lane]) follow(lane);
+      keep_idle_lanes_near();
     }
   }
 
  private:
+  /// Spheres about where the ray was and where it is, with nothing in them, hold all that it may
+  /// have gone.
+  bool was_free(int lane) {
+    constexpr double margin = 1.1;  // an integrator's arc is not exact
+    double& clearance = clearance_[lane];
+    const double arc = margin * (rays_.arc_length[lane] - before_.arc_length[lane]);
+    if (!(arc > 0)) return false;
+    if (!(clearance > arc)) clearance = work_.clearance(lane, before_.at(lane));
+    if (clearance > arc) {
+      clearance -= arc;
+      return true;
+    }
+    const double before = clearance;
+    clearance = work_.clearance(lane, rays_.at(lane));
+    return before > 0 && clearance > 0 && before + clearance > arc;
+  }
+
   void fill(int lane) {
     RayState ray;
     const bool is_active = work_.begin(lane, ray);
@@ -43,22 +62,22 @@ class LanePool {
     if (is_active) rays_.put(lane, ray);
   }
 
-  /// A sphere about where the ray was, with nothing in it, holds all that it may have gone.
   void follow(int lane) {
-    constexpr double margin = 1.1;  // an integrator's arc is not exact
-    const double arc = margin * (rays_.arc_length[lane] - before_.arc_length[lane]);
-    if (arc > 0) {
-      if (!(clearance_[lane] > arc)) clearance_[lane] = work_.clearance(lane, before_.at(lane));
-      if (clearance_[lane] > arc) {
-        clearance_[lane] -= arc;
-        return work_.passed(lane);
-      }
-    }
+    if (was_free(lane)) return work_.passed(lane);
     RayState ray = before_.at(lane);
     double& mismatch = rays_.index_mismatch[lane] = before_.index_mismatch[lane];
     if (!work_.careful(lane, ray, mismatch)) return fill(lane);
     clearance_[lane] = 0;
     rays_.put(lane, ray);
+  }
+
+  /// They go where an active one goes: alone they would leave the place that the field is fast in.
+  void keep_idle_lanes_near() {
+    if (active_ == 0 || active_ == lanes) return;
+    const auto first = std::find(is_active_.begin(), is_active_.end(), true);
+    const RayState ray = rays_.at(static_cast<int>(first - is_active_.begin()));
+    for (int lane = 0; lane < lanes; ++lane)
+      if (!is_active_[lane]) rays_.put(lane, ray);
   }
 
   Work& work_;

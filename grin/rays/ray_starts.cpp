@@ -40,6 +40,16 @@ struct RayLight {
 RayStart line(const RayLight& light, std::size_t i) {
   return light.parallel(light.evenly(i) * light.first);
 }
+/// The additive sequence of the plastic number (Roberts 2018), which fills a square evenly.
+RayStart square(const RayLight& light, std::size_t i) {
+  constexpr double plastic = 1.32471795724474602596;  // x^3 = x + 1
+  const auto place = [&](double share) {
+    const double at = 0.5 + static_cast<double>(i) * share;
+    return 2 * (at - std::floor(at)) - 1;
+  };
+  return light.parallel(place(1 / plastic) * light.first +
+                        place(1 / (plastic * plastic)) * light.second);
+}
 RayStart disk(const RayLight& light, std::size_t i) {
   return light.parallel(std::sqrt(light.share(i)) * light.around(i));
 }
@@ -64,11 +74,10 @@ struct LightKind {
   double RayStartValues::*size;
   RayStart (*ray)(const RayLight&, std::size_t);
 };
-constexpr LightKind kinds[] = {{"line", &RayStartValues::beam_radius, line},
-                               {"disk", &RayStartValues::beam_radius, disk},
-                               {"beam", &RayStartValues::beam_radius, beam},
-                               {"fan", &RayStartValues::half_angle, fan},
-                               {"cone", &RayStartValues::half_angle, cone}};
+constexpr LightKind kinds[] = {
+    {"line", &RayStartValues::beam_radius, line}, {"square", &RayStartValues::beam_radius, square},
+    {"disk", &RayStartValues::beam_radius, disk}, {"beam", &RayStartValues::beam_radius, beam},
+    {"fan", &RayStartValues::half_angle, fan},    {"cone", &RayStartValues::half_angle, cone}};
 
 std::vector<std::string> words() {
   std::vector<std::string> words;
@@ -111,17 +120,17 @@ void add_keys(Keys& keys, RayStartValues& values) {
   keys.add("rays", values.rays, "CSV with columns x, y, z, dx, dy, dz, in place of a light").file();
   keys.group("Rays", "a light of rays");
   keys.add("light", values.light,
-           "Parallel rays: line, disk (even), beam (Gaussian); from a point: fan, cone")
+           "Parallel rays: line, square and disk (even), beam (Gaussian); from a point: fan, cone")
       .one_of(words());
   keys.add("ray_count", values.ray_count, "Rays of the light").from(1, 1e8);
   add_vector(keys, "origin", values.origin, "The light's middle").unit("length");
   add_vector(keys, "direction", values.direction, "Of its axis, of any length");
   add_vector(keys, "across", values.across, "Of the line, or of the fan's spread");
   keys.add("beam_radius", values.beam_radius,
-           "Half the line, radius of the disk, 1/e^2 radius of the beam")
+           "Half the line, half the square's side, radius of the disk, 1/e^2 radius of the beam")
       .positive()
       .unit("length")
-      .only_of("line, disk, beam");
+      .only_of("line, square, disk, beam");
   keys.add("half_angle", values.half_angle, "Half of the angle of fan or cone")
       .positive_to(std::numbers::pi)
       .unit("rad")

@@ -13,6 +13,8 @@ const DatasetTable render_table{
     .name = "render",
     .rows = {{"optical_path", Data::scale, "", "length", "middle of the bin of optical path"},
              {"time", Data::real, "optical_path", "s", "optical path over the speed of light"},
+             {"parameter", Data::numbers, "", "1",
+              "what derivatives are by: see the attribute names"},
              {"transport/flights", Data::count, "", "1", "ways from one event to the next"},
              {"transport/lost_flights", Data::count, "", "1",
               "of these, too long, trapped or into an index that is not positive: they carry "
@@ -21,7 +23,9 @@ const DatasetTable render_table{
               "vertices of light and sensor that were joined"},
              {"transport/lost_values", Data::count, "", "1",
               "contributions that were not finite, left out"}},
-    .attributes = {{"", "length_unit", "float64", "metres in a unit of length, where given"}}};
+    .attributes = {{"", "length_unit", "float64", "metres in a unit of length, where given"},
+                   {"parameter", "names", "texts",
+                    "mu_s, mu_a, g, as far as the medium has them (gradient)"}}};
 
 namespace {
 
@@ -143,6 +147,20 @@ void put_paths(const ResultGroup& group, const std::string& name, const Estimate
   }
 }
 
+Estimate scaled(Estimate one, double factor) {
+  for (Complex& value : one.value) value *= factor;
+  for (double& error : one.error) error *= factor;
+  return one;
+}
+
+void write_gradients(const ResultGroup& group, const SensorPixels& pixels, bool has_total,
+                     const PowerGradients& gradients) {
+  group.put("image_gradient", gradients.image);
+  group.put("mean_gradient", gradients.mean);
+  if (has_total) group.put("total_gradient", scaled(gradients.mean, pixels.area));
+  if (!gradients.within.value.empty()) group.put("power_within_gradient", gradients.within);
+}
+
 void write_sensor(const ResultGroup& group, const SensorPixels& pixels,
                   const SensorResult& result) {
   for (const auto& [name, middles] : pixels.axes) group.put(name, middles);
@@ -155,6 +173,7 @@ void write_sensor(const ResultGroup& group, const SensorPixels& pixels,
     group.put("power_within", result.within->power);
     group.put("power_within_covariance", result.within->covariance);
   }
+  if (result.gradients) write_gradients(group, pixels, result.total.has_value(), *result.gradients);
   if (!result.pulse.value.empty()) {
     group.put("transient", result.picture.bins);
     group.put("transient_before", result.picture.before);
@@ -193,6 +212,8 @@ RenderResult render_result(const RenderScene& scene, const RenderJob& job,
     result.back().within = powers_within(
         sensor, first, job.bins, sums,
         [&](const GroupedSums& of, const Estimator& theta) { return job.estimate(of, theta); });
+    if (job.bins.derivatives > 0)
+      result.back().gradients = power_gradients(sensor, first, job.bins, sums);
     first += pixels.count();
   }
   return result;
@@ -202,6 +223,10 @@ void write_render(ResultFile& file, const RenderScene& scene, const RenderJob& j
                   const RenderResult& result, const std::optional<double>& length_unit) {
   const ResultGroup root(file, render_table);
   if (length_unit) root.attribute("length_unit", *length_unit);
+  if (job.bins.derivatives > 0) {
+    root.number("parameter", static_cast<std::size_t>(job.bins.derivatives));
+    root.attribute("parameter", "names", gradient_names(scene.stage.medium));
+  }
   if (job.bins.count > 1) write_bins(root, job.bins, length_unit);
   for (std::size_t i = 0; i < result.size(); ++i)
     write_sensor({file, table_of(scene.sensors[i]),

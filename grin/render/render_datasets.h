@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "core/result/dataset_row.h"
+#include "grin/render/power_gradients.h"
 #include "grin/render/powers_within.h"
 #include "grin/render/render_job.h"
 
@@ -16,6 +17,7 @@ struct SensorResult {
   Estimate mean;                       ///< over the pixels
   std::optional<Estimate> total = {};  ///< a power, where the kind of sensor has it
   std::optional<PowersWithin> within = {};
+  std::optional<PowerGradients> gradients = {};
   /// Mean or total by bin and beyond the bins.
   Estimate pulse = {}, pulse_before = {}, pulse_after = {};
   /// Mean optical path and mean of its square, [pixel][2], and of all pixels.

@@ -182,6 +182,8 @@ void check(const RenderScene& scene, const RenderRequest& request) {
       transport_of(scene, request, request.method.value_or(RenderMethod::bidirectional));
   check_path_lengths(scene.stage, transport->max_scatterings);
   if (request.method == RenderMethod::analog) check_analog(scene);
+  if (scene.bins.derivatives > 0 && request.method != RenderMethod::analog)
+    throw InputError("gradient: needs method = analog");
   if (scene.random_phase) make_ray_field(scene.field)->frozen(0);
 }
 
@@ -196,7 +198,7 @@ RenderJob render_job(const RenderScene& scene, const RenderRequest& request, std
   job.bins = scene.bins;
   job.plan = described(scene, request, tracer.method) + tracers.plan().describe() +
              described_steps(scene, tracers.plan()) + described_sensors(scene) +
-             described_map(scene);
+             described_map(scene) + (tracers.walks() ? "" : "; rays of beams alone");
   job.pictures = static_cast<std::size_t>(pixels) * scene.bins.sums();
   const bool books = walks_light(tracer.method) && pixels > 0;
   job.has_energy = books || map;

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/keys/number_text.h"
+#include "grin/paths/path_score.h"
 #include "grin/scene/step_choice.h"
 
 namespace flatspeckle::grin {
@@ -126,6 +127,16 @@ double max_length_of(const Keys& keys, const RenderValues& values, double scale,
   return scale > 0 ? keys.read(values.max_length).value_or(usual) : usual;
 }
 
+/// By the parameters of the one medium.
+void add_derivatives(RenderScene& scene) {
+  const auto refuse = [](const std::string& why) { throw InputError("gradient: " + why); };
+  if (!scene.stage.bodies.empty()) refuse("the stage must have no bodies, but one medium alone");
+  const ScatteringMedium& medium = scene.stage.medium;
+  if (medium.density) refuse("the medium must be uniform, without density");
+  if (!(medium.mu_t() > 0)) refuse("there is no medium; mu_s or mu_a must be above 0");
+  scene.bins.derivatives = static_cast<int>(parameters_of(medium).size());
+}
+
 void add_map_keys(Keys& keys, RenderValues& values) {
   keys.group("Map of the fluence rate and of absorbed power");
   keys.add("map_box", values.map_box, "x y z x y z of two corners: cells of this box")
@@ -167,6 +178,8 @@ void add_keys(Keys& keys, RenderValues& values) {
       .exactly(3, "three numbers: first last count");
   keys.add("path_moments", values.path_moments,
            "Also the mean optical path of the light in each pixel, and the mean of its square");
+  keys.add("gradient", values.gradient,
+           "Also derivatives of pictures and powers by mu_s, mu_a and g (method = analog)");
   keys.add("length_unit", values.length_unit,
            "What lengths are in, um or 1e-6, for the times of path_bins")
       .positive()
@@ -211,6 +224,7 @@ RenderScene make_render_scene(const Keys& keys, const RenderValues& values) {
                     .length_unit = keys.read(values.length_unit),
                     .leapfrogs = steps.leapfrogs,
                     .index = index};
+  if (keys.read(values.gradient)) add_derivatives(scene);
   check_size(scene.sensors, scene.bins);
   if (scene.sensors.empty() && !scene.map)
     throw InputError("sensor", "none", "wants a map (map_box, map_cylinder)");

@@ -24,9 +24,9 @@ double size(const Stage& stage) {
 }
 
 /// As light meets it: as it is, or at phases of the sound.
-std::vector<std::unique_ptr<const RayField>> fields_met(const SceneField& field, bool any_phase,
-                                                        bool leapfrogs) {
-  std::vector<std::unique_ptr<const RayField>> met;
+using FieldsMet = std::vector<std::unique_ptr<const RayField>>;
+FieldsMet fields_met(const SceneField& field, bool any_phase, bool leapfrogs) {
+  FieldsMet met;
   met.push_back(make_ray_field(field.field, {}, leapfrogs));
   if (any_phase)
     for (const double phase : {std::numbers::pi / 2, std::numbers::pi})
@@ -75,12 +75,12 @@ class PilotStarts {
   std::vector<Vec3> points_;
 };
 
-/// A ray of a pilot, of so long a way in sigma.
+/// A ray of a pilot, of so long a way in sigma, as light meets the field for the nth time.
 class PilotRay {
  public:
-  PilotRay(const RayField& field, const Surface& region, const RayState& start, double longest,
-           double stride)
-      : field_(field), start_(start) {
+  PilotRay(const RayField& field, std::size_t met, const Surface& region, const RayState& start,
+           double longest, double stride)
+      : met_(met), start_(start) {
     for (RayState ray = start_;; sigma_ += stride) {
       field.advance(stride, 1, ray, nullptr);
       if (!(ray.arc_length < longest && distance(region, ray.x) <= 0)) return;
@@ -89,10 +89,10 @@ class PilotRay {
 
   /// What halving such steps changes, by how much a ray's end moves where its start is turned; NaN
   /// where there is no ray.
-  double change_by_halving(double step) const {
+  double change_by_halving(const FieldsMet& fields, double step) const {
     const int steps = static_cast<int>(std::max(1.0, std::ceil(sigma_ / step)));
-    const auto [coarse, coarse_tangent] = end(steps);
-    const auto [fine, fine_tangent] = end(2 * steps);
+    const auto [coarse, coarse_tangent] = end(*fields[met_], steps);
+    const auto [fine, fine_tangent] = end(*fields[met_], 2 * steps);
     const Frame from = frame_across(start_.v), to = frame_across(fine.v);
     const double n = start_.v.norm(), length = fine.arc_length;
     const Mat2 map = transverse_map(fine_tangent, n, from, to);
@@ -104,27 +104,28 @@ class PilotRay {
   }
 
  private:
-  std::pair<RayState, RayTangent> end(int steps) const {
+  std::pair<RayState, RayTangent> end(const RayField& field, int steps) const {
     std::pair<RayState, RayTangent> ray{start_, {}};
-    field_.advance(sigma_, steps, ray.first, &ray.second);
+    field.advance(sigma_, steps, ray.first, &ray.second);
     return ray;
   }
 
-  const RayField& field_;
+  std::size_t met_;
   RayState start_;
   double sigma_ = 0;
 };
 
-std::vector<PilotRay> pilot_rays(const std::vector<std::unique_ptr<const RayField>>& met,
-                                 const SceneField& facts, const Stage& stage) {
+std::vector<PilotRay> pilot_rays(const FieldsMet& met, const SceneField& facts,
+                                 const Stage& stage) {
   const double longest = std::min(size(stage), longest_ray * facts.scale);
   const double stride = std::min(size(stage), facts.scale) / 16;
   PilotStarts starts(*met.front(), facts, filled(stage));
   std::vector<PilotRay> rays;
   for (const Vec3& x : starts.points()) {
     const Vec3 direction = starts.direction();
-    for (const auto& field : met)
-      rays.emplace_back(*field, filled(stage), start_ray(*field, x, direction), longest, stride);
+    for (std::size_t i = 0; i < met.size(); ++i)
+      rays.emplace_back(*met[i], i, filled(stage), start_ray(*met[i], x, direction), longest,
+                        stride);
   }
   return rays;
 }
@@ -148,38 +149,49 @@ double longest_step(const SceneField& field, const Stage& stage) {
 
 namespace {
 
-double chosen_step(const SceneField& field, const Stage& stage, bool any_phase, bool leapfrogs) {
+/// Of one kind of steps.
+double longest_good_step(const std::vector<PilotRay>& rays, const FieldsMet& met, int order,
+                         double step) {
   constexpr int halvings = 8;
-  const int order = leapfrogs ? Leapfrog::order : Sharma::order;
-  const double seen = leapfrogs ? 0.75 : 1;  // of an error, by halving the step; nearly all at 4
-  double step = longest_step(field, stage);
-  if (bends_nothing(field, stage)) return step;
-  const auto met = fields_met(field, any_phase, leapfrogs);
-  const auto rays = pilot_rays(met, field, stage);
+  const double seen = order == Leapfrog::order ? 0.75 : 1;  // of an error, by halving the step
   for (int i = 0; i < halvings; ++i, step /= 2) {
     double worst = 0;
-    for (const PilotRay& ray : rays)
-      worst = std::max(worst, ray.change_by_halving(step) / seen);  // NaN is not kept
-    const double finer = std::pow(step_tolerance / worst, 1.0 / order);
-    if (finer >= 0.5) return two_digits(step * std::min(finer, 1.0));
+    const auto finer = [&] { return std::pow(step_tolerance / worst, 1.0 / order); };
+    for (const PilotRay& ray : rays) {
+      worst = std::max(worst, ray.change_by_halving(met, step) / seen);  // NaN is not kept
+      if (finer() < 0.5) break;
+    }
+    if (finer() >= 0.5) return two_digits(step * std::min(finer(), 1.0));
   }
   return two_digits(step);
+}
+
+bool may_leap(const SceneField& field) {
+  return std::visit([](const auto& of) { return goes_by_leapfrog<std::decay_t<decltype(of)>>; },
+                    field.field);
+}
+
+StepChoice chosen(const SceneField& field, const Stage& stage, bool any_phase, bool may_leap) {
+  constexpr double cheaper = 2.2;  // one force instead of three
+  const double longest = longest_step(field, stage);
+  if (bends_nothing(field, stage)) return {longest};
+  const FieldsMet met = fields_met(field, any_phase, false);
+  const auto rays = pilot_rays(met, field, stage);
+  const double step = longest_good_step(rays, met, Sharma::order, longest);
+  if (!may_leap) return {step};
+  const double leap =
+      longest_good_step(rays, fields_met(field, any_phase, true), Leapfrog::order, longest);
+  return cheaper * leap > step ? StepChoice{leap, true} : StepChoice{step};
 }
 
 }  // namespace
 
 double chosen_step(const SceneField& field, const Stage& stage, bool any_phase) {
-  return chosen_step(field, stage, any_phase, false);
+  return chosen(field, stage, any_phase, false).step;
 }
 
 StepChoice chosen_steps(const SceneField& field, const Stage& stage, bool any_phase) {
-  constexpr double cheaper = 2.2;  // one force instead of three
-  const double step = chosen_step(field, stage, any_phase);
-  const bool is_asked = std::visit(
-      [](const auto& of) { return goes_by_leapfrog<std::decay_t<decltype(of)>>; }, field.field);
-  if (!is_asked || bends_nothing(field, stage)) return {step};
-  const double leap = chosen_step(field, stage, any_phase, true);
-  return cheaper * leap > step ? StepChoice{leap, true} : StepChoice{step};
+  return chosen(field, stage, any_phase, may_leap(field));
 }
 
 }  // namespace flatspeckle::grin

@@ -28,6 +28,8 @@ DatasetTable table() {
   add({"power_within", Data::estimate, "disk_radius", "1", "power on the disk"});
   add({"power_within_covariance", Data::real, "disk_radius other_disk_radius", "1",
        "covariance of the errors of two of these powers"});
+  add({"power_within_gradient", Data::estimate, "parameter disk_radius", "",
+       "derivative of power_within"});
   return table;
 }
 

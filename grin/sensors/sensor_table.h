@@ -14,10 +14,11 @@ struct SensorWords {
   std::string unit;              ///< of a pixel and of the mean
   std::string pixel, mean;
   std::string total = {};  ///< a power; none: there is no total, and pulses are of the mean
+  bool can_be_hit = true;  ///< by light, of which derivatives are
 };
 
 /// Pictures and what they add up to; the same of bins of optical path and beyond them; the mean
-/// optical path and the mean of its square.
+/// optical path and the mean of its square; derivatives by parameters of the medium.
 DatasetTable sensor_table(const SensorWords& words);
 
 }  // namespace flatspeckle::grin

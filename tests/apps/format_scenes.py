@@ -25,6 +25,8 @@ STAGE = {"field": "parabolic", "index": 1.5, "alpha": 0.5, "stage_box": [-1, -1,
          "mu_s": 0.5, "point_light": [0, 0, 1, 1], "path_bins": [1, 9, 4], "path_moments": True,
          "pixels": [30, 20]}
 
+GRADIENT = {"gradient": True, "method": "analog"}
+
 FILES = {
     "curve.csv": "tilt,field_correlation,error\n0.002,0.8,0.05\n0.004,0.6,0.05\n",
     "frames.csv": "a,b\n" + "".join(f"{1 + i * i % 7},{1 + i * i % 11}\n" for i in range(80)),
@@ -152,15 +154,18 @@ RUNS = {
     "camera": ("render", {**STAGE, "sensor_at": [0.2, 0, 3.9], "sensor_direction": [0, 0, -1],
                           "field_of_view": 1}),
     "area": ("render", {**STAGE, "sensor": "area", "sensor_at": [0, 0, 4], "sensor_size": [1, 1],
-                        "length_unit": 0.001, "mu_a": 0.1, "map_box": [-1, -1, 0, 1, 1, 4], "map_cells": [2, 3, 4]}),
+                        "length_unit": 0.001, "mu_a": 0.1, "map_box": [-1, -1, 0, 1, 1, 4], "map_cells": [2, 3, 4],
+                        **GRADIENT}),
     "directional": ("render", {**STAGE, "sensor": "directional",
-                               "mu_a": 0.1, "map_cylinder": [0, 0, 0, 0, 0, 4, 1], "map_cells": [3, 4]}),
+                               "mu_a": 0.1, "map_cylinder": [0, 0, 0, 0, 0, 4, 1], "map_cells": [3, 4],
+                               **GRADIENT}),
     "sensors": ("render", {**STAGE, "sensor": ["area", "directional"], "sensor_at": [0, 0, 4],
                            "sensor_size": [1, 1], "sensor_name": ["through", "far"]}),
-    "disks": ("render", {**STAGE, "pixels": None, "sensor": "radial", "sensor_at": [0, 0, 4], "radii": [0.5, 1]}),
+    "disks": ("render", {**STAGE, "pixels": None, "sensor": "radial", "sensor_at": [0, 0, 4], "radii": [0.5, 1],
+                         **GRADIENT}),
     "radial": ("render", {**STAGE, "pixels": None, "sensor": "radial", "sensor_at": [0, 0, 4],
-                          "sensor_radius": 1, "rings": 4}),
-    "polar": ("render", {**STAGE, "pixels": None, "sensor": "polar", "rings": 4}),
+                          "sensor_radius": 1, "rings": 4, **GRADIENT}),
+    "polar": ("render", {**STAGE, "pixels": None, "sensor": "polar", "rings": 4, **GRADIENT}),
     "ball_power": ("render", {**STAGE, "field": None, "alpha": None, "index": None, "sensor": "directional",
                               "body_sphere": [0, 0, 2, 0.5], "index_around": 1.3, "max_scatterings": 9}),
     "aperture": ("design", {"nodes": [3], "goal": "throughput", "sources": [0, 0, -1], "aperture_radius": 0.3,

@@ -184,7 +184,7 @@ TEST_CASE("rays of values: the focus of a Luneburg ball") {
 }
 
 TEST_CASE("every light of rays, and every integrator") {
-  for (const char* light : {"line", "disk", "beam", "fan", "cone"})
+  for (const char* light : {"line", "square", "disk", "beam", "fan", "cone"})
     for (const char* integrator : {"sharma", "yoshida4", "leapfrog"}) {
       TraceValues values = trace_values();
       values.starts.light = light;
@@ -226,7 +226,7 @@ TEST_CASE("rays that cannot be are refused by their keys") {
   refuse_trace(values, "half_angle = 0.3: is a key of fan, cone only");
   values = trace_values();
   values.starts.light = "laser";
-  refuse_trace(values, "light = laser: must be one of line disk beam fan cone");
+  refuse_trace(values, "light = laser: must be one of line square disk beam fan cone");
   values = trace_values();
   values.starts.light = "fan";
   values.starts.half_angle = 4;

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/numbers/statistics.h"
+#include "grin/media/scattering_medium.h"
+#include "grin/paths/film.h"
+#include "grin/sensors/sensor.h"
+
+namespace flatspeckle::grin {
+
+/// Derivatives of what a sensor has found, by each parameter of the medium (path_score.h), one
+/// parameter after the other.
+struct PowerGradients {
+  Estimate image, mean;
+  Estimate within = {};  ///< of sensors that list radii (PowersWithin)
+};
+
+/// Of a sensor whose first pixel is that of a batch's sums; theirs have derivatives.
+PowerGradients power_gradients(const Sensor& sensor, std::size_t first_pixel, const TimeBins& bins,
+                               const GroupedSums& sums);
+
+/// What they are by.
+std::vector<std::string> gradient_names(const ScatteringMedium& medium);
+
+}  // namespace flatspeckle::grin

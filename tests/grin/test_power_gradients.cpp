@@ -1,0 +1,144 @@
+#include <cmath>
+#include <numbers>
+
+#include <doctest/doctest.h>
+
+#include "grin/paths/path_score.h"
+#include "grin/render/render_datasets.h"
+#include "tests/grin/render_tests.h"
+
+// Derivatives of powers by mu_s, mu_a and g: against closed forms, and against differences of
+// powers that the same random numbers make.
+
+namespace flatspeckle::grin::tests {
+
+namespace {
+
+using std::numbers::pi;
+
+struct Tissue {
+  double mu_s, mu_a, g;
+};
+
+/// A weak guide of sound in a box under a beam; two disks on the far side.
+RenderScene guide(const Tissue& tissue, double amplitude = 0.01) {
+  RenderScene scene;
+  scene.field = StandingWave(0.33, amplitude, 0, 3, 6);
+  scene.step = 0.1;
+  scene.max_length = 200;
+  scene.stage = {.boundary = Box{{-3, -3, 0}, {3, 3, 6}},
+                 .medium = {.mu_s = tissue.mu_s, .mu_a = tissue.mu_a}};
+  if (tissue.mu_s > 0) scene.stage.medium.phase = SpacePhaseFunction{HgPhase{tissue.g}};
+  scene.lights = {BeamLight{{0, 0, 0}, Vec3::UnitZ(), 0.5}};
+  scene.leapfrogs = true;
+  scene.sensors = {RadialDetector{{0, 0, 6}, 2.5, 2, pi / 2, {1, 2.5}}};
+  scene.bins.derivatives = static_cast<int>(parameters_of(scene.stage.medium).size());
+  return scene;
+}
+
+struct Powers {
+  RenderJob job;
+  RunState state;
+  SensorResult found;
+};
+Powers powers(const RenderScene& scene, double samples) {
+  const RenderJob job = render_job(scene, {RenderMethod::analog}, 1);
+  const RunState state = run_render(job, samples);
+  return {job, state, render_result(scene, job, state.sums)[0]};
+}
+
+/// Of the power on the larger disk.
+struct Slope {
+  double value, error;
+};
+Slope slope(const Powers& powers, std::size_t parameter) {
+  const Estimate& within = powers.found.gradients->within;
+  return {within.value[2 * parameter + 1].real(), within.error[2 * parameter + 1]};
+}
+
+/// Central, with its error by the differences of groups.
+Slope difference(const Powers& high, const Powers& low, double apart) {
+  const auto within = [&](const Powers& one, std::size_t group) {
+    const auto sums = one.state.sums.group_sums(group);
+    const auto stride = static_cast<std::size_t>(one.job.bins.sums());
+    return (pi * sums[0].real() + pi * (2.5 * 2.5 - 1) * sums[stride].real()) /
+           one.state.sums.group_samples(group);
+  };
+  const std::size_t groups = high.state.sums.groups();
+  double mean = 0, square = 0;
+  for (std::size_t i = 0; i < groups; ++i) {
+    const double one = (within(high, i) - within(low, i)) / apart;
+    mean += one / static_cast<double>(groups);
+    square += one * one / static_cast<double>(groups);
+  }
+  return {mean, std::sqrt((square - mean * mean) / static_cast<double>(groups - 1))};
+}
+
+}  // namespace
+
+TEST_CASE("by absorption where nothing scatters: Beer and Lambert") {
+  const Powers all = powers(guide({0, 0.2, 0}, 1e-9), 2000);
+  CHECK(all.found.total->value[0].real() == doctest::Approx(std::exp(-1.2)).epsilon(1e-9));
+  CHECK(all.found.gradients->within.value.size() == 2);
+  for (const std::size_t disk : {0, 1})
+    CHECK(all.found.gradients->within.value[disk].real() ==
+          doctest::Approx(-6 * std::exp(-1.2)).epsilon(1e-6));
+}
+
+/// -mu_t s of the light that meets no collision; scattered light is far from a small disk.
+TEST_CASE("by scattering of light that hardly scatters") {
+  const Powers all = powers(guide({1e-6, 0.2, 0.5}, 1e-9), 2000);
+  CHECK(slope(all, 1).value == doctest::Approx(-6 * std::exp(-1.2)).epsilon(1e-4));
+}
+
+TEST_CASE("by absorption it is the mean path of the light") {
+  RenderScene scene = guide({0.4, 0.05, 0.7}, 1e-9);
+  scene.bins.moments = true;
+  const Powers all = powers(scene, 20000);
+  const double path = all.found.paths.value[0].real() / 1.33;
+  CHECK(slope(all, 1).value ==
+        doctest::Approx(-path * all.found.total->value[0].real()).epsilon(1e-6));
+}
+
+TEST_CASE("derivatives are those of differences of the same paths") {
+  constexpr double samples = 400000;
+  const Tissue tissue{0.4, 0.05, 0.7};
+  const Powers all = powers(guide(tissue), samples);
+  const double by[] = {0.04, 0.02, 0.03};
+  for (std::size_t parameter = 0; parameter < 3; ++parameter) {
+    CAPTURE(parameter);
+    const auto moved = [&](double share) {
+      Tissue there = tissue;
+      double* const all_of_them[] = {&there.mu_s, &there.mu_a, &there.g};
+      *all_of_them[parameter] += share * by[parameter];
+      return powers(guide(there), samples);
+    };
+    const Slope one = slope(all, parameter),
+                other = difference(moved(1), moved(-1), 2 * by[parameter]);
+    CAPTURE(one.value);
+    CAPTURE(one.error);
+    CAPTURE(other.value);
+    CAPTURE(other.error);
+    CHECK(std::abs(one.value - other.value) < 4 * std::hypot(one.error, other.error));
+    CHECK(std::hypot(one.error, other.error) < 0.06 * std::abs(one.value));
+  }
+}
+
+TEST_CASE("totals have the derivatives of all rings, and a picture's of each") {
+  const Powers all = powers(guide({0.4, 0.05, 0.7}), 4000);
+  const PowerGradients& gradients = *all.found.gradients;
+  REQUIRE(gradients.image.value.size() == 6);
+  for (std::size_t p = 0; p < 3; ++p) {
+    const Complex inner = pi * gradients.image.value[2 * p];
+    const Complex outer = pi * (2.5 * 2.5 - 1) * gradients.image.value[2 * p + 1];
+    CHECK(std::abs(gradients.within.value[2 * p] - inner) < 1e-12);
+    CHECK(std::abs(gradients.within.value[2 * p + 1] - inner - outer) < 1e-12);
+    CHECK(std::abs(gradients.mean.value[p] * pi * 2.5 * 2.5 - inner - outer) < 1e-12);
+  }
+}
+
+TEST_CASE("derivatives are of analog light") {
+  CHECK_THROWS_AS(check(guide({0.4, 0.05, 0.7}), {RenderMethod::light}), InputError);
+}
+
+}  // namespace flatspeckle::grin::tests
