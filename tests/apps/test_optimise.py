@@ -41,6 +41,16 @@ class Optimise(ProgramTest):
         self.assertEqual(found["best/value_error"], 0)
         self.assertLess(found["spot_radius"], 1e-4)
 
+    def test_foci_of_a_square_beam(self):
+        """Of 0.5 mm: its aberration asks for 1.061 of the paraxial amplitude (the power on a small disk peaks there)."""
+        for length in (10, 20, 30, 45):
+            q = (np.pi / 2 / length) ** 2
+            paraxial = q * 1.3333 / (3.4851 ** 2 / 2 - q)
+            self.call("optimise", **{**FOCUS, "light": "square", "ray_count": 500, "beam_radius": 0.25,
+                                     "stop_plane": [0, 0, length, 0, 0, 1], "max_length": 100,
+                                     "vary": [f"amplitude={paraxial / 1.5}:{paraxial * 1.5}"]}, out=f"{length}.h5")
+            self.assertAlmostEqual(float(self.found(f"{length}.h5")["best/amplitude"]) / paraxial / 1.061, 1, delta=0.01)
+
     def test_the_result_is_that_of_the_best(self):
         """Its datasets are those of a run of its own there, by a fresh seed."""
         self.call("optimise", **GUIDE, out="guide.h5")

@@ -45,6 +45,15 @@ class Refused(RenderTest):
         self.refuse("step", "is a key of", step=0.1)
         self.refuse("length_unit = 0", length_unit=0)
 
+    def test_gradients(self):
+        curved = {**FIBRE, "gradient": True, "method": "analog"}
+        self.refuse("gradient", "method = analog", **{**curved, "method": "light"})
+        self.refuse("gradient", "method = analog", gradient=True)
+        self.refuse("gradient", "no medium", **{**curved, "mu_s": None, "mu_a": None, "phase": None, "g": None})
+        self.refuse("gradient", "bodies", ball=[0, 0, 2, 0.5, 1.5, 0, 0, 0], **curved)
+        write_density(self.folder / "cloud.h5", np.ones((3, 3, 3)), origin=[-1, -1, 0], spacing=[1, 1, 2])
+        self.refuse("gradient", "uniform", density="cloud.h5", **curved)
+
     def test_fields(self):
         self.refuse("index", "must be positive", field="linear", slope=[0, 0, -0.5])
         self.refuse("index", "in all of the body", field="linear", slope=[0, 0, -0.5],
