@@ -189,7 +189,8 @@ std::vector<Candidate> candidates(const Tracers& tracers) {
   for (const RenderMethod method :
        {RenderMethod::bidirectional, RenderMethod::path, RenderMethod::light})
     if (has_finite_variance(tracers.scene(), method)) found.push_back({tracers.make(method)});
-  if (can_be_analog(tracers.scene())) found.push_back({tracers.make(RenderMethod::analog)});
+  if (tracers.plan().curved && can_be_analog(tracers.scene()))
+    found.push_back({tracers.make(RenderMethod::analog)});
   return found;
 }
 

@@ -51,7 +51,6 @@ RenderPlan render_plan(const RenderScene& scene) {
 }
 
 bool can_be_analog(const RenderScene& scene) {
-  if (std::holds_alternative<Homogeneous>(scene.field)) return false;
   const auto ends = sensor_ends(scene.sensors, scene.stage);
   return std::all_of(ends.begin(), ends.end(),
                      [](const SensorEnd& end) { return end.can_be_hit(); });
@@ -103,7 +102,8 @@ void Tracers::find_beams() {
 }
 
 Tracer Tracers::make(RenderMethod method) const {
-  Tracer tracer = plan_.curved ? curved(method) : straight(method);
+  const bool is_analog = method == RenderMethod::analog;
+  Tracer tracer = plan_.curved || is_analog ? curved(method) : straight(method);
   if (method != RenderMethod::photon_map) tracer.unscattered_beams = unscattered_beams_;
   if (!walks_ && method != RenderMethod::photon_map) {
     tracer.kernel = nullptr;

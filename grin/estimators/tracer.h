@@ -13,7 +13,7 @@ namespace flatspeckle::grin {
 /// The least plan that a scene allows.
 RenderPlan render_plan(const RenderScene& scene);
 
-/// Of curved rays, and sensors that light can hit.
+/// Of sensors that light can hit.
 bool can_be_analog(const RenderScene& scene);
 
 /// Lights and sensors for a method; throws InputError where they do not fit the stage.

@@ -168,7 +168,7 @@ namespace {
 void check_analog(const RenderScene& scene) {
   if (!can_be_analog(scene))
     throw InputError("method", method_word(RenderMethod::analog),
-                     "is of index fields, and of sensors that light can hit");
+                     "is of sensors that light can hit");
 }
 
 }  // namespace

@@ -13,8 +13,7 @@ const DatasetTable camera_table = sensor_table(
               {"column", Data::scale, "", "1", "tangent of the angle to the right of it"}},
      .unit = "1/(length^2 sr)",
      .pixel = "L/n^2 averaged over the pixel",
-     .mean = "mean over the pixels",
-     .can_be_hit = false});
+     .mean = "mean over the pixels"});
 
 PixelRectangle picture_of(const Camera& camera) {
   const double half_width = std::tan(camera.field_of_view / 2);

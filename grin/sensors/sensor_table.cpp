@@ -26,7 +26,6 @@ DatasetTable sensor_table(const SensorWords& words) {
   add("image_path_square", axes, "length^2", "mean of its square");
   add("mean_path", "", "length", "mean optical path of the sensor's light");
   add("mean_path_square", "", "length^2", "mean of its square");
-  if (!words.can_be_hit) return table;
   add("image_gradient", "parameter " + axes, "", "derivative of image");
   add("mean_gradient", "parameter", "", "derivative of mean");
   if (has_total) add("total_gradient", "parameter", "", "derivative of total");

@@ -14,7 +14,6 @@ struct SensorWords {
   std::string unit;              ///< of a pixel and of the mean
   std::string pixel, mean;
   std::string total = {};  ///< a power; none: there is no total, and pulses are of the mean
-  bool can_be_hit = true;  ///< by light, of which derivatives are
 };
 
 /// Pictures and what they add up to; the same of bins of optical path and beyond them; the mean

@@ -153,6 +153,8 @@ RUNS = {
                          "path_points": 5, "field": "parabolic", "alpha": 0.5, "index": 1.5}),
     "camera": ("render", {**STAGE, "sensor_at": [0.2, 0, 3.9], "sensor_direction": [0, 0, -1],
                           "field_of_view": 1}),
+    "lens_camera": ("render", {**STAGE, "sensor_at": [0.2, 0, 4], "sensor_direction": [0, 0, -1], "lens_radius": 0.5,
+                               "focus_distance": 2, "field_of_view": 1, **GRADIENT}),
     "area": ("render", {**STAGE, "sensor": "area", "sensor_at": [0, 0, 4], "sensor_size": [1, 1],
                         "length_unit": 0.001, "mu_a": 0.1, "map_box": [-1, -1, 0, 1, 1, 4], "map_cells": [2, 3, 4],
                         **GRADIENT}),

@@ -60,6 +60,16 @@ TEST_CASE("analog light is that of light tracing and of bidirectional tracing") 
   }
 }
 
+TEST_CASE("analog light of a uniform index is that of light tracing") {
+  RenderScene scene = guide(0.3, 0.05, {0.5, 2.5});
+  scene.field = Homogeneous{0.33};
+  const PowersWithin one = powers(scene, RenderMethod::analog, 60000, 1),
+                     other = powers(scene, RenderMethod::light, 60000, 2);
+  for (std::size_t i = 0; i < 2; ++i)
+    CHECK(std::abs(one.power.value[i] - other.power.value[i]) <
+          4 * std::hypot(one.power.error[i], other.power.error[i]));
+}
+
 TEST_CASE("all power of analog light is accounted for") {
   const RenderScene scene = guide(0.3, 0.05, {2.5});
   const RenderJob job = render_job(scene, {RenderMethod::analog}, 1);
@@ -132,7 +142,7 @@ TEST_CASE("a target error is that of the powers within, where there are radii") 
 
 TEST_CASE("analog light is refused where it cannot be") {
   RenderScene scene = guide(0.3, 0, {1});
-  scene.field = Homogeneous{0.33};
+  scene.sensors = {Camera{{0, 0, 5}, -Vec3::UnitZ(), Vec3::UnitY(), 1, {4, 4}}};
   CHECK_THROWS_AS(check(scene, {RenderMethod::analog}), InputError);
 }
 
