@@ -1,6 +1,12 @@
 #!/usr/bin/env python3
 """Map of a number of a sweep of another subcommand (--value, by default the power on the detector) over two of its keys, with contours and
-its largest value marked; with one key a curve with its errors."""
+its largest value marked; with one key a curve with its errors. --value NAME[i] takes the i-th of several numbers, as in
+power_within[0]. --ideal_lens draws where that number is what an ideal lens before the medium would bring to a point there: all light that
+comes unscattered through the stage, exp(-(mu_s + mu_a) length)."""
+
+import math
+import re
+import tomllib
 
 from lib import style
 from lib.result_file import Unusable
@@ -24,18 +30,36 @@ def points_of(result, name):
     return list(zip(keys, own)), *grids
 
 
+def entry_of(name):
+    """The dataset, and which of several numbers."""
+    found = re.fullmatch(r"(.*?)(?:\[(\d+)\])?", name)
+    return found[1], None if found[2] is None else int(found[2])
+
+
 def values_of(result, name):
-    values = result.values(name)
-    return values, result.values(f"{name}_error") if result.has(f"{name}_error") else np.zeros_like(values)
+    path, entry = entry_of(name)
+
+    def read(of):
+        values = result.values(of)
+        if entry is None:
+            return values
+        if values.ndim == len(result.dataset("samples").shape) or entry >= values.shape[-1]:
+            raise Unusable(f"{result.path}: {path} has no number {entry} at each point")
+        return values[..., entry]
+
+    values = read(path)
+    return values, read(f"{path}_error") if result.has(f"{path}_error") else np.zeros_like(values)
 
 
 def grid_of(result, arguments):
     name = arguments.value
     if not result.swept():
         raise Unusable(f"{result.path}: no sweep of another subcommand")
-    if not result.has(name):
+    path, entry = entry_of(name)
+    if not result.has(path):
         raise Unusable(f"{result.path}: has no dataset {name}; --value takes one of {', '.join(result.numbers())}")
-    axes = [(scales[0].name.strip("/"), scales[0][...]) for scales in result.dataset(name).dims]
+    scales = [scale[0] for scale in result.dataset(path).dims]
+    axes = [(scale.name.strip("/"), scale[...]) for scale in (scales if entry is None else scales[:-1])]
     if any(key == "point" for key, _ in axes):
         axes, values, errors = points_of(result, name)
     else:
@@ -47,18 +71,32 @@ def grid_of(result, arguments):
     return keep, values.reshape(shape), errors.reshape(shape)
 
 
+def ideal_lens(result):
+    """What comes unscattered through the stage, along its axis."""
+    keys = tomllib.loads(result.attribute("config"))
+    try:
+        box = keys["stage_box"]
+        return math.exp(-(keys.get("mu_s", 0) + keys.get("mu_a", 0)) * (box[5] - box[2])) * keys["beam_light"][7]
+    except KeyError as missing:
+        raise Unusable(f"{result.path}: --ideal_lens is of a beam along z through a box; there is no {missing}")
+
+
 def is_log(values):
     return values.min() > 0 and np.allclose(np.diff(np.log(values)), np.log(values[1] / values[0]), rtol=1e-3)
 
 
 def with_unit(result, name):
     """A name with the unit that the file says."""
-    dataset = result.dataset(name if result.has(name) else name.replace(".", "_"))
+    path, _ = entry_of(name)
+    dataset = result.dataset(path if result.has(path) else path.replace(".", "_"))
     unit = dataset.attrs.get("units", "1")
     return name if unit in ("", "1") else f"{name} ({unit})"
 
 
-def draw_curve(axis, label, place, values, errors):
+def draw_curve(axis, label, place, values, errors, lens):
+    if lens:
+        axis.axhline(lens, color="gray", linestyle="--", label="ideal lens")
+        axis.legend()
     axis.errorbar(place, values, errors, **style.look(0))
     best = int(np.nanargmax(values))
     axis.plot(place[best], values[best], "*", color="black", markersize=9, zorder=5)
@@ -67,12 +105,14 @@ def draw_curve(axis, label, place, values, errors):
         axis.set_xscale("log")
 
 
-def draw_map(figure, axis, result, keys, values, name):
+def draw_map(figure, axis, result, keys, values, name, lens):
     (down, y), (across, x) = keys
     mesh = axis.pcolormesh(x, y, values, cmap="cividis", shading="nearest")
     if min(values.shape) > 3 and np.nanmax(values) > np.nanmin(values):
         lines = axis.contour(x, y, values, colors="white", linewidths=0.6, levels=6)
         axis.clabel(lines, fontsize=5.5, fmt="%.3g")
+    if lens and np.nanmin(values) < lens < np.nanmax(values):
+        axis.contour(x, y, values, colors="red", linewidths=1, linestyles="--", levels=[lens])
     row, column = np.unravel_index(np.nanargmax(values), values.shape)
     axis.plot(x[column], y[row], "*", color="white", markeredgecolor="black", markersize=10)
     axis.set(xlabel=with_unit(result, across), ylabel=with_unit(result, down), xscale="log" if is_log(x) else "linear", yscale="log" if is_log(y) else "linear")
@@ -82,23 +122,27 @@ def draw_map(figure, axis, result, keys, values, name):
 
 def draw(results, arguments):
     keys, values, errors = grid_of(results[0], arguments)
+    lens = ideal_lens(results[0]) if arguments.ideal_lens else None
     figure, axis = plt.subplots(figsize=(style.COLUMN, 2.6))
     if len(keys) == 1:
-        draw_curve(axis, with_unit(results[0], keys[0][0]), keys[0][1], values, errors)
+        draw_curve(axis, with_unit(results[0], keys[0][0]), keys[0][1], values, errors, lens)
         axis.set_ylabel(with_unit(results[0], arguments.value))
         return figure
-    best, at_edge = draw_map(figure, axis, results[0], keys, values, arguments.value)
+    best, at_edge = draw_map(figure, axis, results[0], keys, values, arguments.value, lens)
     at = np.nanargmax(values)
     edge = ["at the edge of the map"] if at_edge else []
     axis.set_title(", ".join([f"star: {values.flat[at]:.3g} $\\pm$ {errors.flat[at]:.1g}", *edge]), fontsize=7)
     style.caption(figure, ["star: largest, " + ", ".join(f"{key} = {value:.3g}" for key, value in best.items()) +
                            f", {values.flat[at]:.4g} +- {errors.flat[at]:.2g}; the largest of noisy values is too large",
-                           *(f"it lies {text}: larger ones may lie beyond" for text in edge)])
+                           *(f"it lies {text}: larger ones may lie beyond" for text in edge),
+                           *([f"dashed: as much as an ideal lens brings to a point, {lens:.3g}; "
+                              f"the largest is {values.flat[at] / lens:.3g} of it"] if lens else [])])
     return figure
 
 
 def add_options(parser):
-    parser.add_argument("--value", default="total", help="dataset of one number for each point")
+    parser.add_argument("--value", default="total", help="dataset of one number for each point, or NAME[i]")
+    parser.add_argument("--ideal_lens", action="store_true", help="compare with all light that comes unscattered through a box")
 
 
 if __name__ == "__main__":

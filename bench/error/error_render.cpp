@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "bench/oracles/lamp_map.h"
+#include "bench/oracles/peierls_slab.h"
 #include "bench/scenes/render_scenes.h"
 #include "grin/render/map_datasets.h"
 
@@ -58,11 +59,14 @@ ErrorReference even_light(std::size_t pixels) {
 std::vector<ErrorRun> all_methods(const RenderScenePointer& named) {
   std::vector<ErrorRun> runs;
   const auto reference = [name = named.name] { return stored_reference(name); };
-  for (Method method :
-       {method_of(named, "path tracing", RenderMethod::path),
-        method_of(named, "light tracing", RenderMethod::light),
-        method_of(named, "bidirectional", RenderMethod::bidirectional), photon_map(named)}) {
-    if (named.name == "waveguide") method.share = 2;  // long curved flights
+  std::vector<Method> methods{method_of(named, "path tracing", RenderMethod::path),
+                              method_of(named, "light tracing", RenderMethod::light),
+                              method_of(named, "bidirectional", RenderMethod::bidirectional),
+                              photon_map(named)};
+  const bool is_sound = named.name == "waveguide";
+  if (is_sound) methods.push_back(method_of(named, "analog light paths", RenderMethod::analog));
+  for (Method& method : methods) {
+    if (is_sound) method.share = 2;  // long curved flights
     runs.push_back(run_of(method, reference));
   }
   return runs;
@@ -99,6 +103,38 @@ ErrorRun map_run() {
   });
 }
 
+/// Transmittance of a slab that scatters as much as it absorbs, by mu_s and mu_a.
+ErrorRun gradient_run() {
+  RenderScene slab{};
+  slab.step = 1;
+  slab.max_length = 1e9;
+  slab.stage = {.boundary = grin::Box{{-100, -100, 0}, {100, 100, 1}},
+                .medium = {.mu_s = 1, .mu_a = 1}};
+  slab.lights = {grin::BeamLight{{0, 0, 0}, grin::Vec3::UnitZ(), 0.01}};
+  slab.sensors = {
+      grin::AreaDetector{{0, 0, 1}, grin::Vec3::UnitY(), 200, 200, {}, std::numbers::pi / 2}};
+  slab.bins.derivatives = 2;
+  const Method method{
+      .scene = "slab", .name = "derivatives by mu_s and mu_a", .trial = [slab](auto seed) {
+        const grin::RenderJob job = render_job(slab, {RenderMethod::analog}, seed);
+        return Trial{job.batches, [first = job.bins.first_derivative()](
+                                      double samples, std::span<const Complex> sums) {
+                       constexpr double area = 200 * 200;
+                       return sample_mean(samples / area, sums.subspan(first, 2));
+                     }};
+      }};
+  return run_of(method, [] {
+    constexpr double apart = 1e-3;
+    const auto through = [](double mu_s, double mu_a) {
+      return oracles::isotropic_slab(mu_s + mu_a, mu_s / (mu_s + mu_a)).transmitted;
+    };
+    return ErrorReference{{(through(1 + apart, 1) - through(1 - apart, 1)) / (2 * apart),
+                           (through(1, 1 + apart) - through(1, 1 - apart)) / (2 * apart)},
+                          1e-5,
+                          "differences of Peierls' equation"};
+  });
+}
+
 /// Joins by 1/r^2 without another strategy beside.
 std::vector<ErrorRun> without_variance(const RenderScenePointer& named) {
   Method method = method_of(named, "path tracing, no finite variance", RenderMethod::path);
@@ -123,6 +159,7 @@ std::vector<ErrorRun> render_error_runs() {
   append(runs, without_variance(
                    {"glass_ball_beam", std::make_shared<const RenderScene>(beam_on_glass_ball())}));
   runs.push_back(map_run());
+  runs.push_back(gradient_run());
   return runs;
 }
 

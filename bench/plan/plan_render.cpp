@@ -6,6 +6,7 @@
 #include "bench/plan/plan_rooms.h"
 #include "bench/plan/plan_timing.h"
 #include "bench/scenes/render_scenes.h"
+#include "grin/estimators/analog_light.h"
 #include "grin/estimators/path_kernels.h"
 #include "grin/estimators/tracer.h"
 #include "grin/render/map_datasets.h"
@@ -118,6 +119,37 @@ PlanCase depth_in(const std::string& name, const RenderScene& scene) {
   });
 }
 
+SampledKernel kernel_of(const Tracer& tracer) {
+  const int pixels = tracer.transport->pixels();
+  const auto run = [=](std::uint64_t number, std::span<Complex> sums) {
+    Film film(pixels, {}, sums);
+    RandomStream random(1, static_cast<std::uint64_t>(Stream::render), number);
+    TransportCounts counts;
+    tracer.add(paths_per_batch, random, film, counts);
+  };
+  const auto count = static_cast<std::size_t>(pixels);
+  return {count, paths_per_batch, run, steady(count)};
+}
+
+/// Rays of a beam, and beside them light paths, which bring nothing where nothing scatters.
+PlanCase rays_alone() {
+  return named("render", "light paths", "guide of sound, nothing scatters", [](double cpu_seconds) {
+    PlanRow row{.per = "ray"};
+    RenderScene scene = render_scenes()[1].scene;
+    scene.stage.medium = {};
+    const RenderRequest request{RenderMethod::analog};
+    const Tracers tracers(scene, request);
+    const Tracer special = tracers.make(RenderMethod::analog);
+    Tracer general = special;
+    const CurvedSpaceOptions options{scene.step, scene.max_length, Spreading::none};
+    general.kernel = analog_kernel(false, special.transport,
+                                   make_curved_space(scene.field, scene.stage, options), false);
+    compare_sampled(row, kernel_of(general), kernel_of(special), Numbers::other, Measure::sample,
+                    cpu_seconds);
+    return row;
+  });
+}
+
 RenderScene absorbing_slab() {
   RenderScene scene{};
   scene.stage.boundary = Box{Vec3(-200, -200, 0), Vec3(200, 200, 10)};
@@ -153,6 +185,7 @@ std::vector<PlanCase> render_plan_cases() {
              p = RenderPlan{};
              p.curved = p.deep = false;
            }),
+      rays_alone(),
       depth_in("slab of OD 10, albedo 0.9", absorbing_slab()),
       map_alone()};
 }

@@ -171,7 +171,7 @@ bool may_leap(const SceneField& field) {
                     field.field);
 }
 
-StepChoice chosen(const SceneField& field, const Stage& stage, bool any_phase, bool may_leap) {
+StepChoice choice_of(const SceneField& field, const Stage& stage, bool any_phase, bool may_leap) {
   constexpr double cheaper = 2.2;  // one force instead of three
   const double longest = longest_step(field, stage);
   if (bends_nothing(field, stage)) return {longest};
@@ -187,11 +187,11 @@ StepChoice chosen(const SceneField& field, const Stage& stage, bool any_phase, b
 }  // namespace
 
 double chosen_step(const SceneField& field, const Stage& stage, bool any_phase) {
-  return chosen(field, stage, any_phase, false).step;
+  return choice_of(field, stage, any_phase, false).step;
 }
 
 StepChoice chosen_steps(const SceneField& field, const Stage& stage, bool any_phase) {
-  return chosen(field, stage, any_phase, may_leap(field));
+  return choice_of(field, stage, any_phase, may_leap(field));
 }
 
 }  // namespace flatspeckle::grin

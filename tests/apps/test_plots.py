@@ -132,6 +132,20 @@ class Plots(ProgramTest):
                                       "--out", self.folder / "both")
         self.assertEqual((status, heard), (0, ""))
 
+    def test_maps_of_experiments_take_one_of_several_numbers(self):
+        self.call("sweep", **SPACE, of="render", vary=["mu_a=0,0.5", "g=0,0.3,0.6"], phase="henyey_greenstein", out="map.h5")
+        file, out = self.folder / "map.h5", self.folder / "map"
+        self.assertEqual(run_script("experiment_map", file, "--value", "total", "--out", out)[::2], (0, ""))
+        self.assertEqual(run_script("experiment_map", file, "--value", "total[0]", "--out", out)[0], 2)
+        self.assertIn("beam", run_script("experiment_map", file, "--ideal_lens", "--out", out)[2])
+        disks = {**SPACE, "point_light": None, "beam_light": [0, 0, -1, 0, 0, 1, 0.1, 1], "sensor": "radial", "sensor_size": None,
+                 "radii": [0.1, 0.5], "vary": ["mu_a=0,0.5,1,2"]}
+        self.call("sweep", **disks, of="render", out="disks.h5")
+        status, said, heard = run_script("experiment_map", self.folder / "disks.h5", "--value", "power_within[1]", "--ideal_lens",
+                                         "--out", out)
+        self.assertEqual((status, heard), (0, ""))
+        self.assertEqual(run_script("experiment_map", self.folder / "disks.h5", "--value", "power_within[2]")[0], 2)
+
     def test_captions_say_what_a_reader_does_not_see(self):
         said = run_script("memory_effect", self.make("grid"), "--out", self.folder / "a")[1]
         self.assertIn("error bars are smaller than the symbols", said)

@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 
+#include "bench/oracles/peierls_slab.h"
 #include "grin/paths/path_score.h"
 #include "grin/render/render_datasets.h"
 #include "tests/grin/render_tests.h"
@@ -121,6 +122,32 @@ TEST_CASE("derivatives are those of differences of the same paths") {
     CAPTURE(other.error);
     CHECK(std::abs(one.value - other.value) < 4 * std::hypot(one.error, other.error));
     CHECK(std::hypot(one.error, other.error) < 0.06 * std::abs(one.value));
+  }
+}
+
+/// What comes through, by differences of a solution of Peierls' equation.
+TEST_CASE("derivatives of a slab's transmittance are those of transport theory") {
+  RenderScene scene;
+  scene.step = 1;
+  scene.max_length = 1e9;
+  scene.stage = {.boundary = Box{{-100, -100, 0}, {100, 100, 1}}, .medium = {.mu_s = 1, .mu_a = 1}};
+  scene.lights = {BeamLight{{0, 0, 0}, Vec3::UnitZ(), 0.01}};
+  scene.sensors = {AreaDetector{{0, 0, 1}, Vec3::UnitY(), 200, 200, {}, pi / 2}};
+  scene.bins.derivatives = 2;
+  const Powers all = powers(scene, 200000);
+  const auto through = [](double mu_s, double mu_a) {
+    return oracles::isotropic_slab(mu_s + mu_a, mu_s / (mu_s + mu_a)).transmitted;
+  };
+  constexpr double apart = 1e-3;
+  const double exact[] = {(through(1 + apart, 1) - through(1 - apart, 1)) / (2 * apart),
+                          (through(1, 1 + apart) - through(1, 1 - apart)) / (2 * apart)};
+  const Estimate& found = all.found.gradients->mean;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const double value = 200 * 200 * found.value[i].real(), error = 200 * 200 * found.error[i];
+    CAPTURE(value);
+    CAPTURE(exact[i]);
+    CHECK(std::abs(value - exact[i]) < 4 * error);
+    CHECK(error < 0.02 * std::abs(exact[i]));
   }
 }
 

@@ -8,7 +8,9 @@
 #include "bench/oracles/peierls_slab.h"
 #include "bench/scenes/furnaces.h"
 #include "bench/stability/extreme_rows.h"
+#include "grin/paths/path_score.h"
 #include "grin/render/map_datasets.h"
+#include "grin/render/power_gradients.h"
 
 namespace flatspeckle::bench {
 
@@ -179,6 +181,44 @@ void add_slabs(ExtremeRows& rows) {
   });
 }
 
+/// Of the power on a face, by one of the medium's parameters.
+Estimate slope(const ScatteringMedium& medium, double thickness, int parameter,
+               std::uint64_t samples) {
+  RenderScene scene = slab(medium, thickness, false);
+  scene.bins.derivatives = static_cast<int>(parameters_of(medium).size());
+  const RenderJob job = render_job(scene, {RenderMethod::analog}, 1);
+  const PowerGradients found =
+      power_gradients(scene.sensors[0], 0, scene.bins, run_state(job, samples).sums);
+  Estimate own = part(found.mean, static_cast<std::size_t>(parameter), 1);
+  const double area = pixels_of(scene.sensors[0]).area;
+  own.value[0] *= area;
+  own.error[0] *= area;
+  return own;
+}
+
+void add_gradients(ExtremeRows& rows) {
+  rows.add("derivative by mu_a, slab of OD 30 that absorbs all", "-exp(-30), in errors", [] {
+    const Estimate found = slope({0, 30}, 1, 0, 1000);
+    return in_errors(found.value[0], found.error[0], -std::exp(-30.0), 1e-9, 1e-12);
+  });
+  rows.add("derivative by mu_a of 1e-9, slab of OD 2", "Peierls' equation, in errors", [] {
+    const Estimate found = slope({2, 1e-9}, 1, 1, 100'000);
+    const auto through = [](double mu_a) {
+      return isotropic_slab(2 + mu_a, 2 / (2 + mu_a)).transmitted;
+    };
+    const double exact = (through(2e-3) - 4 * through(1e-3) + 3 * through(0)) / -2e-3;
+    return in_errors(found.value[0], found.error[0], exact, 0.05);
+  });
+  rows.add("derivative by mu_s, slab of OD 10", "Peierls' equation, in errors", [] {
+    const Estimate found = slope({10, 0.1}, 1, 0, 400'000);
+    const auto through = [](double mu_s) {
+      return isotropic_slab(mu_s + 0.1, mu_s / (mu_s + 0.1)).transmitted;
+    };
+    const double exact = (through(10.01) - through(9.99)) / 0.02;
+    return in_errors(found.value[0], found.error[0], exact, 0.2);
+  });
+}
+
 /// The fluence rate of a scene's map alone.
 Finding map_row(RenderScene scene, const std::vector<double>& expected, std::uint64_t samples) {
   scene.sensors.clear();
@@ -239,6 +279,7 @@ std::vector<ExtremeCase> render_extremes() {
   ExtremeRows rows("grin");
   add_furnaces(rows);
   add_slabs(rows);
+  add_gradients(rows);
   add_maps(rows);
   add_deep_slabs(rows);
   return std::move(rows).rows();
