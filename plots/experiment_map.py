@@ -81,10 +81,6 @@ def ideal_lens(result):
         raise Unusable(f"{result.path}: --ideal_lens is of a beam along z through a box; there is no {missing}")
 
 
-def is_log(values):
-    return values.min() > 0 and np.allclose(np.diff(np.log(values)), np.log(values[1] / values[0]), rtol=1e-3)
-
-
 def with_unit(result, name):
     """A name with the unit that the file says."""
     path, _ = entry_of(name)
@@ -101,7 +97,7 @@ def draw_curve(axis, label, place, values, errors, lens):
     best = int(np.nanargmax(values))
     axis.plot(place[best], values[best], "*", color="black", markersize=9, zorder=5)
     axis.set_xlabel(label)
-    if is_log(place):
+    if style.in_equal_ratios(place):
         axis.set_xscale("log")
 
 
@@ -115,7 +111,8 @@ def draw_map(figure, axis, result, keys, values, name, lens):
         axis.contour(x, y, values, colors="red", linewidths=1, linestyles="--", levels=[lens])
     row, column = np.unravel_index(np.nanargmax(values), values.shape)
     axis.plot(x[column], y[row], "*", color="white", markeredgecolor="black", markersize=10)
-    axis.set(xlabel=with_unit(result, across), ylabel=with_unit(result, down), xscale="log" if is_log(x) else "linear", yscale="log" if is_log(y) else "linear")
+    scales = ["log" if style.in_equal_ratios(values) else "linear" for values in (x, y)]
+    axis.set(xlabel=with_unit(result, across), ylabel=with_unit(result, down), xscale=scales[0], yscale=scales[1])
     figure.colorbar(mesh, ax=axis, label=with_unit(result, name))
     return {across: x[column], down: y[row]}, row in (0, len(y) - 1) or column in (0, len(x) - 1)
 

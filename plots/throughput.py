@@ -111,7 +111,7 @@ def over_the_first(power, error):
 
 def scale_key(axis, values):
     """A logarithm of what was swept in equal ratios."""
-    if len(values) > 2 and values[0] > 0 and np.allclose(np.diff(np.log(values)), np.log(values[1] / values[0]), rtol=1e-3):
+    if style.in_equal_ratios(values):
         axis.set_xscale("log")
     else:
         axis.xaxis.set_major_locator(MaxNLocator(4))

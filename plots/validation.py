@@ -6,6 +6,7 @@ speckle pattern over the mean intensity, and the distribution of their ratio."""
 from dataclasses import dataclass
 
 from lib import speckle_ratio, style
+from lib.speckle_ratio import FORWARD
 from lib.sweep_file import METHODS
 
 import matplotlib.pyplot as plt
@@ -16,7 +17,6 @@ SIGMAS = 4  # agreement is judged at so many combined standard errors
 BAND = "0.92"
 PEAKED = 8  # highest over lowest value from which on a logarithmic axis shows more
 MOST_RELATIVE, MOST_SIGMAS = 100, 5 * SIGMAS  # that are drawn in place: beyond stand arrows with numbers
-FORWARD = {"color": "#E69F00", "alpha": 0.25, "linewidth": 0}
 ENTRIES, SENSORS = "number of the entry", "number of the sensor"
 
 

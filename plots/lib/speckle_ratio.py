@@ -5,7 +5,7 @@ from lib import style
 import matplotlib.pyplot as plt
 import numpy as np
 
-FORWARD = {"color": "#E69F00", "alpha": 0.25, "linewidth": 0}
+FORWARD = {"color": "#E69F00", "alpha": 0.25, "linewidth": 0}  # what stands behind views of the forward lobe
 
 
 def draw_pattern(axis, result):

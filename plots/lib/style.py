@@ -78,6 +78,11 @@ def angle_axis(axis, angles, label):
     axis.set_xticks([n * np.pi / 2 for n in shown], [names[n] for n in shown])
 
 
+def in_equal_ratios(values):
+    """Whether rising values are, so that a logarithmic axis is theirs."""
+    return len(values) > 2 and values[0] > 0 and np.allclose(np.diff(np.log(values)), np.log(values[1] / values[0]), rtol=1e-3)
+
+
 def whole_decades(axis):
     """Limits at powers of ten, so that each axis has at least two labels."""
     for low_high, limit in ((axis.dataLim.intervalx, axis.set_xlim),
