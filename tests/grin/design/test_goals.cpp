@@ -126,7 +126,61 @@ TEST_CASE("The loss of rays that are to meet has its exact derivative") {
   }
 }
 
-TEST_CASE("The same of light of points, to leave parallel or to pass through an aperture") {
+namespace {
+
+double farthest(const Numbers& a, const Numbers& b) {
+  double most = 0, largest = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    most = std::max(most, std::abs(a[i] - b[i]));
+    largest = std::max(largest, std::abs(b[i]));
+  }
+  return most / largest;
+}
+
+/// Products with the rows of all rays, which are in single precision, against differences, the
+/// gradient and each other.
+void check_rows(const LossCase& one, double h) {
+  RaySystem& rays = *one.task.rays;
+  const std::size_t count = one.at.size(), readings = rays.rays() * rays.readings();
+  const Numbers along = some(count, 0, 1, 7), weights = some(readings, 0, 1, 8);
+  Numbers before = one.at, after = one.at;
+  for (std::size_t i = 0; i < count; ++i) {
+    before[i] -= h * along[i];
+    after[i] += h * along[i];
+  }
+  Numbers change = *rays.trace(one.form, after), product(readings), sums(count), normal(count);
+  const Numbers less = *rays.trace(one.form, before);
+  for (std::size_t i = 0; i < readings; ++i) change[i] = (change[i] - less[i]) / (2 * h);
+  rays.trace(one.form, one.at);
+  const RayRows rows = rays.linearised();
+  rows.times(along, product);
+  CHECK(farthest(product, change) < 1e-6);
+  rows.normal(along, normal);
+  rows.transposed(product, sums);
+  CHECK(farthest(normal, sums) < 1e-13);
+  rows.transposed(weights, sums);
+  CHECK(farthest(sums, rays.gradient(weights)) < 1e-6);
+  Numbers squares(count), unit(count, 0.0), column(readings);
+  rows.squares(Numbers(readings, 2.0), squares);
+  unit[count / 2] = 1;
+  rows.times(unit, column);
+  double square = 0;
+  for (const double c : column) square += 4 * c * c;
+  CHECK(squares[count / 2] == doctest::Approx(square));
+}
+
+}  // namespace
+
+TEST_CASE("Rows of rays multiply as derivatives do") {
+  check_rows(case_of(lens("ball", 1.8), 0.3, 0.05), 1e-4);
+  check_rows(case_of(lens("radial", 0.7), 0.3, 0.05), 1e-4);
+  check_rows(case_of(fibre(8), 0, 0.05), 1e-4);
+  check_rows(case_of(fibre(0), 1.9, 0.05), 1e-4);
+}
+
+TEST_CASE(
+    "The loss of light of points has its exact derivative, to leave parallel or to pass through an "
+    "aperture") {
   DesignValues values;
   values.form.nodes = {6};
   const auto light = [](SourceValues& of) {
