@@ -44,6 +44,20 @@ class Bodies(BodiesTest):
         np.testing.assert_allclose(self.ends(lens), self.ends(ball), atol=1e-13)
         np.testing.assert_allclose(lens["optical_path"], ball["optical_path"], rtol=1e-13)
 
+    def test_render_sees_that_ball_too(self):
+        keys = {"stage_box": [-3, -3, -3, 3, 3, 3], "field": "homogeneous", "sensor": "area", "sensor_at": [0, 0, 3],
+                "sensor_size": [4, 4], "pixels": [1, 1], "point_light": [0, 0, -2.5, 1], "method": "light",
+                "samples": 200_000, "threads": 1}
+        dim = [1.5, 0.5, 0.1, 0]  # it scatters and absorbs
+        totals = []
+        for body in ({"ball": [0, 0, 0, 1, *dim]}, {"lens": [0, 0, -1, 1, 1, -1, 2, *dim]}):
+            self.call("render", **keys, **body, out="light.h5")
+            found = datasets(self.folder / "light.h5")
+            totals.append((found["total"], found["total_error"]))
+        (ball, ball_error), (lens, lens_error) = totals
+        self.assertLess(abs(ball - lens), 4 * np.hypot(ball_error, lens_error))
+        self.assertLess(lens_error / lens, 0.03)
+
     def test_thick_lens_and_cemented_pair_on_the_axis(self):
         """Back focal distances by paraxial refraction, n' u' = n u - y (n' - n)/R."""
         for lenses in ([[0, 0, 0, 1, 6, -4, 0.6, 1.52, 0, 0, 0]],
