@@ -99,6 +99,7 @@ void ExperimentSweep::check_points() {
   for (std::size_t axis = 0; axis < points_.axes.size(); ++axis) check_values(points_, axis, all);
   set_point(points_, points_.count() - 1, all);
   for (const std::size_t point : points_to_check()) checked(point, {&all, &command_.keys()});
+  all.join_reads(command_.keys());  // the seed
   all.refuse_unread();
   inputs_ = experiment(0)->inputs();
 }

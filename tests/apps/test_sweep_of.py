@@ -45,6 +45,14 @@ class SweepOf(SweepTest):
                     found = swept[name] if name in ("row", "column") else swept[name][i, j]
                     np.testing.assert_array_equal(found, values, name)
 
+    def test_another_seed(self):
+        self.call("sweep", **GRID, seed=5, out="sweep.h5")
+        found = datasets(self.folder / "sweep.h5")["total"][0, 1]
+        self.call("render", **{**GUIDE, "amplitude": 0, "mu_s": 0.3}, seed=5, out="one.h5")
+        self.assertEqual(found, datasets(self.folder / "one.h5")["total"])
+        self.call("render", **{**GUIDE, "amplitude": 0, "mu_s": 0.3}, out="one.h5")
+        self.assertNotEqual(found, datasets(self.folder / "one.h5")["total"])
+
     def test_other_subcommands(self):
         """Their points are runs of their own too, by batches, transport or at once."""
         box = {"domain": "box", "width": 10, "depth": 6, "scatterer": "hg", "optical_depth": 1, "albedo": 1}
