@@ -57,8 +57,6 @@ class FluxExperiment : public Experiment {
 
   void read(const Keys& keys) override {
     choose_method(keys, method_, spec_, run_);
-    if (!by_mc() && !spec_.layers.empty())
-      throw InputError("layers", spec_.layers, "their flux is by method = mc");
     if (!by_mc()) read_transport(keys, methods_, spec_, run_);
     stop_ = by_mc() ? stop_rule(keys, run_) : both_batches();
     keys.read(angle_bins_);

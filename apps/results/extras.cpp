@@ -4,6 +4,7 @@
 #include "core/error.h"
 #include "flatland/scene/frequency_shift.h"
 #include "mc/changes/frequency_shifts.h"
+#include "mc/slab/layered_covariance.h"
 #include "mc/slab/slab_covariance.h"
 #include "mc/space/space_scene.h"
 #include "mc/varying/layer_gradient.h"
@@ -90,22 +91,24 @@ ExtendedEstimation mc_delays(const Scene& scene, mc::ReversedPaths reversed, con
 mc::PathJob change_job(const Scene& scene, mc::ReversedPaths reversed,
                        const std::vector<mc::FieldChange>& changes, double tolerance) {
   const bool with_reversed = mc::make_plan(scene, reversed).reversed;
-  const auto job = scene.medium.dimension == 3 ? mc::space_change_job : mc::slab_change_job;
+  const auto job = scene.profile                 ? mc::layered_change_job
+                   : scene.medium.dimension == 3 ? mc::space_change_job
+                                                 : mc::slab_change_job;
   return job(scene, with_reversed, {tolerance}, changes);
 }
 
 ExtendedEstimation transport_delays(const Scene& scene, mc::ReversedPaths reversed,
                                     const Extras& extras, double tolerance) {
-  refuse_layers(scene, "delays");
   mc::check_delays(scene, extras.delays);
   require_changing("delays", scene.request);
-  if (!motion_of(extras).only_diffuses(scene))
-    throw InputError("velocity, shear, diffusion: are of method = mc");
+  const mc::Motion motion = motion_of(extras);
+  if (motion.velocity != Vec2{} || motion.shear != 0)
+    throw InputError("velocity, shear: are of method = mc");
   if (scene.request.has_reference() && !extras.exposure.times.empty())
     throw InputError("exposures: need covariance = intensity");
   mc::check_exposure(extras.exposure, extras.delays);
   std::vector<mc::FieldChange> changes;
-  for (const double delay : extras.delays) changes.push_back({.delay = delay});
+  for (const double delay : extras.delays) changes.push_back({.delay = motion.diffusion * delay});
   return with_delays(scene, change_job(scene, reversed, changes, tolerance), extras,
                      transport_estimation(scene, reversed, tolerance).plan);
 }

@@ -7,6 +7,7 @@
 #include "bench/plan/plan_rooms.h"
 #include "bench/plan/plan_timing.h"
 #include "bench/scenes/standard_scenes.h"
+#include "flatland/media/cell_density.h"
 #include "flatland/media/layers.h"
 #include "mc/changes/brownian.h"
 #include "mc/changes/frequency_shifts.h"
@@ -140,6 +141,44 @@ PlanCase curved_rays(const NamedScene& on) {
                  });
 }
 
+/// A map of density 1, with single scattering by paths in both.
+PlanCase even_map(const NamedScene& on) {
+  return case_of("a density map", on.name, Numbers::other, Measure::sample, [scene = on.scene] {
+    constexpr std::size_t rows = 8, columns = 16;
+    Scene mapped = scene;
+    mapped.profile =
+        std::make_shared<const CellDensity>(scene.domain, Material{scene.scatterer, scene.medium},
+                                            rows, std::vector<double>(rows * columns, 1));
+    Plan special = plan_of(scene);
+    special.sampled_single = true;
+    return std::pair{kernel_of(mc::covariance_job(mapped, plan_of(mapped), seed)),
+                     kernel_of(mc::covariance_job(scene, special, seed + 1))};
+  });
+}
+
+/// By scatterers that do not shift the wavenumber.
+PlanCase refraction(const NamedScene& on) {
+  return case_of(
+      "refraction of the mean field", on.name, Numbers::other, Measure::sample, [scene = on.scene] {
+        Scene refracted = scene;
+        refracted.index.emplace().kind = IndexField::Kind::mean_field;
+        return std::pair{kernel_of(mc::covariance_job(refracted, plan_of(refracted), seed)),
+                         kernel_of(mc::covariance_job(scene, plan_of(scene), seed + 1))};
+      });
+}
+
+/// Scatterers that flow by nothing beside diffusing.
+PlanCase flow(const NamedScene& on) {
+  return case_of(
+      "flow", on.name + ", 8 delays", Numbers::same, Measure::sample, [scene = on.scene] {
+        const Plan plan = plan_of(scene);
+        const std::vector<double> times = {0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2};
+        return std::pair{
+            kernel_of(mc::delay_job(scene, plan, times, seed, {.velocity = {1e-300, 0}}).field),
+            kernel_of(mc::delay_job(scene, plan, times, seed).field)};
+      });
+}
+
 PlanCase derivatives(const NamedScene& on) {
   return case_of("derivatives", on.name, Numbers::same, Measure::sample, [scene = on.scene] {
     const Plan plan = mc::gradient_plan(scene, mc::ReversedPaths::no);
@@ -207,9 +246,12 @@ std::vector<PlanCase> mc_plan_cases() {
       bulk_table(forward),
       equal_layers(points),
       equal_layers(forward),
+      even_map(points),
       curved_rays(points),
+      refraction(slab),
       derivatives(forward),
       delays(around),
+      flow(around),
       frequencies(around),
   };
 }

@@ -50,6 +50,7 @@ std::vector<ExtremeCase> mc_theory_extremes();
 std::vector<ExtremeCase> mc_slab_extremes();
 std::vector<ExtremeCase> mc_transport_extremes();
 std::vector<ExtremeCase> mc_box_extremes();
+std::vector<ExtremeCase> mc_varying_extremes();
 std::vector<ExtremeCase> mc_imaging_extremes();
 std::vector<ExtremeCase> index_extremes();
 std::vector<ExtremeCase> ray_extremes();

@@ -10,8 +10,9 @@
 #include "core/numbers/blas.h"
 #include "core/run/interrupt.h"
 #include "core/run/parallel.h"
-#include "flatland/media/layers.h"
+#include "mc/slab/layer_stack.h"
 #include "mc/slab/range_refinement.h"
+#include "mc/slab/transport_jobs.h"
 #include "mc/transport/chains.h"
 #include "mc/transport/double_scattering.h"
 #include "mc/transport/scattering_matrices.h"
@@ -20,67 +21,12 @@ namespace flatspeckle::mc {
 
 namespace {
 
-/// A layer as a slab of its own.
-struct OneLayer {
-  Scene scene;
-  std::shared_ptr<const ScatteringLaw> law;
-
-  double depth() const { return scene.medium.mu_t * scene.domain.depth; }
-};
-
-Scene slab_of(const Scene& whole, const Layers& layers, std::size_t layer) {
-  Scene own = whole;
-  own.profile.reset();
-  own.scatterer = layers.materials()[layer].scatterer;
-  own.medium = layers.materials()[layer].medium;
-  own.domain.depth = layers.thickness(layer);
-  return own;
-}
-
-/// One at the least scatters; the law of those that do not is that of one that does.
-std::vector<OneLayer> layers_of(const Scene& slab) {
-  const auto& layers = dynamic_cast<const Layers&>(*slab.profile);
-  std::vector<OneLayer> list;
-  std::shared_ptr<const ScatteringLaw> any;
-  for (std::size_t l = 0; l < layers.materials().size(); ++l) {
-    list.push_back({slab_of(slab, layers, l), nullptr});
-    if (list[l].scene.medium.mu_s > 0)
-      any = list[l].law = std::make_shared<const ScatteringLaw>(list[l].scene);
-  }
-  for (OneLayer& layer : list)
-    if (!layer.law) layer.law = any;
-  return list;
-}
-
-/// What the layers above and below leave of waves where they enter each layer: of [layer][wave].
-template <typename TopOf, typename BottomOf>
-std::vector<std::vector<Complex>> entering(std::size_t layers, std::size_t waves, const TopOf& top,
-                                           const BottomOf& bottom) {
-  std::vector<std::vector<Complex>> factors(layers, std::vector<Complex>(waves));
-  for (std::size_t w = 0; w < waves; ++w)
-    for (std::size_t l = 0; l < layers; ++l) {
-      Complex exponent = 0;
-      for (std::size_t m = 0; m < layers; ++m)
-        if (m != l) exponent += m < l ? top(m, w) : bottom(m, w);
-      factors[l][w] = std::exp(exponent);
-    }
-  return factors;
-}
-
 class Stack {
  public:
-  explicit Stack(const Scene& slab) : slab_(slab), layers_(layers_of(slab)) {}
+  Stack(const Scene& slab, double delay) : slab_(slab), layers_(layers_of(slab, delay)) {}
 
-  const ScatteringLaw& narrowest() const {
-    return *std::ranges::min_element(layers_, {}, [](const OneLayer& layer) {
-              return layer.law->width();
-            })->law;
-  }
-  int least_order() const {
-    int order = 0;
-    for (const OneLayer& layer : layers_) order = std::max(order, layer.law->least_order());
-    return order;
-  }
+  const ScatteringLaw& narrowest() const { return narrowest_law(layers_); }
+  int least_order() const { return mc::least_order(layers_); }
 
   /// Paths of one scattering, per entry.
   std::vector<Complex> once() const {
@@ -109,14 +55,12 @@ class Stack {
   /// What layers of one grid share.
   struct Discrete {
     AngularGrid grid;
-    std::vector<std::unique_ptr<ScatteringMatrices>> matrices;
+    LayerMatrices matrices;
   };
   std::unique_ptr<Discrete> discrete(const std::vector<Focus>& foci, int order) const {
     auto made =
         std::make_unique<Discrete>(Discrete{AngularGrid(foci, order, narrowest().width()), {}});
-    for (const OneLayer& layer : layers_)
-      made->matrices.push_back(
-          std::make_unique<ScatteringMatrices>(made->grid, *layer.law, layer.scene.medium.albedo));
+    made->matrices = layer_matrices(layers_, made->grid);
     return made;
   }
 
@@ -124,7 +68,10 @@ class Stack {
   std::vector<Complex> solved(const ChainGroup& group, const Discrete& discrete) const {
     std::vector<Complex> values(group.links.size());
     for (const auto parity : ScatteringMatrices::parities(group.q)) {
-      const Rows collected = stack_response(parts(group, discrete, parity));
+      const Rows collected =
+          stack_response(stacked(layers_, discrete.matrices, group.q * slab_.medium.mu_t,
+                                 group.lights, group.views, parity))
+              .collected;
       for (std::size_t i = 0; i < values.size(); ++i)
         values[i] += collected(group.links[i].view, group.links[i].light);
     }
@@ -132,44 +79,14 @@ class Stack {
   }
 
  private:
-  std::vector<StackedLayer> parts(const ChainGroup& group, const Discrete& discrete,
-                                  Parity parity) const {
-    std::vector<StackedLayer> parts;
-    for (std::size_t l = 0; l < layers_.size(); ++l) {
-      const Scene& scene = layers_[l].scene;
-      const auto& matrices = *discrete.matrices[l];
-      auto [lights, views] = matrices.ends(scene, group.lights, group.views, parity);
-      parts.push_back({matrices.transport(group.q * slab_.medium.mu_t / scene.medium.mu_t, parity),
-                       layers_[l].depth(),
-                       std::move(lights),
-                       std::move(views),
-                       {},
-                       {}});
-    }
-    const auto factors = [&](auto ends) {
-      return entering(
-          parts.size(), (parts.front().*ends).top.size(),
-          [&](std::size_t l, std::size_t w) { return parts[l].depth * (parts[l].*ends).top[w]; },
-          [&](std::size_t l, std::size_t w) {
-            return parts[l].depth * (parts[l].*ends).bottom[w];
-          });
-    };
-    const auto of_lights = factors(&StackedLayer::lights), of_views = factors(&StackedLayer::views);
-    for (std::size_t l = 0; l < parts.size(); ++l) {
-      parts[l].light_factors = of_lights[l];
-      parts[l].view_factors = of_views[l];
-    }
-    return parts;
-  }
-
   const Scene& slab_;
   std::vector<OneLayer> layers_;
 };
 
 class StackRefiner {
  public:
-  StackRefiner(const Scene& slab, bool reversed, const Refinement& refinement)
-      : request_(slab.request), refinement_(refinement), stack_(slab), once_(stack_.once()) {
+  StackRefiner(const Scene& slab, bool reversed, const Refinement& refinement, double delay)
+      : request_(slab.request), refinement_(refinement), stack_(slab, delay), once_(stack_.once()) {
     for (ChainGroup& group : grouped(slab, stack_.narrowest(), chains(request_, reversed, 0), 0))
       parts_.push_back({std::move(group), {}, {}, false, false});
   }
@@ -243,25 +160,42 @@ class StackRefiner {
 
 }  // namespace
 
-Refined layered_covariance(const Scene& slab, bool reversed, const Refinement& refinement) {
+Refined layered_covariance(const Scene& slab, bool reversed, const Refinement& refinement,
+                           double delay) {
   const std::size_t entries = slab.request.entries.size();
   if (slab.medium.mu_s == 0)
     return {std::vector<Complex>(entries), std::vector<Complex>(entries), 0};
   blas_single_thread();
-  return StackRefiner(slab, reversed, refinement).refined();
+  return StackRefiner(slab, reversed, refinement, delay).refined();
 }
 
-FieldJob layered_covariance_job(const Scene& slab, bool reversed, const Refinement& refinement) {
+namespace {
+
+void require_layers(const Scene& slab) {
   if (dynamic_cast<const Layers*>(slab.profile.get()) == nullptr)
     throw InputError("method", "transport", "of a medium that varies takes layers alone");
   if (has_near_ends(slab.request))
     throw InputError("layers: by transport take plane waves and far views");
+}
+
+}  // namespace
+
+FieldJob layered_covariance_job(const Scene& slab, bool reversed, const Refinement& refinement) {
+  require_layers(slab);
   const auto solve = [=] {
     return refined_range(slab.request, refinement, [&](const Refinement& finer) {
       return layered_covariance(slab, reversed, finer);
     });
   };
   return two_batch_job(slab.request.entries.size(), 1, solve).field;
+}
+
+PathJob layered_change_job(const Scene& slab, bool reversed, const Refinement& refinement,
+                           const std::vector<FieldChange>& changes) {
+  require_layers(slab);
+  return change_job(slab.request.entries.size(), changes, [=](const FieldChange& change) {
+    return layered_covariance(slab, reversed, refinement, change.delay);
+  });
 }
 
 }  // namespace flatspeckle::mc

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 
 #include "mc/estimators/flux_walk.h"
 #include "mc/slab/flux_refinement.h"
+#include "mc/slab/layer_stack.h"
 #include "mc/transport/chains.h"
 #include "mc/transport/scattering_matrices.h"
 
@@ -26,13 +28,10 @@ struct Faces {
   Exits reflected, transmitted;
 };
 
-Faces faces(const Scene& scene, double light, const AngularGrid& grid,
-            const ScatteringMatrices& matrices) {
-  const double depth = scene.medium.mu_t * scene.domain.depth;
-  const auto leaving = [&](Parity parity) {
-    const auto [lights, views] = matrices.ends(scene, {{light, light}}, {}, parity);
-    return layer_response(matrices.transport(0, parity), depth, lights, views);
-  };
+/// What leaves of a unit light, by parity.
+using Leaving = std::function<LayerResponse(Parity)>;
+
+Faces faces(double light, const AngularGrid& grid, const Leaving& leaving) {
   const auto even = leaving(Parity::even), odd = leaving(Parity::odd);
   const auto exits = [&](const Rows& of_even, const Rows& of_odd) {
     Exits found{Eigen::VectorXd(grid.size()), Eigen::VectorXd(grid.size())};
@@ -62,11 +61,9 @@ double share_within(const Faces& faces, const AngularGrid& grid, double from, do
 }
 
 /// As the sums of a light in a FluxJob.
-FluxSolution solution(const Scene& scene, double light, std::size_t bins, const ScatteringLaw& law,
-                      int order) {
-  const AngularGrid grid(light_foci({light, light}, law.width()), order, law.width());
-  const ScatteringMatrices matrices(grid, law, scene.medium.albedo);
-  const Faces exits = faces(scene, light, grid, matrices);
+FluxSolution solution(double light, std::size_t bins, const AngularGrid& grid,
+                      const Leaving& leaving) {
+  const Faces exits = faces(light, grid, leaving);
   FluxSolution found{std::vector<Complex>(flux_shares + bins), static_cast<int>(2 * grid.size())};
   auto& shares = found.shares;
   shares[reflected] =
@@ -80,14 +77,47 @@ FluxSolution solution(const Scene& scene, double light, std::size_t bins, const 
   return found;
 }
 
+AngularGrid grid_of(double light, const ScatteringLaw& law, int order) {
+  return AngularGrid(light_foci({light, light}, law.width()), order, law.width());
+}
+
+FluxSolution of_slab(const Scene& scene, double light, std::size_t bins, const ScatteringLaw& law,
+                     int order) {
+  const AngularGrid grid = grid_of(light, law, order);
+  const ScatteringMatrices matrices(grid, law, scene.medium.albedo);
+  const double depth = scene.medium.mu_t * scene.domain.depth;
+  return solution(light, bins, grid, [&](Parity parity) {
+    const auto [lights, views] = matrices.ends(scene, {{light, light}}, {}, parity);
+    return layer_response(matrices.transport(0, parity), depth, lights, views);
+  });
+}
+
+FluxSolution of_layers(const std::vector<OneLayer>& layers, double light, std::size_t bins,
+                       int order) {
+  const AngularGrid grid = grid_of(light, narrowest_law(layers), order);
+  const LayerMatrices matrices = layer_matrices(layers, grid);
+  return solution(light, bins, grid, [&](Parity parity) {
+    return stack_response(stacked(layers, matrices, 0, {{light, light}}, {}, parity));
+  });
+}
+
 }  // namespace
 
 Refined slab_flux(const Scene& slab, std::size_t angle_bins, const Refinement& refinement) {
   if (slab.medium.mu_s == 0) return flux_of_absorber(slab, angle_bins);
+  const auto refined = [&](int least, const FluxSolver& solve) {
+    return refined_flux(slab, refinement, std::max(refinement.first_order(), least), solve);
+  };
+  if (slab.profile) {
+    const auto layers = layers_of(slab);
+    return refined(least_order(layers), [&](double light, int order) {
+      return of_layers(layers, light, angle_bins, order);
+    });
+  }
   const ScatteringLaw law(slab);
-  return refined_flux(
-      slab, refinement, std::max(refinement.first_order(), law.least_order()),
-      [&](double light, int order) { return solution(slab, light, angle_bins, law, order); });
+  return refined(law.least_order(), [&](double light, int order) {
+    return of_slab(slab, light, angle_bins, law, order);
+  });
 }
 
 FluxJob slab_flux_job(const Scene& slab, std::size_t angle_bins, const Refinement& refinement) {

@@ -359,14 +359,14 @@ LayerResponseOf<Number> layer_response(const TransportOperatorOf<Number>& medium
   return doubled(medium, depth, lights, views).response();
 }
 
-Rows stack_response(const std::vector<StackedLayer>& layers) {
+LayerResponse stack_response(const std::vector<StackedLayer>& layers) {
   std::optional<Sheet> all;
   for (const StackedLayer& one : layers) {
     const Sheet sheet = doubled(one.medium, one.depth, one.lights, one.views)
                             .sheet(one.light_factors, one.view_factors);
     all = all ? stacked(*all, sheet, one.medium.even) : sheet;
   }
-  return all->collected;
+  return {all->lights.up, all->lights.down, all->collected};
 }
 
 template LayerResponse layer_response(const TransportOperator&, double, const PairWaves&,

@@ -60,7 +60,7 @@ struct StackedLayer {
   std::vector<Complex> light_factors, view_factors;
 };
 
-/// What views collect of layers, from the top down, [view][light]: by the star product.
-Rows stack_response(const std::vector<StackedLayer>& layers);
+/// Of layers from the top down, by the star product.
+LayerResponse stack_response(const std::vector<StackedLayer>& layers);
 
 }  // namespace flatspeckle::mc

@@ -50,6 +50,22 @@ class Layers(ProgramTest):
         with h5py.File(self.folder / "sweep.h5") as file:
             self.assertEqual(file["field_correlation"].size, 6)
 
+    def test_transport_knows_flux_and_delays(self):
+        self.write("layers.csv", TISSUE)
+        self.call("flux", domain="slab", layers="layers.csv", scatterer="hg", method="transport", tolerance=1e-5,
+                  out="flux.h5")
+        with h5py.File(self.folder / "flux.h5") as file:
+            self.assertAlmostEqual(file["reflectance"][0], 0.286583, delta=3e-6)
+            self.assertAlmostEqual(file["transmittance"][0], 0.294708, delta=3e-6)
+        found = []
+        for keys in ({"method": "transport", "tolerance": 1e-4}, {"method": "mc", "samples": 20000}):
+            self.call("covariance", domain="slab", layers="layers.csv", scatterer="hg", view_angles=[0.3, 2.5],
+                      delays=[0, 0.01, 0.05], diffusion=2, **keys, out="delays.h5")
+            with h5py.File(self.folder / "delays.h5") as file:
+                found.append((file["field_correlation"][()], file["field_correlation_error"][()]))
+        (exact, _), (mc, error) = found
+        self.assertTrue(np.all(np.abs(mc - exact) <= 4 * error + 1e-4), (mc, exact, error))
+
     def test_what_is_in_the_file(self):
         self.write("layers.csv", TISSUE)
         self.call("flux", **SLAB, out="result.h5")
@@ -98,9 +114,7 @@ class Refused(RefusingTest):
 
     def test_what_layers_have_not(self):
         self.check(["dimension"], dimension=3)
-        self.check(["layers", "delays", "take mc"], method="transport", samples=None, delays=[0, 1])
         self.check(["layers", "gradient", "take mc"], method="transport", samples=None, gradient=True)
-        self.check(["layers", "method = mc"], command="flux", method="transport", samples=None)
         points = "thickness,density\n3,0.05\n3,0.25\n"
         disks = {**BOX, "scatterer": "tm", "radius": 0.2}
         self.check(["equilibrium"], points, method="wave", placement="equilibrium", **disks)

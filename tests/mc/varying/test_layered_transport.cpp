@@ -4,8 +4,11 @@
 
 #include "core/error.h"
 #include "flatland/media/layers.h"
+#include "mc/changes/brownian.h"
+#include "mc/estimators/flux_walk.h"
 #include "mc/slab/layered_covariance.h"
 #include "mc/slab/slab_covariance.h"
+#include "mc/slab/slab_flux.h"
 #include "tests/mc/estimates.h"
 
 namespace flatspeckle::mc {
@@ -57,6 +60,52 @@ TEST_CASE("different layers, absorbing ones among them, agree with paths") {
     CAPTURE(e);
     CHECK_WITHIN_4_SIGMA(found.value[e], found.error[e], expected[e], 2e-4 * std::abs(expected[e]));
     CHECK(found.error[e] < 0.05 * std::abs(expected[e / 2 * 2]));
+  }
+}
+
+TEST_CASE("fields of two times: a cut slab is the slab, layers with shares of diffusion as paths") {
+  const double delay = 0.03;
+  const Scene whole = tests::hg_slab(60, {10, 0.7, 0.95}, some_pairs());
+  const Scene cut = layered({{20, 2, 0.7, 0.95}, {40, 4, 0.7, 0.95}}, some_pairs());
+  const auto expected = slab_covariance(whole, true, {1e-6}, {.delay = delay}).value,
+             found = layered_covariance(cut, true, {1e-5}, delay).value;
+  for (std::size_t e = 0; e < found.size(); ++e) {
+    CAPTURE(e);
+    CHECK(std::abs(found[e] - expected[e]) < 5e-5 * std::abs(expected[e / 2 * 2]));
+  }
+}
+
+TEST_CASE("layers that diffuse unlike each other agree with paths") {
+  const double delay = 0.05;
+  Scene scene = layered({{20, 2, 0.8, 0.99}, {10, 1, 0, 1}},
+                        intensity_request({0.3}, tests::far_views({0.1, pi - 0.5})));
+  auto materials = scene.profile->materials();
+  materials[0].motion.diffusion = 4;
+  materials[1].motion.diffusion = 0.25;
+  scene.profile = std::make_shared<const Layers>(materials, std::vector<double>{20, 10});
+  const auto expected = layered_covariance(scene, true, {1e-5}, delay).value;
+  const PathJob job = delay_job(scene, make_plan(scene, ReversedPaths::yes), {delay}, 5);
+  const auto found = jackknife(tests::summed(job.field.batches, 60000), job.all);
+  for (std::size_t e = 0; e < expected.size(); ++e) {
+    CAPTURE(e);
+    const std::size_t later = expected.size() + e;
+    CHECK_WITHIN_4_SIGMA(found.value[later], found.error[later], expected[e],
+                         1e-4 * std::abs(expected[e]));
+  }
+}
+
+/// Discrete ordinates by adding and doubling, to six digits; direct light left out.
+TEST_CASE("what three layers reflect and let through, without chance") {
+  Scene scene = layered({{20, 2, 0.9, 0.99}, {30, 3, 0.7, 0.9}, {10, 1, 0, 1}},
+                        intensity_request({0, 1}, tests::far_views({0})));
+  const auto found = slab_flux(scene, 4, {1e-6}).value;
+  const std::size_t per_light = found.size() / 2;
+  const double expected[2][2] = {{0.286583, 0.294708}, {0.417927, 0.193188}};
+  for (std::size_t light = 0; light < 2; ++light) {
+    CAPTURE(light);
+    const auto* shares = &found[light * per_light];
+    CHECK(shares[reflected].real() == doctest::Approx(expected[light][0]).epsilon(5e-6));
+    CHECK(shares[transmitted].real() == doctest::Approx(expected[light][1]).epsilon(5e-6));
   }
 }
 
