@@ -18,22 +18,36 @@ namespace flatspeckle::apps {
 
 namespace {
 
-// Where several methods tell the same, each has a group.
-constexpr const char* groups[] = {"", "mc/", "wave/", "transport/"};
+/// Where several methods or sensors tell the same, each has a group.
+std::vector<std::string> groups_of(const ResultReader& file) {
+  std::vector<std::string> groups{"", "mc/", "wave/", "transport/"};
+  for (const std::string& sensor : file.members("sensors"))
+    groups.push_back("sensors/" + sensor + '/');
+  return groups;
+}
 
 /// A script of plots/ and the dataset that it draws, of all that have it.
 struct Drawing {
   const char *dataset, *script;
 };
 
-constexpr Drawing drawings[] = {{"squared_contrast", "contrast"},  {"delay", "dws"},
-                                {"frequency_shift", "frequency"},  {"deviation", "validation"},
-                                {"intensity_ratio", "validation"}, {"tilt_q", "memory_effect"},
-                                {"field", "speckle_field"},        {"frame", "image"},
-                                {"parameter_name", "fit"},         {"exit/x", "rays"},
-                                {"ball_spline", "design"},         {"radial_spline", "design"},
-                                {"graded_spline", "design"},       {"history/rms", "design"},
-                                {"total_field", "field_map"},      {"image", "render"}};
+constexpr Drawing drawings[] = {{"squared_contrast", "contrast"},
+                                {"delay", "dws"},
+                                {"frequency_shift", "frequency"},
+                                {"deviation", "validation"},
+                                {"intensity_ratio", "validation"},
+                                {"tilt_q", "memory_effect"},
+                                {"field", "speckle_field"},
+                                {"frame", "image"},
+                                {"parameter_name", "fit"},
+                                {"exit/x", "rays"},
+                                {"image/ray", "spot"},
+                                {"map/fluence", "light_map"},
+                                {"ball_spline", "design"},
+                                {"radial_spline", "design"},
+                                {"graded_spline", "design"},
+                                {"history/rms", "design"},
+                                {"total_field", "field_map"}};
 
 /// As text, whatever its type; empty where there is none.
 std::string attribute_text(const ResultReader& file, const AttributeRow& row) {
@@ -100,10 +114,11 @@ void print_swept(const ResultReader& file) {
 void print_datasets(const ResultReader& file) {
   std::cout << "Holds\n";
   print_swept(file);
+  const auto groups = groups_of(file);
   std::set<std::string> told;
   for (const DatasetTable* table : all_tables())
     for (const DatasetRow& row : table->rows)
-      for (const char* group : groups) {
+      for (const std::string& group : groups) {
         const std::string path = group + row.path;
         if (!path.starts_with("state") && file.has_attribute(path, "long_name") &&
             told.insert(path).second)
@@ -121,16 +136,34 @@ void print_map(const ResultReader& file) {
               << " --value NAME, one that it holds, over the keys that were swept\n";
 }
 
+/// Of render: pictures and rings of several pixels.
+void note_pictures(const ResultReader& file, const std::string& group,
+                   std::vector<std::string>& scripts) {
+  const std::string image = group + "image";
+  if (!file.has_attribute(image, "long_name")) return;
+  const auto shape = file.shape(image);
+  if (shape.size() == 1 && shape[0] > 1) scripts.push_back("ring_profile");
+  if (shape.size() == 2 && shape[0] * shape[1] > 1) scripts.push_back("render");
+}
+
+std::vector<std::string> scripts_for(const ResultReader& file) {
+  const auto groups = groups_of(file);
+  std::vector<std::string> scripts;
+  for (const Drawing& drawing : drawings)
+    if (std::ranges::any_of(groups,
+                            [&](const auto& group) { return file.has(group + drawing.dataset); }))
+      scripts.push_back(drawing.script);
+  for (const std::string& group : groups) note_pictures(file, group, scripts);
+  return scripts;
+}
+
 void print_drawings(const ResultReader& file) {
   if (file.has_attribute("/", "of")) return print_map(file);
   const char* title = "\nTo draw it\n";
   std::set<std::string> told;
-  for (const Drawing& drawing : drawings) {
-    const bool has = std::any_of(std::begin(groups), std::end(groups), [&](const char* group) {
-      return file.has(std::string(group) + drawing.dataset);
-    });
-    if (!has || !told.insert(drawing.script).second) continue;
-    std::cout << title << "  plots/" << drawing.script << ".py " << file.path().string() << '\n';
+  for (const std::string& script : scripts_for(file)) {
+    if (!told.insert(script).second) continue;
+    std::cout << title << "  plots/" << script << ".py " << file.path().string() << '\n';
     title = "";
   }
 }

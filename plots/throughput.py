@@ -71,14 +71,16 @@ def check_others(result, arguments):
 
 
 def rows_of(result, arguments):
-    """Second key, key, power and error of each point that there is."""
+    """Second key, key, power and error of each point; NaN where there is none."""
     power, error = result.values("total").ravel(), result.values("total_error").ravel()
     check_others(result, arguments)
     curves = second_key(result, arguments)
     second = key_of(result, curves) if curves else 0.0
     key = key_of(result, key_name(result, arguments))
     rows = np.array(np.broadcast_arrays(second, key, power, error)).T
-    return rows[np.isfinite(rows[:, 2])]
+    if not np.isfinite(rows[:, 2]).any():
+        raise Unusable(f"{result.path}: no point is there yet")
+    return rows
 
 
 def curves(results, arguments):

@@ -37,17 +37,19 @@ double to_four_digits(double value) {
   return std::stod(text);
 }
 
-std::vector<double> doubling_tilts(const SceneSpec& spec, double largest) {
-  constexpr int doublings = 20;
+constexpr int doublings = 20;
+
+/// The first of them.
+std::vector<double> doubling_tilts(const SceneSpec& spec, double largest, int count) {
   std::vector<double> tilts;
-  for (int step = doublings; step >= 0; --step)
+  for (int step = doublings; step > doublings - count; --step)
     tilts.push_back(tilt_of(spec.light_angles[0], std::ldexp(largest, -step)));
   return tilts;
 }
 
 /// q at C_I = 1/2, or the largest or smallest that was tried.
-double pilot_range(const Scene& scene, bool transport, int threads, std::uint64_t seed) {
-  constexpr double tolerance = 1e-3;
+mc::Range pilot_range(const Scene& scene, bool transport, int threads, std::uint64_t seed) {
+  constexpr double tolerance = 1e-2;
   constexpr std::uint64_t paths = 20000;
   const auto reversed = mc::ReversedPaths::no;
   const Estimation pilot = transport ? transport_estimation(scene, reversed, tolerance)
@@ -60,7 +62,21 @@ double pilot_range(const Scene& scene, bool transport, int threads, std::uint64_
   options.threads = threads;
   RunState state;
   run_batches(pilot.job.batches, options, state);
-  return mc::memory_effect(scene.request, state.sums, pilot.job.covariance).range.range.value;
+  return mc::memory_effect(scene.request, state.sums, pilot.job.covariance).range.range;
+}
+
+/// By transport large tilts, which cost most, are tried where smaller ones do not do.
+double found_range(const SceneSpec& spec, double largest, bool transport, int threads,
+                   std::uint64_t seed) {
+  constexpr int more = 4;
+  SceneSpec pilot = spec;
+  for (int count = transport ? more + 1 : doublings + 1;; count += more) {
+    pilot.tilts = doubling_tilts(spec, largest, count);
+    const auto range =
+        pilot_range(with_dimension(make_scene(pilot), pilot), transport, threads, seed);
+    if (range.censored != mc::Range::Censoring::above_value || count > doublings)
+      return range.value;
+  }
 }
 
 }  // namespace
@@ -98,11 +114,9 @@ void choose_tilts(const Keys& keys, std::optional<std::int64_t>& count, SceneSpe
   if (!spec.tilts.empty()) throw InputError("tilts, tilt_count: exactly one must be given");
   const double light = keys.required(spec.light_angles).front(), largest = largest_sine_step(spec),
                k = 2 * pi / spec.wavelength;
-  SceneSpec pilot = spec;
-  pilot.tilts = doubling_tilts(spec, largest);
-  const double range = pilot_range(with_dimension(make_scene(pilot), pilot), method == "transport",
-                                   threads_of(keys, run), seed),
-               end = std::min(2 * range / k, largest);
+  const double range =
+      found_range(spec, largest, method == "transport", threads_of(keys, run), seed);
+  const double end = std::min(2 * range / k, largest);
   const auto last = static_cast<double>(*count - 1);
   for (std::int64_t step = 0; step < *count; ++step)
     spec.tilts.push_back(to_four_digits(tilt_of(light, end * static_cast<double>(step) / last)));

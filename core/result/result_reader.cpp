@@ -155,6 +155,18 @@ bool ResultReader::has_attribute(const std::string& object, const std::string& n
          H5Aexists_by_name(file_->get(), object.c_str(), name.c_str(), H5P_DEFAULT) > 0;
 }
 
+std::vector<std::string> ResultReader::members(const std::string& group) const {
+  std::vector<std::string> names;
+  if (!has(group)) return names;
+  const auto note = [](hid_t, const char* name, const H5L_info_t*, void* all) -> herr_t {
+    static_cast<std::vector<std::string>*>(all)->emplace_back(name);
+    return 0;
+  };
+  H5Literate_by_name(file_->get(), group.c_str(), H5_INDEX_NAME, H5_ITER_INC, nullptr, note, &names,
+                     H5P_DEFAULT);
+  return names;
+}
+
 std::vector<std::size_t> ResultReader::shape(const std::string& name) const {
   const Reader reader(*file_, path_.string(), name);
   const auto extents = reader.shape(reader.dataset().get());

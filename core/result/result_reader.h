@@ -26,6 +26,9 @@ class ResultReader {
   bool has(const std::string& name) const;
   bool has_attribute(const std::string& object, const std::string& name) const;
 
+  /// Names of what is in a group, in alphabetical order; none where there is no such group.
+  std::vector<std::string> members(const std::string& group) const;
+
   /// Extents of a dataset; empty for a scalar.
   std::vector<std::size_t> shape(const std::string& name) const;
 

@@ -1,5 +1,7 @@
 #include "grin/surfaces/lens_way.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "grin/surfaces/straight_way.h"
@@ -60,19 +62,27 @@ double way_out(const Lens& lens, const Vec3& x, const Vec3& d) {
   return way;
 }
 
+/// At the front or the cylinder, or out of a hollow. What is within already, to more than rounding,
+/// is on its way out.
 double way_in(const Lens& lens, const Vec3& x, const Vec3& d) {
   Stretch within = stretch_of_cylinder(lens, x, d);
-  for (const LensFace& face : lens.faces()) within = within.within(before(face, x, d));
+  std::array<Stretch, 2> hollows{none, none};
+  for (std::size_t i = 0; i < hollows.size(); ++i) {
+    const LensFace& face = lens.faces()[i];
+    within = within.within(before(face, x, d));
+    if (face.is_concave()) hollows[i] = stretch(face.sphere(), x, d);
+  }
   const double rounding = 1e-14 * (lens.bounds().high - lens.bounds().low).norm();
-  if (within.is_empty() || within.to <= rounding) return no_way;
-  double way = std::max(0.0, within.from);
-  for (int hollows = 0; hollows < 2; ++hollows)
-    for (const LensFace& face : lens.faces()) {
-      if (!face.is_concave()) continue;
-      const Stretch hollow = stretch(face.sphere(), x, d);
-      if (hollow.from - rounding <= way && way < hollow.to) way = hollow.to;
-    }
-  return way < within.to - rounding ? way : no_way;
+  const auto is_way_in = [&](double way) {
+    return way > -rounding && way >= within.from && way < within.to - rounding &&
+           std::ranges::none_of(hollows, [&](const Stretch& hollow) {
+             return hollow.from - rounding <= way && way < hollow.to;
+           });
+  };
+  double first = no_way;
+  for (const double way : {within.from, hollows[0].to, hollows[1].to})
+    if (is_way_in(way)) first = std::min(first, std::max(0.0, way));
+  return first;
 }
 
 }  // namespace flatspeckle::grin

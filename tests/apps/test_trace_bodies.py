@@ -115,6 +115,13 @@ class Bodies(BodiesTest):
         np.testing.assert_allclose(found["exit/dx"], vx, atol=1e-10)
         np.testing.assert_allclose(found["exit/x"], h * np.cos(turn) + vx / np.sqrt(1 - vx**2), atol=1e-9)
 
+    def test_from_inside_of_a_rod(self):
+        """Through its far face, once."""
+        found = self.trace(field="parabolic", index=1.5, alpha=1e-6, body_lens=[0, 0, 0, 0.9, 0, 0, 3], light="line",
+                           ray_count=3, beam_radius=0.2, origin=[0, 0, 1], stop_plane=plane(4), max_length=20)
+        np.testing.assert_allclose(found["optical_path"], 2 * 1.5 + 1, rtol=1e-9)
+        np.testing.assert_allclose(found["transmittance"], 1 - 0.2**2, rtol=1e-9)
+
     def test_luneburg_in_air_has_no_surface(self):
         keys = {**PARALLEL | {"field": "luneburg"}, "origin": [0, 0, -2], "beam_radius": 0.9, "stop_plane": plane(1)}
         bare, body = self.trace(**keys), self.trace(**keys, body_sphere=[0, 0, 0, 1])

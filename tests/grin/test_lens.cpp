@@ -84,6 +84,16 @@ TEST_CASE(
   CHECK(way_in(lens, x, Vec3::UnitX()) == doctest::Approx(1.8));
 }
 
+TEST_CASE("a ray that leaves a lens, and is outside but for a tolerance, does not meet it again") {
+  const Lens rod = *Lens::make({0, 0, 0}, 0.9, 0, 0, 3), ball = *Lens::make({0, 0, 0}, 1, 1, -1, 2);
+  for (const double before : {0.0, 1e-15, 1e-10}) {
+    CAPTURE(before);
+    CHECK(way_in(rod, {0, 0, 3 - before}, Vec3::UnitZ()) == no_way);
+    CHECK(way_in(rod, {0.9 - before, 0, 1}, Vec3::UnitX()) == no_way);
+    CHECK(way_in(ball, {0, 0, before}, -Vec3::UnitZ()) == no_way);
+  }
+}
+
 TEST_CASE("the normal of a lens turns as its curvature says") {
   constexpr double h = 1e-5;
   for (const Shape& shape : shapes) {
