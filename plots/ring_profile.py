@@ -33,7 +33,7 @@ def draw_values(axis, result, over, name, number):
 def draw_lambert(axis, result, number):
     angles = np.linspace(0, min(result.values("angle")[-1], np.pi / 2), 200)
     axis.plot(angles, result.values("total") / np.pi * np.cos(angles), color=style.look(number)["color"], linestyle="--",
-              label="Lambert")
+              label="Lambert" if number == 0 else None)
 
 
 def draw_kind(axis, results, over):
@@ -60,8 +60,8 @@ def draw(results):
         raise Unusable(f"{results[0].path}: has no rings; render with sensor radial or polar")
     figure, axes = plt.subplots(1, len(by_kind), squeeze=False,
                                 figsize=(style.PAGE if len(by_kind) > 1 else style.COLUMN, 2.5))
-    for axis, (over, own) in zip(axes[0], by_kind.items()):
-        draw_kind(axis, own, over)
+    for axis, over in zip(axes[0], filter(by_kind.get, QUANTITIES)):
+        draw_kind(axis, by_kind[over], over)
     return figure
 
 

@@ -120,6 +120,12 @@ def scale_key(axis, values):
         axis.ticklabel_format(axis="x", scilimits=(-2, 4), useMathText=True)
 
 
+def label_of_key(result, key):
+    """With the unit that a sweep's file says."""
+    unit = result.dataset(key).attrs.get("units", "1") if result.has(key) else "1"
+    return NAMES.get(key, key) + (f" ({unit})" if unit not in ("", "1") else "")
+
+
 def draw(results, arguments):
     figure, axis = plt.subplots(figsize=(style.COLUMN, 2.4))
     found = curves(results, arguments)
@@ -131,7 +137,7 @@ def draw(results, arguments):
         if relative:
             power, error = over_the_first(power, error)
         axis.errorbar(place, power, error, **style.look(number), label=labels[curve])
-    axis.set_xlabel(NAMES.get(key, key))
+    axis.set_xlabel(label_of_key(results[0], key))
     axis.set_ylabel("power / power at 0" if relative else "power on the detector")
     scale_key(axis, np.unique(np.concatenate([rows[:, 0] for rows in found.values()])))
     if any(labels.values()):

@@ -156,6 +156,11 @@ class RenderExperiment : public Experiment {
     inputs_ = inputs_text(keys);
   }
 
+  void note() const override {
+    if (scene_->is_silent)
+      std::fputs("note: the sound turns no ray by 1e-5, and is left out\n", stderr);
+  }
+
   PlannedExperiment plan() const override {
     const grin::RenderJob job = render_job(*scene_, request_, seed());
     grin::RenderJob uncounted = job;

@@ -54,8 +54,8 @@ std::string text_of(const grin::RayImage& image) {
   using Ray = grin::RayImage::Ray;
   text << "\npath differences " << root_mean_square(image, &Ray::path_difference) << " (rms)";
   if (image.best_point)
-    text << ", about " << grin::listed(*image.best_point) << ' '
-         << root_mean_square(image, &Ray::least_path_difference);
+    text << "; least " << root_mean_square(image, &Ray::least_path_difference) << ", about "
+         << grin::listed(*image.best_point);
   return text.str();
 }
 

@@ -161,7 +161,7 @@ Estimation transport_estimation(const Scene& scene, mc::ReversedPaths reversed, 
   std::ostringstream plan;
   const bool space = scene.medium.dimension == 3, near = has_near_ends(scene.request);
   if (space && near) throw InputError("dimension", 3, "is of plane waves and far views");
-  plan << "transport: pairs at one transverse frequency" << (space ? " in space" : "")
+  plan << "transport: pairs at one transverse frequency" << (space ? " in space" : " in the plane")
        << (scene.profile ? " through layers" : "") << ", by doubling; "
        << (near ? "near ends as plane waves; " : "")
        << (with_reversed ? "reversed paths" : "no reversed paths") << "; tolerance " << tolerance;

@@ -30,6 +30,7 @@ struct RenderScene {
   std::optional<double> length_unit = {};  ///< metres in a unit of length, for times
   bool leapfrogs = false;                  ///< steps are of Leapfrog (make_ray_field)
   std::optional<IndexRange> index = {};    ///< where it is known
+  bool is_silent = false;  ///< there is sound, but none that turns a ray: it is left out
 };
 
 /// Of a scene with several sensors; a number where it has no names.

@@ -104,6 +104,17 @@ AnyIndexField without_silence(const SceneField& field, const Stage& stage) {
       field.field);
 }
 
+bool has_sound(const AnyIndexField& field) {
+  return std::visit(
+      [](const auto& of) {
+        if constexpr (requires { of.amplitude(); })
+          return of.amplitude() != 0;
+        else
+          return false;
+      },
+      field);
+}
+
 StepChoice steps_of(const Keys& keys, const RenderValues& values, const SceneField& field,
                     const Stage& stage, double size) {
   constexpr double most_steps = 1e5;
@@ -223,7 +234,8 @@ RenderScene make_render_scene(const Keys& keys, const RenderValues& values) {
                     .map = light_map(keys, values, box),
                     .length_unit = keys.read(values.length_unit),
                     .leapfrogs = steps.leapfrogs,
-                    .index = index};
+                    .index = index,
+                    .is_silent = has_sound(field.field) && heard.index() != field.field.index()};
   if (keys.read(values.gradient)) add_derivatives(scene);
   check_size(scene.sensors, scene.bins);
   if (scene.sensors.empty() && !scene.map)

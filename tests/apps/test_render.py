@@ -106,6 +106,12 @@ class Scenes(RenderTest):
         self.assertEqual(self.call("render", **dark, **BEAM).stderr.count(note), 1)
         self.assertNotIn(note, self.call("render", **dark, **BEAM, **FOG).stderr)
 
+    def test_sound_that_is_left_out_is_told(self):
+        """Not that which is off."""
+        quiet = {**BOX, **BEAM, **FOG, **AREA, "field": "ultrasound", "sound_wavenumber": 3, "samples": 100, "out": "quiet.h5"}
+        for amplitude, told in ((0, 0), (1e-12, 1), (1e-3, 0)):
+            self.assertEqual(self.call("render", **quiet, amplitude=amplitude).stderr.count("the sound turns no ray"), told)
+
     def test_darkness_is_no_result(self):
         """It has no error, and what asks for one alone ends."""
         dark = {**BOX, **CAMERA, "sensor_at": [0.5, 0, 3.9], "out": "dark.h5"}
