@@ -251,7 +251,7 @@ class Validate(ResultTest):
             with self.subTest(scene=scene, view=view):
                 done = self.call("validate", **scene, view_angles=[1, view], samples=400,
                                  wave_samples=2, out="result.h5")
-                self.assertEqual("give density instead" in done.stdout, said)
+                self.assertEqual("density in place of count" in done.stdout, said)
 
     def test_a_group_is_what_covariance_gives(self):
         scene = {**BOX, **REQUESTS["intensity"][0]}
