@@ -4,7 +4,7 @@ several results or sensors a row each, with one scale where they measure the sam
 0.1 % of the pixels share one colour."""
 
 from lib import style
-from lib import labels, pictures
+from lib import pictures
 from lib.result_file import Unusable
 
 import matplotlib.pyplot as plt
@@ -97,8 +97,7 @@ def norms(results, arguments):
 def draw(results, arguments):
     for result in results:
         result.refuse_sweep()
-    names = [", ".join(filter(None, [label, sensor])) for result, label in zip(results, labels.labels(results))
-             for sensor in (result.file["sensors"] if result.has("sensors") else [""])]
+    names = pictures.sensor_labels(results)
     results = pictures.sensors(results)
     for result in results:
         if result.values("image").size == 1:

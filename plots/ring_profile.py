@@ -20,14 +20,14 @@ def kinds(result):
     return {axis: "image" for axis in ("radius", "angle") if result.has(axis)}
 
 
-def draw_values(axis, result, over, name, number):
+def draw_values(axis, result, over, name, number, label):
     at, value, error = result.values(over), result.values(name), result.values(f"{name}_error")
     lit = value > 0
     rare = result.values(f"{name}_rare") > 0 if result.has(f"{name}_rare") else np.zeros(len(value), bool)
     look = style.look(number)
     for those, face in ((lit & ~rare, look["color"]), (lit & rare, "white")):
         axis.errorbar(at[those], value[those], np.minimum(error, 0.999 * value)[those], fmt=look["marker"],
-                      color=look["color"], markerfacecolor=face, label=result.path if face != "white" else None)
+                      color=look["color"], markerfacecolor=face, label=label if face != "white" else None)
 
 
 def draw_lambert(axis, result, number):
@@ -37,25 +37,27 @@ def draw_lambert(axis, result, number):
 
 
 def draw_kind(axis, results, over):
-    for number, result in enumerate(results):
+    for number, (label, result) in enumerate(results):
         name = kinds(result)[over]
-        draw_values(axis, result, over, name, number)
+        draw_values(axis, result, over, name, number, label)
         if over == "angle":
             draw_lambert(axis, result, number)
-    units = pictures.unit_name(results[0], kinds(results[0])[over])
-    unit = "rad" if over == "angle" else pictures.length_name(results[0])
+    first = results[0][1]
+    units = pictures.unit_name(first, kinds(first)[over])
+    unit = "rad" if over == "angle" else pictures.length_name(first)
     axis.set(xlabel=f"{over.replace('disk_', '')} ({unit})", ylabel=QUANTITIES[over] + (f" ({units})" if units else ""),
              yscale="linear" if over == "angle" else "log")
-    axis.legend()
+    if over == "angle" or any(label for label, _ in results):
+        axis.legend()
 
 
 def draw(results):
     for result in results:
         result.refuse_sweep()
     by_kind = {}
-    for result in pictures.sensors(results):
+    for label, result in zip(pictures.sensor_labels(results), pictures.sensors(results)):
         for over in kinds(result):
-            by_kind.setdefault(over, []).append(result)
+            by_kind.setdefault(over, []).append((label, result))
     if not by_kind:
         raise Unusable(f"{results[0].path}: has no rings; render with sensor radial or polar")
     figure, axes = plt.subplots(1, len(by_kind), squeeze=False,

@@ -1,5 +1,6 @@
 """Pictures of `flatspeckle render`: their axes, units and tone mapping."""
 
+from lib import labels
 from lib.result_file import Result, Unusable
 
 import numpy as np
@@ -34,6 +35,12 @@ def sensors(results):
     return [each for result in results
             for each in ([Sensor(result, name) for name in result.file["sensors"]]
                          if result.has("sensors") else [result])]
+
+
+def sensor_labels(results):
+    """What tells each of sensors() apart."""
+    return [", ".join(filter(None, [label, sensor])) for result, label in zip(results, labels.labels(results))
+            for sensor in (result.file["sensors"] if result.has("sensors") else [""])]
 
 
 def chosen(result, name):

@@ -11,7 +11,7 @@ from package import PackageTest, fs
 from flatspeckle import functions, keys, scene
 
 NUMBERS = [1, 0.5, 0, 2, 1e-7, 10, 100, -1]
-LENGTHS = (1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 12)
+LENGTHS = (1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12)
 # Refusals that say: the value is understood, but this scene does without.
 UNUSED = re.compile("are of media with an index_field|needs a box|nothing here has use for it|leave it out|is (a key )?of ")
 

@@ -53,7 +53,7 @@ class Explain(PackageTest):
         runs = [fs.covariance(CURVE), fs.validate(BOX, wave_samples=4, view_angles=[0.1, 0.5], **FEW),
                 fs.validate(width=20, depth=10, placement=[[0, 1], [3, 4]], view_angles=[0.2, 0.5, 1], **FEW),
                 fs.covariance(SLAB, delays=[0, 0.1, 1]), fs.covariance(SLAB, frequency_shifts=[0, 1e-4]),
-                fs.render(STAGE), fs.render(RINGS), fs.trace(config=str(ROOT / "data/scenes/trace_singlet.toml")),
+                fs.render(STAGE), fs.render(RINGS), fs.trace(ROOT / "data/scenes/trace_singlet.toml"),
                 fs.design(design="radial", directions=1, rays_per_direction=9),
                 fs.trace(field="luneburg", origin=[0, 0, -2], beam_radius=0.5, ray_count=3, path_points=5, max_length=5),
                 fs.field(BOX, view_angles=[0.1, 0.2, 0.3], light_angles=[0, 0.01], fields=4),
