@@ -71,6 +71,21 @@ class Graded(ProgramTest):
                 self.assertTrue(np.all(file["intensity"][()] > 0))
 
 
+    def test_samples_of_a_field_are_the_field(self):
+        """By the same random numbers."""
+        z = -6 + 0.5 * np.arange(45)
+        excess = np.sqrt(1 + 0.05 * z) - 1
+        with h5py.File(self.folder / "linear.h5", "w") as file:
+            samples = file.create_dataset("excess", data=np.broadcast_to(excess, (49, 5, 45)))
+            samples.attrs["origin"], samples.attrs["spacing"] = [-12, -1, -6], [0.5, 0.5, 0.5]
+        found = []
+        for field in (LINEAR, {"index_field": "grid", "index_grid": "linear.h5"}):
+            self.call("covariance", **BOX, **field, samples=4000, out="result.h5")
+            with h5py.File(self.folder / "result.h5") as file:
+                found.append(file["intensity"][()])
+        np.testing.assert_allclose(found[1], found[0], rtol=1e-4)
+
+
 class Guiding(ProgramTest):
     """Boxes deeper than wide, whose scatterers shift the phase: weak guides of the mean field."""
 
