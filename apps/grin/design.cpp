@@ -5,6 +5,7 @@
 #include "core/result/version.h"
 #include "core/run/interrupt.h"
 #include "core/run/progress.h"
+#include "core/session/identity.h"
 #include "core/session/session.h"
 #include "grin/design/scene/design_datasets.h"
 #include "grin/design/scene/design_state_file.h"
@@ -40,12 +41,11 @@ DesignState start(Designer& designer, const Kept& kept) {
 
 /// What an interrupted search has done is not thrown away without a word.
 void tell_unfinished(const Kept& kept) {
-  if (!kept.resumes && grin::design::holds(kept.path, kept.identity))
-    std::fprintf(
-        stderr,
-        "note: %s holds a part of this search, which begins anew; --resume would go on with "
-        "it\n",
-        kept.path.c_str());
+  if (kept.resumes || !std::filesystem::exists(kept.path)) return;
+  const bool is_this = grin::design::holds(kept.path, kept.identity);
+  std::fprintf(stderr, "note: %s holds a part of %s\n", kept.path.c_str(),
+               is_this ? "this search, which begins anew; --resume would go on with it"
+                       : "another search, which is given up");
 }
 
 /// Until it ends or a signal comes; about once a second what it goes on from is kept.
@@ -163,7 +163,8 @@ int design(const Arguments& arguments) {
   if (!command.settle()) return ExitStatus::done;
   catch_interrupts();
   const Kept kept{grin::design::state_path(session.out()),
-                  "flatspeckle " + version() + '\n' + keys.identity(), run.resume};
+                  "flatspeckle " + version() + '\n' + keys.identity() + inputs_text(keys),
+                  run.resume};
   tell_unfinished(kept);
   const int status = session.once(ResultFile(session.out()),
                                   [&](ResultFile& file) { return make(scene, kept, file); });

@@ -6,7 +6,7 @@ import time
 import h5py
 import numpy as np
 
-from program import attributes, datasets
+from program import DATA, attributes, datasets
 from refusing import RefusingTest
 
 FIBRE = {"design": "guide", "goal": "equal_path", "index": 1.47, "delta": 0.01, "radius": 25, "coefficients": 0,
@@ -153,11 +153,27 @@ class Design(RefusingTest):
             kept = (self.folder / "cut.h5.state").read_bytes()
             (self.folder / "new.h5.state").write_bytes(kept)
             self.assertIn("--resume would go on", self.call("design", out="new.h5", **keys).stderr)
+            (self.folder / "new.h5.state").write_bytes(kept)
+            self.assertIn("another search, which is given up",
+                          self.call("design", out="new.h5", **{**keys, "nodes": [3]}).stderr)
             self.design("cut.h5", resume=True, **keys)
         self.assertFalse((self.folder / "cut.h5.state").exists())
         whole, cut = (datasets(self.folder / name) for name in ("whole.h5", "cut.h5"))
         for name in ("ball_spline", "history/rms", "rms/held_out"):
             np.testing.assert_array_equal(whole[name], cut[name])
+
+    def test_of_another_picture_nothing_is_resumed(self):
+        picture = (DATA / "pictures/hills.csv").read_text()
+        self.write("asked.csv", picture)
+        keys = {"design": "box", "nodes": [9, 17, 33], "goal": "irradiance", "pictures": "asked.csv", "threads": 1, "out": "cut.h5"}
+        run = self.start("design", **keys)
+        while not (self.folder / "cut.h5.state").exists() and run.poll() is None:
+            time.sleep(0.05)
+        run.send_signal(signal.SIGINT)
+        run.communicate()
+        self.assertEqual(run.returncode, 75)
+        self.write("asked.csv", "\n".join(reversed(picture.splitlines())))
+        self.assert_refused(["another search", "asked.csv"], "design", resume=True, **keys)
 
     def test_threads_do_not_matter(self):
         for threads in (1, 2, 4):

@@ -6,6 +6,7 @@
 #include "core/result/atomic_file.h"
 #include "core/result/byte_stream.h"
 #include "core/result/sealed_file.h"
+#include "core/session/identity.h"
 
 namespace flatspeckle::grin::design {
 
@@ -66,9 +67,10 @@ std::optional<DesignState> read_state(const std::filesystem::path& path,
     throw InputError("resume: " + path.string() + " is damaged; remove it to begin afresh");
   const auto bytes = bytes_of(path);
   ByteReader reader(bytes);
-  if (reader.get<std::string>() != identity)
-    throw InputError("resume: " + path.string() +
-                     " holds another search; scene and program version must be the same");
+  if (const auto found = reader.get<std::string>(); found != identity)
+    throw InputError("resume: " + path.string() + " holds another search (" +
+                     first_difference(found, identity) +
+                     "); scene, files and program version must be the same");
   DesignState state;
   each_member(state, [&](auto& member) { reader.get(member); });
   if (!state.history.cpu_s.empty()) state.cpu_before = state.history.cpu_s.back();
