@@ -197,9 +197,11 @@ void Key::check() const {
     for (const std::string& word : value())
       if (std::find(words_.begin(), words_.end(), word) == words_.end())
         throw InputError(name_, word, accepted());
-  if (file_ && access(shown().c_str(), R_OK) != 0)
-    throw InputError(name_, shown(), errno == ENOENT ? "no such file" : std::strerror(errno));
   const auto texts = value();
+  if (file_)
+    for (const std::string& path : texts)
+      if (access(path.c_str(), R_OK) != 0)
+        throw InputError(name_, path, errno == ENOENT ? "no such file" : std::strerror(errno));
   if (exactly_ > 0 && texts.size() != exactly_) throw InputError(name_, shown(), accepted());
   if (each_ > 0 && texts.size() % each_ != 0) throw InputError(name_, shown(), accepted());
   if (is_number())

@@ -71,7 +71,8 @@ std::string Keys::config(const std::set<std::string>& without) const {
 std::vector<std::string> Keys::files() const {
   std::vector<std::string> files;
   for (const Key& key : rows_)
-    if (key.is_file() && was_read(key) && !key.value().empty()) files.push_back(key.shown());
+    if (key.is_file() && was_read(key))
+      for (const std::string& path : key.value()) files.push_back(path);
   return files;
 }
 

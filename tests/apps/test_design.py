@@ -210,7 +210,7 @@ class Design(RefusingTest):
                 (["delta"], {"goal": "equal_path", "design": "guide"}),
                 (["coefficients = 2"], {"goal": "equal_path", "design": "guide", "delta": 0.01, "coefficients": 2}),
                 (["pictures"], {"goal": "irradiance", "design": "box"}),
-                (["pictures", "cannot be read"], {"goal": "irradiance", "design": "box", "pictures": "none.csv"}),
+                (["pictures", "no such file"], {"goal": "irradiance", "design": "box", "pictures": "none.csv"}),
                 (["square"], {"goal": "irradiance", "design": "box", "pictures": "row.csv"}),
                 (["dark"], {"goal": "irradiance", "design": "box", "pictures": "dark.csv"}),
                 (["as many"], {"goal": "irradiance", "design": "box", "pictures": ["even.csv", "even.csv"]}),

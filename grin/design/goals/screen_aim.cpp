@@ -91,7 +91,8 @@ std::vector<Picture> ScreenAim::shown_by(std::span<const double> readings, bool 
 void add_keys(Keys& keys, ScreenValues& values) {
   keys.add("pictures", values.pictures,
            "Files of numbers, a line for each row of a square picture from the top; one for each "
-           "direction");
+           "direction")
+      .file();
   keys.add("view_directions", values.view_directions, "Of the parallel beams, one for each picture")
       .each_of(3, "a direction");
   keys.add("beam_width", values.beam_width,
