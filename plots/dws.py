@@ -2,7 +2,7 @@
 """Diffusing-wave spectroscopy: field correlation against delay in transmission through slabs, from
 any number of `covariance --delays` results."""
 
-from lib import decay, style, theory
+from lib import decay, labels, style, theory
 
 import numpy as np
 
@@ -11,7 +11,9 @@ LABELS = {2: r"$x = 2\,k\sqrt{D\tau}\,L/\ell^*$", 3: r"$x = \sqrt{6}\,k\sqrt{D\t
 
 
 def scaled_delay(result, delay):
-    """Q L of diffusion theory without absorption: Q l* = sqrt(2 dimension t)."""
+    """Q L of diffusion theory without absorption: Q l* = sqrt(2 dimension t), t = k^2 D times the delay where `diffusion`
+    is given, else the delay."""
+    delay = labels.scene_of(result).get("diffusion", 1) * delay
     transport = result.attribute("transport_mean_free_path")
     return np.sqrt(2 * theory.dimension(result) * delay) * result.attribute("depth") / transport
 
