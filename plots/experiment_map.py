@@ -8,7 +8,7 @@ import math
 import re
 import tomllib
 
-from lib import style
+from lib import labels, style
 from lib.result_file import Unusable
 
 import matplotlib.pyplot as plt
@@ -85,8 +85,7 @@ def with_unit(result, name):
     """A name with the unit that the file says."""
     path, _ = entry_of(name)
     dataset = result.dataset(path if result.has(path) else path.replace(".", "_"))
-    unit = dataset.attrs.get("units", "1")
-    return name if unit in ("", "1") else f"{name} ({unit})"
+    return labels.with_unit(name, dataset.attrs.get("units"))
 
 
 def draw_curve(axis, label, place, values, errors, lens):

@@ -3,6 +3,7 @@
 open: by others. The star is the best place, with its value by random numbers of its own."""
 
 from lib import style
+from lib.labels import with_unit
 from lib.result_file import Unusable
 
 import tomllib
@@ -28,10 +29,6 @@ def is_log(result, key):
     """Whether it was searched in ratios."""
     vary = tomllib.loads(result.attribute("config", "")).get("vary", [])
     return any(text.replace(".", "_").startswith(f"{key}=") and text.endswith(":log") for text in vary)
-
-
-def with_unit(name, unit):
-    return name if unit in (None, "", "1") else f"{name} ({unit})"
 
 
 def draw_values(axis, place, result):

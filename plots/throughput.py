@@ -4,9 +4,8 @@ several results of `render` the amplitude of ultrasound: a curve for each value 
 the power where the first is 0 if that is among them. Means over the sound's period make curves of
 their own."""
 
-import tomllib
-
 from lib import style
+from lib.labels import scene_of, with_unit
 from lib.result_file import Unusable
 
 import matplotlib.pyplot as plt
@@ -14,10 +13,6 @@ import numpy as np
 from matplotlib.ticker import MaxNLocator
 
 NAMES = {"amplitude": "amplitude of the index", "mu_s": r"$\mu_s$", "mu_a": r"$\mu_a$"}
-
-
-def scene_of(result):
-    return tomllib.loads(result.attribute("config", ""))
 
 
 def key_name(result, arguments):
@@ -122,8 +117,8 @@ def scale_key(axis, values):
 
 def label_of_key(result, key):
     """With the unit that a sweep's file says."""
-    unit = result.dataset(key).attrs.get("units", "1") if result.has(key) else "1"
-    return NAMES.get(key, key) + (f" ({unit})" if unit not in ("", "1") else "")
+    unit = result.dataset(key).attrs.get("units") if result.has(key) else None
+    return with_unit(NAMES.get(key, key), unit)
 
 
 def draw(results, arguments):

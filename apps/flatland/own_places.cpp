@@ -10,6 +10,7 @@
 #include "core/keys/number_text.h"
 #include "core/numbers/blas.h"
 #include "core/result/result_group.h"
+#include "flatland/request/triangle.h"
 #include "flatland/scene/scene_datasets.h"
 #include "mc/theory/allowance.h"
 #include "mc/theory/forward_lobe.h"
@@ -100,13 +101,9 @@ CovarianceRequest all_pairs(const CovarianceRequest& request) {
   return full_request(request.lights, request.views);
 }
 
-std::size_t diagonal(std::size_t channel) {
-  return channel * (channel + 3) / 2;
-}
-
 Estimate intensities_of(const Estimate& triangle, std::size_t channels) {
   Estimate found;
-  for (std::size_t c = 0; c < channels; ++c) append(found, part(triangle, diagonal(c), 1));
+  for (std::size_t c = 0; c < channels; ++c) append(found, part(triangle, triangle_entry(c, c), 1));
   return found;
 }
 
@@ -114,10 +111,7 @@ Estimate intensities_of(const Estimate& triangle, std::size_t channels) {
 BatchJob steered(FieldJob job, std::size_t channels) {
   job.batches.relative_error = relative_error_of(
       [covariance = job.covariance, channels](double samples, std::span<const Complex> sums) {
-        const auto triangle = covariance(samples, sums);
-        std::vector<Complex> intensities;
-        for (std::size_t c = 0; c < channels; ++c) intensities.push_back(triangle[diagonal(c)]);
-        return intensities;
+        return diagonal(covariance(samples, sums), channels);
       });
   return job.batches;
 }
@@ -137,7 +131,7 @@ double independent_grains(const Estimate& triangle, const Pattern& pattern) {
     for (std::size_t b = 0; b <= a; ++b, ++e) {
       if (pattern.forward[a] || pattern.forward[b]) continue;
       const double product =
-          triangle.value[diagonal(a)].real() * triangle.value[diagonal(b)].real();
+          triangle.value[triangle_entry(a, a)].real() * triangle.value[triangle_entry(b, b)].real();
       const double noise = a == b ? 0 : triangle.error[e] * triangle.error[e];
       sum += (a == b ? 1 : 2) * (std::norm(triangle.value[e]) - noise) / product;
       used += a == b ? 1 : 0;
@@ -152,7 +146,7 @@ void add_statistics(Pattern& pattern, const Estimate& triangle) {
     if (pattern.forward[c]) continue;
     pattern.mean += pattern.ratio[c];
     squares += pattern.ratio[c] * pattern.ratio[c];
-    mc_error += triangle.error[diagonal(c)] / triangle.value[diagonal(c)].real();
+    mc_error += triangle.error[triangle_entry(c, c)] / triangle.value[triangle_entry(c, c)].real();
     used += 1;
   }
   pattern.mean /= used;
@@ -168,7 +162,7 @@ Pattern pattern_of(const Scene& scene, const std::vector<Complex>& fields,
                    const Estimate& triangle) {
   Pattern pattern;
   for (std::size_t c = 0; c < fields.size(); ++c) {
-    pattern.ratio.push_back(std::norm(fields[c]) / triangle.value[diagonal(c)].real());
+    pattern.ratio.push_back(std::norm(fields[c]) / triangle.value[triangle_entry(c, c)].real());
     pattern.forward.push_back(mc::in_forward_lobe(scene, scene.request.channels[c]) ? 1 : 0);
   }
   add_statistics(pattern, triangle);

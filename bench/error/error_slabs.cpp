@@ -19,12 +19,7 @@ namespace {
 constexpr double pi = std::numbers::pi;
 
 SceneSpec slab() {
-  SceneSpec spec;
-  spec.domain = "slab";
-  spec.depth = 1000;
-  spec.scatterer = "hg";
-  spec.g = 0.8;
-  spec.optical_depth = 5;
+  SceneSpec spec = hg_slab();
   spec.view_angles = {-0.9, -0.7, -0.4, 0, 0.2, 0.5, 0.8, 1.1};
   spec.covariance = "memory_effect";
   spec.tilts = seven_tilts(3 / (2 * pi * 1000));  // q depth = 3
@@ -147,6 +142,16 @@ ErrorRun two_term_run() {
 }
 
 }  // namespace
+
+SceneSpec hg_slab() {
+  SceneSpec spec;
+  spec.domain = "slab";
+  spec.depth = 1000;
+  spec.scatterer = "hg";
+  spec.g = 0.8;
+  spec.optical_depth = 5;
+  return spec;
+}
 
 std::vector<ErrorRun> slab_error_runs() {
   std::vector<ErrorRun> runs = plane_runs();

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "bench/error/error_paths.h"
+#include "bench/error/error_slabs.h"
 #include "mc/changes/brownian.h"
 #include "mc/slab/slab_covariance.h"
 
@@ -14,12 +15,7 @@ namespace {
 constexpr double pi = std::numbers::pi, reference_tolerance = 1e-8;
 
 SceneSpec slab() {
-  SceneSpec spec;
-  spec.domain = "slab";
-  spec.depth = 1000;
-  spec.scatterer = "hg";
-  spec.g = 0.8;
-  spec.optical_depth = 5;
+  SceneSpec spec = hg_slab();
   spec.view_angles = {-0.9, -0.4, 0.2, 0.8, pi - 0.6, pi - 0.2};
   return spec;
 }

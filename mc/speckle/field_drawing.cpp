@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/run/interrupt.h"
+#include "flatland/request/triangle.h"
 #include "mc/estimators/covariance_estimator.h"
 #include "mc/speckle/field_statistics.h"
 #include "mc/speckle/speckle_field.h"
@@ -77,10 +78,7 @@ class Drawing {
     const std::size_t channels = scene_.request.channels.size();
     drawn_.intensity = jackknife(
         state.sums, [&, estimator = job.covariance](double samples, std::span<const Complex> sums) {
-          const auto lower = estimator(samples, sums);
-          std::vector<Complex> diagonal;
-          for (std::size_t a = 0; a < channels; ++a) diagonal.push_back(lower[a * (a + 3) / 2]);
-          return diagonal;
+          return diagonal(estimator(samples, sums), channels);
         });
     const auto lower = job.covariance(state.sums.total_samples(), state.sums.total());
     return fields_from_covariance(CovarianceFactor(channels, lower), settings_.seed);

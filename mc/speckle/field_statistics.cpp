@@ -5,6 +5,7 @@
 #include <fftw3.h>
 
 #include "core/numbers/fourier.h"
+#include "flatland/request/triangle.h"
 
 namespace flatspeckle::mc {
 
@@ -198,7 +199,7 @@ std::vector<double> FieldStatistics::exponential_law() {
 Estimate siegert_relation(const GroupedSums& sums, const Estimator& covariance, std::size_t views) {
   return jackknife(sums, [&](double samples, std::span<const Complex> total) {
     const auto lower = covariance(samples, total);
-    const auto entry = [&](std::size_t a, std::size_t b) { return lower[a * (a + 1) / 2 + b]; };
+    const auto entry = [&](std::size_t a, std::size_t b) { return lower[triangle_entry(a, b)]; };
     std::vector<Complex> curve(views);
     for (std::size_t a = 0; a < views; ++a)
       for (std::size_t b = 0; b <= a; ++b)

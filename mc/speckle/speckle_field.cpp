@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "core/numbers/blas.h"
+#include "flatland/request/triangle.h"
 
 namespace flatspeckle::mc {
 
@@ -55,7 +56,7 @@ CovarianceFactor::CovarianceFactor(std::size_t channels, std::span<const Complex
     : scale_(channels) {
   if (channels == 0) return;
   blas_single_thread();
-  const auto entry = [&](std::size_t a, std::size_t b) { return lower[a * (a + 1) / 2 + b]; };
+  const auto entry = [&](std::size_t a, std::size_t b) { return lower[triangle_entry(a, b)]; };
   for (std::size_t a = 0; a < channels; ++a)
     scale_[a] = std::sqrt(std::max(entry(a, a).real(), 0.0));
   std::vector<Complex> matrix(channels * channels);

@@ -19,6 +19,10 @@ def scene_of(result):
     return tomllib.loads(result.attribute("config", ""))
 
 
+def with_unit(name, unit):
+    return name if unit in (None, "", "1") else f"{name} ({unit})"
+
+
 def value_text(key, value):
     if isinstance(value, list):
         return ", ".join(value_text(key, one) for one in value) if len(value) <= 3 else f"{len(value)} values"
