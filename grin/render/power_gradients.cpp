@@ -34,19 +34,16 @@ PowerGradients power_gradients(const Sensor& sensor, std::size_t first_pixel, co
   const auto of_each = [&](const auto& of) {
     return of_each_parameter(bins, first_pixel, count, sums, of);
   };
-  const auto share = [&](std::size_t pixel) {
-    return pixels.shares.empty() ? 1 / static_cast<double>(count) : pixels.shares[pixel];
-  };
   PowerGradients found{of_each([](std::vector<Complex>&) {}), of_each([&](std::vector<Complex>& v) {
                          Complex mean = 0;
-                         for (std::size_t i = 0; i < count; ++i) mean += share(i) * v[i];
+                         for (std::size_t i = 0; i < count; ++i) mean += pixels.share(i) * v[i];
                          v = {mean};
                        })};
   const auto* disks = std::get_if<RadialDetector>(&sensor);
   if (!disks || disks->radii.empty()) return found;
   found.within = of_each([&](std::vector<Complex>& v) {
     for (std::size_t i = 0; i < count; ++i)
-      v[i] = pixels.area * share(i) * v[i] + (i > 0 ? v[i - 1] : 0);
+      v[i] = pixels.area * pixels.share(i) * v[i] + (i > 0 ? v[i - 1] : 0);
   });
   return found;
 }

@@ -38,9 +38,6 @@ struct Pixels {
   std::size_t count() const { return static_cast<std::size_t>(of.grid.count()); }
   std::size_t sums() const { return static_cast<std::size_t>(bins.sums()); }
   std::size_t parts() const { return static_cast<std::size_t>(bins.parts()); }
-  double share(std::size_t pixel) const {
-    return of.shares.empty() ? 1 / static_cast<double>(count()) : of.shares[pixel];
-  }
 };
 
 Complex sum(std::span<const Complex> values) {
@@ -61,7 +58,7 @@ Estimator of_all_pixels(const Pixels& pixels, const Estimator& theta) {
     std::vector<Complex> means(pixels.sums());
     const auto own = all.subspan(pixels.first * pixels.sums(), pixels.count() * pixels.sums());
     for (std::size_t i = 0; i < own.size(); ++i)
-      means[i % pixels.sums()] += pixels.share(i / pixels.sums()) * own[i];
+      means[i % pixels.sums()] += pixels.of.share(i / pixels.sums()) * own[i];
     return theta(samples, means);
   };
 }

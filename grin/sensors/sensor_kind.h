@@ -32,6 +32,10 @@ struct SensorPixels {
   double area;  ///< of all, in the plane or solid angle that they divide
   std::vector<Axis> axes;
   std::vector<double> shares = {};  ///< of each in the area; none: all have the same
+
+  double share(std::size_t pixel) const {
+    return shares.empty() ? 1.0 / grid.count() : shares[pixel];
+  }
 };
 
 /// What all kinds with a rectangle have.

@@ -35,6 +35,7 @@ struct Sources {
                        "is too wide: light from " + listed(point) + " goes beside the field");
     return {point + std::max(0.0, way->first) * direction, direction, hull.surface};
   }
+  double rays() const { return static_cast<double>(points.size()) * rays_each; }
   int count(bool held_out) const { return held_out ? rays_each * 3 / 4 + 1 : rays_each; }
   void check(const Vec3& point) const {
     for (const bool held_out : {false, true})
@@ -62,9 +63,7 @@ class CollimationAim : public Aim {
  public:
   explicit CollimationAim(Sources sources) : sources_(std::move(sources)) {}
 
-  double rays() const override {
-    return static_cast<double>(sources_.points.size()) * sources_.rays_each;
-  }
+  double rays() const override { return sources_.rays(); }
   DesignTask task(const RayWalk& walk, bool held_out) const override {
     return task_of<DirectionReading>(
         sources_, walk, held_out,
@@ -127,9 +126,7 @@ class ThroughputAim : public Aim {
   ThroughputAim(Sources sources, double radius, double distance)
       : sources_(std::move(sources)), radius_(radius), distance_(distance) {}
 
-  double rays() const override {
-    return static_cast<double>(sources_.points.size()) * sources_.rays_each;
-  }
+  double rays() const override { return sources_.rays(); }
   DesignTask task(const RayWalk& walk, bool held_out) const override {
     return task_of<ScreenReading>(
         sources_, walk, held_out,
