@@ -49,10 +49,9 @@ double gaussian_contrast(const LineObject& object, double background) {
 Measured mean_contrast(const LineObject& object, const std::vector<ImagedMedium>& media) {
   const double two = power_sum(object, 2), four = 6 * power_sum(object, 4);
   const double relative = std::sqrt((2 + four / (two * two)) / mean_grains(media));
-  const Measured square = mean_of(media, 0, [](const ImagedMedium& m) {
-    return m.statistics.contrast * m.statistics.contrast;
-  });
-  const double contrast = std::sqrt(square.value);
+  const Measured square =
+      mean_of(media, 0, [](const ImagedMedium& m) { return m.statistics.square; });
+  const double contrast = std::sqrt(std::max(square.value, 0.0));
   if (media.size() == 1) return {contrast, contrast * relative / 2};
   return {contrast, contrast > 0 ? square.error / (2 * contrast) : 0};
 }

@@ -9,10 +9,11 @@ struct CameraNoise {
   double background = 0;  ///< even light besides, over the mean
 };
 
-/// Of what the camera adds, over the square of the mean of the frame.
-inline double noise_variance(const CameraNoise& noise) {
+/// Of what the camera adds, over the square of the mean, where that is so many times the mean of
+/// the frame.
+inline double noise_variance(const CameraNoise& noise, double times = 1) {
   if (noise.photons == 0) return 0;
-  const double mean = (1 + noise.background) * noise.photons;
+  const double mean = times * (1 + noise.background) * noise.photons;
   return (mean + noise.read_noise * noise.read_noise) / (mean * mean);
 }
 

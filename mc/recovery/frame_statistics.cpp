@@ -45,6 +45,25 @@ std::vector<double> over(std::span<const double> frame, std::span<const double> 
   return rest;
 }
 
+/// Mean of what the camera adds to the variance of a frame over its envelope, at these pixels.
+double mean_noise(std::span<const double> envelope, double mean, const CameraNoise& noise) {
+  double sum = 0;
+  for (const double value : envelope) sum += noise_variance(noise, value / mean);
+  return sum / static_cast<double>(envelope.size());
+}
+
+double mean_of(std::span<const double> values) {
+  return std::reduce(values.begin(), values.end()) / static_cast<double>(values.size());
+}
+
+std::vector<double> positive_envelope(std::span<const double> frame, double width) {
+  auto envelope = envelope_of(frame, width, Envelope::gaussian);
+  for (std::size_t p = 0; p < frame.size(); ++p)
+    if (!(envelope[p] > 0))
+      throw InputError("the frame's mean about pixel " + std::to_string(p) + " is not positive");
+  return envelope;
+}
+
 double standard_deviation(std::span<const double> values) {
   double sum = 0, squares = 0;
   for (const double value : values) {
@@ -58,52 +77,52 @@ double standard_deviation(std::span<const double> values) {
 }  // namespace
 
 std::vector<double> without_envelope(std::span<const double> frame, double width) {
-  const auto envelope = envelope_of(frame, width, Envelope::gaussian);
-  for (std::size_t p = 0; p < frame.size(); ++p)
-    if (!(envelope[p] > 0))
-      throw InputError("the frame's mean about pixel " + std::to_string(p) + " is not positive");
-  return over(frame, envelope);
+  return over(frame, positive_envelope(frame, width));
 }
 
-double squared_contrast(std::span<const double> frame, std::size_t lags) {
+double squared_contrast(std::span<const double> frame, std::size_t lags, const CameraNoise& noise) {
   const std::size_t narrow = std::max<std::size_t>(frame.size() / 32, 1),
                     width = std::clamp(lags, narrow, 2 * narrow), margin = 4 * width;
+  const auto inner = [margin](std::span<const double> line) {
+    return line.subspan(margin, line.size() - 2 * margin);
+  };
   const auto by = [&](std::size_t one_width) {
     const auto w = static_cast<double>(one_width);
     auto envelope = envelope_of(frame, w, Envelope::cubics);
     if (!(*std::min_element(envelope.begin(), envelope.end()) > 0))  // of few and large grains
       envelope = envelope_of(frame, w, Envelope::gaussian);
     const auto rest = over(frame, envelope);
-    const auto inner = std::span(rest).subspan(margin, rest.size() - 2 * margin);
-    return std::inner_product(inner.begin(), inner.end(), inner.begin(), 0.0) /
-           static_cast<double>(inner.size());
+    const auto seen = inner(rest);
+    return std::inner_product(seen.begin(), seen.end(), seen.begin(), 0.0) /
+               static_cast<double>(seen.size()) -
+           mean_noise(inner(envelope), mean_of(frame), noise);
   };
   return 2 * by(2 * width) - by(width);
 }
 
 FrameStatistics frame_statistics(std::span<const std::vector<double>> frames, std::size_t lags,
-                                 double noise_variance) {
+                                 const CameraNoise& noise) {
   const std::size_t pixels = frames.front().size();
   const auto count = static_cast<double>(frames.size());
   const Autocorrelation autocorrelation(pixels);
   std::vector<double> values(pixels);
-  double square = -noise_variance;
-  for (const auto& frame : frames) {
-    const auto own = autocorrelation(without_envelope(frame, 2.0 * static_cast<double>(lags)));
-    for (std::size_t lag = 0; lag < pixels; ++lag) values[lag] += own[lag] / count;
-    square += squared_contrast(frame, lags) / count;
-  }
   FrameStatistics found;
+  double white = 0;
+  for (const auto& frame : frames) {
+    const auto envelope = positive_envelope(frame, 2.0 * static_cast<double>(lags));
+    const auto own = autocorrelation(over(frame, envelope));
+    for (std::size_t lag = 0; lag < pixels; ++lag) values[lag] += own[lag] / count;
+    white += mean_noise(envelope, mean_of(frame), noise) / count;
+    found.square += squared_contrast(frame, lags, noise) / count;
+  }
   found.noise = standard_deviation(std::span(values).subspan(lags, std::min(lags, pixels - lags)));
-  values[0] -= noise_variance;
-  found.contrast = std::sqrt(std::max(square, 0.0));
-  const double band =
-      fitted_band(std::span(values).first(lags), found.noise, std::max(noise_variance, 0.0));
+  values[0] -= white;
+  found.contrast = std::sqrt(std::max(found.square, 0.0));
+  const double band = fitted_band(std::span(values).first(lags), found.noise, white);
   if (band > 0) {
     found.grain = grain_of(band);
     found.grains = static_cast<double>(pixels) * count / found.grain;
-    found.peaks =
-        pair_peaks(values, lags, {std::max(values[0], 0.0), std::max(noise_variance, 0.0), band});
+    found.peaks = pair_peaks(values, lags, {std::max(values[0], 0.0), white, band});
   }
   values.resize(lags);
   found.autocorrelation = std::move(values);
@@ -111,9 +130,9 @@ FrameStatistics frame_statistics(std::span<const std::vector<double>> frames, st
 }
 
 FrameStatistics frame_statistics(std::span<const double> frame, std::size_t lags,
-                                 double noise_variance) {
+                                 const CameraNoise& noise) {
   const std::vector<double> one(frame.begin(), frame.end());
-  return frame_statistics(std::span(&one, 1), lags, noise_variance);
+  return frame_statistics(std::span(&one, 1), lags, noise);
 }
 
 }  // namespace flatspeckle::mc

@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include "mc/recovery/camera_noise.h"
 #include "mc/recovery/pair_peaks.h"
 
 namespace flatspeckle::mc {
@@ -10,9 +11,10 @@ namespace flatspeckle::mc {
 /// What the pixels of a frame tell without a reference.
 struct FrameStatistics {
   double contrast = 0;  ///< standard deviation over mean, of what is left of the envelope
-  double grain = 0;     ///< pixels, as grain_of()
-  double grains = 0;    ///< in the frames
-  double noise = 0;     ///< standard deviation of the autocorrelation where nothing is expected
+  double square = 0;  ///< of it, below 0 where the camera's noise happened to be less than expected
+  double grain = 0;   ///< pixels, as grain_of()
+  double grains = 0;  ///< in the frames
+  double noise = 0;   ///< standard deviation of the autocorrelation where nothing is expected
   std::vector<double> autocorrelation;  ///< by lag in pixels, from 0
   PairPeaks peaks;
 };
@@ -22,19 +24,21 @@ struct FrameStatistics {
 std::vector<double> without_envelope(std::span<const double> frame, double width);
 
 /// Variance over the square of the mean of what is left of the envelope, in the inner three
-/// quarters of at least 64 pixels. An envelope that is taken from the speckle itself follows it a
-/// little: the variance lacks a part as 1/width, which is seen in two widths and put back. lags: of
-/// the longest distance of peaks in its autocorrelation, which the width should exceed.
-double squared_contrast(std::span<const double> frame, std::size_t lags = 0);
+/// quarters of at least 64 pixels, less that of the camera, whose shot noise is what the envelope
+/// lets expect: the less the brighter. An envelope that is taken from the speckle itself follows it
+/// a little: the variance lacks a part as 1/width, which is seen in two widths and put back. lags:
+/// of the longest distance of peaks in its autocorrelation, which the width should exceed.
+double squared_contrast(std::span<const double> frame, std::size_t lags = 0,
+                        const CameraNoise& noise = {});
 
 /// Of frames of one object, of the same pixels: the mean autocorrelation, the rms contrast, and the
-/// grains of all. lags: so many of the autocorrelation, at most half of the pixels; the noise is
-/// that of as many beyond. noise_variance: of the camera, over the square of the mean: without
-/// correlation, it stands in the first value alone, and is taken off there.
+/// grains of all. lags: so many of the autocorrelation, at most half of the pixels; its noise is
+/// that of as many beyond. The camera's noise, without correlation, stands in the first value
+/// alone, and is taken off there.
 FrameStatistics frame_statistics(std::span<const std::vector<double>> frames, std::size_t lags,
-                                 double noise_variance = 0);
+                                 const CameraNoise& noise = {});
 /// Of one.
 FrameStatistics frame_statistics(std::span<const double> frame, std::size_t lags,
-                                 double noise_variance = 0);
+                                 const CameraNoise& noise = {});
 
 }  // namespace flatspeckle::mc

@@ -1,6 +1,7 @@
 // Pictures of points through a medium: frames, their autocorrelation, the points found in it.
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 #include <random>
 #include <span>
@@ -192,7 +193,7 @@ TEST_CASE("a camera's noise lowers peaks as predicted") {
       RandomStream stream(1, static_cast<std::uint64_t>(Stream::camera),
                           static_cast<std::uint64_t>(run));
       expose(frame, noise, stream);
-      const auto found = frame_statistics(frame, lags, noise_variance(noise));
+      const auto found = frame_statistics(frame, lags, noise);
       peak += found.autocorrelation[5] / runs;
       square += found.noise * found.noise / runs;
     }
@@ -233,8 +234,32 @@ TEST_CASE("a camera's noise is what was asked for, and leaves the contrast") {
   const double expected = noise_variance(noise) * 1.5 * 1.5;
   CHECK(std::abs(mean) < 4 * std::sqrt(expected / static_cast<double>(frame.size())));
   CHECK(square == doctest::Approx(expected).epsilon(0.02));
-  CHECK(frame_statistics(frame, 64, noise_variance(noise)).contrast ==
-        doctest::Approx(1 / 1.5).epsilon(0.02));
+  CHECK(frame_statistics(frame, 64, noise).contrast == doctest::Approx(1 / 1.5).epsilon(0.02));
+}
+
+TEST_CASE("contrast without the camera's noise does not depend on how many photons there are") {
+  std::mt19937 random(7);
+  constexpr std::size_t pixels = 2048;
+  constexpr int runs = 300;
+  for (const double photons : {8.0, 2.0, 0.5, 0.2}) {
+    CAPTURE(photons);
+    const CameraNoise noise{.photons = photons, .read_noise = photons / 4};
+    double sum = 0, squares = 0;
+    for (int run = 0; run < runs; ++run) {
+      auto frame = shifted_speckle({0, 5, 13, 31}, pixels, 1, random);
+      for (std::size_t p = 0; p < pixels;
+           ++p)  // brighter in the middle, where the contrast is taken
+        frame[p] *=
+            1 + 0.4 * std::cos(2 * std::numbers::pi * (static_cast<double>(p) / pixels - 0.5));
+      RandomStream stream(2, static_cast<std::uint64_t>(Stream::camera),
+                          static_cast<std::uint64_t>(run));
+      expose(frame, noise, stream);
+      const double square = frame_statistics(frame, 64, noise).square;
+      sum += square / runs;
+      squares += square * square / runs;
+    }
+    CHECK(std::abs(sum - 0.25) < 4 * std::sqrt((squares - sum * sum) / runs));
+  }
 }
 
 TEST_CASE("the speckle of a point that moves is shifted, and as alike as predicted") {
