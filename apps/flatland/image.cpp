@@ -12,6 +12,7 @@
 #include "core/numbers/memory.h"
 #include "core/run/interrupt.h"
 #include "flatland/scene/scene_datasets.h"
+#include "mc/imaging/blinking_datasets.h"
 #include "mc/imaging/imaging_datasets.h"
 #include "mc/imaging/media_statistics.h"
 #include "mc/imaging/picture_datasets.h"
@@ -34,6 +35,11 @@ struct ImageKeys {
   mc::DeconvolutionKeys deconvolution;
   std::string method = "paths";
   std::int64_t prediction_paths = 20000;
+  std::string blinking = "none";
+  std::int64_t blinking_frames = 50, excitation_paths = 20000;
+  double lit = 0.5;
+  std::optional<double> excitation_wavelength, excitation_optical_depth;
+  std::optional<std::int64_t> sources;
   MethodSettings estimation;
 };
 
@@ -64,6 +70,29 @@ void add_reference_keys(Keys& keys, ImageKeys& values) {
   add_keys(keys, values.deconvolution);
 }
 
+void add_blinking_keys(Keys& keys, ImageKeys& values) {
+  keys.group("Blinking");
+  keys.add("blinking", values.blinking,
+           "Points whose brightness differs from frame to frame of a medium: random subsets, or by "
+           "light that comes through the medium as speckle, another in each frame")
+      .one_of({"none", "subsets", "speckle"});
+  keys.add("blinking_frames", values.blinking_frames, "Frames of each medium").from(2, 100000);
+  keys.add("lit", values.lit, "subsets: share of the frames in which a point shines").between(0, 1);
+  keys.add("excitation_wavelength", values.excitation_wavelength,
+           "speckle: of the light that excites (default: wavelength)")
+      .positive()
+      .unit("length");
+  keys.add("excitation_optical_depth", values.excitation_optical_depth,
+           "speckle: of the medium at that wavelength (default: optical_depth)")
+      .positive();
+  keys.add("excitation_paths", values.excitation_paths,
+           "speckle: light paths of the covariance at the points")
+      .positive();
+  keys.add("sources", values.sources,
+           "How many sources frames are taken apart into (default: as their singular values tell)")
+      .from(1, 64);
+}
+
 void add_keys(Keys& keys, ImageKeys& values) {
   add_scatterer_keys(keys, values.spec);
   add_bulk_keys(keys, values.spec);
@@ -72,6 +101,7 @@ void add_keys(Keys& keys, ImageKeys& values) {
   add_structure_key(keys, values.spec);
   add_object_keys(keys, values);
   add_reference_keys(keys, values);
+  add_blinking_keys(keys, values);
   keys.group("Pictures");
   keys.add("repeats", values.repeats,
            "Media, with a frame of each, in which the points are looked for (0: only what is "
@@ -160,13 +190,47 @@ mc::ImagingTask task_of(const Keys& keys, const ImageKeys& values, std::size_t p
   return task;
 }
 
+/// Frames in which points blink, but for how bright they are.
+mc::BlinkingTask blinking_of(const Keys& keys, const ImageKeys& values,
+                             const mc::ImagingTask& task) {
+  mc::BlinkingTask blinking;
+  blinking.frames = static_cast<std::size_t>(keys.read(values.blinking_frames));
+  if (task.average > 1)
+    throw InputError("average", task.average, "blinking has frames of one medium");
+  if (keys.read(values.reference_x))
+    throw InputError("reference_x", *values.reference_x,
+                     "frames of blinking points have no reference");
+  blinking.unmixes = task.recovery.points > 0;
+  blinking.unmixing.noise = task.recovery.noise;
+  if (!blinking.unmixes) return blinking;
+  blinking.unmixing.sources = static_cast<std::size_t>(keys.read(values.sources).value_or(0));
+  blinking.unmixing.resolution_grains = task.recovery.resolution_grains;
+  if (blinking.unmixing.sources > blinking.frames)
+    throw InputError("sources", blinking.unmixing.sources, "take at least as many blinking_frames");
+  return blinking;
+}
+
+/// The medium at the wavelength that excites.
+SceneSpec excitation_spec(const Keys& keys, const ImageKeys& values) {
+  SceneSpec spec = values.spec;
+  spec.wavelength = keys.read(values.excitation_wavelength).value_or(spec.wavelength);
+  if (const auto& depth = keys.read(values.excitation_optical_depth)) {
+    if (!spec.optical_depth)
+      throw InputError("excitation_optical_depth", *depth, "is of media with an optical_depth");
+    spec.optical_depth = depth;
+  }
+  return spec;
+}
+
 /// keeps_fields: of all media, as those of the exact solver.
 void check_memory(const mc::LineScene& line, const mc::ImagingTask& task, bool keeps_fields) {
   const auto channels = static_cast<double>(line.scene.request.channels.size()),
              pixels = static_cast<double>(line.camera.pixels);
-  const auto frames = static_cast<double>(task.average);
-  const double of_a_repeat = sizeof(double) * 2 * pixels +
-                             (keeps_fields ? sizeof(Complex) * channels * frames : 0),
+  const auto frames = static_cast<double>(task.average * task.blinking.frames);
+  const double of_a_repeat =
+                   sizeof(double) * 2 * pixels +
+                   (keeps_fields ? sizeof(Complex) * channels * static_cast<double>(task.average)
+                                 : 0),
                at_once = (32 * channels + sizeof(double) * pixels * frames) * task.threads;
   const double bytes = at_once + static_cast<double>(task.repeats) * of_a_repeat;
   if (bytes > 0.8 * usable_memory())
@@ -260,6 +324,20 @@ void print_moments(const mc::LineScene& line, const mc::ImagingTask& task,
       fourth.error, mc::mean_grains(media));
 }
 
+void print_sources(const mc::ImagingTask& task, const std::vector<mc::ImagedMedium>& media) {
+  const mc::FrameContrast contrast = mc::frame_contrast(media);
+  std::printf("single frames: contrast %.4f +- %.2g (Gaussian: %.4f)\n", contrast.found.value,
+              contrast.found.error, contrast.expected);
+  if (!task.blinking.unmixes) return;
+  const mc::Measured rate = mc::sources_success(media),
+                     count = mc::mean_over(media, 0, [](const auto&m) {
+                       return static_cast<double>(m.blinked.found.count.sources);
+                     });
+  std::printf(
+      "%.3g sources by singular values; as sources all points found in %.3g +- %.2g of the media\n",
+      count.value, rate.value, rate.error);
+}
+
 void print_summary(const mc::LineScene& line, const mc::ImagingTask& task,
                    const std::vector<mc::ImagedMedium>& media,
                    const mc::ImagingPrediction& prediction) {
@@ -270,6 +348,7 @@ void print_summary(const mc::LineScene& line, const mc::ImagingTask& task,
                 *std::min_element(correlation.begin(), correlation.end()),
                 *std::min_element(expected.signals.begin(), expected.signals.end()));
   if (line.reference) print_pictures(line, task, media, prediction);
+  if (task.blinking.draw && !media.empty()) print_sources(task, media);
   if (task.recovery.points > 0 && !media.empty()) {
     const auto [rate, error] = mc::success_rate(media);
     std::printf("all %zu points found in %.3g +- %.2g of the media\n", line.object.x.size(), rate,
@@ -309,37 +388,68 @@ class ImageExperiment : public OneShot {
     task_.seed = seed();
     task_.threads = threads();
     const auto& object_extent = keys.read(values_.object_extent);
+    const bool blinks = keys.read(values_.blinking) != "none";
+    if (blinks) task_.blinking = blinking_of(keys, values_, task_);
+    if (values_.blinking == "subsets") keys.read(values_.lit);
+    if (by_speckle()) {
+      keys.read(values_.excitation_paths);
+      excitation_ = excitation_spec(keys, values_);
+    }
     Scene medium = make_scene(keys, values_.spec);
     if (medium.domain.kind == Domain::Kind::slab)
       throw InputError("domain", "slab", "pictures need a box");
     line_ = mc::line_scene(std::move(medium), std::move(object), object_depth, camera, reference);
-    task_.recovery.lags = lags_of(*line_, object_extent);
+    task_.recovery.lags = task_.blinking.unmixing.lags = lags_of(*line_, object_extent);
+    if (blinks)
+      task_.recovery.noise = mc::noise_of_mean(task_.recovery.noise, task_.blinking.frames);
+    if (excitation_) excited_ = make_scene(*excitation_);
     task_.recovery.memory_range *= std::abs(magnification(*line_));
     check_memory(*line_, task_, by_waves());
   }
 
  private:
   bool by_waves() const { return values_.method == "wave"; }
+  bool by_speckle() const { return values_.blinking == "speckle"; }
   bool looks_for_signals() const override { return true; }
   ResultFile::Storage storage() const override { return ResultFile::Storage::disk; }
 
+  /// Where points blink. False where a signal came.
+  bool set_brightness(mc::ImagingTask& task) const {
+    if (values_.blinking == "subsets")
+      task.blinking.draw =
+          mc::random_subsets(task.blinking.frames, line_->object.x.size(), values_.lit, task.seed);
+    if (!excited_) return true;
+    auto excitation = mc::speckle_excitation(
+        *excited_, *line_,
+        {task.blinking.frames, static_cast<std::uint64_t>(values_.excitation_paths), task.seed,
+         task.threads});
+    if (!excitation) return false;
+    task.blinking.draw = std::move(excitation->draw);
+    task.blinking.correlation = std::move(excitation->correlation);
+    return true;
+  }
+
   std::optional<Made> make(ResultFile& file, bool tells) const override {
+    mc::ImagingTask task = task_;
+    if (task.repeats > 0 && !set_brightness(task)) return std::nullopt;
     const auto fields = fields_of(*line_, task_, values_.method, values_.estimation.wave_tolerance,
                                   values_.paths_per_field);
     if (!fields) return std::nullopt;
     const auto prediction = mc::predicted(
         *line_, static_cast<std::uint64_t>(values_.prediction_paths), task_.seed, task_.threads);
     if (!prediction) return std::nullopt;
-    const auto media = mc::imaged(*line_, task_, fields->draw);
+    const auto media = mc::imaged(*line_, task, fields->draw);
     if (!media) return std::nullopt;
     write_medium(file, line_->scene);
-    mc::write_imaging(file, *line_, task_, *media, *prediction);
-    if (tells) print_summary(*line_, task_, *media, *prediction);
+    mc::write_imaging(file, *line_, task, *media, *prediction);
+    if (tells) print_summary(*line_, task, *media, *prediction);
     return Made{fields->how, static_cast<double>(task_.repeats * task_.average)};
   }
 
   ImageKeys values_;
   mc::ImagingTask task_;
+  std::optional<SceneSpec> excitation_;
+  std::optional<Scene> excited_;
   std::optional<mc::LineScene> line_;
 };
 

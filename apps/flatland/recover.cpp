@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <functional>
 #include <limits>
 #include <string>
 #include <utility>
@@ -12,6 +13,7 @@
 #include "mc/recovery/phase_retrieval.h"
 #include "mc/recovery/recovery_datasets.h"
 #include "mc/recovery/recovery_keys.h"
+#include "mc/unmixing/unmixing_datasets.h"
 
 namespace flatspeckle::apps {
 
@@ -35,7 +37,9 @@ void add_keys(Keys& keys, RecoverKeys& values) {
   keys.add("frames", values.frames,
            "CSV file: a column for each frame, a row for each pixel along the line")
       .file();
-  keys.add("points", values.points, "How many points are looked for").from(2, 64);
+  keys.add("points", values.points,
+           "How many points are looked for (sources: default by the frames' singular values)")
+      .from(2, 64);
   keys.add("longest", values.longest,
            "Longest distance of two points, pixels (default: an eighth of the frame)")
       .from(8, std::numeric_limits<double>::infinity());
@@ -48,8 +52,9 @@ void add_keys(Keys& keys, RecoverKeys& values) {
   mc::add_average_key(keys, values.average);
   keys.add("recovery", values.recovery,
            "search: points; phases: also a picture whose autocorrelation is the frame's, by hybrid "
-           "input-output and error reduction")
-      .one_of({"search", "phases"});
+           "input-output and error reduction; sources: of points that blink, frames of one medium, "
+           "by non-negative factors")
+      .one_of({"search", "phases", "sources"});
   keys.add("starts", values.phases.starts, "phases: from random ones, the best is taken")
       .from(1, 10000);
   keys.add("phase_iterations", values.phases.iterations, "phases: of each start").from(4, 100000);
@@ -65,12 +70,8 @@ void add_keys(Keys& keys, RecoverKeys& values) {
   add_output_key(keys, values.run);
 }
 
-mc::RecoveryTask task_of(const Keys& keys, const RecoverKeys& values, std::size_t pixels) {
-  mc::RecoveryTask task;
-  task.points = static_cast<std::size_t>(keys.required(values.points));
-  task.resolution_grains = keys.read(values.resolution);
-  task.memory_range = keys.read(values.memory_range).value_or(0);
-  read_camera_keys(keys, values.noise, task.noise);
+/// Of the longest distance.
+std::size_t lags_of(const Keys& keys, const RecoverKeys& values, std::size_t pixels) {
   if (pixels < 64) throw InputError("frames", pixels, "pixels: a frame has at least 64");
   const auto most = static_cast<double>(pixels) / 4;
   const double longest = keys.read(values.longest).value_or(std::floor(most / 2));
@@ -78,7 +79,27 @@ mc::RecoveryTask task_of(const Keys& keys, const RecoverKeys& values, std::size_
     throw InputError(
         "longest", longest,
         "must be less than a quarter of the frame's " + std::to_string(pixels) + " pixels");
-  task.lags = static_cast<std::size_t>(longest) + 1;
+  return static_cast<std::size_t>(longest) + 1;
+}
+
+mc::RecoveryTask task_of(const Keys& keys, const RecoverKeys& values, std::size_t pixels) {
+  mc::RecoveryTask task;
+  task.points = static_cast<std::size_t>(keys.required(values.points));
+  task.resolution_grains = keys.read(values.resolution);
+  task.memory_range = keys.read(values.memory_range).value_or(0);
+  read_camera_keys(keys, values.noise, task.noise);
+  task.lags = lags_of(keys, values, pixels);
+  return task;
+}
+
+mc::UnmixingTask unmixing_task(const Keys& keys, const RecoverKeys& values, const Table& table) {
+  mc::UnmixingTask task;
+  task.sources = static_cast<std::size_t>(keys.read(values.points).value_or(0));
+  task.resolution_grains = keys.read(values.resolution);
+  read_camera_keys(keys, values.noise, task.noise);
+  task.lags = lags_of(keys, values, table.rows());
+  if (const std::size_t frames = table.names().size(); frames < 2)
+    throw InputError("frames", frames, "columns: sources take two or more");
   return task;
 }
 
@@ -149,24 +170,23 @@ void print_summary(const std::vector<mc::Recovered>& all) {
   }
 }
 
-}  // namespace
+void print_sources(const mc::Unmixed& found) {
+  std::printf("%zu sources (singular values above %.3g), residual %.3g\n", found.count.sources,
+              found.count.threshold, found.factors.residual);
+  std::printf("%-8s %-8s %s\n", "source", "group", "place (pixels)");
+  for (std::size_t s = 0; s < found.places.x.size(); ++s)
+    std::printf("%-8zu %-8zu %.1f\n", s, found.places.group[s], found.places.x[s]);
+}
 
-int recover(const Arguments& arguments) {
-  RecoverKeys values;
-  Subcommand command("recover", "Points found in the autocorrelation of measured frames");
-  Keys& keys = command.keys();
-  add_keys(keys, values);
-  if (!command.parse(arguments)) return ExitStatus::done;
+using Make = std::function<Made(ResultFile&)>;
 
-  const Session session(command.text(), keys, values.run, command.only_prints());
-  const Table table = read_csv(keys.required(values.frames));
+/// Points of each frame, and pictures.
+Make search_of(const Keys& keys, const RecoverKeys& values, const Table& table) {
   const mc::RecoveryTask task = task_of(keys, values, table.rows());
   const std::size_t average = average_of(keys, values, table.names().size());
   const References references = references_of(keys, values, table);
   const auto phases = phase_task(keys, values);
-  keys.refuse_unread();
-  if (!command.settle()) return ExitStatus::done;
-  return session.once(ResultFile(session.out()), [&](ResultFile& file) -> std::optional<Made> {
+  return [=](ResultFile& file) {
     std::vector<mc::Recovered> all;
     std::vector<mc::Deconvolved> pictures;
     std::vector<mc::PhasedPicture> phased;
@@ -186,7 +206,39 @@ int recover(const Arguments& arguments) {
     if (!phased.empty()) mc::write_phased(file, task, phased);
     print_summary(all);
     return Made{"autocorrelation of each frame, sparse search", static_cast<double>(all.size())};
-  });
+  };
+}
+
+/// Sources of all frames together.
+Make sources_of(const Keys& keys, const RecoverKeys& values, const Table& table) {
+  const mc::UnmixingTask task = unmixing_task(keys, values, table);
+  return [=](ResultFile& file) {
+    const auto frames = frames_of(table);
+    const mc::Unmixed found = mc::unmixed(frames, task);
+    mc::write_unmixed(file, table.names(), found);
+    print_sources(found);
+    return Made{"non-negative factors of all frames, correlations of patterns",
+                static_cast<double>(frames.size())};
+  };
+}
+
+}  // namespace
+
+int recover(const Arguments& arguments) {
+  RecoverKeys values;
+  Subcommand command("recover", "Points found in the autocorrelation of measured frames");
+  Keys& keys = command.keys();
+  add_keys(keys, values);
+  if (!command.parse(arguments)) return ExitStatus::done;
+
+  const Session session(command.text(), keys, values.run, command.only_prints());
+  const Table table = read_csv(keys.required(values.frames));
+  const Make make = keys.read(values.recovery) == "sources" ? sources_of(keys, values, table)
+                                                            : search_of(keys, values, table);
+  keys.refuse_unread();
+  if (!command.settle()) return ExitStatus::done;
+  return session.once(ResultFile(session.out()),
+                      [&](ResultFile& file) -> std::optional<Made> { return make(file); });
 }
 
 }  // namespace flatspeckle::apps

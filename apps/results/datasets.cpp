@@ -23,12 +23,14 @@
 #include "mc/estimators/reflection_theory.h"
 #include "mc/fit/fit_datasets.h"
 #include "mc/fit/plan/plan_datasets.h"
+#include "mc/imaging/blinking_datasets.h"
 #include "mc/imaging/imaging_datasets.h"
 #include "mc/imaging/picture_datasets.h"
 #include "mc/recovery/recovery_datasets.h"
 #include "mc/slab/refinement.h"
 #include "mc/speckle/field_datasets.h"
 #include "mc/theory/moments_datasets.h"
+#include "mc/unmixing/unmixing_datasets.h"
 #include "wave_solver/clusters/cluster_file.h"
 #include "wave_solver/clusters/cluster_solution.h"
 #include "wave_solver/graded/graded_fields.h"
@@ -119,7 +121,9 @@ std::vector<const DatasetTable*> all_tables() {
                                              &mc::field_table,
                                              &mc::imaging_table,
                                              &mc::picture_table,
+                                             &mc::blinking_table,
                                              &mc::recovery_table,
+                                             &mc::unmixing_table,
                                              &mc::fit_table,
                                              &mc::plan_table,
                                              &sweep_axes_table,

@@ -221,7 +221,7 @@ std::shared_ptr<const Wavefront> SteppedMedium<Field>::wave_from_point(Vec2 sour
       [&](Vec2 x, const WaveTable::Node* guess) {
         return arrival(source, x, guess ? std::optional(guess->arrival.launch) : std::nullopt);
       },
-      "(" + number_text(source.x) + ", " + number_text(source.z) + ")");
+      std::string("(").append(number_text(source.x)) + ", " + number_text(source.z) + ")");
 }
 
 template <class Field>

@@ -20,14 +20,20 @@ struct Bits {
 
 }  // namespace
 
-std::vector<double> incoherent_sum(std::span<const Complex> field,
-                                   std::span<const double> brightness) {
+std::vector<double> sum_of_intensities(std::span<const Complex> field,
+                                       std::span<const double> brightness) {
   const std::size_t pixels = field.size() / brightness.size();
   std::vector<double> frame(pixels);
   for (std::size_t n = 0; n < brightness.size(); ++n)
     for (std::size_t p = 0; p < pixels; ++p)
       frame[p] += brightness[n] * std::norm(field[n * pixels + p]);
-  const double mean = std::reduce(frame.begin(), frame.end()) / static_cast<double>(pixels);
+  return frame;
+}
+
+std::vector<double> incoherent_sum(std::span<const Complex> field,
+                                   std::span<const double> brightness) {
+  auto frame = sum_of_intensities(field, brightness);
+  const double mean = std::reduce(frame.begin(), frame.end()) / static_cast<double>(frame.size());
   if (mean > 0)
     for (double& value : frame) value /= mean;
   return frame;

@@ -9,7 +9,11 @@
 
 namespace flatspeckle::mc {
 
-/// sum over the points n of brightness_n |u_n|^2, over its mean. field: [point][pixel].
+/// sum over the points n of brightness_n |u_n|^2. field: [point][pixel].
+std::vector<double> sum_of_intensities(std::span<const Complex> field,
+                                       std::span<const double> brightness);
+
+/// The same over its mean.
 std::vector<double> incoherent_sum(std::span<const Complex> field,
                                    std::span<const double> brightness);
 

@@ -37,6 +37,7 @@ double fourth_moment(std::span<const Complex> field, std::size_t points) {
 struct Exposure {
   std::vector<double> frame, reference;
   double fourth_moment = 0;
+  Blinked blinked;
 };
 
 Exposure exposed(const LineScene& line, const ImagingTask& task, const FieldDraw& draw,
@@ -47,8 +48,13 @@ Exposure exposed(const LineScene& line, const ImagingTask& task, const FieldDraw
   draw(number, field, intensity);
   Exposure made;
   const std::size_t of_object = line.object.x.size() * line.camera.pixels;
-  made.frame = incoherent_sum(std::span(field).first(of_object), line.object.brightness);
   made.fourth_moment = fourth_moment(field, line.scene.request.lights.size());
+  if (task.blinking.draw) {
+    made.blinked = blinked(line, task.blinking, field, number, task.seed);
+    made.frame = mean_frame(made.blinked.frames);
+    return made;
+  }
+  made.frame = incoherent_sum(std::span(field).first(of_object), line.object.brightness);
   RandomStream random(task.seed, static_cast<std::uint64_t>(Stream::camera), number);
   expose(made.frame, task.recovery.noise, random);
   if (!line.reference) return made;
@@ -65,6 +71,12 @@ void divide_by_reference(ImagedMedium& medium, const LineScene& line, const Imag
       psnr(point_picture(shifts(line), lags, medium.deconvolved.grain), medium.deconvolved.picture);
 }
 
+/// What would fill the memory.
+void drop_frames(Blinked& blinked) {
+  blinked.frames.clear();
+  blinked.found.factors.pattern.resize(0, 0);
+}
+
 ImagedMedium imaged_one(const LineScene& line, const ImagingTask& task, const FieldDraw& draw,
                         std::uint64_t number) {
   ImagedMedium medium;
@@ -74,9 +86,11 @@ ImagedMedium imaged_one(const LineScene& line, const ImagingTask& task, const Fi
     frames.push_back(std::move(made.frame));
     medium.reference = std::move(made.reference);
     medium.fourth_moment += made.fourth_moment / static_cast<double>(task.average);
+    medium.blinked = std::move(made.blinked);
   }
   static_cast<Recovered&>(medium) = recovered(frames, task.recovery);
   medium.frame = std::move(frames.front());
+  if (number > 0) drop_frames(medium.blinked);
   if (line.reference) divide_by_reference(medium, line, task);
   if (task.recovery.points > 0)
     medium.score = score(shifts(line), medium.fit.object,

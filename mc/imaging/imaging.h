@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/numbers/statistics.h"
+#include "mc/imaging/blinking.h"
 #include "mc/imaging/line_camera.h"
 #include "mc/imaging/pair_signals.h"
 #include "mc/recovery/deconvolution.h"
@@ -18,6 +19,7 @@ namespace flatspeckle::mc {
 struct ImagingTask {
   RecoveryTask recovery;            ///< its resolution is also what counts as found
   DeconvolutionTask deconvolution;  ///< where the scene has a reference
+  BlinkingTask blinking;            ///< where points do
   std::uint64_t repeats = 1;        ///< 0: no frames
   std::uint64_t average = 1;        ///< media of each repeat, whose autocorrelations are averaged
   std::uint64_t seed = 1;
@@ -30,6 +32,7 @@ struct ImagedMedium : Recovered {
   Deconvolved deconvolved;
   double psnr = 0;  ///< of its picture
   ImageScore score;
+  Blinked blinked;           ///< whose frames' mean is the frame; its own kept of the first medium
   double fourth_moment = 0;  ///< of the points' fields, E|u|^4 / (E|u|^2)^2: Gaussian, 2
 };
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/result/result_group.h"
+#include "mc/imaging/blinking_datasets.h"
 #include "mc/imaging/media_statistics.h"
 #include "mc/imaging/picture_datasets.h"
 #include "mc/recovery/recovery_datasets.h"
@@ -137,6 +138,7 @@ void write_imaging(ResultFile& file, const LineScene& line, const ImagingTask& t
   root.put("object_brightness", line.object.brightness);
   if (!media.empty()) write_frames(file, root, line, task, media);
   if (!prediction.distance.empty()) write_prediction(root, line, task, prediction);
+  if (task.blinking.draw && !media.empty()) write_blinking(file, line, task, media);
   if (line.reference) write_pictures(file, line, task, media, prediction);
 }
 

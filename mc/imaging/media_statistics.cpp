@@ -10,9 +10,16 @@ namespace flatspeckle::mc {
 
 namespace {
 
-/// of: a number of each medium. error_of_one: where there is but one.
-template <class Number>
-Measured mean_of(const std::vector<ImagedMedium>& media, double error_of_one, const Number& of) {
+double power_sum(const LineObject& object, int power) {
+  double sum = 0;
+  for (const double b : object.brightness) sum += std::pow(b, power);
+  return sum;
+}
+
+}  // namespace
+
+Measured mean_over(const std::vector<ImagedMedium>& media, double error_of_one,
+                   const std::function<double(const ImagedMedium&)>& of) {
   const auto n = static_cast<double>(media.size());
   double sum = 0, squares = 0;
   for (const ImagedMedium& medium : media) {
@@ -23,16 +30,15 @@ Measured mean_of(const std::vector<ImagedMedium>& media, double error_of_one, co
   return {sum, std::sqrt(std::max(squares - sum * sum, 0.0) / (n - 1))};
 }
 
-double power_sum(const LineObject& object, int power) {
-  double sum = 0;
-  for (const double b : object.brightness) sum += std::pow(b, power);
-  return sum;
+Measured share_of(const std::vector<ImagedMedium>& media,
+                  const std::function<bool(const ImagedMedium&)>& holds) {
+  const auto found = static_cast<double>(std::count_if(media.begin(), media.end(), holds)),
+             n = static_cast<double>(media.size()), likely = (found + 1) / (n + 2);
+  return {found / n, std::sqrt(likely * (1 - likely) / (n + 3))};
 }
 
-}  // namespace
-
 double mean_grains(const std::vector<ImagedMedium>& media) {
-  return mean_of(media, 0, [](const ImagedMedium& m) { return m.statistics.grains; }).value;
+  return mean_over(media, 0, [](const ImagedMedium& m) { return m.statistics.grains; }).value;
 }
 
 FrameGrains frame_grains(const LineScene& line, const ImagingTask& task) {
@@ -50,7 +56,7 @@ Measured mean_contrast(const LineObject& object, const std::vector<ImagedMedium>
   const double two = power_sum(object, 2), four = 6 * power_sum(object, 4);
   const double relative = std::sqrt((2 + four / (two * two)) / mean_grains(media));
   const Measured square =
-      mean_of(media, 0, [](const ImagedMedium& m) { return m.statistics.square; });
+      mean_over(media, 0, [](const ImagedMedium& m) { return m.statistics.square; });
   const double contrast = std::sqrt(std::max(square.value, 0.0));
   if (media.size() == 1) return {contrast, contrast * relative / 2};
   return {contrast, contrast > 0 ? square.error / (2 * contrast) : 0};
@@ -58,16 +64,12 @@ Measured mean_contrast(const LineObject& object, const std::vector<ImagedMedium>
 
 Measured mean_fourth_moment(const std::vector<ImagedMedium>& media) {
   constexpr double eight = 2 + 6;  // 2 kappa_2^2 + kappa_4 of one point
-  return mean_of(media, std::sqrt(eight / mean_grains(media)),
-                 [](const ImagedMedium& m) { return m.fourth_moment; });
+  return mean_over(media, std::sqrt(eight / mean_grains(media)),
+                   [](const ImagedMedium& m) { return m.fourth_moment; });
 }
 
 Measured success_rate(const std::vector<ImagedMedium>& media) {
-  double found = 0;
-  for (const ImagedMedium& medium : media) found += medium.score.found == 1;
-  const auto n = static_cast<double>(media.size());
-  const double likely = (found + 1) / (n + 2);
-  return {found / n, std::sqrt(likely * (1 - likely) / (n + 3))};
+  return share_of(media, [](const ImagedMedium& medium) { return medium.score.found == 1; });
 }
 
 ExpectedPeaks expected_peaks(const LineScene& line, const ImagingTask& task,
@@ -100,7 +102,7 @@ std::size_t alike_pairs(const LineScene& line, double grains) {
 
 Measured mean_psnr(const std::vector<ImagedMedium>& media) {
   constexpr double unknown = std::numeric_limits<double>::infinity();
-  return mean_of(media, unknown, [](const ImagedMedium& m) { return m.psnr; });
+  return mean_over(media, unknown, [](const ImagedMedium& m) { return m.psnr; });
 }
 
 }  // namespace flatspeckle::mc

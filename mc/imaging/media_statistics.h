@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -11,6 +12,15 @@ namespace flatspeckle::mc {
 struct Measured {
   double value = 0, error = 0;
 };
+
+/// of: a number of each medium. error_of_one: where there is but one.
+Measured mean_over(const std::vector<ImagedMedium>& media, double error_of_one,
+                   const std::function<double(const ImagedMedium&)>& of);
+
+/// Of media for which something holds. The error is the standard deviation of what so many trials
+/// leave open, which is not 0 where all succeed (Beta distribution with a uniform prior).
+Measured share_of(const std::vector<ImagedMedium>& media,
+                  const std::function<bool(const ImagedMedium&)>& holds);
 
 /// Grains of a frame, averaged over all media.
 double mean_grains(const std::vector<ImagedMedium>& media);
@@ -31,8 +41,7 @@ Measured mean_contrast(const LineObject& object, const std::vector<ImagedMedium>
 /// point's Gaussian speckle.
 Measured mean_fourth_moment(const std::vector<ImagedMedium>& media);
 
-/// Of media in which all points were found. The error is the standard deviation of what so many
-/// trials leave open, which is not 0 where all succeed (Beta distribution with a uniform prior).
+/// Of media in which all points were found.
 Measured success_rate(const std::vector<ImagedMedium>& media);
 
 /// What a frame of a repeat should show without being made.

@@ -38,9 +38,12 @@ ImageScore score_at(const LineObject& truth, const LineObject& found, double shi
 
 }  // namespace
 
-ImageScore score(const LineObject& truth, const LineObject& found, double resolution) {
+ImageScore score(const LineObject& truth, const LineObject& found, double resolution,
+                 Mirrored mirror) {
   ImageScore best;
-  for (const LineObject& each : {found, mirrored(found)})
+  std::vector<LineObject> either{found};
+  if (mirror == Mirrored::perhaps) either.push_back(mirrored(found));
+  for (const LineObject& each : either)
     for (const double to : truth.x)
       for (const double from : each.x) {
         const ImageScore at = score_at(truth, each, to - from, resolution);

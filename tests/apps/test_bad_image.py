@@ -42,6 +42,24 @@ class BadScene(RefusingTest):
         self.refused(["repeats = 0"], repeats=0, method="wave")
 
 
+    def test_blinking(self):
+        subsets = {**SCENE, "object_x": [0, 40, 90], "blinking": "subsets"}
+        speckle = {**subsets, "blinking": "speckle"}
+        self.refused(["blinking_frames = 1"], subsets, blinking_frames=1)
+        self.refused(["lit"], subsets, lit=1.5)
+        self.refused(["lit"], speckle, lit=0.6)  # nothing has use for it
+        self.refused(["blinking_frames"], blinking_frames=9)
+        self.refused(["sources = 9", "blinking_frames"], subsets, sources=9, blinking_frames=8)
+        self.refused(["average = 2", "one medium"], subsets, average=2)
+        self.refused(["reference_x", "no reference"], subsets, reference_x=10)
+        self.refused(["excitation_wavelength"], subsets, excitation_wavelength=0.8)
+        self.refused(["excitation_wavelength"], speckle, excitation_wavelength=-1)
+        self.refused(["excitation_optical_depth"], speckle, optical_depth=None, mean_free_path=5,
+                     excitation_optical_depth=3)
+        self.refused(["repeats", "GB"], subsets, blinking_frames=100000, pixels=1 << 20)
+        self.refused(["lit = 0"], subsets, lit=0)
+
+
 class BadFrames(RefusingTest):
     def refused(self, words, text, **keys):
         self.write("frames.csv", text)
@@ -69,6 +87,15 @@ class BadFrames(RefusingTest):
             self.refused(["frames.csv", "line 6"],
                          "\n".join(good[:5] + [f"1,{bad}"] + good[5:]) + "\n")
         self.refused(["frames.csv"], "\n".join([*good, "1"]) + "\n")
+
+    def test_sources(self):
+        sources = {"recovery": "sources"}
+        self.refused(["columns", "two or more"], self.frames(columns=("a",)), **sources)
+        self.refused(["points = 3", "at least as many frames"], self.frames(), **sources)
+        self.refused(["mean is not positive"], "a,b\n" + "0,0\n" * 200, points=2, **sources)
+        self.refused(["average"], self.frames(), points=2, average=2, **sources)
+        self.refused(["longest", "less than a quarter"], self.frames(), points=2, longest=50,
+                     **sources)
 
     def test_average(self):
         self.refused(["average = 3", "does not divide"], self.frames(), average=3)

@@ -1,0 +1,77 @@
+#!/usr/bin/env python3
+"""Sources of frames in which points blink (`flatspeckle image --blinking ...`, or `recover --recovery
+sources`): singular values of the frames, parts of some patterns, and where the sources are."""
+
+from lib import style
+
+import matplotlib.pyplot as plt
+import numpy as np
+
+SHOWN = 60  # pixels of a pattern
+PATTERNS = 3
+
+
+def draw_singular_values(axis, result):
+    values = np.atleast_2d(result.values("singular_value"))
+    levels = np.atleast_1d(result.values("noise_level"))
+    number = np.arange(1, values.shape[1] + 1)
+    for each in values:
+        axis.plot(number, each, ".", color="C0", alpha=0.6)
+    axis.axhline(levels[0], color="0.35", linestyle="--", label="noise alone")
+    low = max(values[values > 0].min(), 1e-3 * levels[0])
+    axis.set(xlabel="number", ylabel="singular value of the frames", yscale="log", ylim=(0.7 * low, 1.5 * values.max()))
+    axis.legend()
+
+
+def draw_patterns(axis, result):
+    patterns = result.values("source_pattern")
+    start = patterns.shape[1] // 2
+    for number, pattern in enumerate(patterns[:PATTERNS]):
+        part = pattern[start:start + SHOWN]
+        axis.plot(start + np.arange(len(part)), part + 5 * number, linewidth=0.9)
+    axis.set(xlabel="pixel", ylabel="patterns, each 5 above the last")
+
+
+def best_shift(truth, found):
+    """By which most of the found points lie nearest to the true ones."""
+    shifts = np.subtract.outer(truth, found).ravel()
+    off = np.abs(truth[:, None, None] - (found[None, :, None] + shifts)).min(axis=0)
+    return shifts[np.median(off, axis=0).argmin()]
+
+
+def draw_object(axis, result):
+    truth, brightness = result.values("object_x"), result.values("object_brightness")
+    axis.plot(truth, brightness / brightness.mean(), "o", markersize=9, markerfacecolor="none", color="0.3", label="object")
+    every = zip(result.values("source_x"), result.values("source_brightness"))
+    for number, (x, b) in enumerate(every):
+        x, b = x[b > 0], b[b > 0]
+        axis.plot(x + best_shift(truth, x), b, "x", color="C3", markersize=5,
+                  label=None if number else "sources, each medium")
+    axis.set(xlabel="x of the object", ylabel="brightness over its mean", ylim=(0, None))
+    axis.legend(loc="lower center")
+
+
+def draw_places(axis, result):
+    x, group = result.values("source_x"), result.values("source_group")
+    bright = result.values("source_brightness").mean(axis=0)
+    for number in np.unique(group):
+        own = group == number
+        axis.stem(x[own], bright[own] / bright.mean(), linefmt=f"C{number % 10}-", basefmt=" ", label=f"group {number}")
+    axis.set(xlabel="pixels", ylabel="brightness over its mean", ylim=(0, None))
+    if len(np.unique(group)) > 1:
+        axis.legend()
+
+
+def draw(results):
+    result = results[0]
+    if not result.has("source_x"):
+        raise style.Unusable(f"{result.path}: has no sources of blinking points")
+    figure, axes = plt.subplots(1, 3, figsize=(1.4 * style.PAGE, 2.9), layout="constrained")
+    draw_singular_values(axes[0], result)
+    draw_patterns(axes[1], result)
+    (draw_object if result.has("object_x") else draw_places)(axes[2], result)
+    return figure
+
+
+if __name__ == "__main__":
+    style.main(draw, __doc__)
