@@ -83,7 +83,8 @@ ExpectedPeaks expected_peaks(const LineScene& line, const ImagingTask& task,
                places = band * static_cast<double>(task.recovery.lags);
   const auto searched =
       filtered_peaks_over_noise(line.object, real_parts(prediction.correlation.value), frame, band);
-  expected.success = predicted_success(searched, points, places, task.recovery.memory_range > 0);
+  expected.success =
+      predicted_success(searched, points, places, task.recovery.memory_range > 0, line.object.x);
   return expected;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <vector>
 
 namespace flatspeckle::mc {
@@ -89,31 +90,85 @@ double log_volume(double n, double m, double places) {
          m * std::log(turns / std::sqrt(10.0)) - (m + 1) / 2 * std::log(turns);
 }
 
-/// That noise and chance meetings with the true peaks do not raise another object, with m of the
-/// points elsewhere, above the true one.
-double truth_wins(const Sums& lost, double m, double n, double places, bool weighted) {
+/// Objects that lack so many pairs of the true one, in a field of so many dimensions.
+struct Others {
+  double pairs = 0, dimensions = 0, log_volume = 0;
+};
+
+/// That noise and chance meetings with the true peaks do not raise another object above the true
+/// one.
+double truth_wins(const Sums& lost, const Others& other, double places, bool weighted) {
   constexpr double of_square = 2.0 / 3;  // integral of a peak's square over that of the peak
-  const double root = weighted ? std::sqrt(lost.squares) : std::sqrt(pairs_of(n, m));
+  const double root = weighted ? std::sqrt(lost.squares) : std::sqrt(other.pairs);
   if (root == 0) return 0;
   const double met = lost.plain / std::max(places, 1.0),
                variance =
                    std::max(of_square * lost.squares / std::max(places, 1.0) - met * met, 0.0),
                truth = lost.evidence(weighted) / root,
-               others = met * (weighted ? lost.plain : pairs_of(n, m)) / root +
-                        std::sqrt(1 + variance) * median_of_largest(log_volume(n, m, places), m);
+               others =
+                   met * (weighted ? lost.plain : other.pairs) / root +
+                   std::sqrt(1 + variance) * median_of_largest(other.log_volume, other.dimensions);
   return normal_distribution(truth - others);
+}
+
+/// With m of n points elsewhere.
+double points_stay(const Sums& lost, double m, double n, double places, bool weighted) {
+  return truth_wins(lost, {pairs_of(n, m), m, log_volume(n, m, places)}, places, weighted);
+}
+
+/// That no cut between neighbours lets one side move, or be mirrored, as a whole.
+double groups_stay(const PairTable& signal, std::span<const double> x, double places,
+                   bool weighted) {
+  std::vector<std::size_t> along(x.size());
+  std::iota(along.begin(), along.end(), std::size_t{0});
+  std::sort(along.begin(), along.end(), [&](std::size_t a, std::size_t b) { return x[a] < x[b]; });
+  const auto n = static_cast<double>(x.size());
+  const double volume = log_volume(n, 1, places) - std::log(n) + std::log(2.0);
+  double stay = 1;
+  for (std::size_t cut = 2; cut + 2 <= x.size(); ++cut) {
+    Sums across;
+    for (std::size_t i = 0; i < cut; ++i)
+      for (std::size_t j = cut; j < x.size(); ++j) across.add(signal[along[i]][along[j]]);
+    const auto left = static_cast<double>(cut);
+    stay = std::min(stay, truth_wins(across, {left * (n - left), 1, volume}, places, weighted));
+  }
+  return stay;
+}
+
+/// That no point is taken for its mirror image between two others.
+double points_unmirrored(const PairTable& signal, bool weighted) {
+  const std::size_t n = signal.size();
+  if (n < 4) return 1;  // three points that are mirrored are the same object
+  double winners = 0;
+  for (std::size_t k = 0; k < n; ++k) {
+    Sums all;
+    for (const double each : signal[k]) all.add(each);
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t j = i + 1; j < n; ++j) {
+        if (i == k || j == k) continue;
+        Sums lost = all;
+        lost.add(signal[k][i], -1);
+        lost.add(signal[k][j], -1);
+        const double variance = weighted ? lost.squares : static_cast<double>(n - 3);
+        winners += variance > 0
+                       ? normal_distribution(-lost.evidence(weighted) / std::sqrt(2 * variance))
+                       : 0.5;
+      }
+  }
+  return std::exp(-winners);
 }
 
 }  // namespace
 
 double predicted_success(std::span<const double> signals, std::size_t points, double places,
-                         bool weighted) {
-  double success = 1;
+                         bool weighted, std::span<const double> x) {
+  const PairTable signal = by_points(signals, points);
+  double success = x.empty() ? 1 : groups_stay(signal, x, places, weighted);
   std::size_t elsewhere = 0;
-  for (const Sums& lost : least_sums(by_points(signals, points), weighted))
-    success = std::min(success, truth_wins(lost, static_cast<double>(++elsewhere),
-                                           static_cast<double>(points), places, weighted));
-  return success;
+  for (const Sums& lost : least_sums(signal, weighted))
+    success = std::min(success, points_stay(lost, static_cast<double>(++elsewhere),
+                                            static_cast<double>(points), places, weighted));
+  return success * points_unmirrored(signal, weighted);
 }
 
 }  // namespace flatspeckle::mc

@@ -27,9 +27,16 @@ namespace flatspeckle::mc {
 /// Where all N points are the same and places many, the whole object decides, at peaks of about
 /// sqrt(4 ln(places) / N).
 ///
+/// Two more kinds of objects have peaks of the true one. A point k that is mirrored at the middle
+/// of two others, i and j, keeps its distances to them (exchanged) and loses S of the other N - 3
+/// pairs: it wins with the probability Phi(-S / sqrt(2 (N - 3))), and success has the factor
+/// exp(-sum over k, i, j) of none winning. And where a cut divides the line in two groups, one of
+/// them may move or be mirrored as a whole: all pairs across it are lost, and the field is that of
+/// one place. x, the points' places, tells the cuts; none without it.
+///
 /// weighted: the search knows how high each peak is, and weighs pairs by that: with the peaks'
 /// squares for S, and their sum for D in D c, over the root of the sum of squares.
 double predicted_success(std::span<const double> signals, std::size_t points, double places,
-                         bool weighted = false);
+                         bool weighted = false, std::span<const double> x = {});
 
 }  // namespace flatspeckle::mc

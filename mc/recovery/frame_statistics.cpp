@@ -80,6 +80,11 @@ std::vector<double> without_envelope(std::span<const double> frame, double width
   return over(frame, positive_envelope(frame, width));
 }
 
+double envelope_width(std::size_t pixels, std::size_t lags) {
+  constexpr std::size_t least = 32;
+  return static_cast<double>(std::min(2 * lags, std::max(pixels / 32, least)));
+}
+
 double squared_contrast(std::span<const double> frame, std::size_t lags, const CameraNoise& noise) {
   const std::size_t narrow = std::max<std::size_t>(frame.size() / 32, 1),
                     width = std::clamp(lags, narrow, 2 * narrow), margin = 4 * width;
@@ -109,7 +114,7 @@ FrameStatistics frame_statistics(std::span<const std::vector<double>> frames, st
   FrameStatistics found;
   double white = 0;
   for (const auto& frame : frames) {
-    const auto envelope = positive_envelope(frame, 2.0 * static_cast<double>(lags));
+    const auto envelope = positive_envelope(frame, envelope_width(pixels, lags));
     const auto own = autocorrelation(over(frame, envelope));
     for (std::size_t lag = 0; lag < pixels; ++lag) values[lag] += own[lag] / count;
     white += mean_noise(envelope, mean_of(frame), noise) / count;

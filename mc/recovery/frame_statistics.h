@@ -23,6 +23,11 @@ struct FrameStatistics {
 /// deviation of a Gaussian average). Throws InputError for a frame whose envelope is not positive.
 std::vector<double> without_envelope(std::span<const double> frame, double width);
 
+/// Of the envelope of frames whose autocorrelation is looked at: twice the lags, but at most a 32nd
+/// of the frame. A wider one leaves what varies slowly as a pedestal under all peaks, higher at
+/// short lags, by which a search prefers short objects.
+double envelope_width(std::size_t pixels, std::size_t lags);
+
 /// Variance over the square of the mean of what is left of the envelope, in the inner three
 /// quarters of at least 64 pixels, less that of the camera, whose shot noise is what the envelope
 /// lets expect: the less the brighter. An envelope that is taken from the speckle itself follows it

@@ -22,7 +22,7 @@ class Correlations {
         spectra_(transform_size(static_cast<double>(patterns.rows()) + static_cast<double>(lags))) {
     for (Eigen::Index s = 0; s < patterns.cols(); ++s) {
       const std::vector<double> pattern(patterns.col(s).begin(), patterns.col(s).end());
-      auto line = without_envelope(pattern, 2.0 * static_cast<double>(lags));
+      auto line = without_envelope(pattern, envelope_width(pattern.size(), lags));
       const double square = std::inner_product(line.begin(), line.end(), line.begin(), 0.0);
       if (square > 0)
         for (double& value : line) value /= std::sqrt(square);

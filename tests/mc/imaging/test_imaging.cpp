@@ -262,6 +262,25 @@ TEST_CASE("contrast without the camera's noise does not depend on how many photo
   }
 }
 
+TEST_CASE("an uneven light leaves no pedestal under the peaks of far pairs") {
+  std::mt19937 random(8);
+  constexpr std::size_t pixels = 8192, lags = 900;
+  constexpr int runs = 20;
+  double pedestal = 0, alone = 0, noise = 0;
+  for (int run = 0; run < runs; ++run) {
+    auto frame = shifted_speckle({0, 5, 13, 31}, pixels, 1, random);
+    for (std::size_t p = 0; p < pixels; ++p)
+      frame[p] *= std::exp(-std::pow((static_cast<double>(p) / pixels - 0.5) / 0.35, 2));
+    const auto found = frame_statistics(frame, lags);
+    for (std::size_t lag = 40; lag < lags; ++lag)
+      pedestal += found.autocorrelation[lag] / (runs * static_cast<double>(lags - 40));
+    alone += found.autocorrelation[0] / runs;
+    noise += found.noise / runs;
+  }
+  CHECK(std::abs(pedestal) < 0.3 * noise);
+  CHECK(alone == doctest::Approx(0.25).epsilon(0.03));
+}
+
 TEST_CASE("the speckle of a point that moves is shifted, and as alike as predicted") {
   struct Case {
     bool near;
