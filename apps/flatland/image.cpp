@@ -27,6 +27,8 @@ struct ImageKeys {
   SceneSpec spec;
   std::vector<double> object_x, object_brightness;
   std::optional<double> object_depth, object_extent, camera_depth, reference_x, memory_range;
+  double object_scale = 1;
+  std::optional<std::int64_t> object_count;
   std::vector<double> camera;
   std::int64_t pixels = 4096, repeats = 16, average = 1;
   std::optional<std::int64_t> points, paths_per_field;
@@ -48,6 +50,9 @@ void add_object_keys(Keys& keys, ImageKeys& values) {
   keys.add("object_x", values.object_x, "Points of the object, incoherent with each other")
       .unit("length");
   keys.add("object_brightness", values.object_brightness, "Of each point (default 1)").positive();
+  keys.add("object_count", values.object_count, "So many of them, the first ones (default: all)")
+      .positive();
+  keys.add("object_scale", values.object_scale, "By which object_x is multiplied").positive();
   keys.add("object_depth", values.object_depth, "z of the object's line, outside of the box")
       .unit("length");
   keys.add("camera_depth", values.camera_depth,
@@ -144,6 +149,14 @@ mc::LineObject object_of(const Keys& keys, const ImageKeys& values) {
   if (object.brightness.size() != object.x.size())
     throw InputError("object_brightness", object.brightness.size(),
                      "numbers for " + std::to_string(object.x.size()) + " points");
+  for (double& x : object.x) x *= keys.read(values.object_scale);
+  if (const auto& count = keys.read(values.object_count)) {
+    if (static_cast<std::size_t>(*count) > object.x.size())
+      throw InputError("object_count", *count,
+                       "of " + std::to_string(object.x.size()) + " points in object_x");
+    object.x.resize(static_cast<std::size_t>(*count));
+    object.brightness.resize(object.x.size());
+  }
   return object;
 }
 

@@ -30,6 +30,9 @@ class BadScene(RefusingTest):
         self.refused(["object_extent", "more than a quarter"], reference_x=3000)
         self.refused(["object_extent = 1000", "more than a quarter"], object_extent=1000)
 
+        self.refused(["object_extent", "more than a quarter"], object_scale=9)
+        self.refused(["object_count = 4", "3 points"], object_count=4)
+
     def test_numbers(self):
         for bad in "nan", "inf":
             self.refused(["object_x"], object_x=[0, bad])

@@ -36,6 +36,24 @@ class Image(ProgramTest):
                 self.assertTrue(np.all(np.isfinite(values)), name)
         self.assertIn("of the media", self.output)
 
+    def test_parts_of_objects(self):
+        found = self.image(**{**IMAGE, "repeats": 0}, object_count=2, object_scale=1.5)
+        np.testing.assert_allclose(found["object_x"], [0, 60])
+
+    def test_prediction_and_pictures_over_the_same_axes(self):
+        """A sweep of both, and of the prediction alone, which is the same; it falls with OD."""
+        success = {}
+        for repeats in 0, 2:
+            self.call("sweep", **{**{k: v for k, v in IMAGE.items() if k != "optical_depth"}, "repeats": repeats},
+                      of="image", vary=["optical_depth=1,20", "photons=2,50"], seed=1, out="sweep.h5")
+            success[repeats] = datasets(self.folder / "sweep.h5")
+        predicted = success[0]["predicted_success"]
+        self.assertEqual(predicted.shape, (2, 2))
+        np.testing.assert_allclose(predicted, success[2]["predicted_success"], rtol=1e-12)
+        self.assertTrue(np.all(predicted[0] >= predicted[1]))
+        self.assertTrue(np.all(predicted[:, 1] >= predicted[:, 0]))
+        self.assertEqual(success[2]["success"].shape, (2, 2))
+
     def test_threads_do_not_matter_and_the_seed_does(self):
         frames = {}
         for name, extra in {"one": {"threads": 1}, "two": {"threads": 2},
