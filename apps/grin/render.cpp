@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cstdio>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "apps/experiments/single_run.h"
 #include "core/keys/number_text.h"
@@ -28,11 +30,10 @@ void note_losses(const grin::TransportCounts& counts) {
 }
 
 /// A dark picture is more often a mistake than a result.
-void note_darkness(std::size_t sensors) {
-  const char* const notes[] = {"note: no light came to the map\n",
-                               "note: no light came to the sensor\n",
-                               "note: no light came to a sensor\n"};
-  std::fputs(notes[std::min<std::size_t>(sensors, 2)], stderr);
+void note_darkness(const std::vector<std::string>& dark) {
+  for (std::size_t i = 0; i < dark.size(); ++i)
+    std::fprintf(stderr, "%s%s", i == 0 ? "note: no light came to " : ", ", dark[i].c_str());
+  if (!dark.empty()) std::fputs("\n", stderr);
 }
 
 void print_row(const char* name, const Estimate& estimate, std::size_t entry,
@@ -83,11 +84,15 @@ void print_pixels(const Estimate& image) {
   std::puts("");
 }
 
-/// Total, mean and brightest pixel. Returns whether there is light.
-bool print_sensor(const grin::Sensor& sensor, const grin::SensorResult& result) {
+/// Total, mean and brightest pixel, under a name; nothing in the dark. Returns whether there is
+/// light.
+bool print_sensor(const std::string& name, const grin::Sensor& sensor,
+                  const grin::SensorResult& result) {
   const std::string& units = row_of(grin::table_of(sensor), "image").unit;
   const auto& image = result.picture.steady;
   const std::size_t brightest = largest_of(image);
+  if (!(image.value[brightest].real() > 0)) return false;
+  std::printf("%-16s %-13s %-10s\n", name.c_str(), "value", "error");
   if (result.total) print_found("total power", *result.total, "");
   if (result.within)
     for (std::size_t i = 0; i < result.within->radii.size(); ++i)
@@ -95,30 +100,30 @@ bool print_sensor(const grin::Sensor& sensor, const grin::SensorResult& result) 
                 "");
   print_found("mean of pixels", result.mean, units);
   print_row("brightest pixel", image, brightest, units);
-  const bool is_lit = image.value[brightest].real() > 0;
-  if (is_lit) print_pixels(image);
-  return is_lit;
+  print_pixels(image);
+  return true;
 }
 
 /// The brightest cell. Returns whether there is light.
 bool print_map(const grin::LightMap& map, const grin::RenderJob& job, const GroupedSums& sums) {
   const Estimate fluence = grin::fluence(sums, job.first_of_map(), map);
   const std::size_t brightest = largest_of(fluence);
-  print_row("largest fluence", fluence, brightest, "1/length^2");
-  return fluence.value[brightest].real() > 0;
+  const bool is_lit = fluence.value[brightest].real() > 0;
+  if (is_lit) print_row("largest fluence", fluence, brightest, "1/length^2");
+  return is_lit;
 }
 
 /// What each sensor and the map have found, and what the search for curves cost.
 void print_render(const grin::RenderScene& scene, const grin::RenderJob& job,
                   const GroupedSums& sums, const grin::RenderResult& result) {
-  bool is_lit = true;
+  std::vector<std::string> dark;
   for (std::size_t i = 0; i < result.size(); ++i) {
     const std::string name = result.size() > 1 ? sensor_name(scene, i) : "";
-    std::printf("%-16s %-13s %-10s\n", name.c_str(), "value", "error");
-    is_lit &= print_sensor(scene.sensors[i], result[i]);
+    if (!print_sensor(name, scene.sensors[i], result[i]))
+      dark.push_back(name.empty() ? "the sensor" : "sensor " + name);
   }
-  if (scene.map) is_lit &= print_map(*scene.map, job, sums);
-  if (!is_lit) note_darkness(result.size());
+  if (scene.map && !print_map(*scene.map, job, sums)) dark.emplace_back("the map");
+  note_darkness(dark);
   if (job.counts) note_losses(*job.counts);
   if (!grin::has_trials(job)) return;
   const auto& joins = job.counts->connections;

@@ -64,6 +64,9 @@ void ResultGroup::put(const std::string& path, const Values& values, std::span<c
   write({path + "_rare", Data::count, found.axes, "1",
          "1 where a few batches carry the standard error: " + found.long_name},
         rare);
+  const bool is_nothing =
+      std::all_of(errors.begin(), errors.end(), [](double e) { return e == 0; });
+  if (is_nothing) return;  // no path at all carries it
   file_.note_rare(prefix_ + path + ": " + std::to_string(few) + " of " +
                   std::to_string(rare.size()));
 }

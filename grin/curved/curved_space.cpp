@@ -369,8 +369,21 @@ std::vector<BeamWay> CurvedSpace::ways_to_beam(const PathPoint& p, const Paralle
     const ConnectionOptions options = search();
     return BeamSearch(legs, p, light, options).find(seeds, random, statistics);
   }
-  if (is_curved(p.part)) return {};
-  return setup_->stage.ways_to_beam(p, light, random);
+  if (const auto way = plainest_way_to_beam(p, light, random, statistics)) return {*way};
+  return {};
+}
+
+std::optional<BeamWay> CurvedSpace::plainest_way_to_beam(const PathPoint& p,
+                                                         const ParallelLight& light,
+                                                         RandomStream& random,
+                                                         ConnectionStatistics& statistics) const {
+  if (searches_for_beams()) {
+    const Legs legs(*this);
+    const ConnectionOptions options = search();
+    return BeamSearch(legs, p, light, options).find_plainest(random, statistics);
+  }
+  if (is_curved(p.part)) return std::nullopt;
+  return setup_->stage.way_to_beam(p, light, random);
 }
 
 std::optional<BeamWay> CurvedSpace::some_way_to_beam(const PathPoint& p, const ParallelLight& light,

@@ -71,6 +71,9 @@ class CurvedSpace {
   std::vector<BeamWay> ways_to_beam(const PathPoint& p, const ParallelLight& light,
                                     std::span<const BeamSeed> seeds, RandomStream& random,
                                     ConnectionStatistics& statistics) const;
+  std::optional<BeamWay> plainest_way_to_beam(const PathPoint& p, const ParallelLight& light,
+                                              RandomStream& random,
+                                              ConnectionStatistics& statistics) const;
   std::optional<BeamWay> some_way_to_beam(const PathPoint& p, const ParallelLight& light,
                                           RandomStream& random,
                                           ConnectionStatistics& statistics) const;

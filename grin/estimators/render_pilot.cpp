@@ -29,13 +29,16 @@ struct Pilot {
       all.joins += promises[i].joins;
       all.made += promises[i].made;
       all.brought += promises[i].brought;
+      all.hits += promises[i].hits;
+      all.beams += promises[i].beams;
     }
     return all;
   }
 };
 
 /// The same pairs each time, with the levels of joins that the transport has.
-Pilot pilot(Transport& transport, const PathKernel& kernel, const TimeBins& bins) {
+Pilot pilot(Transport& transport, const PathKernel& kernel, const TimeBins& bins,
+            int pairs = most_pairs) {
   constexpr auto no_batch = std::numeric_limits<std::uint64_t>::max();
   const int pixels = transport.pixels();
   std::vector<Complex> sums(static_cast<std::size_t>(pixels) * bins.sums());
@@ -44,7 +47,7 @@ Pilot pilot(Transport& transport, const PathKernel& kernel, const TimeBins& bins
   const int limit = transport.max_scatterings;
   transport.max_scatterings = std::min(limit, pilot_scatterings);
   Pilot found;
-  for (; found.pairs < most_pairs; ++found.pairs) {
+  for (; found.pairs < pairs; ++found.pairs) {
     if (found.pairs >= fewest_pairs && found.counts.flights >= enough_flights) break;
     const std::uint64_t before = found.counts.flights;
     kernel(1, random, film, found.counts, &found.promises);
@@ -56,7 +59,21 @@ Pilot pilot(Transport& transport, const PathKernel& kernel, const TimeBins& bins
 
 Pilot pilot_without_joins(Transport& transport, const PathKernel& kernel, const TimeBins& bins) {
   for (double& level : transport.join_levels) level = std::numeric_limits<double>::infinity();
+  transport.beam_levels = transport.join_levels;
   return pilot(transport, kernel, bins);
+}
+
+/// Joins to beams that bring next to nothing beside others only cost time.
+bool pay_joins_to_beams(Transport& transport, const PathKernel& kernel, const TimeBins& bins) {
+  constexpr double next_to_nothing = 0.01;
+  const std::size_t sensors = transport.sensors.size();
+  for (double& level : transport.beam_levels) level = 0;
+  const Pilot with = pilot(transport, kernel, bins, 64 * most_pairs);
+  for (std::size_t at = 0; at < sensors; ++at) {
+    const JoinPromise sum = with.sum(at, sensors);
+    if (sum.beams > next_to_nothing * (sum.joins + sum.hits)) return true;
+  }
+  return false;
 }
 
 /// What joins to each sensor bring over what they promise, by some tens of them; never less than 1,
@@ -110,6 +127,8 @@ double tune_joins(Transport& transport, const PathKernel& kernel, const TimeBins
   const double collisions = static_cast<double>(first.counts.light_collisions) / first.pairs;
   transport.strategies.joined_share = std::min(1.0, 1 / collisions);
   transport.strategies.kept = 1 - 1 / (2 + 2 * collisions);
+  if (transport.strategies.joins_beams && !transport.strategies.short_light)
+    transport.strategies.joins_beams = pay_joins_to_beams(transport, kernel, bins);
   const Pilot second = pilot_without_joins(transport, kernel, bins);
   const auto returns = returns_of_joins(transport, kernel, bins, second);
   const std::size_t sensors = transport.sensors.size();
@@ -120,6 +139,7 @@ double tune_joins(Transport& transport, const PathKernel& kernel, const TimeBins
     transport.join_levels[at] =
         std::sqrt(flights_per_join * trimmed_variance(expected) / second.flights_per_pair()) /
         returns[at];
+    transport.beam_levels[at] = transport.join_levels[at] / 10;  // they bring very unequal amounts
   }
   return known_flights(second);
 }

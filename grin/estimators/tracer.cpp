@@ -12,9 +12,16 @@ namespace flatspeckle::grin {
 
 namespace {
 
-Strategies strategies(RenderMethod method) {
+bool is_beam(const Light& light) {
+  return std::holds_alternative<BeamLight>(light);
+}
+
+Strategies strategies(const RenderScene& scene, RenderMethod method) {
+  const bool is_light = method == RenderMethod::light;
+  const bool has_beam = std::any_of(scene.lights.begin(), scene.lights.end(), is_beam);
   return {.short_light = method == RenderMethod::path,
-          .short_sensor = method == RenderMethod::light};
+          .short_sensor = is_light,
+          .joins_beams = has_beam && !is_light};
 }
 
 int path_limit(const RenderRequest& request) {
@@ -63,7 +70,7 @@ std::shared_ptr<Transport> transport_of(const RenderScene& scene, const RenderRe
       .stage = scene.stage,
       .lights = Lights(scene.lights, scene.stage, index),
       .sensors = sensor_ends(scene.sensors, scene.stage),
-      .strategies = strategies(method),
+      .strategies = strategies(scene, method),
       .max_scatterings = path_limit(request),
   });
 }
@@ -118,7 +125,7 @@ Tracer Tracers::make(RenderMethod method) const {
 
 MapKernel Tracers::map_kernel() const {
   if (!scene_.map) return {};
-  const auto transport = transport_of(scene_, request_, RenderMethod::bidirectional);
+  const auto transport = transport_of(scene_, request_, RenderMethod::light);
   if (const auto* homogeneous = std::get_if<Homogeneous>(&scene_.field))
     return grin::map_kernel(*scene_.map, transport, homogeneous->n_excess);
   const std::shared_ptr<const CurvedSpace> space =

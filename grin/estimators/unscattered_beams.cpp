@@ -36,10 +36,6 @@ class EvenSquare {
   double u_, v_;
 };
 
-ParallelLight parallel_light(const Lights::Beam& beam) {
-  return {beam.disk.centre(), beam.disk.axis()};
-}
-
 /// Rays do not say all of what this sensor sees of beams.
 template <Space S>
 bool needs_ways(const S& space, const SensorEnd& sensor) {
@@ -71,7 +67,7 @@ std::vector<BeamSeed> seeds_of(const S& space, const SensorEnd& sensor, const Li
   constexpr auto no_batch = std::numeric_limits<std::uint64_t>::max() - 1;
   RandomStream random(0, static_cast<std::uint64_t>(Stream::render), no_batch);
   ConnectionStatistics statistics;
-  const ParallelLight light = parallel_light(beam);
+  const ParallelLight light = beam.light();
   std::vector<BeamSeed> seeds;
   std::vector<std::pair<double, BeamSeed>> found;  // light
   for (int place = 0; place < places; ++place) {
@@ -180,7 +176,7 @@ class UnscatteredBeams {
                 std::span<const BeamSeed> seeds) {
     const EndPosition z = sensor.sample_position(space_, random_);
     const auto ways =
-        space_.ways_to_beam(z.point, parallel_light(beam), seeds, random_, counts_.connections);
+        space_.ways_to_beam(z.point, beam.light(), seeds, random_, counts_.connections);
     ++counts_.joins;
     for (const BeamWay& way : ways)
       if (beam.disk.contains(way.place)) add_way(sensor, z, beam, way);
@@ -200,7 +196,7 @@ class UnscatteredBeams {
 
   double weight_of_ray(const Flight& flight, const EndHit& hit, const Lights::Beam& beam) const {
     if (flight.passages.count == 0 || !flight.is_joinable) return 1;
-    const auto way = space_.beam_way(hit.position.point, parallel_light(beam), -flight.direction,
+    const auto way = space_.beam_way(hit.position.point, beam.light(), -flight.direction,
                                      flight.passages.reversed(), random_);
     return way ? 1 / (1 + heuristic(ways_over_rays(hit.position, *way, beam))) : 1;
   }

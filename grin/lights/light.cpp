@@ -1,5 +1,6 @@
 #include "grin/lights/light.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace flatspeckle::grin {
@@ -100,6 +101,11 @@ std::size_t Lights::beam_number(double stratum) const {
 
 Lights::Beam Lights::beam_at(std::size_t number) const {
   return {number, std::get<BeamLightEnd>(source_[beams_[number]].end).disk(), beam_power_};
+}
+
+Lights::Beam Lights::beam_of(const EndPosition& at) const {
+  const auto number = std::find(beams_.begin(), beams_.end(), at.light) - beams_.begin();
+  return beam_at(static_cast<std::size_t>(number));
 }
 
 EndPosition Lights::beam_position(double stratum, double u, double v) const {

@@ -59,9 +59,12 @@ class Lights {
     double power;  ///< of all beams
     /// At a place of the disk, if all power were in this beam.
     double irradiance(const Vec3& x) const { return power * disk.density(x); }
+    ParallelLight light() const { return {disk.centre(), disk.axis()}; }
   };
   Beam beam(double stratum) const { return beam_at(beam_number(stratum)); }
   Beam beam_at(std::size_t number) const;
+  /// That of a place which is on a beam.
+  Beam beam_of(const EndPosition& at) const;
   std::size_t beams() const { return beams_.size(); }
   /// And nothing else, so that no path from a sensor is joined to a light or hits one.
   bool are_beams() const { return beams_.size() == source_.size(); }

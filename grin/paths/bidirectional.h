@@ -33,7 +33,8 @@ class Bidirectional {
   void add(double stratum) {
     std::fill(promised_.begin(), promised_.end(), JoinPromise());
     walk_from_light();
-    const bool meets_nothing = transport_.lights.are_beams() && vertices_.kept().empty();
+    const bool meets_nothing = transport_.lights.are_beams() &&
+                               !transport_.strategies.joins_beams && vertices_.kept().empty();
     if (!meets_nothing) for_each_sensor([&] { walk_from_sensor(stratum); });
   }
 
@@ -45,6 +46,7 @@ class Bidirectional {
  private:
   /// The root of what a search for ways through the body's surface costs more than another join.
   static constexpr double search_cost = plan.curved ? 1 : 10;
+  static constexpr double elsewhere = 0.1;
 
   using Family = std::conditional_t<plan.deep, LightFamily, LonePath>;
   static Family family(const Transport& transport, [[maybe_unused]] Film& film) {
@@ -166,9 +168,50 @@ class Bidirectional {
   }
   void join_to_light(const PathVertex& z) {
     const EndPosition end = transport_.lights.sample_position(space_, random_);
-    if (end.is_beam) return;
+    if (end.is_beam) return join_to_beam(end, z);
     const PathVertex y = end_vertex(transport_.strategies, end);
     join_to_end(y, z);
+  }
+
+  /// Along the plainest way (beam_join.h).
+  void join_to_beam(const EndPosition& end, const PathVertex& z) {
+    if (!transport_.strategies.joins_beams || z.vertices - 1 > transport_.max_scatterings) return;
+    const Lights::Beam beam = transport_.lights.beam_of(end);
+    const double chance = chance_to_join(promise(beam, end, z), transport_.beam_levels[at_]);
+    if (!(chance > 0)) return;
+    const auto way =
+        space_.plainest_way_to_beam(z.point, beam.light(), random_, counts_.connections);
+    if (!way || !beam.disk.contains(way->place)) return;
+    const JoinedPath path =
+        to_beam(end, beam.disk.density(way->place), z,
+                leaving(transport_, sensor(), z, way->start_direction),
+                {beam.disk.axis(), -way->start_direction, way->thinning, way->optical_depth});
+    const double value = path.value * path.weight * way->transmittance / chance;
+    promised_[at_].beams += value;
+    add(pixel_, value, way->optical_path + z.optical_path);
+  }
+  /// As facing(): the way may be another than the straight line.
+  double promise(const Lights::Beam& beam, const EndPosition& end, const PathVertex& z) {
+    ++counts_.joins_weighed;
+    const ParallelLight light = beam.light();
+    const auto place = straight_place(light, z.point.x);
+    if (!place) return 0;
+    double density = beam.disk.contains(*place) ? beam.disk.density(*place) : 0;
+    if (plan.curved || space_.joins_through())
+      density = std::max(density, elsewhere * beam.disk.density(light.x));
+    if (!(density > 0)) return 0;
+    const double depth = space_.least_depth(z.point, {*place, z.point.part});
+    const JoinedPath path = to_beam(end, density, z, facing(sensor(), z, -light.direction),
+                                    {light.direction, light.direction, 1, depth});
+    return path.value * path.weight * std::exp(-depth);
+  }
+  /// density: of the place on the beam. The curve's spreading is what thins the light.
+  JoinedPath to_beam(const EndPosition& end, double density, const PathVertex& z,
+                     const EndDirection& from_z, const JoiningCurve& curve) const {
+    PathVertex y = end_vertex(transport_.strategies, end);
+    y.weight = 1;
+    const EndDirection from_y{curve.start_direction, density, transport_.lights.power() * density};
+    return joined_path(transport_.strategies, y, from_y, z, from_z, curve);
   }
 
   void join_to_end(const PathVertex& y, const PathVertex& z) {
@@ -217,7 +260,6 @@ class Bidirectional {
   /// along the straight line, so that some of its other directions counts too.
   template <class End>
   EndDirection facing(const End& ends, const PathVertex& vertex, const Vec3& direction) {
-    constexpr double elsewhere = 0.1;
     EndDirection way = leaving(transport_, ends, vertex, direction);
     if (plan.curved || space_.joins_through()) {
       if (vertex.end)

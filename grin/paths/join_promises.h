@@ -8,7 +8,8 @@ namespace flatspeckle::grin {
 struct JoinPromise {
   double joins = 0;  ///< made or not
   double made = 0, brought = 0;
-  double hits = 0;  ///< what came without a join
+  double hits = 0;   ///< what came without a join
+  double beams = 0;  ///< what joins to beams brought
 };
 
 /// [pair of paths][sensor].

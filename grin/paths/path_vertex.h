@@ -43,6 +43,8 @@ struct Strategies {
   /// paths that meet do so again and again, which is rare and worth much; without these joins they
   /// still meet each other's end.
   double kept = 1;
+  /// Collisions of sensors' paths are joined to beams (beam_join.h).
+  bool joins_beams = false;
 
   /// Vertices made from an end that can also be made from the other.
   int most_light() const { return short_light ? 1 : unlimited; }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "grin/paths/beam_join.h"
 #include "grin/paths/light_family.h"
 #include "grin/paths/light_tally.h"
 #include "grin/paths/transport.h"
@@ -59,6 +60,9 @@ void walk(const Transport& transport, const S& space, const Choice& choice, cons
       const double density =
           here.end ? first.density : phase().density(here.arrived.dot(direction));
       weigh(next, transport.strategies, here, flight, density, chosen);
+      if (here.end && here.end->is_beam && transport.strategies.joins_beams &&
+          flight.end == Flight::End::collision)
+        weigh_in_beam(transport, space, here, flight, random, counts, next);
     }
     if (is_short && next.first_of_other > 0) return false;
     if (!plan.scatters || flight.end == Flight::End::boundary) {

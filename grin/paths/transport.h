@@ -21,6 +21,7 @@ struct Transport {
   /// Of each sensor: joins that promise less than this are left to chance, in proportion to what
   /// they promise.
   std::vector<double> join_levels = std::vector<double>(sensors.size());
+  std::vector<double> beam_levels = join_levels;  ///< of those to beams
 
   /// Of all sensors.
   int pixels() const {

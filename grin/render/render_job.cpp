@@ -30,8 +30,8 @@ constexpr double few_of_pictures = 36;
 /// and the number of batches from which errors are trusted is soon there: long paths are fewer.
 /// A power of two: no rounding of the flights changes it.
 int paths_per_batch(const Tracer& tracer, bool scatters, double cost_of_flight, std::size_t sums) {
-  constexpr double most = 16384, flights_soon_made = 8192;
-  const double fewest = std::clamp(flights_soon_made / tracer.flights_per_pair, 4.0, 32.0);
+  constexpr double most = 16384, flights_soon_made = 1024;
+  const double fewest = std::clamp(flights_soon_made / tracer.flights_per_pair, 1.0, 32.0);
   const bool is_map = tracer.method == RenderMethod::photon_map;
   const double most_flights = is_map ? 1 << 20 : 1 << 17;
   const double paths =

@@ -84,8 +84,9 @@ struct BeamWay {
   int orientation;                ///< sign of the determinant in it
   double arc_length, optical_path;
   Passages passages = {};
-  double transmittance;     ///< or an unbiased estimate; Fresnel's alone where not stated
-  double multiplicity = 1;  ///< as in Join
+  double transmittance;      ///< or an unbiased estimate; Fresnel's alone where not stated
+  double multiplicity = 1;   ///< as in Join
+  double optical_depth = 0;  ///< reference depth, see below; 0 where not stated
 };
 
 /// Where a search for ways to parallel light begins: along a direction, or from outside of all
@@ -104,10 +105,10 @@ struct BeamSeed {
 
 /// What the estimators ask of space. join() finds ways that surfaces of bodies leave alone,
 /// join_through() one of those that are refracted or reflected there; ways_to_beam() those of
-/// parallel light, backwards, some_way_to_beam() what one random trial finds of them, and
-/// beam_way() that which starts so. StraightSpace<plan>
-/// answers inline; CurvedSpace (abstract) by one virtual call per flight, behind which the field's
-/// type is known to every step.
+/// parallel light, backwards, plainest_way_to_beam() the one that is refracted wherever it can be
+/// (always the same, if one is found), some_way_to_beam() what one random trial finds of them, and
+/// beam_way() that which starts so. StraightSpace<plan> answers inline; CurvedSpace (abstract) by
+/// one virtual call per flight, behind which the field's type is known to every step.
 template <class S>
 concept Space = requires(const S& space, const PathPoint& p, const Vec3& v, RandomStream& random,
                          ConnectionStatistics& statistics, const ParallelLight& light,
@@ -121,6 +122,9 @@ concept Space = requires(const S& space, const PathPoint& p, const Vec3& v, Rand
   { space.joins_through() } -> std::same_as<bool>;
   { space.join_through(p, p, random, statistics) } -> std::same_as<std::optional<Join>>;
   { space.ways_to_beam(p, light, seeds, random, statistics) } -> std::same_as<std::vector<BeamWay>>;
+  {
+    space.plainest_way_to_beam(p, light, random, statistics)
+    } -> std::same_as<std::optional<BeamWay>>;
   { space.some_way_to_beam(p, light, random, statistics) } -> std::same_as<std::optional<BeamWay>>;
   { space.beam_way(p, light, v, passages, random) } -> std::same_as<std::optional<BeamWay>>;
 };

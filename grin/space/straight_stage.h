@@ -131,20 +131,21 @@ class StraightStage {
   }
 
   /// The straight way of parallel light to a point.
-  std::vector<BeamWay> ways_to_beam(const PathPoint& p, const ParallelLight& light,
-                                    RandomStream& random) const {
+  std::optional<BeamWay> way_to_beam(const PathPoint& p, const ParallelLight& light,
+                                     RandomStream& random) const {
     const double length = (p.x - light.x).dot(light.direction);
-    if (!(length > 0)) return {};
+    if (!(length > 0)) return std::nullopt;
     const PathPoint from{p.x - length * light.direction, p.part};
     const auto join = this->join(p, from, random);
-    if (!join) return {};
-    return {BeamWay{.start_direction = join->start_direction,
+    if (!join) return std::nullopt;
+    return BeamWay{.start_direction = join->start_direction,
                     .place = from.x,
                     .thinning = 1,
                     .orientation = 1,
                     .arc_length = length,
                     .optical_path = join->optical_path,
-                    .transmittance = join->transmittance}};
+                    .transmittance = join->transmittance,
+                    .optical_depth = join->optical_depth};
   }
 
   /// Of the straight line between two points at the least, whether light goes it or not.

@@ -62,7 +62,15 @@ class StraightSpace {
                                     ConnectionStatistics& statistics) const {
     if (joins_through())
       return BeamSearch(legs(), p, light, search).find(seeds, random, statistics);
-    return stage_.ways_to_beam(p, light, random);
+    if (const auto way = stage_.way_to_beam(p, light, random)) return {*way};
+    return {};
+  }
+  std::optional<BeamWay> plainest_way_to_beam(const PathPoint& p, const ParallelLight& light,
+                                              RandomStream& random,
+                                              ConnectionStatistics& statistics) const {
+    if (joins_through())
+      return BeamSearch(legs(), p, light, search).find_plainest(random, statistics);
+    return stage_.way_to_beam(p, light, random);
   }
   std::optional<BeamWay> some_way_to_beam(const PathPoint& p, const ParallelLight& light,
                                           RandomStream& random,

@@ -53,6 +53,15 @@ class BeamSearch {
     return ways;
   }
 
+  /// The way that a ray against the light leads to, refracted wherever it can be: where there is
+  /// one, always the same.
+  std::optional<BeamWay> find_plainest(RandomStream& random,
+                                       ConnectionStatistics& statistics) const {
+    Trial trial = to_plane(random, statistics);
+    if (trial.way) attenuate(*trial.way, random);
+    return trial.way;
+  }
+
   /// What one random trial finds.
   std::optional<BeamWay> find_one(RandomStream& random, ConnectionStatistics& statistics) const {
     return at_random(random, statistics).way;
@@ -106,9 +115,11 @@ class BeamSearch {
     return first.way;
   }
   void attenuate(BeamWay& way, RandomStream& random) const {
+    way.optical_depth = -std::log(way.transmittance);
     walk_.for_each_leg(way.start_direction, way.passages, way.arc_length, random,
                        [&](Part part, const RayState& start, double length) {
                          way.transmittance *= legs_.transmitted(part, start, length, random);
+                         way.optical_depth += legs_.reference(part) * length;
                        });
   }
   bool is_among(std::span<const BeamWay> ways, const BeamWay& one) const {
@@ -131,6 +142,23 @@ class BeamSearch {
                       closest = square;
                       aim.passages = met;
                     });
+    return counted(refined(aim, random, statistics), statistics);
+  }
+  /// The same; the leg that comes to the plane.
+  Trial to_plane(RandomStream& random, ConnectionStatistics& statistics) const {
+    BeamSeed aim{-light_.direction};
+    bool is_there = false;
+    walk_.refracted(aim.start_direction, random,
+                    [&](const Passages& met, Part part, const RayState& ray) {
+                      RayState end = ray;
+                      const PlaneCrossing crossing = legs_.to_plane(part, light_, end, nullptr);
+                      if (is_there || !crossing.is_reached ||
+                          !legs_.stays(part, ray, crossing.sigma))
+                        return;
+                      is_there = true;
+                      aim.passages = met;
+                    });
+    if (!is_there) return counted({TrialOutcome::no_approach}, statistics);
     return counted(refined(aim, random, statistics), statistics);
   }
   Trial at_random(RandomStream& random, ConnectionStatistics& statistics) const {

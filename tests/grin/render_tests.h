@@ -25,20 +25,32 @@ struct Rendered {
   double error(std::size_t pixel = 0) const { return picture.steady.error[pixel]; }
 };
 
-inline RunState run_render(const RenderJob& job, double samples, int threads = 0) {
+inline RunState run_render(const RenderJob& job, const StopRule& stop, int threads = 0) {
   RunState state{GroupedSums(job.batches.size), {}};
   RunOptions options;
-  options.stop.samples = static_cast<std::uint64_t>(samples);
+  options.stop = stop;
   options.threads = threads;
   run_batches(job.batches, options, state);
   return state;
 }
+inline StopRule after(double samples) {
+  StopRule stop;
+  stop.samples = static_cast<std::uint64_t>(samples);
+  return stop;
+}
+inline RunState run_render(const RenderJob& job, double samples, int threads = 0) {
+  return run_render(job, after(samples), threads);
+}
 
+inline Rendered rendered(const RenderScene& scene, const RenderRequest& request,
+                         const StopRule& stop, std::uint64_t seed = 1) {
+  const RenderJob job = render_job(scene, request, seed);
+  const RunState state = run_render(job, stop);
+  return {rendered_picture(job, state.sums), *job.counts, state.cpu_s, state.sums.total_samples()};
+}
 inline Rendered rendered(const RenderScene& scene, const RenderRequest& request, double samples,
                          std::uint64_t seed = 1) {
-  const RenderJob job = render_job(scene, request, seed);
-  const RunState state = run_render(job, samples);
-  return {rendered_picture(job, state.sums), *job.counts, state.cpu_s, state.sums.total_samples()};
+  return rendered(scene, request, after(samples), seed);
 }
 
 inline Rendered rendered(const RenderScene& scene, RenderMethod method, double samples,

@@ -47,9 +47,8 @@ inline RenderScene van_de_hulst(Face face) {
   return slab(medium, 0.02, 0.5, face);
 }
 
-inline void check_share(const RenderScene& scene, RenderMethod method, double samples,
+inline void check_share(const RenderScene& scene, RenderMethod method, const Rendered& picture,
                         double expected, double largest_error) {
-  const Rendered picture = rendered(scene, method, samples);
   const AreaDetector& detector = std::get<AreaDetector>(scene.sensors[0]);
   const double area = detector.width * detector.height;
   const double value = area * picture.value(), error = area * picture.error();
@@ -60,6 +59,17 @@ inline void check_share(const RenderScene& scene, RenderMethod method, double sa
   CAPTURE(expected);
   CHECK(error < largest_error);
   CHECK(std::abs(value - expected) < 4 * error);
+}
+inline void check_share(const RenderScene& scene, RenderMethod method, double samples,
+                        double expected, double largest_error) {
+  check_share(scene, method, rendered(scene, method, samples), expected, largest_error);
+}
+/// By a run that ends at that error: of a number of samples errors scatter by a twentieth.
+inline void check_share_to(const RenderScene& scene, RenderMethod method, double expected,
+                           double largest_error) {
+  StopRule stop;
+  stop.target_error = largest_error / expected;
+  check_share(scene, method, rendered(scene, {method}, stop), expected, 1.001 * largest_error);
 }
 
 }  // namespace flatspeckle::grin::tests

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <optional>
+
+#include "grin/paths/transport.h"
+
+namespace flatspeckle::grin {
+
+// Collisions of sensors' paths are joined to the light of beams that reaches them without one:
+// along the plainest way (space.h), backwards, which is the same each time. It is shared with light
+// paths whose first flight goes that way.
+
+/// Where light that goes straight on would come from; nothing behind the plane of the beam, whose
+/// light is not joined.
+inline std::optional<Vec3> straight_place(const ParallelLight& light, const Vec3& x) {
+  const double length = (x - light.x).dot(light.direction);
+  if (!(length > 0)) return std::nullopt;
+  return x - length * light.direction;
+}
+
+/// Weights of a light path's first collision, after weigh().
+template <Space S>
+void weigh_in_beam(const Transport& transport, const S& space, const PathVertex& start,
+                   const Flight& flight, RandomStream& random, TransportCounts& counts,
+                   PathVertex& next) {
+  constexpr double same = 1e-4;  // rad
+  const Lights::Beam beam = transport.lights.beam_of(*start.end);
+  const ParallelLight light = beam.light();
+  if (!flight.is_joinable || flight.passages.reflected || !straight_place(light, flight.point.x))
+    return;
+  const auto way = space.plainest_way_to_beam(flight.point, light, random, counts.connections);
+  if (!way || way->passages.count != flight.passages.count ||
+      !((way->start_direction + flight.direction).norm() < same))
+    return;
+  next.density =
+      beam.disk.density(start.point.x) * bounded_attenuation(flight.optical_depth) / way->thinning;
+  next.first_of_other = 1;
+}
+
+}  // namespace flatspeckle::grin
