@@ -40,10 +40,12 @@ double unseen(double variance, double sum) {
 void bound_errors(Estimate& picture, const PixelGrid& grid) {
   const std::size_t size = picture.value.size();
   const std::vector<double> values = real_parts(picture.value);
-  std::vector<double> variances(size), marked(size);
+  std::vector<double> variances(size), marked(size), marks(size), lit(size);
   for (std::size_t i = 0; i < size; ++i) {
     variances[i] = picture.error[i] * picture.error[i];
     marked[i] = picture.rare[i] ? values[i] : 0;
+    lit[i] = values[i] != 0;
+    marks[i] = picture.rare[i] ? lit[i] : 0;
   }
   const double of_all = unseen(std::reduce(variances.begin(), variances.end()),
                                std::reduce(values.begin(), values.end()));
@@ -51,9 +53,12 @@ void bound_errors(Estimate& picture, const PixelGrid& grid) {
   const auto values_around = sums_around(values, grid);
   const auto variances_around = sums_around(variances, grid);
   const auto marked_around = sums_around(marked, grid);
+  const auto marks_around = sums_around(marks, grid), lit_around = sums_around(lit, grid);
   for (std::size_t i = 0; i < size; ++i) {
-    if (values[i] == 0 || marked_around[i] > values_around[i] / 2) picture.rare[i] = 1;
-    if (!picture.rare[i]) continue;
+    const bool is_known = values[i] != 0 && marked_around[i] <= values_around[i] / 2 &&
+                          marks_around[i] <= lit_around[i] / 2;
+    picture.rare[i] = !is_known;
+    if (is_known) continue;
     const double bound =
         values_around[i] > 0 ? unseen(variances_around[i], values_around[i]) : of_all;
     picture.error[i] = std::max(2 * picture.error[i], bound);

@@ -22,10 +22,6 @@ namespace flatspeckle::grin {
 
 namespace {
 
-/// Groups that make up an error of a picture; what fewer do is marked. Of light paths that are
-/// worth as unequal as in a graded fibre, pixels of fewer lie beyond two errors too often.
-constexpr double few_of_pictures = 36;
-
 /// So many that adding up the picture takes little of the time, and so few that a batch ends soon
 /// and the number of batches from which errors are trusted is soon there: long paths are fewer.
 /// A power of two: no rounding of the flights changes it.
@@ -118,6 +114,14 @@ bool walks_light(RenderMethod method) {
 Tracer tracer_of(const Tracers& tracers, const RenderScene& scene, const RenderRequest& request) {
   if (scene.sensors.empty()) return tracers.make(RenderMethod::light);
   return request.method ? tracers.make(*request.method) : best_tracer(tracers);
+}
+
+/// Groups, where pixels have neighbours to be judged with.
+double few_of(const std::vector<SensorEnd>& sensors) {
+  constexpr int many = 25;  // as bound_errors() looks at
+  const bool have_neighbours = std::ranges::all_of(
+      sensors, [](const SensorEnd& sensor) { return sensor.pixels().count() >= many; });
+  return have_neighbours ? few_of_pixels : few_of_values;
 }
 
 using Estimating = std::function<Estimate(const GroupedSums&, const Estimator&)>;
@@ -229,19 +233,19 @@ RenderJob render_job(const RenderScene& scene, const RenderRequest& request, std
     const std::lock_guard lock(*counting);
     *counts += of_batch;
   };
+  job.few_of_pictures = few_of(tracer.transport->sensors);
   const EntrySums steady_sums{static_cast<std::size_t>(pixels),
                               static_cast<std::size_t>(scene.bins.sums()),
                               static_cast<std::size_t>(scene.bins.parts())};
   job.batches.relative_error = [=, kinds = scene.sensors, bins = scene.bins, cells = scene.map,
                                 steady = steady_picture(job.pictures, scene.bins),
-                                has_drift = job.has_drift,
+                                has_drift = job.has_drift, few = job.few_of_pictures,
                                 first_of_map = job.first_of_map()](const GroupedSums& sums) {
-    const Estimate picture =
-        has_drift ? controlled_jackknife(sums, steady, sums.size() - 1, few_of_pictures)
-                  : jackknife(sums, steady_sums, few_of_pictures);
+    const Estimate picture = has_drift ? controlled_jackknife(sums, steady, sums.size() - 1, few)
+                                       : jackknife(sums, steady_sums, few);
     const auto estimate = [&](const GroupedSums& of, const Estimator& theta) {
-      return has_drift ? controlled_jackknife(of, theta, of.size() - 1, few_of_pictures)
-                       : jackknife(of, theta, few_of_pictures);
+      return has_drift ? controlled_jackknife(of, theta, of.size() - 1, few_of_values)
+                       : jackknife(of, theta, few_of_values);
     };
     const double of_pictures =
         largest_error(*tracer.transport, kinds, bins, picture, sums, estimate);
@@ -251,19 +255,21 @@ RenderJob render_job(const RenderScene& scene, const RenderRequest& request, std
   return job;
 }
 
-Estimate RenderJob::estimate(const GroupedSums& sums, const Estimator& theta) const {
-  return has_drift ? controlled_jackknife(sums, theta, sums.size() - 1, few_of_pictures)
-                   : jackknife(sums, theta, few_of_pictures);
+Estimate RenderJob::estimate(const GroupedSums& sums, const Estimator& theta, double few) const {
+  return has_drift ? controlled_jackknife(sums, theta, sums.size() - 1, few)
+                   : jackknife(sums, theta, few);
 }
 
 RenderedPicture rendered_picture(const RenderJob& job, const GroupedSums& sums) {
   const TimeBins& bins = job.bins;
-  RenderedPicture picture{
-      .bins = job.estimate(sums, some_sums(job, bins.count > 1 ? 1 : 0, bins.count)),
-      .steady = job.estimate(sums, steady_picture(job.pictures, bins))};
+  const auto estimate = [&](const Estimator& theta) {
+    return job.estimate(sums, theta, job.few_of_pictures);
+  };
+  RenderedPicture picture{.bins = estimate(some_sums(job, bins.count > 1 ? 1 : 0, bins.count)),
+                          .steady = estimate(steady_picture(job.pictures, bins))};
   if (bins.count == 1) return picture;
-  picture.before = job.estimate(sums, some_sums(job, 0, 1));
-  picture.after = job.estimate(sums, some_sums(job, bins.count + 1, 1));
+  picture.before = estimate(some_sums(job, 0, 1));
+  picture.after = estimate(some_sums(job, bins.count + 1, 1));
   return picture;
 }
 

@@ -8,6 +8,7 @@
 #include "core/run/runner.h"
 #include "grin/estimators/render_scene.h"
 #include "grin/paths/transport_counts.h"
+#include "grin/render/picture_errors.h"
 
 namespace flatspeckle::grin {
 
@@ -23,8 +24,11 @@ struct RenderJob {
   bool has_drift = false;    ///< the last of the sums
   std::string plan;          ///< the method, what is left out and what is not
   std::size_t first_of_map() const { return pictures + (has_energy ? EnergyBalance::size : 0); }
-  /// Of pictures: jackknife(), with the control variate where there is one.
-  Estimate estimate(const GroupedSums& sums, const Estimator& theta) const;
+  /// Of pictures: jackknife(), with the control variate where there is one; what fewer than so many
+  /// groups make up is marked.
+  Estimate estimate(const GroupedSums& sums, const Estimator& theta,
+                    double few = few_of_values) const;
+  double few_of_pictures = few_of_values;
   /// Of all batches that have run here.
   std::shared_ptr<const TransportCounts> counts;
 };

@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 
+#include "core/numbers/mean_errors.h"
 #include "grin/render/picture_errors.h"
 
 namespace flatspeckle::grin::tests {
@@ -32,7 +33,7 @@ Estimate picture(const Mean& mean, std::mt19937_64& random) {
     }
     sums.add(1.0 / batches, batch);
   }
-  Estimate found = jackknife(sums, sample_mean);
+  Estimate found = jackknife(sums, sample_mean, few_of_pixels);
   bound_errors(found, grid);
   return found;
 }
@@ -80,6 +81,14 @@ TEST_CASE("what rare strong paths find in some pixels is not believed to be miss
   const Coverage strong_ones = coverage(even, 40);
   CHECK(strong_ones.marked > 0.95);
   CHECK(strong_ones.of_unmarked < 0.1 * strong_ones.pixels_seen);
+}
+
+TEST_CASE("strong paths that light all pixels alike are known together") {
+  // one pixel alone tells too little of them
+  const auto even = [](std::size_t) { return Expected{100, 20}; };
+  const Coverage shared = coverage(even, 40);
+  CHECK(shared.of_unmarked > 0.9 * shared.pixels_seen);
+  CHECK(shared.unmarked > 0.92);
 }
 
 TEST_CASE("where many paths have been errors stay as they are") {
