@@ -79,6 +79,7 @@ def draw_pictures(axis, result):
 
 def draw(results):
     result = results[0]
+    result.refuse_sweep()
     if not result.has("camera_place"):
         raise style.Unusable(f"{result.path}: is no result of image")
     figure, axes = plt.subplots(1, 3, figsize=(1.4 * style.PAGE, 2.9), layout="constrained")

@@ -28,9 +28,9 @@ def curves(result, name):
     return [(second, values[:, number]) for number, second in enumerate(axes[1][1])]
 
 
-def draw_one(axis, result, colors):
+def draw_one(axis, result, colors, with_line):
     (_, place), *second = axes_of(result)
-    for value, success in curves(result, "predicted_success"):
+    for value, success in curves(result, "predicted_success") if with_line else []:
         axis.plot(place, success, "-", color=colors(value), linewidth=1.1)
     if not result.has("success"):
         return
@@ -49,8 +49,9 @@ def draw(results):
     def colors(value):
         return "C0" if value is None else f"C{every.index(value) % 10}"
     figure, axis = plt.subplots(figsize=(style.COLUMN, 2.6), layout="constrained")
+    predictions = any(not result.has("success") for result in results)
     for result in results:
-        draw_one(axis, result, colors)
+        draw_one(axis, result, colors, with_line=not (predictions and result.has("success")))
     place = axes_of(results[0])[0][1]
     unit = results[0].dataset(names[0]).attrs.get("units")
     axis.set(xlabel=labels.with_unit(names[0], unit), ylabel="all points found", ylim=(-0.05, 1.08))

@@ -64,6 +64,7 @@ def draw_places(axis, result):
 
 def draw(results):
     result = results[0]
+    result.refuse_sweep()
     if not result.has("source_x"):
         raise style.Unusable(f"{result.path}: has no sources of blinking points")
     figure, axes = plt.subplots(1, 3, figsize=(1.4 * style.PAGE, 2.9), layout="constrained")

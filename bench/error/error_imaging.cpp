@@ -5,6 +5,7 @@
 #include <omp.h>
 
 #include "bench/error/error_measure.h"
+#include "bench/scenes/blinking_frames.h"
 #include "bench/scenes/imaged_points.h"
 #include "core/run/stopwatch.h"
 
@@ -54,10 +55,42 @@ ErrorCurve by_paths(double cpu_seconds) {
   return curve;
 }
 
+/// Patterns of sources by frames, over some seeds.
+ErrorPoint patterns_point(std::size_t frames) {
+  constexpr unsigned seeds = 8;
+  BlinkingScene scene{.frames = frames};
+  scene.noise.photons = 20;
+  double squares = 0, spent = 0;
+  for (unsigned seed = 1; seed <= seeds; ++seed) {
+    const BlinkingFrames made = blinking_frames(scene, seed);
+    const double start = thread_cpu_seconds();
+    const auto found = mc::unmixed(made.frames, {scene.noise, 40, scene.brightness.size()});
+    spent += thread_cpu_seconds() - start;
+    squares += std::pow(pattern_error(made, found.factors.pattern), 2);
+  }
+  const double error = std::sqrt(squares / seeds);
+  return {spent / seeds, static_cast<double>(frames), error, error / std::sqrt(2.0 * seeds)};
+}
+
+ErrorCurve by_frames(double cpu_seconds) {
+  constexpr std::size_t fewest = 3, first = 16, most = 1024;
+  ErrorCurve curve{"image, patterns of sources", "frames", "the patterns that were mixed", 0, {}};
+  curve.is_monte_carlo = false;
+  const double start = thread_cpu_seconds();
+  for (std::size_t frames = first;
+       frames <= most &&
+       (curve.points.size() < fewest || 3 * (thread_cpu_seconds() - start) < cpu_seconds);
+       frames *= 2)
+    curve.points.push_back(patterns_point(frames));
+  set_plain_slope(curve);
+  return curve;
+}
+
 }  // namespace
 
 std::vector<ErrorRun> imaging_error_runs() {
-  return {{"image, C_I of pairs", "paths", by_paths, true}};
+  return {{"image, C_I of pairs", "paths", by_paths, true},
+          {"image, patterns of sources", "frames", by_frames, false}};
 }
 
 }  // namespace flatspeckle::bench

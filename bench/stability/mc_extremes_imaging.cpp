@@ -1,3 +1,4 @@
+#include "bench/scenes/blinking_frames.h"
 #include "bench/scenes/imaged_points.h"
 #include "bench/stability/extreme_rows.h"
 #include "mc/imaging/success_prediction.h"
@@ -38,6 +39,27 @@ Finding steep_envelope(double decades) {
   return {std::abs(mc::squared_contrast(frame) - 1) / error, 4};
 }
 
+/// Patterns of frames that are scaled.
+Finding sources(const BlinkingScene& scene, double scale) {
+  BlinkingFrames made = blinking_frames(scene, 1);
+  for (auto& frame : made.frames)
+    for (double& value : frame) value *= scale;
+  const auto found = mc::unmixed(made.frames, {{}, 40});
+  if (found.count.sources != scene.brightness.size()) return {1, 0};
+  return {pattern_error(made, found.factors.pattern), 0.05};
+}
+
+/// Sources beyond one that are counted in nothing but shot noise on even light.
+Finding counted_in_noise(double photons) {
+  std::vector<std::vector<double>> frames(40, std::vector<double>(1000, 1.0));
+  for (std::size_t f = 0; f < frames.size(); ++f) {
+    RandomStream stream(1, static_cast<std::uint64_t>(Stream::camera), f);
+    mc::expose(frames[f], {.photons = photons}, stream);
+  }
+  const auto found = mc::unmixed(frames, {{.photons = photons}, 40});
+  return {found.count.sources > 1 ? 1.0 : 0.0, 0};
+}
+
 }  // namespace
 
 std::vector<ExtremeCase> mc_imaging_extremes() {
@@ -54,6 +76,18 @@ std::vector<ExtremeCase> mc_imaging_extremes() {
           [=] { return worse(success(points, places, false), success(points, places, true)); });
   rows.add("frame whose light falls by 100", "contrast 1, in standard errors",
            [] { return steep_envelope(2); });
+  for (const double scale : {1e-150, 1e150})
+    rows.add("frames of 4 sources, times " + short_number(scale), "patterns, relative",
+             [=] { return sources({}, scale); });
+  rows.add("frames of sources of brightness 1 to 30", "patterns, relative", [] {
+    return sources({.frames = 80, .brightness = {1, 5, 30}}, 1);
+  });
+  for (const double photons : {1e-3, 1e6})
+    rows.add("even light of " + short_number(photons) + " photons a pixel",
+             "1 where noise is counted as sources", [=] { return counted_in_noise(photons); });
+  rows.add_refused("dark frames", "not positive", [] {
+    mc::unmixed(std::vector<std::vector<double>>(3, std::vector<double>(100, 0.0)), {{}, 10});
+  });
   return std::move(rows).rows();
 }
 

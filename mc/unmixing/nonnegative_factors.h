@@ -17,7 +17,7 @@ struct NonnegativeFactors {
 /// How the factors are improved.
 struct FactorTask {
   std::size_t sources = 1;
-  int iterations = 500;   ///< at most
+  int iterations = 3000;  ///< at most
   double settled = 1e-5;  ///< stops where an iteration lowers the residual by less than this part
 };
 

@@ -52,6 +52,8 @@ KINDS = {
                          "object_x": [0, 3], "object_depth": -30, "camera": [-0.5, 0.5], "pixels": 512, "repeats": 2, "threads": 1}),
     "blinks": ("image", {**BOX, "count": None, "scatterer": "hg", "optical_depth": 1, "blinking": "subsets",
                          "object_x": [0, 3], "object_depth": -30, "camera": [-0.5, 0.5], "pixels": 512, "repeats": 2, "threads": 1}),
+    "pictures": ("sweep", {**BOX, "count": None, "optical_depth": None, "of": "image", "scatterer": "hg", "vary": "optical_depth=1,2",
+                           "object_x": [0, 3], "object_depth": -30, "camera": [-0.5, 0.5], "pixels": 512, "repeats": 2}),
     "power": ("flux", {**SLAB}),
     "fitted": ("fit", {"free": ["g=0.5:0.95", "optical_depth=1:20"], "depth": 2000, "threads": 1,
                        "measurement": DATA / "measurements/slab_transmission.csv"}),
@@ -79,7 +81,7 @@ OWN = {"memory_effect": {"grid", "points", "curve", "moves", "layers", "graded"}
        "dws": {"delays", "exposed"}, "contrast": {"exposed"}, "layer_range": {"layers"}, "graded_range": {"graded"},
        "refraction": {"curve", "layers", "graded"},
        "frequency": {"frequencies"}, "validation": {"both", "own_places"}, "speckle_field": {"fields", "grains"},
-       "image": {"frames", "blinks"}, "sources": {"blinks"}, "fit": {"fitted"}, "fit_plan": {"planned"}, "rays": {"rays"}, "spot": {"spot"},
+       "image_success": {"pictures"}, "image": {"frames", "blinks"}, "sources": {"blinks"}, "fit": {"fitted"}, "fit_plan": {"planned"}, "rays": {"rays"}, "spot": {"spot"},
        "design": {"lens", "display", "core"}, "design_methods": {"lens", "display", "core"},
        "render": {"picture", "pulse"}, "render_time": {"pulse"},
        "light_map": {"light"}, "ring_profile": {"rings"}, "reflection_image": {"spectrum"}, "field_map": {"near"}}
