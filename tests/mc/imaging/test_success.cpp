@@ -114,6 +114,18 @@ TEST_CASE("of many equal points the whole object decides") {
   CHECK(half(4, 1e8) == doctest::Approx(std::sqrt(4 * std::log(1e8) / 4)).epsilon(0.1));
 }
 
+TEST_CASE("groups without peaks between them, and points that may be mirrored, are not told") {
+  std::vector<double> signals;  // 10 within two groups of three, none between them
+  for (int i = 0; i < 6; ++i)
+    for (int j = i + 1; j < 6; ++j) signals.push_back(i / 3 == j / 3 ? 10 : 0);
+  const std::vector<double> x{0, 7, 10, 50, 61, 80};
+  CHECK(predicted_success(signals, 6, 100, false, x) < 0.01);
+  CHECK(predicted_success(std::vector<double>(15, 10.0), 6, 100, false, x) > 0.99);
+  // of four points the last has but two pairs with a peak, which its mirror image keeps
+  const std::vector<double> mirrored{10, 10, 10, 10, 10, 0};
+  CHECK(predicted_success(mirrored, 4, 10) < 0.7);
+}
+
 TEST_CASE("the dimmest point decides, and no signal is no success") {
   std::vector<double> signals(6, 10.0);
   CHECK(predicted_success(signals, 4, 100) > 0.999);
