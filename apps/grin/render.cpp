@@ -29,6 +29,15 @@ void note_losses(const grin::TransportCounts& counts) {
                  static_cast<unsigned long long>(counts.lost_values));
 }
 
+void note_smoothing(const grin::LevelSurface& surface) {
+  const double change = surface.volume() / surface.meant_volume() - 1;
+  std::fprintf(
+      stderr,
+      "note: in place of body_mesh there is a smooth surface of spacing %.3g, whose volume "
+      "differs by %+.2g %%\n",
+      surface.spacing(), 100 * change);
+}
+
 /// A dark picture is more often a mistake than a result.
 void note_darkness(const std::vector<std::string>& dark) {
   for (std::size_t i = 0; i < dark.size(); ++i)
@@ -164,6 +173,9 @@ class RenderExperiment : public Experiment {
   void note() const override {
     if (scene_->is_silent)
       std::fputs("note: the sound turns no ray by 1e-5, and is left out\n", stderr);
+    for (const grin::Body& body : scene_->stage.bodies)
+      if (const auto* level = std::get_if<grin::LevelSurface>(&body.surface))
+        note_smoothing(*level);
   }
 
   PlannedExperiment plan() const override {

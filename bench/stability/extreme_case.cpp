@@ -16,7 +16,7 @@ std::vector<ExtremeCase> extreme_cases() {
        {function_extremes, flatland_extremes, wave_extremes, wave_point_extremes,
         wave_cluster_extremes, mc_theory_extremes, mc_slab_extremes, mc_transport_extremes,
         mc_box_extremes, mc_varying_extremes, mc_imaging_extremes, index_extremes, ray_extremes,
-        connection_extremes, flight_extremes, render_extremes, design_extremes})
+        connection_extremes, flight_extremes, render_extremes, mesh_extremes, design_extremes})
     for (ExtremeCase& row : room()) all.push_back(std::move(row));
   return all;
 }

@@ -57,6 +57,7 @@ std::vector<ExtremeCase> ray_extremes();
 std::vector<ExtremeCase> connection_extremes();
 std::vector<ExtremeCase> flight_extremes();
 std::vector<ExtremeCase> render_extremes();
+std::vector<ExtremeCase> mesh_extremes();
 std::vector<ExtremeCase> design_extremes();
 
 /// A random figure: how many standard errors it is off, limit 4, beyond the relative accuracy of

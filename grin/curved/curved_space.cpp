@@ -81,7 +81,8 @@ Flight CurvedSpace::fly(const PathPoint& from, const Vec3& direction, bool sprea
   Neighbours neighbours{spreads};
   const double longest =
       setup_->is_straight ? std::numeric_limits<double>::infinity() : setup_->options.max_length;
-  for (int legs = 0; legs < most_legs && flight.arc_length <= longest; ++legs) {
+  for (int legs = 0; legs < setup_->stage.regions().most_legs() && flight.arc_length <= longest;
+       ++legs) {
     FlightLeg now{flight.point, flight.direction, flight.arc_length, flight.weight};
     const auto end = leg(flight, neighbours, random);
     if (!end) return flight;

@@ -64,7 +64,7 @@ class CurvedSpace {
   /// In flights, roughly.
   double cost_of_join() const { return field_->cost_of_curve(); }
   double cost_of_closed_join() const { return field_->cost_of_closed_curve(); }
-  bool joins_through() const { return setup_->stage.joins_through(); }
+  bool joins_through() const { return setup_->stage.refracts(); }
   std::optional<Join> join_through(const PathPoint& p, const PathPoint& q, RandomStream& random,
                                    ConnectionStatistics& statistics) const;
 

@@ -218,8 +218,8 @@ double half_width(const Surface& surface) {
     double operator()(const Lens& lens) const {
       return (lens.bounds().high - lens.bounds().low).minCoeff() / 2;
     }
-    double operator()(const DistanceGrid& grid) const {
-      return (grid.high() - grid.low()).minCoeff() / 2;
+    double operator()(const LevelSurface& level) const {
+      return (level.bounds().high - level.bounds().low).minCoeff() / 2;
     }
   } width;
   return std::visit(width, surface);

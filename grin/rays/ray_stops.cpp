@@ -46,8 +46,8 @@ double size(const Lens& lens) {
   for (const LensFace& face : lens.faces()) most = std::max(most, size(face.sphere()));
   return most;
 }
-double size(const DistanceGrid& grid) {
-  return size(Box{grid.low(), grid.high()});
+double size(const LevelSurface& level) {
+  return size(level.bounds());
 }
 
 }  // namespace

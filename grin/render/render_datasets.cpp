@@ -24,6 +24,8 @@ const DatasetTable render_table{
              {"transport/lost_values", Data::count, "", "1",
               "contributions that were not finite, left out"}},
     .attributes = {{"", "length_unit", "float64", "metres in a unit of length, where given"},
+                   {"", "mesh_volume", "float64", "that body_mesh encloses"},
+                   {"", "body_volume", "float64", "of the smooth body in its place"},
                    {"parameter", "names", "texts",
                     "mu_s, mu_a, g, as far as the medium has them (gradient)"}}};
 
@@ -220,6 +222,11 @@ void write_render(ResultFile& file, const RenderScene& scene, const RenderJob& j
                   const RenderResult& result, const std::optional<double>& length_unit) {
   const ResultGroup root(file, render_table);
   if (length_unit) root.attribute("length_unit", *length_unit);
+  for (const Body& body : scene.stage.bodies)
+    if (const auto* level = std::get_if<LevelSurface>(&body.surface)) {
+      root.attribute("mesh_volume", level->meant_volume());
+      root.attribute("body_volume", level->volume());
+    }
   if (job.bins.derivatives > 0) {
     root.number("parameter", static_cast<std::size_t>(job.bins.derivatives));
     root.attribute("parameter", "names", gradient_names(scene.stage.medium));

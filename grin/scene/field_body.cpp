@@ -7,6 +7,8 @@
 #include "grin/geometry/lens_values.h"
 #include "grin/geometry/vector_values.h"
 #include "grin/space/stage.h"
+#include "grin/surfaces/mesh_surface.h"
+#include "grin/surfaces/stl_file.h"
 
 namespace flatspeckle::grin {
 
@@ -47,6 +49,16 @@ void add_body_keys(Keys& keys, FieldBodyValues& values) {
                "along z: front vertex, radius, radii of curvature (positive where the centre is " +
                "at larger z; 0: plane); a rod, where both are 0")
       .each_of(lens_numbers, lens_words);
+  keys.add("body_mesh", values.body_mesh,
+           "STL file, binary or text: the same with a closed surface of triangles, in place of "
+           "which a smooth one is taken")
+      .file();
+  keys.add("body_mesh_spacing", values.body_mesh_spacing,
+           "Of the grid of distances from the mesh that the smooth surface comes from; its edges "
+           "are rounded over one (default: the longest side / 64)")
+      .positive()
+      .unit("length")
+      .only_of("body_mesh");
 }
 
 void add_index_around(Keys& keys, FieldBodyValues& values) {
@@ -60,12 +72,34 @@ std::optional<Surface> one_surface(const std::string& name, const std::string& k
   return given.front();
 }
 
-std::optional<Surface> given_body(const Keys& keys, const FieldBodyValues& values) {
+namespace {
+
+LevelSurface mesh_body(const Keys& keys, const FieldBodyValues& values, const std::string& file,
+                       const Surface* room) {
+  constexpr double cells = 64;
+  const TriangleMesh mesh = read_stl(keys.name(values.body_mesh), file);
+  const Box box = bounds(mesh);
+  if (room && !lies_in(box, *room))
+    throw InputError(keys.name(values.body_mesh) + ": from " + listed(box.low) + " to " +
+                     listed(box.high) + ", must be inside of the stage");
+  const double spacing =
+      keys.read(values.body_mesh_spacing).value_or((box.high - box.low).maxCoeff() / cells);
+  return mesh_surface(mesh, spacing, keys.name(values.body_mesh_spacing));
+}
+
+}  // namespace
+
+std::optional<Surface> given_body(const Keys& keys, const FieldBodyValues& values,
+                                  const Surface* room) {
   std::vector<Surface> given;
   for (const Box& box : boxes_of(keys, values.body_box)) given.push_back(box);
   for (const Sphere& sphere : spheres_of(keys, values.body_sphere)) given.push_back(sphere);
   for (const Lens& lens : lenses_of(keys, values.body_lens)) given.push_back(lens);
-  return one_surface("body", "body_box, body_sphere, body_lens", given);
+  const std::string& file = keys.read(values.body_mesh);
+  const auto body = one_surface("body", body_key_names, given);
+  if (file.empty()) return body;
+  if (body) throw InputError(std::string(body_key_names) + ": give one body");
+  return mesh_body(keys, values, file, room);
 }
 
 IndexRange check_field(const SceneField& field, const Surface& region, const std::string& name) {

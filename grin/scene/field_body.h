@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "grin/fields/scene_field.h"
@@ -9,9 +10,14 @@
 
 namespace flatspeckle::grin {
 
+/// The keys that name a body.
+inline constexpr const char* body_key_names = "body_box, body_sphere, body_lens, body_mesh";
+
 /// The body that an index field fills, and the index around it, as keys have them.
 struct FieldBodyValues {
   std::vector<double> body_box{}, body_sphere{}, body_lens{};
+  std::string body_mesh{};
+  std::optional<double> body_mesh_spacing{};
   double index_around = 1;
 };
 
@@ -22,7 +28,9 @@ void add_index_around(Keys& keys, FieldBodyValues& values);
 /// What one of some keys says; nothing where none is given. Throws InputError.
 std::optional<Surface> one_surface(const std::string& name, const std::string& keys,
                                    const std::vector<Surface>& given);
-std::optional<Surface> given_body(const Keys& keys, const FieldBodyValues& values);
+/// room: a mesh beyond it is refused before it costs anything; or null.
+std::optional<Surface> given_body(const Keys& keys, const FieldBodyValues& values,
+                                  const Surface* room = nullptr);
 
 /// Throws InputError for a field that ends, or has no index above 0, somewhere in a region; name:
 /// of that. Returns the range of its index there.

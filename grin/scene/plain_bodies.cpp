@@ -33,6 +33,7 @@ Body body_of(const char* keys, const Surface& surface, Numbers material) {
 double volume(const Surface& surface) {
   if (const auto* sphere = std::get_if<Sphere>(&surface))
     return 4 * std::numbers::pi / 3 * std::pow(sphere->radius, 3);
+  if (const auto* level = std::get_if<LevelSurface>(&surface)) return level->volume();
   const auto [low, high] = bounds(surface);
   return (high - low).prod();
 }

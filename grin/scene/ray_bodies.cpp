@@ -27,7 +27,7 @@ void fill(const Surface& body, SceneField& field) {
 void add_keys(Keys& keys, RayBodyValues& values) {
   keys.group("Body that rays pass");
   add_body_keys(keys, values);
-  keys.group("Body that rays pass", "a body (body_box, body_sphere, body_lens)");
+  keys.group("Body that rays pass", std::string("a body (") + body_key_names + ")");
   add_index_around(keys, values);
   add_keys(keys, values.plain_bodies);
 }

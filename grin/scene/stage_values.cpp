@@ -61,7 +61,7 @@ void add_keys(Keys& keys, StageValues& values) {
   add_keys(keys, values.medium, "");
   keys.group("Body in the stage");
   add_body_keys(keys, values);
-  keys.group("Body in the stage", "a body (body_box, body_sphere, body_lens)");
+  keys.group("Body in the stage", std::string("a body (") + body_key_names + ")");
   add_index_around(keys, values);
   add_keys(keys, values.body_medium, "body_");
   add_keys(keys, values.plain_bodies);
@@ -74,7 +74,7 @@ FilledStage make_stage(const Keys& keys, const StageValues& values, const IndexF
     throw InputError(
         "stage is not given: light that leaves the index field needs a boundary (stage_box or "
         "stage_sphere)");
-  const auto given = given_body(keys, values);
+  const auto given = given_body(keys, values, &*boundary);
   const double reach = reach_of(given ? *given : *boundary);
   FilledStage filled{
       {.boundary = *boundary},

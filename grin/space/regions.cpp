@@ -10,6 +10,8 @@ namespace flatspeckle::grin {
 Regions::Regions(const Stage& stage) {
   for (Part part = around; part < stage.parts(); ++part) surfaces_.push_back(stage.surface(part));
   if (stage.bodies.empty()) return;
+  for (const Surface& surface : surfaces_)
+    if (std::holds_alternative<LevelSurface>(surface)) most_legs_ = 10000;
   const auto [low, high] = bounds(stage.boundary);
   touching_ = 1e-9 * (high - low).norm();
 }

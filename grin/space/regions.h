@@ -28,6 +28,10 @@ class Regions {
   /// What a part lies in: its surface, and those of the bodies that lie over it.
   Room room(Part part) const { return {std::span(surfaces_).subspan(part)}; }
 
+  /// Light goes on through surfaces so often at the most: what total reflection traps is lost. What
+  /// has grazed a level surface that is not quite round may take its time to get out again.
+  int most_legs() const { return most_legs_; }
+
   /// Of a place in the stage; on surfaces that around them.
   Part at(const Vec3& x) const;
 
@@ -58,6 +62,7 @@ class Regions {
 
   std::vector<Surface> surfaces_;
   double touching_ = 0;  ///< so near to a surface is on it
+  int most_legs_ = 1000;
 };
 
 /// The relative density of a part's medium, averaged over points of a lattice.

@@ -21,8 +21,8 @@ Box bounds(const Box& b) {
 Box bounds(const Lens& lens) {
   return lens.bounds();
 }
-Box bounds(const DistanceGrid& g) {  // the surface is a cell or more inside its grid
-  return {g.low() + Vec3::Constant(g.spacing()), g.high() - Vec3::Constant(g.spacing())};
+Box bounds(const LevelSurface& level) {
+  return level.bounds();
 }
 Box bounds(const Plane&) {
   throw InputError("a plane is no boundary of a stage or body: it is not closed");

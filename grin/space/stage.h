@@ -52,7 +52,7 @@ Stage without_scattering(const Stage& stage);
 /// The box around a closed surface. Throws InputError for a plane.
 Box bounds(const Surface& surface);
 
-/// To rounding: touching is allowed. Of a distance grid, its box.
+/// To rounding: touching is allowed. Of a level surface, its bounds.
 bool lies_in(const Surface& inner, const Surface& outer);
 
 /// Throws InputError for a boundary or a body that is not closed, a body that is not within the

@@ -6,9 +6,6 @@
 
 namespace flatspeckle::grin {
 
-/// Through surfaces of bodies so often at most: what total reflection traps is lost.
-inline constexpr int most_legs = 1000;
-
 /// A leg within one part, which absorbs and does not scatter, leaves as much of the light.
 inline void attenuate(Flight& flight, double weight) {
   if (flight.point.part != around) flight.absorbed_in_body += flight.weight - weight;
@@ -43,8 +40,6 @@ class StraightStage {
   bool is_alone(Part part) const { return !plan.body || parts_[part].is_alone; }
   /// The index jumps anywhere.
   bool refracts() const { return plan.body && refracts_; }
-  /// Whether ways can be found that surfaces refract.
-  bool joins_through() const { return plan.body && joins_through_; }
 
   /// To the next collision or to the end of the part. rise: gradient of the logarithm of what light
   /// is worth, along which flights are stretched; or null.
@@ -87,8 +82,7 @@ class StraightStage {
     const bool reflected = jump.is_total() || random.uniform() < reflectance;
     jump.pass(reflected, ray, tangent);
     flight.crosses_body = true;
-    flight.is_joinable = flight.is_joinable && flight.passages.count < Passages::most &&
-                         has_curvature(regions_.surface(surface));
+    flight.is_joinable = flight.is_joinable && flight.passages.count < Passages::most;
     if (flight.is_joinable) flight.passages.add(reflected);
     const double chance = reflected ? reflectance : 1 - reflectance;
     flight.fresnel *= chance;
@@ -196,7 +190,6 @@ class StraightStage {
     for (Part other = around; other < part; ++other) {
       OfPart& of = parts_[other];
       if (!excess || of.excess != excess) {
-        joins_through_ |= has_curvature(regions_.surface(part));
         refracts_ = true;
       } else {
         added.first_alike = std::min(added.first_alike, other);
@@ -212,7 +205,7 @@ class StraightStage {
     const double shorter = (1 - 1e-9) * length;  // the end may be on a surface itself
     const Vec3 start = at.x;
     double from = 0;
-    for (int leg = 0; leg < most_legs; ++leg) {
+    for (int leg = 0; leg < regions_.most_legs(); ++leg) {
       const auto [way, end] = way_to_surface(at, d);
       if (from + way >= shorter) {
         use(at.part, from, length);
@@ -241,7 +234,7 @@ class StraightStage {
 
   Regions regions_;
   std::vector<OfPart> parts_;
-  bool refracts_ = false, joins_through_ = false;
+  bool refracts_ = false;
 };
 
 }  // namespace flatspeckle::grin

@@ -50,7 +50,7 @@ class StraightSpace {
                            ConnectionStatistics&) const {
     return stage_.join(p, q, random);
   }
-  bool joins_through() const { return stage_.joins_through(); }
+  bool joins_through() const { return stage_.refracts(); }
   std::optional<Join> join_through(const PathPoint& p, const PathPoint& q, RandomStream& random,
                                    ConnectionStatistics& statistics) const {
     if (!joins_through()) return std::nullopt;
@@ -105,7 +105,7 @@ class StraightSpace {
   }
   /// At the surface of a body.
   Flight& go_on(Flight& flight, LegEnd end, RandomStream& random, FlightLog* log) const {
-    for (int legs = 1; legs < most_legs; ++legs) {
+    for (int legs = 1; legs < stage_.regions().most_legs(); ++legs) {
       stage_.pass(flight, stage_.beyond(flight, end));
       end = leg(flight, random, log);
       if (end > at_boundary) continue;
@@ -118,7 +118,7 @@ class StraightSpace {
     const double n_start = index(flight.point);
     RayTangent tangent;
     tangent.dx.diagonal().fill(flight.arc_length / n_start);
-    for (int legs = 1; legs < most_legs; ++legs) {
+    for (int legs = 1; legs < stage_.regions().most_legs(); ++legs) {
       cross(flight, end, tangent, random);
       const double before = flight.arc_length, n = index(flight.point);
       end = leg(flight, random, log);

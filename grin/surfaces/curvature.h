@@ -19,16 +19,14 @@ inline Mat3 curvature(const Plane&, const Vec3&) {
 inline Mat3 curvature(const Box&, const Vec3&) {
   return Mat3::Zero();
 }
-
-/// That of a distance grid is not continuous, and none is given.
-inline bool has_curvature(const Surface& surface) {
-  return !std::holds_alternative<DistanceGrid>(surface);
+inline Mat3 curvature(const Lens& lens, const Vec3& x) {
+  return lens.curvature(x);
 }
-/// 0 where there is none.
+inline Mat3 curvature(const LevelSurface& level, const Vec3& x) {
+  return level.curvature(x);
+}
 inline Mat3 curvature(const Surface& surface, const Vec3& x) {
-  if (const auto* sphere = std::get_if<Sphere>(&surface)) return curvature(*sphere, x);
-  if (const auto* lens = std::get_if<Lens>(&surface)) return lens->curvature(x);
-  return Mat3::Zero();
+  return std::visit([&](const auto& s) { return curvature(s, x); }, surface);
 }
 
 }  // namespace flatspeckle::grin

@@ -57,6 +57,7 @@ int MeshDistance::build(int begin, int end) {
   }
   const int number = static_cast<int>(nodes_.size());
   nodes_.push_back({low, high, begin, end});
+  add_up(nodes_.back());
   if (end - begin <= leaf_size) return number;
   int axis;
   (high - low).maxCoeff(&axis);
@@ -71,8 +72,21 @@ int MeshDistance::build(int begin, int end) {
   return number;
 }
 
-double MeshDistance::unsigned_distance(const Vec3& x) const {
-  double squared = std::numeric_limits<double>::infinity();
+void MeshDistance::add_up(Node& node) const {
+  double size = 0;
+  for (int i = node.begin; i < node.end; ++i) {
+    const auto& [a, b, c] = triangles_[i];
+    const Vec3 area = (b - a).cross(c - a) / 2;
+    node.area += area;
+    node.middle += area.norm() / 3 * (a + b + c);
+    size += area.norm();
+  }
+  node.middle = size > 0 ? Vec3(node.middle / size) : node.low;
+  node.radius = (node.middle - node.low).cwiseMax(node.high - node.middle).norm();
+}
+
+double MeshDistance::unsigned_distance(const Vec3& x, double bound) const {
+  double squared = bound * bound;
   nearest(0, x, squared);
   return std::sqrt(squared);
 }
@@ -94,14 +108,24 @@ void MeshDistance::nearest(int number, const Vec3& x, double& squared) const {
 }
 
 double MeshDistance::winding_number(const Vec3& x) const {
-  double solid_angle = 0;
-  for (const Triangle& triangle : triangles_) {
-    const Vec3 a = triangle.a - x, b = triangle.b - x, c = triangle.c - x;
+  return solid_angle(0, x) / (4 * std::numbers::pi);
+}
+
+double MeshDistance::solid_angle(int number, const Vec3& x) const {
+  constexpr double far = 3;  // radii
+  const Node& node = nodes_[number];
+  const Vec3 way = node.middle - x;
+  if (const double distance = way.norm(); distance > far * node.radius)
+    return node.area.dot(way) / (distance * distance * distance);
+  if (node.left >= 0) return solid_angle(node.left, x) + solid_angle(node.right, x);
+  double sum = 0;
+  for (int i = node.begin; i < node.end; ++i) {
+    const Vec3 a = triangles_[i].a - x, b = triangles_[i].b - x, c = triangles_[i].c - x;
     const double p = a.norm(), q = b.norm(), r = c.norm();
-    solid_angle +=
+    sum +=
         2 * std::atan2(a.dot(b.cross(c)), p * q * r + a.dot(b) * r + b.dot(c) * p + c.dot(a) * q);
   }
-  return solid_angle / (4 * std::numbers::pi);
+  return sum;
 }
 
 }  // namespace flatspeckle::grin

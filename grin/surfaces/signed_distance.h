@@ -4,14 +4,14 @@
 
 #include "grin/geometry/lens.h"
 #include "grin/geometry/shapes.h"
-#include "grin/surfaces/distance_grid.h"
+#include "grin/surfaces/level_surface.h"
 
 namespace flatspeckle::grin {
 
 /// A surface is where distance(x) is 0; it is negative inside. |distance| is nowhere more than the
 /// true distance, so that a ray may go that far without looking. normal(x) is a unit vector
 /// outwards, meant for points on the surface.
-using Surface = std::variant<Sphere, Plane, Box, Lens, DistanceGrid>;
+using Surface = std::variant<Sphere, Plane, Box, Lens, LevelSurface>;
 
 inline double distance(const Surface& surface, const Vec3& x) {
   return std::visit([&](const auto& s) { return s.distance(x); }, surface);

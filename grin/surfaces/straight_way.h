@@ -62,30 +62,11 @@ inline double way_in(const Box& box, const Vec3& x, const Vec3& d) {
   return enter < leave && enter > -rounding ? std::max(0.0, enter) : no_way;
 }
 
-namespace straight_way_parts {
-
-/// Sphere tracing; side 1 from outside, -1 from inside. Ends within `tolerance` before the surface.
-inline double march(const DistanceGrid& grid, const Vec3& x, const Vec3& d, double side) {
-  const double tolerance = 1e-9 * grid.spacing();
-  const double beyond = (grid.high() - grid.low()).norm() + std::max(0.0, grid.distance(x));
-  const bool on_surface = std::abs(grid.distance(x)) <= tolerance;
-  double way = 0;
-  for (int i = 0; i < 1'000'000 && way < 2 * beyond; ++i) {
-    const double clearance =
-        side * grid.distance(x + way * d) + (on_surface ? 0.75 * tolerance : 0);
-    if (!(clearance > tolerance / 4)) return way;
-    way += clearance - tolerance / 8;
-  }
-  return no_way;
+inline double way_out(const LevelSurface& level, const Vec3& x, const Vec3& d) {
+  return level.way(x, d, -1);
 }
-
-}  // namespace straight_way_parts
-
-inline double way_out(const DistanceGrid& grid, const Vec3& x, const Vec3& d) {
-  return straight_way_parts::march(grid, x, d, -1);
-}
-inline double way_in(const DistanceGrid& grid, const Vec3& x, const Vec3& d) {
-  return straight_way_parts::march(grid, x, d, 1);
+inline double way_in(const LevelSurface& level, const Vec3& x, const Vec3& d) {
+  return level.way(x, d, 1);
 }
 
 inline double way_out(const Surface& surface, const Vec3& x, const Vec3& d) {
@@ -98,7 +79,7 @@ inline double way_in(const Surface& surface, const Vec3& x, const Vec3& d) {
 /// The inside: a straight line between two points of it stays in it.
 inline bool is_convex(const Surface& surface) {
   if (const auto* lens = std::get_if<Lens>(&surface)) return lens->is_convex();
-  return !std::holds_alternative<DistanceGrid>(surface);
+  return !std::holds_alternative<LevelSurface>(surface);
 }
 
 }  // namespace flatspeckle::grin

@@ -155,13 +155,12 @@ class PassageWalk {
   template <class Use>
   std::optional<Meeting> to_jump(Part& part, RayState& ray, RayTangent* tangent,
                                  RandomStream& random, const Use& use) const {
-    for (int stretch = 0; stretch < most_legs; ++stretch) {
+    for (int stretch = 0; stretch < legs_.regions().most_legs(); ++stretch) {
       const RayState start = ray;
       const auto met = legs_.to_surface(part, ray, tangent, random);
       if (!met) return std::nullopt;
       use(part, start, ray.arc_length - start.arc_length);
-      if (!legs_.are_alike(part, met->beyond))
-        return has_curvature(legs_.regions().surface(met->surface)) ? met : std::nullopt;
+      if (!legs_.are_alike(part, met->beyond)) return met;
       part = met->beyond;
     }
     return std::nullopt;
@@ -170,7 +169,7 @@ class PassageWalk {
   template <class Use>
   void last_leg(Part part, RayState ray, double arc_length, RandomStream& random,
                 const Use& use) const {
-    for (int stretch = 0; stretch < most_legs && !legs_.is_alone(part); ++stretch) {
+    for (int stretch = 0; stretch < legs_.regions().most_legs() && !legs_.is_alone(part); ++stretch) {
       const RayState start = ray;
       const auto met = legs_.to_surface(part, ray, nullptr, random);
       if (!met || ray.arc_length >= arc_length || !legs_.are_alike(part, met->beyond))

@@ -27,6 +27,16 @@ STAGE = {"field": "parabolic", "index": 1.5, "alpha": 0.5, "stage_box": [-1, -1,
 
 GRADIENT = {"gradient": True, "method": "analog"}
 
+
+
+def wedge():
+    """A tetrahedron as STL in words."""
+    corners = ["0 0 1", "1 0 1", "0 1 1", "0 0 2"]
+    return "solid wedge\n" + "".join(
+        "facet normal 0 0 0\nouter loop\n" + "".join(f"vertex {corners[i]}\n" for i in facet) + "endloop\nendfacet\n"
+        for facet in ([0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3])) + "endsolid wedge\n"
+
+
 FILES = {
     "curve.csv": "tilt,field_correlation,error\n0.002,0.8,0.05\n0.004,0.6,0.05\n",
     "frames.csv": "a,b\n" + "".join(f"{1 + i * i % 7},{1 + i * i % 11}\n" for i in range(80)),
@@ -40,6 +50,7 @@ FILES = {
     "three.csv": "x,z\n0,1\n3,4\n-5,9\n",
     "places.csv": "x,z,angle\n0,0,0\n9,1,2\n",
     "picture.csv": "1,2,3,4\n" * 4,
+    "wedge.stl": wedge(),
     "disk_points.csv": "density,radius,index,index_imaginary\n0.1,0.2,1.5,0\n0.2,0.1,1.4,0.01\n",
 }
 
@@ -174,6 +185,8 @@ RUNS = {
     "polar": ("render", {**STAGE, "pixels": None, "sensor": "polar", "rings": 4, **GRADIENT}),
     "ball_power": ("render", {**STAGE, "field": None, "alpha": None, "index": None, "sensor": "directional",
                               "body_sphere": [0, 0, 2, 0.5], "index_around": 1.3, "max_scatterings": 9}),
+    "mesh": ("render", {**STAGE, "field": None, "alpha": None, "index": None, "sensor": "directional",
+                        "body_mesh": "wedge.stl", "body_mesh_spacing": 0.1}),
     "aperture": ("design", {"nodes": [3], "goal": "throughput", "sources": [0, 0, -1], "aperture_radius": 0.3,
                             "rays_per_source": 10}),
     "lens": ("design", {"nodes": [2], "directions": 4, "rays_per_direction": 5}),

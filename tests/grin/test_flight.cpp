@@ -5,10 +5,10 @@
 #include <Eigen/Geometry>
 #include <doctest/doctest.h>
 
+#include "bench/scenes/meshes.h"
 #include "bench/scenes/random_fields.h"
 #include "core/error.h"
 #include "grin/rays/trace.h"
-#include "tests/grin/meshes.h"
 #include "tests/grin/ray_tests.h"
 #include "tests/grin/space_stages.h"
 #include "tests/statistics.h"
@@ -17,9 +17,10 @@ namespace flatspeckle::grin {
 
 namespace {
 
+using bench::cube_mesh;
 using bench::random_direction;
 using bench::random_point;
-using tests::cube_mesh;
+using bench::smooth;
 using tests::straight_plan;
 using StraightAll = StraightSpace<straight_plan>;
 
@@ -79,7 +80,7 @@ void check_free_flights(const S& space, const ScatteringMedium& medium, const Ve
 
 TEST_CASE("straight flights end on the boundary, as sphere tracing finds it") {
   const TriangleMesh cube = cube_mesh(0.8);
-  const Surface surfaces[] = {ball, box, DistanceGrid(cube, 20)};
+  const Surface surfaces[] = {ball, box, smooth(cube, 0.08)};
   const LinearRamp even{0.25, Vec3::Zero()};
   for (const Surface& boundary : surfaces) {
     const StraightAll space(stage_of(boundary), 0.25);
@@ -321,7 +322,7 @@ TEST_CASE("what total reflection traps is lost, and what it does not trap is not
 TEST_CASE("a flight is the same through a mesh of a cube as through the cube") {
   const Box cube{Vec3::Constant(-0.8), Vec3::Constant(0.8)};
   const StraightAll exact(with_body(Sphere{Vec3::Zero(), 3}, cube), 0);
-  const StraightAll mesh(with_body(Sphere{Vec3::Zero(), 3}, DistanceGrid(cube_mesh(0.8), 40)), 0);
+  const StraightAll mesh(with_body(Sphere{Vec3::Zero(), 3}, smooth(cube_mesh(0.8), 0.04)), 0);
   RandomStream random(9, 91, 0);
   for (int i = 0; i < 300; ++i) {
     const Vec3 x = 2.5 * random_direction(random), d = (random_point(random, 1) - x).normalized();

@@ -5,8 +5,8 @@
 #include <boost/math/quadrature/gauss.hpp>
 #include <doctest/doctest.h>
 
+#include "bench/scenes/meshes.h"
 #include "grin/estimators/photon_map.h"
-#include "tests/grin/meshes.h"
 #include "tests/grin/render_tests.h"
 
 using namespace flatspeckle;
@@ -196,7 +196,7 @@ RenderScene beam_in_sound() {
 /// The beam in a stage whose boundary is a mesh; a camera in it looks across.
 RenderScene beam_in_mesh() {
   RenderScene scene = beam_in_fog(false);
-  scene.stage.boundary = DistanceGrid(cube_mesh(2), 20);
+  scene.stage.boundary = bench::smooth(bench::cube_mesh(2), 0.2);
   scene.lights = {BeamLight{{0, 0, -1.9}, {0, 0, 1}, 0.3}};
   scene.sensors = {Camera{.x = {1.5, 0, 0.3},
                           .forward = {-1, 0, 0},

@@ -1,0 +1,132 @@
+"""A body of triangles: that of a ball is the ball, by powers, maps and pictures; bad files are refused."""
+
+import unittest
+
+import numpy as np
+
+from meshes import ball, volume, write_stl
+from program import attributes
+from renders import BOX, RenderTest
+
+ROOM = {"stage_box": [-2, -2, -2, 2, 2, 2]}
+BEAM = {"beam_light": [0, 0, -2, 0, 0, 1, 1.2, 1]}
+SMOKE = {"body_mu_s": 1, "body_mu_a": 0.3, "body_phase": "henyey_greenstein", "body_g": 0.7}
+DISK = {"sensor": "area", "sensor_at": [0, 0, 2], "sensor_size": [1, 1], "pixels": [1, 1]}
+
+
+class Mesh(RenderTest):
+    def setUp(self):
+        super().setUp()
+        self.triangles = ball()
+        write_stl(self.folder / "ball.stl", self.triangles)
+
+    def both(self, **keys):
+        """Results with the mesh, and with the ball of its volume."""
+        keys = {**ROOM, **keys}
+        mesh = self.render("mesh.h5", body_mesh="ball.stl", body_mesh_spacing=0.2, **keys)
+        sphere = [0, 0, 0, (volume(self.triangles) * 3 / (4 * np.pi)) ** (1 / 3)]
+        return mesh, self.render("sphere.h5", body_sphere=sphere, **keys)
+
+    def assert_alike(self, mesh, sphere, name, error):
+        value, errors = mesh[name], np.hypot(mesh[f"{name}_error"], sphere[f"{name}_error"])
+        self.assertLess(np.max(errors / value), error)
+        np.testing.assert_array_less(np.abs(value - sphere[name]), 4 * errors)
+
+    def assert_balance(self, found):
+        ends = [value for name, value in found.items()
+                if name.startswith("energy/") and not name.endswith(("emitted", "_error", "_rare"))]
+        np.testing.assert_allclose(sum(ends), found["energy/emitted"], rtol=1e-12)
+        self.assertLessEqual(found["energy/lost"], 1e-5 * found["energy/emitted"])
+
+    def test_powers(self):
+        """Of light that is refracted, scattered and absorbed, or goes straight."""
+        for index in (1.4, 1):
+            for medium in (SMOKE, {}):
+                with self.subTest(index=index, **medium):
+                    mesh, sphere = self.both(index=index, method="light", samples=60000, **medium, **BEAM, **DISK)
+                    self.assert_balance(mesh)
+                    self.assert_alike(mesh, sphere, "total", 0.02)
+                    for name in ("absorbed_body", "scattered") if medium else ():
+                        self.assert_alike(mesh, sphere, f"energy/{name}", 0.02)
+
+    def test_map(self):
+        """Fluence and absorbed power inside of it."""
+        mesh, sphere = self.both(index=1.4, sensor="none", map_box=[-0.5, -0.5, -0.5, 0.5, 0.5, 0.5],
+                                 map_cells=[1, 1, 2], samples=40000, **SMOKE, **BEAM)
+        for name in ("map/fluence", "map/absorbed"):
+            self.assert_alike(mesh, sphere, name, 0.03)
+
+    def test_picture(self):
+        """From outside, by the method that is taken by itself: joins through the smooth surface."""
+        camera = {"sensor": "camera", "sensor_at": [1.999, 0, 0], "sensor_direction": [-1, 0, 0],
+                  "field_of_view": 1.2, "pixels": [3, 2], "point_light": [0, 0, -1.5, 1]}
+        mesh, sphere = self.both(index=1.4, samples=100000, **SMOKE, **camera)
+        self.assert_alike(mesh, sphere, "mean", 0.15)
+        errors = np.hypot(mesh["image_error"], sphere["image_error"])
+        self.assertLess(np.mean(np.abs(mesh["image"] - sphere["image"]) > 3 * errors), 0.2)
+
+    def test_fields_bend_rays_in_it(self):
+        mesh, sphere = self.both(field="parabolic", index=1.4, alpha=0.3, method="light", samples=10000,
+                                 step=0.05, **SMOKE, **BEAM, **DISK)
+        self.assert_balance(mesh)
+        self.assert_alike(mesh, sphere, "total", 0.06)
+        self.assert_alike(mesh, sphere, "energy/absorbed_body", 0.05)
+
+    def test_text_is_read_as_bytes_are(self):
+        """Inside out as well; the spacing is the longest side by 64, and the result has volumes."""
+        keys = {**ROOM, **BEAM, **DISK, **SMOKE, "method": "light", "samples": 1000}
+        triangles = ball(3)
+        write_stl(self.folder / "bytes.stl", triangles)
+        write_stl(self.folder / "text.stl", triangles[:, ::-1], text=True)
+        first = self.render("bytes.h5", body_mesh="bytes.stl", **keys)
+        second = self.render("text.h5", body_mesh="text.stl", body_mesh_spacing=2 / 64, **keys)
+        self.assertEqual(first["energy/scattered"], second["energy/scattered"])
+        told = attributes(self.folder / "bytes.h5")
+        self.assertAlmostEqual(told["mesh_volume"], volume(triangles), places=6)
+        self.assertAlmostEqual(told["body_volume"], volume(triangles), delta=0.002)
+
+
+class Refused(RenderTest):
+    GOOD = {**BOX, "beam_light": [0, 0, 0, 0, 0, 1, 0.3, 2], "sensor": "directional", "samples": 100}
+
+    def refuse(self, *words, **keys):
+        before = self.listing()
+        done = self.call("render", status=2, **{"out": "bad.h5", **self.GOOD, **keys})
+        self.assertEqual(done.stdout, "")
+        self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
+        for word in words:
+            self.assertIn(word, done.stderr)
+        self.assertEqual(self.listing(), before)
+
+    def write(self, name, triangles):
+        write_stl(self.folder / name, triangles)
+        return name
+
+    def test_files(self):
+        good = ball(3) / 2 + [0, 0, 2]
+        lost = good.copy()
+        lost[7, 1] = [np.nan, 0, 2]
+        self.render(**self.GOOD, body_mesh=self.write("good.stl", good))
+        self.refuse("none.stl", body_mesh="none.stl")
+        self.refuse("body_mesh = open.stl", "not a closed surface", body_mesh=self.write("open.stl", good[5:]))
+        self.refuse("body_mesh = empty.stl", "no triangle", body_mesh=self.write("empty.stl", good[:0]))
+        self.refuse("body_mesh = lost.stl", "must be finite", body_mesh=self.write("lost.stl", lost))
+        self.refuse("must be inside of the stage", body_mesh=self.write("far.stl", good + [0, 0, 1.6]))
+        for name, text, word in (("words.stl", "no triangles here", "not an STL file"),
+                                 ("part.stl", "solid\nvertex 1 2 3\n", "three vertices"),
+                                 ("letters.stl", "solid\nvertex 1 2 x\n", "three numbers")):
+            (self.folder / name).write_text(text)
+            self.refuse(f"body_mesh = {name}", word, body_mesh=name)
+        (self.folder / "cut.stl").write_bytes((self.folder / "good.stl").read_bytes()[:-20])
+        self.refuse("body_mesh = cut.stl", body_mesh="cut.stl")
+
+    def test_keys(self):
+        write_stl(self.folder / "ball.stl", ball(3) / 2 + [0, 0, 2])
+        for spacing, word in ((0.9, "too coarse"), (1e-4, "too fine"), (-1, "must be positive")):
+            self.refuse("body_mesh_spacing", word, body_mesh="ball.stl", body_mesh_spacing=spacing)
+        self.refuse("body_mesh_spacing", "is a key of body_mesh", body_mesh_spacing=0.1)
+        self.refuse("give one body", body_mesh="ball.stl", body_sphere=[0, 0, 2, 0.5])
+
+
+if __name__ == "__main__":
+    unittest.main()

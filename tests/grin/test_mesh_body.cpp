@@ -1,0 +1,100 @@
+#include <cmath>
+#include <numbers>
+
+#include <Eigen/Geometry>
+#include <doctest/doctest.h>
+
+#include "bench/scenes/meshes.h"
+#include "bench/scenes/random_fields.h"
+#include "grin/straight/straight_space.h"
+#include "tests/grin/furnace.h"
+#include "tests/grin/space_stages.h"
+
+namespace flatspeckle::grin::tests {
+
+namespace {
+
+const Box room{Vec3::Constant(-2), Vec3::Constant(2)};
+
+/// Of a line between two points of the outside; each triangle by itself (Moeller and Trumbore).
+double length_inside(const TriangleMesh& mesh, const Vec3& from, const Vec3& to) {
+  const Vec3 way = to - from;
+  double sum = 0;
+  for (const auto& [i, j, k] : mesh.triangles) {
+    const Vec3 a = mesh.corners[i], ab = mesh.corners[j] - a, ac = mesh.corners[k] - a;
+    const Vec3 n = ab.cross(ac), to_a = a - from, turned = to_a.cross(way);
+    const double speed = way.dot(n);
+    const double u = turned.dot(ac) / speed, v = -turned.dot(ab) / speed;
+    const double at = to_a.dot(n) / speed;
+    if (u >= 0 && v >= 0 && u + v <= 1 && at > 0 && at < 1)
+      sum += (speed > 0 ? at : -at) * way.norm();
+  }
+  return sum;
+}
+
+}  // namespace
+
+TEST_CASE("straight ways through a torus attenuate as triangles say") {
+  const TriangleMesh mesh = torus_mesh();
+  const Stage stage{room, {}, {Body{smooth(mesh, 0.05), {.mu_a = 1}}}};
+  const StraightSpace<straight_plan> space(stage, 0);
+  CHECK(space.joins_all());
+  RandomStream random(1, 98, 0);
+  ConnectionStatistics statistics;
+  double sum = 0, difference = 0;
+  int rough = 0, twice = 0;
+  constexpr int ways = 800;
+  for (int i = 0; i < ways; ++i) {
+    const Vec3 p = 1.2 * random_direction(random), q = 0.3 * random_direction(random) - p;
+    const double exact = length_inside(mesh, p, q);
+    const auto join = space.join({p}, {q}, random, statistics);
+    REQUIRE(join);
+    const double found = -std::log(join->transmittance);
+    sum += exact;
+    difference += found - exact;
+    rough += std::abs(found - exact) > 0.005;
+    twice += exact > 0.55;
+    RandomStream again(2, 98, i);
+    const Flight flight = space.fly({p}, (q - p).normalized(), again);
+    CHECK(flight.end == Flight::End::boundary);
+    CHECK(flight.weight == doctest::Approx(join->transmittance).epsilon(1e-9));
+  }
+  CHECK(std::abs(difference) < 1e-3 * sum);
+  CHECK(rough < 0.03 * ways);  // those that graze it
+  CHECK(twice > 50);
+}
+
+TEST_CASE("a clear ball of triangles keeps no light, whatever its index") {
+  for (const double index : {1.0001, 1.4, 0.7}) {
+    CAPTURE(index);
+    const Stage stage{room, {}, {Body{smooth(ball_mesh(5), 0.2)}}};
+    const StraightSpace<straight_plan> space(stage, index - 1);
+    RandomStream random(3, 98, 0);
+    int lost = 0;
+    constexpr int flights = 200000;
+    for (int i = 0; i < flights; ++i) {
+      const double rho = std::sqrt(random.uniform()), phi = 2 * std::numbers::pi * random.uniform();
+      const Vec3 x(rho * std::cos(phi), rho * std::sin(phi), -1.9);
+      const Flight flight = space.fly({x}, Vec3::UnitZ(), random);
+      lost += flight.end != Flight::End::boundary;
+      CHECK(flight.point.part == around);
+    }
+    CHECK(lost <= 2);
+  }
+}
+
+TEST_CASE("light stays uniform about a body of triangles, by every estimator") {
+  const LevelSurface torus = smooth(torus_mesh(), 0.08);
+  for (const ScatteringMedium& medium : {ScatteringMedium(), fog(1, 0, 0.85)})
+    for (const double excess : {0.0, 0.4}) {
+      CAPTURE(excess);
+      const Stage stage{unit_box(), medium, {Body{torus, medium}}};
+      const RenderScene scene = scene_in(Homogeneous{excess}, stage, environment(), whole_face());
+      for (const RenderMethod method : unbiased_methods) {
+        CHECK(check_furnace_face(scene, method, 5000) < 0.1);
+        if (method != RenderMethod::light) CHECK(check_furnace_camera(scene, method, 4000) < 0.1);
+      }
+    }
+}
+
+}  // namespace flatspeckle::grin::tests

@@ -1,0 +1,242 @@
+#include <cmath>
+#include <numbers>
+
+#include <Eigen/Geometry>
+#include <doctest/doctest.h>
+
+#include "bench/scenes/meshes.h"
+#include "core/error.h"
+#include "core/numbers/random.h"
+#include "grin/rays/trace.h"
+#include "grin/surfaces/bernstein.h"
+#include "grin/surfaces/curvature.h"
+#include "grin/surfaces/mesh_distance.h"
+#include "grin/surfaces/straight_way.h"
+
+namespace flatspeckle::grin::tests {
+
+using namespace bench;
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+Vec3 random_point(RandomStream& random, double half) {
+  return Vec3(random.uniform() - 0.5, random.uniform() - 0.5, random.uniform() - 0.5) * 2 * half;
+}
+Vec3 any_direction(RandomStream& random) {
+  for (;;) {
+    const Vec3 x = random_point(random, 1);
+    if (x.norm() < 1 && x.norm() > 0.1) return x.normalized();
+  }
+}
+
+std::vector<Vec3> soup(const TriangleMesh& mesh) {
+  std::vector<Vec3> corners;
+  for (const auto& triangle : mesh.triangles)
+    for (const int corner : triangle) corners.push_back(mesh.corners[corner]);
+  return corners;
+}
+
+}  // namespace
+
+TEST_CASE("the first change of sign of a polynomial is found, and pairs of them") {
+  RandomStream random(1, 1, 9);
+  int found = 0, pairs = 0;
+  for (int i = 0; i < 2000; ++i) {
+    Bernstein<10> p;
+    for (double& c : p.c) c = random.uniform() - 0.4;
+    p.c[0] = random.uniform();
+    const auto at = [&](double t) { return p.split(t).right.c[0]; };
+    int first = 0;
+    constexpr int looks = 1000;
+    while (first < looks && at((first + 1.0) / looks) > 0) ++first;
+    const auto zero = p.first_zero(1e-16);
+    if (first == looks) {
+      // or two zeros between two looks
+      if (zero) CHECK(std::abs(at(*zero)) < 1e-13);
+      continue;
+    }
+    ++found;
+    pairs += p.c[9] > 0;
+    REQUIRE(zero);
+    CHECK(*zero <= (first + 1.0) / looks);
+    CHECK(std::abs(at(*zero)) < 1e-14);
+    const auto rest = p.without_zero_at_start();
+    CHECK(rest.split(0.3).right.c[0] == doctest::Approx((at(0.3) - p.c[0]) / 0.3));
+  }
+  CHECK(found > 500);
+  CHECK(pairs > 100);
+}
+
+TEST_CASE("a ray that grazes: two zeros as near as 1e-6, and none where it just misses") {
+  for (const double gap : {1e-3, 1e-6, -1e-12, -1e-3}) {
+    // (t - 0.4)^2 - gap^2, or + gap
+    const double constant = 0.16 + (gap > 0 ? -gap * gap : -gap);
+    const Bernstein<3> p{{constant, constant - 0.4, constant + 0.2}};
+    const auto zero = p.first_zero(1e-16);
+    CHECK(zero.has_value() == (gap > 0));
+    if (zero) CHECK(*zero == doctest::Approx(0.4 - gap).epsilon(1e-9));
+  }
+}
+
+TEST_CASE(
+    "triangles become a closed mesh: corners shared, turned outwards; open ones are refused") {
+  std::vector<Vec3> corners = soup(cube_mesh(1));
+  corners.insert(corners.end(), {Vec3::Zero(), Vec3::Ones(), Vec3::Ones()});  // no area
+  const TriangleMesh mesh = closed_mesh(corners);
+  CHECK(mesh.corners.size() == 9);
+  CHECK(mesh.triangles.size() == 12);
+  CHECK(volume(mesh) == doctest::Approx(8));
+  CHECK(area(mesh) == doctest::Approx(24));
+  std::vector<Vec3> inwards = soup(cube_mesh(1));
+  for (std::size_t i = 0; i < inwards.size(); i += 3) std::swap(inwards[i], inwards[i + 1]);
+  CHECK(volume(closed_mesh(inwards)) == doctest::Approx(8));
+  inwards = soup(cube_mesh(1));
+  std::swap(inwards[0], inwards[1]);
+  CHECK_THROWS_WITH_AS(closed_mesh(inwards), doctest::Contains("3 of 18 edges"), InputError);
+  inwards.resize(33);
+  CHECK_THROWS_WITH_AS(closed_mesh(inwards), doctest::Contains("not a closed surface"), InputError);
+  inwards[0][1] = std::nan("");
+  CHECK_THROWS_AS(closed_mesh(inwards), InputError);
+  CHECK_THROWS_AS(closed_mesh({}), InputError);
+}
+
+TEST_CASE("distance to a mesh: a cube's in closed form, its winding number") {
+  const MeshDistance exact(cube_mesh(1)), ball(ball_mesh(3));
+  const Box box{Vec3::Constant(-1), Vec3::Constant(1)};
+  RandomStream random(1, 1, 0);
+  for (int i = 0; i < 500; ++i) {
+    const Vec3 x = random_point(random, 3);
+    CHECK(exact.unsigned_distance(x, 9) == doctest::Approx(std::abs(box.distance(x))));
+    CHECK(exact.unsigned_distance(x, 0.1) ==
+          doctest::Approx(std::min(0.1, std::abs(box.distance(x)))));
+    const bool inside = box.distance(x) < 0;
+    CHECK(std::abs(exact.winding_number(x) - inside) < 0.05);
+    if (std::abs(x.norm() - 1) > 0.02)
+      CHECK(std::abs(ball.winding_number(x) - (x.norm() < 1)) < 0.05);
+  }
+}
+
+TEST_CASE("the smooth surface of a cube has its faces, and rounds its edges") {
+  const LevelSurface surface = smooth(cube_mesh(1), 0.1);
+  const Box box{Vec3::Constant(-1), Vec3::Constant(1)};
+  for (const double t : {0.2, 0.5, -0.65}) {
+    CHECK(std::abs(surface.distance({t, 0.4, 1})) < 1e-14);
+    CHECK(std::abs(surface.distance({-1, t, 0.3})) < 1e-14);
+    CHECK((surface.normal({t, 0.4, 1}) - Vec3::UnitZ()).norm() < 1e-13);
+    CHECK(surface.curvature({t, 0.4, 1}).norm() < 1e-11);
+  }
+  CHECK(surface.distance(Vec3(1, 1, 0.3)) > 0);
+  CHECK(surface.distance(Vec3(0.97, 0.97, 0.3)) < 0);
+  CHECK(std::abs(surface.volume() / 8 - 1) < 0.005);
+  RandomStream random(1, 1, 1);
+  for (int i = 0; i < 2000; ++i) {
+    const Vec3 x = random_point(random, 2);
+    const double exact = box.distance(x), d = surface.distance(x);
+    CHECK(std::abs(d) <= std::abs(exact) + 0.05);
+    if (std::abs(exact) > 0.05) CHECK((d < 0) == (exact < 0));
+  }
+}
+
+TEST_CASE("the smooth surface of a ball is off by the fourth power of the spacing") {
+  const TriangleMesh mesh = ball_mesh(6);
+  const double radius = std::cbrt(volume(mesh) * 3 / (4 * pi));
+  RandomStream random(1, 1, 2);
+  for (const double spacing : {0.25, 0.125}) {
+    const LevelSurface surface = smooth(mesh, spacing);
+    const double allowed = spacing > 0.2 ? 1e-3 : 1.5e-4;
+    CHECK(std::abs(surface.volume() / volume(mesh) - 1) < 3 * allowed);
+    for (int i = 0; i < 300; ++i) {
+      const Vec3 from = any_direction(random) * 4;
+      const Vec3 d = (random_point(random, 0.4) - from).normalized();
+      const double way = surface.way(from, d, 1);
+      REQUIRE(way < 10);
+      CHECK(way >= surface.distance(from) - 1e-12);
+      const Vec3 x = from + way * d, n = x.normalized();
+      CHECK(std::abs(x.norm() - radius) < 2 * allowed);
+      CHECK((surface.normal(x) - n).norm() < 0.02);
+      const Mat3 turn = surface.curvature(x) - (Mat3::Identity() - n * n.transpose()) / radius;
+      CHECK((turn * (Mat3::Identity() - n * n.transpose())).norm() < 0.15);
+      // it turns as the normals of neighbours do
+      const Vec3 aside = 1e-5 * n.cross(any_direction(random));
+      const Vec3 change = surface.normal(x + aside) - surface.normal(x - aside);
+      CHECK((change - 2 * surface.curvature(x) * aside).norm() < 1e-3 * aside.norm());
+    }
+  }
+}
+
+TEST_CASE("lines cross a torus where its sign changes, each crossing once and none missed") {
+  const LevelSurface surface = smooth(torus_mesh(), 0.06);
+  RandomStream random(1, 1, 3);
+  int crossings[6] = {};
+  for (int i = 0; i < 1500; ++i) {
+    const Vec3 from = any_direction(random) * 2;
+    const Vec3 d = (random_point(random, 0.6) - from).normalized();
+    std::vector<double> ways{0};
+    for (double side = 1;; side = -side) {
+      const double way = surface.way(from + ways.back() * d, d, side);
+      if (way == no_way) break;
+      ways.push_back(ways.back() + way);
+      REQUIRE(ways.size() < 7);
+      CHECK(std::abs(surface.distance(from + ways.back() * d)) < 1e-15);
+    }
+    REQUIRE(ways.size() % 2 == 1);
+    ++crossings[(ways.size() - 1)];
+    for (double s = 0; s < 4; s += 0.01) {
+      std::size_t passed = 0;
+      while (passed + 1 < ways.size() && ways[passed + 1] < s) ++passed;
+      CHECK((surface.distance(from + s * d) < 0) == (passed % 2 == 1));
+    }
+  }
+  for (const int count : {0, 2, 4}) CHECK(crossings[count] > 50);
+}
+
+TEST_CASE("what is on a smooth surface is on the side that it is said to be") {
+  const LevelSurface ball = smooth(ball_mesh(5), 0.15), cube = smooth(cube_mesh(1), 0.25);
+  RandomStream random(1, 1, 4);
+  for (const LevelSurface& surface : {ball, cube}) {
+    for (int i = 0; i < 3000; ++i) {
+      const Vec3 from = any_direction(random) * 3;
+      const Vec3 d = (random_point(random, 0.5) - from).normalized();
+      Vec3 x = from + surface.way(from, d, 1) * d;
+      x += (random.uniform() - 0.5) * 2e-14 * d;  // to rounding
+      const Vec3 n = surface.normal(x);
+      const double steep = std::pow(10, -6 * random.uniform());  // down to a grazing 1e-6
+      const Vec3 along = n.cross(any_direction(random)).normalized();
+      const Vec3 out = (along + steep * n).normalized(), in = (along - steep * n).normalized();
+      CHECK(surface.way(x, out, 1) > 1e-9);
+      CHECK(surface.way(x, in, -1) > 1e-9);
+      CHECK(surface.way(x, in, -1) < 4);
+      CHECK(surface.way(x, in, 1) < 1e-7);
+      CHECK(surface.way(x, out, -1) < 1e-7);
+    }
+  }
+}
+
+TEST_CASE("rays by steps end on a smooth surface where straight ways do") {
+  const std::vector<Surface> surfaces{smooth(torus_mesh(), 0.06)};
+  RandomStream random(1, 1, 5);
+  for (int i = 0; i < 200; ++i) {
+    const Vec3 from = any_direction(random) * 2;
+    const Vec3 d = (random_point(random, 0.5) - from).normalized();
+    const double way = way_in(surfaces[0], from, d);
+    FixedSteps<Leapfrog> none{1};
+    RayState ray = start_ray(Homogeneous{}, from, d);
+    const TraceEnd end = trace(Homogeneous{}, surfaces, {10, 1e-9}, none, ray);
+    CHECK((end.stop == Stop::surface) == (way < 10));
+    if (way < 10) CHECK(ray.arc_length == doctest::Approx(way).epsilon(1e-6));
+  }
+}
+
+TEST_CASE("spacings that do not suit a mesh are refused") {
+  const TriangleMesh mesh = torus_mesh();
+  CHECK_THROWS_WITH_AS(smooth(mesh, 0.4), doctest::Contains("too coarse"), InputError);
+  CHECK_THROWS_WITH_AS(smooth(mesh, 5), doctest::Contains("too coarse"), InputError);
+  CHECK_THROWS_WITH_AS(smooth(mesh, 1e-3), doctest::Contains("too fine"), InputError);
+  TriangleMesh far = mesh;
+  for (Vec3& corner : far.corners) corner[0] += 1e9;
+  CHECK_THROWS_WITH_AS(smooth(far, 0.1), doctest::Contains("too fine"), InputError);
+}
+
+}  // namespace flatspeckle::grin::tests
