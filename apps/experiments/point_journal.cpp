@@ -71,7 +71,7 @@ void PointJournal::take_in(std::uint64_t place, std::span<const std::byte> block
       layouts_.add(text_of(bytes.rest()));
       break;
     case Kind::point:
-      places_[bytes.get<std::string>()] = place;
+      places_.emplace(std::hash<std::string>()(bytes.get<std::string>()), place);
       break;
   }
 }
@@ -87,16 +87,21 @@ void PointJournal::keep_damaged(const std::filesystem::path& path) const {
                                  ", and the rest is done again\n");
 }
 
-std::vector<std::string> PointJournal::names() const {
-  const std::lock_guard lock(mutex_);
-  std::vector<std::string> names;
-  for (const auto& [name, place] : places_) names.push_back(name);
-  return names;
-}
-
 bool PointJournal::has(const std::string& name) const {
   const std::lock_guard lock(mutex_);
-  return places_.contains(name);
+  return place_of(name).has_value();
+}
+
+/// Of names only their hashes are in memory: there may be very many.
+std::optional<std::uint64_t> PointJournal::place_of(const std::string& name) const {
+  const auto [first, last] = places_.equal_range(std::hash<std::string>()(name));
+  for (auto place = first; place != last; ++place) {
+    const auto block = file_->read(place->second);
+    ByteReader bytes(block);
+    bytes.get<Kind>();
+    if (bytes.get<std::string>() == name) return place->second;
+  }
+  return std::nullopt;
 }
 
 void PointJournal::Shared::add(const std::string& text) {
@@ -135,12 +140,12 @@ void PointJournal::add(const std::string& name, const FinishedPoint& point) {
     block.put(number);
   block.put(point.reached);
   put_bytes(block, values);
-  places_[name] = file_->append(block.take());
+  places_.emplace(std::hash<std::string>()(name), file_->append(block.take()));
 }
 
 FinishedPoint PointJournal::read(const std::string& name) const {
   const std::lock_guard lock(mutex_);
-  const auto block = file_->read(places_.at(name));
+  const auto block = file_->read(place_of(name).value());
   ByteReader bytes(block);
   bytes.get<Kind>();
   bytes.get<std::string>();

@@ -41,7 +41,6 @@ class PointJournal {
 
   const SweepHead& head() const { return head_; }
   std::size_t size() const { return places_.size(); }
-  std::vector<std::string> names() const;
   bool has(const std::string& name) const;
 
   /// Throws IoError.
@@ -66,12 +65,13 @@ class PointJournal {
   void take_in(std::uint64_t place, std::span<const std::byte> block);
   void keep_damaged(const std::filesystem::path& path) const;
   std::uint64_t number_of(Kind kind, const std::string& text);
+  std::optional<std::uint64_t> place_of(const std::string& name) const;
 
   std::unique_ptr<BlockFile> file_;
   SweepHead head_;
   bool has_head_ = false;
   Shared plans_, layouts_;
-  std::unordered_map<std::string, std::uint64_t> places_;
+  std::unordered_multimap<std::size_t, std::uint64_t> places_;  ///< by the hash of the name
   mutable std::mutex mutex_;
 };
 

@@ -129,9 +129,6 @@ void PointStore::save_unfinished(const std::string& name, const Provenance& made
 }
 
 void PointStore::remove() {
-  std::set<std::string> names;
-  for (std::size_t point = 0; point < sweep_.points().count(); ++point)
-    names.insert(file_name(sweep_.points().name(point)));
   own_.reset();
   others_.clear();
   for (const fs::path& path : paths_) {
@@ -139,7 +136,20 @@ void PointStore::remove() {
     if (!fs::remove(path, failed) && failed)
       throw IoError("removing " + path.string() + " failed: " + failed.message());
   }
-  for (const std::string& folder : folders_) ShardFolder(folder).remove(names);
+  for (const std::string& path : folders_) {
+    const ShardFolder folder(path);
+    folder.remove(ours_of(folder.names()));
+  }
+}
+
+/// Of names of files those that are of points.
+std::set<std::string> PointStore::ours_of(const std::set<std::string>& names) const {
+  std::set<std::string> ours;
+  for (std::size_t point = 0; point < sweep_.points().count() && ours.size() < names.size();
+       ++point)
+    if (const std::string name = file_name(sweep_.points().name(point)); names.contains(name))
+      ours.insert(name);
+  return ours;
 }
 
 }  // namespace flatspeckle::apps

@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -43,6 +44,7 @@ class PointStore {
   void open_others(const std::string& folder, const std::filesystem::path& own);
   const PointJournal* find(const std::string& name) const;
   std::string identity_of(const std::string& name) const;
+  std::set<std::string> ours_of(const std::set<std::string>& names) const;
 
   const ExperimentSweep& sweep_;
   std::string identity_;

@@ -54,7 +54,9 @@ struct SurveyedAttribute {
   CollectedAttribute first;
   std::size_t points = 0;
   bool same = true;
-  std::vector<double> numbers = {};  ///< of all points, where it is one
+  std::vector<double> numbers = {};  ///< of all points, where it is one and not the same
+
+  void add(const Attribute& value);
 };
 
 double number_of(const Attribute& value) {
@@ -68,6 +70,15 @@ double number_of(const Attribute& value) {
 
 bool is_number(const Attribute& value) {
   return value.index() < 4;  // bool, int64, uint64, double
+}
+
+void SurveyedAttribute::add(const Attribute& value) {
+  if (same && !(value == first.value)) {
+    same = false;
+    numbers.assign(points, number_of(first.value));
+  }
+  ++points;
+  if (!same) numbers.push_back(number_of(value));
 }
 
 class Stack {
@@ -111,12 +122,8 @@ class Stack {
       found->second.add(set);
     }
     for (const CollectedAttribute& attribute : point.result.attributes) {
-      auto& found =
-          attributes_.try_emplace({attribute.object, attribute.name}, SurveyedAttribute{attribute})
-              .first->second;
-      ++found.points;
-      found.same = found.same && found.first.value == attribute.value;
-      found.numbers.push_back(number_of(attribute.value));
+      attributes_.try_emplace({attribute.object, attribute.name}, SurveyedAttribute{attribute})
+          .first->second.add(attribute.value);
     }
     samples_.push_back(point.samples);
     cpu_s_.push_back(point.cpu_s);

@@ -266,6 +266,7 @@ Optimum Optimisation::found(Evaluations& evaluations) const {
   optimum.finished = end.finished;
   optimum.best = axes_->point(winner.best.place);
   optimum.runner_up = axes_->point(winner.runner_up.place);
+  optimum.at_bounds = axes_->at_bounds(winner.best.place, search_.tolerance);
   if (values_.against.empty()) return optimum;
   optimum.against = point_against(optimum.best);
   optimum.there = evaluations.measure({*optimum.against}, {winner.best.samples, 2}).front();

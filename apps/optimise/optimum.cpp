@@ -31,7 +31,10 @@ const DatasetTable optimum_table{
                    {"", "objective", "text", "the number of its result that was searched for"},
                    {"", "objective_unit", "text", "of the values here"},
                    {"", "complete", "bool", "0: the time was up before the search had ended"},
-                   {"search", "swept", "texts", "the keys that were searched"}}};
+                   {"search", "swept", "texts", "the keys that were searched"},
+                   {"best", "at_bounds", "texts",
+                    "keys whose best value is a bound of their range, if there are any: a wider "
+                    "one may have a better"}}};
 
 namespace {
 
@@ -102,6 +105,7 @@ void write_optimum(ResultFile& file, const Optimum& optimum, const Evaluations& 
   root.attribute("objective_unit", evaluations.dataset().units);
   write_search(file, root, evaluations, sign, keys);
   write_keys(file, "best", {optimum.best}, {}, keys);
+  if (!optimum.at_bounds.empty()) root.attribute("best", "at_bounds", optimum.at_bounds);
   put(root, "best/value", sign * best.measured.value, error(best.measured));
   write_keys(file, "runner_up", {optimum.runner_up}, {}, keys);
   put(root, "runner_up/value", sign * runner_up.measured.value, error(runner_up.measured));
@@ -130,6 +134,9 @@ void print_optimum(const Optimum& optimum, const EvaluationSettings& settings) {
         "not told apart: their values are equal within the errors, as on a plateau; either will "
         "do (the best\nwas chosen by earlier random numbers, of which these know nothing; a "
         "smaller target_error tells more)");
+  if (!optimum.at_bounds.empty())
+    std::printf("at a bound of its range: %s; a wider one may have a better place\n",
+                joined(optimum.at_bounds, ", ").c_str());
   if (!optimum.there) return;
   print("against", *optimum.against, *optimum.there);
   if (optimum.there->value == 0) return;

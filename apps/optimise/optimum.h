@@ -15,6 +15,7 @@ struct Optimum {
   SweepPoints best, runner_up;         ///< the keys there
   std::optional<SweepPoints> against;  ///< with some keys at other values
   std::optional<Measured> there = {};
+  std::vector<std::string> at_bounds = {};  ///< keys of the best that a wider range may better
   bool finished = true;
 };
 

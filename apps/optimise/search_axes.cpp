@@ -113,4 +113,15 @@ SweepPoints SearchAxes::point(const SearchPlace& place) const {
   return point;
 }
 
+std::vector<std::string> SearchAxes::at_bounds(const SearchPlace& place, double tolerance) const {
+  std::vector<std::string> keys;
+  auto share = place.at.begin();
+  for (const SearchAxis& axis : axes_) {
+    if (axis.is_choice()) continue;
+    if (std::min(*share, 1 - *share) <= tolerance) keys.push_back(axis.key);
+    ++share;
+  }
+  return keys;
+}
+
 }  // namespace flatspeckle::apps

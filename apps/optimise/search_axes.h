@@ -32,6 +32,8 @@ class SearchAxes {
 
   /// The values of the keys there, one for each axis.
   SweepPoints point(const SearchPlace& place) const;
+  /// Keys that are there at a bound of theirs, by no more than this share of their range.
+  std::vector<std::string> at_bounds(const SearchPlace& place, double tolerance) const;
 
  private:
   std::vector<SearchAxis> axes_;

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <variant>
 
@@ -178,6 +179,7 @@ PlanRow leapfrogs(double cpu_seconds) {
 template <class Go>
 std::vector<Complex> went_on(const RayField& field, const Go& go) {
   RayLanes bundle{};
+  std::fill_n(bundle.step, lanes, step);
   RandomStream random(1, 0, 0);
   for (int lane = 0; lane < lanes; ++lane)
     bundle.put(lane, start_ray(field, random_point(random).x, random_direction(random)));
@@ -198,7 +200,7 @@ PlanRow one_ray_at_a_time(double cpu_seconds) {
       bundle.put(lane, ray);
     }
   };
-  const auto in_lanes = [&](RayLanes& bundle) { field->advance_lanes(step, steps, bundle); };
+  const auto in_lanes = [&](RayLanes& bundle) { field->advance_lanes(steps, bundle); };
   PlanRow row{.per = "ray"};
   compare_values(
       row, [&] { return went_on(*field, one_by_one); }, [&] { return went_on(*field, in_lanes); },

@@ -143,11 +143,33 @@ PlanCase rays_alone() {
     Tracer general = special;
     const CurvedSpaceOptions options{scene.step, scene.max_length, Spreading::none};
     general.kernel = analog_kernel(false, special.transport,
-                                   make_curved_space(scene.field, scene.stage, options), false);
+                                   make_curved_space(scene.field, scene.stage, options), {}, false);
     compare_sampled(row, kernel_of(general), kernel_of(special), Numbers::other, Measure::sample,
                     cpu_seconds);
     return row;
   });
+}
+
+/// Light paths that scatter, to a small disk: most are given up, what heads for it is split.
+PlanCase aimed_light() {
+  return named("render", "paths past a small sensor", "guide of sound in tissue",
+               [](double cpu_seconds) {
+                 PlanRow row{.per = "1 % error"};
+                 RenderScene scene = render_scenes()[1].scene;
+                 scene.sensors = {RadialDetector{{0, 0, 30}, 0.2, 1, 1.5}};
+                 const RenderRequest request{RenderMethod::analog};
+                 const Tracers tracers(scene, request);
+                 const Tracer special = tracers.make(RenderMethod::analog);
+                 Tracer general = special;
+                 const CurvedSpaceOptions options{scene.step, scene.max_length, Spreading::none,
+                                                  scene.leapfrogs};
+                 general.kernel =
+                     analog_kernel(false, special.transport,
+                                   make_curved_space(scene.field, scene.stage, options), {}, false);
+                 compare_sampled(row, kernel_of(general), kernel_of(special), Numbers::other,
+                                 Measure::error, cpu_seconds);
+                 return row;
+               });
 }
 
 RenderScene absorbing_slab() {
@@ -186,6 +208,7 @@ std::vector<PlanCase> render_plan_cases() {
              p.curved = p.deep = false;
            }),
       rays_alone(),
+      aimed_light(),
       depth_in("slab of OD 10, albedo 0.9", absorbing_slab()),
       map_alone()};
 }

@@ -87,7 +87,8 @@ double side_by_side(const F& field) {
   RayLanes all{};
   const auto from = bundle(field);
   for (int lane = 0; lane < lanes; ++lane) all.put(lane, from[static_cast<std::size_t>(lane)]);
-  make_steps<false>(Integrator(), field, all, step, 4 * steps);
+  std::fill_n(all.step, lanes, step);
+  make_steps<false>(Integrator(), field, all, 4 * steps);
   for (int lane = 0; lane < lanes; ++lane) sink += all.optical_path[lane];
   return 4 * lanes * steps;
 }

@@ -33,7 +33,8 @@ bool asks_more(const StopRule& stop, const BatchJob& job, const Trace& trace) {
   const double batches = std::round(trace.samples.back() / job.samples_per_batch);
   const bool enough_samples =
       stop.samples && batches >= static_cast<double>(batch_limit(stop, job.samples_per_batch));
-  const bool exact_enough = stop.target_error && batches >= trusted_batches &&
+  const bool exact_enough = stop.target_error &&
+                            batches >= static_cast<double>(job.trusted_batches) &&
                             trace.relative_error.back() <= *stop.target_error;
   return !enough_samples && !exact_enough &&
          !(stop.seconds && trace.wall_s.back() >= *stop.seconds);
@@ -87,7 +88,7 @@ bool RunMerger::is_in_vain() const {
 void RunMerger::decide() {
   const std::uint64_t batches = state_.sums.batches();
   if (batches >= limit_) ended_ = StopReason::samples;
-  if (stop_.target_error && batches >= trusted_batches && is_checkpoint(batches) &&
+  if (stop_.target_error && batches >= job_.trusted_batches && is_checkpoint(batches) &&
       error() <= *stop_.target_error)
     ended_ = StopReason::target_error;
   if (ended_) settle();
@@ -95,7 +96,7 @@ void RunMerger::decide() {
 
 std::uint64_t RunMerger::certain() const {
   if (!stop_.target_error) return limit_;
-  return std::min(limit_, std::max(next_checkpoint_, checkpoint_after(trusted_batches - 1)));
+  return std::min(limit_, std::max(next_checkpoint_, checkpoint_after(job_.trusted_batches - 1)));
 }
 
 double RunMerger::error() const {
@@ -109,7 +110,8 @@ double RunMerger::cpu_s_left() const {
   if (stop_.samples) left = static_cast<double>(limit_) - batches;
   if (stop_.target_error) {
     const double ratio = error() / *stop_.target_error;
-    const double enough = std::max(batches * ratio * ratio, double{trusted_batches});
+    const double enough =
+        std::max(batches * ratio * ratio, static_cast<double>(job_.trusted_batches));
     left = std::min(left, enough - batches);
   }
   return std::max(0.0, left) * state_.cpu_s / batches;

@@ -12,6 +12,9 @@
 
 namespace flatspeckle {
 
+/// A target error is believed from here on: fewer batches miss the tail of rare strong paths.
+inline constexpr std::uint64_t trusted_batches = 256;
+
 /// Random work cut into numbered batches: each a pure function (scene, seed, number) -> sums.
 struct BatchJob {
   std::size_t size = 0;  ///< complex sums per batch
@@ -27,10 +30,9 @@ struct BatchJob {
   /// Batches share their work, a solution without chance: a thread that took the second would wait
   /// for the first, and their number says nothing.
   bool one_by_one = false;
+  /// Less where there is no such tail.
+  std::uint64_t trusted_batches = flatspeckle::trusted_batches;
 };
-
-/// A target error is believed from here on: fewer batches miss the tail of rare strong paths.
-inline constexpr std::uint64_t trusted_batches = 256;
 
 /// When to stop; any that is set may. At least one must be. Samples are rounded up to whole
 /// batches, of which there are always two.

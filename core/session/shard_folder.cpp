@@ -82,6 +82,13 @@ void ShardFolder::write(const std::string& name, Part part, const std::string& i
   if (part == Part::finished) fs::remove(file(name, Part::unfinished));
 }
 
+std::set<std::string> ShardFolder::names() const {
+  std::set<std::string> names;
+  if (!fs::is_directory(folder_)) return names;
+  for (const auto& entry : fs::directory_iterator(folder_)) names.insert(name_of(entry.path()));
+  return names;
+}
+
 void ShardFolder::remove_unfinished(const std::string& name) const {
   std::error_code none;
   fs::remove(file(name, Part::unfinished), none);

@@ -37,6 +37,8 @@ class ShardFolder {
   void write(const std::string& name, Part part, const std::string& identity, Durable durable,
              const std::function<void(ResultFile&)>& contents);
 
+  /// Those of the files there.
+  std::set<std::string> names() const;
   /// Where there is one.
   void remove_unfinished(const std::string& name) const;
   /// Removes the files of these names, those that a killed process was writing as well, and the

@@ -117,10 +117,7 @@ class CurvedLeg {
                                 RandomStream& random) const {
     for (; collision <= curve.end_arc_length(); collision = next_collision(collision, random)) {
       const double theta = curve.theta_at(collision);
-      if (!medium_.scatters())
-        weight *= medium_.lacking(curve.x(theta));
-      else if (medium_.accepts(curve.x(theta), random))
-        return theta;
+      if (medium_.collides(curve.x(theta), weight, random)) return theta;
     }
     return std::nullopt;
   }
@@ -137,7 +134,7 @@ class CurvedLeg {
     if (is_lost) return search(exact, arc);
     const StepCurve curve(start, end, step_);
     const auto close = [&](double theta) { return put_back - room_.distance(curve.x(theta)); };
-    const auto guess = search(close, arc);
+    const auto guess = is_like_chord(start, end) ? once(close) : search(close, arc);
     if (!guess) return std::nullopt;
     const auto mended = mend(exact, *guess, close);
     return mended ? mended : search(exact, arc);
@@ -148,6 +145,18 @@ class CurvedLeg {
     const auto bracket = first_change(clearance, {0, 1, clearance(0), clearance(1)}, arc);
     if (!bracket) return std::nullopt;
     return zero(clearance, *bracket, tolerance_ / 4);
+  }
+
+  /// In a convex room such a step leaves once, if its end is outside.
+  bool is_like_chord(const RayState& start, const RayState& end) const {
+    constexpr double turned = 0.1;  // rad
+    return room_.is_convex() && (end.v - start.v).squaredNorm() < turned * turned;
+  }
+  template <class Function>
+  std::optional<double> once(const Function& clearance) const {
+    const Bracket step{0, 1, clearance(0), clearance(1)};
+    if (step.fb > 0) return std::nullopt;
+    return zero(clearance, step, tolerance_ / 4);
   }
 
   /// Newton steps with the slope of the close curve.

@@ -37,11 +37,10 @@ class RayField {
 
   /// Whether rays may go side by side, at less cost than one by one.
   virtual bool has_lanes() const = 0;
-  /// Equal steps of all of them: of an integrator and looking for the index mismatch, as follow()
-  /// makes them, or as advance() does.
-  virtual void follow_lanes(const Integrators& integrator, double h, int steps,
-                            RayLanes& rays) const = 0;
-  virtual void advance_lanes(double h, int steps, RayLanes& rays) const = 0;
+  /// Steps of all of them: of an integrator and looking for the index mismatch, as follow() makes
+  /// them, or as advance() does.
+  virtual void follow_lanes(const Integrators& integrator, int steps, RayLanes& rays) const = 0;
+  virtual void advance_lanes(int steps, RayLanes& rays) const = 0;
 
   /// CurvedLeg::go(), with a tangent where there is one.
   virtual LegStop fly(const LegRoom& room, double longest, double& weight, RandomStream& random,

@@ -29,14 +29,13 @@ class RayFieldOf : public RayField {
   }
 
   bool has_lanes() const override { return LaneField<F>; }
-  void follow_lanes([[maybe_unused]] const Integrators& integrator, [[maybe_unused]] double h,
-                    [[maybe_unused]] int steps, [[maybe_unused]] RayLanes& rays) const override {
+  void follow_lanes([[maybe_unused]] const Integrators& integrator, [[maybe_unused]] int steps,
+                    [[maybe_unused]] RayLanes& rays) const override {
     if constexpr (LaneField<F>)
-      std::visit([&](const auto& by) { make_steps<true>(by, field_, rays, h, steps); }, integrator);
+      std::visit([&](const auto& by) { make_steps<true>(by, field_, rays, steps); }, integrator);
   }
-  void advance_lanes([[maybe_unused]] double h, [[maybe_unused]] int steps,
-                     [[maybe_unused]] RayLanes& rays) const override {
-    if constexpr (LaneField<F>) make_steps<false>(Step(), field_, rays, h, steps);
+  void advance_lanes([[maybe_unused]] int steps, [[maybe_unused]] RayLanes& rays) const override {
+    if constexpr (LaneField<F>) make_steps<false>(Step(), field_, rays, steps);
   }
 
   LegStop fly(const LegRoom& room, double longest, double& weight, RandomStream& random,

@@ -1,9 +1,14 @@
 #include "grin/estimators/analog_light.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
+#include <functional>
 #include <numbers>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "grin/paths/light_family.h"
 #include "grin/paths/light_tally.h"
@@ -18,78 +23,152 @@ namespace {
 struct AnalogBatch {
   const Transport& transport;
   const CurvedSpace& space;
+  const SensorAim* aim;
   Film& film;
   TransportCounts& counts;
 };
 
+/// A path, or a part of one that is split, with random numbers of its own: what becomes of others
+/// does not change it, so that paths of like scenes stay alike.
+struct Branch {
+  RandomStream random;
+  PathVertex from = {};
+  Vec3 direction = Vec3::Zero();
+  double power = 0;  ///< that its path began with
+  bool of_beam = false;
+  LonePath absorption = {};
+  PathScore score = {};
+};
+
+/// The paths of a batch, in lanes that have one branch each at a time; those that wait are taken
+/// up by any.
 template <bool timed>
-class AnalogPath {
+class AnalogWalk {
  public:
-  AnalogPath(const AnalogBatch& batch, const RandomStream& random)
-      : batch_(batch),
-        random_(random),
-        end_(batch.transport.lights.sample_position(batch.space, random_)),
-        here_(end_vertex({}, end_)),
-        tally_(batch.film.energy) {
-    const EndDirection first = batch.transport.lights.sample_direction(end_, random_);
-    here_.weight *= first.strength / first.density;
-    direction_ = first.direction;
-    tally_.emitted(here_);
-    absorption_.begin(here_, direction_);
+  struct Lane {
+    EndPosition end;  ///< of its path's first flight
+    std::optional<Branch> now;
+  };
+  /// The random numbers of the next path, if there is one.
+  using Fresh = std::function<std::optional<RandomStream>()>;
+
+  AnalogWalk(const AnalogBatch& batch, Fresh fresh)
+      : batch_(batch), fresh_(std::move(fresh)), tally_(batch.film.energy) {}
+  ~AnalogWalk() { tally_.end_path(); }
+
+  /// flown: what became of the lane's last flight, if it had one.
+  std::optional<CurvedSpace::FlightStart> next(Lane& lane, const Flight* flown) {
+    if (lane.now && !goes_on(*lane.now, *flown)) lane.now.reset();
+    if (!lane.now) begin(lane);
+    if (!lane.now) return std::nullopt;
+    return CurvedSpace::FlightStart{lane.now->from.point, lane.now->direction, &lane.now->random};
   }
-  AnalogPath(const AnalogPath&) = delete;  // a vertex knows its end
-  ~AnalogPath() { tally_.end_path(); }
 
-  CurvedSpace::FlightStart next_flight() { return {here_.point, direction_, &random_}; }
+ private:
+  void begin(Lane& lane) {
+    if (!waiting_.empty()) {
+      lane.now = waiting_.back();
+      waiting_.pop_back();
+    } else if (const auto random = fresh_()) {
+      begin(lane, *random);
+    }
+  }
+  void begin(Lane& lane, const RandomStream& random) {
+    const Lights& lights = batch_.transport.lights;
+    Branch& now = lane.now.emplace(Branch{random});
+    lane.end = lights.sample_position(batch_.space, now.random);
+    now.from = end_vertex({}, lane.end);
+    const EndDirection first = lights.sample_direction(lane.end, now.random);
+    now.from.weight *= first.strength / first.density;
+    now.direction = first.direction;
+    now.power = now.from.weight;
+    now.of_beam = lane.end.is_beam;
+    tally_.emitted(now.from);
+    now.absorption.begin(now.from, now.direction);
+  }
 
-  /// Whether it goes on.
-  bool flew(const Flight& flight) {
+  bool goes_on(Branch& now, const Flight& flight) {
     TransportCounts& counts = batch_.counts;
     counts.add_flight(flight.end == Flight::End::lost);
     if (flight.end == Flight::End::lost) {
-      tally_.lost(here_, flight);
+      tally_.lost(now.from, flight);
       return false;
     }
-    score_.flew(flight.arc_length);
-    PathVertex next = moved(here_, flight, batch_.space.index(flight.point));
+    now.score.flew(flight.arc_length);
+    PathVertex next = moved(now.from, flight, batch_.space.index(flight.point));
     if (flight.end == Flight::End::boundary) {
-      tally_.left(here_, flight);
-      if (!end_.is_beam || next.vertices > 2) arrive(next);
+      tally_.left(now.from, flight);
+      if (!now.of_beam || next.vertices > 2) arrive(now, next);
       return false;
     }
     if (next.vertices - 2 >= batch_.transport.max_scatterings) {
-      tally_.cut(here_, flight);
+      tally_.cut(now.from, flight);
       return false;
     }
     ++counts.light_collisions;
     const ScatteringMedium& medium = batch_.transport.medium(next.point.part);
     next.weight *= medium.albedo();
-    if (!absorption_.collide(here_, flight, medium, next, random_, counts, tally_)) return false;
-    here_ = next;
-    direction_ = medium.phase.sample(here_.arrived, random_);
-    if (batch_.film.has_derivatives()) score_.turned(medium, here_.arrived.dot(direction_));
-    return here_.weight > 0;
+    if (!now.absorption.collide(now.from, flight, medium, next, now.random, counts, tally_))
+      return false;
+    now.from = next;
+    if (batch_.aim) return split(medium, now);
+    turn(medium, medium.phase.sample(next.arrived, now.random), now);
+    return next.weight > 0;
+  }
+  void turn(const ScatteringMedium& medium, const Vec3& direction, Branch& branch) {
+    branch.direction = direction;
+    if (batch_.film.has_derivatives())
+      branch.score.turned(medium, branch.from.arrived.dot(direction));
   }
 
- private:
-  void arrive(const PathVertex& last) {
+  /// Into as many as it is worth, of which those stay that head for the sensors. Whether one does.
+  bool split(const ScatteringMedium& medium, Branch& now) {
+    constexpr double most = 16;
+    const Branch before = now;
+    const PathVertex& from = before.from;
+    const double worth =
+        from.weight / now.power * batch_.aim->before_turn(from.point.x, from.arrived);
+    const double copies = std::clamp(std::round(worth), 1.0, most);
+    const std::uint64_t key[] = {now.random.bits(), now.random.bits()};
+    bool is_left = false;
+    for (std::uint64_t i = 0; static_cast<double>(i) < copies; ++i) {
+      RandomStream random(key[0], key[1], i);
+      const Vec3 direction = medium.phase.sample(from.arrived, random);
+      const double weight = kept(medium, before, from.weight / copies, direction, random);
+      if (!(weight > 0)) continue;
+      Branch& branch = is_left ? waiting_.emplace_back(before) : now;
+      is_left = true;
+      branch.random = random;
+      branch.from.weight = weight;
+      turn(medium, direction, branch);
+    }
+    return is_left;
+  }
+  /// The weight where roulette leaves any.
+  double kept(const ScatteringMedium& medium, const Branch& before, double weight,
+              const Vec3& direction, RandomStream& random) {
+    const PathPoint& at = before.from.point;
+    const double chance = weight / before.power * batch_.aim->towards(at.x, direction);
+    if (chance >= 1) return weight;
+    const double left = random.uniform() < chance ? weight / chance : 0;
+    tally_.reweighed(at.part, medium.mu_a > 0, weight - left);
+    return left;
+  }
+
+  void arrive(const Branch& now, const PathVertex& last) {
     for (const SensorEnd& sensor : batch_.transport.sensors)
       sensor.hit(batch_.space, last.point.x, last.arrived, [&](const EndHit& hit) {
         const double value = last.weight * hit.value;
         deposit<timed>(batch_.film, batch_.counts, hit.direction.pixel, value, last.optical_path);
         if (batch_.film.has_derivatives())
-          score_.add_to(batch_.film, hit.direction.pixel, value,
-                        batch_.transport.medium(last.point.part));
+          now.score.add_to(batch_.film, hit.direction.pixel, value,
+                           batch_.transport.medium(last.point.part));
       });
   }
 
   AnalogBatch batch_;
-  RandomStream random_;
-  EndPosition end_;
-  PathVertex here_;
-  Vec3 direction_;
-  LonePath absorption_;
-  PathScore score_;
+  Fresh fresh_;
+  std::vector<Branch> waiting_;
   LightTally tally_;
 };
 
@@ -99,8 +178,10 @@ class PathStreams {
   PathStreams(int paths, RandomStream& random)
       : key_{random.bits(), random.bits()}, paths_(static_cast<std::uint64_t>(paths)) {}
 
-  bool are_left() const { return next_ < paths_; }
-  RandomStream next() { return {key_[0], key_[1], next_++}; }
+  std::optional<RandomStream> next() {
+    if (next_ == paths_) return std::nullopt;
+    return RandomStream(key_[0], key_[1], next_++);
+  }
 
  private:
   std::uint64_t key_[2], paths_, next_ = 0;
@@ -108,43 +189,40 @@ class PathStreams {
 
 template <bool timed>
 void walk_in_lanes(const AnalogBatch& batch, PathStreams& streams) {
-  std::array<std::optional<AnalogPath<timed>>, lanes> paths;
-  const auto next = [&](int lane, const Flight* flown) -> std::optional<CurvedSpace::FlightStart> {
-    auto& path = paths[static_cast<std::size_t>(lane)];
-    if (path && !path->flew(*flown)) path.reset();
-    if (!path) {
-      if (!streams.are_left()) return std::nullopt;
-      path.emplace(batch, streams.next());
-    }
-    return path->next_flight();
-  };
-  batch.space.fly_side_by_side(next);
+  AnalogWalk<timed> walk(batch, [&] { return streams.next(); });
+  std::array<typename AnalogWalk<timed>::Lane, lanes> all;
+  batch.space.fly_side_by_side([&](int lane, const Flight* flown) {
+    return walk.next(all[static_cast<std::size_t>(lane)], flown);
+  });
 }
 
+/// One path.
 template <bool timed>
 void walk(const AnalogBatch& batch, const RandomStream& random) {
-  AnalogPath<timed> path(batch, random);
-  for (;;) {
-    const auto [from, direction, own] = path.next_flight();
-    if (!path.flew(batch.space.fly(from, direction, *own))) return;
-  }
+  std::optional<RandomStream> one = random;
+  AnalogWalk<timed> walk(batch, [&] { return std::exchange(one, std::nullopt); });
+  typename AnalogWalk<timed>::Lane lane;
+  std::optional<Flight> flown;
+  while (const auto start = walk.next(lane, flown ? &*flown : nullptr))
+    flown = batch.space.fly(start->from, start->direction, *start->random);
 }
 
 template <bool timed>
 PathKernel kernel_of(std::shared_ptr<const Transport> transport,
-                     std::shared_ptr<const CurvedSpace> space, bool random_phase) {
+                     std::shared_ptr<const CurvedSpace> space, std::optional<SensorAim> aim,
+                     bool random_phase) {
   return [=](int paths, RandomStream& random, Film& film, TransportCounts& counts, JoinPromises*) {
+    const SensorAim* const aimed = aim ? &*aim : nullptr;
     PathStreams streams(paths, random);
     if (!random_phase && space->has_lanes())
-      return walk_in_lanes<timed>({*transport, *space, film, counts}, streams);
-    while (streams.are_left()) {
-      RandomStream own = streams.next();
+      return walk_in_lanes<timed>({*transport, *space, aimed, film, counts}, streams);
+    while (auto own = streams.next()) {
       if (!random_phase) {
-        walk<timed>({*transport, *space, film, counts}, own);
+        walk<timed>({*transport, *space, aimed, film, counts}, *own);
         continue;
       }
-      const auto met = space->frozen(2 * std::numbers::pi * own.uniform());
-      walk<timed>({*transport, *met, film, counts}, own);
+      const auto met = space->frozen(2 * std::numbers::pi * own->uniform());
+      walk<timed>({*transport, *met, aimed, film, counts}, *own);
     }
   };
 }
@@ -152,9 +230,10 @@ PathKernel kernel_of(std::shared_ptr<const Transport> transport,
 }  // namespace
 
 PathKernel analog_kernel(bool timed, std::shared_ptr<const Transport> transport,
-                         std::shared_ptr<const CurvedSpace> space, bool random_phase) {
-  return timed ? kernel_of<true>(transport, space, random_phase)
-               : kernel_of<false>(transport, space, random_phase);
+                         std::shared_ptr<const CurvedSpace> space, std::optional<SensorAim> aim,
+                         bool random_phase) {
+  return timed ? kernel_of<true>(transport, space, aim, random_phase)
+               : kernel_of<false>(transport, space, aim, random_phase);
 }
 
 }  // namespace flatspeckle::grin

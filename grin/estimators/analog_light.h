@@ -1,13 +1,17 @@
 #pragma once
 
 #include "grin/estimators/path_kernels.h"
+#include "grin/estimators/sensor_aim.h"
 
 namespace flatspeckle::grin {
 
 /// Light paths that are counted where they hit sensors, and never joined to anything: each costs
-/// little, and none is worth more than its power. Of a space with lanes side by side; each path has
-/// random numbers of its own. Unscattered light of beams is left out (unscattered_beams.h).
+/// little, and none is worth much more than its power. With an aim they are split where they head
+/// for the sensors, and most that do not are given up. Of a space with lanes side by side; each
+/// path has random numbers of its own. Unscattered light of beams is left out
+/// (unscattered_beams.h).
 PathKernel analog_kernel(bool timed, std::shared_ptr<const Transport> transport,
-                         std::shared_ptr<const CurvedSpace> space, bool random_phase);
+                         std::shared_ptr<const CurvedSpace> space, std::optional<SensorAim> aim,
+                         bool random_phase);
 
 }  // namespace flatspeckle::grin

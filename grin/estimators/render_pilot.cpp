@@ -36,9 +36,10 @@ struct Pilot {
   }
 };
 
-/// The same pairs each time, with the levels of joins that the transport has.
+/// The same pairs each time, with the levels of joins that the transport has: up to so many, so
+/// many at once.
 Pilot pilot(Transport& transport, const PathKernel& kernel, const TimeBins& bins,
-            int pairs = most_pairs) {
+            int pairs = most_pairs, int at_once = 1) {
   constexpr auto no_batch = std::numeric_limits<std::uint64_t>::max();
   const int pixels = transport.pixels();
   std::vector<Complex> sums(static_cast<std::size_t>(pixels) * bins.sums());
@@ -47,10 +48,10 @@ Pilot pilot(Transport& transport, const PathKernel& kernel, const TimeBins& bins
   const int limit = transport.max_scatterings;
   transport.max_scatterings = std::min(limit, pilot_scatterings);
   Pilot found;
-  for (; found.pairs < pairs; ++found.pairs) {
+  for (; found.pairs < pairs; found.pairs += at_once) {
     if (found.pairs >= fewest_pairs && found.counts.flights >= enough_flights) break;
     const std::uint64_t before = found.counts.flights;
-    kernel(1, random, film, found.counts, &found.promises);
+    kernel(at_once, random, film, found.counts, &found.promises);
     found.is_cut |= found.counts.flights - before >= pilot_scatterings;
   }
   transport.max_scatterings = limit;
@@ -113,6 +114,11 @@ double trimmed_variance(std::vector<double> promises) {
 
 double flights_per_pair(Transport& transport, const PathKernel& kernel, const TimeBins& bins) {
   return known_flights(pilot_without_joins(transport, kernel, bins));
+}
+
+double flights_per_path(Transport& transport, const PathKernel& kernel, const TimeBins& bins) {
+  constexpr int some = 64;
+  return known_flights(pilot(transport, kernel, bins, some, some));
 }
 
 /// One vertex of a light path stands for all in a join: their mean number sets the share, and twice

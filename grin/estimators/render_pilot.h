@@ -13,5 +13,7 @@ double tune_joins(Transport& transport, const PathKernel& kernel, const TimeBins
 
 /// The latter alone.
 double flights_per_pair(Transport& transport, const PathKernel& kernel, const TimeBins& bins);
+/// The same of paths without joins that go side by side, some at once.
+double flights_per_path(Transport& transport, const PathKernel& kernel, const TimeBins& bins);
 
 }  // namespace flatspeckle::grin

@@ -1,12 +1,13 @@
 #include "grin/estimators/tracer.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <tuple>
 
 #include "grin/estimators/analog_light.h"
 #include "grin/estimators/photon_map.h"
 #include "grin/estimators/render_pilot.h"
-#include "grin/estimators/unscattered_beams.h"
 
 namespace flatspeckle::grin {
 
@@ -37,6 +38,11 @@ double photon_radius(const RenderScene& scene, const RenderRequest& request) {
 double index_at(const RenderScene& scene, const PathPoint& p) {
   if (p.part != scene.stage.field_part()) return 1 + scene.stage.excess_in(p.part);
   return std::visit([&](const auto& field) { return index(field, p.x); }, scene.field);
+}
+
+/// Of light that stays in a guide between the lowest and the highest index, rad.
+double bending_of(const RenderScene& scene) {
+  return scene.index ? std::sqrt(2 * (scene.index->highest / scene.index->lowest - 1)) : 0;
 }
 
 }  // namespace
@@ -77,7 +83,9 @@ std::shared_ptr<Transport> transport_of(const RenderScene& scene, const RenderRe
 
 void Tracer::add(int paths, RandomStream& random, Film& film, TransportCounts& counts) const {
   if (kernel) kernel(paths, random, film, counts, nullptr);
-  if (unscattered_beams) unscattered_beams(paths, random, film, counts, nullptr);
+  if (!unscattered_beams) return;
+  const double rays = std::ceil(rays_per_path * paths);
+  unscattered_beams(static_cast<int>(rays), paths / rays, random, film, counts);
 }
 
 Tracers::Tracers(const RenderScene& scene, const RenderRequest& request)
@@ -99,28 +107,35 @@ void Tracers::find_beams() {
   if (!(transport->lights.beam_power() > 0)) return;
   walks_ = plan_.scatters || !transport->lights.are_beams() || !are_followed(*transport);
   const BeamsRequest asked{plan_.timed, scene_.random_phase, !walks_};
-  if (const auto* homogeneous = std::get_if<Homogeneous>(&scene_.field))
+  if (const auto* homogeneous = std::get_if<Homogeneous>(&scene_.field)) {
     unscattered_beams_ = beams_kernel(asked, transport, homogeneous->n_excess);
-  else
-    unscattered_beams_ =
-        beams_kernel(asked, transport,
-                     make_curved_space(scene_.field, without_scattering(scene_.stage),
-                                       options(Spreading::none)));
+    return;
+  }
+  const std::shared_ptr<const CurvedSpace> space =
+      make_curved_space(scene_.field, without_scattering(scene_.stage), options(Spreading::none));
+  unscattered_beams_ = beams_kernel(asked, transport, space);
+  if (walks_) few_rays_per_path_ = rays_beside_path(transport->lights, *space);
 }
 
 Tracer Tracers::make(RenderMethod method) const {
   const bool is_analog = method == RenderMethod::analog;
   Tracer tracer = plan_.curved || is_analog ? curved(method) : straight(method);
   if (method != RenderMethod::photon_map) tracer.unscattered_beams = unscattered_beams_;
+  if (is_analog) tracer.rays_per_path = few_rays_per_path_;
   if (!walks_ && method != RenderMethod::photon_map) {
     tracer.kernel = nullptr;
     return tracer;
   }
-  tracer.flights_per_pair =
-      method == RenderMethod::photon_map || method == RenderMethod::analog
-          ? flights_per_pair(*tracer.transport, tracer.kernel, scene_.bins)
-          : tune_joins(*tracer.transport, tracer.kernel, scene_.bins, tracer.flights_per_join);
+  tracer.flights_per_pair = flights(tracer);
   return tracer;
+}
+
+double Tracers::flights(const Tracer& tracer) const {
+  const auto& [method, transport, kernel] =
+      std::tie(tracer.method, tracer.transport, tracer.kernel);
+  if (method == RenderMethod::analog) return flights_per_path(*transport, kernel, scene_.bins);
+  if (method == RenderMethod::photon_map) return flights_per_pair(*transport, kernel, scene_.bins);
+  return tune_joins(*transport, kernel, scene_.bins, tracer.flights_per_join);
 }
 
 MapKernel Tracers::map_kernel() const {
@@ -187,7 +202,10 @@ Tracer Tracers::curved(RenderMethod method) const {
             photon_kernel(plan_.timed, transport, space, scene_.random_phase,
                           photon_radius(scene_, request_))};
   if (method == RenderMethod::analog)
-    return {method, transport, analog_kernel(plan_.timed, transport, space, scene_.random_phase)};
+    return {
+        method, transport,
+        analog_kernel(plan_.timed, transport, space,
+                      SensorAim::of(*transport, *space, bending_of(scene_)), scene_.random_phase)};
   Tracer tracer{method, transport, curved_kernel(plan_, transport, space, scene_.random_phase)};
   tracer.flights_per_join = space->cost_of_join();
   tracer.cost_of_closed_join = space->cost_of_closed_join();

@@ -7,6 +7,7 @@
 #include "grin/estimators/map_kernel.h"
 #include "grin/estimators/path_kernels.h"
 #include "grin/estimators/render_scene.h"
+#include "grin/estimators/unscattered_beams.h"
 
 namespace flatspeckle::grin {
 
@@ -24,8 +25,9 @@ std::shared_ptr<Transport> transport_of(const RenderScene& scene, const RenderRe
 struct Tracer {
   RenderMethod method;
   std::shared_ptr<Transport> transport;
-  PathKernel kernel;                  ///< empty where paths would bring nothing
-  PathKernel unscattered_beams = {};  ///< where the kernel leaves that out and there is some
+  PathKernel kernel;                   ///< empty where paths would bring nothing
+  BeamsKernel unscattered_beams = {};  ///< where the kernel leaves that out and there is some
+  double rays_per_path = 1;            ///< of them
   /// Of a light path and its sensor paths; infinity where they were too long to be walked.
   double flights_per_pair = 1;
   /// Less than what one costs, as a level of joins too low only costs time.
@@ -67,6 +69,8 @@ class Tracers {
   void find_beams();
   Tracer straight(RenderMethod method) const;
   Tracer curved(RenderMethod method) const;
+  /// Of a pair, as a pilot has it that tunes joins.
+  double flights(const Tracer& tracer) const;
   CurvedSpaceOptions options(Spreading spreading) const;
   Spreading spreading_of(RenderMethod method) const;
 
@@ -75,7 +79,8 @@ class Tracers {
   RenderPlan plan_;
   bool walks_ = true;
   std::shared_ptr<const DepthImportance> depth_;  ///< where the plan is deep
-  PathKernel unscattered_beams_ = {};             ///< where there are beams
+  BeamsKernel unscattered_beams_ = {};            ///< where there are beams
+  double few_rays_per_path_ = 1;                  ///< where paths cost no more than they do
 };
 
 }  // namespace flatspeckle::grin

@@ -123,10 +123,11 @@ template <bool timed, Space S>
 class UnscatteredBeams {
  public:
   UnscatteredBeams(const Transport& transport, const BeamsSetup& setup, const S& space,
-                   RandomStream& random, Film& film, TransportCounts& counts)
+                   double worth, RandomStream& random, Film& film, TransportCounts& counts)
       : transport_(transport),
         setup_(setup),
         space_(space),
+        worth_(worth),
         random_(random),
         film_(film),
         counts_(counts) {}
@@ -141,7 +142,7 @@ class UnscatteredBeams {
     if (flight.end == Flight::End::lost) return;
     for (const SensorEnd& sensor : transport_.sensors)
       sensor.hit(space_, flight.point.x, flight.direction, [&](const EndHit& hit) {
-        const double value = transport_.lights.beam_power() * flight.weight * hit.value *
+        const double value = worth_ * transport_.lights.beam_power() * flight.weight * hit.value *
                              weight_of_ray(flight, hit, transport_.lights.beam(stratum));
         add(hit.direction.pixel, value, flight.optical_path);
         if (!film_.has_derivatives()) return;
@@ -166,7 +167,7 @@ class UnscatteredBeams {
     PathVertex from;
     from.point = start.point;
     from.end = &start;
-    from.weight = transport_.lights.beam_power();
+    from.weight = worth_ * transport_.lights.beam_power();
     LightTally tally(film_.energy);
     tally.emitted(from);
     flight.end == Flight::End::lost ? tally.lost(from, flight) : tally.left(from, flight);
@@ -191,7 +192,8 @@ class UnscatteredBeams {
       if (way.passages.count == 0) return;
       weight = 1 / (1 + 1 / heuristic(ways_over_rays(z, way, beam)));
     }
-    add(to.pixel, value * weight * way.multiplicity / setup_.ways_per_ray, way.optical_path);
+    add(to.pixel, worth_ * value * weight * way.multiplicity / setup_.ways_per_ray,
+        way.optical_path);
   }
 
   double weight_of_ray(const Flight& flight, const EndHit& hit, const Lights::Beam& beam) const {
@@ -214,6 +216,7 @@ class UnscatteredBeams {
   const Transport& transport_;
   const BeamsSetup& setup_;
   const S& space_;
+  double worth_;
   RandomStream& random_;
   Film& film_;
   TransportCounts& counts_;
@@ -265,9 +268,9 @@ bool has_area(const Transport& transport) {
 /// with_space(use): calls use(space), the same or another for each ray. in_lanes: the space of all
 /// rays, if they may go side by side.
 template <bool timed, class WithSpace>
-PathKernel kernel(std::shared_ptr<const Transport> transport, const BeamsSetup& setup,
-                  const WithSpace& with_space, std::shared_ptr<const CurvedSpace> in_lanes) {
-  return [=](int rays, RandomStream& random, Film& film, TransportCounts& counts, JoinPromises*) {
+BeamsKernel kernel(std::shared_ptr<const Transport> transport, const BeamsSetup& setup,
+                   const WithSpace& with_space, std::shared_ptr<const CurvedSpace> in_lanes) {
+  return [=](int rays, double worth, RandomStream& random, Film& film, TransportCounts& counts) {
     const EvenRays from(transport->lights, rays, random);
     const double beam_of_way = random.uniform(), first_way = random.uniform();
     const auto ways_before = [=](int ray) {
@@ -275,14 +278,14 @@ PathKernel kernel(std::shared_ptr<const Transport> transport, const BeamsSetup& 
     };
     const bool follows_rays = has_area(*transport);
     if (follows_rays && in_lanes) {
-      UnscatteredBeams<timed, CurvedSpace> light(*transport, setup, *in_lanes, random, film,
+      UnscatteredBeams<timed, CurvedSpace> light(*transport, setup, *in_lanes, worth, random, film,
                                                  counts);
       add_rays<timed>(*in_lanes, rays, from, random, light);
     }
     for (int ray = 0; ray < rays; ++ray)
       with_space(random, [&](const auto& space) {
         UnscatteredBeams<timed, std::decay_t<decltype(space)>> light(*transport, setup, space,
-                                                                     random, film, counts);
+                                                                     worth, random, film, counts);
         if (follows_rays && !in_lanes) light.add_ray(from.start(ray), from.stratum(ray));
         if (const double way = ways_before(ray); ways_before(ray + 1) > way)
           light.add_ways(fraction(beam_of_way + way * golden));
@@ -291,9 +294,9 @@ PathKernel kernel(std::shared_ptr<const Transport> transport, const BeamsSetup& 
 }
 
 template <class WithSpace>
-PathKernel kernel(const BeamsRequest& request, std::shared_ptr<const Transport> transport,
-                  const BeamSeeds& seeds, const WithSpace& with_space,
-                  std::shared_ptr<const CurvedSpace> in_lanes = nullptr) {
+BeamsKernel kernel(const BeamsRequest& request, std::shared_ptr<const Transport> transport,
+                   const BeamSeeds& seeds, const WithSpace& with_space,
+                   std::shared_ptr<const CurvedSpace> in_lanes = nullptr) {
   const BeamsSetup setup{seeds, share_of_ways(seeds.is_any_seen), request.books};
   return request.timed ? kernel<true>(transport, setup, with_space, in_lanes)
                        : kernel<false>(transport, setup, with_space, in_lanes);
@@ -305,16 +308,16 @@ bool are_followed(const Transport& transport) {
   return transport.lights.beam_power() > 0 && has_area(transport);
 }
 
-PathKernel beams_kernel(const BeamsRequest& request, std::shared_ptr<const Transport> transport,
-                        double excess) {
+BeamsKernel beams_kernel(const BeamsRequest& request, std::shared_ptr<const Transport> transport,
+                         double excess) {
   using Straight = StraightSpace<RenderPlan{.curved = false, .scatters = false}>;
   const Straight space(without_scattering(transport->stage), excess);
   return kernel(request, transport, all_seeds(*transport, space, 32768),
                 [=](RandomStream&, const auto& use) { use(space); });
 }
 
-PathKernel beams_kernel(const BeamsRequest& request, std::shared_ptr<const Transport> transport,
-                        std::shared_ptr<const CurvedSpace> space) {
+BeamsKernel beams_kernel(const BeamsRequest& request, std::shared_ptr<const Transport> transport,
+                         std::shared_ptr<const CurvedSpace> space) {
   const auto seeds = all_seeds(*transport, *space, 512);
   const bool goes_in_lanes = !request.random_phase && space->has_lanes();
   const auto with_space = [=](RandomStream& random, const auto& use) {
@@ -324,6 +327,18 @@ PathKernel beams_kernel(const BeamsRequest& request, std::shared_ptr<const Trans
       use(*space);
   };
   return kernel(request, transport, seeds, with_space, goes_in_lanes ? space : nullptr);
+}
+
+double rays_beside_path(const Lights& lights, const CurvedSpace& space) {
+  constexpr int some = 16;
+  RandomStream random(0, static_cast<std::uint64_t>(Stream::render), 0);
+  const EvenRays from(lights, some, random);
+  double light_left = 0;
+  for (int ray = 0; ray < some; ++ray) {
+    const EndPosition start = from.start(ray);
+    light_left += space.fly(start.point, start.inward, random).weight / some;
+  }
+  return std::clamp(5 * light_left, 1.0 / 32, 1.0);
 }
 
 }  // namespace flatspeckle::grin

@@ -21,10 +21,19 @@ struct BeamsRequest {
   bool books = false;         ///< where the power of rays goes, as nothing else does
 };
 
-PathKernel beams_kernel(const BeamsRequest& request, std::shared_ptr<const Transport> transport,
-                        double excess);
-PathKernel beams_kernel(const BeamsRequest& request, std::shared_ptr<const Transport> transport,
-                        std::shared_ptr<const CurvedSpace> space);
+/// So many rays, each of which stands for `worth` light paths.
+using BeamsKernel = std::function<void(int rays, double worth, RandomStream& random, Film& film,
+                                       TransportCounts& counts)>;
+
+BeamsKernel beams_kernel(const BeamsRequest& request, std::shared_ptr<const Transport> transport,
+                         double excess);
+BeamsKernel beams_kernel(const BeamsRequest& request, std::shared_ptr<const Transport> transport,
+                         std::shared_ptr<const CurvedSpace> space);
+
+/// Rays that a light path that is only counted where it hits (analog_light.h) needs beside it. The
+/// less light is left to them, the fewer; as they are spread evenly, their error falls faster than
+/// that of paths.
+double rays_beside_path(const Lights& lights, const CurvedSpace& space);
 
 /// Whether there are beams, and a sensor that their rays can hit.
 bool are_followed(const Transport& transport);

@@ -77,7 +77,7 @@ IndexHessian Transducers::hessian(const Vec3& x) const {
 
 namespace {
 
-constexpr std::size_t numbers = 10;
+constexpr std::size_t row_size = 10;
 const std::vector<std::string> columns{"amplitude", "wavenumber", "phase", "x",  "y",
                                        "z",         "dx",         "dy",    "dz", "aperture"};
 
@@ -117,7 +117,7 @@ void add_keys(Keys& keys, TransducersValues& values) {
   keys.add("transducer", values.transducer,
            "Of each: amplitude of the index, wavenumber and phase of the sound, the point and the "
            "direction that it is aimed at, half angle of its aperture (0: a plane wave)")
-      .each_of(numbers, "amplitude wavenumber phase x y z dx dy dz aperture");
+      .each_of(row_size, "amplitude wavenumber phase x y z dx dy dz aperture");
   keys.add("transducer_table", values.transducer_table, "CSV with these columns").file();
   keys.add("transducer_waves", values.transducer_waves, "Plane waves of a transducer's aperture")
       .from(1, 100'000);
@@ -127,8 +127,8 @@ Transducers make_field(const Keys& keys, const TransducersValues& values, const 
   const std::vector<double> rows = all_numbers(keys, values);
   if (rows.empty()) throw InputError("transducer", "none", "wants one, or a transducer_table");
   std::vector<Transducer> all;
-  for (std::size_t i = 0; i < rows.size(); i += numbers) {
-    all.push_back(transducer(std::span(rows).subspan(i, numbers)));
+  for (std::size_t i = 0; i < rows.size(); i += row_size) {
+    all.push_back(transducer(std::span(rows).subspan(i, row_size)));
     check(all.back());
   }
   return {background(keys, values.index, use), all,

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <optional>
 #include <variant>
 
@@ -26,7 +27,10 @@ class RayLog {
   RayLog(const RaySteps& steps, bool keeps_path)
       : steps_(steps), next_(steps.longest / 16), keeps_path_(keeps_path) {}
 
-  /// What others have made of its steps.
+  /// Steps from one look at the index to the next: a look costs as much as a cheap step.
+  static constexpr int steps_unseen = 4;
+
+  /// What others have made of as many of its steps, or a multiple of them.
   void met(double index_mismatch) { index_mismatch_ = std::max(index_mismatch_, index_mismatch); }
 
   void start(const RayState& ray) {
@@ -35,7 +39,7 @@ class RayLog {
   /// At a step's end.
   template <IndexField F>
   void pass(const F& field, const RayState& ray) {
-    look(field, ray);
+    if (++steps_made_ % steps_unseen == 0) look(field, ray);
     if (keeps_path_) path_.add(ray);
   }
   /// Here, whatever the steps went beyond.
@@ -62,6 +66,7 @@ class RayLog {
   const RaySteps& steps_;
   double next_;  ///< of controlled steps
   bool keeps_path_;
+  std::uint64_t steps_made_ = 0;
   double index_mismatch_ = 0;
   RayPath path_;
 };

@@ -8,13 +8,13 @@
 
 namespace flatspeckle::grin {
 
-/// Rays that are far from everything go on side by side, so many equal steps at a time; the others
-/// take the same steps one by one. Where a ray is, and how far it may go unseen, is the work's to
-/// say:
+/// Rays that are far from everything go on side by side, so many steps at a time; the others take
+/// steps one by one. Where a ray is, and how far it may go unseen, is the work's to say:
 ///   begin(lane, ray)      another ray for a lane, or false where none is left;
-///   go(rays, steps)       equal steps of all lanes;
+///   go(rays, clearance, steps)  steps of all lanes, of which so much is known;
 ///   clearance(lane, ray)  no more than the arc that is left to what the ray must not pass unseen;
-///   passed(lane)          those steps were made by the lane's ray;
+///   passed(lane, rays, clearance)  those steps were made by the lane's ray, and so much is left;
+///                         may go on by itself where the ray has come to something. False: it ends;
 ///   careful(lane, ray, index_mismatch)  makes so many steps one by one, or ends the ray: false.
 template <class Work>
 class LanePool {
@@ -26,8 +26,9 @@ class LanePool {
   void run() {
     for (int lane = 0; lane < lanes; ++lane) fill(lane);
     while (active_ > 0) {
+      look_ahead();
       before_ = rays_;
-      work_.go(rays_, steps_at_once);
+      work_.go(rays_, clearance_.data(), steps_at_once);
       for (int lane = 0; lane < lanes; ++lane)
         if (is_active_[lane]) follow(lane);
       keep_idle_lanes_near();
@@ -35,6 +36,13 @@ class LanePool {
   }
 
  private:
+  /// Where what is known of the clearance may not be enough.
+  void look_ahead() {
+    for (int lane = 0; lane < lanes; ++lane)
+      if (is_active_[lane] && !(clearance_[lane] > arc_[lane]))
+        clearance_[lane] = work_.clearance(lane, rays_.at(lane));
+  }
+
   /// Spheres about where the ray was and where it is, with nothing in them, hold all that it may
   /// have gone.
   bool was_free(int lane) {
@@ -42,7 +50,7 @@ class LanePool {
     double& clearance = clearance_[lane];
     const double arc = margin * (rays_.arc_length[lane] - before_.arc_length[lane]);
     if (!(arc > 0)) return false;
-    if (!(clearance > arc)) clearance = work_.clearance(lane, before_.at(lane));
+    arc_[lane] = arc;
     if (clearance > arc) {
       clearance -= arc;
       return true;
@@ -63,7 +71,10 @@ class LanePool {
   }
 
   void follow(int lane) {
-    if (was_free(lane)) return work_.passed(lane);
+    if (was_free(lane)) {
+      if (!work_.passed(lane, rays_, clearance_[lane])) fill(lane);
+      return;
+    }
     RayState ray = before_.at(lane);
     double& mismatch = rays_.index_mismatch[lane] = before_.index_mismatch[lane];
     if (!work_.careful(lane, ray, mismatch)) return fill(lane);
@@ -82,7 +93,7 @@ class LanePool {
 
   Work& work_;
   RayLanes rays_{}, before_;
-  std::array<double, lanes> clearance_{};
+  std::array<double, lanes> clearance_{}, arc_{};  ///< arc: of the last steps, with a margin
   std::array<bool, lanes> is_active_{};
   int active_ = 0;
 };

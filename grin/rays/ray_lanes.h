@@ -6,10 +6,10 @@
 
 namespace flatspeckle::grin {
 
-/// RayState in lanes, and the largest ||v| - n| at the ends of steps.
+/// RayState in lanes, the largest ||v| - n| where it was looked at, and how long steps are.
 struct RayLanes {
   LaneVectors x, v;
-  alignas(64) double arc_length[lanes], optical_path[lanes], index_mismatch[lanes];
+  alignas(64) double arc_length[lanes], optical_path[lanes], index_mismatch[lanes], step[lanes];
 
   RayState at(int lane) const {
     return {x.at(lane), v.at(lane), arc_length[lane], optical_path[lane]};
@@ -24,9 +24,12 @@ struct RayLanes {
 
 namespace lane_parts {
 
-inline void drift(RayLanes& rays, double h) {
+// `part` is of the step of each lane.
+
+inline void drift(RayLanes& rays, double part) {
 #pragma omp simd
   for (int k = 0; k < lanes; ++k) {
+    const double h = part * rays.step[k];
     rays.x.x[k] += h * rays.v.x[k];
     rays.x.y[k] += h * rays.v.y[k];
     rays.x.z[k] += h * rays.v.z[k];
@@ -34,10 +37,10 @@ inline void drift(RayLanes& rays, double h) {
 }
 
 /// A whole kick, and half a drift after it.
-inline void kick(RayLanes& rays, const LaneGradients& at, double h) {
+inline void kick(RayLanes& rays, const LaneGradients& at, double part) {
 #pragma omp simd
   for (int k = 0; k < lanes; ++k) {
-    const double n = 1 + at.excess[k], path = h * n;
+    const double h = part * rays.step[k], n = 1 + at.excess[k], path = h * n;
     rays.arc_length[k] += path;
     rays.optical_path[k] += n * path;
     rays.v.x[k] += path * at.gradient.x[k];
@@ -49,12 +52,11 @@ inline void kick(RayLanes& rays, const LaneGradients& at, double h) {
   }
 }
 
-/// x + h v + c n grad n
-inline void displaced(const RayLanes& rays, double h, double c, const LaneGradients& at,
-                      LaneVectors& to) {
+/// x + h v + h^2/2 n grad n
+inline void displaced(const RayLanes& rays, double part, const LaneGradients& at, LaneVectors& to) {
 #pragma omp simd
   for (int k = 0; k < lanes; ++k) {
-    const double force = c * (1 + at.excess[k]);
+    const double h = part * rays.step[k], force = h * h / 2 * (1 + at.excess[k]);
     to.x[k] = rays.x.x[k] + h * rays.v.x[k] + force * at.gradient.x[k];
     to.y[k] = rays.x.y[k] + h * rays.v.y[k] + force * at.gradient.y[k];
     to.z[k] = rays.x.z[k] + h * rays.v.z[k] + force * at.gradient.z[k];
@@ -63,9 +65,10 @@ inline void displaced(const RayLanes& rays, double h, double c, const LaneGradie
 
 /// Of Sharma's step, from its three forces.
 inline void advance(RayLanes& rays, const LaneGradients& a, const LaneGradients& b,
-                    const LaneGradients& c, double h) {
+                    const LaneGradients& c) {
 #pragma omp simd
   for (int k = 0; k < lanes; ++k) {
+    const double h = rays.step[k];
     const double na = 1 + a.excess[k], nb = 1 + b.excess[k], nc = 1 + c.excess[k];
     rays.arc_length[k] += h / 6 * (na + 4 * nb + nc);
     rays.optical_path[k] += h / 6 * (na * na + 4 * nb * nb + nc * nc);
@@ -99,38 +102,35 @@ void look(const F& field, RayLanes& rays) {
 // The steps of ray_step.h, of all lanes.
 
 template <LaneField F>
-void step(Leapfrog, const F& field, RayLanes& rays, double h) {
-  lane_parts::drift(rays, h / 2);
+void step(Leapfrog, const F& field, RayLanes& rays, double part = 1) {
+  lane_parts::drift(rays, part / 2);
   LaneGradients at;
   field.gradients(rays.x, at);
-  lane_parts::kick(rays, at, h);
+  lane_parts::kick(rays, at, part);
 }
 template <LaneField F>
-void step(Yoshida4, const F& field, RayLanes& rays, double h) {
+void step(Yoshida4, const F& field, RayLanes& rays) {
   for (const double part : {Yoshida4::outer, Yoshida4::inner, Yoshida4::outer})
-    step(Leapfrog(), field, rays, part * h);
+    step(Leapfrog(), field, rays, part);
 }
 template <LaneField F>
-void step(Sharma, const F& field, RayLanes& rays, double h) {
+void step(Sharma, const F& field, RayLanes& rays) {
   LaneGradients a, b, c;
   LaneVectors x;
   field.gradients(rays.x, a);
-  lane_parts::displaced(rays, h / 2, h * h / 8, a, x);
+  lane_parts::displaced(rays, 0.5, a, x);
   field.gradients(x, b);
-  lane_parts::displaced(rays, h, h * h / 2, b, x);
+  lane_parts::displaced(rays, 1, b, x);
   field.gradients(x, c);
-  lane_parts::advance(rays, a, b, c, h);
+  lane_parts::advance(rays, a, b, c);
 }
 
-/// So many equal steps; looks: for the index mismatch, at each step's end.
+/// So many steps; looks: for the index mismatch, at their end.
 template <bool looks, class Integrator, LaneField F>
-FLATSPECKLE_EVERY_WIDTH void make_steps(Integrator by, const F& field, RayLanes& all, double h,
-                                        int steps) {
+FLATSPECKLE_EVERY_WIDTH void make_steps(Integrator by, const F& field, RayLanes& all, int steps) {
   RayLanes rays = all;
-  for (int i = 0; i < steps; ++i) {
-    step(by, field, rays, h);
-    if constexpr (looks) lane_parts::look(field, rays);
-  }
+  for (int i = 0; i < steps; ++i) step(by, field, rays);
+  if constexpr (looks) lane_parts::look(field, rays);
   all = rays;
 }
 

@@ -111,11 +111,15 @@ class BundleTracer {
       }
       return false;
     }
-    void go(RayLanes& rays, int steps) const {
-      tracer_.inside_->follow_lanes(tracer_.steps_.integrator, tracer_.steps_.longest, steps, rays);
+    void go(RayLanes& rays, const double*, int steps) const {
+      std::fill_n(rays.step, lanes, tracer_.steps_.longest);
+      tracer_.inside_->follow_lanes(tracer_.steps_.integrator, steps, rays);
     }
     double clearance(int lane, const RayState& ray) const { return watch_[lane]->clearance(ray); }
-    void passed(int lane) { going_[lane]->steps += steps_at_once; }
+    bool passed(int lane, const RayLanes&, double) {
+      going_[lane]->steps += steps_at_once;
+      return true;
+    }
 
     bool careful(int lane, RayState& ray, double& index_mismatch) {
       Going& going = *going_[lane];
@@ -138,6 +142,7 @@ class BundleTracer {
 
    private:
     static constexpr int steps_at_once = LanePool<InLanes>::steps_at_once;
+    static_assert(steps_at_once == RayLog::steps_unseen);
 
     const BundleTracer& tracer_;
     std::span<const RayStart> starts_;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <limits>
 #include <numbers>
 
 #include "grin/connections/geometric_spreading.h"
@@ -118,7 +120,7 @@ class PilotRay {
 std::vector<PilotRay> pilot_rays(const FieldsMet& met, const SceneField& facts,
                                  const Stage& stage) {
   const double longest = std::min(size(stage), longest_ray * facts.scale);
-  const double stride = std::min(size(stage), facts.scale) / 16;
+  const double stride = std::min(size(stage) / 16, facts.scale / 4);
   PilotStarts starts(*met.front(), facts, filled(stage));
   std::vector<PilotRay> rays;
   for (const Vec3& x : starts.points()) {
@@ -149,21 +151,36 @@ double longest_step(const SceneField& field, const Stage& stage) {
 
 namespace {
 
-/// Of one kind of steps.
+/// What halving its steps changed last.
+struct KnownChange {
+  const PilotRay* ray;
+  double step, change = std::numeric_limits<double>::infinity();
+
+  /// With finer steps: less than that by an order of them, which coarse ones do not have yet.
+  double most(double finer, int order) const { return change * std::pow(finer / step, order - 1); }
+};
+
+/// Of one kind of steps; 0 where it would be less than `least`.
 double longest_good_step(const std::vector<PilotRay>& rays, const FieldsMet& met, int order,
-                         double step) {
+                         double step, double least = 0) {
   constexpr int halvings = 8;
   const double seen = order == Leapfrog::order ? 0.75 : 1;  // of an error, by halving the step
-  for (int i = 0; i < halvings; ++i, step /= 2) {
+  std::vector<KnownChange> known;
+  for (const PilotRay& ray : rays) known.push_back({&ray, step});
+  for (int i = 0; i < halvings && step > least; ++i, step /= 2) {
+    std::ranges::stable_sort(known, std::greater(),
+                             [&](const KnownChange& of) { return of.most(step, order); });
     double worst = 0;
     const auto finer = [&] { return std::pow(step_tolerance / worst, 1.0 / order); };
-    for (const PilotRay& ray : rays) {
-      worst = std::max(worst, ray.change_by_halving(met, step) / seen);  // NaN is not kept
-      if (finer() < 0.5) break;
+    for (KnownChange& of : known) {
+      if (of.most(step, order) < worst || (i > 0 && finer() < 0.5)) break;
+      const double change = of.ray->change_by_halving(met, step) / seen;
+      of = {of.ray, step, change > 0 ? change : 0};  // NaN: no ray
+      worst = std::max(worst, of.change);
     }
     if (finer() >= 0.5) return two_digits(step * std::min(finer(), 1.0));
   }
-  return two_digits(step);
+  return step > least ? two_digits(step) : 0;
 }
 
 bool may_leap(const SceneField& field) {
@@ -179,8 +196,8 @@ StepChoice choice_of(const SceneField& field, const Stage& stage, bool any_phase
   const auto rays = pilot_rays(met, field, stage);
   const double step = longest_good_step(rays, met, Sharma::order, longest);
   if (!may_leap) return {step};
-  const double leap =
-      longest_good_step(rays, fields_met(field, any_phase, true), Leapfrog::order, longest);
+  const double leap = longest_good_step(rays, fields_met(field, any_phase, true), Leapfrog::order,
+                                        longest, step / cheaper);
   return cheaper * leap > step ? StepChoice{leap, true} : StepChoice{step};
 }
 

@@ -42,7 +42,7 @@ const DatasetTable rays_table{
           "media"},
          {"steps", Data::count, "ray", "1", "steps of the integrator"},
          {"invariants/index_mismatch", Data::real, "ray", "1",
-          "largest difference of |v| and the index at a step's end"},
+          "largest difference of |v| and the index at the end of every fourth step, and of all"},
          {"invariants/angular_momentum", Data::real, "ray", "length",
           "length of (x - centre) cross v, at the start"},
          {"invariants/angular_momentum_change", Data::real, "ray", "length",

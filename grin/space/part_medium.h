@@ -35,6 +35,13 @@ class PartMedium {
     return !grid_ || random.uniform() * largest_ < (*grid_)(x);
   }
 
+  /// What a tentative collision is: one; or none, where light that is not scattered loses weight.
+  bool collides(const Vec3& x, double& weight, RandomStream& random) const {
+    if (scatters_) return accepts(x, random);
+    weight *= lacking(x);
+    return false;
+  }
+
   /// The share of tentative collisions that is none.
   double lacking(const Vec3& x) const { return 1 - (*grid_)(x) / largest_; }
 

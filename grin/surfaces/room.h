@@ -17,6 +17,11 @@ struct Room {
     for (const Surface& hole : surfaces.subspan(1)) most = std::max(most, -grin::distance(hole, x));
     return most;
   }
+  /// A chord leaves it once.
+  bool is_convex() const {
+    return surfaces.size() == 1 && !std::holds_alternative<Lens>(surfaces[0]) &&
+           !std::holds_alternative<DistanceGrid>(surfaces[0]);
+  }
   /// The number of the surface that is the way out at x.
   std::size_t nearest(const Vec3& x) const {
     std::size_t nearest = 0;

@@ -40,6 +40,8 @@ class Optimise(ProgramTest):
         self.assertAlmostEqual(float(found["best/amplitude"]) / PARAXIAL, 1, delta=0.002)
         self.assertEqual(found["best/value_error"], 0)
         self.assertLess(found["spot_radius"], 1e-4)
+        with h5py.File(self.folder / "focus.h5") as file:
+            self.assertNotIn("at_bounds", file["best"].attrs)
 
     def test_foci_of_a_square_beam(self):
         """Of 0.5 mm: its aberration asks for 1.061 of the paraxial amplitude (the power on a small disk peaks there)."""
@@ -75,13 +77,17 @@ class Optimise(ProgramTest):
 
     def test_minimise_without_chance(self):
         """Of a slab by transport: less reflectance, the thinner."""
-        self.call("optimise", of="flux", domain="slab", scatterer="hg", depth=100, albedo=0.99, light_angles=0, g=0.5,
+        done = self.call("optimise", of="flux", domain="slab", scatterer="hg", depth=100, albedo=0.99, light_angles=0,
+                         g=0.5,
                   vary=["optical_depth=1:4", "g=0:0.9"], minimise="reflectance[0]", scattered=8, out="flux.h5")
         found = self.found("flux.h5")
         self.assertAlmostEqual(float(found["best/optical_depth"]), 1, delta=0.01)
         self.assertAlmostEqual(float(found["best/g"]), 0.9, delta=0.01)
         self.assertEqual(found["best/value_error"], 0)
         self.assertEqual(found["best/confidence"], 1)
+        with h5py.File(self.folder / "flux.h5") as file:
+            self.assertEqual(list(file["best"].attrs["at_bounds"]), ["optical_depth", "g"])
+        self.assertIn("optical_depth, g; a wider one", done.stdout)
 
     def test_threads(self):
         self.call("optimise", **{**GUIDE, "threads": 1}, out="one.h5")

@@ -83,26 +83,91 @@ TEST_CASE("all power of analog light is accounted for") {
   CHECK(ended == doctest::Approx(emitted).epsilon(1e-12));
 }
 
+namespace {
+
+std::shared_ptr<const CurvedSpace> space_of(const RenderScene& scene, Spreading spreading) {
+  return make_curved_space(scene.field, scene.stage,
+                           {scene.step, scene.max_length, spreading, scene.leapfrogs});
+}
+
+/// So many paths of analog light on two rings.
+struct Counted {
+  std::vector<Complex> sums = std::vector<Complex>(2);
+  TransportCounts counts = {};
+};
+Counted counted(const RenderScene& scene, Spreading spreading, bool is_aimed, int paths,
+                std::uint64_t batch = 0) {
+  const auto transport = transport_of(scene, {RenderMethod::analog}, RenderMethod::analog);
+  const auto space = space_of(scene, spreading);
+  CHECK(space->has_lanes() == (spreading == Spreading::none));
+  const auto aim = is_aimed ? SensorAim::of(*transport, *space, 0.1) : std::nullopt;
+  CHECK(aim.has_value() == is_aimed);
+  Counted found;
+  Film film(2, scene.bins, found.sums);
+  RandomStream random(3, 0, batch);
+  analog_kernel(false, transport, space, aim, false)(paths, random, film, found.counts, nullptr);
+  return found;
+}
+
+}  // namespace
+
 /// Each path has random numbers of its own, so that it goes the same way both times.
 TEST_CASE("light paths side by side are those that go one by one") {
-  const RenderScene scene = guide(0.5, 0.02, {0.5, 2});
-  const auto sums_of = [&](Spreading spreading) {
-    const auto transport = transport_of(scene, {RenderMethod::analog}, RenderMethod::analog);
-    const std::shared_ptr<const CurvedSpace> space = make_curved_space(
-        scene.field, scene.stage, {scene.step, scene.max_length, spreading, scene.leapfrogs});
-    CHECK(space->has_lanes() == (spreading == Spreading::none));
-    std::vector<Complex> sums(2);
-    Film film(2, scene.bins, sums);
-    TransportCounts counts;
-    RandomStream random(3, 0, 0);
-    analog_kernel(false, transport, space, false)(500, random, film, counts, nullptr);
-    return std::pair{sums, counts.flights};
+  for (const bool is_aimed : {false, true}) {
+    CAPTURE(is_aimed);
+    const RenderScene scene = guide(0.5, 0.02, {0.2, 0.5});
+    const Counted together = counted(scene, Spreading::none, is_aimed, 2000),
+                  alone = counted(scene, Spreading::all, is_aimed, 2000);
+    CHECK(together.counts.flights == alone.counts.flights);
+    for (std::size_t i = 0; i < 2; ++i) {
+      CHECK(together.sums[i].real() > 0);
+      // weights are by where collisions are
+      CHECK(together.sums[i].real() ==
+            doctest::Approx(alone.sums[i].real()).epsilon(is_aimed ? 1e-5 : 1e-9));
+    }
+  }
+}
+
+TEST_CASE("light that heads for small sensors is split, and keeps its mean") {
+  const RenderScene scene = guide(0.5, 0.05, {0.1, 0.3});
+  const PowersWithin one = powers(scene, RenderMethod::analog, 60000, 1),
+                     other = powers(scene, RenderMethod::light, 30000, 2);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const double error = std::hypot(one.power.error[i], other.power.error[i]);
+    CAPTURE(one.power.value[i].real());
+    CAPTURE(error);
+    CHECK(std::abs(one.power.value[i] - other.power.value[i]) < 4 * error);
+    CHECK(error < 0.03 * one.power.value[i].real());
+  }
+}
+
+TEST_CASE("what is split has less variance for as many flights") {
+  const RenderScene scene = guide(0.5, 0.05, {0.1, 0.3});
+  const auto variance_of_flight = [&](bool is_aimed) {
+    constexpr std::uint64_t batches = 200;
+    double sum = 0, square = 0, flights = 0;
+    for (std::uint64_t batch = 0; batch < batches; ++batch) {
+      const Counted one = counted(scene, Spreading::none, is_aimed, 128, batch);
+      const double light = one.sums[0].real();
+      sum += light / batches;
+      square += light * light / batches;
+      flights += static_cast<double>(one.counts.flights);
+    }
+    return (square - sum * sum) * flights;
   };
-  const auto [together, flights] = sums_of(Spreading::none);
-  const auto [alone, same_flights] = sums_of(Spreading::all);
-  CHECK(flights == same_flights);
-  for (std::size_t i = 0; i < 2; ++i)
-    CHECK(together[i].real() == doctest::Approx(alone[i].real()).epsilon(1e-9));
+  const double split = variance_of_flight(true), whole = variance_of_flight(false);
+  CAPTURE(split / whole);
+  CHECK(split < 0.7 * whole);
+}
+
+TEST_CASE("sensors that are no small disks are not aimed at") {
+  const auto has_aim = [](const RenderScene& scene) {
+    const auto transport = transport_of(scene, {RenderMethod::analog}, RenderMethod::analog);
+    return SensorAim::of(*transport, *space_of(scene, Spreading::none), 0.1).has_value();
+  };
+  CHECK(has_aim(guide(0.5, 0, {0.3})));
+  CHECK_FALSE(has_aim(guide(0.5, 0, {2.5})));
+  CHECK_FALSE(has_aim(guide(0, 0.5, {0.3})));
 }
 
 TEST_CASE("powers on nested disks have the covariance of what they share") {

@@ -17,6 +17,7 @@ namespace flatspeckle::grin {
 namespace {
 
 using std::numbers::pi;
+constexpr double step = 0.01;
 
 Vec3 random_point(RandomStream& random, double size) {
   return size * Vec3(random.uniform() - 0.5, random.uniform() - 0.5, random.uniform() - 0.5);
@@ -65,6 +66,7 @@ std::vector<RayState> bundle(const F& field) {
 RayLanes in_lanes(const std::vector<RayState>& rays) {
   RayLanes all{};
   for (int lane = 0; lane < lanes; ++lane) all.put(lane, rays[static_cast<std::size_t>(lane)]);
+  std::fill_n(all.step, lanes, step);
   return all;
 }
 
@@ -81,16 +83,15 @@ bool same_bits(const RayState& a, const RayState& b) {
 template <class Integrator, LaneField F>
 void check_steps(Integrator by, const F& field) {
   constexpr int steps = 50;
-  constexpr double h = 0.01;
   std::vector<RayState> rays = bundle(field);
   RayLanes all = in_lanes(rays);
-  make_steps<true>(by, field, all, h, steps);
+  make_steps<true>(by, field, all, steps);
   double worst = 0, mismatch_apart = 0;
   for (int lane = 0; lane < lanes; ++lane) {
     RayState ray = rays[static_cast<std::size_t>(lane)];
     double mismatch = 0;
     for (int i = 0; i < steps; ++i) {
-      Integrator::step(field, ray, h);
+      Integrator::step(field, ray, step);
       mismatch = std::max(mismatch, std::abs(ray.v.norm() - index(field, ray.x)));
     }
     worst = std::max(worst, apart(all.at(lane), ray));
@@ -153,9 +154,9 @@ TEST_CASE("what becomes of a ray depends neither on its lane nor on its neighbou
     std::rotate(turned.begin(), turned.begin() + 5, turned.end());
     RayLanes all = in_lanes(rays), again = in_lanes(turned), alone = in_lanes(rays);
     for (int lane = 1; lane < lanes; ++lane) alone.put(lane, rays[0]);
-    make_steps<false>(Sharma(), field, all, 0.01, 20);
-    make_steps<false>(Sharma(), field, again, 0.01, 20);
-    make_steps<false>(Sharma(), field, alone, 0.01, 20);
+    make_steps<false>(Sharma(), field, all, 20);
+    make_steps<false>(Sharma(), field, again, 20);
+    make_steps<false>(Sharma(), field, alone, 20);
     for (int lane = 0; lane < lanes; ++lane) {
       CHECK(same_bits(all.at((lane + 5) % lanes), again.at(lane)));
       CHECK(same_bits(alone.at(lane), all.at(0)));

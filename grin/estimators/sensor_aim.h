@@ -1,0 +1,46 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "grin/curved/curved_space.h"
+#include "grin/paths/transport.h"
+
+namespace flatspeckle::grin {
+
+/// What light on its way may be worth to sensors that are small disks on the boundary, roughly: for
+/// splitting and roulette, which keep every mean whatever it says. Most light that scatters goes
+/// past such sensors and is flown in vain; what heads for them is rare, and carries their errors.
+class SensorAim {
+ public:
+  /// Nothing where a sensor is no small disk. bending: rad, of light that the field keeps.
+  static std::optional<SensorAim> of(const Transport& transport, const CurvedSpace& space,
+                                     double bending);
+
+  /// Before light that has arrived along a direction scatters, and of where it goes then. 1 is the
+  /// mean of light as it sets out.
+  double before_turn(const Vec3& x, const Vec3& arrived) const {
+    return worth(x, arrived, turn_) / usual_;
+  }
+  double towards(const Vec3& x, const Vec3& direction) const {
+    return worth(x, direction, 0) / usual_;
+  }
+
+ private:
+  struct Disk {
+    Vec3 centre, outwards;
+    double radius;
+  };
+  static std::optional<Disk> disk_of(const SensorEnd& sensor, const CurvedSpace& space,
+                                     double largest);
+  SensorAim(std::vector<Disk> disks, const ScatteringMedium& medium, double bending);
+  double usual(const Transport& transport, const CurvedSpace& space) const;
+
+  double worth(const Vec3& x, const Vec3& direction, double turn) const;
+  double worth(const Disk& disk, const Vec3& x, const Vec3& direction, double turn) const;
+
+  std::vector<Disk> disks_;
+  double attenuation_, longest_, bending_, turn_, usual_ = 1;
+};
+
+}  // namespace flatspeckle::grin
