@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <numbers>
 
 #include "grin/connections/geometric_spreading.h"
@@ -80,12 +79,20 @@ class PilotStarts {
 /// A ray of a pilot, of so long a way in sigma, as light meets the field for the nth time.
 class PilotRay {
  public:
+  /// Its length is found to `stride`.
   PilotRay(const RayField& field, std::size_t met, const Surface& region, const RayState& start,
            double longest, double stride)
       : met_(met), start_(start) {
-    for (RayState ray = start_;; sigma_ += stride) {
-      field.advance(stride, 1, ray, nullptr);
-      if (!(ray.arc_length < longest && distance(region, ray.x) <= 0)) return;
+    RayState ray = start_;
+    for (double long_stride = 4 * stride; long_stride >= stride;) {
+      RayState next = ray;
+      field.advance(long_stride, 1, next, nullptr);
+      if (next.arc_length < longest && distance(region, next.x) <= 0) {
+        ray = next;
+        sigma_ += long_stride;
+      } else {
+        long_stride /= 4;
+      }
     }
   }
 
@@ -120,7 +127,7 @@ class PilotRay {
 std::vector<PilotRay> pilot_rays(const FieldsMet& met, const SceneField& facts,
                                  const Stage& stage) {
   const double longest = std::min(size(stage), longest_ray * facts.scale);
-  const double stride = std::min(size(stage) / 16, facts.scale / 4);
+  const double stride = std::min(size(stage), facts.scale) / 16;
   PilotStarts starts(*met.front(), facts, filled(stage));
   std::vector<PilotRay> rays;
   for (const Vec3& x : starts.points()) {
@@ -154,29 +161,25 @@ namespace {
 /// What halving its steps changed last.
 struct KnownChange {
   const PilotRay* ray;
-  double step, change = std::numeric_limits<double>::infinity();
-
-  /// With finer steps: less than that by an order of them, which coarse ones do not have yet.
-  double most(double finer, int order) const { return change * std::pow(finer / step, order - 1); }
+  double change = 0;
 };
 
-/// Of one kind of steps; 0 where it would be less than `least`.
+/// Of one kind of steps; 0 where it would be less than `least`. Rays that were off most are looked
+/// at first, as one that is says enough.
 double longest_good_step(const std::vector<PilotRay>& rays, const FieldsMet& met, int order,
                          double step, double least = 0) {
   constexpr int halvings = 8;
   const double seen = order == Leapfrog::order ? 0.75 : 1;  // of an error, by halving the step
   std::vector<KnownChange> known;
-  for (const PilotRay& ray : rays) known.push_back({&ray, step});
+  for (const PilotRay& ray : rays) known.push_back({&ray});
   for (int i = 0; i < halvings && step > least; ++i, step /= 2) {
-    std::ranges::stable_sort(known, std::greater(),
-                             [&](const KnownChange& of) { return of.most(step, order); });
+    std::ranges::stable_sort(known, std::greater(), &KnownChange::change);
     double worst = 0;
     const auto finer = [&] { return std::pow(step_tolerance / worst, 1.0 / order); };
-    for (KnownChange& of : known) {
-      if (of.most(step, order) < worst || (i > 0 && finer() < 0.5)) break;
-      const double change = of.ray->change_by_halving(met, step) / seen;
-      of = {of.ray, step, change > 0 ? change : 0};  // NaN: no ray
-      worst = std::max(worst, of.change);
+    for (auto& [ray, change] : known) {
+      change = std::max(0.0, ray->change_by_halving(met, step) / seen);  // NaN is not kept
+      worst = std::max(worst, change);
+      if (finer() < 0.5) break;
     }
     if (finer() >= 0.5) return two_digits(step * std::min(finer(), 1.0));
   }

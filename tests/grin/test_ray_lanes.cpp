@@ -89,11 +89,8 @@ void check_steps(Integrator by, const F& field) {
   double worst = 0, mismatch_apart = 0;
   for (int lane = 0; lane < lanes; ++lane) {
     RayState ray = rays[static_cast<std::size_t>(lane)];
-    double mismatch = 0;
-    for (int i = 0; i < steps; ++i) {
-      Integrator::step(field, ray, step);
-      mismatch = std::max(mismatch, std::abs(ray.v.norm() - index(field, ray.x)));
-    }
+    for (int i = 0; i < steps; ++i) Integrator::step(field, ray, step);
+    const double mismatch = std::abs(ray.v.norm() - index(field, ray.x));
     worst = std::max(worst, apart(all.at(lane), ray));
     mismatch_apart = std::max(mismatch_apart, std::abs(all.index_mismatch[lane] - mismatch));
   }
