@@ -20,7 +20,7 @@ struct Room {
   /// A chord leaves it once.
   bool is_convex() const {
     return surfaces.size() == 1 && !std::holds_alternative<Lens>(surfaces[0]) &&
-           !std::holds_alternative<DistanceGrid>(surfaces[0]);
+           !std::holds_alternative<LevelSurface>(surfaces[0]);
   }
   /// The number of the surface that is the way out at x.
   std::size_t nearest(const Vec3& x) const {
