@@ -56,14 +56,18 @@ class Mesh(RenderTest):
         for name in ("map/fluence", "map/absorbed"):
             self.assert_alike(mesh, sphere, name, 0.03)
 
-    def test_picture(self):
-        """From outside, by the method that is taken by itself: joins through the smooth surface."""
+    def test_pictures(self):
+        """From outside, joined through the smooth surface: by a pinhole, and on a wall."""
         camera = {"sensor": "camera", "sensor_at": [1.999, 0, 0], "sensor_direction": [-1, 0, 0],
-                  "field_of_view": 1.2, "pixels": [3, 2], "point_light": [0, 0, -1.5, 1]}
-        mesh, sphere = self.both(index=1.4, samples=100000, **SMOKE, **camera)
-        self.assert_alike(mesh, sphere, "mean", 0.15)
-        errors = np.hypot(mesh["image_error"], sphere["image_error"])
-        self.assertLess(np.mean(np.abs(mesh["image"] - sphere["image"]) > 3 * errors), 0.2)
+                  "field_of_view": 1.2, "index": 1.1}
+        wall = {"sensor": "area", "sensor_at": [2, 0, 0], "sensor_up": [0, 1, 0], "sensor_size": [1, 1],
+                "index": 1.4, "method": "bidirectional"}
+        for keys, error in ((camera, 0.08), (wall, 0.02)):
+            with self.subTest(sensor=keys["sensor"]):
+                mesh, sphere = self.both(samples=40000, point_light=[0, 0, -1.5, 1], pixels=[3, 2], **SMOKE, **keys)
+                self.assert_alike(mesh, sphere, "mean", error)
+                errors = np.hypot(mesh["image_error"], sphere["image_error"])
+                self.assertLess(np.mean(np.abs(mesh["image"] - sphere["image"]) > 3 * errors), 0.2)
 
     def test_fields_bend_rays_in_it(self):
         mesh, sphere = self.both(field="parabolic", index=1.4, alpha=0.3, method="light", samples=10000,
