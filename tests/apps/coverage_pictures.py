@@ -21,7 +21,7 @@ PICTURES = {
               "pixels": [12, 12], "samples": 20000},
     "fog": {**BOX, "mu_s": 1, "mu_a": 0.1, "point_light": [0, 0, 0, 1], **PINHOLE,
             "samples": 300000},
-    "skin_lens": {**SKIN, **BEAM, **LENS, "samples": 90000},
+    "skin_lens": {**SKIN, **BEAM, **LENS, "samples": 1600000},
     "skin_pinhole": {**SKIN, "point_light": [0, 0, -1.5, 1], **PINHOLE, "samples": 150000},
     "luneburg_outside": {**BOX, "field": "luneburg", "radius": 1, "body_mu_s": 1, **BEAM, **LENS,
                          "samples": 120000},
