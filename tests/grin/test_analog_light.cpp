@@ -1,5 +1,6 @@
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include <doctest/doctest.h>
 
@@ -158,6 +159,27 @@ TEST_CASE("what is split has less variance for as many flights") {
   const double split = variance_of_flight(true), whole = variance_of_flight(false);
   CAPTURE(split / whole);
   CHECK(split < 0.7 * whole);
+}
+
+TEST_CASE("light that scatters keeps its mean where it is split") {
+  const RenderScene scene = guide(0.5, 0.05, {0.3, 0.5});
+  /// And its error, of many batches.
+  const auto mean_of = [&](bool is_aimed) {
+    constexpr std::uint64_t batches = 100;
+    double sum = 0, square = 0;
+    for (std::uint64_t batch = 0; batch < batches; ++batch) {
+      const Counted one = counted(scene, Spreading::none, is_aimed, 2000, batch);
+      const double light = one.sums[0].real() + one.sums[1].real();
+      sum += light / batches;
+      square += light * light / batches;
+    }
+    return std::pair(sum, std::sqrt((square - sum * sum) / (batches - 1)));
+  };
+  const auto [split, error_split] = mean_of(true);
+  const auto [whole, error_whole] = mean_of(false);
+  const double error = std::hypot(error_split, error_whole);
+  CHECK(error < 0.02 * whole);
+  CHECK(std::abs(split - whole) < 4 * error);
 }
 
 TEST_CASE("sensors that are no small disks are not aimed at") {
