@@ -18,6 +18,15 @@ std::string line(const std::string& key, const std::vector<std::string>& values)
   return key + " = " + joined(values, " ") + '\n';
 }
 
+/// Of the values, which may be very many: how many, and a checksum of their texts (FNV-1a).
+std::string digest(const AxisValues& values) {
+  std::uint64_t sum = 0xcbf29ce484222325;
+  for (std::size_t i = 0; i < values.size(); ++i)
+    for (const char letter : values[i] + ' ')
+      sum = (sum ^ static_cast<unsigned char>(letter)) * 0x100000001b3;
+  return std::to_string(values.size()) + " values " + std::to_string(sum);
+}
+
 /// By the rows of its key alone.
 void check_values(const SweepPoints& points, std::size_t number, const Keys& keys) {
   const SweepAxis& axis = points.axes[number];
@@ -32,8 +41,8 @@ void check_values(const SweepPoints& points, std::size_t number, const Keys& key
 /// The first and the last values of all axes.
 bool is_corner(const SweepPoints& points, std::size_t point) {
   for (std::size_t axis = 0; axis < points.axes.size(); ++axis) {
-    const auto& values = points.axes[axis].values;
-    const std::string& value = points.value(axis, point);
+    const AxisValues& values = points.axes[axis].values;
+    const std::string value = points.value(axis, point);
     if (value != values.front() && value != values.back()) return false;
   }
   return true;
@@ -106,10 +115,11 @@ void ExperimentSweep::check_points() {
 
 std::vector<std::size_t> ExperimentSweep::points_to_check() const {
   constexpr std::size_t few = 64, scattered_few = 48;
-  std::vector<std::size_t> some = scattered(points_.count(), {});
-  if (some.size() <= few) return some;
-  some.resize(scattered_few);
-  if (points_.is_list) return some;
+  const ScatteredRuns all(points_.count());
+  std::vector<std::size_t> some;
+  for (std::size_t i = 0; i < (all.size() <= few ? all.size() : scattered_few); ++i)
+    some.push_back(all[i]);
+  if (all.size() <= few || points_.is_list) return some;
   for (std::size_t point = 0; point < points_.count() && some.size() < few; ++point)
     if (is_corner(points_, point)) some.push_back(point);
   return some;
@@ -137,7 +147,7 @@ std::string ExperimentSweep::identity_of_points() const {
 
 std::string ExperimentSweep::identity() const {
   std::string text = identity_of_points() + (points_.is_list ? "a list\n" : "");
-  for (const SweepAxis& axis : points_.axes) text += line(axis.key, axis.values);
+  for (const SweepAxis& axis : points_.axes) text += line(axis.key, {digest(axis.values)});
   return text;
 }
 

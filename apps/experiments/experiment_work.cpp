@@ -6,9 +6,8 @@
 
 namespace flatspeckle::apps {
 
-ExperimentWork::ExperimentWork(const ExperimentSweep& sweep, PointStore* store,
-                               std::vector<std::size_t> points)
-    : sweep_(sweep), store_(store), points_(std::move(points)) {}
+ExperimentWork::ExperimentWork(const ExperimentSweep& sweep, PointStore* store)
+    : sweep_(sweep), store_(store), points_(sweep.points().count(), sweep.share()) {}
 
 RunList ExperimentWork::list() {
   return {.count = points_.size(),
@@ -27,13 +26,12 @@ RunList ExperimentWork::list() {
 }
 
 std::optional<OpenRun> ExperimentWork::open(std::size_t point) {
-  const std::string name = sweep_.points().name(point);
-  if (store_->has(name)) return std::nullopt;
+  if (store_->has(point)) return std::nullopt;
   auto open = std::make_unique<Open>();
   open->started = utc_now();
   open->experiment = sweep_.experiment(point);
   open->planned = open->experiment->plan();
-  open->state = store_->unfinished(name, open->planned.batches.size);
+  open->state = store_->unfinished(point, open->planned.batches.size);
   OpenRun run{open->planned.batches, open->experiment->stop(), &open->state};
   const std::lock_guard lock(mutex_);
   open_[point] = std::move(open);
@@ -58,7 +56,7 @@ void ExperimentWork::ended(std::size_t number) {
   point.reached = !target || point.relative_error <= *target;
   ResultFile collecting(point.result);
   open.planned.write(collecting, open.state.sums);
-  store_->add(sweep_.points().name(number), point);
+  store_->add(number, point);
   const std::lock_guard lock(mutex_);
   open_.erase(number);
 }
@@ -71,7 +69,7 @@ void ExperimentWork::save(std::size_t point) {
   made.wall_s = open.state.wall_s;
   made.cpu_s = open.state.cpu_s;
   made.samples = open.state.sums.total_samples();
-  store_->save_unfinished(sweep_.points().name(point), made, open.state);
+  store_->save_unfinished(point, made, open.state);
 }
 
 void ExperimentWork::save_unfinished() {

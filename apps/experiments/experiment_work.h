@@ -14,8 +14,8 @@ namespace flatspeckle::apps {
 /// ends in the store's journal. Those that are finished need no work.
 class ExperimentWork {
  public:
-  /// Of these points. store: nullptr of ranks that only compute.
-  ExperimentWork(const ExperimentSweep& sweep, PointStore* store, std::vector<std::size_t> points);
+  /// Of the points of its share. store: nullptr of ranks that only compute.
+  ExperimentWork(const ExperimentSweep& sweep, PointStore* store);
 
   RunList list();
   /// After the pool has stopped.
@@ -36,7 +36,7 @@ class ExperimentWork {
 
   const ExperimentSweep& sweep_;
   PointStore* store_;
-  std::vector<std::size_t> points_;
+  ScatteredRuns points_;
   std::mutex mutex_;
   std::map<std::size_t, std::unique_ptr<Open>> open_;
 };

@@ -23,18 +23,30 @@ void put_bytes(ByteWriter& block, std::span<const std::byte> bytes) {
   for (const std::byte byte : bytes) block.put(byte);
 }
 
+SweepHead head_in(ByteReader& bytes) {
+  SweepHead head;
+  bytes.get(head.identity);
+  bytes.get(head.config);
+  return head;
+}
+
+InputError holds_none(const std::filesystem::path& path) {
+  return InputError(path.string() + " holds no points of a sweep");
+}
+
 }  // namespace
 
-PointJournal::PointJournal(const std::filesystem::path& path, const SweepHead& head)
+PointJournal::PointJournal(const std::filesystem::path& path, const SweepHead& head,
+                           const Found& found)
     : file_(std::make_unique<BlockFile>(path, BlockFile::Access::append)) {
-  const auto tail = scan();
-  if (has_head_ && head_.identity != head.identity)
+  const auto tail = scan(head.identity, found);
+  if (head_ && head_->identity != head.identity)
     throw InputError("resume: what " + path.string() + " holds belongs to another sweep (" +
-                     first_difference(head_.identity, head.identity) +
+                     first_difference(head_->identity, head.identity) +
                      "); name another result file, or remove it");
   if (tail == BlockFile::Tail::damaged) keep_damaged(path);
   file_->cut();
-  if (has_head_) return;
+  if (head_) return;
   head_ = head;
   ByteWriter block;
   block.put(Kind::head);
@@ -43,35 +55,51 @@ PointJournal::PointJournal(const std::filesystem::path& path, const SweepHead& h
   file_->append(block.take());
 }
 
-PointJournal::PointJournal(const std::filesystem::path& path)
+PointJournal::PointJournal(const std::filesystem::path& path, const std::string& identity,
+                           const Found& found)
     : file_(std::make_unique<BlockFile>(path, BlockFile::Access::read)) {
-  if (scan() == BlockFile::Tail::damaged)
+  if (scan(identity, found) == BlockFile::Tail::damaged)
     std::cerr << "warning: " << path.string() << " is damaged; " << size()
               << " points of it are taken\n";
-  if (!has_head_) throw InputError(path.string() + " holds no points of a sweep");
+  if (!head_) throw holds_none(path);
+  if (head_->identity != identity)
+    throw InputError(path.string() + " belongs to another sweep (" +
+                     first_difference(head_->identity, identity) + ')');
 }
 
-BlockFile::Tail PointJournal::scan() {
-  return file_->scan(
-      [this](std::uint64_t place, std::span<const std::byte> block) { take_in(place, block); });
+SweepHead PointJournal::head_of(const std::filesystem::path& path) try {
+  const auto block = BlockFile(path, BlockFile::Access::read).read(0);
+  ByteReader bytes(block);
+  if (bytes.get<Kind>() != Kind::head) throw holds_none(path);
+  return head_in(bytes);
+} catch (const IoError&) {
+  throw holds_none(path);
 }
 
-void PointJournal::take_in(std::uint64_t place, std::span<const std::byte> block) {
+BlockFile::Tail PointJournal::scan(const std::string& identity, const Found& found) {
+  return file_->scan([&](std::uint64_t place, std::span<const std::byte> block) {
+    take_in(place, block, identity, found);
+  });
+}
+
+/// Of the points of another sweep, which a head before them tells, nothing is told.
+void PointJournal::take_in(std::uint64_t place, std::span<const std::byte> block,
+                           const std::string& identity, const Found& found) {
   ByteReader bytes(block);
   switch (bytes.get<Kind>()) {
     case Kind::head:
-      bytes.get(head_.identity);
-      bytes.get(head_.config);
-      has_head_ = true;
+      head_ = head_in(bytes);
       break;
     case Kind::plan:
-      plans_.add(text_of(bytes.rest()));
+      plans_.add(text_of(bytes.rest()), place);
       break;
     case Kind::layout:
-      layouts_.add(text_of(bytes.rest()));
+      layouts_.add(text_of(bytes.rest()), place);
       break;
     case Kind::point:
-      places_.emplace(std::hash<std::string>()(bytes.get<std::string>()), place);
+      if (!head_ || head_->identity != identity) break;
+      ++size_;
+      found(bytes.get<std::string>(), place);
       break;
   }
 }
@@ -87,47 +115,31 @@ void PointJournal::keep_damaged(const std::filesystem::path& path) const {
                                  ", and the rest is done again\n");
 }
 
-bool PointJournal::has(const std::string& name) const {
-  const std::lock_guard lock(mutex_);
-  return place_of(name).has_value();
+void PointJournal::Shared::add(const std::string& text, std::uint64_t place) {
+  constexpr std::size_t most = 256;
+  if (known.size() == most) known.clear();
+  known[text] = count;
+  places.set(count++, place);
 }
 
-/// Of names only their hashes are in memory: there may be very many.
-std::optional<std::uint64_t> PointJournal::place_of(const std::string& name) const {
-  const auto [first, last] = places_.equal_range(std::hash<std::string>()(name));
-  for (auto place = first; place != last; ++place) {
-    const auto block = file_->read(place->second);
-    ByteReader bytes(block);
-    bytes.get<Kind>();
-    if (bytes.get<std::string>() == name) return place->second;
-  }
-  return std::nullopt;
-}
-
-void PointJournal::Shared::add(const std::string& text) {
-  numbers.emplace(text, texts.size());
-  texts.push_back(text);
-}
-
-const std::string& PointJournal::Shared::at(std::uint64_t number) const {
-  if (number >= texts.size()) throw InputError("a point refers to what its file does not have");
-  return texts[number];
+std::string PointJournal::text(const Shared& shared, std::uint64_t number) const {
+  if (number >= shared.count) throw InputError("a point refers to what its file does not have");
+  const auto block = file_->read(shared.places.at(number));
+  return text_of(std::span(block).subspan(sizeof(Kind)));
 }
 
 /// Written where it is new.
 std::uint64_t PointJournal::number_of(Kind kind, const std::string& text) {
-  Shared& known = kind == Kind::plan ? plans_ : layouts_;
-  if (const auto found = known.numbers.find(text); found != known.numbers.end())
-    return found->second;
+  Shared& shared = kind == Kind::plan ? plans_ : layouts_;
+  if (const auto found = shared.known.find(text); found != shared.known.end()) return found->second;
   ByteWriter block;
   block.put(kind);
   put_bytes(block, bytes_of(text));
-  file_->append(block.take());
-  known.add(text);
-  return known.texts.size() - 1;
+  shared.add(text, file_->append(block.take()));
+  return shared.count - 1;
 }
 
-void PointJournal::add(const std::string& name, const FinishedPoint& point) {
+std::uint64_t PointJournal::add(const std::string& name, const FinishedPoint& point) {
   const auto layout = layout_of(point.result), values = values_of(point.result);
   const std::lock_guard lock(mutex_);
   ByteWriter block;
@@ -140,18 +152,19 @@ void PointJournal::add(const std::string& name, const FinishedPoint& point) {
     block.put(number);
   block.put(point.reached);
   put_bytes(block, values);
-  places_.emplace(std::hash<std::string>()(name), file_->append(block.take()));
+  ++size_;
+  return file_->append(block.take());
 }
 
-FinishedPoint PointJournal::read(const std::string& name) const {
+FinishedPoint PointJournal::read(std::uint64_t place) const {
   const std::lock_guard lock(mutex_);
-  const auto block = file_->read(place_of(name).value());
+  const auto block = file_->read(place);
   ByteReader bytes(block);
   bytes.get<Kind>();
   bytes.get<std::string>();
   FinishedPoint point;
-  point.plan = plans_.at(bytes.get<std::uint64_t>());
-  const std::string& layout = layouts_.at(bytes.get<std::uint64_t>());
+  point.plan = text(plans_, bytes.get<std::uint64_t>());
+  const std::string layout = text(layouts_, bytes.get<std::uint64_t>());
   bytes.get(point.started);
   for (double* number : {&point.samples, &point.cpu_s, &point.wall_s, &point.relative_error})
     bytes.get(*number);

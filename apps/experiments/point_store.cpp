@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <iostream>
 
+#include "apps/sweep/point_finder.h"
 #include "core/error.h"
 #include "core/result/provenance.h"
 #include "core/result/run_state_file.h"
-#include "core/session/identity.h"
 
 namespace flatspeckle::apps {
 
@@ -18,6 +18,9 @@ using Part = ShardFolder::Part;
 
 constexpr const char* ending = ".points";
 
+constexpr int bits_of_place = 48;  // of a byte in a journal, which is below 256 TB
+constexpr std::uint64_t most_place = (std::uint64_t{1} << bits_of_place) - 1;
+
 fs::path own_journal(const std::string& folder, const SweepShare& share) {
   return fs::path(folder) /
          ("share-" + std::to_string(share.number) + "-of-" + std::to_string(share.count) + ending);
@@ -28,6 +31,11 @@ std::string file_name(const std::string& name) {
   constexpr std::size_t longest = 150;
   if (name.size() <= longest) return name;
   return name.substr(0, longest) + "-" + std::to_string(std::hash<std::string>{}(name));
+}
+
+/// Of a point at work.
+std::string identity_of(const std::string& identity, const std::string& name) {
+  return identity + name + '\n';
 }
 
 }  // namespace
@@ -59,7 +67,8 @@ PointStore::PointStore(const ExperimentSweep& sweep, const std::string& folder)
                      " holds points of an earlier sweep: --resume goes on with them; remove the "
                      "folder to begin again");
   folder_->make();
-  own_ = std::make_unique<PointJournal>(own, SweepHead{identity_, sweep.config()});
+  journals_.push_back(
+      std::make_unique<PointJournal>(own, SweepHead{identity_, sweep.config()}, notes()));
   paths_.push_back(own);
   open_others(folder, own);
 }
@@ -68,11 +77,7 @@ void PointStore::open_others(const std::string& folder, const fs::path& own) {
   for (const fs::path& path : journals_in(folder)) {
     if (path == own) continue;
     try {
-      auto journal = std::make_unique<PointJournal>(path);
-      if (journal->head().identity != identity_)
-        throw InputError(path.string() + " belongs to another sweep (" +
-                         first_difference(journal->head().identity, identity_) + ')');
-      others_.push_back(std::move(journal));
+      journals_.push_back(std::make_unique<PointJournal>(path, identity_, notes()));
       paths_.push_back(path);
     } catch (const InputError& error) {
       std::cerr << "warning: " + std::string(error.what()) + "; it is left out\n";
@@ -80,22 +85,37 @@ void PointStore::open_others(const std::string& folder, const fs::path& own) {
   }
 }
 
-const PointJournal* PointStore::find(const std::string& name) const {
-  if (own_ && own_->has(name)) return own_.get();
-  const auto found =
-      std::ranges::find_if(others_, [&](const auto& journal) { return journal->has(name); });
-  return found == others_.end() ? nullptr : found->get();
+/// What the next journal tells.
+PointJournal::Found PointStore::notes() {
+  return [this, finder = std::make_shared<const PointFinder>(sweep_.points())](
+             const std::string& name, std::uint64_t place) {
+    if (const auto point = finder->find(name)) note(*point, journals_.size(), place);
+  };
 }
 
-std::vector<std::size_t> PointStore::finished() const {
-  std::vector<std::size_t> points;
+/// Of a point that several journals have, the first counts.
+void PointStore::note(std::size_t point, std::size_t journal, std::uint64_t place) {
+  const std::lock_guard lock(mutex_);
+  if (places_.at(point) != 0) return;
+  places_.set(point, journal << bits_of_place | place);
+  ++finished_;
+}
+
+bool PointStore::has(std::size_t point) const {
+  const std::lock_guard lock(mutex_);
+  return places_.at(point) != 0;
+}
+
+void PointStore::for_each(
+    const std::function<void(std::size_t point, const FinishedPoint&)>& use) const {
   for (std::size_t point = 0; point < sweep_.points().count(); ++point)
-    if (has(sweep_.points().name(point))) points.push_back(point);
-  return points;
+    if (const std::uint64_t found = places_.at(point); found != 0)
+      use(point, journals_[found >> bits_of_place]->read(found & most_place));
 }
 
-void PointStore::add(const std::string& name, const FinishedPoint& point) {
-  own_->add(name, point);
+void PointStore::add(std::size_t point, const FinishedPoint& finished) {
+  const std::string name = name_of(point);
+  note(point, 0, journals_.front()->add(name, finished));
   folder_->remove_unfinished(file_name(name));
   constexpr double seconds_between_syncs = 2;
   if (const double now = clock_.seconds(); now > synced_ + seconds_between_syncs) {
@@ -104,24 +124,20 @@ void PointStore::add(const std::string& name, const FinishedPoint& point) {
   }
 }
 
-std::string PointStore::identity_of(const std::string& name) const {
-  return identity_ + name + '\n';
-}
-
-RunState PointStore::unfinished(const std::string& name, std::size_t size) {
+RunState PointStore::unfinished(std::size_t point, std::size_t size) {
   RunState state;
-  const std::string file = file_name(name);
+  const std::string name = name_of(point), file = file_name(name);
   if (!folder_->has(file, Part::unfinished)) return state;
   const auto wrong =
-      folder_->read(file, Part::unfinished, identity_of(name),
+      folder_->read(file, Part::unfinished, identity_of(identity_, name),
                     [&](const ResultReader& from) { state = read_state(from, "state", size); });
   if (wrong) folder_->set_aside(file, Part::unfinished, *wrong);
   return wrong ? RunState{} : std::move(state);
 }
 
-void PointStore::save_unfinished(const std::string& name, const Provenance& made,
-                                 const RunState& state) {
-  folder_->write(file_name(name), Part::unfinished, identity_of(name), Durable::yes,
+void PointStore::save_unfinished(std::size_t point, const Provenance& made, const RunState& state) {
+  const std::string name = name_of(point);
+  folder_->write(file_name(name), Part::unfinished, identity_of(identity_, name), Durable::yes,
                  [&](ResultFile& file) {
                    write_provenance(file, made);
                    write_state(file, "state", state);
@@ -129,8 +145,7 @@ void PointStore::save_unfinished(const std::string& name, const Provenance& made
 }
 
 void PointStore::remove() {
-  own_.reset();
-  others_.clear();
+  journals_.clear();
   for (const fs::path& path : paths_) {
     std::error_code failed;
     if (!fs::remove(path, failed) && failed)

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <functional>
 #include <memory>
 #include <set>
 #include <string>
@@ -26,33 +27,37 @@ class PointStore {
   /// another sweep, or of an earlier one that is not to be resumed.
   PointStore(const ExperimentSweep& sweep, const std::string& folder);
 
-  bool has(const std::string& name) const { return find(name) != nullptr; }
-  FinishedPoint read(const std::string& name) const { return find(name)->read(name); }
-  /// Of the sweep's points, in their order, those that are finished.
-  std::vector<std::size_t> finished() const;
+  bool has(std::size_t point) const;
+  /// Of the sweep's points.
+  std::size_t finished() const { return finished_; }
+  /// Each that is finished, in their order.
+  void for_each(const std::function<void(std::size_t point, const FinishedPoint&)>& use) const;
 
-  void add(const std::string& name, const FinishedPoint& point);
+  void add(std::size_t point, const FinishedPoint& finished);
   /// Of a point at work; `size` sums. Empty where there is none.
-  RunState unfinished(const std::string& name, std::size_t size);
-  void save_unfinished(const std::string& name, const Provenance& made, const RunState& state);
-  void sync() { own_->sync(); }
+  RunState unfinished(std::size_t point, std::size_t size);
+  void save_unfinished(std::size_t point, const Provenance& made, const RunState& state);
+  void sync() { journals_.front()->sync(); }
 
   /// All of this sweep, and each folder if nothing else is in it.
   void remove();
 
  private:
   void open_others(const std::string& folder, const std::filesystem::path& own);
-  const PointJournal* find(const std::string& name) const;
-  std::string identity_of(const std::string& name) const;
+  PointJournal::Found notes();
+  void note(std::size_t point, std::size_t journal, std::uint64_t place);
+  std::string name_of(std::size_t point) const { return sweep_.points().name(point); }
   std::set<std::string> ours_of(const std::set<std::string>& names) const;
 
   const ExperimentSweep& sweep_;
   std::string identity_;
   std::vector<std::string> folders_;
   std::unique_ptr<ShardFolder> folder_;
-  std::unique_ptr<PointJournal> own_;
-  std::vector<std::unique_ptr<PointJournal>> others_;
-  std::vector<std::filesystem::path> paths_;  ///< of all
+  std::vector<std::unique_ptr<PointJournal>> journals_;  ///< this share's first
+  std::vector<std::filesystem::path> paths_;
+  ScratchNumbers places_;  ///< of the points, with the number of the journal
+  std::size_t finished_ = 0;
+  mutable std::mutex mutex_;
   Stopwatch clock_;
   std::atomic<double> synced_ = 0;
 };

@@ -1,9 +1,10 @@
 #include "apps/experiments/stacked_result.h"
 
 #include <algorithm>
+#include <functional>
 #include <map>
-#include <set>
 
+#include "apps/experiments/stacked_dataset.h"
 #include "apps/results/datasets.h"
 #include "core/keys/number_text.h"
 #include "core/result/result_group.h"
@@ -26,14 +27,12 @@ const DatasetTable stacked_table{
 
 namespace {
 
-using Held = CollectedDataset::Held;
-
 bool is_mark(const std::string& name) {
   return name.ends_with("_rare");
 }
 
-std::size_t value_bytes(const Held& values) {
-  return std::visit([](const auto& held) { return sizeof(held.front()); }, values);
+std::string unit_of(const Key& key) {
+  return key.unit().empty() ? "1" : key.unit();
 }
 
 /// What is known of a dataset of all points.
@@ -41,12 +40,16 @@ struct Surveyed {
   CollectedDataset first;
   std::size_t points = 0;  ///< that have it
   bool fits = true, same = true;
+  std::uint64_t marks = 0;  ///< of a mark: that are set
 
   void add(const CollectedDataset& of_point) {
     ++points;
     fits = fits && of_point.values.index() == first.values.index() &&
            of_point.count() == first.count() && of_point.axes == first.axes;
     same = same && of_point.values == first.values;
+    if (!is_mark(first.name)) return;
+    const auto& own = std::get<std::vector<std::uint64_t>>(of_point.values);
+    marks += static_cast<std::uint64_t>(std::ranges::count(own, std::uint64_t{1}));
   }
 };
 
@@ -54,9 +57,11 @@ struct SurveyedAttribute {
   CollectedAttribute first;
   std::size_t points = 0;
   bool same = true;
-  std::vector<double> numbers = {};  ///< of all points, where it is one and not the same
 
-  void add(const Attribute& value);
+  void add(const Attribute& value) {
+    ++points;
+    same = same && value == first.value;
+  }
 };
 
 double number_of(const Attribute& value) {
@@ -72,63 +77,44 @@ bool is_number(const Attribute& value) {
   return value.index() < 4;  // bool, int64, uint64, double
 }
 
-void SurveyedAttribute::add(const Attribute& value) {
-  if (same && !(value == first.value)) {
-    same = false;
-    numbers.assign(points, number_of(first.value));
-  }
-  ++points;
-  if (!same) numbers.push_back(number_of(value));
-}
-
+/// In two passes over the points: what they have, then its values. Neither holds more than one of
+/// them in memory, and what a StackedDataset does.
 class Stack {
  public:
-  Stack(ResultFile& file, const ExperimentSweep& sweep, const PointStore& store,
-        const std::vector<std::size_t>& points)
-      : file_(file), sweep_(sweep), store_(store), points_(points) {
-    for (const std::size_t point : points) survey(read(point));
+  Stack(ResultFile& file, const ExperimentSweep& sweep, const PointStore& store)
+      : file_(file), sweep_(sweep), store_(store) {
+    store.for_each([&](std::size_t, const FinishedPoint& point) { survey(point.result); });
   }
 
   void write() {
     write_axes();
-    write_costs();
-    for (const Surveyed* const set : stacked_)
-      if (set->first.is_scale) write_scale(*set);
-    std::vector<const Surveyed*> group;
-    double bytes = 0;
-    for (const Surveyed* const set : stacked_) {
-      if (set->first.is_scale && set->same) continue;
-      const double own = bytes_of(*set);
-      if (!group.empty() && bytes + own > most_bytes) write_group(std::exchange(group, {}));
-      bytes = group.empty() ? own : bytes + own;
-      group.push_back(set);
-    }
-    write_group(group);
-    write_attributes();
+    begin_costs();
+    select();
+    for (const Surveyed* const set : stacked_) begin(*set);
+    begin_attributes();
+    store_.for_each([&](std::size_t number, const FinishedPoint& point) {
+      for (const auto& [dataset, value] : columns_) value(*dataset, number, point);
+    });
   }
 
  private:
-  static constexpr double most_bytes = 256e6;  // of values in memory at once
+  /// Adds the value of a point.
+  using Column = std::function<void(StackedDataset&, std::size_t number, const FinishedPoint&)>;
 
-  FinishedPoint read(std::size_t point) const { return store_.read(sweep_.points().name(point)); }
-  double bytes_of(const Surveyed& set) const {
-    return static_cast<double>(points_.size() * set.first.count() * value_bytes(set.first.values));
-  }
-
-  void survey(const FinishedPoint& point) {
-    for (const CollectedDataset& set : point.result.datasets) {
+  void survey(const CollectedResult& result) {
+    for (const CollectedDataset& set : result.datasets) {
       const auto [found, is_new] = sets_.try_emplace(set.name, Surveyed{set});
       if (is_new) order_.push_back(set.name);
       found->second.add(set);
     }
-    for (const CollectedAttribute& attribute : point.result.attributes) {
+    for (const CollectedAttribute& attribute : result.attributes)
       attributes_.try_emplace({attribute.object, attribute.name}, SurveyedAttribute{attribute})
           .first->second.add(attribute.value);
-    }
-    samples_.push_back(point.samples);
-    cpu_s_.push_back(point.cpu_s);
-    wall_s_.push_back(point.wall_s);
-    relative_error_.push_back(point.relative_error);
+  }
+
+  void add_column(const CollectedDataset& of_point, const Column& column) {
+    columns_.emplace_back(std::make_unique<StackedDataset>(file_, of_point, grid_, extents_),
+                          column);
   }
 
   /// Of a sweep: the swept ones, but where a result has that name itself.
@@ -140,60 +126,81 @@ class Stack {
 
   void write_axes() {
     const SweepPoints& points = sweep_.points();
-    const bool as_list = points.is_list || points_.size() < points.count();
+    const bool as_list = points.is_list || store_.finished() < points.count();
     std::vector<std::string> keys;
     if (as_list) {
-      ResultGroup(file_, sweep_axes_table).number("point", points_.size());
-      grid_ = {Axis("point")};
+      ResultGroup(file_, sweep_axes_table).number("point", store_.finished());
+      add_axis("point", store_.finished());
     }
     for (std::size_t i = 0; i < points.axes.size(); ++i) {
       keys.push_back(points.axes[i].key);
-      as_list ? write_column(i) : write_axis(points.axes[i]);
+      as_list ? begin_column(i) : write_axis(points.axes[i]);
     }
     file_.bind("SWEPT", grid_);
     ResultGroup(file_, stacked_table).attribute("swept", keys);
-    select();
   }
 
+  void add_axis(const std::string& name, std::size_t extent) {
+    grid_.emplace_back(name);
+    extents_.push_back(extent);
+  }
+
+  /// Of words the scale only counts.
   void write_axis(const SweepAxis& axis) {
     const Key& key = sweep_.key(axis);
     const std::string name = name_of(axis);
-    std::vector<double> values;
-    for (const std::string& text : axis.values)
-      values.push_back(key.is_number() ? *read_number(text) : static_cast<double>(values.size()));
-    file_.scale(name, values, unit_of(key), key.help());
-    grid_.emplace_back(name);
+    const std::size_t count = axis.values.size();
+    file_.scale(
+        name, count,
+        [&](std::size_t i) {
+          return key.is_number() ? *read_number(axis.values[i]) : static_cast<double>(i);
+        },
+        unit_of(key), key.help());
+    add_axis(name, count);
     if (!key.is_number())
-      file_.dataset(name + "_word", std::span<const std::string>(axis.values), {Axis(name)}, "",
-                    key.help());
+      file_.dataset(name + "_word", std::span<const std::string>(axis.values.texts()), {Axis(name)},
+                    "", key.help());
   }
 
   /// Of an axis as a list: a value for each point.
-  void write_column(std::size_t number) {
-    const SweepAxis& axis = sweep_.points().axes[number];
-    const Key& key = sweep_.key(axis);
-    std::vector<std::string> texts;
-    std::vector<double> values;
-    for (const std::size_t point : points_) {
-      texts.push_back(sweep_.points().value(number, point));
-      values.push_back(key.is_number() ? *read_number(texts.back()) : 0);
-    }
+  void begin_column(std::size_t axis) {
+    const Key& key = sweep_.key(sweep_.points().axes[axis]);
+    const std::string name = name_of(sweep_.points().axes[axis]);
+    const auto text = [this, axis](std::size_t point) {
+      return sweep_.points().value(axis, point);
+    };
     if (key.is_number())
-      file_.dataset(name_of(axis), std::span<const double>(values), grid_, unit_of(key),
-                    key.help());
+      add_column({name, false, {}, unit_of(key), key.help(), std::vector<double>(1)},
+                 [text](StackedDataset& all, std::size_t number, const FinishedPoint&) {
+                   all.add(*read_number(text(number)));
+                 });
     else
-      file_.dataset(name_of(axis) + "_word", std::span<const std::string>(texts), grid_, "",
-                    key.help());
+      add_column({name + "_word", false, {}, "", key.help(), std::vector<std::string>(1)},
+                 [text](StackedDataset& all, std::size_t number, const FinishedPoint&) {
+                   all.add(std::vector{text(number)});
+                 });
   }
 
-  static std::string unit_of(const Key& key) { return key.unit().empty() ? "1" : key.unit(); }
+  void begin_costs() {
+    const auto begin = [&](const std::string& name, double FinishedPoint::*cost) {
+      const DatasetRow& row = row_of(stacked_table, name);
+      add_column({name, false, {}, row.unit, row.long_name, std::vector<double>(1)},
+                 [cost](StackedDataset& all, std::size_t, const FinishedPoint& point) {
+                   all.add(point.*cost);
+                 });
+    };
+    begin("relative_error", &FinishedPoint::relative_error);
+    begin("samples", &FinishedPoint::samples);
+    begin("cpu_s", &FinishedPoint::cpu_s);
+    begin("wall_s", &FinishedPoint::wall_s);
+  }
 
-  /// Which datasets are of all points, in the same shape.
+  /// Which datasets are of all points, in the same shape; scales first.
   void select() {
     std::vector<std::string> left_out;
     for (const std::string& name : order_) {
       const Surveyed& set = sets_.at(name);
-      const bool of_all = set.points == points_.size() || is_mark(name);
+      const bool of_all = set.points == store_.finished() || is_mark(name);
       if (of_all && set.fits && !has_row(stacked_table, name))
         stacked_.push_back(&set);
       else
@@ -208,15 +215,29 @@ class Stack {
     for (const Surveyed* const set : stacked_)
       if (hangs(set)) left_out.push_back(set->first.name);
     std::erase_if(stacked_, hangs);
+    std::ranges::stable_partition(stacked_,
+                                  [](const Surveyed* set) { return set->first.is_scale; });
     if (!left_out.empty()) ResultGroup(file_, stacked_table).attribute("left_out", left_out);
   }
 
-  void write_costs() const {
-    const ResultGroup root(file_, stacked_table);
-    root.put("relative_error", relative_error_);
-    root.put("samples", samples_);
-    root.put("cpu_s", cpu_s_);
-    root.put("wall_s", wall_s_);
+  void begin(const Surveyed& set) {
+    const CollectedDataset& first = set.first;
+    if (first.is_scale) write_scale(set);
+    if (first.is_scale && set.same) return;
+    CollectedDataset of_point = first;
+    if (first.is_scale) {
+      of_point.name += "_of_point";
+      of_point.axes.emplace_back(first.name);
+    }
+    add_column(of_point,
+               [name = first.name](StackedDataset& all, std::size_t, const FinishedPoint& point) {
+                 const CollectedDataset* const own = point.result.find(name);
+                 own != nullptr ? all.add(own->values) : all.add_none();
+               });
+    if (is_mark(first.name))
+      file_.note_rare(first.name.substr(0, first.name.size() - 5) + ": " +
+                      std::to_string(set.marks) + " of " +
+                      std::to_string(store_.finished() * first.count()));
   }
 
   /// One that differs from point to point only counts; its values stand beside it.
@@ -229,89 +250,45 @@ class Stack {
                 set.same ? long_name : "number of what differs from point to point: " + long_name);
   }
 
-  void write_group(const std::vector<const Surveyed*>& group) const {
-    std::vector<Held> all;
-    for (const Surveyed* const set : group) all.push_back(empty_like(*set));
-    for (const std::size_t point : points_) {
-      const CollectedResult result = read(point).result;
-      for (std::size_t i = 0; i < group.size(); ++i) append(all[i], *group[i], result);
-    }
-    for (std::size_t i = 0; i < group.size(); ++i) write_one(*group[i], all[i]);
-  }
-
-  Held empty_like(const Surveyed& set) const {
-    Held like = set.first.values;
-    std::visit(
-        [&](auto& held) {
-          held.clear();
-          held.reserve(points_.size() * set.first.count());
-        },
-        like);
-    return like;
-  }
-
-  static void append(Held& all, const Surveyed& set, const CollectedResult& result) {
-    const CollectedDataset* const of_point = result.find(set.first.name);
-    std::visit(
-        [&]<typename Value>(std::vector<Value>& held) {
-          if (of_point == nullptr) return held.resize(held.size() + set.first.count());
-          const auto& own = std::get<std::vector<Value>>(of_point->values);
-          held.insert(held.end(), own.begin(), own.end());
-        },
-        all);
-  }
-
-  void write_one(const Surveyed& set, const Held& values) const {
-    std::vector<Axis> axes = grid_;
-    const auto& own = set.first.axes;
-    axes.insert(axes.end(), own.begin(), own.end());
-    if (set.first.is_scale) axes.emplace_back(set.first.name);
-    const std::string name = set.first.name + (set.first.is_scale ? "_of_point" : "");
-    std::visit(
-        [&]<typename Value>(const std::vector<Value>& held) {
-          file_.dataset(name, std::span<const Value>(held), axes, set.first.units,
-                        set.first.long_name);
-        },
-        values);
-    if (is_mark(name)) note_marks(name, std::get<std::vector<std::uint64_t>>(values));
-  }
-
-  void note_marks(const std::string& name, const std::vector<std::uint64_t>& marks) const {
-    const auto few = std::ranges::count(marks, std::uint64_t{1});
-    file_.note_rare(name.substr(0, name.size() - 5) + ": " + std::to_string(few) + " of " +
-                    std::to_string(marks.size()));
-  }
-
-  void write_attributes() const {
+  void begin_attributes() {
     for (const auto& [place, found] : attributes_) {
       const auto& [object, name] = place;
-      const std::string path = (object == "/" ? "" : object + '/') + name;
-      if (found.points < points_.size() || (object != "/" && !file_.has(object))) continue;
+      if (found.points < store_.finished() || (object != "/" && !file_.has(object))) continue;
       if (found.same)
         file_.attribute(object, name, found.first.value);
-      else if (is_number(found.first.value) && object == "/" && !file_.has(path))
-        file_.dataset(path, std::span<const double>(found.numbers), grid_, "",
-                      "attribute of each point");
+      else if (is_number(found.first.value) && object == "/" && !file_.has(name))
+        begin_attribute(name);
     }
+  }
+
+  /// One of the root that differs from point to point.
+  void begin_attribute(const std::string& name) {
+    add_column({name, false, {}, "", "attribute of each point", std::vector<double>(1)},
+               [name](StackedDataset& all, std::size_t, const FinishedPoint& point) {
+                 const auto own = std::ranges::find_if(
+                     point.result.attributes, [&](const CollectedAttribute& attribute) {
+                       return attribute.object == "/" && attribute.name == name;
+                     });
+                 all.add(number_of(own->value));
+               });
   }
 
   ResultFile& file_;
   const ExperimentSweep& sweep_;
   const PointStore& store_;
-  const std::vector<std::size_t>& points_;
   std::vector<Axis> grid_;
+  std::vector<std::size_t> extents_;
   std::map<std::string, Surveyed> sets_;
   std::vector<std::string> order_;
   std::vector<const Surveyed*> stacked_;
   std::map<std::pair<std::string, std::string>, SurveyedAttribute> attributes_;
-  std::vector<double> samples_, cpu_s_, wall_s_, relative_error_;
+  std::vector<std::pair<std::unique_ptr<StackedDataset>, Column>> columns_;
 };
 
 }  // namespace
 
-void write_stacked(ResultFile& file, const ExperimentSweep& sweep, const PointStore& store,
-                   const std::vector<std::size_t>& points) {
-  Stack(file, sweep, store, points).write();
+void write_stacked(ResultFile& file, const ExperimentSweep& sweep, const PointStore& store) {
+  Stack(file, sweep, store).write();
 }
 
 }  // namespace flatspeckle::apps

@@ -1,17 +1,14 @@
 #pragma once
 
-#include <vector>
-
 #include "apps/experiments/point_store.h"
 #include "core/result/result_file.h"
 
 namespace flatspeckle::apps {
 
-/// Writes the results of these points as one: each dataset with the swept axes in front of its own
-/// where all points of a grid are there, else with `point` in front, and the costs of each point.
-/// What only some points have, or in other shapes, is left out and named in an attribute; but marks
-/// of rare paths, which are 0 where there are none.
-void write_stacked(ResultFile& file, const ExperimentSweep& sweep, const PointStore& store,
-                   const std::vector<std::size_t>& points);
+/// Writes the results of the finished points as one: each dataset with the swept axes in front of
+/// its own where all points of a grid are there, else with `point` in front, and the costs of each
+/// point. What only some points have, or in other shapes, is left out and named in an attribute;
+/// but marks of rare paths, which are 0 where there are none.
+void write_stacked(ResultFile& file, const ExperimentSweep& sweep, const PointStore& store);
 
 }  // namespace flatspeckle::apps

@@ -43,50 +43,55 @@ std::string of_in_file(const std::string& path) try {
   return "";
 }
 
-std::string count_text(const ExperimentSweep& sweep, const std::vector<std::size_t>& finished) {
-  return std::to_string(finished.size()) + " of " + std::to_string(sweep.points().count()) +
+std::string count_text(const ExperimentSweep& sweep, const PointStore& store) {
+  return std::to_string(store.finished()) + " of " + std::to_string(sweep.points().count()) +
          " points";
 }
 
 /// Each plan once, if there are not too many.
-std::string plans_text(const std::set<std::string>& plans) {
-  constexpr std::size_t most = 16;
-  std::string text;
-  std::size_t count = 0;
-  for (const std::string& plan : plans)
-    if (++count <= most) text += (text.empty() ? "" : "\n") + plan;
-  return count > most ? text + "\nand " + std::to_string(count - most) + " more" : text;
-}
+class Plans {
+ public:
+  void add(const std::string& plan) {
+    plans_.insert(plan);
+    constexpr std::size_t most = 16;
+    has_more_ = has_more_ || plans_.size() > most;
+    if (plans_.size() > most) plans_.erase(std::prev(plans_.end()));
+  }
+  std::string text() const {
+    return joined({plans_.begin(), plans_.end()}, "\n") + (has_more_ ? "\nand others" : "");
+  }
 
-Provenance made_of(const ExperimentSweep& sweep, const PointStore& store,
-                   const std::vector<std::size_t>& finished, double wall_s) {
+ private:
+  std::set<std::string> plans_;
+  bool has_more_ = false;
+};
+
+Provenance made_of(const ExperimentSweep& sweep, const PointStore& store, double wall_s) {
   Provenance made = sweep.session().provenance();
   made.identity = sweep.identity();
   made.wall_s = wall_s;
-  made.converged = finished.size() == sweep.points().count();
-  std::set<std::string> plans;
-  for (const std::size_t number : finished) {
-    const FinishedPoint point = store.read(sweep.points().name(number));
+  made.converged = store.finished() == sweep.points().count();
+  Plans plans;
+  store.for_each([&](std::size_t, const FinishedPoint& point) {
     made.converged = made.converged && point.reached;
     made.started = std::min(made.started, point.started);
     made.cpu_s += point.cpu_s;
     made.samples += point.samples;
-    plans.insert(point.plan);
-  }
-  made.plan = plans_text(plans);
+    plans.add(point.plan);
+  });
+  made.plan = plans.text();
   return made;
 }
 
-int write_result(const ExperimentSweep& sweep, const PointStore& store,
-                 const std::vector<std::size_t>& finished, double wall_s) {
-  const Provenance made = made_of(sweep, store, finished, wall_s);
+int write_result(const ExperimentSweep& sweep, const PointStore& store, double wall_s) {
+  const Provenance made = made_of(sweep, store, wall_s);
   ResultFile file(sweep.out(), ResultFile::Storage::disk);
   const ResultGroup root(file, stacked_table);
   root.attribute("of", sweep.of());
-  root.attribute("complete", finished.size() == sweep.points().count());
+  root.attribute("complete", store.finished() == sweep.points().count());
   root.attribute("ranks", std::int64_t{ranks().size});
-  write_stacked(file, sweep, store, finished);
-  std::cout << count_text(sweep, finished) << '\n';
+  write_stacked(file, sweep, store);
+  std::cout << count_text(sweep, store) << '\n';
   Session::commit(file, made);
   if (!made.converged) std::cout << "not every point has reached its target error\n";
   return made.converged ? ExitStatus::done : ExitStatus::error_not_reached;
@@ -94,12 +99,11 @@ int write_result(const ExperimentSweep& sweep, const PointStore& store,
 
 int end_sweep(const ExperimentSweep& sweep, PointStore& store, const PoolEnd& end) {
   const std::string place = shards_of(sweep.out());
-  const auto finished = store.finished();
-  const bool is_whole = finished.size() == sweep.points().count();
+  const bool is_whole = store.finished() == sweep.points().count();
   const bool interrupted = end.reason == StopReason::interrupted;
   if (sweep.is_share() || interrupted) {
     std::cout << (interrupted ? "interrupted; " : "") << place << " holds "
-              << count_text(sweep, finished)
+              << count_text(sweep, store)
               << (is_whole                            ? "; `flatspeckle merge` makes the result\n"
                   : end.reason == StopReason::samples ? "; this share is done\n"
                                                       : "; --resume goes on\n");
@@ -107,11 +111,11 @@ int end_sweep(const ExperimentSweep& sweep, PointStore& store, const PoolEnd& en
     return end.reason == StopReason::samples ? ExitStatus::done : ExitStatus::error_not_reached;
   }
   int status = ExitStatus::error_not_reached;
-  if (!finished.empty()) status = write_result(sweep, store, finished, end.wall_s);
+  if (store.finished() > 0) status = write_result(sweep, store, end.wall_s);
   if (is_whole)
     store.remove();
   else
-    std::cout << place << " holds " << count_text(sweep, finished) << "; --resume goes on\n";
+    std::cout << place << " holds " << count_text(sweep, store) << "; --resume goes on\n";
   return status;
 }
 
@@ -140,7 +144,7 @@ int lead(const ExperimentSweep& sweep, RankServer* server) {
     return ExitStatus::done;
   }
   PointStore store(sweep, shards_of(out));
-  ExperimentWork work(sweep, &store, scattered(sweep.points().count(), sweep.share()));
+  ExperimentWork work(sweep, &store);
   const PoolEnd end = run_pool(work.list(), {sweep.settings().seconds, sweep.session().threads(),
                                              "sweep", "points", server});
   work.save_unfinished();
@@ -150,7 +154,7 @@ int lead(const ExperimentSweep& sweep, RankServer* server) {
 
 /// With rank 0, and for it.
 void follow(const ExperimentSweep& sweep) {
-  ExperimentWork work(sweep, nullptr, scattered(sweep.points().count(), sweep.share()));
+  ExperimentWork work(sweep, nullptr);
   work_for_rank_0(work.list(), sweep.session().threads());
 }
 
@@ -174,19 +178,18 @@ int sweep_experiments(const std::string& of, const Arguments& arguments) {
 int merge_experiments(const std::vector<std::string>& folders, const std::string& out, bool partial,
                       const std::string& command_line) {
   const Stopwatch clock;
-  const SweepHead head = PointJournal(journals_in(folders.front()).front()).head();
+  const SweepHead head = PointJournal::head_of(journals_in(folders.front()).front());
   const auto of_line = head.config.find("of = \"");
   const auto of_end = head.config.find('"', of_line + 6);
   ExperimentSweep sweep(head.config.substr(of_line + 6, of_end - of_line - 6));
   sweep.parse_config(head.config, command_line);
   sweep.set_out(out);
   const PointStore store(sweep, folders);
-  const auto finished = store.finished();
-  if (finished.empty() || (!partial && finished.size() < sweep.points().count()))
-    throw InputError(std::to_string(sweep.points().count() - finished.size()) + " of " +
-                     std::to_string(sweep.points().count()) +
+  const std::size_t all = sweep.points().count(), missing = all - store.finished();
+  if (missing == all || (!partial && missing > 0))
+    throw InputError(std::to_string(missing) + " of " + std::to_string(all) +
                      " points are missing; --partial takes what there is");
-  return write_result(sweep, store, finished, clock.seconds());
+  return write_result(sweep, store, clock.seconds());
 }
 
 }  // namespace flatspeckle::apps

@@ -29,7 +29,7 @@ const std::vector<double>& numbers(const CollectedResult& result, const char* na
 }  // namespace
 
 Evaluations::Evaluations(const ExperimentFamily& family, const Objective& objective,
-                         const EvaluationSettings& settings, PointJournal& journal)
+                         const EvaluationSettings& settings, EvaluationJournal& journal)
     : family_(family), objective_(objective), settings_(settings), journal_(journal) {}
 
 std::vector<Measured> Evaluations::measure(const std::vector<SweepPoints>& points,

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "apps/experiments/experiment_family.h"
-#include "apps/experiments/point_journal.h"
+#include "apps/optimise/evaluation_journal.h"
 #include "apps/optimise/objective.h"
 #include "apps/optimise/search_axes.h"
 #include "core/run/stopwatch.h"
@@ -35,7 +35,7 @@ struct Evaluation {
 class Evaluations {
  public:
   Evaluations(const ExperimentFamily& family, const Objective& objective,
-              const EvaluationSettings& settings, PointJournal& journal);
+              const EvaluationSettings& settings, EvaluationJournal& journal);
 
   /// Of the number at each of these points. Throws Interrupted, SearchSpent once the time is up,
   /// and InputError where a point is no scene or its result has no such number.
@@ -58,7 +58,7 @@ class Evaluations {
   const ExperimentFamily& family_;
   const Objective& objective_;
   EvaluationSettings settings_;
-  PointJournal& journal_;
+  EvaluationJournal& journal_;
   std::vector<Evaluation> all_;
   std::set<std::string> known_;
   std::optional<CollectedDataset> dataset_;

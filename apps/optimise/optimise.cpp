@@ -227,7 +227,7 @@ int Optimisation::search(const Session& session) {
                      " holds evaluations of an earlier search: --resume goes on with them; remove "
                      "it to begin again");
   const Stopwatch clock;
-  PointJournal journal(journal_path, {identity_of_evaluations(), command_.keys().config()});
+  EvaluationJournal journal(journal_path, {identity_of_evaluations(), command_.keys().config()});
   Evaluations evaluations(family_, *objective_, settings_, journal);
   int status = ExitStatus::interrupted_resumable;
   try {

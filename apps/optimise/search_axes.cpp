@@ -61,9 +61,8 @@ SearchAxis axis_of(const Keys& of, const std::string& text) {
   const std::string name = text.substr(0, equals);
   const auto parts = parts_of(text.substr(equals + 1));
   if (is_between(parts)) return between(of, text, name, parts);
-  SweepAxis listed = varied_axis(of, text);
   SearchAxis choice{name};
-  choice.values = std::move(listed.values);
+  choice.values = varied_axis(of, text).values.texts();
   return choice;
 }
 

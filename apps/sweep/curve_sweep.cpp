@@ -43,21 +43,21 @@ bool is_complete(const SweepPlan& plan, ShardFolder& folder) {
   return false;
 }
 
-std::vector<std::size_t> share_of_runs(const SweepPlan& plan) {
-  return scattered(plan.runs(), plan.share.value_or(SweepShare{}));
+ScatteredRuns share_of_runs(const SweepPlan& plan) {
+  return ScatteredRuns(plan.runs(), plan.share.value_or(SweepShare{}));
 }
 
 /// Throws InputError where the points that are there are all of another sweep: rather a slip in the
 /// keys than strays.
-void refuse_foreign_folder(const SweepPlan& plan, ShardFolder& folder,
-                           const std::vector<std::size_t>& runs) {
+void refuse_foreign_folder(const SweepPlan& plan, ShardFolder& folder, const ScatteredRuns& runs) {
   constexpr int few = 2, enough = 16;
   int seen = 0;
   std::string wrong;
-  for (std::size_t run : runs) {
-    if (seen == enough || !folder.has(plan.name(run), Part::finished)) continue;
+  for (std::size_t i = 0; i < runs.size() && seen < enough; ++i) {
+    const std::string name = plan.name(runs[i]);
+    if (!folder.has(name, Part::finished)) continue;
     const auto complaint =
-        folder.read(plan.name(run), Part::finished, plan.identity(run), [](const ResultReader&) {});
+        folder.read(name, Part::finished, plan.identity(runs[i]), [](const ResultReader&) {});
     if (!complaint || !complaint->starts_with("belongs")) return;
     wrong = *complaint;
     ++seen;
@@ -68,11 +68,11 @@ void refuse_foreign_folder(const SweepPlan& plan, ShardFolder& folder,
 }
 
 /// Throws InputError where work of an earlier sweep would be overwritten.
-void refuse_leftovers(const SweepPlan& plan, const ShardFolder& folder,
-                      const std::vector<std::size_t>& runs) {
+void refuse_leftovers(const SweepPlan& plan, const ShardFolder& folder, const ScatteredRuns& runs) {
   if (plan.settings.resume) return;
-  for (std::size_t run : runs)
-    if (folder.has(plan.name(run), Part::finished) || folder.has(plan.name(run), Part::unfinished))
+  for (std::size_t i = 0; i < runs.size(); ++i)
+    if (const std::string name = plan.name(runs[i]);
+        folder.has(name, Part::finished) || folder.has(name, Part::unfinished))
       throw InputError(folder.path().string() +
                        " holds points of an earlier sweep: --resume goes on with them; remove the "
                        "folder to begin again");

@@ -53,7 +53,8 @@ std::vector<double> swept_values(const SweepPlan& plan, const std::string& key) 
   std::vector<double> values;
   for (const SweepAxis& axis : plan.points.axes)
     if (axis.key == key)
-      for (const std::string& text : axis.values) values.push_back(parse_complex(key, text).real());
+      for (const std::string& text : axis.values.texts())
+        values.push_back(parse_complex(key, text).real());
   return values;
 }
 

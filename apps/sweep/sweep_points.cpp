@@ -22,26 +22,25 @@ std::vector<std::string> texts_of(std::span<const double> values) {
 std::vector<SweepAxis> given_axes(const Keys& keys, const SweepLists& lists) {
   std::vector<SweepAxis> axes;
   for (const std::string& key : lists.keys) {
-    SweepAxis axis{key, {}};
+    std::vector<std::string> values;
     if (const auto numbers = lists.numbers.find(key); numbers != lists.numbers.end())
-      axis.values = texts_of(keys.read(numbers->second));
+      values = texts_of(keys.read(numbers->second));
     else
       for (const std::string& text : keys.read(lists.texts.at(key)))
-        axis.values.push_back(number_text(parse_complex(key, text)));
-    if (!axis.values.empty()) axes.push_back(std::move(axis));
+        values.push_back(number_text(parse_complex(key, text)));
+    if (!values.empty()) axes.push_back({key, std::move(values)});
   }
   return axes;
 }
 
 /// A column of the table as an axis: one value for each point.
 SweepAxis column_axis(const Table& table, const std::string& key) {
-  SweepAxis axis{key, texts_of(table.column(key))};
-  if (key == "index" && table.has("index_imaginary")) {
-    const auto real = table.column("index"), imaginary = table.column("index_imaginary");
-    for (std::size_t row = 0; row < real.size(); ++row)
-      axis.values[row] = number_text(Complex(real[row], imaginary[row]));
-  }
-  return axis;
+  if (key != "index" || !table.has("index_imaginary")) return {key, texts_of(table.column(key))};
+  const auto real = table.column("index"), imaginary = table.column("index_imaginary");
+  std::vector<std::string> values;
+  for (std::size_t row = 0; row < real.size(); ++row)
+    values.push_back(number_text(Complex(real[row], imaginary[row])));
+  return {key, std::move(values)};
 }
 
 void check_columns(const Table& table, const SweepLists& lists) {
@@ -68,9 +67,10 @@ SweepPoints listed(const Keys& keys, const SweepLists& lists) {
     if (beside != given.end() && (table.has(key) || beside->values.size() > 1))
       throw InputError(key, beside->values.back(),
                        "must be one value, or a column of the table of points, not both");
-    list.axes.push_back(beside == given.end()
-                            ? column_axis(table, key)
-                            : SweepAxis{key, std::vector(table.rows(), beside->values.front())});
+    list.axes.push_back(
+        beside == given.end()
+            ? column_axis(table, key)
+            : SweepAxis{key, std::vector<std::string>(table.rows(), beside->values.front())});
   }
   return list;
 }
@@ -91,11 +91,11 @@ std::size_t SweepPoints::count() const {
   return count;
 }
 
-const std::string& SweepPoints::value(std::size_t axis, std::size_t point) const {
+std::string SweepPoints::value(std::size_t axis, std::size_t point) const {
   if (!is_list)
     for (std::size_t faster = axes.size() - 1; faster > axis; --faster)
       point /= axes[faster].values.size();
-  const auto& values = axes[axis].values;
+  const AxisValues& values = axes[axis].values;
   return values[point % values.size()];
 }
 

@@ -4,14 +4,15 @@
 #include <string>
 #include <vector>
 
+#include "apps/sweep/axis_values.h"
 #include "core/keys/keys.h"
 
 namespace flatspeckle::apps {
 
-/// A key that a sweep varies, and its values, as text that reads back as the same numbers.
+/// A key that a sweep varies, and its values.
 struct SweepAxis {
   std::string key;
-  std::vector<std::string> values;
+  AxisValues values;
 };
 
 /// The points of a sweep: the product of its axes, last axis fastest, or the rows of a list.
@@ -20,7 +21,7 @@ struct SweepPoints {
   bool is_list = false;
 
   std::size_t count() const;
-  const std::string& value(std::size_t axis, std::size_t point) const;
+  std::string value(std::size_t axis, std::size_t point) const;
   /// "g=0.5_albedo=1": a name for files.
   std::string name(std::size_t point) const;
   /// Sets the keys of a point.

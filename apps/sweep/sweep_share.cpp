@@ -19,13 +19,17 @@ SweepShare share_of(const std::string& text) {
   return share;
 }
 
-std::vector<std::size_t> scattered(std::size_t runs, const SweepShare& share) {
-  std::size_t stride = std::max<std::size_t>(1, runs * 618 / 1000);
-  while (std::gcd(stride, runs) != 1) ++stride;
-  std::vector<std::size_t> own;
-  for (std::size_t i = 0; i < runs; ++i)
-    if (i % share.count == share.number) own.push_back(i * stride % runs);
-  return own;
+ScatteredRuns::ScatteredRuns(std::size_t runs, const SweepShare& share)
+    : runs_(runs), stride_(std::max<std::size_t>(1, runs * 618 / 1000)), share_(share) {
+  while (std::gcd(stride_, runs_) != 1) ++stride_;
+}
+
+std::size_t ScatteredRuns::size() const {
+  return (runs_ + share_.count - 1 - share_.number) / share_.count;
+}
+
+std::size_t ScatteredRuns::operator[](std::size_t number) const {
+  return (share_.number + number * share_.count) * stride_ % runs_;
 }
 
 }  // namespace flatspeckle::apps

@@ -16,6 +16,16 @@ SweepShare share_of(const std::string& text);
 
 /// The share's runs of so many, scattered over all, so that what has been done at any time says
 /// something about what is left.
-std::vector<std::size_t> scattered(std::size_t runs, const SweepShare& share);
+class ScatteredRuns {
+ public:
+  explicit ScatteredRuns(std::size_t runs, const SweepShare& share = {});
+
+  std::size_t size() const;
+  std::size_t operator[](std::size_t number) const;
+
+ private:
+  std::size_t runs_, stride_;
+  SweepShare share_;
+};
 
 }  // namespace flatspeckle::apps

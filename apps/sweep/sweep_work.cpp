@@ -8,8 +8,8 @@
 
 namespace flatspeckle::apps {
 
-SweepWork::SweepWork(const SweepPlan& plan, ShardFolder& folder, std::vector<std::size_t> runs)
-    : plan_(plan), folder_(folder), runs_(std::move(runs)) {}
+SweepWork::SweepWork(const SweepPlan& plan, ShardFolder& folder, const ScatteredRuns& runs)
+    : plan_(plan), folder_(folder), runs_(runs) {}
 
 RunList SweepWork::list() {
   return {.count = runs_.size(),

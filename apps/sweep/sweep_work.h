@@ -17,7 +17,7 @@ namespace flatspeckle::apps {
 class SweepWork {
  public:
   /// Those of `runs`, by their numbers in the plan.
-  SweepWork(const SweepPlan& plan, ShardFolder& folder, std::vector<std::size_t> runs);
+  SweepWork(const SweepPlan& plan, ShardFolder& folder, const ScatteredRuns& runs);
 
   RunList list();
   /// After the pool has stopped.
@@ -42,7 +42,7 @@ class SweepWork {
 
   const SweepPlan& plan_;
   ShardFolder& folder_;
-  std::vector<std::size_t> runs_;
+  ScatteredRuns runs_;
   std::mutex mutex_;
   std::map<std::size_t, std::unique_ptr<Open>> open_;
 };

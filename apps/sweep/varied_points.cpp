@@ -20,11 +20,13 @@ constexpr double most_points = 1e6;
 }
 
 /// One text for one number: points are known by their texts.
-std::vector<std::string> values_of(const Key& key, const std::string& values) {
+AxisValues values_of(const Key& key, const std::string& values) {
   std::vector<std::string> texts;
   if (key.is_number()) {
-    for (const double value :
-         written_numbers("vary " + key.name(), values, written_kind(key.unit())))
+    const std::string name = "vary " + key.name();
+    const Written kind = written_kind(key.unit());
+    if (const auto range = written_range(name, values, kind)) return AxisValues(*range);
+    for (const double value : written_numbers(name, values, kind))
       texts.push_back(number_text(value));
     return texts;
   }
@@ -34,10 +36,15 @@ std::vector<std::string> values_of(const Key& key, const std::string& values) {
   return texts;
 }
 
+/// In a range only neighbours can be.
 void refuse_twins(const SweepAxis& axis) {
+  const NumberRange* const range = axis.values.range();
   std::set<std::string> seen;
-  for (const std::string& value : axis.values)
-    if (!seen.insert(value).second) refuse(axis.key, "has the value " + value + " twice");
+  for (std::size_t i = 0; i < axis.values.size(); ++i) {
+    const bool is_new = range == nullptr ? seen.insert(axis.values[i]).second
+                                         : i == 0 || range->at(i) != range->at(i - 1);
+    if (!is_new) refuse(axis.key, "has the value " + axis.values[i] + " twice");
+  }
 }
 
 SweepPoints grid_of(const VaryValues& values, const Keys& of) {
@@ -64,9 +71,9 @@ SweepPoints list_of(const std::string& path, const Keys& of) {
   points.is_list = true;
   for (const std::string& name : table.names()) {
     if (!varied_key(of, name, name).is_number()) refuse(name, "has no numbers, as a table has");
-    SweepAxis axis{name, {}};
-    for (const double value : table.column(name)) axis.values.push_back(number_text(value));
-    points.axes.push_back(std::move(axis));
+    std::vector<std::string> values;
+    for (const double value : table.column(name)) values.push_back(number_text(value));
+    points.axes.push_back({name, std::move(values)});
   }
   std::set<std::string> seen;
   for (std::size_t point = 0; point < points.count(); ++point)

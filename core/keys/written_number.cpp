@@ -71,27 +71,6 @@ std::vector<std::string> parts_of(const std::string& text, char between) {
   return parts;
 }
 
-std::vector<double> range(const std::string& key, const std::string& text, Written kind) {
-  const auto parts = parts_of(text, ':');
-  const bool ratios = parts.size() == 4 && trimmed(parts[3]) == "log";
-  const auto refuse = [&] { return InputError(key, text, range_form); };
-  if (parts.size() != 3 && !ratios) throw refuse();
-  const auto first = written_number(parts[0], kind), last = written_number(parts[1], kind);
-  const auto count = read_whole_number(std::string(trimmed(parts[2])));
-  if (!first || !last || !count || !std::isfinite(*first) || !std::isfinite(*last)) throw refuse();
-  if (*count < 2 || *count > most_steps)
-    throw InputError(key, text, "a range has from 2 to " + std::to_string(most_steps) + " values");
-  if (ratios && !(*first * *last > 0)) throw refuse();
-  std::vector<double> values;
-  for (std::int64_t i = 0; i < *count; ++i) {
-    const double share = static_cast<double>(i) / static_cast<double>(*count - 1);
-    values.push_back(ratios ? *first * std::pow(*last / *first, share)
-                            : *first * (1 - share) + *last * share);
-  }
-  values.back() = *last;
-  return values;
-}
-
 }  // namespace
 
 Written written_kind(const std::string& unit) {
@@ -118,12 +97,43 @@ const char* must_be_number(Written kind) {
                                 : "must be a number";
 }
 
+double NumberRange::at(std::size_t number) const {
+  if (number + 1 == count) return last;
+  const double share = static_cast<double>(number) / static_cast<double>(count - 1);
+  return in_ratios ? first * std::pow(last / first, share) : first * (1 - share) + last * share;
+}
+
+std::optional<std::size_t> NumberRange::find(double value) const {
+  std::size_t low = 0, high = count;
+  while (low < high) {
+    const std::size_t middle = (low + high) / 2;
+    const bool is_before = first < last ? at(middle) < value : at(middle) > value;
+    (is_before ? low : high) = is_before ? middle + 1 : middle;
+  }
+  return low < count && at(low) == value ? std::optional(low) : std::nullopt;
+}
+
+std::optional<NumberRange> written_range(const std::string& key, const std::string& text,
+                                         Written kind) {
+  if (text.find(':') == text.npos || text.find(',') != text.npos) return std::nullopt;
+  const auto parts = parts_of(text, ':');
+  const bool ratios = parts.size() == 4 && trimmed(parts[3]) == "log";
+  const auto refuse = [&] { return InputError(key, text, range_form); };
+  if (parts.size() != 3 && !ratios) throw refuse();
+  const auto first = written_number(parts[0], kind), last = written_number(parts[1], kind);
+  const auto count = read_whole_number(std::string(trimmed(parts[2])));
+  if (!first || !last || !count || !std::isfinite(*first) || !std::isfinite(*last)) throw refuse();
+  if (*count < 2 || *count > most_steps)
+    throw InputError(key, text, "a range has from 2 to " + std::to_string(most_steps) + " values");
+  if (ratios && !(*first * *last > 0)) throw refuse();
+  return NumberRange{*first, *last, static_cast<std::size_t>(*count), ratios};
+}
+
 std::vector<double> written_numbers(const std::string& key, const std::string& text, Written kind) {
   std::vector<double> values;
   for (const std::string& part : parts_of(text, ',')) {
-    if (part.find(':') != part.npos) {
-      const auto steps = range(key, part, kind);
-      values.insert(values.end(), steps.begin(), steps.end());
+    if (const auto range = written_range(key, part, kind)) {
+      for (std::size_t i = 0; i < range->count; ++i) values.push_back(range->at(i));
       continue;
     }
     const auto value = written_number(part, kind);

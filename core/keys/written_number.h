@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -21,8 +22,24 @@ std::optional<double> written_number(const std::string& text, Written kind);
 /// What is said of a text that is none.
 const char* must_be_number(Written kind);
 
-/// One or several of them: "0.1", "0, 0.1, pi", and ranges with both ends, "first:last:count" in
-/// equal steps or "first:last:count:log" in equal ratios. Throws InputError naming the key.
+/// Numbers from the first to the last, both among them, in equal steps or in equal ratios.
+struct NumberRange {
+  double first = 0, last = 0;
+  std::size_t count = 0;
+  bool in_ratios = false;
+
+  double at(std::size_t number) const;
+  /// The number of this value.
+  std::optional<std::size_t> find(double value) const;
+};
+
+/// "first:last:count" or "first:last:count:log"; nothing of a text without a colon or with a comma.
+/// Throws InputError naming the key.
+std::optional<NumberRange> written_range(const std::string& key, const std::string& text,
+                                         Written kind);
+
+/// One or several numbers and ranges of them: "0.1", "0, 0.1, pi", "0:1:11, 2". Throws InputError
+/// naming the key.
 std::vector<double> written_numbers(const std::string& key, const std::string& text, Written kind);
 
 }  // namespace flatspeckle

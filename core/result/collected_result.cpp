@@ -1,6 +1,7 @@
 #include "core/result/collected_result.h"
 
 #include <algorithm>
+#include <stdexcept>
 
 #include "core/result/byte_stream.h"
 
@@ -92,6 +93,50 @@ std::size_t CollectedDataset::count() const {
 const CollectedDataset* CollectedResult::find(const std::string& name) const {
   const auto found = std::ranges::find(datasets, name, &CollectedDataset::name);
   return found == datasets.end() ? nullptr : &*found;
+}
+
+void CollectedResult::add(CollectedDataset set) {
+  if (find(set.name) != nullptr) throw std::logic_error(set.name + ": written twice");
+  datasets.push_back(std::move(set));
+}
+
+void CollectedResult::begin(CollectedDataset set) {
+  std::size_t count = 1;
+  for (const std::size_t extent : extents(set)) count *= extent;
+  std::visit([&](auto& held) { held.resize(count); }, set.values);
+  add(std::move(set));
+}
+
+std::vector<std::size_t> CollectedResult::extents(const CollectedDataset& set) const {
+  if (set.is_scale) return {set.count()};
+  std::vector<std::size_t> extents;
+  for (const Axis& axis : set.axes) {
+    const auto* const plain = std::get_if<std::size_t>(&axis);
+    extents.push_back(plain != nullptr ? *plain : find(std::get<std::string>(axis))->count());
+  }
+  return extents;
+}
+
+void CollectedResult::put_block(const std::string& name, const Values& values,
+                                std::vector<std::size_t> start, std::vector<std::size_t> count) {
+  auto& set = *std::ranges::find(datasets, name, &CollectedDataset::name);
+  const auto extent = extents(set);
+  start.resize(extent.size());
+  for (std::size_t axis = count.size(); axis < extent.size(); ++axis) count.push_back(extent[axis]);
+  const auto place_of = [&](std::size_t i) {
+    std::size_t place = 0, stride = 1;
+    for (std::size_t axis = extent.size(); axis-- > 0; stride *= extent[axis]) {
+      place += (start[axis] + i % count[axis]) * stride;
+      i /= count[axis];
+    }
+    return place;
+  };
+  std::visit(
+      [&]<typename Value>(std::span<const Value> given) {
+        auto& held = std::get<std::vector<Value>>(set.values);
+        for (std::size_t i = 0; i < given.size(); ++i) held[place_of(i)] = given[i];
+      },
+      values);
 }
 
 bool CollectedResult::has_group(const std::string& name) const {

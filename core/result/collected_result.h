@@ -37,7 +37,17 @@ struct CollectedResult {
 
   /// nullptr where there is none.
   const CollectedDataset* find(const std::string& name) const;
+  /// Throws std::logic_error where there is one of this name.
+  void add(CollectedDataset set);
+  /// The same with all values 0, or empty.
+  void begin(CollectedDataset set);
+  /// As ResultFile::write_block.
+  void put_block(const std::string& name, const Values& values, std::vector<std::size_t> start,
+                 std::vector<std::size_t> count);
   bool has_group(const std::string& name) const;
+
+ private:
+  std::vector<std::size_t> extents(const CollectedDataset& set) const;
 };
 
 /// All of it into a file.

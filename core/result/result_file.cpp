@@ -42,6 +42,7 @@ struct Raw {
   Hdf5Handle type;
   std::size_t count, value_bytes;
   const void* first;
+  bool are_texts = false;
   std::vector<const char*> texts = {};
 };
 
@@ -52,10 +53,14 @@ Raw raw(const std::string& name, std::span<const Number> numbers) {
   return {hdf5_type<Number>(), numbers.size(), sizeof(Number), numbers.data()};
 }
 Raw raw(const std::string&, std::span<const std::string> texts) {
-  Raw raw{hdf5_type<std::string>(), texts.size(), sizeof(const char*), nullptr};
+  Raw raw{hdf5_type<std::string>(), texts.size(), sizeof(const char*), nullptr, true};
   for (const std::string& text : texts) raw.texts.push_back(text.c_str());
   raw.first = raw.texts.data();
   return raw;
+}
+
+Raw raw(const std::string& name, const Values& values) {
+  return std::visit([&](const auto& given) { return raw(name, given); }, values);
 }
 
 /// Chunks of at most 1 MiB, shaped by halving the longest axis.
@@ -97,29 +102,31 @@ class Writer {
     std::visit(Either{list, scalar}, value);
   }
 
-  void begin(const std::vector<std::string>& scales, const std::vector<std::size_t>& chunk) const {
-    std::vector<hsize_t> shape, stored(chunk.begin(), chunk.end());
-    for (std::size_t i = 0; i < scales.size(); ++i) {
-      shape.push_back(extent(scales[i]));
-      stored[i] = std::min(stored[i], shape[i]);
-    }
-    const Hdf5Handle set = create(hdf5_type<Complex>(), shape, compressed(stored));
-    for (unsigned i = 0; i < scales.size(); ++i) attach(set.get(), i, scales[i]);
+  /// Of values like these, which are none.
+  void begin(const Raw& none, const std::vector<Axis>& axes,
+             const std::vector<std::size_t>& chunk) const {
+    const auto shape = shape_of(axes);
+    attach(create(none.type, shape, storage(none, shape, chunk)), axes);
+  }
+
+  void begin_scale(const Raw& none, std::size_t count, std::size_t chunk) const {
+    make_scale(create(none.type, {count}, storage(none, {count}, {chunk})));
   }
 
   /// Opened and closed each time, so that no chunk waits in HDF5's cache for a full disk.
-  void block(std::span<const Complex> values, const std::vector<std::size_t>& start,
+  void block(const Raw& block, const std::vector<std::size_t>& start,
              const std::vector<std::size_t>& count) const {
-    const Raw block = raw(name_, values);
-    const std::vector<hsize_t> from(start.begin(), start.end()),
-        extents(count.begin(), count.end());
     const Hdf5Handle set = call_.handle(H5Dopen2(file_, name_.c_str(), H5P_DEFAULT), H5Dclose);
     const Hdf5Handle there = call_.handle(H5Dget_space(set.get()), H5Sclose);
+    std::vector<hsize_t> from(start.begin(), start.end()), extents = extents_of(there);
+    from.resize(extents.size());
+    std::ranges::copy(count, extents.begin());
     const Hdf5Handle here = call_.handle(dataspace(extents), H5Sclose);
     if (product(extents) != block.count)
       throw std::logic_error(name_ + ": the number of values does not fit the block");
-    call_.check(H5Sselect_hyperslab(there.get(), H5S_SELECT_SET, from.data(), nullptr,
-                                    extents.data(), nullptr));
+    if (!extents.empty())
+      call_.check(H5Sselect_hyperslab(there.get(), H5S_SELECT_SET, from.data(), nullptr,
+                                      extents.data(), nullptr));
     call_.check(
         H5Dwrite(set.get(), block.type.get(), here.get(), there.get(), H5P_DEFAULT, block.first));
     call_.check(H5Dflush(set.get()));
@@ -129,23 +136,18 @@ class Writer {
   Hdf5Handle values(const Raw& raw, const std::vector<hsize_t>& shape) const {
     if (product(shape) != raw.count)
       throw std::logic_error(name_ + ": the number of values does not fit the axes");
-    Hdf5Handle set = create(raw.type, shape, storage(raw, shape));
+    Hdf5Handle set = create(raw.type, shape, storage(raw, shape, {}));
     call_.check(H5Dwrite(set.get(), raw.type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, raw.first));
     return set;
   }
 
   /// Attached to those of the axes that have scales.
   void dataset(const Raw& raw, const std::vector<Axis>& axes) const {
-    std::vector<hsize_t> shape;
-    for (const Axis& axis : axes) shape.push_back(extent(axis));
-    const Hdf5Handle set = values(raw, shape);
-    for (unsigned i = 0; i < axes.size(); ++i)
-      if (const auto* scale = std::get_if<std::string>(&axes[i])) attach(set.get(), i, *scale);
+    attach(values(raw, shape_of(axes)), axes);
   }
 
   void scale(std::span<const double> numbers) const {
-    const Hdf5Handle set = values(raw(name_, numbers), {numbers.size()});
-    call_.check(H5DSset_scale(set.get(), last_part(name_).c_str()));
+    make_scale(values(raw(name_, numbers), {numbers.size()}));
   }
 
   void describe(const std::string& units, const std::string& long_name) const {
@@ -180,10 +182,12 @@ class Writer {
   }
 
   /// Small sets gain nothing from filters, which do not reach texts: HDF5 keeps these apart.
-  Hdf5Handle storage(const Raw& raw, const std::vector<hsize_t>& shape) const {
+  Hdf5Handle storage(const Raw& raw, std::vector<hsize_t> shape,
+                     const std::vector<std::size_t>& chunk) const {
     constexpr std::size_t small = 4096;
-    const bool plain = !raw.texts.empty() || raw.count * raw.value_bytes <= small;
-    return plain ? untimed() : compressed(chunk_shape(shape, raw.value_bytes));
+    if (raw.are_texts || product(shape) * raw.value_bytes <= small) return untimed();
+    for (std::size_t i = 0; i < chunk.size(); ++i) shape[i] = std::min<hsize_t>(shape[i], chunk[i]);
+    return compressed(chunk_shape(shape, raw.value_bytes));
   }
 
   /// No time stamps: the same results make the same bytes.
@@ -207,6 +211,20 @@ class Writer {
     return call_.handle(H5Dopen2(file_, scale.c_str(), H5P_DEFAULT), H5Dclose);
   }
 
+  std::vector<hsize_t> shape_of(const std::vector<Axis>& axes) const {
+    std::vector<hsize_t> shape;
+    for (const Axis& axis : axes) shape.push_back(extent(axis));
+    return shape;
+  }
+
+  std::vector<hsize_t> extents_of(const Hdf5Handle& space) const {
+    std::vector<hsize_t> extents(
+        static_cast<std::size_t>(call_.check(H5Sget_simple_extent_ndims(space.get()))));
+    if (!extents.empty())
+      call_.check(H5Sget_simple_extent_dims(space.get(), extents.data(), nullptr));
+    return extents;
+  }
+
   hsize_t extent(const Axis& axis) const {
     if (const auto* plain = std::get_if<std::size_t>(&axis)) return *plain;
     const Hdf5Handle scale = open_scale(std::get<std::string>(axis));
@@ -214,10 +232,18 @@ class Writer {
     return static_cast<hsize_t>(call_.check(H5Sget_simple_extent_npoints(space.get())));
   }
 
-  void attach(hid_t set, unsigned axis, const std::string& name) const {
-    const Hdf5Handle scale = open_scale(name);
-    call_.check(H5DSattach_scale(set, scale.get(), axis));
-    call_.check(H5DSset_label(set, axis, last_part(name).c_str()));
+  void make_scale(const Hdf5Handle& set) const {
+    call_.check(H5DSset_scale(set.get(), last_part(name_).c_str()));
+  }
+
+  void attach(const Hdf5Handle& set, const std::vector<Axis>& axes) const {
+    for (unsigned i = 0; i < axes.size(); ++i) {
+      const auto* const name = std::get_if<std::string>(&axes[i]);
+      if (name == nullptr) continue;
+      const Hdf5Handle scale = open_scale(*name);
+      call_.check(H5DSattach_scale(set.get(), scale.get(), i));
+      call_.check(H5DSset_label(set.get(), i, last_part(*name).c_str()));
+    }
   }
 
   template <typename Item>
@@ -256,41 +282,6 @@ CollectedDataset::Held held(const std::string& name, const Values& values) {
         return std::vector<Value>(given.begin(), given.end());
       },
       values);
-}
-
-void collect(CollectedResult& all, CollectedDataset set) {
-  if (all.find(set.name) != nullptr) throw std::logic_error(set.name + ": written twice");
-  all.datasets.push_back(std::move(set));
-}
-
-std::vector<std::size_t> extents(const CollectedResult& all, const CollectedDataset& set) {
-  std::vector<std::size_t> extents;
-  for (const Axis& axis : set.axes)
-    extents.push_back(all.find(std::get<std::string>(axis))->count());
-  return extents;
-}
-
-/// All zeros.
-void begin_blocks(CollectedResult& all, CollectedDataset set) {
-  std::size_t count = 1;
-  for (const std::size_t extent : extents(all, set)) count *= extent;
-  set.values = std::vector<Complex>(count);
-  collect(all, std::move(set));
-}
-
-void put_block(CollectedResult& all, const std::string& name, std::span<const Complex> values,
-               const std::vector<std::size_t>& start, const std::vector<std::size_t>& count) {
-  auto& set = *std::ranges::find(all.datasets, name, &CollectedDataset::name);
-  auto& held = std::get<std::vector<Complex>>(set.values);
-  const auto extent = extents(all, set);
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    std::size_t place = 0, stride = 1, rest = i;
-    for (std::size_t axis = extent.size(); axis-- > 0; stride *= extent[axis]) {
-      place += (start[axis] + rest % count[axis]) * stride;
-      rest /= count[axis];
-    }
-    held[place] = values[i];
-  }
 }
 
 /// All that HDF5 can lack for a file in memory.
@@ -372,42 +363,62 @@ void ResultFile::attribute(const std::string& object, const std::string& name,
 void ResultFile::scale(const std::string& name, std::span<const double> values,
                        const std::string& units, const std::string& long_name) {
   if (collected_ != nullptr)
-    return collect(*collected_, {name, true, {}, units, long_name, held(name, values)});
+    return collected_->add({name, true, {}, units, long_name, held(name, values)});
   make_room(values.size_bytes());
   const Writer writer(file_.get(), path_.string(), name);
   writer.scale(values);
   writer.describe(units, long_name);
 }
 
+void ResultFile::scale(const std::string& name, std::size_t count,
+                       const std::function<double(std::size_t)>& value, const std::string& units,
+                       const std::string& long_name) {
+  const std::size_t at_once = collected_ != nullptr ? count : 8192;
+  std::vector<double> values;
+  const auto make = [&](std::size_t first) {
+    values.resize(std::min(at_once, count - first));
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = value(first + i);
+  };
+  make(0);
+  if (count <= at_once) return scale(name, values, units, long_name);
+  make_room(0);
+  const Writer writer(file_.get(), path_.string(), name);
+  writer.begin_scale(raw(name, std::span<const double>()), count, at_once);
+  writer.describe(units, long_name);
+  for (std::size_t first = 0; first < count; first += at_once) {
+    make(first);
+    write_block(name, std::span<const double>(values), {first}, {values.size()});
+  }
+}
+
 void ResultFile::dataset(const std::string& name, const Values& values,
                          const std::vector<Axis>& axes, const std::string& units,
                          const std::string& long_name) {
   if (collected_ != nullptr)
-    return collect(*collected_, {name, false, axes, units, long_name, held(name, values)});
+    return collected_->add({name, false, axes, units, long_name, held(name, values)});
   make_room(bytes_of(values));
   const Writer writer(file_.get(), path_.string(), name);
-  std::visit([&](const auto& given) { writer.dataset(raw(name, given), axes); }, values);
+  writer.dataset(raw(name, values), axes);
   writer.describe(units, long_name);
 }
 
-void ResultFile::begin_dataset(const std::string& name, const std::vector<std::string>& axes,
-                               const std::vector<std::size_t>& chunk, const std::string& units,
-                               const std::string& long_name) {
+void ResultFile::begin_dataset(const std::string& name, const Values& none,
+                               const std::vector<Axis>& axes, const std::vector<std::size_t>& chunk,
+                               const std::string& units, const std::string& long_name) {
   if (collected_ != nullptr)
-    return begin_blocks(*collected_,
-                        {name, false, {axes.begin(), axes.end()}, units, long_name, {}});
+    return collected_->begin({name, false, axes, units, long_name, held(name, none)});
   make_room(0);
   const Writer writer(file_.get(), path_.string(), name);
-  writer.begin(axes, chunk);
+  writer.begin(raw(name, none), axes, chunk);
   writer.describe(units, long_name);
 }
 
-void ResultFile::write_block(const std::string& name, std::span<const Complex> values,
+void ResultFile::write_block(const std::string& name, const Values& values,
                              const std::vector<std::size_t>& start,
                              const std::vector<std::size_t>& count) {
-  if (collected_ != nullptr) return put_block(*collected_, name, values, start, count);
-  make_room(values.size_bytes());
-  Writer(file_.get(), path_.string(), name).block(values, start, count);
+  if (collected_ != nullptr) return collected_->put_block(name, values, start, count);
+  make_room(bytes_of(values));
+  Writer(file_.get(), path_.string(), name).block(raw(name, values), start, count);
 }
 
 void ResultFile::commit() {

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
 #include <span>
@@ -65,18 +66,22 @@ class ResultFile {
   /// values have no unit.
   void scale(const std::string& name, std::span<const double> values, const std::string& units,
              const std::string& long_name);
+  /// The same of very many values, which are made when they are written.
+  void scale(const std::string& name, std::size_t count,
+             const std::function<double(std::size_t)>& value, const std::string& units,
+             const std::string& long_name);
   /// No axes: one scalar.
   void dataset(const std::string& name, const Values& values, const std::vector<Axis>& axes,
                const std::string& units, const std::string& long_name);
 
-  /// A complex dataset whose values come in blocks, compressed by chunks of this shape. Axes with
-  /// scales only. What no block brings is 0.
-  void begin_dataset(const std::string& name, const std::vector<std::string>& axes,
+  /// A dataset whose values, of the kind of `none`, come in blocks, compressed by chunks of this
+  /// shape; axes that it does not reach are whole. What no block brings is 0 or empty.
+  void begin_dataset(const std::string& name, const Values& none, const std::vector<Axis>& axes,
                      const std::vector<std::size_t>& chunk, const std::string& units,
                      const std::string& long_name);
-  /// Values of a block from index `start` on, of `count` along each axis; best of whole chunks.
-  /// Throws IoError.
-  void write_block(const std::string& name, std::span<const Complex> values,
+  /// Values of a block from index `start` on, of `count` along each axis; axes that these do not
+  /// reach are whole. Best of whole chunks. Throws IoError.
+  void write_block(const std::string& name, const Values& values,
                    const std::vector<std::size_t>& start, const std::vector<std::size_t>& count);
 
   /// Remembers estimates whose errors are likely too small, as "intensity: 2 of 8", to tell the

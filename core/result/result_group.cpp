@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <numeric>
 #include <sstream>
 #include <stdexcept>
 
@@ -80,16 +79,15 @@ void ResultGroup::put(const std::string& path, const Estimate& estimate) const {
 
 void ResultGroup::number(const std::string& path, std::size_t count) const {
   if (row(path).data != Data::numbers) throw std::logic_error(path + ": its row is no count");
-  std::vector<double> numbers(count);
-  std::iota(numbers.begin(), numbers.end(), 0.0);
-  write(row(path), numbers);
+  file_.scale(
+      prefix_ + path, count, [](std::size_t i) { return static_cast<double>(i); }, unit(row(path)),
+      row(path).long_name);
 }
 
 void ResultGroup::begin(const std::string& path, const std::vector<std::size_t>& chunk) const {
   const DatasetRow& found = row(path);
-  std::vector<std::string> scales;
-  for (const Axis& axis : axes(found)) scales.push_back(std::get<std::string>(axis));
-  file_.begin_dataset(prefix_ + path, scales, chunk, unit(found), found.long_name);
+  file_.begin_dataset(prefix_ + path, std::span<const Complex>(), axes(found), chunk, unit(found),
+                      found.long_name);
 }
 
 void ResultGroup::attribute(const std::string& object, const std::string& name,

@@ -85,6 +85,7 @@ TEST_CASE("values are finite there too, and names stand once") {
   file.dataset("good", std::span(tilts), {std::size_t{2}}, "1", "numbers");
   CHECK_THROWS_AS(file.dataset("good", std::span(tilts), {std::size_t{2}}, "1", "again"),
                   std::logic_error);
-  file.begin_dataset("blocks", {}, {}, "1", "blocks");
-  CHECK_THROWS_AS(file.begin_dataset("blocks", {}, {}, "1", "again"), std::logic_error);
+  file.begin_dataset("blocks", std::span<const Complex>(), {}, {}, "1", "blocks");
+  CHECK_THROWS_AS(file.begin_dataset("blocks", std::span<const Complex>(), {}, {}, "1", "again"),
+                  std::logic_error);
 }

@@ -253,20 +253,22 @@ TEST_CASE("a dataset written in blocks comes back whole, in memory and on disk")
   const Folder folder;
   std::vector<Complex> values(2 * 5 * 7);
   for (std::size_t i = 0; i < values.size(); ++i) values[i] = {static_cast<double>(i), -1};
+  const std::span<const Complex> none;
   for (const auto storage : {ResultFile::Storage::memory, ResultFile::Storage::disk}) {
     ResultFile file(folder / "blocks.h5", storage);
     file.scale("a", std::vector<double>{0, 1}, "1", "");
     file.scale("b", std::vector<double>(5, 1.0), "1", "");
     file.scale("c", std::vector<double>(7, 1.0), "1", "");
-    file.begin_dataset("u", {"a", "b", "c"}, {1, 4, 64}, "1", "blocks");
+    file.begin_dataset("u", none, {"a", "b", "c"}, {1, 4, 64}, "1", "blocks");
     for (const std::size_t first : {3, 0})  // rows 3 and 4, then 0 to 2 of b
       for (const std::size_t a : {0, 1}) {
         const std::size_t count = first == 0 ? 3 : 2;
-        file.write_block("u", std::span(values).subspan(7 * (5 * a + first), 7 * count),
-                         {a, first, 0}, {1, count, 7});
+        file.write_block("u",
+                         std::span<const Complex>(values).subspan(7 * (5 * a + first), 7 * count),
+                         {a, first}, {1, count});
       }
     CHECK_THROWS_AS(file.write_block("u", values, {0, 0, 0}, {1, 1, 1}), std::logic_error);
-    CHECK_THROWS_AS(file.begin_dataset("u", {"a"}, {1}, "1", ""), std::logic_error);
+    CHECK_THROWS_AS(file.begin_dataset("u", none, {"a"}, {1}, "1", ""), std::logic_error);
     file.commit();
     const ResultReader reader(folder / "blocks.h5");
     CHECK(reader.dataset<Complex>("u") == values);
