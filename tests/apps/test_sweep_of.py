@@ -3,13 +3,15 @@
 import os
 import shutil
 import signal
+import subprocess
+import sys
 import time
 import unittest
 
 import h5py
 import numpy as np
 
-from program import PROGRAM, datasets
+from program import PROGRAM, datasets, flags
 from sweeps import SweepTest
 
 GUIDE = {"field": "ultrasound", "index": 1.33, "sound_wavenumber": 3.4, "stage_box": [-5, -5, 0, 5, 5, 10],
@@ -127,6 +129,10 @@ class SweepOf(SweepTest):
             self.assertEqual(list(file["method_word"].asstr()), ["light", "path"])
             self.assertIn("energy/emitted", file.attrs["left_out"])  # of light paths alone
             self.assertEqual(file["total"].shape, (2,))
+        self.call("sweep", **{**keys, "vary": ["method=light,path", "g=0,0.5"]}, out="part.h5", shard="0/2")
+        self.call("merge", out="part.h5", partial=True, status=3)
+        with h5py.File(self.folder / "part.h5") as file:
+            self.assertEqual(sorted(zip(file["method_word"].asstr(), file["g"])), [("light", 0), ("path", 0)])
 
     def test_threads(self):
         self.call("sweep", **{**GRID, "threads": 1}, out="one.h5")
@@ -201,6 +207,38 @@ class SweepOf(SweepTest):
         self.call("sweep", **MANY, out="whole.h5")
         self.assert_same("sweep.h5", "whole.h5")
         self.assertGreater(before, 0)
+
+    def test_finished_points_are_known(self):
+        """By their names alone, whatever the points are made of."""
+        self.write("points.csv", "amplitude,sensor_size.0\n0.002,2\n0,1\n0.002,1\n")
+        for points in ({"vary": ["amplitude=1e-4:1e-2:4:log", "method=path,light"], "method": None},
+                       {"vary": ["sensor_size.0=2:1:3", "g=0.5,0:0.3:4"], "amplitude": 0.001}, {"vary": None, "points": "points.csv"}):
+            with self.subTest(points=points):
+                keys = {**GRID, "samples": 64, **points, "out": "sweep.h5", "shard": "0/1"}
+                self.call("sweep", **keys)
+                before = self.shards()
+                self.call("sweep", **keys, resume=True)
+                self.assertEqual(self.shards(), before)
+                shutil.rmtree(self.points())
+
+    def test_memory(self):
+        """Is the same for many points as for a few, where as many as a chunk has are no few."""
+        rays = {"of": "trace", "field": "ultrasound", "index": 1.33, "sound_wavenumber": 3.5, "light": "line",
+                "ray_count": 2, "beam_radius": 0.25, "stop_plane": [0, 0, 0.1, 0, 0, 1], "max_length": 1, "step": 0.05,
+                "threads": 1}
+        peaks = [self.peak_memory("sweep", **rays, vary=f"amplitude=1e-3:2e-3:{points}", out=f"{points}.h5")
+                 for points in (9000, 24000)]
+        self.assertLess(peaks[1] - peaks[0], 2 ** 20)
+        amplitudes = datasets(self.folder / "24000.h5")["amplitude"]
+        np.testing.assert_allclose(amplitudes, np.linspace(1e-3, 2e-3, 24000), rtol=1e-15)
+
+    def peak_memory(self, *words, **keys):
+        """In bytes: as the child of a small process, whose own is counted until the program begins."""
+        tell = ("import resource, subprocess, sys; subprocess.run(sys.argv[1:], check=True, capture_output=True); "
+                "print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)")
+        done = subprocess.run([sys.executable, "-S", "-c", tell, PROGRAM, *words, *flags(keys)], cwd=self.folder,
+                              capture_output=True, text=True, check=True)
+        return int(done.stdout) * 1024
 
     def test_complete(self):
         self.call("sweep", **GRID, out="sweep.h5")

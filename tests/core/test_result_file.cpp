@@ -15,6 +15,7 @@
 
 #include "core/error.h"
 #include "core/result/atomic_file.h"
+#include "core/result/collected_result.h"
 #include "core/result/provenance.h"
 #include "core/result/result_file.h"
 #include "core/result/result_reader.h"
@@ -274,6 +275,38 @@ TEST_CASE("a dataset written in blocks comes back whole, in memory and on disk")
     CHECK(reader.dataset<Complex>("u") == values);
     CHECK(folder.entries() == 1);
   }
+}
+
+TEST_CASE("blocks of all kinds, and a scale that is made as it is written") {
+  const Folder folder;
+  constexpr std::size_t count = 20'000;  // more than are written at once
+  CollectedResult collected;
+  const auto write = [&](ResultFile& file) {
+    file.scale(
+        "x", count, [](std::size_t i) { return 0.5 * static_cast<double>(i); }, "1", "");
+    file.begin_dataset("n", std::span<const std::uint64_t>(), {"x"}, {7000}, "1", "");
+    file.begin_dataset("word", std::span<const std::string>(), {"x", std::size_t{2}}, {7000}, "",
+                       "");
+    for (std::size_t first = 0; first < count; first += 7000) {
+      const std::size_t points = std::min<std::size_t>(7000, count - first);
+      const std::vector<std::uint64_t> numbers(points, first);
+      const std::vector<std::string> words(2 * points, std::to_string(first));
+      file.write_block("n", std::span(numbers), {first}, {points});
+      file.write_block("word", std::span(words), {first}, {points});
+    }
+  };
+  ResultFile in_memory(collected), file(folder / "blocks.h5", ResultFile::Storage::disk);
+  write(in_memory);
+  write(file);
+  file.commit();
+  const ResultReader reader(folder / "blocks.h5");
+  const auto x = reader.dataset<double>("x"), n = reader.dataset<double>("n");
+  CHECK(x[19'999] == 0.5 * 19'999);
+  CHECK(x == std::get<0>(collected.find("x")->values));
+  const auto& numbers = std::get<2>(collected.find("n")->values);
+  CHECK(numbers[13'999] == 7000);
+  CHECK(std::ranges::equal(n, numbers));
+  CHECK(std::get<3>(collected.find("word")->values)[2 * 14'000 - 1] == "7000");
 }
 
 TEST_CASE("a file on disk leaves nothing without commit or room, and the old one alone") {

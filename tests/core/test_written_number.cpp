@@ -58,9 +58,21 @@ TEST_CASE("lists and ranges of numbers") {
   for (int i = 0; i < 4; ++i)
     CHECK(steps[i] == doctest::Approx(std::pow(10, i - 4)).epsilon(1e-14));
   CHECK(numbers("0:10deg:11").back() == doctest::Approx(pi / 18).epsilon(1e-15));
+  CHECK(written_range("tilts", "0:1:5", Written::number)->at(3) == 0.75);
+  CHECK_FALSE(written_range("tilts", "0:1:5,2", Written::number).has_value());
   CHECK(refusal("0:0.1:1") == "tilts = 0:0.1:1: a range has from 2 to 1000000 values");
   for (const char* text :
        {"0:1", "0:1:2:3", "0:1:5:log", "-1:1:5:log", "a:1:5", "0:1:2.5", "0:inf:3"})
     CHECK(refusal(text).find("must be first:last:count") != std::string::npos);
   CHECK(refusal("0,,1") == "tilts = 0,,1: must be a number such as 0.1, pi/2 or 30deg");
+}
+
+TEST_CASE("a range knows the numbers of its values, and of no others") {
+  for (const char* text : {"0:1:11", "-0.3:-7:1001", "1e-4:0.1:997:log", "3:1e-9:50:log"}) {
+    const auto range = written_range("tilts", text, Written::number);
+    for (std::size_t i = 0; i < range->count; ++i) CHECK(range->find(range->at(i)) == i);
+    CHECK_FALSE(range->find(std::nextafter(range->at(5), 10)).has_value());
+    CHECK_FALSE(range->find(1e3).has_value());
+    CHECK_FALSE(range->find(-1e3).has_value());
+  }
 }
