@@ -5,6 +5,7 @@
 
 #include "bench/oracles/lamp_map.h"
 #include "bench/oracles/peierls_slab.h"
+#include "bench/scenes/meshes.h"
 #include "bench/scenes/render_scenes.h"
 #include "grin/render/map_datasets.h"
 
@@ -85,6 +86,50 @@ std::vector<ErrorRun> closed_form(const RenderScenePointer& named) {
   return runs;
 }
 
+/// A ring of triangles, of fog with an index of its own.
+std::shared_ptr<const RenderScene> even_ring() {
+  RenderScene scene = even_luneburg();
+  scene.field = grin::Homogeneous{0.4};
+  scene.stage = {.boundary = grin::Box{{-1, -1, -1}, {1, 1, 1}},
+                 .medium = {},
+                 .bodies = {{smooth(torus_mesh(), 0.05), {.mu_s = 2}}}};
+  return std::make_shared<const RenderScene>(scene);
+}
+
+/// What a ball of this radius leaves of a beam of radius 1 that it absorbs within a radius.
+double left_by_ball(double radius) {
+  constexpr double depth = 2;  // across the ball
+  const double through = 2 * (1 - (1 + depth) * std::exp(-depth)) / (depth * depth);
+  return 1 - radius * radius * (1 - through);
+}
+
+/// A ball of triangles, against the ball of its volume.
+ErrorRun absorbing_ball() {
+  const grin::LevelSurface ball = smooth(ball_mesh(5), 0.06);
+  const double radius = std::cbrt(0.75 * ball.meant_volume() / std::numbers::pi);
+  RenderScene scene{};
+  scene.stage = {.boundary = grin::Box{{-1.5, -1.5, -1.5}, {1.5, 1.5, 1.5}},
+                 .medium = {},
+                 .bodies = {{ball, {.mu_a = 1 / radius}}}};
+  scene.lights = {grin::BeamLight{{0, 0, -1.5}, grin::Vec3::UnitZ(), 1.2}};
+  scene.sensors = {
+      grin::AreaDetector{{0, 0, 1.5}, grin::Vec3::UnitY(), 3, 3, {}, std::numbers::pi / 2}};
+  const RenderScenePointer named{"absorbing_ball", std::make_shared<const RenderScene>(scene)};
+  return run_of(method_of(named, "ball of triangles", RenderMethod::light), [=] {
+    return ErrorReference{{left_by_ball(radius / 1.2) / 9}, 0, "closed form, ball of its volume"};
+  });
+}
+
+std::vector<ErrorRun> mesh_runs() {
+  const RenderScenePointer ring{"ring_even", even_ring()};
+  const auto irradiance = [scene = ring.scene] {
+    return even_light(render_job(*scene, {RenderMethod::light}, 0).pictures);
+  };
+  return {run_of(method_of(ring, "light tracing", RenderMethod::light), irradiance),
+          run_of(method_of(ring, "bidirectional", RenderMethod::bidirectional), irradiance),
+          absorbing_ball()};
+}
+
 /// Fluence in absorbing fog around a lamp.
 ErrorRun map_run() {
   constexpr double albedo = 0.9;
@@ -158,6 +203,7 @@ std::vector<ErrorRun> render_error_runs() {
   append(runs, closed_form({"balls_even", std::make_shared<const RenderScene>(even_balls())}));
   append(runs, without_variance(
                    {"glass_ball_beam", std::make_shared<const RenderScene>(beam_on_glass_ball())}));
+  append(runs, mesh_runs());
   runs.push_back(map_run());
   runs.push_back(gradient_run());
   return runs;

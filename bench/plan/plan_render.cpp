@@ -5,6 +5,7 @@
 #include "bench/oracles/lamp_map.h"
 #include "bench/plan/plan_rooms.h"
 #include "bench/plan/plan_timing.h"
+#include "bench/scenes/meshes.h"
 #include "bench/scenes/render_scenes.h"
 #include "grin/estimators/analog_light.h"
 #include "grin/estimators/path_kernels.h"
@@ -172,6 +173,25 @@ PlanCase aimed_light() {
                });
 }
 
+SampledKernel kernel_of(const RenderJob& job) {
+  const auto pixels = job.pictures / static_cast<std::size_t>(job.bins.sums());
+  return {job.batches.size, static_cast<double>(job.batches.samples_per_batch), job.batches.run,
+          [pixels, all = steady(pixels)](double samples, std::span<const Complex> sums) {
+            return all(samples, sums.first(pixels));
+          }};
+}
+
+/// The method that the pilot chooses, in place of the same for all scenes.
+PlanCase chosen_over(RenderMethod other, const std::string& name, const RenderScene& scene) {
+  return named("render", method_word(other) + " for all scenes", name, [=](double cpu_seconds) {
+    PlanRow row{.per = "1 % error"};
+    compare_sampled(row, kernel_of(render_job(scene, {other}, 1)),
+                    kernel_of(render_job(scene, {}, 2)), Numbers::other, Measure::error,
+                    cpu_seconds);
+    return row;
+  });
+}
+
 RenderScene absorbing_slab() {
   RenderScene scene{};
   scene.stage.boundary = Box{Vec3(-200, -200, 0), Vec3(200, 200, 10)};
@@ -180,6 +200,37 @@ RenderScene absorbing_slab() {
   scene.lights = {BeamLight{{0, 0, 0}, {0, 0, 1}, 1}};
   scene.sensors = {AreaDetector{{0, 0, 10}, {0, 1, 0}, 400, 400, {}, 1.57}};
   return scene;
+}
+
+/// Scenes in which a method costs many times what another does, and in which another one does.
+void add_choices(std::vector<PlanCase>& rows) {
+  RenderScene fibre{};
+  fibre.field = ParabolicGuide({.axis_excess = 0.6, .alpha = 0.5});
+  fibre.step = 0.5;
+  fibre.max_length = 1000;
+  fibre.stage.boundary = Box{{-0.9, -0.9, 0}, {0.9, 0.9, 50}};
+  fibre.lights = {FaceLight{{0, 0, 0}, 0.1}};
+  fibre.sensors = {AreaDetector{{0, 0, 50}, {0, 1, 0}, 1, 1, {}, 0.5}};
+  RenderScene slab = lamp_scenes()[2].scene;
+  std::get<AreaDetector>(slab.sensors[0]).pixels = {1, 1};
+  for (const auto other : {RenderMethod::path, RenderMethod::light, RenderMethod::bidirectional}) {
+    rows.push_back(chosen_over(other, "clear fibre", fibre));
+    rows.push_back(chosen_over(other, "slab of OD 5", slab));
+  }
+}
+
+/// A ball by its equation, and as triangles.
+PlanCase ball_of_triangles(const std::string& name, RenderScene scene) {
+  return named("render", "triangles", name, [=](double cpu_seconds) {
+    PlanRow row{.per = "path"};
+    RenderScene general = scene;
+    general.stage.bodies[0].surface = smooth(ball_mesh(4), 0.1);
+    const RenderPlan plan = render_plan(scene);
+    compare_sampled(row, kernel_of(plan, general, transport_in(general)),
+                    kernel_of(plan, scene, transport_in(scene)), Numbers::other, Measure::sample,
+                    cpu_seconds);
+    return row;
+  });
 }
 
 }  // namespace
@@ -194,7 +245,7 @@ std::vector<PlanCase> render_plan_cases() {
   alone.stage.medium.mu_s = 1;
   constexpr auto same = Numbers::same, other = Numbers::other;
   const std::string box = "box of fog";
-  return {
+  std::vector<PlanCase> rows{
       flag("curved rays", box, alone, other, [](RenderPlan& p) { p.curved = true; }),
       flag("scattering", "clear ball in a box", clear, same,
            [](RenderPlan& p) { p.scatters = p.absorbs = true; }),
@@ -210,7 +261,11 @@ std::vector<PlanCase> render_plan_cases() {
       rays_alone(),
       aimed_light(),
       depth_in("slab of OD 10, albedo 0.9", absorbing_slab()),
-      map_alone()};
+      map_alone(),
+      ball_of_triangles("ball of fog", fog),
+      ball_of_triangles("clear ball in a box", clear)};
+  add_choices(rows);
+  return rows;
 }
 
 }  // namespace flatspeckle::bench

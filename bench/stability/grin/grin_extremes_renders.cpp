@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "bench/oracles/lamp_map.h"
 #include "bench/oracles/peierls_slab.h"
@@ -32,7 +33,9 @@ RunState run_state(const RenderJob& job, std::uint64_t samples) {
   run_batches(job.batches, options, state);
   return state;
 }
-Picture rendered(const RenderScene& scene, RenderMethod method, std::uint64_t samples) {
+/// No method: that which a pilot chooses.
+using Chosen = std::optional<RenderMethod>;
+Picture rendered(const RenderScene& scene, Chosen method, std::uint64_t samples) {
   const RenderJob job = render_job(scene, {method}, 1);
   return {rendered_picture(job, run_state(job, samples).sums).steady, *job.counts};
 }
@@ -70,8 +73,8 @@ RenderScene slab(const ScatteringMedium& medium, double thickness, bool reflecte
 }
 
 /// The beam's power of 1 that reaches a face.
-Estimate share(const ScatteringMedium& medium, double thickness, bool reflected,
-               RenderMethod method, std::uint64_t samples) {
+Estimate share(const ScatteringMedium& medium, double thickness, bool reflected, Chosen method,
+               std::uint64_t samples) {
   const RenderScene scene = slab(medium, thickness, reflected);
   Estimate found = rendered(scene, method, samples).pixels;
   const auto& detector = std::get<AreaDetector>(scene.sensors[0]);
@@ -81,8 +84,8 @@ Estimate share(const ScatteringMedium& medium, double thickness, bool reflected,
   return found;
 }
 
-Finding share_row(const ScatteringMedium& medium, double thickness, bool reflected,
-                  RenderMethod method, std::uint64_t samples, double expected, double largest_error,
+Finding share_row(const ScatteringMedium& medium, double thickness, bool reflected, Chosen method,
+                  std::uint64_t samples, double expected, double largest_error,
                   double accuracy = 0) {
   const Estimate found = share(medium, thickness, reflected, method, samples);
   return in_errors(found.value[0], found.error[0], expected, largest_error, accuracy);
@@ -273,6 +276,44 @@ void add_deep_slabs(ExtremeRows& rows) {
   row(200, "slab of OD 200, albedo 0.9: 3e-46 comes through");
 }
 
+/// What the pilot chooses brings the right number where it sees no light, or nothing but one path,
+/// or far more than it can try.
+void add_choices(ExtremeRows& rows) {
+  constexpr Chosen chosen;
+  rows.add("chosen method, a beam that misses the sensor, clear", "no light", [] {
+    RenderScene scene = slab({}, 1, false);
+    scene.lights = {BeamLight{{0, 0, 0.5}, Vec3::UnitX(), 0.01}};
+    const Picture dark = rendered(scene, chosen, 1000);
+    return Finding{std::abs(dark.pixels.value[0]) + dark.pixels.error[0], 0};
+  });
+  rows.add("chosen method, clear slab", "all comes through, in errors",
+           [] { return share_row({}, 1, false, chosen, 1000, 1, 1e-9, 1e-12); });
+  rows.add("chosen method, slab of OD 30 that absorbs all", "exp(-30), in errors", [] {
+    return share_row({0, 30}, 1, false, chosen, 1000, std::exp(-30.0), 1e-9, 1e-12);
+  });
+  rows.add("chosen method, slab of OD 0.01, reflected", "Peierls' equation, in errors", [] {
+    return share_row({0.01, 0}, 1, true, chosen, 100'000, isotropic_slab(0.01, 1).reflected, 0.1);
+  });
+  rows.add(
+      "chosen method, slab of OD 200, albedo 0.9: 3e-46 comes through",
+      "transport's decay with depth, in errors", [] {
+        return share_row({180, 20}, 1, false, chosen, 10'000, transmitted_deep(200), 0.05, 1e-4);
+      });
+  rows.add_slow("chosen method, slab of OD 1000, reflected", "Milne, in errors", [] {
+    const double through = 2.9078 / std::numbers::sqrt3 / (1000 + 2 * 0.7104);
+    return share_row({1000, 0}, 1, true, chosen, 10'000, 1 - through, 0.01);
+  });
+  for (const double size : {1e-3, 1e-9})
+    rows.add("chosen method, fog and a sensor of " + short_number(size), "irradiance pi, in errors",
+             [=] {
+               RenderScene scene = in_box(Homogeneous{}, fog(2, 0, 0.5));
+               scene.sensors = {AreaDetector{{0, 0, 1}, Vec3::UnitY(), size, size, {}, pi / 2}};
+               const Picture face = rendered(scene, chosen, 4000);
+               return in_errors(face.pixels.value[0], std::max(face.pixels.error[0], 1e-12), pi,
+                                0.1);
+             });
+}
+
 }  // namespace
 
 std::vector<ExtremeCase> render_extremes() {
@@ -282,6 +323,7 @@ std::vector<ExtremeCase> render_extremes() {
   add_gradients(rows);
   add_maps(rows);
   add_deep_slabs(rows);
+  add_choices(rows);
   return std::move(rows).rows();
 }
 
