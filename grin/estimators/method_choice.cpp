@@ -169,14 +169,31 @@ bool is_pinhole(const Sensor& sensor) {
   return camera && camera->lens_radius == 0;
 }
 
+/// Light goes straight on everywhere.
+bool has_even_index(const RenderScene& scene) {
+  const auto* const field = std::get_if<Homogeneous>(&scene.field);
+  if (field == nullptr) return false;
+  const auto excess = [&](Part part) {
+    return part == scene.stage.field_part() ? field->n_excess : scene.stage.excess_in(part);
+  };
+  for (Part part = around + 1; part < scene.stage.parts(); ++part)
+    if (excess(part) != excess(around)) return false;
+  return true;
+}
+
+/// Of sensors' paths: they hit such a light, or are joined to it without 1/r^2.
+bool is_evenly_met(const RenderScene& scene, const Light& light) {
+  return std::holds_alternative<FaceLight>(light) ||
+         (std::holds_alternative<BeamLight>(light) && has_even_index(scene));
+}
+
 }  // namespace
 
 bool has_finite_variance(const RenderScene& scene, RenderMethod method) {
   if (!render_plan(scene).scatters) return true;
   if (method == RenderMethod::path)
-    return std::none_of(scene.lights.begin(), scene.lights.end(), [](const Light& light) {
-      return !std::holds_alternative<FaceLight>(light);
-    });
+    return std::ranges::all_of(scene.lights,
+                               [&](const Light& light) { return is_evenly_met(scene, light); });
   return method != RenderMethod::light ||
          std::none_of(scene.sensors.begin(), scene.sensors.end(), is_pinhole);
 }

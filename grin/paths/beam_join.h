@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "grin/paths/transport.h"
+#include "grin/paths/path_join.h"
 
 namespace flatspeckle::grin {
 
@@ -35,6 +35,25 @@ void weigh_in_beam(const Transport& transport, const S& space, const PathVertex&
   next.density =
       beam.disk.density(start.point.x) * bounded_attenuation(flight.optical_depth) / way->thinning;
   next.first_of_other = 1;
+}
+
+/// A collision of a sensor's path as joined to the beam at `end`. density: of the place on the beam
+/// that the way comes from. The curve's spreading is what thins the light.
+inline JoinedPath joined_to_beam(const Transport& transport, const EndPosition& end, double density,
+                                 const PathVertex& z, const EndDirection& from_z,
+                                 const JoiningCurve& curve) {
+  PathVertex y = end_vertex(transport.strategies, end);
+  y.weight = 1;
+  const EndDirection from_y{curve.start_direction, density, transport.lights.power() * density};
+  return joined_path(transport.strategies, y, from_y, z, from_z, curve);
+}
+/// Along a way.
+inline JoinedPath joined_to_beam(const Transport& transport, const EndPosition& end,
+                                 const BeamWay& way, const PathVertex& z,
+                                 const EndDirection& from_z) {
+  const LightDisk& disk = transport.lights.beam_of(end).disk;
+  return joined_to_beam(transport, end, disk.density(way.place), z, from_z,
+                        {disk.axis(), -way.start_direction, way.thinning, way.optical_depth});
 }
 
 }  // namespace flatspeckle::grin

@@ -2,10 +2,10 @@
 
 #include <numbers>
 
+#include "grin/paths/beam_join.h"
 #include "grin/paths/film.h"
 #include "grin/paths/join_promises.h"
 #include "grin/paths/light_vertices.h"
-#include "grin/paths/path_join.h"
 #include "grin/paths/subpath.h"
 
 namespace flatspeckle::grin {
@@ -182,10 +182,8 @@ class Bidirectional {
     const auto way =
         space_.plainest_way_to_beam(z.point, beam.light(), random_, counts_.connections);
     if (!way || !beam.disk.contains(way->place)) return;
-    const JoinedPath path =
-        to_beam(end, beam.disk.density(way->place), z,
-                leaving(transport_, sensor(), z, way->start_direction),
-                {beam.disk.axis(), -way->start_direction, way->thinning, way->optical_depth});
+    const JoinedPath path = joined_to_beam(transport_, end, *way, z,
+                                           leaving(transport_, sensor(), z, way->start_direction));
     const double value = path.value * path.weight * way->transmittance / chance;
     promised_[at_].beams += value;
     add(pixel_, value, way->optical_path + z.optical_path);
@@ -201,19 +199,11 @@ class Bidirectional {
       density = std::max(density, elsewhere * beam.disk.density(light.x));
     if (!(density > 0)) return 0;
     const double depth = space_.least_depth(z.point, {*place, z.point.part});
-    const JoinedPath path = to_beam(end, density, z, facing(sensor(), z, -light.direction),
-                                    {light.direction, light.direction, 1, depth});
+    const JoinedPath path =
+        joined_to_beam(transport_, end, density, z, facing(sensor(), z, -light.direction),
+                       {light.direction, light.direction, 1, depth});
     return path.value * path.weight * std::exp(-depth);
   }
-  /// density: of the place on the beam. The curve's spreading is what thins the light.
-  JoinedPath to_beam(const EndPosition& end, double density, const PathVertex& z,
-                     const EndDirection& from_z, const JoiningCurve& curve) const {
-    PathVertex y = end_vertex(transport_.strategies, end);
-    y.weight = 1;
-    const EndDirection from_y{curve.start_direction, density, transport_.lights.power() * density};
-    return joined_path(transport_.strategies, y, from_y, z, from_z, curve);
-  }
-
   void join_to_end(const PathVertex& y, const PathVertex& z) {
     if (can_join(y, z)) join(y, z, promise(y, z));
   }

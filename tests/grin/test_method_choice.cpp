@@ -88,7 +88,7 @@ TEST_CASE("the method that is chosen is nearly as cheap as any, by the clock too
 }
 
 TEST_CASE("methods without finite variance are not chosen, and say so") {
-  const RenderScene scene = box(0.3, Homogeneous{}, beam, pinhole);
+  const RenderScene scene = box(0.3, Homogeneous{}, PointLight{{0, 0, 1}}, pinhole);
   CHECK(!has_finite_variance(scene, RenderMethod::path));
   CHECK(!has_finite_variance(scene, RenderMethod::light));
   CHECK(has_finite_variance(scene, RenderMethod::bidirectional));
@@ -100,6 +100,32 @@ TEST_CASE("methods without finite variance are not chosen, and say so") {
   CHECK(plan({RenderMethod::path}).find("no finite variance") != std::string::npos);
   CHECK(plan({RenderMethod::bidirectional}).find("no finite variance") == std::string::npos);
   CHECK(plan({}).starts_with("bidirectional (chosen by a pilot)"));
+}
+
+/// No 1/r^2 in any join: the error falls as that of independent samples, to the right value.
+TEST_CASE("path tracing of beams has finite variance where light goes straight on") {
+  const auto in_body = [&](double excess) {
+    RenderScene scene = box(0.3, Homogeneous{}, beam, pinhole);
+    scene.stage.bodies.push_back({Sphere{{0, 0, 4}, 0.8}, {.mu_s = 1}, excess});
+    std::get<Camera>(scene.sensors[0]).pixels = {1, 1};
+    return scene;
+  };
+  const auto is_finite = [](const RenderScene& scene) {
+    return has_finite_variance(scene, RenderMethod::path);
+  };
+  CHECK(!is_finite(in_body(0.2)));
+  CHECK(!is_finite(box(0.3, ParabolicGuide({.axis_excess = 0.6, .alpha = 0.5}), beam, pinhole)));
+  const RenderScene even = in_body(0);
+  CHECK(is_finite(even));
+  const auto found = [&](RenderMethod method, double samples) {
+    const RenderJob job = render_job(even, {method}, 3);
+    return rendered_picture(job, run_render(job, samples, 1).sums).steady;
+  };
+  const Estimate few = found(RenderMethod::path, 10'000), many = found(RenderMethod::path, 160'000);
+  const Estimate other = found(RenderMethod::bidirectional, 160'000);
+  CHECK(few.error[0] / many.error[0] == doctest::Approx(4).epsilon(0.25));
+  CHECK(many.error[0] < 0.02 * many.value[0].real());
+  CHECK(std::abs(many.value[0] - other.value[0]) < 4 * std::hypot(many.error[0], other.error[0]));
 }
 
 namespace {

@@ -1,4 +1,5 @@
 #include <optional>
+#include <string>
 #include <vector>
 
 #include <doctest/doctest.h>
@@ -6,6 +7,7 @@
 #include "bench/scenes/random_fields.h"
 #include "core/numbers/random.h"
 #include "grin/curved/curved_space.h"
+#include "grin/paths/beam_join.h"
 #include "grin/paths/path_join.h"
 
 namespace flatspeckle::grin::tests {
@@ -70,7 +72,8 @@ PathVertex arrived(const Transport& transport, const PathVertex& here, const Fli
   return next;
 }
 
-PathVertex light_subpath(const Transport& transport, const WholePath& path, int count) {
+PathVertex light_subpath(const Transport& transport, const CurvedSpace& space,
+                         const WholePath& path, int count) {
   PathVertex vertex = end_vertex(transport.strategies, path.light);
   for (int i = 0; i + 1 < count; ++i) {
     const Edge& edge = path.edges[i];
@@ -79,7 +82,12 @@ PathVertex light_subpath(const Transport& transport, const WholePath& path, int 
       density = scattering_density(transport, path, i, true);
     else if (!path.light.is_beam)
       density = transport.lights.towards(path.light, edge.forth.start_direction).density;
-    vertex = arrived(transport, vertex, edge.forth, density, 1, path.index[i + 1]);
+    const PathVertex before = vertex;
+    vertex = arrived(transport, before, edge.forth, density, 1, path.index[i + 1]);
+    if (i > 0 || !path.light.is_beam || !transport.strategies.joins_beams) continue;
+    RandomStream random(6, 91, 0);
+    TransportCounts counts;
+    weigh_in_beam(transport, space, before, edge.forth, random, counts, vertex);
   }
   return vertex;
 }
@@ -105,8 +113,27 @@ double weight_of_hit(const Strategies& allowed, PathVertex last, const EndPositi
   return 1 / (1 + rivals_of_hit(allowed, last, end.position_density, density, more));
 }
 
+/// Where the first collision of a sensor's path is joined to a beam; nothing where light came to it
+/// in another way.
+std::optional<double> weight_in_beam(const Transport& transport, const CurvedSpace& space,
+                                     const WholePath& path) {
+  if (!transport.strategies.joins_beams || path.points.size() < 3) return {};
+  RandomStream random(7, 91, 0);
+  ConnectionStatistics statistics;
+  const Lights::Beam beam = transport.lights.beam_of(path.light);
+  const auto way = space.plainest_way_to_beam(path.points[1], beam.light(), random, statistics);
+  const Flight& first = path.edges[0].forth;
+  if (!way || !(way->passages == first.passages) || (way->place - path.points[0].x).norm() > 1e-4)
+    return {};
+  const PathVertex z = sensor_subpath(transport, path, static_cast<int>(path.points.size()) - 1);
+  return joined_to_beam(transport, path.light, *way, z,
+                        leaving(transport, transport.sensors[0], z, way->start_direction))
+      .weight;
+}
+
 /// Of the strategy with s vertices made from the light; nothing where there is no such strategy.
-std::optional<double> weight_of(const Transport& transport, const WholePath& path, int s) {
+std::optional<double> weight_of(const Transport& transport, const CurvedSpace& space,
+                                const WholePath& path, int s) {
   const int all = static_cast<int>(path.points.size());
   const Strategies& allowed = transport.strategies;
   if (s == 0) {
@@ -118,20 +145,21 @@ std::optional<double> weight_of(const Transport& transport, const WholePath& pat
   if (s == all) {
     if (path.sensor.is_point) return {};
     const Vec3& out = path.edges.back().back.start_direction;
-    PathVertex last = light_subpath(transport, path, all);
+    PathVertex last = light_subpath(transport, space, path, all);
     last.first_of_other *= heuristic(path.chosen_sensor(transport).choice);
     return weight_of_hit(allowed, last, path.sensor,
                          transport.sensors[0].towards(path.sensor, out).density,
                          allowed.most_sensor());
   }
+  if (s == 1 && path.light.is_beam) return weight_in_beam(transport, space, path);
   const Flight& edge = path.edges[s - 1].forth;
-  if (!edge.is_joinable || (s == 1 && path.light.is_beam)) return {};
-  const PathVertex y = light_subpath(transport, path, s);
+  if (!edge.is_joinable) return {};
+  const PathVertex y = light_subpath(transport, space, path, s);
   const EndPosition chosen = path.chosen_sensor(transport);
   const PathVertex z = s == all - 1 ? end_vertex(transport.strategies, chosen)
                                     : sensor_subpath(transport, path, all - s);
-  const JoiningCurve curve{edge.start_direction, edge.direction,          edge.spreading,
-                           edge.optical_depth,   edge.passages.count > 0, edge.fresnel};
+  const JoiningCurve curve{edge.start_direction, edge.direction,      edge.spreading,
+                           edge.optical_depth,   edge.passages.count, edge.fresnel};
   return joined_path(allowed, y, leaving(transport, transport.lights, y, curve.start_direction), z,
                      leaving(transport, transport.sensors[0], z, -curve.end_direction), curve)
       .weight;
@@ -139,14 +167,15 @@ std::optional<double> weight_of(const Transport& transport, const WholePath& pat
 
 /// Over all strategies that could have made a path: of a short end, those with the fewest vertices
 /// from there, and if that is a hit the next.
-double sum_of_weights(const Transport& transport, const WholePath& path, int& strategies) {
+double sum_of_weights(const Transport& transport, const CurvedSpace& space, const WholePath& path,
+                      int& strategies) {
   const int all = static_cast<int>(path.points.size());
   const bool is_short = transport.strategies.short_light || transport.strategies.short_sensor;
   double sum = 0;
   strategies = 0;
   for (int count = 0; count <= all; ++count) {
     const int s = transport.strategies.short_sensor ? all - count : count;
-    const auto weight = weight_of(transport, path, s);
+    const auto weight = weight_of(transport, space, path, s);
     if (!weight) continue;
     CHECK(*weight > 0);
     sum += *weight;
@@ -226,7 +255,7 @@ TEST_CASE("the weights of all strategies that make a path sum to 1 where rays ar
               continue;
             CAPTURE(scatterings);
             int strategies = 0;
-            const double sum = sum_of_weights(transport, *path, strategies);
+            const double sum = sum_of_weights(transport, *space, *path, strategies);
             if (strategies == 0) continue;
             CHECK(sum == doctest::Approx(1).epsilon(1e-6));
             if (mask.short_light) CHECK(strategies <= 2);
@@ -297,7 +326,7 @@ TEST_CASE("weights sum to 1 on paths through a body that refracts nothing") {
                     .strength > 0))
             continue;
           int strategies = 0;
-          const double sum = sum_of_weights(transport, *path, strategies);
+          const double sum = sum_of_weights(transport, *space, *path, strategies);
           REQUIRE(strategies > 0);
           CHECK(sum == doctest::Approx(1).epsilon(1e-6));
           ++paths;
@@ -329,7 +358,7 @@ TEST_CASE("weights sum to 1 on paths that cross a body, and of beams") {
                     .strength > 0))
             continue;
           int strategies = 0;
-          const double sum = sum_of_weights(transport, *path, strategies);
+          const double sum = sum_of_weights(transport, *space, *path, strategies);
           if (strategies == 0) continue;
           CHECK(sum == doctest::Approx(1).epsilon(1e-6));
           ++paths;
@@ -338,6 +367,49 @@ TEST_CASE("weights sum to 1 on paths that cross a body, and of beams") {
       }
   CHECK(paths > 300);
   CHECK(crossing > 200);
+}
+
+TEST_CASE("weights sum to 1 on paths from beams that sensors' paths are joined to") {
+  const Light beam = BeamLight{Vec3(0.1, 0, -1.2), Vec3::UnitZ(), 0.25, 1, Spread::gaussian};
+  Stage with_ball = foggy_ball(), with_glass = with_ball;
+  with_ball.bodies.push_back({Sphere{Vec3(0.1, 0, 0), 0.6}, {2.5, 0, {}}});
+  with_glass.bodies.push_back({Sphere{Vec3(0.1, 0, 0), 0.6}, {0.5, 0, {}}, 0.4});
+  const struct {
+    std::string name;
+    Stage stage;
+    AnyIndexField field;
+  } rows[] = {{"nothing refracts", with_ball, Homogeneous{}},
+              {"glass ball", with_glass, Homogeneous{}},
+              {"guide", foggy_ball(), ParabolicGuide({.axis_excess = 0.5, .alpha = 0.3})}};
+  Strategies joined{.joins_beams = true}, soon = soon_left, short_light = path_tracing;
+  soon.joins_beams = short_light.joins_beams = true;
+  RandomStream random(8, 91, 0);
+  for (const auto& [name, stage, field] : rows) {
+    CAPTURE(name);
+    const auto space = make_curved_space(field, stage, {0.02, 20});
+    int paths = 0, in_beam = 0;
+    for (const Sensor& sensor : {sensors[0], sensors[1], sensors[2]})
+      for (const Strategies& mask : {joined, soon, short_light}) {
+        const Transport transport = transport_of(*space, stage, beam, sensor, mask);
+        for (int trial = 0; trial < 300; ++trial) {
+          const auto path = walked_path(transport, *space, 1 + trial % 5, random);
+          if (!path) continue;
+          if (!(transport.sensors[0]
+                    .towards(path->sensor, path->edges.back().back.start_direction)
+                    .strength > 0))
+            continue;
+          int strategies = 0;
+          const double sum = sum_of_weights(transport, *space, *path, strategies);
+          if (strategies == 0) continue;
+          CAPTURE(path->edges[0].forth.passages.count);
+          CHECK(sum == doctest::Approx(1).epsilon(1e-8));
+          ++paths;
+          in_beam += weight_in_beam(transport, *space, *path).has_value();
+        }
+      }
+    CHECK(paths > 150);
+    CHECK(in_beam > 100);
+  }
 }
 
 }  // namespace flatspeckle::grin::tests
