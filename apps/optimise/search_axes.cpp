@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <set>
 
 #include "apps/sweep/varied_points.h"
@@ -74,6 +75,12 @@ double value_at(const SearchAxis& axis, double share) {
 
 }  // namespace
 
+bool SearchAxis::is_turn() const {
+  constexpr double turn = 2 * std::numbers::pi, as_written = 1e-4 * turn;
+  const bool is_centred = std::abs(low + high) < as_written;
+  return !is_log && (low == 0 || is_centred) && std::abs(high - low - turn) < as_written;
+}
+
 SearchAxes::SearchAxes(const std::vector<std::string>& vary, const Keys& of) {
   std::set<std::string> seen;
   for (const std::string& text : vary) {
@@ -117,7 +124,7 @@ std::vector<std::string> SearchAxes::at_bounds(const SearchPlace& place, double 
   auto share = place.at.begin();
   for (const SearchAxis& axis : axes_) {
     if (axis.is_choice()) continue;
-    if (std::min(*share, 1 - *share) <= tolerance) keys.push_back(axis.key);
+    if (!axis.is_turn() && std::min(*share, 1 - *share) <= tolerance) keys.push_back(axis.key);
     ++share;
   }
   return keys;

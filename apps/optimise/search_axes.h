@@ -16,6 +16,8 @@ struct SearchAxis {
   std::vector<std::string> values = {};  ///< empty: between the bounds
 
   bool is_choice() const { return !values.empty(); }
+  /// From 0 to 2 pi or -pi to pi, as of a phase: the bounds are the same place.
+  bool is_turn() const;
 };
 
 /// What is searched: places of the search, and the values of keys that they stand for.
@@ -32,7 +34,8 @@ class SearchAxes {
 
   /// The values of the keys there, one for each axis.
   SweepPoints point(const SearchPlace& place) const;
-  /// Keys that are there at a bound of theirs, by no more than this share of their range.
+  /// Keys that are there at a bound of theirs, by no more than this share of their range; not
+  /// phases, which have none.
   std::vector<std::string> at_bounds(const SearchPlace& place, double tolerance) const;
 
  private:

@@ -45,7 +45,8 @@ std::string described(const RenderScene& scene, const RenderRequest& request, Re
   if (!request.method && !scene.sensors.empty()) text += " (chosen by a pilot)";
   if (!has_finite_variance(scene, method))
     text += " (no finite variance with " +
-            std::string(method == RenderMethod::path ? "points, fibres or beams that are bent" : "a pinhole") +
+            std::string(method == RenderMethod::path ? "points, fibres or beams that are bent"
+                                                     : "a pinhole") +
             ": errors are not to be trusted)";
   return text + ": ";
 }

@@ -89,6 +89,16 @@ class Optimise(ProgramTest):
             self.assertEqual(list(file["best"].attrs["at_bounds"]), ["optical_depth", "g"])
         self.assertIn("optical_depth, g; a wider one", done.stdout)
 
+    def test_a_phase_has_no_bounds(self):
+        """Sound focuses best at phase 0, which is 2 pi."""
+        for phases, at_bounds in (("0:6.2832", None), ("0:6", ["sound_phase"])):
+            with self.subTest(phases=phases):
+                self.call("optimise", **{**FOCUS, "amplitude": PARAXIAL, "vary": [f"sound_phase={phases}"]}, out="phase.h5")
+                self.assertAlmostEqual(np.cos(float(self.found("phase.h5")["best/sound_phase"])), 1, delta=1e-3)
+                with h5py.File(self.folder / "phase.h5") as file:
+                    found = file["best"].attrs.get("at_bounds")
+                    self.assertEqual(found if found is None else list(found), at_bounds)
+
     def test_threads(self):
         self.call("optimise", **{**GUIDE, "threads": 1}, out="one.h5")
         self.call("optimise", **GUIDE, out="two.h5")
