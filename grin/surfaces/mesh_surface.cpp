@@ -81,9 +81,13 @@ std::vector<double> spline_coefficients(const NodeGrid& grid,
   return coefficients;
 }
 
+double volume_change(const LevelSurface& surface) {
+  return surface.volume() / surface.meant_volume() - 1;
+}
+
 void check_volume(const LevelSurface& surface) {
   constexpr double most = 0.05;
-  const double change = surface.volume() / surface.meant_volume() - 1;
+  const double change = volume_change(surface);
   if (std::abs(change) <= most) return;
   std::ostringstream text;
   text << "the smooth surface would hold " << 100 * std::abs(change) << " % "
@@ -104,6 +108,20 @@ LevelSurface mesh_surface(const TriangleMesh& mesh, double spacing, const std::s
   } catch (const InputError& error) {
     throw InputError(key, spacing, std::string("is too coarse: ") + error.what());
   }
+}
+
+LevelSurface mesh_surface(const TriangleMesh& mesh, const std::string& key) {
+  constexpr double few_cells = 64, most_cells = 256, right = 0.01;
+  const Box box = bounds(mesh);
+  const double longest = (box.high - box.low).maxCoeff();
+  for (double cells = few_cells; cells < most_cells; cells *= 2) {
+    try {
+      const LevelSurface surface = mesh_surface(mesh, longest / cells, key);
+      if (std::abs(volume_change(surface)) < right) return surface;
+    } catch (const InputError&) {  // too coarse
+    }
+  }
+  return mesh_surface(mesh, longest / most_cells, key);
 }
 
 }  // namespace flatspeckle::grin

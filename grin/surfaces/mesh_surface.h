@@ -14,4 +14,8 @@ namespace flatspeckle::grin {
 /// lost or won, or so small that the grid would have more than 2e7 nodes.
 LevelSurface mesh_surface(const TriangleMesh& mesh, double spacing, const std::string& key);
 
+/// The same with a spacing of 1/64 of the longest side, or 1/128 or 1/256 where it takes that for
+/// the volume to be right to 1 %, as of thin plates.
+LevelSurface mesh_surface(const TriangleMesh& mesh, const std::string& key);
+
 }  // namespace flatspeckle::grin

@@ -229,6 +229,19 @@ TEST_CASE("rays by steps end on a smooth surface where straight ways do") {
   }
 }
 
+TEST_CASE("thin things have a finer spacing by themselves") {
+  const auto bar = [](double y, double z) {
+    TriangleMesh mesh = cube_mesh(1);
+    for (Vec3& corner : mesh.corners) corner = corner.cwiseProduct(Vec3(1, y, z));
+    return mesh;
+  };
+  CHECK(mesh_surface(bar(0.3, 0.3), "spacing").spacing() == 2.0 / 64);
+  CHECK(mesh_surface(bar(0.3, 0.05), "spacing").spacing() == 2.0 / 128);
+  CHECK(mesh_surface(bar(0.02, 0.02), "spacing").spacing() == 2.0 / 256);
+  CHECK_THROWS_WITH_AS(mesh_surface(bar(1e-3, 1e-3), "spacing"), doctest::Contains("too coarse"),
+                       InputError);
+}
+
 TEST_CASE("spacings that do not suit a mesh are refused") {
   const TriangleMesh mesh = torus_mesh();
   CHECK_THROWS_WITH_AS(smooth(mesh, 0.4), doctest::Contains("too coarse"), InputError);
