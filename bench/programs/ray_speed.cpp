@@ -2,7 +2,7 @@
 // by side in lanes, in trace() as a user runs it (which also looks for the index mismatch, asking
 // the field once more at each step's end) and in flights of light transport. The first rows' field
 // costs a few multiplications: the floor of arithmetic; nothing here comes from memory.
-// Interleaved; medians. usage: bench_ray_speed [rounds]
+// Interleaved; medians. usage: bench_ray_speed [rounds] [part of a field's name]
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -22,7 +22,7 @@ using namespace flatspeckle::grin;
 
 namespace {
 
-constexpr int steps = 400, rays = 16 * lanes;
+constexpr int steps = 400, rays = 512;
 constexpr double wavenumber = 7, step = 0.005;  // kr rho up to about 14
 
 /// What steps themselves cost.
@@ -175,6 +175,8 @@ int main(int argc, char** argv) {
   enter(rows, "tanh", TanhRamp{0.33, 0.4, 0.5});
   enter(rows, "sech", SechGuide({0.33, 0.3}));
   enter(rows, "spline grid", spline());
+  const std::string part = argc > 2 ? argv[2] : "";
+  std::erase_if(rows, [&](const Row& row) { return row.field.find(part) == std::string::npos; });
   for (int round = 0; round < rounds; ++round)
     for (Row& row : rows)
       for (Contestant& entry : row.contest) {

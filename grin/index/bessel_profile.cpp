@@ -1,5 +1,6 @@
 #include "grin/index/bessel_profile.h"
 
+#include <algorithm>
 #include <array>
 #include <cassert>
 #include <mutex>
@@ -24,7 +25,7 @@ BesselProfile::BesselProfile(int order, double reach)
   assert(order >= 0 && order <= max_order);
   if (!(reach > 0 && reach <= 1e4))
     throw InputError("reach of the sound wave in radians", reach, "must be from 0 to 1e4");
-  table_ = table_of(order, static_cast<std::size_t>(cells_));
+  table_ = table_of(order, static_cast<std::size_t>(cells_) + 1);
 }
 
 /// The longest that has been made, or a longer one.
@@ -43,7 +44,7 @@ std::shared_ptr<const BesselProfile::Table> BesselProfile::table_of(int order, s
 BesselProfile::Cell BesselProfile::fit(int order, double cell) {
   constexpr int count = degree + 1;
   const long double middle = centre(cell);
-  const long double half = (cell + 0.5L) / (cells_per_unit * cells_per_unit);
+  const long double half = std::max(cell, 0.25) / (cells_per_unit * cells_per_unit);
   std::array<long double, count> t, f;
   for (int i = 0; i < count; ++i) {
     const long double node = std::cos(std::numbers::pi_v<long double> * (i + 0.5L) / count);

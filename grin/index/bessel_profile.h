@@ -1,6 +1,8 @@
 #pragma once
 
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -30,31 +32,31 @@ class BesselProfile {
   double value(double u) const { return jet(u).value; }
   /// g_m and its derivative by u.
   Jet jet(double u) const {
-    const double cell = std::floor(std::sqrt(u) * cells_per_unit);
-    if (!(cell < cells_)) return far_jet(u);
-    const double delta = u - centre(cell);
-    return polynomial(cells()[static_cast<std::size_t>(cell)], delta);
+    const double place = std::sqrt(u) * cells_per_unit;
+    if (!(place < cells_)) return far_jet(u);
+    const double cell = std::rint(place);
+    return polynomial(cells()[static_cast<std::size_t>(cell)], u - centre(cell));
   }
-  /// The same of u in lanes.
+  /// The same of u in lanes; NaN beyond the reach.
   void jets(const double* u, double* value, double* slope) const {
-    alignas(64) double delta[lanes];
-    alignas(64) int number[lanes];
-    alignas(64) Cell in[lanes];
+    alignas(64) double delta[lanes], number[lanes], in[lanes][degree + 1];
     const double count = cells_;
     const Cell* const table = cells();
-    int far = 0;
-#pragma omp simd reduction(| : far)
-    for (int k = 0; k < lanes; ++k) {
-      const double place = std::sqrt(u[k]) * cells_per_unit;
-      const bool is_far = !(place < count);
-      far |= is_far;
-      number[k] = static_cast<int>(is_far ? 0 : place);
-      delta[k] = u[k] - centre(number[k]);
-    }
-    for (int k = 0; k < lanes; ++k) in[k] = table[number[k]];
 #pragma omp simd
     for (int k = 0; k < lanes; ++k) {
-      const double* const c = in[k].c;
+      const double place = std::sqrt(u[k]) * cells_per_unit;
+      const bool is_near = place < count;
+      number[k] = (is_near ? place : 0) + nearest;
+      delta[k] = is_near ? u[k] - centre(number[k] - nearest) : NAN;
+    }
+    for (int k = 0; k < lanes; ++k) {
+      const double* const c = table[static_cast<std::int32_t>(std::bit_cast<std::int64_t>(number[k]))].c;
+#pragma omp simd
+      for (int i = 0; i <= degree; ++i) in[k][i] = c[i];
+    }
+#pragma omp simd
+    for (int k = 0; k < lanes; ++k) {
+      const double* const c = in[k];
       const double t = delta[k];
       double v = c[7], d = c[7];
       v = v * t + c[6];
@@ -71,13 +73,6 @@ class BesselProfile {
       slope[k] = d * t + v;
       value[k] = v * t + c[0];
     }
-    if (far == 0) return;
-    for (int k = 0; k < lanes; ++k)
-      if (!(std::sqrt(u[k]) * cells_per_unit < count)) {
-        const Jet at = far_jet(u[k]);
-        value[k] = at.value;
-        slope[k] = at.slope;
-      }
   }
   /// And the second: where x is past the first bend from Bessel's equation, 4 u g'' = -4 (m + 1)
   /// g' - g; it would cancel before, where the table's polynomials converge fastest.
@@ -85,8 +80,9 @@ class BesselProfile {
     double bend;
   };
   BentJet bent_jet(double u) const {
-    const double cell = std::floor(std::sqrt(u) * cells_per_unit);
-    if (!(cell < cells_)) return bent(far_jet(u), u);
+    const double place = std::sqrt(u) * cells_per_unit;
+    if (!(place < cells_)) return bent(far_jet(u), u);
+    const double cell = std::rint(place);
     const Cell& in = cells()[static_cast<std::size_t>(cell)];
     const double t = u - centre(cell);
     const Jet at = polynomial(in, t);
@@ -100,9 +96,11 @@ class BesselProfile {
     double c[degree + 1];
   };
 
-  /// Of the cell in u.
+  /// Added to a number it is rounded to a whole one, which the lowest bits then are.
+  static constexpr double nearest = 0x1.8p52;
+  /// In u, of the cell of what is nearest to it in steps.
   static double centre(double cell) {
-    return (cell * (cell + 1) + 0.5) / (cells_per_unit * cells_per_unit);
+    return (cell * cell + 0.25) / (cells_per_unit * cells_per_unit);
   }
   /// Estrin's scheme: a short chain of dependent operations.
   static Jet polynomial(const Cell& cell, double t) {

@@ -8,7 +8,7 @@ namespace flatspeckle::grin {
 // depends on another lane, so that what becomes of a ray depends neither on its lane nor on its
 // neighbours, nor on how wide vectors are.
 
-inline constexpr int lanes = 32;
+inline constexpr int lanes = 16;  ///< two of the widest vectors: one works while the other waits
 
 struct LaneVectors {
   alignas(64) double x[lanes], y[lanes], z[lanes];
@@ -27,7 +27,8 @@ struct LaneGradients {
   LaneVectors gradient;
 };
 
-/// A field that tells its gradients in lanes, for less than one by one.
+/// A field that tells its gradients in lanes, for less than one by one; NaN where it would be slow
+/// at that: there a ray goes by itself.
 template <class F>
 concept LaneField = IndexField<F> &&
     requires(const F& field, const LaneVectors& x, LaneGradients& found) {

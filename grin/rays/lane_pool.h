@@ -1,7 +1,7 @@
 #pragma once
 
-#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 
 #include "grin/rays/ray_lanes.h"
@@ -31,7 +31,6 @@ class LanePool {
       work_.go(rays_, clearance_.data(), steps_at_once);
       for (int lane = 0; lane < lanes; ++lane)
         if (is_active_[lane]) follow(lane);
-      keep_idle_lanes_near();
     }
   }
 
@@ -49,7 +48,7 @@ class LanePool {
     constexpr double margin = 1.1;  // an integrator's arc is not exact
     double& clearance = clearance_[lane];
     const double arc = margin * (rays_.arc_length[lane] - before_.arc_length[lane]);
-    if (!(arc > 0)) return false;
+    if (!(arc > 0) || std::isnan(rays_.index_mismatch[lane])) return false;
     arc_[lane] = arc;
     if (clearance > arc) {
       clearance -= arc;
@@ -80,15 +79,6 @@ class LanePool {
     if (!work_.careful(lane, ray, mismatch)) return fill(lane);
     clearance_[lane] = 0;
     rays_.put(lane, ray);
-  }
-
-  /// They go where an active one goes: alone they would leave the place that the field is fast in.
-  void keep_idle_lanes_near() {
-    if (active_ == 0 || active_ == lanes) return;
-    const auto first = std::find(is_active_.begin(), is_active_.end(), true);
-    const RayState ray = rays_.at(static_cast<int>(first - is_active_.begin()));
-    for (int lane = 0; lane < lanes; ++lane)
-      if (!is_active_[lane]) rays_.put(lane, ray);
   }
 
   Work& work_;

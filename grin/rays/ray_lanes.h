@@ -93,7 +93,7 @@ void look(const F& field, RayLanes& rays) {
     const double vx = rays.v.x[k], vy = rays.v.y[k], vz = rays.v.z[k];
     const double off = std::abs(std::sqrt(vx * vx + vy * vy + vz * vz) - (1 + at.excess[k]));
     const double most = rays.index_mismatch[k];
-    rays.index_mismatch[k] = off > most ? off : most;
+    rays.index_mismatch[k] = off <= most ? most : off;  // NaN is kept
   }
 }
 
