@@ -58,12 +58,12 @@ class CurvedSpace::Lanes {
     const double left = collision_[lane] - rays.arc_length[lane];
     if (!(left < step_ / 8)) return true;
     RayState ray = rays.at(lane);
-    const bool goes_on = clearance > 2 * left ? arrive(lane, ray) : go_carefully(lane, ray);
+    const bool goes_on = clearance > 2 * left ? arrive(lane, ray) : go_carefully(lane, few, ray);
     if (goes_on) rays.put(lane, ray);
     return goes_on;
   }
   bool careful(int lane, RayState& ray, double&) {
-    return go_carefully(lane, ray);
+    return go_carefully(lane, 1, ray);  // off the surface it started on, or out
   }
 
  private:
@@ -82,9 +82,9 @@ class CurvedSpace::Lanes {
         next_collision(room_.medium, progress.collision, *random);
     return true;
   }
-  bool go_carefully(int lane, RayState& ray) {
+  bool go_carefully(int lane, int most_steps, RayState& ray) {
     auto& at = at_[lane];
-    const LegStop stop = space_.field_->go_on(room_, longest_, few, at.progress, *at.random, ray);
+    const LegStop stop = space_.field_->go_on(room_, longest_, most_steps, at.progress, *at.random, ray);
     collision_[lane] = at.progress.collision;
     if (stop == LegStop::steps) return true;
     return stop == LegStop::lost ? false : end(lane, ray, stop == LegStop::surface);

@@ -50,7 +50,8 @@ class BesselProfile {
       delta[k] = is_near ? u[k] - centre(number[k] - nearest) : NAN;
     }
     for (int k = 0; k < lanes; ++k) {
-      const double* const c = table[static_cast<std::int32_t>(std::bit_cast<std::int64_t>(number[k]))].c;
+      const double* const c =
+          table[static_cast<std::int32_t>(std::bit_cast<std::int64_t>(number[k]))].c;
 #pragma omp simd
       for (int i = 0; i <= degree; ++i) in[k][i] = c[i];
     }

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <cmath>
 #include <cstddef>
 
 #include "grin/rays/ray_lanes.h"
@@ -15,7 +14,7 @@ namespace flatspeckle::grin {
 ///   clearance(lane, ray)  no more than the arc that is left to what the ray must not pass unseen;
 ///   passed(lane, rays, clearance)  those steps were made by the lane's ray, and so much is left;
 ///                         may go on by itself where the ray has come to something. False: it ends;
-///   careful(lane, ray, index_mismatch)  makes so many steps one by one, or ends the ray: false.
+///   careful(lane, ray, index_mismatch)  makes a few steps by itself, or ends the ray: false.
 template <class Work>
 class LanePool {
  public:
@@ -28,7 +27,8 @@ class LanePool {
     while (active_ > 0) {
       look_ahead();
       before_ = rays_;
-      work_.go(rays_, clearance_.data(), steps_at_once);
+      work_.go(rays_, clearance_, steps_at_once);
+      spend_clearance();
       for (int lane = 0; lane < lanes; ++lane)
         if (is_active_[lane]) follow(lane);
     }
@@ -42,21 +42,28 @@ class LanePool {
         clearance_[lane] = work_.clearance(lane, rays_.at(lane));
   }
 
+  /// By what the rays have gone.
+  void spend_clearance() {
+    constexpr double margin = 1.1;  // an integrator's arc is not exact
+#pragma omp simd
+    for (int k = 0; k < lanes; ++k) {
+      const double arc = margin * (rays_.arc_length[k] - before_.arc_length[k]);
+      const bool is_known = arc > 0 && rays_.index_mismatch[k] >= 0;  // no NaN
+      const bool is_free = is_known && clearance_[k] > arc;
+      arc_[k] = is_known ? arc : 0;
+      clearance_[k] -= is_free ? arc : 0;
+      is_free_[k] = is_free;
+    }
+  }
+
   /// Spheres about where the ray was and where it is, with nothing in them, hold all that it may
   /// have gone.
   bool was_free(int lane) {
-    constexpr double margin = 1.1;  // an integrator's arc is not exact
-    double& clearance = clearance_[lane];
-    const double arc = margin * (rays_.arc_length[lane] - before_.arc_length[lane]);
-    if (!(arc > 0) || std::isnan(rays_.index_mismatch[lane])) return false;
-    arc_[lane] = arc;
-    if (clearance > arc) {
-      clearance -= arc;
-      return true;
-    }
-    const double before = clearance;
-    clearance = work_.clearance(lane, rays_.at(lane));
-    return before > 0 && clearance > 0 && before + clearance > arc;
+    if (is_free_[lane] != 0) return true;
+    if (!(arc_[lane] > 0)) return false;
+    const double before = clearance_[lane];
+    clearance_[lane] = work_.clearance(lane, rays_.at(lane));
+    return before > 0 && clearance_[lane] > 0 && before + clearance_[lane] > arc_[lane];
   }
 
   void fill(int lane) {
@@ -83,7 +90,8 @@ class LanePool {
 
   Work& work_;
   RayLanes rays_{}, before_;
-  std::array<double, lanes> clearance_{}, arc_{};  ///< arc: of the last steps, with a margin
+  /// arc: of the last steps, with a margin; 0 where they failed. free: 1 or 0.
+  alignas(64) double clearance_[lanes] = {}, arc_[lanes] = {}, is_free_[lanes] = {};
   std::array<bool, lanes> is_active_{};
   int active_ = 0;
 };

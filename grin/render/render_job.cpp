@@ -37,7 +37,7 @@ int paths_per_batch(const Tracer& tracer, bool scatters, double cost_of_flight, 
       static_cast<std::size_t>(std::min(paths, most_flights / tracer.flights_per_pair));
   const bool fills_lanes = tracer.method == RenderMethod::analog && scatters;
   return static_cast<int>(
-      std::bit_floor(std::max<std::size_t>(short_enough, fills_lanes ? 4 * lanes : 1)));
+      std::bit_floor(std::max<std::size_t>(short_enough, fills_lanes ? 8 * lanes : 1)));
 }
 
 std::string described(const RenderScene& scene, const RenderRequest& request, RenderMethod method) {
