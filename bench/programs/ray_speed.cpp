@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include <omp.h>
+
 #include "bench/measure/median.h"
 #include "core/numbers/random.h"
 #include "core/run/stopwatch.h"
@@ -162,6 +164,7 @@ void enter(std::vector<Row>& rows, const std::string& name, const F& field) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  omp_set_num_threads(1);  // one that waits would cost as much as one that works
   const int rounds = argc > 1 ? std::atoi(argv[1]) : 9;
   std::vector<Row> rows;
   enter(rows, "linear (floor)", floor_of_arithmetic());

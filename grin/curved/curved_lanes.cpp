@@ -84,7 +84,8 @@ class CurvedSpace::Lanes {
   }
   bool go_carefully(int lane, int most_steps, RayState& ray) {
     auto& at = at_[lane];
-    const LegStop stop = space_.field_->go_on(room_, longest_, most_steps, at.progress, *at.random, ray);
+    const LegStop stop =
+        space_.field_->go_on(room_, longest_, most_steps, at.progress, *at.random, ray);
     collision_[lane] = at.progress.collision;
     if (stop == LegStop::steps) return true;
     return stop == LegStop::lost ? false : end(lane, ray, stop == LegStop::surface);

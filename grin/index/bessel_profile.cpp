@@ -44,7 +44,7 @@ std::shared_ptr<const BesselProfile::Table> BesselProfile::table_of(int order, s
 BesselProfile::Cell BesselProfile::fit(int order, double cell) {
   constexpr int count = degree + 1;
   const long double middle = centre(cell);
-  const long double half = std::max(cell, 0.25) / (cells_per_unit * cells_per_unit);
+  const long double half = std::max(cell + 0.25, 0.5) / (cells_per_unit * cells_per_unit);
   std::array<long double, count> t, f;
   for (int i = 0; i < count; ++i) {
     const long double node = std::cos(std::numbers::pi_v<long double> * (i + 0.5L) / count);

@@ -99,9 +99,9 @@ class BesselProfile {
 
   /// Added to a number it is rounded to a whole one, which the lowest bits then are.
   static constexpr double nearest = 0x1.8p52;
-  /// In u, of the cell of what is nearest to it in steps.
+  /// In u; about the middle of the cell of what is nearest to it in steps of x.
   static double centre(double cell) {
-    return (cell * cell + 0.25) / (cells_per_unit * cells_per_unit);
+    return (cell * cell + 0.5) / (cells_per_unit * cells_per_unit);
   }
   /// Estrin's scheme: a short chain of dependent operations.
   static Jet polynomial(const Cell& cell, double t) {

@@ -84,7 +84,7 @@ class PilotRay {
            double longest, double stride)
       : met_(met), start_(start) {
     RayState ray = start_;
-    for (double long_stride = 16 * stride; long_stride >= stride;) {
+    for (double long_stride = 4 * stride; long_stride >= stride;) {
       RayState next = ray;
       field.advance(long_stride, 1, next, nullptr);
       if (next.arc_length < longest && distance(region, next.x) <= 0) {
