@@ -54,14 +54,19 @@ class CurvedLeg {
                                  : 1.1 * (ray.arc_length - start.arc_length);
       clearance -= arc;
       std::optional<double> exit;
+      PartOfStep tried;
       if (is_lost || !(clearance > 0)) {
         clearance = put_back - room_.distance(ray.x);
         const double before_step = put_back - room_.distance(start.x);
         if (is_lost || !(clearance > 0 && clearance + before_step > arc))
-          exit = way_out(start, ray, put_back, arc, is_lost);
+          exit = way_out(start, ray, put_back, arc, is_lost, tried);
         if (!exit && is_lost) return LegStop::lost;
       }
       const auto go_only = [&](double part) {
+        if (sizeof...(tangent) == 0 && part == tried.theta) {
+          ray = tried.end;
+          return;
+        }
         std::tie(ray, tangent...) = before;
         Step::step(field_, ray, tangent..., part * step_);
       };
@@ -122,14 +127,18 @@ class CurvedLeg {
     return std::nullopt;
   }
 
+  struct PartOfStep {
+    double theta = -1;
+    RayState end = {};
+  };
   /// The part of a step that ends on the surface, within the last quarter of the tolerance before
-  /// it; nothing where the step does not reach it.
+  /// it; nothing where the step does not reach it. tried: the last that was looked at.
   std::optional<double> way_out(const RayState& start, const RayState& end, double put_back,
-                                double arc, bool is_lost) const {
+                                double arc, bool is_lost, PartOfStep& tried) const {
     const auto exact = [&](double theta) {
-      RayState ray = start;
-      Step::step(field_, ray, theta * step_);
-      return put_back - room_.distance(ray.x);
+      tried = {theta, start};
+      Step::step(field_, tried.end, theta * step_);
+      return put_back - room_.distance(tried.end.x);
     };
     if (is_lost) return search(exact, arc);
     const StepCurve curve(start, end, step_);

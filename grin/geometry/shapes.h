@@ -31,7 +31,8 @@ struct Box {
 
   double distance(const Vec3& x) const {
     const Vec3 beyond = (low - x).cwiseMax(x - high);
-    return beyond.cwiseMax(0).norm() + std::min(beyond.maxCoeff(), 0.0);
+    const double most = beyond.maxCoeff();
+    return most < 0 ? most : beyond.cwiseMax(0).norm();
   }
   Vec3 normal(const Vec3& x) const {
     int axis;
