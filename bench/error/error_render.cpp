@@ -3,6 +3,7 @@
 #include <memory>
 #include <numbers>
 
+#include "bench/oracles/guided_beam.h"
 #include "bench/oracles/lamp_map.h"
 #include "bench/oracles/peierls_slab.h"
 #include "bench/scenes/meshes.h"
@@ -180,6 +181,27 @@ ErrorRun gradient_run() {
   });
 }
 
+/// A parabolic guide in fog that hardly turns light: what comes on a disk is what would without.
+ErrorRun field_gradient_run() {
+  constexpr double radius = 0.3, area = std::numbers::pi * radius * radius;
+  const oracles::GuidedBeam beam{0.2, 6};
+  grin::RenderValues guide = oracles::guided_values(beam, {radius}, 0.5, 1 - 1e-9);
+  guide.gradient_by = {"alpha"};
+  const RenderScene scene = make_render_scene(guide);
+  const Method method{
+      .scene = "parabolic guide", .name = "derivative by alpha", .trial = [scene](auto seed) {
+        const grin::RenderJob job = render_job(scene, {RenderMethod::analog}, seed);
+        constexpr int narrow = 2;  // of the widths of edges
+        return Trial{job.batches, [first = job.bins.first_by_field() + narrow](
+                                      double samples, std::span<const Complex> sums) {
+                       return sample_mean(samples / area, sums.subspan(first, 1));
+                     }};
+      }};
+  return run_of(method, [beam] {
+    return ErrorReference{{beam.by_alpha(radius)}, 1e-5, "where rays of a parabolic guide go"};
+  });
+}
+
 /// Joins by 1/r^2 without another strategy beside.
 std::vector<ErrorRun> without_variance(const RenderScenePointer& named) {
   Method method = method_of(named, "path tracing, no finite variance", RenderMethod::path);
@@ -206,6 +228,7 @@ std::vector<ErrorRun> render_error_runs() {
   append(runs, mesh_runs());
   runs.push_back(map_run());
   runs.push_back(gradient_run());
+  runs.push_back(field_gradient_run());
   return runs;
 }
 

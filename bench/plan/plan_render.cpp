@@ -132,6 +132,18 @@ SampledKernel kernel_of(const Tracer& tracer) {
   return {count, paths_per_batch, run, steady(count)};
 }
 
+SampledKernel powers_of(const RenderScene& scene) {
+  const RenderJob job = render_job(scene, {RenderMethod::analog}, 1);
+  const auto stride = static_cast<std::size_t>(scene.bins.sums());
+  const std::size_t pixels = job.pictures / stride;
+  return {job.batches.size, static_cast<double>(job.batches.samples_per_batch), job.batches.run,
+          [=](double samples, std::span<const Complex> sums) {
+            std::vector<Complex> picture;
+            for (std::size_t i = 0; i < pixels; ++i) picture.push_back(sums[i * stride] / samples);
+            return picture;
+          }};
+}
+
 /// Rays of a beam, and beside them light paths, which bring nothing where nothing scatters.
 PlanCase rays_alone() {
   return named("render", "light paths", "guide of sound, nothing scatters", [](double cpu_seconds) {
@@ -149,6 +161,25 @@ PlanCase rays_alone() {
                     cpu_seconds);
     return row;
   });
+}
+
+/// Powers alone, and beside them their derivatives by the sound's amplitude.
+PlanCase powers_alone() {
+  return named("render", "derivatives by the field", "guide of sound in tissue",
+               [](double cpu_seconds) {
+                 PlanRow row{.per = "path"};
+                 RenderScene powers = render_scenes()[1].scene;
+                 powers.sensors = {RadialDetector{{0, 0, 30}, 0.2, 1, std::numbers::pi / 2}};
+                 const auto& sound = std::get<StandingWave>(powers.field);
+                 RenderScene both = powers;
+                 constexpr double apart = 1e-5;
+                 both.parameters = {{"amplitude", sound.amplitude(), apart * sound.amplitude(),
+                                     sound.frozen(1 - apart), sound.frozen(1 + apart)}};
+                 both.bins.by_field = edge_widths;
+                 compare_sampled(row, powers_of(both), powers_of(powers), Numbers::same,
+                                 Measure::sample, cpu_seconds);
+                 return row;
+               });
 }
 
 /// Light paths that scatter, to a small disk: most are given up, what heads for it is split.
@@ -260,6 +291,7 @@ std::vector<PlanCase> render_plan_cases() {
            }),
       rays_alone(),
       aimed_light(),
+      powers_alone(),
       depth_in("slab of OD 10, albedo 0.9", absorbing_slab()),
       map_alone(),
       ball_of_triangles("ball of fog", fog),

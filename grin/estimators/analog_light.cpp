@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "grin/estimators/moving_paths.h"
 #include "grin/paths/light_family.h"
 #include "grin/paths/light_tally.h"
 #include "grin/paths/path_score.h"
@@ -26,6 +27,7 @@ struct AnalogBatch {
   const SensorAim* aim;
   Film& film;
   TransportCounts& counts;
+  const MovingField* moving;
 };
 
 /// A path, or a part of one that is split, with random numbers of its own: what becomes of others
@@ -38,6 +40,7 @@ struct Branch {
   bool of_beam = false;
   LonePath absorption = {};
   PathScore score = {};
+  int flight = 0;  ///< of moving paths
 };
 
 /// The paths of a batch, in lanes that have one branch each at a time; those that wait are taken
@@ -53,8 +56,15 @@ class AnalogWalk {
   using Fresh = std::function<std::optional<RandomStream>()>;
 
   AnalogWalk(const AnalogBatch& batch, Fresh fresh)
-      : batch_(batch), fresh_(std::move(fresh)), tally_(batch.film.energy) {}
+      : batch_(batch), fresh_(std::move(fresh)), tally_(batch.film.energy) {
+    if (batch.moving) moving_.emplace(*batch.moving, batch.film);
+  }
   ~AnalogWalk() { tally_.end_path(); }
+
+  /// After all paths.
+  void finish() {
+    if (moving_) moving_->finish();
+  }
 
   /// flown: what became of the lane's last flight, if it had one.
   std::optional<CurvedSpace::FlightStart> next(Lane& lane, const Flight* flown) {
@@ -85,6 +95,7 @@ class AnalogWalk {
     now.of_beam = lane.end.is_beam;
     tally_.emitted(now.from);
     now.absorption.begin(now.from, now.direction);
+    if (moving_) now.flight = moving_->begin(now.from.point.x, now.direction);
   }
 
   bool goes_on(Branch& now, const Flight& flight) {
@@ -98,7 +109,7 @@ class AnalogWalk {
     PathVertex next = moved(now.from, flight, batch_.space.index(flight.point));
     if (flight.end == Flight::End::boundary) {
       tally_.left(now.from, flight);
-      if (!now.of_beam || next.vertices > 2) arrive(now, next);
+      if (!now.of_beam || next.vertices > 2) arrive(now, next, flight.arc_length);
       return false;
     }
     if (next.vertices - 2 >= batch_.transport.max_scatterings) {
@@ -111,18 +122,21 @@ class AnalogWalk {
     if (!now.absorption.collide(now.from, flight, medium, next, now.random, counts, tally_))
       return false;
     now.from = next;
-    if (batch_.aim) return split(medium, now);
-    turn(medium, medium.phase.sample(next.arrived, now.random), now);
+    if (batch_.aim) return split(medium, now, flight.arc_length);
+    turn(medium, flight.arc_length, medium.phase.sample(next.arrived, now.random), now);
     return next.weight > 0;
   }
-  void turn(const ScatteringMedium& medium, const Vec3& direction, Branch& branch) {
+  void turn(const ScatteringMedium& medium, double flown, const Vec3& direction, Branch& branch) {
     branch.direction = direction;
+    if (moving_)
+      branch.flight =
+          moving_->go_on(branch.flight, branch.from.point.x, branch.from.arrived, flown, direction);
     if (batch_.film.has_derivatives())
       branch.score.turned(medium, branch.from.arrived.dot(direction));
   }
 
   /// Into as many as it is worth, of which those stay that head for the sensors. Whether one does.
-  bool split(const ScatteringMedium& medium, Branch& now) {
+  bool split(const ScatteringMedium& medium, Branch& now, double flown) {
     constexpr double most = 16;
     const Branch before = now;
     const PathVertex& from = before.from;
@@ -140,7 +154,7 @@ class AnalogWalk {
       is_left = true;
       branch.random = random;
       branch.from.weight = weight;
-      turn(medium, direction, branch);
+      turn(medium, flown, direction, branch);
     }
     return is_left;
   }
@@ -155,7 +169,8 @@ class AnalogWalk {
     return left;
   }
 
-  void arrive(const Branch& now, const PathVertex& last) {
+  void arrive(const Branch& now, const PathVertex& last, double flown) {
+    if (moving_) moving_->land(now.flight, last.point.x, last.arrived, flown, last.weight);
     for (const SensorEnd& sensor : batch_.transport.sensors)
       sensor.hit(batch_.space, last.point.x, last.arrived, [&](const EndHit& hit) {
         const double value = last.weight * hit.value;
@@ -170,6 +185,7 @@ class AnalogWalk {
   Fresh fresh_;
   std::vector<Branch> waiting_;
   LightTally tally_;
+  std::optional<MovingPaths> moving_;
 };
 
 /// Of the paths of a batch, each its own.
@@ -194,6 +210,7 @@ void walk_in_lanes(const AnalogBatch& batch, PathStreams& streams) {
   batch.space.fly_side_by_side([&](int lane, const Flight* flown) {
     return walk.next(all[static_cast<std::size_t>(lane)], flown);
   });
+  walk.finish();
 }
 
 /// One path.
@@ -205,24 +222,25 @@ void walk(const AnalogBatch& batch, const RandomStream& random) {
   std::optional<Flight> flown;
   while (const auto start = walk.next(lane, flown ? &*flown : nullptr))
     flown = batch.space.fly(start->from, start->direction, *start->random);
+  walk.finish();
 }
 
 template <bool timed>
 PathKernel kernel_of(std::shared_ptr<const Transport> transport,
                      std::shared_ptr<const CurvedSpace> space, std::optional<SensorAim> aim,
-                     bool random_phase) {
+                     bool random_phase, std::shared_ptr<const MovingField> moving) {
   return [=](int paths, RandomStream& random, Film& film, TransportCounts& counts, JoinPromises*) {
     const SensorAim* const aimed = aim ? &*aim : nullptr;
     PathStreams streams(paths, random);
     if (!random_phase && space->has_lanes())
-      return walk_in_lanes<timed>({*transport, *space, aimed, film, counts}, streams);
+      return walk_in_lanes<timed>({*transport, *space, aimed, film, counts, moving.get()}, streams);
     while (auto own = streams.next()) {
       if (!random_phase) {
-        walk<timed>({*transport, *space, aimed, film, counts}, *own);
+        walk<timed>({*transport, *space, aimed, film, counts, moving.get()}, *own);
         continue;
       }
       const auto met = space->frozen(2 * std::numbers::pi * own->uniform());
-      walk<timed>({*transport, *met, aimed, film, counts}, *own);
+      walk<timed>({*transport, *met, aimed, film, counts, nullptr}, *own);
     }
   };
 }
@@ -231,9 +249,9 @@ PathKernel kernel_of(std::shared_ptr<const Transport> transport,
 
 PathKernel analog_kernel(bool timed, std::shared_ptr<const Transport> transport,
                          std::shared_ptr<const CurvedSpace> space, std::optional<SensorAim> aim,
-                         bool random_phase) {
-  return timed ? kernel_of<true>(transport, space, aim, random_phase)
-               : kernel_of<false>(transport, space, aim, random_phase);
+                         bool random_phase, std::shared_ptr<const MovingField> moving) {
+  return timed ? kernel_of<true>(transport, space, aim, random_phase, moving)
+               : kernel_of<false>(transport, space, aim, random_phase, moving);
 }
 
 }  // namespace flatspeckle::grin

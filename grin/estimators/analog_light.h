@@ -1,5 +1,6 @@
 #pragma once
 
+#include "grin/estimators/moving_field.h"
 #include "grin/estimators/path_kernels.h"
 #include "grin/estimators/sensor_aim.h"
 
@@ -9,9 +10,10 @@ namespace flatspeckle::grin {
 /// little, and none is worth much more than its power. With an aim they are split where they head
 /// for the sensors, and most that do not are given up. Of a space with lanes side by side; each
 /// path has random numbers of its own. Unscattered light of beams is left out
-/// (unscattered_beams.h).
+/// (unscattered_beams.h). moving: the field of the space, where there are derivatives by its
+/// parameters.
 PathKernel analog_kernel(bool timed, std::shared_ptr<const Transport> transport,
                          std::shared_ptr<const CurvedSpace> space, std::optional<SensorAim> aim,
-                         bool random_phase);
+                         bool random_phase, std::shared_ptr<const MovingField> moving = nullptr);
 
 }  // namespace flatspeckle::grin

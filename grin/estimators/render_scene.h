@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "grin/estimators/light_map.h"
+#include "grin/estimators/moving_field.h"
 #include "grin/fields/any_index_field.h"
 #include "grin/index/index_range.h"
 #include "grin/lights/light.h"
@@ -27,9 +28,10 @@ struct RenderScene {
   std::vector<std::string> sensor_names = {};  ///< of several
   TimeBins bins = {};
   std::optional<LightMap> map = {};
-  std::optional<double> length_unit = {};  ///< metres in a unit of length, for times
-  bool leapfrogs = false;                  ///< steps are of Leapfrog (make_ray_field)
-  std::optional<IndexRange> index = {};    ///< where it is known
+  std::optional<double> length_unit = {};       ///< metres in a unit of length, for times
+  bool leapfrogs = false;                       ///< steps are of Leapfrog (make_ray_field)
+  std::optional<IndexRange> index = {};         ///< where it is known
+  std::vector<FieldParameter> parameters = {};  ///< by which powers are differentiated
   bool is_silent = false;  ///< there is sound, but none that turns a ray: it is left out
 };
 

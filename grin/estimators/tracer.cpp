@@ -91,6 +91,7 @@ void Tracer::add(int paths, RandomStream& random, Film& film, TransportCounts& c
 Tracers::Tracers(const RenderScene& scene, const RenderRequest& request)
     : scene_(scene), request_(request), plan_(render_plan(scene)) {
   if (!plan_.curved && plan_.scatters) find_depth();
+  if (!scene.parameters.empty()) find_motion();
   if (!scene.sensors.empty() && request.method != RenderMethod::photon_map) find_beams();
 }
 
@@ -101,12 +102,23 @@ void Tracers::find_depth() {
   plan_.deep = depth.has_value();
 }
 
+void Tracers::find_motion() {
+  std::vector<SensorEdges> edges;
+  int first_pixel = 0;
+  for (const Sensor& sensor : scene_.sensors) {
+    edges.emplace_back(sensor, std::get<Box>(scene_.stage.boundary), first_pixel);
+    first_pixel += pixels_of(sensor).grid.count();
+  }
+  moving_ = std::make_shared<const MovingField>(MovingField::Scene{
+      scene_.field, scene_.stage, options(Spreading::none), scene_.parameters, std::move(edges)});
+}
+
 /// The same for all methods: a search for ways to them may take longer than a pilot.
 void Tracers::find_beams() {
   const auto transport = transport_of(scene_, request_, RenderMethod::bidirectional);
   if (!(transport->lights.beam_power() > 0)) return;
   walks_ = plan_.scatters || !transport->lights.are_beams() || !are_followed(*transport);
-  const BeamsRequest asked{plan_.timed, scene_.random_phase, !walks_};
+  const BeamsRequest asked{plan_.timed, scene_.random_phase, !walks_, moving_};
   if (const auto* homogeneous = std::get_if<Homogeneous>(&scene_.field)) {
     unscattered_beams_ = beams_kernel(asked, transport, homogeneous->n_excess);
     return;
@@ -202,10 +214,10 @@ Tracer Tracers::curved(RenderMethod method) const {
             photon_kernel(plan_.timed, transport, space, scene_.random_phase,
                           photon_radius(scene_, request_))};
   if (method == RenderMethod::analog)
-    return {
-        method, transport,
-        analog_kernel(plan_.timed, transport, space,
-                      SensorAim::of(*transport, *space, bending_of(scene_)), scene_.random_phase)};
+    return {method, transport,
+            analog_kernel(plan_.timed, transport, space,
+                          SensorAim::of(*transport, *space, bending_of(scene_)),
+                          scene_.random_phase, moving_)};
   Tracer tracer{method, transport, curved_kernel(plan_, transport, space, scene_.random_phase)};
   tracer.flights_per_join = space->cost_of_join();
   tracer.cost_of_closed_join = space->cost_of_closed_join();

@@ -66,6 +66,7 @@ class Tracers {
 
  private:
   void find_depth();
+  void find_motion();
   void find_beams();
   Tracer straight(RenderMethod method) const;
   Tracer curved(RenderMethod method) const;
@@ -79,6 +80,7 @@ class Tracers {
   RenderPlan plan_;
   bool walks_ = true;
   std::shared_ptr<const DepthImportance> depth_;  ///< where the plan is deep
+  std::shared_ptr<const MovingField> moving_;     ///< where the scene has parameters
   BeamsKernel unscattered_beams_ = {};            ///< where there are beams
   double few_rays_per_path_ = 1;                  ///< where paths cost no more than they do
 };

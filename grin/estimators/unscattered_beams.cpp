@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 
+#include "grin/estimators/beam_edges.h"
 #include "grin/paths/light_tally.h"
 #include "grin/paths/path_score.h"
 #include "grin/straight/straight_space.h"
@@ -113,6 +114,7 @@ struct BeamsSetup {
   BeamSeeds seeds;
   double ways_per_ray;
   bool books;  ///< where the power of rays goes
+  std::shared_ptr<const MovingField> moving;
 };
 
 /// Light of beams that meets no collision: rays from the beams that hit sensors, and ways from
@@ -130,7 +132,9 @@ class UnscatteredBeams {
         worth_(worth),
         random_(random),
         film_(film),
-        counts_(counts) {}
+        counts_(counts) {
+    if (setup.moving) moving_.emplace(*setup.moving, film, false);
+  }
 
   void add_ray(const EndPosition& start, double stratum) {
     add_ray(start, space_.fly(start.point, start.inward, random_), stratum);
@@ -140,6 +144,7 @@ class UnscatteredBeams {
     counts_.add_flight(flight.end == Flight::End::lost);
     if (setup_.books) book(start, flight);
     if (flight.end == Flight::End::lost) return;
+    if (moving_) move(start, flight);
     for (const SensorEnd& sensor : transport_.sensors)
       sensor.hit(space_, flight.point.x, flight.direction, [&](const EndHit& hit) {
         const double value = worth_ * transport_.lights.beam_power() * flight.weight * hit.value *
@@ -150,6 +155,11 @@ class UnscatteredBeams {
         score.flew(flight.arc_length);
         score.add_to(film_, hit.direction.pixel, value, transport_.medium(start.point.part));
       });
+  }
+
+  /// After all rays.
+  void finish() {
+    if (moving_) moving_->finish();
   }
 
   /// From each sensor that needs them to the beam that the stratum says; they stand for so many
@@ -163,6 +173,10 @@ class UnscatteredBeams {
   }
 
  private:
+  void move(const EndPosition& start, const Flight& flight) {
+    moving_->land(moving_->begin(start.point.x, start.inward), flight.point.x, flight.direction,
+                  flight.arc_length, worth_ * transport_.lights.beam_power() * flight.weight);
+  }
   void book(const EndPosition& start, const Flight& flight) {
     PathVertex from;
     from.point = start.point;
@@ -220,6 +234,7 @@ class UnscatteredBeams {
   RandomStream& random_;
   Film& film_;
   TransportCounts& counts_;
+  std::optional<MovingPaths> moving_;
 };
 
 /// Where the rays of a batch begin, evenly.
@@ -257,12 +272,23 @@ void add_rays(const CurvedSpace& space, int rays, const EvenRays& from, RandomSt
         start = from.start(own);
         return CurvedSpace::FlightStart{start.point, start.inward, &random};
       });
+  light.finish();
 }
 
 /// Whether light can hit a sensor, so that rays of beams are followed.
 bool has_area(const Transport& transport) {
   return std::any_of(transport.sensors.begin(), transport.sensors.end(),
                      [](const SensorEnd& sensor) { return sensor.can_be_hit(); });
+}
+
+/// Of lines, which cost as much as some hundreds of rays.
+void add_edges(const MovingField& field, const Lights& lights, int rays, double worth,
+               RandomStream& random, Film& film) {
+  const int lines = (rays + 255) / 256;
+  for (int i = 0; i < lines; ++i) {
+    const double stratum = random.uniform(), v = random.uniform();
+    BeamEdges(field, lights, stratum, v).add(worth * rays / lines * lights.beam_power(), film);
+  }
 }
 
 /// with_space(use): calls use(space), the same or another for each ray. in_lanes: the space of all
@@ -286,10 +312,14 @@ BeamsKernel kernel(std::shared_ptr<const Transport> transport, const BeamsSetup&
       with_space(random, [&](const auto& space) {
         UnscatteredBeams<timed, std::decay_t<decltype(space)>> light(*transport, setup, space,
                                                                      worth, random, film, counts);
-        if (follows_rays && !in_lanes) light.add_ray(from.start(ray), from.stratum(ray));
+        if (follows_rays && !in_lanes) {
+          light.add_ray(from.start(ray), from.stratum(ray));
+          light.finish();
+        }
         if (const double way = ways_before(ray); ways_before(ray + 1) > way)
           light.add_ways(fraction(beam_of_way + way * golden));
       });
+    if (setup.moving) add_edges(*setup.moving, transport->lights, rays, worth, random, film);
   };
 }
 
@@ -297,7 +327,7 @@ template <class WithSpace>
 BeamsKernel kernel(const BeamsRequest& request, std::shared_ptr<const Transport> transport,
                    const BeamSeeds& seeds, const WithSpace& with_space,
                    std::shared_ptr<const CurvedSpace> in_lanes = nullptr) {
-  const BeamsSetup setup{seeds, share_of_ways(seeds.is_any_seen), request.books};
+  const BeamsSetup setup{seeds, share_of_ways(seeds.is_any_seen), request.books, request.moving};
   return request.timed ? kernel<true>(transport, setup, with_space, in_lanes)
                        : kernel<false>(transport, setup, with_space, in_lanes);
 }

@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "grin/curved/curved_space.h"
+#include "grin/estimators/moving_field.h"
 #include "grin/estimators/path_kernels.h"
 
 namespace flatspeckle::grin {
@@ -19,6 +20,8 @@ struct BeamsRequest {
   bool timed = false;
   bool random_phase = false;  ///< each ray meets its own phase of the sound
   bool books = false;         ///< where the power of rays goes, as nothing else does
+  std::shared_ptr<const MovingField> moving =
+      nullptr;  ///< where there are derivatives by its parameters
 };
 
 /// So many rays, each of which stands for `worth` light paths.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <span>
 
 #include "core/numbers/complex.h"
@@ -9,18 +10,20 @@ namespace flatspeckle::grin {
 
 /// What is kept of a pixel's light: by optical path, in equal bins, beside them what is before the
 /// first and beyond the last, so that the sum of all is the steady picture; moments of it; and
-/// derivatives by parameters of the medium (path_score.h).
+/// derivatives by parameters of the medium (path_score.h) and of the field (moving_paths.h).
 struct TimeBins {
   double first = 0, last = 0;  ///< edges
   int count = 1;               ///< 1: steady state
   bool moments = false;        ///< also value times path, and times its square
-  int derivatives = 0;         ///< by so many parameters
+  int derivatives = 0;         ///< by so many parameters of the medium
+  int by_field = 0;            ///< and so many sums of those by parameters of the field
 
   bool keeps_paths() const { return count > 1 || moments; }
   /// Sums of a pixel: [before, bins, beyond] or one, then the moments.
   int parts() const { return count > 1 ? count + 2 : 1; }
   int first_derivative() const { return parts() + (moments ? 2 : 0); }
-  int sums() const { return first_derivative() + derivatives; }
+  int first_by_field() const { return first_derivative() + derivatives; }
+  int sums() const { return first_by_field() + by_field; }
 };
 
 /// Sums of a batch: [pixel][TimeBins::sums].
@@ -47,6 +50,11 @@ class Film {
   void add_derivative(int pixel, int parameter, double value) {
     Complex* const own = sums_.data() + static_cast<std::size_t>(pixel) * per_pixel_;
     own[bins_.first_derivative() + parameter] += value;
+  }
+  /// Left out where it is not finite.
+  void add_by_field(int pixel, int number, double value) {
+    Complex* const own = sums_.data() + static_cast<std::size_t>(pixel) * per_pixel_;
+    if (std::isfinite(value)) own[bins_.first_by_field() + number] += value;
   }
 
   EnergyBalance energy;  ///< of light paths that are walked to their ends

@@ -4,14 +4,13 @@
 #include <vector>
 
 #include "core/numbers/statistics.h"
-#include "grin/media/scattering_medium.h"
-#include "grin/paths/film.h"
-#include "grin/sensors/sensor.h"
+#include "grin/estimators/render_scene.h"
 
 namespace flatspeckle::grin {
 
-/// Derivatives of what a sensor has found, by each parameter of the medium (path_score.h), one
-/// parameter after the other.
+/// Derivatives of what a sensor has found, by each parameter of the medium (path_score.h) and of
+/// the field (moving_paths.h), one parameter after the other. Errors of the latter have what the
+/// width of edges does, as far as it is told from chance.
 struct PowerGradients {
   Estimate image, mean;
   Estimate within = {};  ///< of sensors that list radii (PowersWithin)
@@ -22,6 +21,6 @@ PowerGradients power_gradients(const Sensor& sensor, std::size_t first_pixel, co
                                const GroupedSums& sums);
 
 /// What they are by.
-std::vector<std::string> gradient_names(const ScatteringMedium& medium);
+std::vector<std::string> gradient_names(const RenderScene& scene);
 
 }  // namespace flatspeckle::grin

@@ -27,7 +27,8 @@ const DatasetTable render_table{
                    {"", "mesh_volume", "float64", "that body_mesh encloses"},
                    {"", "body_volume", "float64", "of the smooth body in its place"},
                    {"parameter", "names", "texts",
-                    "mu_s, mu_a, g, as far as the medium has them (gradient)"}}};
+                    "mu_s, mu_a, g, as far as the medium has them (gradient); keys of the field "
+                    "(gradient_by)"}}};
 
 namespace {
 
@@ -211,7 +212,7 @@ RenderResult render_result(const RenderScene& scene, const RenderJob& job,
     result.back().within = powers_within(
         sensor, first, job.bins, sums,
         [&](const GroupedSums& of, const Estimator& theta) { return job.estimate(of, theta); });
-    if (job.bins.derivatives > 0)
+    if (job.bins.derivatives > 0 || job.bins.by_field > 0)
       result.back().gradients = power_gradients(sensor, first, job.bins, sums);
     first += pixels.count();
   }
@@ -227,9 +228,9 @@ void write_render(ResultFile& file, const RenderScene& scene, const RenderJob& j
       root.attribute("mesh_volume", level->meant_volume());
       root.attribute("body_volume", level->volume());
     }
-  if (job.bins.derivatives > 0) {
-    root.number("parameter", static_cast<std::size_t>(job.bins.derivatives));
-    root.attribute("parameter", "names", gradient_names(scene.stage.medium));
+  if (const auto names = gradient_names(scene); !names.empty()) {
+    root.number("parameter", names.size());
+    root.attribute("parameter", "names", names);
   }
   if (job.bins.count > 1) write_bins(root, job.bins, length_unit);
   for (std::size_t i = 0; i < result.size(); ++i)

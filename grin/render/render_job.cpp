@@ -189,6 +189,8 @@ void check(const RenderScene& scene, const RenderRequest& request) {
   if (request.method == RenderMethod::analog) check_analog(scene);
   if (scene.bins.derivatives > 0 && request.method != RenderMethod::analog)
     throw InputError("gradient: needs method = analog");
+  if (!scene.parameters.empty() && request.method != RenderMethod::analog)
+    throw InputError("gradient_by: needs method = analog");
   if (scene.random_phase) make_ray_field(scene.field)->frozen(0);
 }
 

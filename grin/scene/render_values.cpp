@@ -6,6 +6,7 @@
 
 #include "core/keys/number_text.h"
 #include "grin/paths/path_score.h"
+#include "grin/scene/field_parameters.h"
 #include "grin/scene/step_choice.h"
 
 namespace flatspeckle::grin {
@@ -148,6 +149,21 @@ void add_derivatives(RenderScene& scene) {
   scene.bins.derivatives = static_cast<int>(parameters_of(medium).size());
 }
 
+/// By numbers of the field.
+void add_motion(const RenderValues& values, const FieldUse& use, RenderScene& scene) {
+  const auto refuse = [](const std::string& why) { throw InputError("gradient_by: " + why); };
+  if (scene.is_silent || std::holds_alternative<Homogeneous>(scene.field))
+    refuse("the field must bend rays");
+  if (scene.random_phase) refuse("the sound must be of one phase, without random_phase");
+  if (!scene.stage.bodies.empty()) refuse("the stage must have no bodies, but one medium alone");
+  if (scene.stage.medium.density) refuse("the medium must be uniform, without density");
+  const auto* box = std::get_if<Box>(&scene.stage.boundary);
+  if (!box) refuse("the stage must be a box");
+  for (const Sensor& sensor : scene.sensors) SensorEdges(sensor, *box, 0);
+  scene.parameters = field_parameters(values.field, values.gradient_by, use);
+  scene.bins.by_field = static_cast<int>(scene.parameters.size()) * edge_widths;
+}
+
 void add_map_keys(Keys& keys, RenderValues& values) {
   keys.group("Map of the fluence rate and of absorbed power");
   keys.add("map_box", values.map_box, "x y z x y z of two corners: cells of this box")
@@ -191,6 +207,10 @@ void add_keys(Keys& keys, RenderValues& values) {
            "Also the mean optical path of the light in each pixel, and the mean of its square");
   keys.add("gradient", values.gradient,
            "Also derivatives of pictures and powers by mu_s, mu_a and g (method = analog)");
+  keys.add(
+      "gradient_by", values.gradient_by,
+      "Also derivatives by numbers of the index field: amplitude, frequency, transducer.2, the "
+      "third of its numbers (method = analog)");
   keys.add("length_unit", values.length_unit,
            "What lengths are in, um or 1e-6, for the times of path_bins")
       .positive()
@@ -216,7 +236,7 @@ void add_keys(Keys& keys, RenderRequestValues& values) {
 
 RenderScene make_render_scene(const Keys& keys, const RenderValues& values) {
   const bool any_phase = keys.read(values.random_phase);
-  const auto [stage, field, index] =
+  const auto [stage, field, index, use] =
       make_stage(keys, values.stage, values.field, any_phase, keys.read(values.length_unit));
   const Box box = bounds(stage.boundary);
   const double size = (box.high - box.low).norm();
@@ -237,6 +257,7 @@ RenderScene make_render_scene(const Keys& keys, const RenderValues& values) {
                     .index = index,
                     .is_silent = has_sound(field.field) && heard.index() != field.field.index()};
   if (keys.read(values.gradient)) add_derivatives(scene);
+  if (!keys.read(values.gradient_by).empty()) add_motion(values, use, scene);
   check_size(scene.sensors, scene.bins);
   if (scene.sensors.empty() && !scene.map)
     throw InputError("sensor", "none", "wants a map (map_box, map_cylinder)");

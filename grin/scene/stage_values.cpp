@@ -76,10 +76,9 @@ FilledStage make_stage(const Keys& keys, const StageValues& values, const IndexF
         "stage_sphere)");
   const auto given = given_body(keys, values, &*boundary);
   const double reach = reach_of(given ? *given : *boundary);
+  const FieldUse use{.reach = reach, .any_phase = any_phase, .length_unit = length_unit};
   FilledStage filled{
-      {.boundary = *boundary},
-      make_scene_field(keys, field,
-                       {.reach = reach, .any_phase = any_phase, .length_unit = length_unit})};
+      .stage = {.boundary = *boundary}, .field = make_scene_field(keys, field, use), .use = use};
   Stage& stage = filled.stage;
   if (const auto body = body_of(filled.field, *boundary, given)) {
     stage.bodies.push_back({*body, medium_in(keys, values.body_medium, *body, "body")});

@@ -24,6 +24,7 @@ struct FilledStage {
   Stage stage;
   SceneField field;
   IndexRange index = {};
+  FieldUse use = {};  ///< what the field was made for
 };
 
 /// A Luneburg ball in a larger stage is a body by itself. Throws InputError, also for a field that

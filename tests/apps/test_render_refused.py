@@ -54,6 +54,23 @@ class Refused(RenderTest):
         write_density(self.folder / "cloud.h5", np.ones((3, 3, 3)), origin=[-1, -1, 0], spacing=[1, 1, 2])
         self.refuse("gradient", "uniform", density="cloud.h5", **curved)
 
+    def test_gradients_by_the_field(self):
+        disk = {"sensor": "radial", "radii": [0.3], "sensor_size": None, "pixels": None}
+        curved = {**FIBRE, **disk, "gradient_by": "alpha", "method": "analog"}
+        self.refuse("gradient_by", "method = analog", **{**curved, "method": "light"})
+        self.refuse("gradient_by = beta", "amplitude", **{**curved, "gradient_by": "beta"})
+        self.refuse("gradient_by = mu_s", "index field", **{**curved, "gradient_by": "mu_s"})
+        self.refuse("gradient_by = alpha.1", "alpha.0", **{**curved, "gradient_by": "alpha.1"})
+        self.refuse("gradient_by = centre", "3 numbers", **{**curved, "gradient_by": "centre"})
+        self.refuse("slope", "is a key of", **{**curved, "slope": [0, 0, 1]})
+        self.refuse("gradient_by", "bend rays", **{**curved, "field": None, "index": None, "alpha": None})
+        self.refuse("gradient_by", "radial or area", **{**curved, "sensor": "polar", "sensor_at": None, "radii": None,
+                                                       "sensor_direction": [0, 0, 1], "rings": 4})
+        self.refuse("gradient_by", "all directions", acceptance=0.5, **curved)
+        self.refuse("gradient_by", "edges of the stage", **{**curved, "radii": [0.95]})
+        self.refuse("gradient_by", "bodies", ball=[0, 0, 2, 0.5, 1.5, 0, 0, 0], **curved)
+        self.refuse("gradient_by", "a box", **{**curved, "stage_box": None, "stage_sphere": [0, 0, 2, 2]})
+
     def test_fields(self):
         self.refuse("index", "must be positive", field="linear", slope=[0, 0, -0.5])
         self.refuse("index", "in all of the body", field="linear", slope=[0, 0, -0.5],

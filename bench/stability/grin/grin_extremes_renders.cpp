@@ -5,6 +5,7 @@
 #include <numbers>
 #include <optional>
 
+#include "bench/oracles/guided_beam.h"
 #include "bench/oracles/lamp_map.h"
 #include "bench/oracles/peierls_slab.h"
 #include "bench/scenes/furnaces.h"
@@ -233,6 +234,49 @@ Finding map_row(RenderScene scene, const std::vector<double>& expected, std::uin
   return worst;
 }
 
+/// Of the power on the only disk, by the only parameter of the field.
+Estimate field_slope(const RenderScene& scene, std::uint64_t samples) {
+  const RenderJob job = render_job(scene, {RenderMethod::analog}, 1);
+  return power_gradients(scene.sensors[0], 0, scene.bins, run_state(job, samples).sums).within;
+}
+
+void add_field_gradients(ExtremeRows& rows) {
+  const auto by_alpha = [](const GuidedBeam& beam, double mu_s, double g, std::uint64_t samples) {
+    RenderValues values = guided_values(beam, {0.3}, mu_s, g);
+    values.gradient_by = {"alpha"};
+    return field_slope(make_render_scene(values), samples);
+  };
+  rows.add("derivative by alpha, 20 periods of a guide", "where rays go, relative", [=] {
+    const GuidedBeam beam{0.2, 942};
+    const double exact = beam.by_alpha(0.3);
+    return Finding{std::abs(by_alpha(beam, 0, 0, 64).value[0].real() / exact - 1), 1e-3};
+  });
+  rows.add("derivative by alpha, fog of g = 1 - 1e-9", "that without fog, in errors", [=] {
+    const GuidedBeam beam{0.2, 6};
+    const Estimate found = by_alpha(beam, 2, 1 - 1e-9, 40'000);
+    return in_errors(found.value[0], found.error[0], beam.by_alpha(0.3), 0.1);
+  });
+  rows.add("derivative by an amplitude of 1e-6", "that of a thin lens, relative", [] {
+    constexpr double k = 2, length = 30, radius = 0.1, beam = 0.25;
+    RenderValues values;
+    values.field.field = {UltrasoundValues::word};
+    values.field.of<UltrasoundValues>().index = 1.33;
+    values.field.of<UltrasoundValues>().amplitude = 1e-6;
+    values.field.of<UltrasoundValues>().sound_wavenumber = k;
+    values.stage.stage_box = {-5, -5, 0, 5, 5, length};
+    values.lights.beam_light = {0, 0, 0, 0, 0, 1, beam, 1};
+    values.sensors.sensor = {RadialValues::word};
+    values.sensors.of<RadialValues>().sensor_at = {0, 0, length};
+    values.sensors.of<RadialValues>().radii = {radius};
+    values.gradient_by = {"amplitude"};
+    // light moves by A k L^2 J_1(k rho) / (2 n) towards the axis
+    const double inwards = k * length * length * std::cyl_bessel_j(1, k * radius) / (2 * 1.33);
+    const double exact = 2 * radius * inwards / (beam * beam);
+    const Estimate found = field_slope(make_render_scene(values), 64);
+    return Finding{std::abs(found.value[0].real() / exact - 1), 1e-3};
+  });
+}
+
 void add_maps(ExtremeRows& rows) {
   for (const double albedo : {0.1, 0.95})
     rows.add_slow("fluence 1 to 5 mean free paths off a lamp, albedo " + short_number(albedo),
@@ -321,6 +365,7 @@ std::vector<ExtremeCase> render_extremes() {
   add_furnaces(rows);
   add_slabs(rows);
   add_gradients(rows);
+  add_field_gradients(rows);
   add_maps(rows);
   add_deep_slabs(rows);
   add_choices(rows);

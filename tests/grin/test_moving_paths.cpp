@@ -1,0 +1,180 @@
+#include <cmath>
+#include <numbers>
+
+#include <doctest/doctest.h>
+
+#include "bench/oracles/guided_beam.h"
+#include "bench/oracles/quadrature.h"
+#include "grin/render/render_datasets.h"
+#include "tests/grin/render_tests.h"
+
+// Derivatives of powers by numbers of the index field: against closed forms, and against
+// differences of powers that the same random numbers make.
+
+namespace flatspeckle::grin::tests {
+
+namespace {
+
+using std::numbers::pi;
+
+using oracles::guided_values;
+using oracles::GuidedBeam;
+
+const std::vector<double> radii{0.3, 0.6};
+
+RenderValues with(RenderValues values, std::vector<std::string> by) {
+  values.gradient_by = std::move(by);
+  return values;
+}
+
+struct Powers {
+  RenderJob job;
+  RunState state;
+  SensorResult found;
+};
+Powers powers(const RenderValues& values, double samples) {
+  const RenderScene scene = make_render_scene(values);
+  const RenderJob job = render_job(scene, {RenderMethod::analog}, 1);
+  const RunState state = run_render(job, samples);
+  return {job, state, render_result(scene, job, state.sums)[0]};
+}
+
+/// A value and its error.
+struct Found {
+  double value, error;
+};
+/// Of the first so many pixels together, by the differences of groups.
+Found difference(const Powers& high, const Powers& low, double apart, std::size_t pixel,
+                 double area) {
+  const auto power = [&](const Powers& one, std::size_t group) {
+    const auto stride = static_cast<std::size_t>(one.job.bins.sums());
+    return area * one.state.sums.group_sums(group)[pixel * stride].real() /
+           one.state.sums.group_samples(group);
+  };
+  const std::size_t groups = high.state.sums.groups();
+  double mean = 0, square = 0;
+  for (std::size_t i = 0; i < groups; ++i) {
+    const double one = (power(high, i) - power(low, i)) / apart;
+    mean += one / static_cast<double>(groups);
+    square += one * one / static_cast<double>(groups);
+  }
+  return {mean, std::sqrt((square - mean * mean) / static_cast<double>(groups - 1))};
+}
+
+/// Of a pixel, against the difference by this member of the values.
+template <class Member>
+void check_differences(const RenderValues& values, const std::string& name, const Member& member,
+                       std::size_t pixel, double pixel_area) {
+  constexpr double samples = 300000, apart = 0.03;
+  CAPTURE(name);
+  CAPTURE(pixel);
+  const Powers all = powers(with(values, {name}), samples);
+  RenderValues less = values, more = values;
+  member(less) *= 1 - apart;
+  member(more) *= 1 + apart;
+  const Found other = difference(powers(more, samples), powers(less, samples),
+                                 member(more) - member(less), pixel, pixel_area);
+  const Estimate& image = all.found.gradients->image;
+  const Found one{pixel_area * image.value[pixel].real(), pixel_area * image.error[pixel]};
+  CAPTURE(one.value);
+  CAPTURE(one.error);
+  CAPTURE(other.value);
+  CAPTURE(other.error);
+  CHECK(std::abs(one.value - other.value) < 4 * std::hypot(one.error, other.error));
+  CHECK(std::hypot(one.error, other.error) < 0.06 * std::abs(one.value));
+}
+
+}  // namespace
+
+TEST_CASE("edges of light that nothing scatters are exact") {
+  for (const double length : {6.0, 15.0}) {
+    CAPTURE(length);
+    const GuidedBeam guide{0.2, length};
+    const Powers all = powers(with(guided_values(guide, radii), {"alpha"}), 64);
+    const Estimate& within = all.found.gradients->within;
+    CHECK(within.value[0].real() == doctest::Approx(guide.by_alpha(0.3)).epsilon(2e-6));
+    CHECK(within.error[0] < 1e-6);
+    if (length < 10)
+      CHECK(within.value[1].real() == doctest::Approx(guide.by_alpha(0.6)).epsilon(2e-6));
+  }
+}
+
+TEST_CASE("what is absorbed changes with the way") {
+  const GuidedBeam guide{0.2, 6, 0.5};
+  const Powers all = powers(with(guided_values(guide, radii), {"alpha"}), 20000);
+  const Estimate& within = all.found.gradients->within;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const double exact = guide.by_alpha(i == 0 ? 0.3 : 0.6);
+    CAPTURE(exact);
+    CAPTURE(within.error[i]);
+    CHECK(std::abs(within.value[i].real() - exact) < 4 * within.error[i] + 1e-6);
+    CHECK(within.error[i] < 1e-4);
+  }
+}
+
+TEST_CASE("derivatives by the field are those of differences of the same paths") {
+  const auto alpha = [](RenderValues& values) -> double& {
+    return *values.field.of<ParabolicValues>().alpha;
+  };
+  const RenderValues even = guided_values({0.25, 6, 0.02}, radii, 0.25);
+  SUBCASE("of isotropic light, on a disk") {
+    check_differences(even, "alpha", alpha, 0, pi * 0.3 * 0.3);
+  }
+  RenderValues forward = guided_values({0.25, 6, 0.02}, radii, 0.25, 0.8);
+  SUBCASE("of forward light, on pixels beside the axis") {
+    forward.sensors = {};
+    forward.sensors.sensor = {AreaValues::word};
+    forward.sensors.of<AreaValues>().sensor_at = {0.3, 0.1, 6};
+    forward.sensors.of<AreaValues>().sensor_size = {1, 0.8};
+    forward.sensors.pixels = {2, 1};
+    for (const std::size_t pixel : {0, 1}) check_differences(forward, "alpha", alpha, pixel, 0.4);
+  }
+  SUBCASE("by sound") {
+    forward.field = {};
+    forward.field.field = {UltrasoundValues::word};
+    auto& sound = forward.field.of<UltrasoundValues>();
+    sound.index = 1.33;
+    sound.amplitude = 0.02;
+    sound.sound_wavenumber = 2;
+    const auto amplitude = [](RenderValues& values) -> double& {
+      return *values.field.of<UltrasoundValues>().amplitude;
+    };
+    const auto wavenumber = [](RenderValues& values) -> double& {
+      return *values.field.of<UltrasoundValues>().sound_wavenumber;
+    };
+    check_differences(forward, "amplitude", amplitude, 0, pi * 0.3 * 0.3);
+    check_differences(forward, "sound_wavenumber", wavenumber, 0, pi * 0.3 * 0.3);
+  }
+}
+
+/// A turn of 1e-9 is none, and light of a sharp picture lands as if nothing scattered it.
+TEST_CASE("fog that does not turn light changes nothing") {
+  const GuidedBeam guide{0.2, 6};
+  const RenderValues fog = guided_values(guide, radii, 0.5, 1 - 1e-9);
+  const Powers all = powers(with(fog, {"alpha"}), 100000);
+  const Estimate& within = all.found.gradients->within;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const double exact = guide.by_alpha(i == 0 ? 0.3 : 0.6);
+    CAPTURE(exact);
+    CAPTURE(within.value[i].real());
+    CAPTURE(within.error[i]);
+    CHECK(std::abs(within.value[i].real() - exact) < 4 * within.error[i]);
+    CHECK(within.error[i] < 0.06 * exact);
+  }
+}
+
+TEST_CASE("the kernel of edges has no second moment") {
+  oracles::Quadrature points;
+  points.add(-1, 1);
+  const auto moment = [&](int power) {
+    double sum = 0;
+    for (std::size_t i = 0; i < points.node.size(); ++i)
+      sum += points.weight[i] * std::pow(points.node[i], power) * edge_kernel(points.node[i]);
+    return sum;
+  };
+  CHECK(moment(0) == doctest::Approx(1));
+  CHECK(std::abs(moment(2)) < 1e-12);
+  CHECK(moment(4) == doctest::Approx(-1.0 / 21));
+}
+
+}  // namespace flatspeckle::grin::tests
