@@ -57,16 +57,18 @@ double excess(double difference, double error) {
 }
 
 /// Of the estimates of Widths, entry after entry `count` apart: that of the width with the smallest
-/// error, its distance from all narrower ones included.
+/// error. That has what the width does, as far as narrower ones tell: the largest difference from
+/// one of them beyond chance, and as much as chance leaves open of that from the next.
 void append_best(const Estimate& widths, std::size_t first, std::size_t count, Estimate& best) {
   const auto at = [&](std::size_t column) { return first + column * count; };
   std::size_t pair = edge_widths, chosen = 0;
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t one = 0; one + 1 < edge_widths; ++one) {
+    const double unknown = widths.error[at(pair)];
     double bias = 0;
     for (std::size_t other = one + 1; other < edge_widths; ++other, ++pair)
       bias = std::max(bias, excess(widths.value[at(pair)].real(), widths.error[at(pair)]));
-    const double error = std::sqrt(widths.error[at(one)] * widths.error[at(one)] + bias);
+    const double error = std::hypot(widths.error[at(one)], unknown, std::sqrt(bias));
     if (!(error < least)) continue;
     least = error;
     chosen = one;
