@@ -75,6 +75,7 @@ void append_best(const Estimate& widths, std::size_t first, std::size_t count, E
   }
   best.value.push_back(widths.value[at(chosen)]);
   best.error.push_back(least);
+  best.rare.push_back(widths.rare.empty() ? 0 : widths.rare[at(chosen)]);
 }
 
 /// Of [parameter of the field].

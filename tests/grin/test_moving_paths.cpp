@@ -163,6 +163,18 @@ TEST_CASE("fog that does not turn light changes nothing") {
   }
 }
 
+TEST_CASE("derivatives by the medium stand before those by the field") {
+  RenderValues both = with(guided_values({0.2, 6}, radii, 0.5, 0.5), {"alpha", "index"});
+  both.gradient = true;
+  const Powers all = powers(both, 1000);
+  const Estimate& within = all.found.gradients->within;
+  CHECK(gradient_names(make_render_scene(both)) ==
+        std::vector<std::string>{"mu_s", "mu_a", "g", "alpha", "index"});
+  CHECK(within.value.size() == 10);
+  CHECK(within.error.size() == 10);
+  CHECK(within.rare.size() == 10);
+}
+
 TEST_CASE("the kernel of edges has no second moment") {
   oracles::Quadrature points;
   points.add(-1, 1);
