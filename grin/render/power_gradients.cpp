@@ -1,8 +1,9 @@
 #include "grin/render/power_gradients.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <limits>
+#include <functional>
 
 #include "grin/paths/path_score.h"
 
@@ -39,16 +40,25 @@ Estimate by_medium(const PixelSums& pixels, const GroupedSums& sums, const Of& o
   });
 }
 
-/// What each width of edges makes of a derivative, and the differences of each two of them,
+/// What each width of edges makes of a derivative, and its differences from the next narrower ones,
 /// [width or pair][entry].
 using Widths = std::vector<std::vector<Complex>>;
+constexpr std::size_t width_count = edge_widths;
+
+/// use(width, a narrower one).
+template <class Use>
+void for_pairs(const Use& use) {
+  constexpr std::size_t compared = 2;
+  for (std::size_t one = 0; one < width_count; ++one)
+    for (std::size_t other = one + 1; other < std::min(one + compared + 1, width_count); ++other)
+      use(one, other);
+}
 void append_differences(Widths& widths) {
-  for (std::size_t one = 0; one < edge_widths; ++one)
-    for (std::size_t other = one + 1; other < edge_widths; ++other) {
-      std::vector<Complex> difference = widths[one];
-      for (std::size_t i = 0; i < difference.size(); ++i) difference[i] -= widths[other][i];
-      widths.push_back(std::move(difference));
-    }
+  for_pairs([&](std::size_t one, std::size_t other) {
+    std::vector<Complex> difference = widths[one];
+    for (std::size_t i = 0; i < difference.size(); ++i) difference[i] -= widths[other][i];
+    widths.push_back(std::move(difference));
+  });
 }
 
 /// How far a difference of two widths is from 0 beyond what chance makes of it, squared.
@@ -56,32 +66,41 @@ double excess(double difference, double error) {
   return std::max(0.0, difference * difference - error * error);
 }
 
-/// Of the estimates of Widths, entry after entry `count` apart: that of the width with the smallest
-/// error. That has what the width does, as far as narrower ones tell: the largest difference from
-/// one of them beyond chance, and as much as chance leaves open of that from the next.
+/// The squared error of each width that has a narrower one. It has what the width does, as far as
+/// narrower ones tell: the largest difference from one of them beyond chance, and as much as chance
+/// leaves open of that from the next.
+std::array<double, width_count - 1> squared_errors(
+    const std::function<double(std::size_t)>& value,
+    const std::function<double(std::size_t)>& error) {
+  std::array<double, width_count - 1> bias{}, squares{};
+  std::size_t pair = width_count;
+  for_pairs([&](std::size_t one, std::size_t other) {
+    if (other == one + 1) squares[one] = std::pow(error(one), 2) + std::pow(error(pair), 2);
+    bias[one] = std::max(bias[one], excess(value(pair), error(pair)));
+    ++pair;
+  });
+  for (std::size_t i = 0; i < squares.size(); ++i) squares[i] += bias[i];
+  return squares;
+}
+
+/// Of the estimates of Widths, entry after entry `count` apart: the width with the smallest error.
 void append_best(const Estimate& widths, std::size_t first, std::size_t count, Estimate& best) {
   const auto at = [&](std::size_t column) { return first + column * count; };
-  std::size_t pair = edge_widths, chosen = 0;
-  double least = std::numeric_limits<double>::infinity();
-  for (std::size_t one = 0; one + 1 < edge_widths; ++one) {
-    const double unknown = widths.error[at(pair)];
-    double bias = 0;
-    for (std::size_t other = one + 1; other < edge_widths; ++other, ++pair)
-      bias = std::max(bias, excess(widths.value[at(pair)].real(), widths.error[at(pair)]));
-    const double error = std::hypot(widths.error[at(one)], unknown, std::sqrt(bias));
-    if (!(error < least)) continue;
-    least = error;
-    chosen = one;
-  }
-  best.value.push_back(widths.value[at(chosen)]);
-  best.error.push_back(least);
-  best.rare.push_back(widths.rare.empty() ? 0 : widths.rare[at(chosen)]);
+  const auto squares =
+      squared_errors([&](std::size_t column) { return widths.value[at(column)].real(); },
+                     [&](std::size_t column) { return widths.error[at(column)]; });
+  const auto least = std::ranges::min_element(squares);
+  const auto chosen = at(static_cast<std::size_t>(least - squares.begin()));
+  best.value.push_back(widths.value[chosen]);
+  best.error.push_back(std::sqrt(*least));
+  best.rare.push_back(widths.rare.empty() ? 0 : widths.rare[chosen]);
 }
 
 /// Of [parameter of the field].
 template <class Of>
 Estimate by_field(const PixelSums& pixels, const GroupedSums& sums, const Of& of) {
-  constexpr std::size_t columns = edge_widths + edge_widths * (edge_widths - 1) / 2;
+  std::size_t columns = width_count;
+  for_pairs([&](std::size_t, std::size_t) { ++columns; });
   const int parameters = pixels.bins.by_field / edge_widths;
   const Estimate all = jackknife(sums, [&](double samples, std::span<const Complex> all) {
     std::vector<Complex> made;

@@ -273,7 +273,7 @@ void add_field_gradients(ExtremeRows& rows) {
     const double inwards = k * length * length * std::cyl_bessel_j(1, k * radius) / (2 * 1.33);
     const double exact = 2 * radius * inwards / (beam * beam);
     const Estimate found = field_slope(make_render_scene(values), 64);
-    return Finding{std::abs(found.value[0].real() / exact - 1), 1e-5};
+    return Finding{std::abs(found.value[0].real() / exact - 1), 1e-4};
   });
 }
 
