@@ -215,8 +215,8 @@ class Stack {
     for (const Surveyed* const set : stacked_)
       if (hangs(set)) left_out.push_back(set->first.name);
     std::erase_if(stacked_, hangs);
-    std::ranges::stable_partition(stacked_,
-                                  [](const Surveyed* set) { return set->first.is_scale; });
+    std::stable_partition(stacked_.begin(), stacked_.end(),
+                          [](const Surveyed* set) { return set->first.is_scale; });
     if (!left_out.empty()) ResultGroup(file_, stacked_table).attribute("left_out", left_out);
   }
 

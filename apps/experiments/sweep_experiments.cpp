@@ -12,6 +12,7 @@
 #include "apps/sweep/sweep_end.h"
 #include "apps/sweep/sweep_ranks.h"
 #include "core/error.h"
+#include "core/keys/number_text.h"
 #include "core/result/result_group.h"
 #include "core/run/interrupt.h"
 #include "core/run/ranks.h"
