@@ -199,6 +199,15 @@ TraceValues rays_through_sound(const char* integrator) {
   return values;
 }
 
+/// Of which most leave the table of the wave, which ends at 1000 in k rho.
+TraceValues rays_past_the_table() {
+  TraceValues values = rays_through_sound("leapfrog");
+  auto& sound = values.field.of<UltrasoundValues>();
+  sound.amplitude = 1e-8;
+  sound.sound_wavenumber = 2000;
+  return values;
+}
+
 TraceValues rays_through_lens() {
   TraceValues values;
   values.field.field = {"luneburg"};
@@ -233,6 +242,7 @@ void check_same_rays(TraceValues values, double limit) {
 TEST_CASE("rays that are traced in lanes end where those do that go one by one") {
   for (const char* integrator : {"leapfrog", "yoshida4", "sharma"})
     check_same_rays(rays_through_sound(integrator), 1e-12);
+  check_same_rays(rays_past_the_table(), 1e-12);
   check_same_rays(rays_through_lens(), 1e-9);  // the rim is located to 1e-10
 }
 
