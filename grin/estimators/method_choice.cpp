@@ -200,12 +200,21 @@ bool has_finite_variance(const RenderScene& scene, RenderMethod method) {
 
 namespace {
 
+/// Far from a beam the strongest of a sensor's paths are too rare for a pilot: what it sees of them
+/// is too little, and looks certain.
+bool can_be_tried(const RenderScene& scene, RenderMethod method) {
+  const auto is_beam = [](const Light& light) { return std::holds_alternative<BeamLight>(light); };
+  return has_finite_variance(scene, method) &&
+         (method != RenderMethod::path || std::ranges::none_of(scene.lights, is_beam) ||
+          !render_plan(scene).scatters);
+}
+
 /// Bidirectional tracing first, if it can be tried; then so can the others.
 std::vector<Candidate> candidates(const Tracers& tracers) {
   std::vector<Candidate> found;
   for (const RenderMethod method :
        {RenderMethod::bidirectional, RenderMethod::path, RenderMethod::light})
-    if (has_finite_variance(tracers.scene(), method)) found.push_back({tracers.make(method)});
+    if (can_be_tried(tracers.scene(), method)) found.push_back({tracers.make(method)});
   if (tracers.plan().curved && can_be_analog(tracers.scene()))
     found.push_back({tracers.make(RenderMethod::analog)});
   return found;
