@@ -31,8 +31,8 @@ struct Box {
 
   double distance(const Vec3& x) const {
     const Vec3 beyond = (low - x).cwiseMax(x - high);
-    const double most = beyond.maxCoeff();
-    return most < 0 ? most : beyond.cwiseMax(0).norm();
+    const bool is_inside = (beyond.array() < 0).all();  // never with NaN
+    return is_inside ? beyond.maxCoeff() : beyond.cwiseMax(0).norm();
   }
   Vec3 normal(const Vec3& x) const {
     int axis;
