@@ -2,22 +2,14 @@
 
 #include <memory>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "grin/curved/curved_space.h"
+#include "grin/estimators/field_parameter.h"
 #include "grin/media/scattering_medium.h"
 #include "grin/sensors/sensor_edges.h"
 
 namespace flatspeckle::grin {
-
-/// A number of the index field, and the fields with a little less and more of it.
-struct FieldParameter {
-  std::string name;
-  double scale;  ///< what counts as a whole of it: its size, or 1
-  double step;
-  AnyIndexField less, more;
-};
 
 /// The field of a stage, as light paths need it that move with its parameters.
 class MovingField {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "grin/estimators/field_parameter.h"
 #include "grin/estimators/light_map.h"
-#include "grin/estimators/moving_field.h"
 #include "grin/fields/any_index_field.h"
 #include "grin/index/index_range.h"
 #include "grin/lights/light.h"

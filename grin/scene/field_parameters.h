@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "grin/estimators/moving_field.h"
+#include "grin/estimators/field_parameter.h"
 #include "grin/fields/scene_field.h"
 
 namespace flatspeckle::grin {

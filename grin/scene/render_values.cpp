@@ -8,6 +8,7 @@
 #include "grin/paths/path_score.h"
 #include "grin/scene/field_parameters.h"
 #include "grin/scene/step_choice.h"
+#include "grin/sensors/sensor_edges.h"
 
 namespace flatspeckle::grin {
 

@@ -40,6 +40,11 @@ class PixelRings {
   }
   const char* axis() const { return of_ == Of::radius ? "radius" : "angle"; }
 
+  /// The inner one of a ring.
+  double edge(int ring) const {
+    if (radii_.empty()) return last_ * ring / rings_;
+    return ring > 0 ? radii_[static_cast<std::size_t>(ring) - 1] : 0;
+  }
   /// -1 beyond.
   int ring_at(double coordinate) const {
     if (!(coordinate <= last_)) return -1;
@@ -61,10 +66,6 @@ class PixelRings {
   double density(int ring) const { return 1 / (rings_ * area(ring)); }
 
  private:
-  double edge(int ring) const {
-    if (radii_.empty()) return last_ * ring / rings_;
-    return ring > 0 ? radii_[static_cast<std::size_t>(ring) - 1] : 0;
-  }
   double within(double coordinate) const {
     if (of_ == Of::radius) return std::numbers::pi * coordinate * coordinate;
     const double sine = std::sin(coordinate / 2);

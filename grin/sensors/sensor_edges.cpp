@@ -45,10 +45,9 @@ void require_all_directions(double acceptance) {
 
 int PixelLine::pixel_at(double coordinate) const {
   if (!(coordinate >= edges_.front().at && coordinate <= edges_.back().at)) return -1;
-  int pixel = 0;
-  while (pixel + 1 < count() && coordinate > edges_[static_cast<std::size_t>(pixel) + 1].at)
-    ++pixel;
-  return pixel;
+  const auto inner = std::span(edges_).subspan(1, edges_.size() - 2);
+  return static_cast<int>(std::ranges::lower_bound(inner, coordinate, {}, &Edge::at) -
+                          inner.begin());
 }
 
 SensorEdges::SensorEdges(const Sensor& sensor, const Box& stage, int first_pixel)
@@ -72,11 +71,9 @@ void SensorEdges::set(const RadialDetector& detector, const Box& stage) {
   const double room = room_beside(stage, centre_, outwards_, Vec3::Constant(detector.radius));
   const PixelRings rings = picture_of(detector);
   std::vector<PixelLine::Edge> edges{{0, 0, 0}};
-  double within = 0;
   for (int ring = 0; ring < detector.rings; ++ring) {
     areas_.push_back(rings.area(ring));
-    within += areas_.back();
-    const double radius = std::sqrt(within / std::numbers::pi);
+    const double radius = rings.edge(ring + 1);
     edges.push_back(edge(radius, radius, room));
   }
   columns_ = PixelLine(edges);

@@ -75,8 +75,7 @@ class SensorEdges {
   bool is_on_face(const Vec3& x) const { return std::abs((x - centre_).dot(outwards_)) <= near_; }
   int edges() const { return columns_.count() + rows_.count() + 2; }  ///< those of size 0 are none
   const PixelLine::Edge& edge_at(int edge) const {
-    const int number = is_column(edge) ? edge : edge - columns_.count() - 1;
-    return (is_column(edge) ? columns_ : rows_).edges()[static_cast<std::size_t>(number)];
+    return (is_column(edge) ? columns_ : rows_).edges()[static_cast<std::size_t>(on_line(edge))];
   }
   /// Towards larger radius, column or row.
   double beyond(int edge, const Vec3& x) const {
@@ -95,9 +94,9 @@ class SensorEdges {
   void pass(int edge, const Vec3& x, const Use& use) const {
     const auto [u, v] = coordinates(x);
     const int row = rows_.pixel_at(v), column = columns_.pixel_at(u);
-    const int number = is_column(edge) ? edge : edge - columns_.count() - 1;
     for (const int side : {-1, 0}) {
-      const int of = is_column(edge) ? pixel(row, number + side) : pixel(number + side, column);
+      const int beside = on_line(edge) + side;
+      const int of = is_column(edge) ? pixel(row, beside) : pixel(beside, column);
       if (of >= 0) use(first_pixel_ + of, (side < 0 ? -1 : 1) / area(of));
     }
   }
@@ -123,6 +122,8 @@ class SensorEdges {
 
  private:
   bool is_column(int edge) const { return edge <= columns_.count(); }
+  /// Its number among those of columns, or of rows.
+  int on_line(int edge) const { return is_column(edge) ? edge : edge - columns_.count() - 1; }
   struct Plane {
     double u, v;
   };

@@ -5,8 +5,8 @@
 
 #include "bench/oracles/guided_beam.h"
 #include "bench/oracles/quadrature.h"
-#include "grin/render/render_datasets.h"
-#include "tests/grin/render_tests.h"
+#include "grin/sensors/sensor_edges.h"
+#include "tests/grin/analog_powers.h"
 
 // Derivatives of powers by numbers of the index field: against closed forms, and against
 // differences of powers that the same random numbers make.
@@ -27,38 +27,8 @@ RenderValues with(RenderValues values, std::vector<std::string> by) {
   return values;
 }
 
-struct Powers {
-  RenderJob job;
-  RunState state;
-  SensorResult found;
-};
 Powers powers(const RenderValues& values, double samples) {
-  const RenderScene scene = make_render_scene(values);
-  const RenderJob job = render_job(scene, {RenderMethod::analog}, 1);
-  const RunState state = run_render(job, samples);
-  return {job, state, render_result(scene, job, state.sums)[0]};
-}
-
-/// A value and its error.
-struct Found {
-  double value, error;
-};
-/// Of the first so many pixels together, by the differences of groups.
-Found difference(const Powers& high, const Powers& low, double apart, std::size_t pixel,
-                 double area) {
-  const auto power = [&](const Powers& one, std::size_t group) {
-    const auto stride = static_cast<std::size_t>(one.job.bins.sums());
-    return area * one.state.sums.group_sums(group)[pixel * stride].real() /
-           one.state.sums.group_samples(group);
-  };
-  const std::size_t groups = high.state.sums.groups();
-  double mean = 0, square = 0;
-  for (std::size_t i = 0; i < groups; ++i) {
-    const double one = (power(high, i) - power(low, i)) / apart;
-    mean += one / static_cast<double>(groups);
-    square += one * one / static_cast<double>(groups);
-  }
-  return {mean, std::sqrt((square - mean * mean) / static_cast<double>(groups - 1))};
+  return tests::powers(make_render_scene(values), samples);
 }
 
 /// Of a pixel, against the difference by this member of the values.
@@ -72,10 +42,13 @@ void check_differences(const RenderValues& values, const std::string& name, cons
   RenderValues less = values, more = values;
   member(less) *= 1 - apart;
   member(more) *= 1 + apart;
-  const Found other = difference(powers(more, samples), powers(less, samples),
-                                 member(more) - member(less), pixel, pixel_area);
+  const Slope other =
+      difference(powers(more, samples), powers(less, samples), member(more) - member(less),
+                 [&](std::span<const Complex> sums, std::size_t stride) {
+                   return pixel_area * sums[pixel * stride].real();
+                 });
   const Estimate& image = all.found.gradients->image;
-  const Found one{pixel_area * image.value[pixel].real(), pixel_area * image.error[pixel]};
+  const Slope one{pixel_area * image.value[pixel].real(), pixel_area * image.error[pixel]};
   CAPTURE(one.value);
   CAPTURE(one.error);
   CAPTURE(other.value);

@@ -5,8 +5,7 @@
 
 #include "bench/oracles/peierls_slab.h"
 #include "grin/paths/path_score.h"
-#include "grin/render/render_datasets.h"
-#include "tests/grin/render_tests.h"
+#include "tests/grin/analog_powers.h"
 
 // Derivatives of powers by mu_s, mu_a and g: against closed forms, and against differences of
 // powers that the same random numbers make.
@@ -37,42 +36,16 @@ RenderScene guide(const Tissue& tissue, double amplitude = 0.01) {
   return scene;
 }
 
-struct Powers {
-  RenderJob job;
-  RunState state;
-  SensorResult found;
-};
-Powers powers(const RenderScene& scene, double samples) {
-  const RenderJob job = render_job(scene, {RenderMethod::analog}, 1);
-  const RunState state = run_render(job, samples);
-  return {job, state, render_result(scene, job, state.sums)[0]};
-}
-
 /// Of the power on the larger disk.
-struct Slope {
-  double value, error;
-};
 Slope slope(const Powers& powers, std::size_t parameter) {
   const Estimate& within = powers.found.gradients->within;
   return {within.value[2 * parameter + 1].real(), within.error[2 * parameter + 1]};
 }
 
-/// Central, with its error by the differences of groups.
 Slope difference(const Powers& high, const Powers& low, double apart) {
-  const auto within = [&](const Powers& one, std::size_t group) {
-    const auto sums = one.state.sums.group_sums(group);
-    const auto stride = static_cast<std::size_t>(one.job.bins.sums());
-    return (pi * sums[0].real() + pi * (2.5 * 2.5 - 1) * sums[stride].real()) /
-           one.state.sums.group_samples(group);
-  };
-  const std::size_t groups = high.state.sums.groups();
-  double mean = 0, square = 0;
-  for (std::size_t i = 0; i < groups; ++i) {
-    const double one = (within(high, i) - within(low, i)) / apart;
-    mean += one / static_cast<double>(groups);
-    square += one * one / static_cast<double>(groups);
-  }
-  return {mean, std::sqrt((square - mean * mean) / static_cast<double>(groups - 1))};
+  return difference(high, low, apart, [](std::span<const Complex> sums, std::size_t stride) {
+    return pi * sums[0].real() + pi * (2.5 * 2.5 - 1) * sums[stride].real();
+  });
 }
 
 }  // namespace

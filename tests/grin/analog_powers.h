@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cmath>
+
+#include "grin/render/render_datasets.h"
+#include "tests/grin/render_tests.h"
+
+namespace flatspeckle::grin::tests {
+
+/// Of light paths that are counted where they land.
+struct Powers {
+  RenderJob job;
+  RunState state;
+  SensorResult found;
+};
+inline Powers powers(const RenderScene& scene, double samples) {
+  const RenderJob job = render_job(scene, {RenderMethod::analog}, 1);
+  const RunState state = run_render(job, samples);
+  return {job, state, render_result(scene, job, state.sums)[0]};
+}
+
+struct Slope {
+  double value, error;
+};
+/// Of `power(sums of a group, sums of each pixel)`, central, of runs by the same random numbers,
+/// with its error by the differences of groups.
+template <class Power>
+Slope difference(const Powers& high, const Powers& low, double apart, const Power& power) {
+  const auto of_group = [&](const Powers& one, std::size_t group) {
+    return power(one.state.sums.group_sums(group), static_cast<std::size_t>(one.job.bins.sums())) /
+           one.state.sums.group_samples(group);
+  };
+  const std::size_t groups = high.state.sums.groups();
+  double mean = 0, square = 0;
+  for (std::size_t i = 0; i < groups; ++i) {
+    const double one = (of_group(high, i) - of_group(low, i)) / apart;
+    mean += one / static_cast<double>(groups);
+    square += one * one / static_cast<double>(groups);
+  }
+  return {mean, std::sqrt((square - mean * mean) / static_cast<double>(groups - 1))};
+}
+
+}  // namespace flatspeckle::grin::tests
