@@ -25,18 +25,6 @@ double fraction(double x) {
   return x - std::floor(x);
 }
 
-class EvenSquare {
- public:
-  explicit EvenSquare(RandomStream& random) : u_(random.uniform()), v_(random.uniform()) {}
-
-  double u(int i) const { return fraction(u_ + i / plastic); }
-  double v(int i) const { return fraction(v_ + i / (plastic * plastic)); }
-
- private:
-  static constexpr double plastic = 1.32471795724474602596;  // x^3 = x + 1
-  double u_, v_;
-};
-
 /// Rays do not say all of what this sensor sees of beams.
 template <Space S>
 bool needs_ways(const S& space, const SensorEnd& sensor) {
@@ -241,18 +229,17 @@ class UnscatteredBeams {
 class EvenRays {
  public:
   EvenRays(const Lights& lights, int rays, RandomStream& random)
-      : lights_(lights), rays_(rays), even_(random), beam_(random.uniform()) {}
+      : lights_(lights), rays_(rays), first_(random.uniform()), turn_(random.uniform()) {}
 
-  double stratum(int ray) const { return (ray + beam_) / rays_; }
+  double stratum(int ray) const { return (ray + first_) / rays_; }
   EndPosition start(int ray) const {
-    return lights_.beam_position(stratum(ray), even_.u(ray), even_.v(ray));
+    return lights_.beam_position(stratum(ray), fraction(turn_ + ray * golden));
   }
 
  private:
   const Lights& lights_;
   int rays_;
-  EvenSquare even_;
-  double beam_;
+  double first_, turn_;
 };
 
 /// Rays side by side.

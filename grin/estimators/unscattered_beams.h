@@ -10,9 +10,9 @@ namespace flatspeckle::grin {
 
 // The light of beams that reaches the sensor without a collision. Walks leave it out
 // (Bidirectional), and it is summed apart: with its transmittance instead of by chance, by rays
-// from points spread evenly over the beams (the additive sequence of the plastic number, whose
-// points fill a square; shifted at random for each batch), and by ways from the sensors back to the
-// beams (beam_search.h), which find a pinhole and the glints in a small lens.
+// from points spread evenly over the beams (in a square a lattice of the golden ratio, on a disk
+// its spiral; shifted at random for each batch), and by ways from the sensors back to the beams
+// (beam_search.h), which find a pinhole and the glints in a small lens.
 //
 // The space is that of without_scattering(stage), where each flight goes to the boundary.
 

@@ -91,12 +91,12 @@ EndPosition Lights::position(int light, const BoundaryPoint& at) const {
       source_[light].end);
 }
 
-std::size_t Lights::beam_number(double stratum) const {
+Lights::PlaceInBeam Lights::beam_place(double stratum) const {
   double power = stratum * beam_power_;
   std::size_t i = 0;
   while (i + 1 < beams_.size() && power >= source_[beams_[i]].power)
     power -= source_[beams_[i++]].power;
-  return i;
+  return {i, std::min(power / source_[beams_[i]].power, 1.0)};
 }
 
 Lights::Beam Lights::beam_at(std::size_t number) const {
@@ -111,6 +111,10 @@ Lights::Beam Lights::beam_of(const EndPosition& at) const {
 EndPosition Lights::beam_position(double stratum, double u, double v) const {
   const Beam from = beam(stratum);
   return position(beams_[from.number], from.disk.from_square(u, v));
+}
+
+EndPosition Lights::beam_position(double stratum, double v) const {
+  return beam_position(stratum, beam_place(stratum).u, v);
 }
 
 EndPosition Lights::draw_position(RandomStream& random) const {

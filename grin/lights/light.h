@@ -52,6 +52,8 @@ class Lights {
   /// A place on one of the beams: which, by their power, says `stratum` in (0, 1); where, (u, v) in
   /// the unit square. Its direction is `inward`.
   EndPosition beam_position(double stratum, double u, double v) const;
+  /// The same where u is the stratum's place among those of its beam.
+  EndPosition beam_position(double stratum, double v) const;
   /// One of the beams, as a stratum says.
   struct Beam {
     std::size_t number;
@@ -61,7 +63,7 @@ class Lights {
     double irradiance(const Vec3& x) const { return power * disk.density(x); }
     ParallelLight light() const { return {disk.centre(), disk.axis()}; }
   };
-  Beam beam(double stratum) const { return beam_at(beam_number(stratum)); }
+  Beam beam(double stratum) const { return beam_at(beam_place(stratum).number); }
   Beam beam_at(std::size_t number) const;
   /// That of a place which is on a beam.
   Beam beam_of(const EndPosition& at) const;
@@ -91,7 +93,11 @@ class Lights {
     double chance_so_far = 0;  ///< this and all before
   };
   void settle_chances();
-  std::size_t beam_number(double stratum) const;
+  struct PlaceInBeam {
+    std::size_t number;
+    double u;  ///< its place among the strata of this beam
+  };
+  PlaceInBeam beam_place(double stratum) const;
   EndPosition draw_position(RandomStream& random) const;
   EndPosition position(int light, const BoundaryPoint& at) const;
 

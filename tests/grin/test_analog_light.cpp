@@ -112,6 +112,39 @@ Counted counted(const RenderScene& scene, Spreading spreading, bool is_aimed, in
 
 }  // namespace
 
+/// Of beams of 1 and 3 units of power, how much of each comes within 0.4 of its radius. Of rays in
+/// strata of equal area, 0.16 of them do, to the whole number before or after that.
+TEST_CASE("rays of beams are spread evenly over each") {
+  constexpr int rays = 32, batches = 200;
+  constexpr double radius = 0.5, share = 0.16;
+  RenderScene scene = guide(0, 0, {0.4 * radius, radius});
+  scene.field = Homogeneous{};
+  scene.lights = {BeamLight{{-1, 0, 0}, Vec3::UnitZ(), radius, 1},
+                  BeamLight{{1, 0, 0}, Vec3::UnitZ(), radius, 3}};
+  for (const double at : {-1.0, 1.0}) {
+    const double power = at + 2;
+    CAPTURE(power);
+    std::get<RadialDetector>(scene.sensors[0]).centre = {at, 0, 6};
+    const auto transport = transport_of(scene, {RenderMethod::analog}, RenderMethod::analog);
+    const BeamsKernel kernel = beams_kernel({}, transport, 0);
+    double sum = 0, square = 0;
+    for (std::uint64_t batch = 0; batch < batches; ++batch) {
+      std::vector<Complex> sums(2);
+      Film film(2, scene.bins, sums);
+      TransportCounts counts;
+      RandomStream random(3, 0, batch);
+      kernel(rays, 1.0, random, film, counts);
+      const double within = sums[0].real() * pi * share * radius * radius / rays;
+      sum += within / batches;
+      square += within * within / batches;
+    }
+    const double spread = std::sqrt(square - sum * sum), own_rays = rays * power / 4;
+    const double part = std::fmod(own_rays * share, 1);
+    CHECK(std::abs(sum - share * power) < 4 * spread / std::sqrt(batches));
+    CHECK(spread == doctest::Approx(power * std::sqrt(part * (1 - part)) / own_rays).epsilon(0.15));
+  }
+}
+
 /// Each path has random numbers of its own, so that it goes the same way both times.
 TEST_CASE("light paths side by side are those that go one by one") {
   for (const bool is_aimed : {false, true}) {
