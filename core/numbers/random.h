@@ -21,6 +21,9 @@ class RandomStream {
     return block_.v[used_++];
   }
 
+  /// The next uniform() is u, in (0, 1): of numbers that are drawn evenly for many streams.
+  void put_back(double u) { block_.v[--used_] = static_cast<std::uint64_t>(u * 0x1p53) << 11; }
+
   /// Uniform in the open interval (0, 1), so that log(u), log(1 - u) and 1/u are finite.
   double uniform() { return uniform(bits()); }
   /// Odd multiples of 2^-54, rounded above 1/2: 1 - 2^-54 to 1, but for the bound.

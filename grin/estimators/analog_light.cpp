@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "grin/estimators/moving_paths.h"
+#include "grin/media/even_turns.h"
 #include "grin/paths/light_family.h"
 #include "grin/paths/light_tally.h"
 #include "grin/paths/path_score.h"
@@ -43,6 +44,13 @@ struct Branch {
   int flight = 0;  ///< of moving paths
 };
 
+/// Of a path that is to begin: its random numbers, and its place in (0, 1) among those of a batch,
+/// which their first flights are drawn by, evenly.
+struct FreshPath {
+  RandomStream random;
+  double place;
+};
+
 /// The paths of a batch, in lanes that have one branch each at a time; those that wait are taken
 /// up by any.
 template <bool timed>
@@ -52,8 +60,8 @@ class AnalogWalk {
     EndPosition end;  ///< of its path's first flight
     std::optional<Branch> now;
   };
-  /// The random numbers of the next path, if there is one.
-  using Fresh = std::function<std::optional<RandomStream>()>;
+  /// The next path, if there is one.
+  using Fresh = std::function<std::optional<FreshPath>()>;
 
   AnalogWalk(const AnalogBatch& batch, Fresh fresh)
       : batch_(batch), fresh_(std::move(fresh)), tally_(batch.film.energy) {
@@ -79,13 +87,13 @@ class AnalogWalk {
     if (!waiting_.empty()) {
       lane.now = waiting_.back();
       waiting_.pop_back();
-    } else if (const auto random = fresh_()) {
-      begin(lane, *random);
+    } else if (const auto fresh = fresh_()) {
+      begin(lane, *fresh);
     }
   }
-  void begin(Lane& lane, const RandomStream& random) {
+  void begin(Lane& lane, const FreshPath& fresh) {
     const Lights& lights = batch_.transport.lights;
-    Branch& now = lane.now.emplace(Branch{random});
+    Branch& now = lane.now.emplace(Branch{fresh.random});
     lane.end = lights.sample_position(batch_.space, now.random);
     now.from = end_vertex({}, lane.end);
     const EndDirection first = lights.sample_direction(lane.end, now.random);
@@ -96,6 +104,19 @@ class AnalogWalk {
     tally_.emitted(now.from);
     now.absorption.begin(now.from, now.direction);
     if (moving_) now.flight = moving_->begin(now.from.point.x, now.direction);
+    draw_flight(now, fresh.place);
+  }
+  /// The first.
+  void draw_flight(Branch& now, double place) {
+    if (!batch_.aim) return now.random.put_back(place);
+    const PulledFlight flight = batch_.aim->first_flight(now.from.point.x, now.direction, place);
+    now.random.put_back(flight.u);
+    reweigh(now.from, flight.weight * now.from.weight);
+  }
+  void reweigh(PathVertex& at, double weight) {
+    const ScatteringMedium& medium = batch_.transport.medium(at.point.part);
+    tally_.reweighed(at.point.part, medium.mu_a > 0, at.weight - weight);
+    at.weight = weight;
   }
 
   bool goes_on(Branch& now, const Flight& flight) {
@@ -143,30 +164,29 @@ class AnalogWalk {
     const double worth =
         from.weight / now.power * batch_.aim->before_turn(from.point.x, from.arrived);
     const double copies = std::clamp(std::round(worth), 1.0, most);
+    EvenTurns turns(medium.phase, from.arrived, copies, now.random);
+    EvenRoulette roulette(now.random);
     const std::uint64_t key[] = {now.random.bits(), now.random.bits()};
     bool is_left = false;
     for (std::uint64_t i = 0; static_cast<double>(i) < copies; ++i) {
       RandomStream random(key[0], key[1], i);
-      const Vec3 direction = medium.phase.sample(from.arrived, random);
-      const double weight = kept(medium, before, from.weight / copies, direction, random);
-      if (!(weight > 0)) continue;
+      const Vec3 direction = turns.next(random);
+      PathVertex part = from;
+      part.weight /= copies;
+      if (!stays(part, before.power, direction, roulette)) continue;
       Branch& branch = is_left ? waiting_.emplace_back(before) : now;
       is_left = true;
       branch.random = random;
-      branch.from.weight = weight;
+      branch.from = part;
       turn(medium, flown, direction, branch);
     }
     return is_left;
   }
-  /// The weight where roulette leaves any.
-  double kept(const ScatteringMedium& medium, const Branch& before, double weight,
-              const Vec3& direction, RandomStream& random) {
-    const PathPoint& at = before.from.point;
-    const double chance = weight / before.power * batch_.aim->towards(at.x, direction);
-    if (chance >= 1) return weight;
-    const double left = random.uniform() < chance ? weight / chance : 0;
-    tally_.reweighed(at.part, medium.mu_a > 0, weight - left);
-    return left;
+  bool stays(PathVertex& part, double power, const Vec3& direction, EvenRoulette& roulette) {
+    const double chance = part.weight / power * batch_.aim->towards(part.point.x, direction);
+    if (chance >= 1) return true;
+    reweigh(part, roulette.keeps(chance) ? part.weight / chance : 0);
+    return part.weight > 0;
   }
 
   void arrive(const Branch& now, const PathVertex& last, double flown) {
@@ -192,15 +212,18 @@ class AnalogWalk {
 class PathStreams {
  public:
   PathStreams(int paths, RandomStream& random)
-      : key_{random.bits(), random.bits()}, paths_(static_cast<std::uint64_t>(paths)) {}
+      : key_{random.bits(), random.bits()}, first_(random.uniform()), paths_(paths) {}
 
-  std::optional<RandomStream> next() {
+  std::optional<FreshPath> next() {
     if (next_ == paths_) return std::nullopt;
-    return RandomStream(key_[0], key_[1], next_++);
+    const double place = (next_ + first_) / paths_;
+    return FreshPath{{key_[0], key_[1], static_cast<std::uint64_t>(next_++)}, place};
   }
 
  private:
-  std::uint64_t key_[2], paths_, next_ = 0;
+  std::uint64_t key_[2];
+  double first_;
+  int paths_, next_ = 0;
 };
 
 template <bool timed>
@@ -215,8 +238,8 @@ void walk_in_lanes(const AnalogBatch& batch, PathStreams& streams) {
 
 /// One path.
 template <bool timed>
-void walk(const AnalogBatch& batch, const RandomStream& random) {
-  std::optional<RandomStream> one = random;
+void walk(const AnalogBatch& batch, const FreshPath& path) {
+  std::optional<FreshPath> one = path;
   AnalogWalk<timed> walk(batch, [&] { return std::exchange(one, std::nullopt); });
   typename AnalogWalk<timed>::Lane lane;
   std::optional<Flight> flown;
@@ -239,7 +262,7 @@ PathKernel kernel_of(std::shared_ptr<const Transport> transport,
         walk<timed>({*transport, *space, aimed, film, counts, moving.get()}, *own);
         continue;
       }
-      const auto met = space->frozen(2 * std::numbers::pi * own->uniform());
+      const auto met = space->frozen(2 * std::numbers::pi * own->random.uniform());
       walk<timed>({*transport, *met, aimed, film, counts, nullptr}, *own);
     }
   };

@@ -10,10 +10,12 @@ namespace {
 // Found by trials with guides of sound in tissue of three mean free paths. Where it is far from
 // what is so, variance is lost.
 constexpr double share_lost = 0.7;  // of light that scatters on its way along a guide
-constexpr double share_kept = 0.7;  // of the angles that a field keeps
+constexpr double share_kept = 0.6;  // of the angles that a field keeps
 constexpr double spread = 0.5;      // rad, of light that still scatters before the sensor
 constexpr double deepest = 3;       // mean free paths that are seen ahead
 constexpr double least = 1.0 / 32;  // of what heads elsewhere: none that returns is worth too much
+
+constexpr double parts = 2;  // of a path to begin with: they share its first flight
 
 constexpr int some = 64;  // samples of ends
 
@@ -62,6 +64,7 @@ std::optional<SensorAim::Disk> SensorAim::disk_of(const SensorEnd& sensor, const
 
 SensorAim::SensorAim(std::vector<Disk> disks, const ScatteringMedium& medium, double bending)
     : disks_(std::move(disks)),
+      mu_t_(medium.mu_t()),
       attenuation_(share_lost * medium.mu_t()),
       longest_(deepest / medium.mu_t()),
       bending_(share_kept * bending),
@@ -74,7 +77,17 @@ double SensorAim::usual(const Transport& transport, const CurvedSpace& space) co
     const EndPosition at = transport.lights.sample_position(space, random);
     sum += worth(at.point.x, transport.lights.sample_direction(at, random).direction, 0);
   }
-  return sum / some;
+  return sum / some / parts;
+}
+
+PulledFlight SensorAim::first_flight(const Vec3& x, const Vec3& direction, double place) const {
+  constexpr double bent = 1.02;  // longer than the straight way
+  double depth = 0;
+  for (const Disk& disk : disks_) {
+    const double left = disk.outwards.dot(disk.centre - x), cosine = disk.outwards.dot(direction);
+    if (cosine > 0) depth = std::max(depth, bent * mu_t_ * left / cosine);
+  }
+  return PulledFlight::at(place, std::min(depth, deepest / share_lost), share_lost);
 }
 
 double SensorAim::worth(const Vec3& x, const Vec3& direction, double turn) const {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "grin/curved/curved_space.h"
+#include "grin/media/free_flight.h"
 #include "grin/paths/transport.h"
 
 namespace flatspeckle::grin {
@@ -17,8 +18,11 @@ class SensorAim {
   static std::optional<SensorAim> of(const Transport& transport, const CurvedSpace& space,
                                      double bending);
 
-  /// Before light that has arrived along a direction scatters, and of where it goes then. 1 is the
-  /// mean of light as it sets out.
+  /// The first flight of light, by a place in (0, 1).
+  PulledFlight first_flight(const Vec3& x, const Vec3& direction, double place) const;
+
+  /// Before light that has arrived along a direction scatters, and of where it goes then; of light
+  /// as it sets out, on average, as many parts as a path is split into to begin with.
   double before_turn(const Vec3& x, const Vec3& arrived) const {
     return worth(x, arrived, turn_) / usual_;
   }
@@ -40,7 +44,7 @@ class SensorAim {
   double worth(const Disk& disk, const Vec3& x, const Vec3& direction, double turn) const;
 
   std::vector<Disk> disks_;
-  double attenuation_, longest_, bending_, turn_, usual_ = 1;
+  double mu_t_, attenuation_, longest_, bending_, turn_, usual_ = 1;
 };
 
 }  // namespace flatspeckle::grin

@@ -355,7 +355,7 @@ double rays_beside_path(const Lights& lights, const CurvedSpace& space) {
     const EndPosition start = from.start(ray);
     light_left += space.fly(start.point, start.inward, random).weight / some;
   }
-  return std::clamp(5 * light_left, 1.0 / 32, 1.0);
+  return std::clamp(10 * light_left, 1.0 / 16, 1.0);
 }
 
 }  // namespace flatspeckle::grin

@@ -37,6 +37,23 @@ class StretchedFlight {
   double mu_t_, share_;
 };
 
+/// A flight by a place in (0, 1), where the worth of light grows along it as exp(pull s), s in mean
+/// free paths, up to a depth: shorter flights are drawn in proportion to what is worth there,
+/// longer ones as often as plain ones are.
+struct PulledFlight {
+  double u;       ///< of sample_free_flight()
+  double weight;  ///< the density of plain flights over that of these
+
+  static PulledFlight at(double place, double depth, double pull) {
+    const double longer = std::exp(-depth), shorter = -std::expm1(-depth);
+    if (!(place > longer)) return {place, 1};
+    const double share = 1 - pull, all = -std::expm1(-share * depth) / share;
+    const double pulled = 1 - share * all * (place - longer) / shorter;  // exp(-share s)
+    const double u = std::pow(pulled, 1 / share);
+    return {u, all / shorter * u / pulled};
+  }
+};
+
 /// The same as sample_free_flight() on condition that it is no longer than `longest`: exact also
 /// where mu_t longest is tiny.
 struct BoundedFlight {

@@ -33,6 +33,19 @@ TEST_CASE("the least and the largest bits make numbers within (0, 1)") {
   CHECK(RandomStream::uniform(~std::uint64_t{0}) == 1 - 0x1p-53);
 }
 
+TEST_CASE("a number that is put back comes next, and those after it as ever") {
+  RandomStream fresh(7, 1, 5), drawn(7, 1, 5), plain(7, 1, 5);
+  fresh.put_back(0.3);
+  CHECK(fresh.uniform() == doctest::Approx(0.3).epsilon(1e-15));
+  CHECK(fresh.uniform() == plain.uniform());
+  drawn.uniform();
+  for (int i = 0; i < 9; ++i) {
+    drawn.put_back(0.7);
+    CHECK(drawn.uniform() == doctest::Approx(0.7).epsilon(1e-15));
+    CHECK(drawn.uniform() == plain.uniform());
+  }
+}
+
 TEST_CASE("uniform numbers are uniform, within and across batches") {
   constexpr int bins = 64, draws = 200'000;
   std::vector<double> within(bins), across(bins);

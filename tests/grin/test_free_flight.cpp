@@ -71,4 +71,33 @@ TEST_CASE("free flights follow mu_t exp(-mu_t s), and transmittance is what is l
   CHECK(std::isfinite(sample_free_flight(mu_t, 0x1p-54)));
 }
 
+/// The mean of exp(-k s), s in mean free paths, is 1 / (1 + k).
+TEST_CASE("pulled flights keep every mean, and are as worth along the way as they are pulled") {
+  constexpr int places = 1 << 20;
+  constexpr double pull = 0.7;
+  for (const double depth : {0.0, 1e-6, 0.5, 3.0, 30.0}) {
+    CAPTURE(depth);
+    for (const double k : {0.0, 0.5, 3.0, -0.6}) {
+      double sum = 0;
+      for (int i = 0; i < places; ++i) {
+        const auto [u, weight] = PulledFlight::at((i + 0.5) / places, depth, pull);
+        sum += weight * std::pow(u, k) / places;
+      }
+      CHECK(sum == doctest::Approx(1 / (1 + k)).epsilon(k < 0 ? 0.01 : 1e-5));
+    }
+    double least = 1e9, most = 0;
+    bool is_number = true;
+    for (int i = 0; i < places; ++i) {
+      const auto [u, weight] = PulledFlight::at((i + 0.5) / places, depth, pull);
+      is_number &= u > 0 && u < 1;
+      if (!(u > std::exp(-depth))) continue;
+      const double worth = weight * std::pow(u, -pull);
+      least = std::min(least, worth);
+      most = std::max(most, worth);
+    }
+    CHECK(is_number);
+    if (most > 0) CHECK(least == doctest::Approx(most).epsilon(1e-9));
+  }
+}
+
 }  // namespace flatspeckle::grin
