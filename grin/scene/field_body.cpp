@@ -18,10 +18,13 @@ IndexRange index_range(const SceneField& field, const Surface& region, const std
   constexpr int nodes = 33;
   constexpr double infinity = std::numeric_limits<double>::infinity();
   const Box box = bounds(region);
+  const bool is_same_along_z =  // where it is in the region at one z or at all
+      std::holds_alternative<Box>(region) && field.axis == Vec3::UnitZ() &&
+      (field.symmetry == Symmetry::guide || field.symmetry == Symmetry::round_guide);
   IndexRange range{infinity, -infinity};
   std::visit(
       [&](const auto& medium) {
-        for (int node = 0; node < nodes * nodes * nodes; ++node) {
+        for (int node = 0; node < nodes * nodes * nodes; node += is_same_along_z ? nodes : 1) {
           const Vec3 share = Vec3(node / nodes / nodes, node / nodes % nodes, node % nodes);
           const Vec3 x = box.low + (box.high - box.low).cwiseProduct(share) / (nodes - 1);
           if (distance(region, x) > 0) continue;
