@@ -1,5 +1,7 @@
 #include "grin/fields/any_index_field.h"
 
+#include "core/numbers/every_width.h"
+
 namespace flatspeckle::grin {
 
 double AnySum::excess(const Vec3& x) const {
@@ -7,6 +9,9 @@ double AnySum::excess(const Vec3& x) const {
 }
 IndexGradient AnySum::gradient(const Vec3& x) const {
   return sum_.gradient(x);
+}
+FLATSPECKLE_EVERY_WIDTH void AnySum::gradients(const LaneVectors& x, LaneGradients& found) const {
+  sum_.gradients(x, found);
 }
 IndexHessian AnySum::hessian(const Vec3& x) const {
   return sum_.hessian(x);

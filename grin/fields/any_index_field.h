@@ -23,11 +23,10 @@
 namespace flatspeckle::grin {
 
 /// All kinds of index fields (field_kind.h); the one list of them.
-using IndexFieldKinds = std::tuple<HomogeneousValues, LuneburgValues, FisheyeValues,
-                                   ParabolicValues, SechValues, LinearValues, TanhValues,
-                                   BlobsValues, UltrasoundValues, FocusedSoundValues,
-                                   TransducersValues, GridValues, BallValues, RadialSplineValues,
-                                   GradedValues>;
+using IndexFieldKinds =
+    std::tuple<HomogeneousValues, LuneburgValues, FisheyeValues, ParabolicValues, SechValues,
+               LinearValues, TanhValues, BlobsValues, UltrasoundValues, FocusedSoundValues,
+               TransducersValues, GridValues, BallValues, RadialSplineValues, GradedValues>;
 
 template <class Kinds>
 struct FieldsOf;
@@ -49,6 +48,7 @@ class AnySum {
 
   double excess(const Vec3& x) const;
   IndexGradient gradient(const Vec3& x) const;
+  void gradients(const LaneVectors& x, LaneGradients& found) const;
   IndexHessian hessian(const Vec3& x) const;
 
  private:

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "core/numbers/wide_functions.h"
 #include "grin/index/guide.h"
 #include "grin/index/radial_field.h"
 
@@ -9,46 +10,48 @@ namespace flatspeckle::grin {
 
 /// n = n0 sech(alpha rho): no dispersion among meridional rays (conventions, C27).
 struct SechProfile {
+  static constexpr bool goes_in_lanes = true;
   double axis_excess, alpha;
 
-  double excess(double u) const { return excess_at(alpha * std::sqrt(u)); }
+  double excess(double u) const { return jet(u).excess; }
   RadialJet jet(double u) const {
-    const double t = alpha * std::sqrt(u), sech = 1 / std::cosh(t);
-    const double slope = t < small ? 1 + t * t * tangent_series(t) : std::tanh(t) / t;
-    const double bend = t < small ? bend_series(t) : (sech * sech - slope) / (t * t);
+    const double t = alpha * std::sqrt(u), t2 = t * t;
+    const double e = wide_exp(-t), larger = 1 / (1 + e * e), sech = 2 * e * larger;
+    const bool is_small = t < 0.3;  // series where the others cancel
+    const double slope = is_small ? 1 + t2 * tangent_series(t2) : (1 - e * e) * larger / t;
+    const double bend = is_small ? bend_series(t2) : (sech * sech - slope) / t2;
+    const double tanh = t * slope, fall = tanh * tanh / (1 + sech);  // 1 - sech
     const double scale = (1 + axis_excess) * sech * alpha * alpha / 2;
-    return {excess_at(t), -scale * slope, scale * alpha * alpha / 2 * (slope * slope - bend)};
+    return {axis_excess - (1 + axis_excess) * fall, -scale * slope,
+            scale * alpha * alpha / 2 * (slope * slope - bend)};
   }
 
  private:
-  static constexpr double small = 0.3;
-  /// tanh t = sum of these t^(2k+1)
-  static constexpr double tanh_terms[] = {1,
-                                          -1 / 3.,
-                                          2 / 15.,
-                                          -17 / 315.,
-                                          62 / 2835.,
-                                          -1382 / 155925.,
-                                          21844 / 6081075.,
-                                          -929569 / 638512875.,
-                                          6404582 / 10854718875.,
-                                          -443861162 / 1856156927625.};
+  // tanh t = t - t^3/3 + 2/15 t^5 - ...
 
-  double excess_at(double t) const {
-    const double s = std::sinh(t / 2);
-    return axis_excess - (1 + axis_excess) * 2 * s * s / std::cosh(t);
+  /// (tanh(t)/t - 1)/t^2 of t^2
+  static double tangent_series(double z) {
+    double sum = -443861162 / 1856156927625.;
+    sum = sum * z + 6404582 / 10854718875.;
+    sum = sum * z - 929569 / 638512875.;
+    sum = sum * z + 21844 / 6081075.;
+    sum = sum * z - 1382 / 155925.;
+    sum = sum * z + 62 / 2835.;
+    sum = sum * z - 17 / 315.;
+    sum = sum * z + 2 / 15.;
+    return sum * z - 1 / 3.;
   }
-  /// (tanh(t)/t - 1)/t^2
-  static double tangent_series(double t) {
-    double sum = 0;
-    for (int k = 9; k >= 1; --k) sum = sum * t * t + tanh_terms[k];
-    return sum;
-  }
-  /// (sech^2 t - tanh(t)/t)/t^2
-  static double bend_series(double t) {
-    double sum = 0;
-    for (int k = 9; k >= 1; --k) sum = sum * t * t + 2 * k * tanh_terms[k];
-    return sum;
+  /// (sech^2 t - tanh(t)/t)/t^2 of t^2: 2 k times the same terms
+  static double bend_series(double z) {
+    double sum = 18 * (-443861162 / 1856156927625.);
+    sum = sum * z + 16 * (6404582 / 10854718875.);
+    sum = sum * z - 14 * (929569 / 638512875.);
+    sum = sum * z + 12 * (21844 / 6081075.);
+    sum = sum * z - 10 * (1382 / 155925.);
+    sum = sum * z + 8 * (62 / 2835.);
+    sum = sum * z - 6 * (17 / 315.);
+    sum = sum * z + 4 * (2 / 15.);
+    return sum * z - 2 / 3.;
   }
 };
 using SechGuide = RadialField<SechProfile, 2>;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/numbers/every_width.h"
 #include "grin/index/cubic_splines.h"
 
 namespace flatspeckle::grin {
@@ -127,6 +128,74 @@ IndexGradient SplineField::gradient(const Vec3& x) const {
     fy += a.w[i] * gy;
   }
   return {(f * c.w).sum(), {(fx * c.w).sum(), (fy * c.w).sum(), (f * c.d).sum()}};
+}
+
+/// Sums over x and y of a lane's splines, and their derivatives: four numbers along z each.
+inline void SplineField::add_rows(const std::array<LaneAxis, 3>& axes, int lane, WideFour& f,
+                                  WideFour& fx, WideFour& fy) const {
+  const auto& [a, b, c] = axes;
+  const double* first = row(static_cast<int>(a.cell[lane]), static_cast<int>(b.cell[lane]),
+                            static_cast<int>(c.cell[lane]));
+  f = fx = fy = WideFour{};
+  for (int i = 0; i < 4; ++i) {
+    WideFour g{}, gy{};
+    for (int j = 0; j < 4; ++j) {
+      const WideFour values = loose_four_at(first + (i * extent_[1] + j) * extent_[2]);
+      g += b.w[j][lane] * values;
+      gy += b.d[j][lane] * values;
+    }
+    f += a.w[i][lane] * g;
+    fx += a.d[i][lane] * g;
+    fy += a.w[i][lane] * gy;
+  }
+}
+
+inline void SplineField::look_along(int which, const double* x, LaneAxis& found) const {
+  const double scale = per_length_[which], cells = grid_.nodes[which] - 1;
+  const double origin = grid_.origin[which], most = cells + margin;
+#pragma omp simd
+  for (int k = 0; k < lanes; ++k) {
+    const double place = (x[k] - origin) * scale;
+    const double held = place < -margin ? -margin : place > most ? most : place;
+    const double below = std::floor(held), last = below < cells - 1 ? below : cells - 1;
+    const double cell = held > 0 ? last : 0;
+    const CubicSplines splines{held - cell};
+    const CubicSplines::Four w = splines.values(), d = splines.slopes(place == held ? scale : 0);
+    found.cell[k] = cell;
+    found.w[0][k] = w[0];
+    found.w[1][k] = w[1];
+    found.w[2][k] = w[2];
+    found.w[3][k] = w[3];
+    found.d[0][k] = d[0];
+    found.d[1][k] = d[1];
+    found.d[2][k] = d[2];
+    found.d[3][k] = d[3];
+  }
+}
+
+FLATSPECKLE_EVERY_WIDTH void SplineField::gradients(const LaneVectors& x,
+                                                    LaneGradients& found) const {
+  std::array<LaneAxis, 3> axes;
+  look_along(0, x.x, axes[0]);
+  look_along(1, x.y, axes[1]);
+  look_along(2, x.z, axes[2]);
+  const LaneAxis& z = axes[2];
+  for (int k = 0; k < lanes; k += 4) {
+    WideFour f[4], fx[4], fy[4];
+    for (int i = 0; i < 4; ++i) add_rows(axes, k + i, f[i], fx[i], fy[i]);
+    transpose(f);
+    transpose(fx);
+    transpose(fy);
+    const auto sum = [k](const WideFour* values, const double(*weights)[lanes], double* to) {
+      WideFour all{};
+      for (int i = 0; i < 4; ++i) all += values[i] * wide_four_at(weights[i] + k);
+      wide_four_at(to + k) = all;
+    };
+    sum(f, z.w, found.excess);
+    sum(fx, z.w, found.gradient.x);
+    sum(fy, z.w, found.gradient.y);
+    sum(f, z.d, found.gradient.z);
+  }
 }
 
 IndexHessian SplineField::hessian(const std::array<Axis, 3>& axes) const {

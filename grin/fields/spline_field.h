@@ -4,7 +4,9 @@
 #include <span>
 #include <vector>
 
+#include "core/numbers/wide_four.h"
 #include "grin/index/field_kind.h"
+#include "grin/index/lanes.h"
 #include "grin/index/sample_grid.h"
 
 namespace flatspeckle::grin {
@@ -30,6 +32,7 @@ class SplineField {
 
   double excess(const Vec3& x) const;
   IndexGradient gradient(const Vec3& x) const;
+  void gradients(const LaneVectors& x, LaneGradients& found) const;
   IndexHessian hessian(const Vec3& x) const;
 
   /// No two places have indices farther apart.
@@ -66,6 +69,13 @@ class SplineField {
   SplineField(const FieldGrid& grid, std::size_t samples, int least_nodes);
   template <int Derivatives>
   Axis axis(const Vec3& x, int which) const;
+  /// Of one axis, in lanes.
+  struct LaneAxis {
+    alignas(64) double cell[lanes], w[4][lanes], d[4][lanes];
+  };
+  void look_along(int which, const double* x, LaneAxis& found) const;
+  void add_rows(const std::array<LaneAxis, 3>& axes, int lane, WideFour& f, WideFour& fx,
+                WideFour& fy) const;
   IndexHessian hessian(const std::array<Axis, 3>& axes) const;
   Eigen::Map<const Axis::Four> four(int i, int j, int k) const {
     return Eigen::Map<const Axis::Four>(row(i, j, k));

@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "core/numbers/wide_four.h"
 #include "grin/index/lanes.h"
 
 namespace flatspeckle::grin {
@@ -37,9 +38,9 @@ class BesselProfile {
     const double cell = std::rint(place);
     return polynomial(cells()[static_cast<std::size_t>(cell)], u - centre(cell));
   }
-  /// The same of u in lanes; NaN beyond the reach.
+  /// The same of u in lanes, which are aligned; NaN beyond the reach.
   void jets(const double* u, double* value, double* slope) const {
-    alignas(64) double delta[lanes], number[lanes], in[lanes][degree + 1];
+    alignas(64) double delta[lanes], number[lanes];
     const double count = cells_;
     const Cell* const table = cells();
 #pragma omp simd
@@ -49,30 +50,11 @@ class BesselProfile {
       number[k] = (is_near ? place : 0) + nearest;
       delta[k] = is_near ? u[k] - centre(number[k] - nearest) : NAN;
     }
-    for (int k = 0; k < lanes; ++k) {
-      const double* const c =
-          table[static_cast<std::int32_t>(std::bit_cast<std::int64_t>(number[k]))].c;
-#pragma omp simd
-      for (int i = 0; i <= degree; ++i) in[k][i] = c[i];
-    }
-#pragma omp simd
-    for (int k = 0; k < lanes; ++k) {
-      const double* const c = in[k];
-      const double t = delta[k];
-      double v = c[7], d = c[7];
-      v = v * t + c[6];
-      d = d * t + v;
-      v = v * t + c[5];
-      d = d * t + v;
-      v = v * t + c[4];
-      d = d * t + v;
-      v = v * t + c[3];
-      d = d * t + v;
-      v = v * t + c[2];
-      d = d * t + v;
-      v = v * t + c[1];
-      slope[k] = d * t + v;
-      value[k] = v * t + c[0];
+    for (int k = 0; k < lanes; k += 4) {
+      const double* rows[4];
+      for (int i = 0; i < 4; ++i)
+        rows[i] = table[static_cast<std::int32_t>(std::bit_cast<std::int64_t>(number[k + i]))].c;
+      polynomials(rows, wide_four_at(delta + k), wide_four_at(value + k), wide_four_at(slope + k));
     }
   }
   /// And the second: where x is past the first bend from Bessel's equation, 4 u g'' = -4 (m + 1)
@@ -112,6 +94,24 @@ class BesselProfile {
     const double slope = ((c[1] + 2 * c[2] * t) + (3 * c[3] + 4 * c[4] * t) * t2) +
                          ((5 * c[5] + 6 * c[6] * t) + 7 * c[7] * t2) * t4;
     return {value, slope};
+  }
+  /// Horner's, of four cells.
+  [[gnu::always_inline]] static void polynomials(const double* const (&rows)[4], const WideFour& t,
+                                                 WideFour& value, WideFour& slope) {
+    WideFour c[degree + 1];
+    for (int i = 0; i < 4; ++i) {
+      c[i] = wide_four_at(rows[i]);
+      c[i + 4] = wide_four_at(rows[i] + 4);
+    }
+    transpose(c);
+    transpose(c + 4);
+    WideFour v = c[degree], d = v;
+    for (int i = degree - 1; i > 0; --i) {
+      v = v * t + c[i];
+      d = d * t + v;
+    }
+    value = v * t + c[0];
+    slope = d;
   }
   static double bend(const Cell& cell, double t) {
     const double* c = cell.c;

@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "grin/index/index_field.h"
+#include "grin/index/lanes.h"
 
 namespace flatspeckle::grin {
 
@@ -32,6 +32,21 @@ class FieldSum {
       sum.gradient += term.gradient;
     });
     return sum;
+  }
+  void gradients(const LaneVectors& x, LaneGradients& found) const {
+    LaneGradients sum{};
+    for_each([&](const auto& field) {
+      LaneGradients term;
+      lane_gradients(field, x, term);
+#pragma omp simd
+      for (int k = 0; k < lanes; ++k) {
+        sum.excess[k] += term.excess[k];
+        sum.gradient.x[k] += term.gradient.x[k];
+        sum.gradient.y[k] += term.gradient.y[k];
+        sum.gradient.z[k] += term.gradient.z[k];
+      }
+    });
+    found = sum;
   }
   IndexHessian hessian(const Vec3& x) const {
     IndexHessian sum{0, Vec3::Zero(), Mat3::Zero()};

@@ -8,7 +8,8 @@ namespace flatspeckle::grin {
 // depends on another lane, so that what becomes of a ray depends neither on its lane nor on its
 // neighbours, nor on how wide vectors are.
 
-inline constexpr int lanes = 16;  ///< two of the widest vectors: one works while the other waits
+/// Four of the widest vectors: a step is a long chain, of which some work while others wait.
+inline constexpr int lanes = 32;
 
 struct LaneVectors {
   alignas(64) double x[lanes], y[lanes], z[lanes];
@@ -34,5 +35,19 @@ concept LaneField = IndexField<F> &&
     requires(const F& field, const LaneVectors& x, LaneGradients& found) {
   field.gradients(x, found);
 };
+
+/// Of any field: one by one where it has none in lanes.
+template <IndexField F>
+void lane_gradients(const F& field, const LaneVectors& x, LaneGradients& found) {
+  if constexpr (LaneField<F>) {
+    field.gradients(x, found);
+  } else {
+    for (int lane = 0; lane < lanes; ++lane) {
+      const IndexGradient at = field.gradient(x.at(lane));
+      found.excess[lane] = at.excess;
+      found.gradient.put(lane, at.gradient);
+    }
+  }
+}
 
 }  // namespace flatspeckle::grin

@@ -127,7 +127,8 @@ void step(Sharma, const F& field, RayLanes& rays) {
 
 /// So many steps; looks: for the index mismatch, at their end.
 template <bool looks, class Integrator, LaneField F>
-FLATSPECKLE_EVERY_WIDTH void make_steps(Integrator by, const F& field, RayLanes& rays, int steps) {
+FLATSPECKLE_EVERY_WIDTH void make_steps(Integrator by, const F& field, RayLanes& __restrict rays,
+                                        int steps) {
   for (int i = 0; i < steps; ++i) step(by, field, rays);
   if constexpr (looks) lane_parts::look(field, rays);
 }

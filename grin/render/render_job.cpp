@@ -36,7 +36,7 @@ int paths_per_batch(const Tracer& tracer, bool scatters, double cost_of_flight, 
   const auto short_enough =
       static_cast<std::size_t>(std::min(paths, most_flights / tracer.flights_per_pair));
   const bool fills_lanes = tracer.method == RenderMethod::analog && scatters;
-  const double many = fills_lanes ? 8 * lanes / tracer.flights_per_pair : 1;
+  const double many = fills_lanes ? 4 * lanes / tracer.flights_per_pair : 1;
   return static_cast<int>(
       std::max(std::bit_floor(short_enough), std::bit_ceil(static_cast<std::size_t>(many))));
 }

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string>
 
 #include <doctest/doctest.h>
 
@@ -37,6 +38,14 @@ Transducers transducers() {
           8};
 }
 
+SplineField grid() {
+  const FieldGrid where{Vec3(-0.4, -0.5, -0.45), Vec3(0.3, 0.25, 0.35), {4, 5, 4}};
+  RandomStream random(4, 0, 0);
+  std::vector<double> values(where.size());
+  for (double& value : values) value = 0.3 + 0.02 * random.uniform();
+  return SplineField(where, values);
+}
+
 /// Calls check(name, field) for each kind that has lanes.
 template <class Check>
 void for_each_field(const Check& check) {
@@ -49,6 +58,14 @@ void for_each_field(const Check& check) {
   check("parabolic", ParabolicGuide({0.5, 0.6}, {0.1, 0.2, 0}));
   check("fisheye", Fisheye({}, {0.1, 0.2, 0.3}));
   check("Luneburg", Luneburg({1, 0.4}));
+  check("sech", SechGuide({0.5, 0.6}, {0.1, 0.2, 0}));
+  check("grid", grid());
+  check("sum", AnySum()
+                   .add(SechGuide({0.2, 0.6}))
+                   .add(StandingWave(0, 0.02, 1, 7, 4))
+                   .add(RadialSpline({2, {0.1, 0.2, 0.15, 0.1, 0.05}}))
+                   .add(blobs())
+                   .add(blobs()));
   check("linear", LinearRamp{0.3, {0.1, -0.05, 0.2}});
   check("tanh", TanhRamp{0.1, 0.4, 0.3, Vec3(1, 2, 2) / 3, {0.1, 0, 0}});
 }
@@ -122,7 +139,7 @@ TEST_CASE("functions without a branch are those of the library") {
 
 TEST_CASE("gradients in lanes are those of one place after the other") {
   for_each_field([](const char* name, const auto& field) {
-    CAPTURE(name);
+    CAPTURE(std::string(name));
     const std::vector<RayState> rays = bundle(field);
     LaneGradients found;
     field.gradients(in_lanes(rays).x, found);
@@ -154,7 +171,7 @@ TEST_CASE("sound in lanes is no number where its table ends") {
 
 TEST_CASE("steps in lanes are those of one ray after the other") {
   for_each_field([](const char* name, const auto& field) {
-    CAPTURE(name);
+    CAPTURE(std::string(name));
     check_steps(Leapfrog(), field);
     check_steps(Yoshida4(), field);
     check_steps(Sharma(), field);
@@ -163,7 +180,7 @@ TEST_CASE("steps in lanes are those of one ray after the other") {
 
 TEST_CASE("what becomes of a ray depends neither on its lane nor on its neighbours") {
   for_each_field([](const char* name, const auto& field) {
-    CAPTURE(name);
+    CAPTURE(std::string(name));
     std::vector<RayState> rays = bundle(field), turned = rays;
     std::rotate(turned.begin(), turned.begin() + 5, turned.end());
     RayLanes all = in_lanes(rays), again = in_lanes(turned), alone = in_lanes(rays);
