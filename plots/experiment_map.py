@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Map of a number of a sweep of another subcommand (--value, by default the power on the detector) over two of its keys, with contours and
-its largest value marked; with one key a curve with its errors. --value NAME[i] takes the i-th of several numbers, as in
+its largest value marked; with one key a curve with its errors, and short tangents where the result has the derivative by
+that key (`render --gradient_by KEY`). --value NAME[i] takes the i-th of several numbers, as in
 power_within[0]. --ideal_lens draws where that number is what an ideal lens before the medium would bring to a point there: all light that
 comes unscattered through the stage, exp(-(mu_s + mu_a) length)."""
 
@@ -36,19 +37,31 @@ def entry_of(name):
     return found[1], None if found[2] is None else int(found[2])
 
 
+def numbers_of(result, path, entry):
+    values = result.values(path)
+    if entry is None:
+        return values
+    if values.ndim == len(result.dataset("samples").shape) or entry >= values.shape[-1]:
+        raise Unusable(f"{result.path}: {path} has no number {entry} at each point")
+    return values[..., entry]
+
+
 def values_of(result, name):
     path, entry = entry_of(name)
+    values = numbers_of(result, path, entry)
+    return values, numbers_of(result, f"{path}_error", entry) if result.has(f"{path}_error") else np.zeros_like(values)
 
-    def read(of):
-        values = result.values(of)
-        if entry is None:
-            return values
-        if values.ndim == len(result.dataset("samples").shape) or entry >= values.shape[-1]:
-            raise Unusable(f"{result.path}: {path} has no number {entry} at each point")
-        return values[..., entry]
 
-    values = read(path)
-    return values, read(f"{path}_error") if result.has(f"{path}_error") else np.zeros_like(values)
+def slopes_of(result, name, key):
+    """Its derivative by the key at each point, or None."""
+    path, entry = entry_of(name)
+    if not result.has(f"{path}_gradient"):
+        return None
+    parameters = list(result.dataset("parameter").attrs["names"])
+    if key not in parameters:
+        return None
+    gradients = numbers_of(result, f"{path}_gradient", entry)
+    return np.take(gradients, parameters.index(key), axis=len(result.dataset("samples").shape)).ravel()
 
 
 def grid_of(result, arguments):
@@ -88,11 +101,23 @@ def with_unit(result, name):
     return labels.with_unit(name, dataset.attrs.get("units"))
 
 
-def draw_curve(axis, label, place, values, errors, lens):
+def draw_tangents(axis, place, values, slopes):
+    """As long as a third of the way to the neighbours."""
+    before, after = (np.append(place[0], place[:-1]) + 2 * place) / 3, (np.append(place[1:], place[-1]) + 2 * place) / 3
+    for at, value, slope, *ends in zip(place, values, slopes, before, after):
+        x = np.linspace(*ends, 9)  # bent by a logarithmic axis
+        axis.plot(x, value + slope * (x - at), color="black", linewidth=1, zorder=4,
+                  label="derivative" if at == place[0] else None)
+
+
+def draw_curve(axis, label, place, values, errors, lens, slopes):
     if lens:
         axis.axhline(lens, color="gray", linestyle="--", label="ideal lens")
-        axis.legend()
     axis.errorbar(place, values, errors, **style.look(0))
+    if slopes is not None:
+        draw_tangents(axis, place, values, slopes)
+    if axis.get_legend_handles_labels()[1]:
+        axis.legend()
     best = int(np.nanargmax(values))
     axis.plot(place[best], values[best], "*", color="black", markersize=9, zorder=5)
     axis.set_xlabel(label)
@@ -121,7 +146,8 @@ def draw(results, arguments):
     lens = ideal_lens(results[0]) if arguments.ideal_lens else None
     figure, axis = plt.subplots(figsize=(style.COLUMN, 2.6))
     if len(keys) == 1:
-        draw_curve(axis, with_unit(results[0], keys[0][0]), keys[0][1], values, errors, lens)
+        draw_curve(axis, with_unit(results[0], keys[0][0]), keys[0][1], values, errors, lens,
+                   slopes_of(results[0], arguments.value, keys[0][0]))
         axis.set_ylabel(with_unit(results[0], arguments.value))
         return figure
     best, at_edge = draw_map(figure, axis, results[0], keys, values, arguments.value, lens)

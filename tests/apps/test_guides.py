@@ -15,12 +15,14 @@ from program import DATA, PROGRAM, ProgramTest
 ROOT = DATA.parent
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
 BLOCK = re.compile(r"```sh\n(.*?)```", re.DOTALL)
+RUN = re.compile(r"```(sh|python)\n(.*?)```|((?:^    [^\n]*\S[^\n]*\n)+)", re.DOTALL | re.MULTILINE)
+WRITES = re.compile(r"savetxt|, \"wb?\"\)")  # a file for the commands after it
 INDENTED = re.compile(r"(?:^    .*\S.*\n)+", re.MULTILINE)
 RESOLVE = ("solve", "place", "covariance", "validate", "field", "image", "recover", "fit", "flux", "sweep", "trace",
            "render", "design", "optimise")
 # What is not run: it prepares the machine, or needs several of them, or hours.
 APART = re.compile(r"^\s*(scripts/|cmake|ctest|cpack|mpirun|#SBATCH|build/|bench_|export )|--method mc|merge |bench |"
-                   r"--frames frames.csv|forward.csv|reflection", re.MULTILINE)
+                   r"--frames frames.csv|SLURM_|--config reflection", re.MULTILINE)
 
 
 def blocks(page):
@@ -29,6 +31,25 @@ def blocks(page):
     for block in INDENTED.findall(re.sub(r"```.*?```", "", text, flags=re.DOTALL)):
         if block.lstrip().startswith("flatspeckle "):
             yield block
+
+
+def scripts(page):
+    """What a reader runs, in its order: (language, text)."""
+    for language, fenced, indented in RUN.findall(page.read_text()):
+        if language == "python":
+            if WRITES.search(fenced):
+                yield language, fenced
+        elif fenced or indented.lstrip().startswith("flatspeckle "):
+            yield "sh", fenced or indented
+
+
+def to_be_run(block, left_out):
+    """A block's lines, less those that are run apart or read what such a line would have written."""
+    for line in block.replace("\\\n", " ").splitlines():
+        if APART.search(line) or left_out.intersection(line.split()):
+            left_out.update(re.findall(r"--out (\S+)", line))
+        else:
+            yield line.strip()
 
 
 def commands(block):
@@ -68,10 +89,11 @@ class Run(ProgramTest):
         for name in ("data", "plots"):
             (folder / name).symlink_to(ROOT / name)
         path = f"{pathlib.Path(PROGRAM).parent}:{os.environ['PATH']}"
-        for block in blocks(page):
-            lines = block.replace("\\\n", " ").splitlines()
-            script = "\n".join(line.strip() for line in lines if not APART.search(line))
-            done = subprocess.run(["bash", "-euc", script], cwd=folder, capture_output=True, text=True,
+        left_out = set()
+        for language, block in scripts(page):
+            script = block if language == "python" else "\n".join(to_be_run(block, left_out))
+            shell = [sys.executable, "-c"] if language == "python" else ["bash", "-euc"]
+            done = subprocess.run([*shell, script], cwd=folder, capture_output=True, text=True,
                                   env={**os.environ, "PATH": path})
             self.assertEqual(done.returncode, 0, f"{script}\n{done.stderr}")
         shutil.rmtree(folder)

@@ -17,10 +17,13 @@ try:
 except ImportError:
     print("no matplotlib (Debian: python3-matplotlib)")
     sys.exit(77)
+import h5py
 import numpy as np
 
 PLOTS = DATA.parent / "plots"
 sys.path.insert(0, str(PLOTS))
+import experiment_map
+from lib.result_file import Result
 
 FEW = {"samples": 2000, "threads": 1}
 SPACE = {"stage_box": [-1, -1, -1, 1, 1, 1], "mu_s": 1, "point_light": [0, 0, -0.5, 1],
@@ -149,6 +152,24 @@ class Plots(ProgramTest):
                                          "--out", out)
         self.assertEqual((status, heard), (0, ""))
         self.assertEqual(run_script("experiment_map", self.folder / "disks.h5", "--value", "power_within[2]")[0], 2)
+
+    def test_curves_of_experiments_have_the_derivatives_by_their_key(self):
+        self.call("sweep", of="render", field="ultrasound", sound_wavenumber=3.485, stage_box=[-5, -5, 0, 5, 5, 5], mu_s=0.1,
+                  phase="isotropic", beam_light=[0, 0, 0, 0, 0, 1, 0.25, 1], sensor="radial", sensor_at=[0, 0, 5],
+                  radii=[0.1, 0.2], method="analog", gradient_by="amplitude", samples=2000, vary=["amplitude=1e-3:3e-3:3"],
+                  out="slopes.h5")
+        with h5py.File(self.folder / "slopes.h5") as file:
+            place, values = file["amplitude"][...], file["power_within"][:, 1]
+            slopes = file["power_within_gradient"][:, 0, 1]
+        tangents = experiment_map.slopes_of(Result(self.folder / "slopes.h5"), "power_within[1]", "amplitude")
+        np.testing.assert_array_equal(tangents, slopes)
+        axis = mock.Mock()
+        experiment_map.draw_tangents(axis, place, values, slopes)
+        for call, at, value, slope in zip(axis.plot.call_args_list, place, values, slopes, strict=True):
+            x, y = call.args
+            np.testing.assert_allclose(y, value + slope * (x - at), rtol=1e-12)
+            self.assertTrue(x.min() <= at <= x.max() and np.ptp(x) > 3e-4)
+        self.assertIsNone(experiment_map.slopes_of(Result(self.folder / "slopes.h5"), "power_within[1]", "mu_s"))
 
     def test_captions_say_what_a_reader_does_not_see(self):
         said = run_script("memory_effect", self.make("grid"), "--out", self.folder / "a")[1]
