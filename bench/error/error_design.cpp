@@ -77,7 +77,7 @@ std::vector<ErrorRun> design_error_runs() {
            }},
           {"lens from n = 1", "spline in space",
            [](double) {
-             return curve_of("spline in space", {ball({5}), ball({5, 9})});
+             return curve_of("spline in space", {ball({3}), ball({5}), ball({5, 9})});
            },
            slow}};
 }

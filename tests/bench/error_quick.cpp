@@ -46,8 +46,11 @@ TEST_CASE("bench_error_quick: error curves") {
     CHECK(times.size() >= 3);
     CHECK_FALSE(curve.reference.empty());
     if (!curve.has_slope()) continue;
-    CHECK(is_rising(times));
     CHECK(is_rising(samples));
+    if (curve.is_monte_carlo)
+      CHECK(is_rising(times));
+    else  // iterations, of which more samples may need fewer
+      CHECK(times.back() > times.front());
     CHECK(std::isfinite(curve.slope_error));
     CHECK(std::isfinite(curve.efficiency));
     CHECK(curve.efficiency > 0);
@@ -62,7 +65,7 @@ TEST_CASE("bench_error_quick: cost curves") {
     CHECK(curve.size.size() == curve.cpu_s.size());
     CHECK(curve.size.size() >= 4);
     CHECK(is_rising(curve.size));
-    CHECK(curve.cpu_s.back() > curve.cpu_s.front());
+    if (curve.expected > 0) CHECK(curve.cpu_s.back() > curve.cpu_s.front());
     CHECK(std::isfinite(curve.exponent));
     CHECK(std::isfinite(curve.exponent_error));
   }
