@@ -16,7 +16,7 @@ ROOT = DATA.parent
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
 BLOCK = re.compile(r"```sh\n(.*?)```", re.DOTALL)
 RUN = re.compile(r"```(sh|python)\n(.*?)```|((?:^    [^\n]*\S[^\n]*\n)+)", re.DOTALL | re.MULTILINE)
-WRITES = re.compile(r"savetxt|, \"wb?\"\)")  # a file for the commands after it
+WRITES = re.compile(r"^import .*(savetxt|, \"wb?\"\))", re.DOTALL | re.MULTILINE)  # a file for the commands after it
 INDENTED = re.compile(r"(?:^    .*\S.*\n)+", re.MULTILINE)
 RESOLVE = ("solve", "place", "covariance", "validate", "field", "image", "recover", "fit", "flux", "sweep", "trace",
            "render", "design", "optimise")
