@@ -111,12 +111,12 @@ class AnalogWalk {
     if (!batch_.aim) return now.random.put_back(place);
     const PulledFlight flight = batch_.aim->first_flight(now.from.point.x, now.direction, place);
     now.random.put_back(flight.u);
-    reweigh(now.from, flight.weight * now.from.weight);
+    now.from.weight = reweighed(now.from.point, now.from.weight, flight.weight * now.from.weight);
   }
-  void reweigh(PathVertex& at, double weight) {
-    const ScatteringMedium& medium = batch_.transport.medium(at.point.part);
-    tally_.reweighed(at.point.part, medium.mu_a > 0, at.weight - weight);
-    at.weight = weight;
+  /// The weight after, of light at a place.
+  double reweighed(const PathPoint& at, double before, double after) {
+    tally_.reweighed(at.part, batch_.transport.medium(at.part).mu_a > 0, before - after);
+    return after;
   }
 
   bool goes_on(Branch& now, const Flight& flight) {
@@ -171,22 +171,22 @@ class AnalogWalk {
     for (std::uint64_t i = 0; static_cast<double>(i) < copies; ++i) {
       RandomStream random(key[0], key[1], i);
       const Vec3 direction = turns.next(random);
-      PathVertex part = from;
-      part.weight /= copies;
-      if (!stays(part, before.power, direction, roulette)) continue;
+      const double weight = kept(before, from.weight / copies, direction, roulette);
+      if (!(weight > 0)) continue;
       Branch& branch = is_left ? waiting_.emplace_back(before) : now;
       is_left = true;
       branch.random = random;
-      branch.from = part;
+      branch.from.weight = weight;
       turn(medium, flown, direction, branch);
     }
     return is_left;
   }
-  bool stays(PathVertex& part, double power, const Vec3& direction, EvenRoulette& roulette) {
-    const double chance = part.weight / power * batch_.aim->towards(part.point.x, direction);
-    if (chance >= 1) return true;
-    reweigh(part, roulette.keeps(chance) ? part.weight / chance : 0);
-    return part.weight > 0;
+  /// The weight where roulette leaves any.
+  double kept(const Branch& before, double weight, const Vec3& direction, EvenRoulette& roulette) {
+    const PathPoint& at = before.from.point;
+    const double chance = weight / before.power * batch_.aim->towards(at.x, direction);
+    if (chance >= 1) return weight;
+    return reweighed(at, weight, roulette.keeps(chance) ? weight / chance : 0);
   }
 
   void arrive(const Branch& now, const PathVertex& last, double flown) {

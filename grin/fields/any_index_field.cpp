@@ -1,6 +1,6 @@
 #include "grin/fields/any_index_field.h"
 
-#include "core/numbers/every_width.h"
+#include "core/numbers/wide/every_width.h"
 
 namespace flatspeckle::grin {
 

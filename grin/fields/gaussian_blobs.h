@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/numbers/wide_functions.h"
+#include "core/numbers/wide/functions.h"
 #include "grin/index/field_kind.h"
 #include "grin/index/lanes.h"
 

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "core/numbers/wide_functions.h"
+#include "core/numbers/wide/functions.h"
 #include "grin/index/guide.h"
 #include "grin/index/radial_field.h"
 

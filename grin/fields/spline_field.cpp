@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "core/numbers/every_width.h"
+#include "core/numbers/wide/every_width.h"
 #include "grin/index/cubic_splines.h"
 
 namespace flatspeckle::grin {
@@ -152,13 +152,11 @@ inline void SplineField::add_rows(const std::array<LaneAxis, 3>& axes, int lane,
 
 inline void SplineField::look_along(int which, const double* x, LaneAxis& found) const {
   const double scale = per_length_[which], cells = grid_.nodes[which] - 1;
-  const double origin = grid_.origin[which], most = cells + margin;
+  const double origin = grid_.origin[which];
 #pragma omp simd
   for (int k = 0; k < lanes; ++k) {
     const double place = (x[k] - origin) * scale;
-    const double held = place < -margin ? -margin : place > most ? most : place;
-    const double below = std::floor(held), last = below < cells - 1 ? below : cells - 1;
-    const double cell = held > 0 ? last : 0;
+    const double held = std::clamp(place, -margin, cells + margin), cell = cell_of(held, cells);
     const CubicSplines splines{held - cell};
     const CubicSplines::Four w = splines.values(), d = splines.slopes(place == held ? scale : 0);
     found.cell[k] = cell;

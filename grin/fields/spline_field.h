@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "core/numbers/wide_four.h"
+#include "core/numbers/wide/four.h"
 #include "grin/index/field_kind.h"
 #include "grin/index/lanes.h"
 #include "grin/index/sample_grid.h"

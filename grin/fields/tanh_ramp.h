@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "core/numbers/wide_functions.h"
+#include "core/numbers/wide/functions.h"
 #include "grin/index/field_kind.h"
 #include "grin/index/lanes.h"
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "core/numbers/wide_functions.h"
+#include "core/numbers/wide/functions.h"
 #include "grin/index/lanes.h"
 #include "grin/index/sound.h"
 

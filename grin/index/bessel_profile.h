@@ -6,7 +6,7 @@
 #include <memory>
 #include <vector>
 
-#include "core/numbers/wide_four.h"
+#include "core/numbers/wide/four.h"
 #include "grin/index/lanes.h"
 
 namespace flatspeckle::grin {

@@ -109,12 +109,16 @@ Lights::Beam Lights::beam_of(const EndPosition& at) const {
 }
 
 EndPosition Lights::beam_position(double stratum, double u, double v) const {
-  const Beam from = beam(stratum);
-  return position(beams_[from.number], from.disk.from_square(u, v));
+  return position_on(beam_place(stratum).number, u, v);
 }
 
 EndPosition Lights::beam_position(double stratum, double v) const {
-  return beam_position(stratum, beam_place(stratum).u, v);
+  const PlaceInBeam place = beam_place(stratum);
+  return position_on(place.number, place.u, v);
+}
+
+EndPosition Lights::position_on(std::size_t beam, double u, double v) const {
+  return position(beams_[beam], beam_at(beam).disk.from_square(u, v));
 }
 
 EndPosition Lights::draw_position(RandomStream& random) const {

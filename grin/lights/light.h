@@ -98,6 +98,7 @@ class Lights {
     double u;  ///< its place among the strata of this beam
   };
   PlaceInBeam beam_place(double stratum) const;
+  EndPosition position_on(std::size_t beam, double u, double v) const;
   EndPosition draw_position(RandomStream& random) const;
   EndPosition position(int light, const BoundaryPoint& at) const;
 

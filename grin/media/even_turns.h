@@ -2,10 +2,10 @@
 
 #include <cmath>
 #include <numbers>
-#include <variant>
 
 #include "grin/geometry/frame.h"
 #include "grin/media/space_phases.h"
+#include "grin/media/start_directions.h"
 
 namespace flatspeckle::grin {
 
@@ -28,12 +28,10 @@ class EvenTurns {
   /// Of the next copy; random: its numbers.
   Vec3 next(RandomStream& random) {
     random.put_back(place_++ / count_);
-    const auto turn = [&](const auto& phase) { return phase.one_minus_cosine(random); };
-    const double beside = std::visit(turn, phase_.which);
+    const double beside = phase_.one_minus_cosine(random);
     const Vec3 across = cosine_ * across_.col(0) + sine_ * across_.col(1);
-    const Vec3 turned = (1 - beside) * before_ + std::sqrt(beside * (2 - beside)) * across;
     go_round();
-    return (1.5 - 0.5 * turned.squaredNorm()) * turned;  // lengths of long walks do not drift
+    return unit_again((1 - beside) * before_ + std::sqrt(beside * (2 - beside)) * across);
   }
 
  private:

@@ -9,8 +9,7 @@ double SpacePhaseFunction::density(double cosine) const {
 }
 
 Vec3 SpacePhaseFunction::sample(const Vec3& direction, RandomStream& random) const {
-  const auto turn = [&](const auto& phase) { return phase.one_minus_cosine(random); };
-  return random_turn(direction, std::visit(turn, which), random);
+  return random_turn(direction, one_minus_cosine(random), random);
 }
 
 double SpacePhaseFunction::mean_cosine() const {

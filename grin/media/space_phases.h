@@ -29,6 +29,9 @@ struct SpacePhaseFunction {
   PhasesOf<SpacePhaseKinds>::Any which = {};
 
   double density(double cosine) const;
+  double one_minus_cosine(RandomStream& random) const {
+    return std::visit([&](const auto& phase) { return phase.one_minus_cosine(random); }, which);
+  }
   /// Where light that goes along `direction`, a unit vector, goes next.
   Vec3 sample(const Vec3& direction, RandomStream& random) const;
   double mean_cosine() const;

@@ -25,6 +25,11 @@ struct StartDirections {
 /// At this cosine from the axis (a unit vector) and this azimuth.
 Vec3 direction_about(const Vec3& axis, double cosine, double azimuth);
 
+/// A unit vector but for rounding is one again: lengths of long walks do not drift.
+inline Vec3 unit_again(const Vec3& v) {
+  return (1.5 - 0.5 * v.squaredNorm()) * v;
+}
+
 /// At this 1 - cosine from the axis (a unit vector) and a random azimuth, without trigonometry:
 /// the azimuth is that of a random point in a disk.
 inline Vec3 random_turn(const Vec3& axis, double one_minus_cosine, RandomStream& random) {
@@ -40,9 +45,8 @@ inline Vec3 random_turn(const Vec3& axis, double one_minus_cosine, RandomStream&
   // Duff et al. 2017, Building an orthonormal basis, revisited
   const double sign = std::copysign(1.0, axis[2]), c = -1 / (sign + axis[2]);
   const double t = sign * axis[0] * a + axis[1] * b;
-  const Vec3 turned =
-      (1 - one_minus_cosine) * axis + Vec3(a + axis[0] * c * t, sign * b + axis[1] * c * t, -t);
-  return (1.5 - 0.5 * turned.squaredNorm()) * turned;  // lengths of long walks do not drift
+  return unit_again((1 - one_minus_cosine) * axis +
+                    Vec3(a + axis[0] * c * t, sign * b + axis[1] * c * t, -t));
 }
 
 }  // namespace flatspeckle::grin

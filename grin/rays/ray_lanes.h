@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/numbers/every_width.h"
+#include "core/numbers/wide/every_width.h"
 #include "grin/index/lanes.h"
 #include "grin/rays/ray_step.h"
 

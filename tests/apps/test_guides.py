@@ -14,10 +14,8 @@ from program import DATA, PROGRAM, ProgramTest
 
 ROOT = DATA.parent
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
-BLOCK = re.compile(r"```sh\n(.*?)```", re.DOTALL)
-RUN = re.compile(r"```(sh|python)\n(.*?)```|((?:^    [^\n]*\S[^\n]*\n)+)", re.DOTALL | re.MULTILINE)
+BLOCK = re.compile(r"```(sh|python)\n(.*?)```|((?:^    [^\n]*\S[^\n]*\n)+)", re.DOTALL | re.MULTILINE)
 WRITES = re.compile(r"^import .*(savetxt|, \"wb?\"\))", re.DOTALL | re.MULTILINE)  # a file for the commands after it
-INDENTED = re.compile(r"(?:^    .*\S.*\n)+", re.MULTILINE)
 RESOLVE = ("solve", "place", "covariance", "validate", "field", "image", "recover", "fit", "flux", "sweep", "trace",
            "render", "design", "optimise")
 # What is not run: it prepares the machine, or needs several of them, or hours.
@@ -26,21 +24,12 @@ APART = re.compile(r"^\s*(scripts/|cmake|ctest|cpack|mpirun|#SBATCH|build/|bench
 
 
 def blocks(page):
-    text = page.read_text()
-    yield from BLOCK.findall(text)
-    for block in INDENTED.findall(re.sub(r"```.*?```", "", text, flags=re.DOTALL)):
-        if block.lstrip().startswith("flatspeckle "):
-            yield block
-
-
-def scripts(page):
-    """What a reader runs, in its order: (language, text)."""
-    for language, fenced, indented in RUN.findall(page.read_text()):
-        if language == "python":
-            if WRITES.search(fenced):
-                yield language, fenced
-        elif fenced or indented.lstrip().startswith("flatspeckle "):
-            yield "sh", fenced or indented
+    """What a reader may run, in its order: (language, text)."""
+    for language, fenced, indented in BLOCK.findall(page.read_text()):
+        if language:
+            yield language, fenced
+        elif indented.lstrip().startswith("flatspeckle "):
+            yield "sh", indented
 
 
 def to_be_run(block, left_out):
@@ -64,7 +53,7 @@ class Written(ProgramTest):
     def test_every_command_is_accepted(self):
         (self.folder / "data").symlink_to(DATA)
         for page in PAGES:
-            for words in (words for block in blocks(page) for words in commands(block)):
+            for words in (words for language, block in blocks(page) if language == "sh" for words in commands(block)):
                 if words[0] in RESOLVE:
                     with self.subTest(page=page.name, command=words):
                         self.check(words)
@@ -90,7 +79,9 @@ class Run(ProgramTest):
             (folder / name).symlink_to(ROOT / name)
         path = f"{pathlib.Path(PROGRAM).parent}:{os.environ['PATH']}"
         left_out = set()
-        for language, block in scripts(page):
+        for language, block in blocks(page):
+            if language == "python" and not WRITES.search(block):
+                continue
             script = block if language == "python" else "\n".join(to_be_run(block, left_out))
             shell = [sys.executable, "-c"] if language == "python" else ["bash", "-euc"]
             done = subprocess.run([*shell, script], cwd=folder, capture_output=True, text=True,

@@ -6,7 +6,7 @@
 #include <doctest/doctest.h>
 
 #include "core/numbers/random.h"
-#include "core/numbers/wide_functions.h"
+#include "core/numbers/wide/functions.h"
 #include "grin/fields/any_index_field.h"
 #include "grin/rays/ray_lanes.h"
 #include "grin/scene/trace_scene.h"
