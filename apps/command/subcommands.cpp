@@ -32,7 +32,7 @@ std::span<const SubcommandEntry> subcommands() {
       {"validate", "both methods on one scene, compared entry by entry", validate},
       {"flux", "reflected, transmitted and absorbed power, intensity only", flux},
       {"sweep",
-       "memory-effect curves over grids or lists of g, albedo, optical depth, radius, index",
+       "memory-effect curves over g, albedo, optical depth, radius, index; any result by --of",
        sweep},
       {"merge", "the points of a sweep that ran in shares, as one result", merge},
       {"optimise", "the values of keys that make a number of a result as large as can be, or small",

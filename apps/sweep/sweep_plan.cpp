@@ -39,7 +39,8 @@ void check_scene(const Scene& scene) {
 SweepPlan::SweepPlan()
     : command_("sweep",
                "Memory-effect curves over any of g, albedo, optical depth, radius, index and "
-               "density, by Monte Carlo, exactly, or both") {
+               "density, by Monte Carlo, exactly, or both; with --of another subcommand's results "
+               "over any of its keys") {
   base.scatterer = "hg";
   base.domain = "slab";
   base.covariance = "memory_effect";

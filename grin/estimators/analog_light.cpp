@@ -65,7 +65,7 @@ class AnalogWalk {
 
   AnalogWalk(const AnalogBatch& batch, Fresh fresh)
       : batch_(batch), fresh_(std::move(fresh)), tally_(batch.film.energy) {
-    if (batch.moving) moving_.emplace(*batch.moving, batch.film);
+    if (batch.moving) moving_.emplace(*batch.moving, batch.film, batch.counts);
   }
   ~AnalogWalk() { tally_.end_path(); }
 

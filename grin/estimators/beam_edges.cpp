@@ -107,7 +107,7 @@ void BeamEdges::Passage::narrow(const Landed& place) {
   was_low = is_low;
 }
 
-void BeamEdges::add(double power, Film& film) const {
+void BeamEdges::add(double power, Film& film, TransportCounts& counts) const {
   std::vector<Passage> all = passages();
   std::erase_if(all, [](const Passage& one) { return !one.is_found; });
   const std::vector<double> slopes = this->slopes(all);
@@ -128,8 +128,8 @@ void BeamEdges::add(double power, Film& film) const {
       const double over = all[i].edges->speed(all[i].edge, x, landing) / std::abs(slopes[i]);
       all[i].edges->pass(all[i].edge, x, [&](int pixel, double share) {
         for (int width = 0; width < edge_widths; ++width)
-          film.add_by_field(pixel, static_cast<int>(parameter) * edge_widths + width,
-                            power * flight.weight * over * share);
+          deposit_by_field(film, counts, pixel, static_cast<int>(parameter) * edge_widths + width,
+                           power * flight.weight * over * share);
       });
     }
   }

@@ -20,7 +20,7 @@ class BeamEdges {
       : field_(field), lights_(lights), stratum_(stratum), v_(v) {}
 
   /// Of so much power of all beams.
-  void add(double power, Film& film) const;
+  void add(double power, Film& film, TransportCounts& counts) const;
 
  private:
   /// Light from a place of the line.

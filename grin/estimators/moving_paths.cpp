@@ -158,8 +158,8 @@ void MovingPaths::collide(const Start& next, double scale, Motion& motion) const
 
 void MovingPaths::add(const Landing& landing, std::size_t parameter, const Motion& motion) {
   const auto add = [&](int pixel, int width, double change) {
-    film_.add_by_field(pixel, static_cast<int>(parameter) * edge_widths + width,
-                       landing.power * change);
+    deposit_by_field(film_, counts_, pixel, static_cast<int>(parameter) * edge_widths + width,
+                     landing.power * change);
   };
   for (const SensorEdges& edges : field_.edges()) {
     if (!edges.is_near(landing.x)) continue;

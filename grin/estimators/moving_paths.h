@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "grin/estimators/moving_field.h"
-#include "grin/paths/film.h"
+#include "grin/paths/transport_counts.h"
 
 namespace flatspeckle::grin {
 
@@ -31,8 +31,8 @@ namespace flatspeckle::grin {
 class MovingPaths {
  public:
   /// over_edges: else what moves over them is left to others.
-  MovingPaths(const MovingField& field, Film& film, bool over_edges = true)
-      : field_(field), film_(film), over_edges_(over_edges) {}
+  MovingPaths(const MovingField& field, Film& film, TransportCounts& counts, bool over_edges = true)
+      : field_(field), film_(film), counts_(counts), over_edges_(over_edges) {}
 
   /// A path's first flight, those after collisions, and its landing. A flight has the number that
   /// is returned.
@@ -81,6 +81,7 @@ class MovingPaths {
 
   const MovingField& field_;
   Film& film_;
+  TransportCounts& counts_;
   bool over_edges_;
   std::vector<Start> starts_;
   std::vector<Motion> motions_;  ///< [flight][parameter]

@@ -121,7 +121,7 @@ class UnscatteredBeams {
         random_(random),
         film_(film),
         counts_(counts) {
-    if (setup.moving) moving_.emplace(*setup.moving, film, false);
+    if (setup.moving) moving_.emplace(*setup.moving, film, counts, false);
   }
 
   void add_ray(const EndPosition& start, double stratum) {
@@ -270,11 +270,12 @@ bool has_area(const Transport& transport) {
 
 /// Of lines, which cost as much as some hundreds of rays.
 void add_edges(const MovingField& field, const Lights& lights, int rays, double worth,
-               RandomStream& random, Film& film) {
+               RandomStream& random, Film& film, TransportCounts& counts) {
   const int lines = (rays + 255) / 256;
   for (int i = 0; i < lines; ++i) {
     const double stratum = random.uniform(), v = random.uniform();
-    BeamEdges(field, lights, stratum, v).add(worth * rays / lines * lights.beam_power(), film);
+    BeamEdges(field, lights, stratum, v)
+        .add(worth * rays / lines * lights.beam_power(), film, counts);
   }
 }
 
@@ -306,7 +307,8 @@ BeamsKernel kernel(std::shared_ptr<const Transport> transport, const BeamsSetup&
         if (const double way = ways_before(ray); ways_before(ray + 1) > way)
           light.add_ways(fraction(beam_of_way + way * golden));
       });
-    if (setup.moving) add_edges(*setup.moving, transport->lights, rays, worth, random, film);
+    if (setup.moving)
+      add_edges(*setup.moving, transport->lights, rays, worth, random, film, counts);
   };
 }
 

@@ -8,8 +8,9 @@ namespace flatspeckle::grin {
 // depends on another lane, so that what becomes of a ray depends neither on its lane nor on its
 // neighbours, nor on how wide vectors are.
 
-/// Four of the widest vectors: a step is a long chain, of which some work while others wait.
-inline constexpr int lanes = 32;
+/// Three of the widest vectors: a step is a long chain, of which some work while others wait; and
+/// so few that short batches fill them.
+inline constexpr int lanes = 24;
 
 struct LaneVectors {
   alignas(64) double x[lanes], y[lanes], z[lanes];

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cmath>
 #include <span>
 
 #include "core/numbers/complex.h"
@@ -51,10 +50,9 @@ class Film {
     Complex* const own = sums_.data() + static_cast<std::size_t>(pixel) * per_pixel_;
     own[bins_.first_derivative() + parameter] += value;
   }
-  /// Left out where it is not finite.
   void add_by_field(int pixel, int number, double value) {
     Complex* const own = sums_.data() + static_cast<std::size_t>(pixel) * per_pixel_;
-    if (std::isfinite(value)) own[bins_.first_by_field() + number] += value;
+    own[bins_.first_by_field() + number] += value;
   }
 
   EnergyBalance energy;  ///< of light paths that are walked to their ends

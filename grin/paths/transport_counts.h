@@ -49,5 +49,13 @@ void deposit(Film& film, TransportCounts& counts, int pixel, double value, doubl
   else
     film.add(pixel, value);
 }
+/// Likewise to a sum of derivatives by the field.
+inline void deposit_by_field(Film& film, TransportCounts& counts, int pixel, int number,
+                             double value) {
+  if (std::isfinite(value))
+    film.add_by_field(pixel, number, value);
+  else
+    ++counts.lost_values;
+}
 
 }  // namespace flatspeckle::grin
