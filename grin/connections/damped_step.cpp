@@ -1,10 +1,29 @@
 #include "grin/connections/damped_step.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <Eigen/Cholesky>
 
+#include "grin/geometry/frame.h"
+
 namespace flatspeckle::grin {
+
+namespace {
+
+constexpr double longest_turn = 0.7;  // rad
+
+double turn(const CurveChange& change) {
+  return std::hypot(change.first_angle, change.second_angle);
+}
+
+Vec3 turned(const Vec3& direction, const Frame& across, const CurveChange& change, double part) {
+  return (direction +
+          part * (change.first_angle * across.col(0) + change.second_angle * across.col(1)))
+      .normalized();
+}
+
+}  // namespace
 
 CurveChange DampedStep::operator()(const EndJacobian& jacobian, const Vec3& error) {
   width_ = std::max({width_, jacobian.first_angle.norm(), jacobian.second_angle.norm()});
@@ -20,6 +39,22 @@ CurveChange DampedStep::operator()(const EndJacobian& jacobian, const Vec3& erro
 void DampedStep::succeeded(double error_ratio) {
   if (error_ratio < 0.5) factor_ = std::max(factor_ / 4, 1e-3);
   if (error_ratio > 0.9) factor_ *= 2;
+}
+
+Vec3 turned(const Vec3& direction, const CurveChange& change) {
+  return turned(direction, frame_across(direction), change,
+                std::min(1.0, longest_turn / turn(change)));
+}
+
+CurveStart stepped(const CurveStart& start, double n, const RayState& end,
+                   const RayTangent& tangent, const Vec3& error, DampedStep& step) {
+  const Frame across = frame_across(start.direction), moved = n * tangent.dx * across;
+  const double speed = end.v.norm();
+  const CurveChange change = step({moved.col(0), moved.col(1), end.v / speed}, error);
+  const double longer = change.length / speed;
+  const double part =
+      std::min({1.0, longest_turn / turn(change), start.sigma / std::abs(longer) / 2});
+  return {turned(start.direction, across, change, part), start.sigma + part * longer};
 }
 
 }  // namespace flatspeckle::grin

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "grin/geometry/vec3.h"
+#include "grin/rays/ray.h"
 
 namespace flatspeckle::grin {
 
@@ -31,5 +32,19 @@ class DampedStep {
   double width_ = 0;
   double factor_ = 0.5;
 };
+
+/// A unit direction turned by the angles along frame_across(direction), of which as much as makes
+/// a turn of 0.7 rad at most.
+Vec3 turned(const Vec3& direction, const CurveChange& change);
+
+/// How a curve of the ray equation starts, and its length in sigma.
+struct CurveStart {
+  Vec3 direction;
+  double sigma;
+};
+/// After one step towards error = 0, that of its end: turned as above, longer or shorter by half at
+/// most. n: the index where it starts.
+CurveStart stepped(const CurveStart& start, double n, const RayState& end,
+                   const RayTangent& tangent, const Vec3& error, DampedStep& step);
 
 }  // namespace flatspeckle::grin

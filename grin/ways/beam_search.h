@@ -76,8 +76,7 @@ class BeamSearch {
   }
 
  private:
-  static constexpr double close = 1e-9;        // rad, of the direction of arrival
-  static constexpr double longest_turn = 0.7;  // rad, of one Gauss-Newton step
+  static constexpr double close = 1e-9;  // rad, of the direction of arrival
   static constexpr double others_share = 0.25;
   static constexpr double on_caustic = 1e-6;  // neighbours turn less than this times as they start
 
@@ -148,16 +147,14 @@ class BeamSearch {
   Trial to_plane(RandomStream& random, ConnectionStatistics& statistics) const {
     BeamSeed aim{-light_.direction};
     bool is_there = false;
-    walk_.refracted(aim.start_direction, random,
-                    [&](const Passages& met, Part part, const RayState& ray) {
-                      RayState end = ray;
-                      const PlaneCrossing crossing = legs_.to_plane(part, light_, end, nullptr);
-                      if (is_there || !crossing.is_reached ||
-                          !legs_.stays(part, ray, crossing.sigma))
-                        return;
-                      is_there = true;
-                      aim.passages = met;
-                    });
+    walk_.refracted(
+        aim.start_direction, random, [&](const Passages& met, Part part, const RayState& ray) {
+          RayState end = ray;
+          const PlaneCrossing crossing = legs_.to_plane(part, light_, end, nullptr);
+          if (is_there || !crossing.is_reached || !legs_.stays(part, ray, crossing.sigma)) return;
+          is_there = true;
+          aim.passages = met;
+        });
     if (!is_there) return counted({TrialOutcome::no_approach}, statistics);
     return counted(refined(aim, random, statistics), statistics);
   }
@@ -228,16 +225,11 @@ class BeamSearch {
            shot.miss <= std::max(rounding, options_.same / 10 * widths(turns(aim, shot)).narrow);
   }
   BeamSeed moved(const BeamSeed& aim, const Shot& shot, DampedStep& damped) const {
-    const Frame across = frame_across(aim.start_direction), end = frame_across(shot.end.v);
-    const Frame turned = end * turns(aim, shot);
-    const CurveChange change =
-        damped({turned.col(0), turned.col(1), shot.end.v.normalized()}, shot.error);
-    const double turn = std::hypot(change.first_angle, change.second_angle);
-    const double part = std::min(1.0, longest_turn / turn);
+    const Frame moved = frame_across(shot.end.v) * turns(aim, shot);
     BeamSeed next = aim;
-    next.start_direction = (aim.start_direction + part * (change.first_angle * across.col(0) +
-                                                          change.second_angle * across.col(1)))
-                               .normalized();
+    next.start_direction =
+        turned(aim.start_direction,
+               damped({moved.col(0), moved.col(1), shot.end.v.normalized()}, shot.error));
     return next;
   }
 

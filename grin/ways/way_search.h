@@ -65,9 +65,8 @@ class WaySearch {
   }
 
  private:
-  static constexpr double near = 1e-2;         // of the end, in units of the gap
-  static constexpr double longest_turn = 0.7;  // rad, of one Gauss-Newton step
-  static constexpr double on_caustic = 1e-6;   // narrower than this against its length
+  static constexpr double near = 1e-2;        // of the end, in units of the gap
+  static constexpr double on_caustic = 1e-6;  // narrower than this against its length
 
   struct Aim {
     Vec3 direction;  // unit
@@ -199,19 +198,11 @@ class WaySearch {
   }
 
   Aim moved(const Aim& aim, const Shot& shot, DampedStep& damped) const {
-    const Frame across = frame_across(aim.direction);
-    const Frame turned = n_from_ * shot.tangent.dx * across;
-    const double speed = shot.end.v.norm();
-    const CurveChange change =
-        damped({turned.col(0), turned.col(1), shot.end.v / speed}, shot.error);
-    const double turn = std::hypot(change.first_angle, change.second_angle);
-    const double longer = change.length / speed;
-    const double part = std::min({1.0, longest_turn / turn, aim.sigma / std::abs(longer) / 2});
+    const CurveStart start =
+        stepped({aim.direction, aim.sigma}, n_from_, shot.end, shot.tangent, shot.error, damped);
     Aim next = aim;
-    next.direction = (aim.direction + part * (change.first_angle * across.col(0) +
-                                              change.second_angle * across.col(1)))
-                         .normalized();
-    next.sigma += part * longer;
+    next.direction = start.direction;
+    next.sigma = start.sigma;
     if (shot.miss > near * gap_) next.steps = legs_.steps(to_.part, next.sigma);
     return next;
   }

@@ -8,6 +8,7 @@
 #include "bench/oracles/space_pair_walk.h"
 #include "tests/mc/space/scenes_in_space.h"
 #include "tests/mc/space/slabs_in_space.h"
+#include "tests/mc/transport/sixth_order.h"
 
 namespace flatspeckle::mc {
 
@@ -158,26 +159,14 @@ TEST_CASE("slabs in space: paths as long as diffusion has them") {
 
 namespace {
 
-/// Values, then derivatives, are those of the scenes `at` steps away, by differences of sixth
-/// order. scale: over which the values change.
+/// Of the scenes `at` steps away. scale: over which the values change.
 template <typename At>
 void check_slopes(BulkParameter parameter, double scale, bool reversed, const At& at) {
   CAPTURE(static_cast<int>(parameter));
   const Refinement refinement{1e-8, 6};
-  const auto found = space_slopes(at(0), reversed, refinement, parameter).value;
-  const double step = 0.02 * scale;
-  std::vector<std::vector<Complex>> values;
-  for (const double steps : {-3, -2, -1, 1, 2, 3})
-    values.push_back(space_covariance(at(steps * step), reversed, refinement).value);
-  const std::size_t entries = found.size() / 2;
-  for (std::size_t e = 0; e < entries; ++e) {
-    CAPTURE(e);
-    const Complex expected = (values[5][e] - values[0][e] - 9.0 * (values[4][e] - values[1][e]) +
-                              45.0 * (values[3][e] - values[2][e])) /
-                             (60 * step);
-    CHECK(std::abs(found[entries + e] - expected) <
-          1e-7 * std::max(std::abs(expected), std::abs(found[e]) / scale));
-  }
+  tests::check_sixth_order(
+      space_slopes(at(0), reversed, refinement, parameter).value, scale,
+      [&](double step) { return space_covariance(at(step), reversed, refinement).value; });
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "mc/slab/slab_covariance.h"
 #include "mc/theory/diffusion.h"
 #include "mc/theory/memory_effect.h"
+#include "tests/mc/transport/sixth_order.h"
 #include "tests/mc/transport/slabs.h"
 
 namespace flatspeckle::mc {
@@ -240,26 +241,14 @@ TEST_CASE("tilts and delays of a thick slab together, as diffusion theory has th
 
 namespace {
 
-/// Values, then derivatives, are those of the scenes `at` steps away, by differences of sixth
-/// order. scale: over which the values change.
+/// Of the scenes `at` steps away. scale: over which the values change.
 template <typename At>
 void check_slopes(BulkParameter parameter, double scale, bool reversed, const At& at) {
   CAPTURE(static_cast<int>(parameter));
   const Refinement refinement{1e-9, 8};
-  const auto found = slab_slopes(at(0), reversed, refinement, parameter).value;
-  const double step = 0.02 * scale;
-  std::vector<std::vector<Complex>> values;
-  for (const double steps : {-3, -2, -1, 1, 2, 3})
-    values.push_back(slab_covariance(at(steps * step), reversed, refinement).value);
-  const std::size_t entries = found.size() / 2;
-  for (std::size_t e = 0; e < entries; ++e) {
-    CAPTURE(e);
-    const Complex expected = (values[5][e] - values[0][e] - 9.0 * (values[4][e] - values[1][e]) +
-                              45.0 * (values[3][e] - values[2][e])) /
-                             (60 * step);
-    CHECK(std::abs(found[entries + e] - expected) <
-          1e-7 * std::max(std::abs(expected), std::abs(found[e]) / scale));
-  }
+  tests::check_sixth_order(
+      slab_slopes(at(0), reversed, refinement, parameter).value, scale,
+      [&](double step) { return slab_covariance(at(step), reversed, refinement).value; });
 }
 
 }  // namespace
