@@ -1,10 +1,11 @@
+#include <limits>
 #include <vector>
 
 #include <doctest/doctest.h>
 
 #include "core/error.h"
 #include "core/numbers/random.h"
-#include "grin/paths/film.h"
+#include "grin/paths/transport_counts.h"
 
 namespace flatspeckle::grin {
 
@@ -90,6 +91,22 @@ TEST_CASE("film: moments of the optical path, with bins and without") {
     CHECK(pictures.of_part(0, bins.parts()) == 7);
     CHECK(pictures.of_part(0, bins.parts() + 1) == 49);
   }
+}
+
+TEST_CASE("film: what is not finite is counted and left out, of light and of its derivatives") {
+  const TimeBins bins{.by_field = 2};
+  std::vector<Complex> sums(bins.sums());
+  Film film(1, bins, sums);
+  TransportCounts counts;
+  constexpr double beyond = std::numeric_limits<double>::infinity();
+  for (const double value : {2.0, beyond, 0.0 * beyond, -beyond}) {
+    deposit<false>(film, counts, 0, value, 0);
+    deposit_by_field(film, counts, 0, 1, 3 * value);
+  }
+  CHECK(counts.lost_values == 6);
+  CHECK(sums[0] == 2.0);
+  CHECK(sums[bins.first_by_field()] == 0.0);
+  CHECK(sums[bins.first_by_field() + 1] == 6.0);
 }
 
 }  // namespace flatspeckle::grin
