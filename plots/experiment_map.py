@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Map of a number of a sweep of another subcommand (--value, by default the power on the detector) over two of its keys, with contours and
-its largest value marked; with one key a curve with its errors, and short tangents where the result has the derivative by
+its largest value (--smallest: smallest) marked; with one key a curve with its errors, and short tangents where the result has the derivative by
 that key (`render --gradient_by KEY`). --value NAME[i] takes the i-th of several numbers, as in
 power_within[0]. --ideal_lens draws where that number is what an ideal lens before the medium would bring to a point there: all light that
 comes unscattered through the stage, exp(-(mu_s + mu_a) length)."""
@@ -13,6 +13,7 @@ from lib import labels, style
 from lib.result_file import Unusable
 
 import matplotlib.pyplot as plt
+from matplotlib.ticker import EngFormatter
 import numpy as np
 
 
@@ -70,7 +71,8 @@ def grid_of(result, arguments):
         raise Unusable(f"{result.path}: no sweep of another subcommand")
     path, entry = entry_of(name)
     if not result.has(path):
-        raise Unusable(f"{result.path}: has no dataset {name}; --value takes one of {', '.join(result.numbers())}")
+        raise Unusable(f"{result.path}: has no dataset {name}; --value takes one of {', '.join(result.numbers())}, or one of "
+                       "several numbers at each point, as power_within[0]")
     scales = [scale[0] for scale in result.dataset(path).dims]
     axes = [(scale.name.strip("/"), scale[...]) for scale in (scales if entry is None else scales[:-1])]
     if any(key == "point" for key, _ in axes):
@@ -94,11 +96,27 @@ def ideal_lens(result):
         raise Unusable(f"{result.path}: --ideal_lens is of a beam along z through a box; there is no {missing}")
 
 
+def lens_text(lens, values, best):
+    drawn = ("dashed: as much as", "everywhere more than", "everywhere less than")[
+        0 if np.nanmin(values) < lens < np.nanmax(values) else 1 if np.nanmin(values) >= lens else 2]
+    return f"{drawn} what an ideal lens brings to a point of the light that is not scattered, {lens:.3g}: the star has {best / lens:.3g} of it"
+
+
 def with_unit(result, name):
-    """A name with the unit that the file says."""
-    path, _ = entry_of(name)
+    """A name with the unit that the file says, and where it is one of several numbers."""
+    path, entry = entry_of(name)
     dataset = result.dataset(path if result.has(path) else path.replace(".", "_"))
+    scales = [] if entry is None else list(dataset.dims[dataset.ndim - 1].values())
+    if scales:
+        scale = scales[0]
+        name = f"{path}, {scale.name.split('/')[-1].replace('_', ' ')} {scale[entry]:.3g}"
     return labels.with_unit(name, dataset.attrs.get("units"))
+
+
+def shorten_large(axis):
+    """2 M in place of 2 beside 1e6 in a corner."""
+    if axis.get_scale() == "linear" and max(map(abs, axis.get_view_interval())) > 1e5:
+        axis.set_major_formatter(EngFormatter(sep=" "))
 
 
 def draw_tangents(axis, place, values, slopes):
@@ -110,7 +128,7 @@ def draw_tangents(axis, place, values, slopes):
                   label="derivative" if at == place[0] else None)
 
 
-def draw_curve(axis, label, place, values, errors, lens, slopes):
+def draw_curve(axis, label, place, values, errors, lens, slopes, best):
     if lens:
         axis.axhline(lens, color="gray", linestyle="--", label="ideal lens")
     axis.errorbar(place, values, errors, **style.look(0))
@@ -118,14 +136,14 @@ def draw_curve(axis, label, place, values, errors, lens, slopes):
         draw_tangents(axis, place, values, slopes)
     if axis.get_legend_handles_labels()[1]:
         axis.legend()
-    best = int(np.nanargmax(values))
     axis.plot(place[best], values[best], "*", color="black", markersize=9, zorder=5)
     axis.set_xlabel(label)
     if style.in_equal_ratios(place):
         axis.set_xscale("log")
+    shorten_large(axis.xaxis)
 
 
-def draw_map(figure, axis, result, keys, values, name, lens):
+def draw_map(figure, axis, result, keys, values, name, lens, best):
     (down, y), (across, x) = keys
     mesh = axis.pcolormesh(x, y, values, cmap="cividis", shading="nearest")
     if min(values.shape) > 3 and np.nanmax(values) > np.nanmin(values):
@@ -133,10 +151,12 @@ def draw_map(figure, axis, result, keys, values, name, lens):
         axis.clabel(lines, fontsize=5.5, fmt="%.3g")
     if lens and np.nanmin(values) < lens < np.nanmax(values):
         axis.contour(x, y, values, colors="red", linewidths=1, linestyles="--", levels=[lens])
-    row, column = np.unravel_index(np.nanargmax(values), values.shape)
+    row, column = np.unravel_index(best, values.shape)
     axis.plot(x[column], y[row], "*", color="white", markeredgecolor="black", markersize=10)
     scales = ["log" if style.in_equal_ratios(values) else "linear" for values in (x, y)]
     axis.set(xlabel=with_unit(result, across), ylabel=with_unit(result, down), xscale=scales[0], yscale=scales[1])
+    for side in (axis.xaxis, axis.yaxis):
+        shorten_large(side)
     figure.colorbar(mesh, ax=axis, label=with_unit(result, name))
     return {across: x[column], down: y[row]}, row in (0, len(y) - 1) or column in (0, len(x) - 1)
 
@@ -144,26 +164,32 @@ def draw_map(figure, axis, result, keys, values, name, lens):
 def draw(results, arguments):
     keys, values, errors = grid_of(results[0], arguments)
     lens = ideal_lens(results[0]) if arguments.ideal_lens else None
+    at = int(np.nanargmin(values) if arguments.smallest else np.nanargmax(values))
     figure, axis = plt.subplots(figsize=(style.COLUMN, 2.6))
     if len(keys) == 1:
         draw_curve(axis, with_unit(results[0], keys[0][0]), keys[0][1], values, errors, lens,
-                   slopes_of(results[0], arguments.value, keys[0][0]))
+                   slopes_of(results[0], arguments.value, keys[0][0]), at)
         axis.set_ylabel(with_unit(results[0], arguments.value))
         return figure
-    best, at_edge = draw_map(figure, axis, results[0], keys, values, arguments.value, lens)
-    at = np.nanargmax(values)
+    best, at_edge = draw_map(figure, axis, results[0], keys, values, arguments.value, lens, at)
+    value, error = values.flat[at], errors.flat[at]
+    word, amiss = ("smallest", "small") if arguments.smallest else ("largest", "large")
     edge = ["at the edge of the map"] if at_edge else []
-    axis.set_title(", ".join([f"star: {values.flat[at]:.3g} $\\pm$ {errors.flat[at]:.1g}", *edge]), fontsize=7)
-    style.caption(figure, ["star: largest, " + ", ".join(f"{key} = {value:.3g}" for key, value in best.items()) +
-                           f", {values.flat[at]:.4g} +- {errors.flat[at]:.2g}; the largest of noisy values is too large",
-                           *(f"it lies {text}: larger ones may lie beyond" for text in edge),
-                           *([f"dashed: as much as an ideal lens brings to a point, {lens:.3g}; "
-                              f"the largest is {values.flat[at] / lens:.3g} of it"] if lens else [])])
+    noise = f" $\\pm$ {error:.2g}" if error > 0 else ""
+    axis.set_title(", ".join([f"star: {value:.4g}{noise}", *edge]), fontsize=7)
+    missing = int(np.isnan(values).sum())
+    style.caption(figure, [f"star: {word}, " + ", ".join(f"{key} = {value:.3g}" for key, value in best.items()) + f", {value:.4g}" +
+                           (f" +- {error:.2g}; the {word} of noisy values is too {amiss}"
+                            if error > 0 else ""),
+                           *([f"white: {missing} of {values.size} points are missing"] if missing else []),
+                           *(f"it lies {text}: a better one may lie beyond" for text in edge),
+                           *([lens_text(lens, values, value)] if lens else [])])
     return figure
 
 
 def add_options(parser):
     parser.add_argument("--value", default="total", help="dataset of one number for each point, or NAME[i]")
+    parser.add_argument("--smallest", action="store_true", help="mark the smallest value in place of the largest")
     parser.add_argument("--ideal_lens", action="store_true", help="compare with all light that comes unscattered through a box")
 
 

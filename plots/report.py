@@ -13,6 +13,7 @@ from lib.bench_numbers import numbers_of
 from lib.bench_results import read_bench
 
 import matplotlib.pyplot as plt
+from PIL import Image
 
 plt.rcParams.update({"svg.hashsalt": "flatspeckle", "svg.fonttype": "path"})
 DPI = 220  # at 7 inches across; larger pictures would weigh too much in a repository
@@ -24,6 +25,13 @@ def svg_of(figure):
     return svg.getvalue()
 
 
+def save_png(figure, path):
+    """Of few colours, which is a third of the size of all."""
+    full = io.BytesIO()
+    figure.savefig(full, format="png", dpi=DPI)
+    Image.open(full).convert("RGB").quantize(128).save(path, optimize=True)
+
+
 def draw_all(bench, folder):
     """Writes each picture as PNG; name -> SVG of those that there is something to draw for."""
     pictures = {}
@@ -31,7 +39,7 @@ def draw_all(bench, folder):
         figure = draw(bench)
         if figure is None:
             continue
-        figure.savefig(folder / f"{name}.png", dpi=DPI, metadata={"Software": None})
+        save_png(figure, folder / f"{name}.png")
         pictures[name] = svg_of(figure)
         plt.close(figure)
     return pictures

@@ -71,16 +71,18 @@ Provenance made_of(const ExperimentSweep& sweep, const PointStore& store, double
   Provenance made = sweep.session().provenance();
   made.identity = sweep.identity();
   made.wall_s = wall_s;
-  made.converged = store.finished() == sweep.points().count();
   Plans plans;
+  bool all_reached = true;
   store.for_each([&](std::size_t, const FinishedPoint& point) {
-    made.converged = made.converged && point.reached;
+    all_reached = all_reached && point.reached;
     made.started = std::min(made.started, point.started);
     made.cpu_s += point.cpu_s;
     made.samples += point.samples;
     plans.add(point.plan);
   });
   made.plan = plans.text();
+  made.converged = all_reached && store.finished() == sweep.points().count();
+  if (!all_reached) std::cout << "not every point has reached its target error\n";
   return made;
 }
 
@@ -94,7 +96,6 @@ int write_result(const ExperimentSweep& sweep, const PointStore& store, double w
   write_stacked(file, sweep, store);
   std::cout << count_text(sweep, store) << '\n';
   Session::commit(file, made);
-  if (!made.converged) std::cout << "not every point has reached its target error\n";
   return made.converged ? ExitStatus::done : ExitStatus::error_not_reached;
 }
 

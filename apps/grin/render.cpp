@@ -87,16 +87,29 @@ void print_pixels(const Estimate& image) {
     ++count;
   }
   if (count > 0)
-    std::printf("; %.2g %% of them, with %.2g %% of the light, rest on few paths and have bounds",
+    std::printf("; %.3g %% of them, with %.3g %% of the light, rest on few paths and have bounds",
                 100 * static_cast<double>(count) / static_cast<double>(image.rare.size()),
                 100 * marked / all);
   std::puts("");
 }
 
+/// Of the power within each radius, or else of the mean of pixels.
+void print_gradients(const grin::SensorResult& result, const std::vector<std::string>& parameters,
+                     const std::string& units) {
+  const std::size_t radii = result.within ? result.within->radii.size() : 0;
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    const std::string by = " by " + parameters[i];
+    for (std::size_t r = 0; r < radii; ++r)
+      print_row(("within " + number_text(result.within->radii[r]) + by).c_str(),
+                result.gradients->within, i * radii + r, "");
+    if (radii == 0) print_row(("mean" + by).c_str(), result.gradients->mean, i, units);
+  }
+}
+
 /// Total, mean and brightest pixel, under a name; nothing in the dark. Returns whether there is
 /// light.
 bool print_sensor(const std::string& name, const grin::Sensor& sensor,
-                  const grin::SensorResult& result) {
+                  const grin::SensorResult& result, const std::vector<std::string>& parameters) {
   const std::string& units = row_of(grin::table_of(sensor), "image").unit;
   const auto& image = result.picture.steady;
   const std::size_t brightest = largest_of(image);
@@ -109,6 +122,7 @@ bool print_sensor(const std::string& name, const grin::Sensor& sensor,
                 "");
   print_found("mean of pixels", result.mean, units);
   print_row("brightest pixel", image, brightest, units);
+  if (result.gradients) print_gradients(result, parameters, units);
   print_pixels(image);
   return true;
 }
@@ -128,7 +142,7 @@ void print_render(const grin::RenderScene& scene, const grin::RenderJob& job,
   std::vector<std::string> dark;
   for (std::size_t i = 0; i < result.size(); ++i) {
     const std::string name = result.size() > 1 ? sensor_name(scene, i) : "";
-    if (!print_sensor(name, scene.sensors[i], result[i]))
+    if (!print_sensor(name, scene.sensors[i], result[i], grin::gradient_names(scene)))
       dark.push_back(name.empty() ? "the sensor" : "sensor " + name);
   }
   if (scene.map && !print_map(*scene.map, job, sums)) dark.emplace_back("the map");
@@ -148,7 +162,10 @@ void print_energy(const Estimate& energy) {
   for (std::size_t fate = 1; fate < energy.value.size(); ++fate) {
     const double share = energy.value[fate].real() / emitted;
     if (!(share > 1e-12)) continue;  // rounding
-    std::printf("%s%.4g %% %s", before, 100 * share, grin::fate_words[fate]);
+    const double error = energy.error[fate] / emitted;
+    std::printf("%s%.4g", before, 100 * share);
+    if (error > 1e-12) std::printf(" +- %.2g", 100 * error);
+    std::printf(" %% %s", grin::fate_words[fate]);
     before = ", ";
   }
   std::puts("");

@@ -53,7 +53,8 @@ void add_keys(Keys& keys, OptimiseKeys& values) {
            "The subcommand whose results are searched, all of whose keys are keys here");
   keys.add("vary", values.vary,
            "Keys to search: key=low:high or key=low:high:log between bounds, or values to choose "
-           "from, key=1,2,3 or words; key.0 is the first value of a key of several, key.all all");
+           "from, key=1,2,3 or words or first:last:count; key.0 is the first value of a key of "
+           "several, key.all all; one at least between bounds");
   keys.add(
       "maximise", values.maximise,
       "The number of the result to make as large as can be: a dataset as total, with the place "
@@ -61,9 +62,12 @@ void add_keys(Keys& keys, OptimiseKeys& values) {
   keys.add("minimise", values.minimise, "The same, as small as can be");
   keys.add("against", values.against,
            "Keys at values to compare the best place with, as amplitude=0: its gain over that");
-  keys.add("scattered", values.scattered,
-           "Places to begin with, spread evenly (default: 16 times 2 for each key between bounds, "
-           "at most 256)")
+  keys.add(
+          "scattered", values.scattered,
+          "Places to begin with, spread evenly, and half as many again around the best of those: "
+          "the "
+          "more, the surer that no maximum is missed (default: 128 for one key between bounds, 256 "
+          "for two, 512 for more; times the choices, at most 512)")
       .from(2, 100000);
   keys.add("starts", values.starts, "Of these the best, around which the search goes on")
       .from(1, 1000);
@@ -80,7 +84,7 @@ bool print_keys_of_search(const Arguments& arguments) {
 }
 
 std::size_t default_scattered(const SearchAxes& axes) {
-  constexpr std::size_t least = 16, most = 256;
+  constexpr std::size_t least = 64, most = 512;
   std::size_t count = least;
   for (std::size_t i = 0; i < axes.dimensions() && count < most; ++i) count *= 2;
   return std::min(most, count * axes.choices());

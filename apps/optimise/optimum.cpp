@@ -126,10 +126,16 @@ void print_optimum(const Optimum& optimum, const EvaluationSettings& settings) {
                 keys_text(point).c_str());
   };
   print("best", optimum.best, best.measured);
-  print("runner-up", optimum.runner_up, runner_up.measured);
-  std::printf("better by %.3g +- %.2g, with a confidence of %.4g\n", lead.value, lead.error,
-              lead.confidence());
-  if (std::abs(lead.value) < 2 * lead.error)
+  const bool has_other = !(runner_up.place == best.place);
+  if (has_other) {
+    print("runner-up", optimum.runner_up, runner_up.measured);
+    std::printf("better by %.3g +- %.2g, with a confidence of %.4g\n", lead.value, lead.error,
+                lead.confidence());
+  }
+  std::puts(
+      "the best that the scattered places led to: more of them (scattered), or a map, tell whether "
+      "there is better");
+  if (has_other && std::abs(lead.value) < 2 * lead.error)
     std::puts(
         "not told apart: their values are equal within the errors, as on a plateau; either will "
         "do (the best\nwas chosen by earlier random numbers, of which these know nothing; a "

@@ -15,8 +15,8 @@ namespace flatspeckle::apps {
 namespace {
 
 constexpr const char* forms =
-    "must be key=low:high, key=low:high:log with bounds above 0, or values to choose from: "
-    "key=1,2,3";
+    "must be key=low:high with low < high, key=low:high:log with bounds above 0, or values to "
+    "choose from: key=1,2,3";
 
 [[noreturn]] void refuse(const std::string& text) {
   throw InputError("vary", text, forms);

@@ -4,6 +4,7 @@
 #include <set>
 #include <sstream>
 
+#include "apps/command/nearest_key.h"
 #include "core/error.h"
 #include "core/keys/csv.h"
 #include "core/keys/number_text.h"
@@ -112,7 +113,11 @@ std::vector<std::string> with_component(const Keys& keys, const SweepAxis& axis,
 
 const Key& varied_key(const Keys& of, const std::string& name, const std::string& text) {
   const Key* const key = of.find(key_of({name, {}}));
-  if (key == nullptr) refuse(text, name + " is no key of what is swept");
+  if (key == nullptr) {
+    const std::string nearest = nearest_key(of, name);
+    refuse(text, name + " is no key of that subcommand" +
+                     (nearest.empty() ? "" : "; did you mean " + nearest + '?'));
+  }
   if (key->is_effort() || !key->is_in_files())
     refuse(text, name + " says how to run, not what, and cannot be swept");
   if (key->is_file()) refuse(text, name + " names a file, and cannot be swept");

@@ -18,16 +18,32 @@ double root_of(std::size_t dimensions) {
   return x;
 }
 
-std::vector<SearchPlace> scattered_places(const SearchTask& task, std::size_t count) {
-  const double root = root_of(task.dimensions);
+/// Where places are scattered: a part of the unit cube, and what lies outside of it on its faces.
+struct SearchBox {
+  UnitPlace low, high;
+  std::vector<std::size_t> choices;
+};
+
+/// All of it, and its faces, where maxima often are.
+SearchBox all_of(const SearchTask& task) {
+  constexpr double margin = 0.05;
+  SearchBox box{UnitPlace(task.dimensions, -margin), UnitPlace(task.dimensions, 1 + margin), {}};
+  for (std::size_t choice = 0; choice < task.choices; ++choice) box.choices.push_back(choice);
+  return box;
+}
+
+std::vector<SearchPlace> scattered_places(const SearchBox& box, std::size_t count) {
+  const std::size_t dimensions = box.low.size();
+  const double root = root_of(dimensions);
   std::vector<SearchPlace> places;
   for (std::size_t i = 0; i < count; ++i) {
-    SearchPlace place{{}, i % task.choices};
+    SearchPlace place{{}, box.choices[i % box.choices.size()]};
     double share = 1;
-    for (std::size_t k = 0; k < task.dimensions; ++k) {
+    for (std::size_t k = 0; k < dimensions; ++k) {
       share /= root;
       const double at = 0.5 + static_cast<double>(i) * share;
-      place.at.push_back(at - std::floor(at));
+      const double within = std::lerp(box.low[k], box.high[k], at - std::floor(at));
+      place.at.push_back(std::clamp(within, 0.0, 1.0));
     }
     places.push_back(std::move(place));
   }
@@ -59,6 +75,28 @@ std::vector<FoundPlace> measured_at(const SearchTask& task, const std::vector<Se
   for (std::size_t i = 0; i < places.size(); ++i)
     found.push_back({places[i], measured[i], effort.samples});
   return found;
+}
+
+/// Around the best tenth of these, with a margin that reaches the faces of the cube near by.
+SearchBox around_best(std::vector<FoundPlace> places) {
+  constexpr double margin = 0.1;
+  const std::size_t count = std::max(places.size() / 10, places.front().place.at.size() + 1);
+  std::ranges::stable_sort(places, is_better);
+  places.resize(std::min(count, places.size()));
+  SearchBox box{places.front().place.at, places.front().place.at, {}};
+  for (const FoundPlace& one : places) {
+    box.choices.push_back(one.place.choice);
+    for (std::size_t k = 0; k < box.low.size(); ++k) {
+      box.low[k] = std::min(box.low[k], one.place.at[k]);
+      box.high[k] = std::max(box.high[k], one.place.at[k]);
+    }
+  }
+  for (std::size_t k = 0; k < box.low.size(); ++k) {
+    const double more = margin + margin * (box.high[k] - box.low[k]);
+    box.low[k] -= more;
+    box.high[k] += more;
+  }
+  return box;
 }
 
 /// The search around one of the scattered places, round by round.
@@ -180,27 +218,38 @@ void refine(std::vector<Refinement>& searches, const SearchTask& task) {
   }
 }
 
+/// Whether there was time for it.
+template <class Work>
+bool until_spent(const Work& work) {
+  try {
+    work();
+    return true;
+  } catch (const SearchSpent&) {
+    return false;
+  }
+}
+
 }  // namespace
 
 SearchEnd noisy_search(const SearchTask& task, const SearchSettings& settings) {
   const std::size_t count = std::max(settings.scattered, std::size_t{2});
-  const auto scattered = measured_at(task, scattered_places(task, count), {});
+  auto places = measured_at(task, scattered_places(all_of(task), count), {});
+  SearchEnd end;
+  end.finished = until_spent([&] {
+    const auto near = measured_at(task, scattered_places(around_best(places), count / 2), {});
+    places.insert(places.end(), near.begin(), near.end());
+  });
   const double of_each = static_cast<double>(count) / static_cast<double>(task.choices);
   const double apart = std::pow(of_each, -1 / static_cast<double>(task.dimensions));
   std::vector<Refinement> searches;
-  for (const FoundPlace& start : starts_of(scattered, settings.starts, apart))
+  for (const FoundPlace& start : starts_of(places, settings.starts, apart))
     searches.emplace_back(task, settings, start, std::min(0.5 * apart, 0.25));
   task.tell(std::to_string(count) + " scattered places, " + told(searches.front().best(), task));
-  SearchEnd end;
-  try {
-    refine(searches, task);
-  } catch (const SearchSpent&) {
-    end.finished = false;
-  }
+  end.finished = end.finished && until_spent([&] { refine(searches, task); });
   for (const Refinement& search : searches) end.best.push_back(search.best());
   std::ranges::stable_sort(end.best, is_better);
   if (end.best.size() > 1) return end;
-  const auto others = starts_of(scattered, count, apart);
+  const auto others = starts_of(places, count, apart);
   const auto other = std::ranges::find_if(
       others, [&](const FoundPlace& one) { return is_away(one, end.best, apart / 2); });
   if (other != others.end()) end.best.push_back(*other);

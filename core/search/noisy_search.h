@@ -38,7 +38,7 @@ struct SearchTask {
 };
 
 struct SearchSettings {
-  std::size_t scattered = 64;     ///< places to begin with, spread evenly
+  std::size_t scattered = 64;     ///< places to begin with
   std::size_t starts = 4;         ///< of these, so many of the best are searched around
   double tolerance = 1e-3;        ///< of a place, as a share of its range
   double target_error = 0.01;     ///< of the winner's value, relative
@@ -60,7 +60,9 @@ struct SearchSpent {};
 /// believed, for what is chosen for its value has luck in it. Measurements near a maximum grow
 /// until differences show or are below the target error.
 ///
-/// Scattered: the sequence of Roberts (2018), which fills a cube evenly in any dimension.
+/// Scattered: the sequence of Roberts (2018), which fills a cube evenly in any dimension; over
+/// all, and half as many again over a box around the best tenth of these, both also on the faces
+/// that they come near.
 struct SearchEnd {
   std::vector<FoundPlace> best;
   bool finished = true;

@@ -102,7 +102,13 @@ void Session::commit(ResultFile& file, const Provenance& provenance) {
 
 int Session::once(ResultFile file,
                   const std::function<std::optional<Made>(ResultFile&)>& make) const {
-  const auto made = make(file);
+  const auto made = [&]() -> std::optional<Made> {
+    try {
+      return make(file);
+    } catch (const Interrupted&) {  // deep within
+      return std::nullopt;
+    }
+  }();
   if (!made) return ExitStatus::interrupted_for_good;
   Provenance provenance = this->provenance();
   provenance.plan = made->plan;

@@ -36,16 +36,20 @@ inline void add_keys(Keys& keys, SoundValues& values) {
 
 inline double amplitude_of(const Keys& keys, const SoundValues& values) {
   const auto& pressure = keys.read(values.pressure);
-  if (!pressure) return keys.required(values.amplitude);
-  if (keys.read(values.amplitude))
-    throw InputError("pressure", *pressure, "must not be given beside amplitude");
+  const auto& amplitude = keys.read(values.amplitude);
+  if (!pressure && !amplitude) throw InputError("amplitude or pressure: give one of them");
+  if (!pressure) return *amplitude;
+  if (amplitude) throw InputError("pressure", *pressure, "must not be given beside amplitude");
   return *pressure * keys.read(values.piezo_optic);
 }
 
 inline double wavenumber_of(const Keys& keys, const SoundValues& values, const FieldUse& use) {
   const auto& frequency = keys.read(values.frequency);
-  if (!frequency) return keys.required(values.sound_wavenumber);
-  if (keys.read(values.sound_wavenumber))
+  const auto& wavenumber = keys.read(values.sound_wavenumber);
+  if (!frequency && !wavenumber)
+    throw InputError("frequency or sound_wavenumber: give one of them");
+  if (!frequency) return *wavenumber;
+  if (wavenumber)
     throw InputError("frequency", *frequency, "must not be given beside sound_wavenumber");
   if (!use.length_unit)
     throw InputError("frequency", *frequency, "needs length_unit, the metres in a unit of length");

@@ -36,7 +36,8 @@ FieldNumber number_of(const Keys& keys, const std::string& name) {
   const Key* const key = key_of(keys, number.key);
   if (!key || !key->is_number() || key->is_whole() || key->value().empty())
     refuse(name,
-           "must be a number that the index field is given: amplitude, frequency, transducer.2");
+           "must be a number that the index field is given, as amplitude or transducer.2 "
+           "(derivatives by mu_s, mu_a and g are those of gradient)");
   number.texts = key->value();
   const bool has_part = dot != std::string::npos;
   const auto part = has_part ? read_whole_number(name.substr(dot + 1)) : std::optional(0L);

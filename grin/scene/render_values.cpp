@@ -154,7 +154,7 @@ void add_derivatives(RenderScene& scene) {
 void add_motion(const RenderValues& values, const FieldUse& use, RenderScene& scene) {
   const auto refuse = [](const std::string& why) { throw InputError("gradient_by: " + why); };
   if (scene.is_silent || std::holds_alternative<Homogeneous>(scene.field))
-    refuse("the field must bend rays");
+    refuse("the field must bend rays, which sound of no amplitude does not");
   if (scene.random_phase) refuse("the sound must be of one phase, without random_phase");
   if (!scene.stage.bodies.empty()) refuse("the stage must have no bodies, but one medium alone");
   if (scene.stage.medium.density) refuse("the medium must be uniform, without density");
@@ -213,7 +213,7 @@ void add_keys(Keys& keys, RenderValues& values) {
       "Also derivatives by numbers of the index field: amplitude, frequency, transducer.2, the "
       "third of its numbers (method = analog)");
   keys.add("length_unit", values.length_unit,
-           "What lengths are in, um or 1e-6, for the times of path_bins")
+           "What lengths are in, um or 1e-6, for frequency of sound and the times of path_bins")
       .positive()
       .unit("m");
   add_map_keys(keys, values);

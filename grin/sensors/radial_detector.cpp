@@ -87,6 +87,8 @@ RadialDetector make_sensor(const OneSensor& of, const RadialValues& values) {
   if (const auto& radii = of.all(values.radii); !radii.empty()) {
     if (!std::is_sorted(radii.begin(), radii.end(), std::less_equal<double>()))
       throw InputError("radii", number_text(radii), "must increase");
+    of.refuse_beside("radii", values.sensor_radius);
+    of.refuse_beside("radii", values.rings);
     return {of.vector(values.sensor_at), radii.back(), static_cast<int>(radii.size()),
             of.number(values.acceptance), radii};
   }

@@ -64,6 +64,12 @@ class OneSensor {
   const std::vector<double>& all(const std::vector<double>& member) const {
     return keys_.read(member);
   }
+  /// What another key stands in the place of. Throws InputError.
+  template <class Member>
+  void refuse_beside(const std::string& other, const Member& member) const {
+    if (keys_.given(member))
+      throw InputError(keys_.name(member) + ": must not be given beside " + other);
+  }
   Vec3 vector(const std::vector<double>& member) const { return vector_of(part(member, 3)); }
   double number(const std::vector<double>& member) const { return part(member, 1)[0]; }
 

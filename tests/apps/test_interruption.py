@@ -78,6 +78,12 @@ class Interruption(ProgramTest):
                                 threads=1, out="run.h5", samples=1_000_000)
         self.assertIn((status, list(self.listing())), [(130, []), (75, ["run.h5"])])
 
+    def test_within_one_solution_of_many(self):
+        keys = {"width": 80, "depth": 80, "count": 3000, "wavelengths": [0.9, 1.1],
+                "wavelength_count": 2, "solver": "dense", "threads": 1, "out": "run.h5"}
+        self.assertEqual(self.interrupt(signal.SIGTERM, 0.4, "solve", **keys), 130)
+        self.assertEqual(list(self.listing()), [])
+
     def test_an_older_result_is_kept(self):
         self.call("covariance", **SHORT, out="run.h5")
         older = (self.folder / "run.h5").read_bytes()

@@ -151,6 +151,7 @@ class Plots(ProgramTest):
         status, said, heard = run_script("experiment_map", self.folder / "disks.h5", "--value", "power_within[1]", "--ideal_lens",
                                          "--out", out)
         self.assertEqual((status, heard), (0, ""))
+        self.assertIn("star: smallest", run_script("experiment_map", file, "--smallest", "--out", out)[1])
         self.assertEqual(run_script("experiment_map", self.folder / "disks.h5", "--value", "power_within[2]")[0], 2)
 
     def test_curves_of_experiments_have_the_derivatives_by_their_key(self):

@@ -90,12 +90,15 @@ def check_refusal(ended, heard):
 
 
 def check_new_files(before, after, out, ended, outputs):
-    """Nothing beside the result but what it stood in the place of, and the points of a sweep."""
+    """Nothing beside the result but what it stood in the place of, the points of a sweep, and what
+    a search has done that was not finished."""
     for name in after.keys() - before.keys():
         own = name in outputs or re.fullmatch(re.escape(out) + r"\.aside-\d+", name)
         point = name.startswith(f"{out}.shards/") and "/." not in name
+        search = ended.status != 0 and re.fullmatch(
+            re.escape(out) + r"\.(search|state|evaluations)", name)
         left = re.search(r"(^|/)\.[^/]*(\.lock|\.tmp-\d+)$", name)
-        if ended.status == 2 or not (own or point or (left and ended.was_cut)):
+        if ended.status == 2 or not (own or point or search or (left and ended.was_cut)):
             yield f"left {name}"
 
 

@@ -121,6 +121,27 @@ TEST_CASE("the higher of two hills, without noise") {
   CHECK(winner.lead.confidence() == 1);
 }
 
+/// As the power of a guide: it rises towards a face, on which two places are high.
+TEST_CASE("a narrow hill on a face of the cube, beside a wide one") {
+  const auto height = [](const UnitPlace& at) {
+    const double wide = 0.75 * at[0] * std::exp(-std::pow(at[1] - 0.4, 2) / 0.1);
+    return wide + std::exp(-(1 - at[0]) / 0.1 - std::pow(at[1] - 0.85, 2) / 0.02);
+  };
+  SearchTask task{.dimensions = 2, .measure = {}};
+  task.measure = [&](const std::vector<SearchPlace>& places, const SearchEffort&) {
+    std::vector<Measured> found;
+    for (const SearchPlace& place : places) found.push_back({height(place.at)});
+    return found;
+  };
+  for (const std::size_t scattered : {48, 64, 96, 128}) {
+    CAPTURE(scattered);
+    const SearchSettings settings{.scattered = scattered};
+    const Winner winner = chosen_winner(task, settings, noisy_search(task, settings).best);
+    CHECK(winner.best.place.at[0] == 1);
+    CHECK(winner.best.place.at[1] == doctest::Approx(0.85).epsilon(0.02));
+  }
+}
+
 TEST_CASE("one key alone, and a choice") {
   SearchTask task{.dimensions = 1, .choices = 3, .measure = {}};
   task.measure = [](const std::vector<SearchPlace>& places, const SearchEffort&) {
