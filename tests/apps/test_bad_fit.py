@@ -102,6 +102,8 @@ class BadFit(RefusingTest):
         self.assert_refused(["tilts"], *words, **{**plan, "tilts": None})
         self.assert_refused(["measurement", "has use for it"], *words, **plan, measurement="m.csv")
         self.assert_refused(["patterns = 0"], *words, **plan, patterns=0)
+        self.assert_refused(["g = 0.8", "no tilt"], *words, **{**plan, "tilts": [0, 0.0001]})
+        self.assert_refused(["g = 4.9", "nearly"], "fit", "--plan", "--free", "g=-0.5:0.95", **{**plan, "g": 5e-324})
         self.refused(["tilts", "bring their own"], tilts=0.1)
         self.refused(["view_angles", "bring their own"], view_angles=0.1)
         self.refused(["patterns", "plan"], patterns=10)

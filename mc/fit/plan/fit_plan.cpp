@@ -167,6 +167,19 @@ MatrixXd field_information(const MatrixXcd& covariance, const std::vector<Matrix
   return found - with_scale * with_scale.transpose() / static_cast<double>(covariance.rows());
 }
 
+namespace {
+
+void check_finite(const PlanTask& task, const FitPlan& plan) {
+  for (Index i = 0; i < plan.values.size(); ++i)
+    if (!std::isfinite(plan.patterns_to_percent[i]))
+      throw InputError(
+          task.free[static_cast<std::size_t>(i)].key, plan.values[i],
+          "has no finite error in percent: it must not be (nearly) 0, and no tilt be 0 "
+          "or (nearly) another");
+}
+
+}  // namespace
+
 FitPlan fit_plan(const PlanTask& task) {
   const Planned planned(task);
   const Information all = planned.known(Planned::none, Planned::none);
@@ -182,6 +195,7 @@ FitPlan fit_plan(const PlanTask& task) {
   plan.condition = all.condition;
   plan.patterns_to_percent =
       task.patterns * (100 * plan.errors.cwiseQuotient(plan.values)).cwiseAbs2();
+  check_finite(task, plan);
   plan.views = task.scene.view_angles;
   plan.tilts = task.scene.tilts;
   plan.without_view = planned.growth(
