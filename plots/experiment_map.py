@@ -96,9 +96,15 @@ def ideal_lens(result):
         raise Unusable(f"{result.path}: --ideal_lens is of a beam along z through a box; there is no {missing}")
 
 
+def is_among(lens, values):
+    return np.nanmin(values) < lens < np.nanmax(values)
+
+
 def lens_text(lens, values, best):
-    drawn = ("dashed: as much as", "everywhere more than", "everywhere less than")[
-        0 if np.nanmin(values) < lens < np.nanmax(values) else 1 if np.nanmin(values) >= lens else 2]
+    if is_among(lens, values):
+        drawn = "dashed: as much as"
+    else:
+        drawn = "everywhere more than" if lens < best else "everywhere less than"
     return f"{drawn} what an ideal lens brings to a point of the light that is not scattered, {lens:.3g}: the star has {best / lens:.3g} of it"
 
 
@@ -149,7 +155,7 @@ def draw_map(figure, axis, result, keys, values, name, lens, best):
     if min(values.shape) > 3 and np.nanmax(values) > np.nanmin(values):
         lines = axis.contour(x, y, values, colors="white", linewidths=0.6, levels=6)
         axis.clabel(lines, fontsize=5.5, fmt="%.3g")
-    if lens and np.nanmin(values) < lens < np.nanmax(values):
+    if lens and is_among(lens, values):
         axis.contour(x, y, values, colors="red", linewidths=1, linestyles="--", levels=[lens])
     row, column = np.unravel_index(best, values.shape)
     axis.plot(x[column], y[row], "*", color="white", markeredgecolor="black", markersize=10)

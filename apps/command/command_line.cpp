@@ -44,11 +44,9 @@ std::string line_of(const Arguments& arguments) {
 
 std::string unknown_key(const Keys& keys, const std::string& name) {
   const auto owners = key_owners();
-  std::string advice;
-  if (const auto owner = owners.find(name); owner != owners.end())
-    advice = "; a key of " + joined(owner->second, ", ");
-  else if (const std::string nearest = nearest_key(keys, name); !nearest.empty())
-    advice = "; did you mean " + nearest + '?';
+  const auto owner = owners.find(name);
+  const std::string advice = owner == owners.end() ? did_you_mean(keys, name)
+                                                   : "; a key of " + joined(owner->second, ", ");
   return name + ": unknown key" + advice + " (--help lists the known ones)";
 }
 

@@ -23,8 +23,6 @@ std::size_t letters_apart(const std::string& a, const std::string& b) {
   return row.back();
 }
 
-}  // namespace
-
 std::string nearest_key(const Keys& keys, const std::string& name) {
   std::size_t least = std::min<std::size_t>(2, (name.size() + 1) / 3) + 1;
   std::string nearest;
@@ -35,6 +33,13 @@ std::string nearest_key(const Keys& keys, const std::string& name) {
     nearest = key.name();
   }
   return nearest;
+}
+
+}  // namespace
+
+std::string did_you_mean(const Keys& keys, const std::string& name) {
+  const std::string nearest = nearest_key(keys, name);
+  return nearest.empty() ? "" : "; did you mean " + nearest + '?';
 }
 
 }  // namespace flatspeckle::apps

@@ -6,8 +6,9 @@
 
 namespace flatspeckle::apps {
 
-/// The key that a misspelt name was likely meant to be: of the fewest letters to add, take out or
-/// change, at most two, one of short names (Levenshtein 1966). Empty where there is none.
-std::string nearest_key(const Keys& keys, const std::string& name);
+/// "; did you mean depth?", of the key that a misspelt name was likely meant to be: of the fewest
+/// letters to add, take out or change, at most two, one of short names (Levenshtein 1966). Empty
+/// where there is none.
+std::string did_you_mean(const Keys& keys, const std::string& name);
 
 }  // namespace flatspeckle::apps

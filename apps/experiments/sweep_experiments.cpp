@@ -67,35 +67,38 @@ class Plans {
   bool has_more_ = false;
 };
 
+/// Converged: all points that are there.
 Provenance made_of(const ExperimentSweep& sweep, const PointStore& store, double wall_s) {
   Provenance made = sweep.session().provenance();
   made.identity = sweep.identity();
   made.wall_s = wall_s;
+  made.converged = true;
   Plans plans;
-  bool all_reached = true;
   store.for_each([&](std::size_t, const FinishedPoint& point) {
-    all_reached = all_reached && point.reached;
+    made.converged = made.converged && point.reached;
     made.started = std::min(made.started, point.started);
     made.cpu_s += point.cpu_s;
     made.samples += point.samples;
     plans.add(point.plan);
   });
   made.plan = plans.text();
-  made.converged = all_reached && store.finished() == sweep.points().count();
-  if (!all_reached) std::cout << "not every point has reached its target error\n";
   return made;
 }
 
 int write_result(const ExperimentSweep& sweep, const PointStore& store, double wall_s) {
-  const Provenance made = made_of(sweep, store, wall_s);
+  const bool is_whole = store.finished() == sweep.points().count();
+  Provenance made = made_of(sweep, store, wall_s);
+  const bool all_reached = made.converged;
+  made.converged = all_reached && is_whole;
   ResultFile file(sweep.out(), ResultFile::Storage::disk);
   const ResultGroup root(file, stacked_table);
   root.attribute("of", sweep.of());
-  root.attribute("complete", store.finished() == sweep.points().count());
+  root.attribute("complete", is_whole);
   root.attribute("ranks", std::int64_t{ranks().size});
   write_stacked(file, sweep, store);
   std::cout << count_text(sweep, store) << '\n';
   Session::commit(file, made);
+  if (!all_reached) std::cout << "not every point has reached its target error\n";
   return made.converged ? ExitStatus::done : ExitStatus::error_not_reached;
 }
 

@@ -139,10 +139,11 @@ bool print_map(const grin::LightMap& map, const grin::RenderJob& job, const Grou
 /// What each sensor and the map have found, and what the search for curves cost.
 void print_render(const grin::RenderScene& scene, const grin::RenderJob& job,
                   const GroupedSums& sums, const grin::RenderResult& result) {
+  const std::vector<std::string> parameters = grin::gradient_names(scene);
   std::vector<std::string> dark;
   for (std::size_t i = 0; i < result.size(); ++i) {
     const std::string name = result.size() > 1 ? sensor_name(scene, i) : "";
-    if (!print_sensor(name, scene.sensors[i], result[i], grin::gradient_names(scene)))
+    if (!print_sensor(name, scene.sensors[i], result[i], parameters))
       dark.push_back(name.empty() ? "the sensor" : "sensor " + name);
   }
   if (scene.map && !print_map(*scene.map, job, sums)) dark.emplace_back("the map");

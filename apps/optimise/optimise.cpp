@@ -62,12 +62,10 @@ void add_keys(Keys& keys, OptimiseKeys& values) {
   keys.add("minimise", values.minimise, "The same, as small as can be");
   keys.add("against", values.against,
            "Keys at values to compare the best place with, as amplitude=0: its gain over that");
-  keys.add(
-          "scattered", values.scattered,
-          "Places to begin with, spread evenly, and half as many again around the best of those: "
-          "the "
-          "more, the surer that no maximum is missed (default: 128 for one key between bounds, 256 "
-          "for two, 512 for more; times the choices, at most 512)")
+  keys.add("scattered", values.scattered,
+           "Places to begin with, spread evenly, and half as many again around the best of those: "
+           "the more, the surer that no maximum is missed (default: 128 for one key between "
+           "bounds, 256 for two, 512 for more; times the choices, at most 512)")
       .from(2, 100000);
   keys.add("starts", values.starts, "Of these the best, around which the search goes on")
       .from(1, 1000);

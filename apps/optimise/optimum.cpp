@@ -126,7 +126,7 @@ void print_optimum(const Optimum& optimum, const EvaluationSettings& settings) {
                 keys_text(point).c_str());
   };
   print("best", optimum.best, best.measured);
-  const bool has_other = !(runner_up.place == best.place);
+  const bool has_other = runner_up.place != best.place;
   if (has_other) {
     print("runner-up", optimum.runner_up, runner_up.measured);
     std::printf("better by %.3g +- %.2g, with a confidence of %.4g\n", lead.value, lead.error,

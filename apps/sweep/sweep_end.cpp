@@ -16,7 +16,8 @@ namespace {
 
 using Part = ShardFolder::Part;
 
-/// How the whole was made: the costs of all points, and each plan once.
+/// How the whole was made: the costs of all points, and each plan once. Converged: all that are
+/// there.
 Provenance made_of(const SweepPlan& plan, const SweepResults& results, double wall_s) {
   Provenance made = plan.session().provenance();
   made.identity = plan.identity();
@@ -24,8 +25,8 @@ Provenance made_of(const SweepPlan& plan, const SweepResults& results, double wa
   made.converged = true;
   std::set<std::string> plans;
   for (const auto& result : results) {
-    made.converged = made.converged && result && result->reached;
     if (!result) continue;
+    made.converged = made.converged && result->reached;
     plans.insert(result->plan);
     made.started = std::min(made.started, result->started);
     made.cpu_s += result->cpu_s;
@@ -72,7 +73,9 @@ SweepResults gather(const SweepPlan& plan, const std::vector<std::string>& folde
 }
 
 int write_result(const SweepPlan& plan, const SweepResults& results, double wall_s) {
-  const Provenance made = made_of(plan, results, wall_s);
+  Provenance made = made_of(plan, results, wall_s);
+  const bool all_reached = made.converged;
+  made.converged = all_reached && is_whole(results);
   print_ranges(plan, results);
   ResultFile file(plan.settings.out);
   const ResultGroup root(file, sweep_table);
@@ -82,7 +85,7 @@ int write_result(const SweepPlan& plan, const SweepResults& results, double wall
   write_sweep(file, plan, results);
   std::cout << count_text(plan, results) << '\n';
   Session::commit(file, made);
-  if (!made.converged) std::cout << "not every point has reached its target error\n";
+  if (!all_reached) std::cout << "not every point has reached its target error\n";
   return made.converged ? ExitStatus::done : ExitStatus::error_not_reached;
 }
 

@@ -113,11 +113,7 @@ std::vector<std::string> with_component(const Keys& keys, const SweepAxis& axis,
 
 const Key& varied_key(const Keys& of, const std::string& name, const std::string& text) {
   const Key* const key = of.find(key_of({name, {}}));
-  if (key == nullptr) {
-    const std::string nearest = nearest_key(of, name);
-    refuse(text, name + " is no key of that subcommand" +
-                     (nearest.empty() ? "" : "; did you mean " + nearest + '?'));
-  }
+  if (key == nullptr) refuse(text, name + " is no key of that subcommand" + did_you_mean(of, name));
   if (key->is_effort() || !key->is_in_files())
     refuse(text, name + " says how to run, not what, and cannot be swept");
   if (key->is_file()) refuse(text, name + " names a file, and cannot be swept");

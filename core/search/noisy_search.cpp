@@ -77,7 +77,8 @@ std::vector<FoundPlace> measured_at(const SearchTask& task, const std::vector<Se
   return found;
 }
 
-/// Around the best tenth of these, with a margin that reaches the faces of the cube near by.
+/// Around the best tenth of these, with a margin that reaches the faces of the cube near by;
+/// choices as often as they are among them.
 SearchBox around_best(std::vector<FoundPlace> places) {
   constexpr double margin = 0.1;
   const std::size_t count = std::max(places.size() / 10, places.front().place.at.size() + 1);
@@ -244,7 +245,8 @@ SearchEnd noisy_search(const SearchTask& task, const SearchSettings& settings) {
   std::vector<Refinement> searches;
   for (const FoundPlace& start : starts_of(places, settings.starts, apart))
     searches.emplace_back(task, settings, start, std::min(0.5 * apart, 0.25));
-  task.tell(std::to_string(count) + " scattered places, " + told(searches.front().best(), task));
+  task.tell(std::to_string(places.size()) + " scattered places, " +
+            told(searches.front().best(), task));
   end.finished = end.finished && until_spent([&] { refine(searches, task); });
   for (const Refinement& search : searches) end.best.push_back(search.best());
   std::ranges::stable_sort(end.best, is_better);

@@ -148,6 +148,15 @@ class Planned {
   Fields fields_;
 };
 
+void check_finite(const PlanTask& task, const FitPlan& plan) {
+  for (Index i = 0; i < plan.values.size(); ++i)
+    if (!std::isfinite(plan.patterns_to_percent[i]))
+      throw InputError(
+          task.free[static_cast<std::size_t>(i)].key, plan.values[i],
+          "has no finite error in percent: it must not be (nearly) 0, and no tilt be 0 "
+          "or (nearly) another");
+}
+
 }  // namespace
 
 MatrixXd field_information(const MatrixXcd& covariance, const std::vector<MatrixXcd>& slopes) {
@@ -166,19 +175,6 @@ MatrixXd field_information(const MatrixXcd& covariance, const std::vector<Matrix
   }
   return found - with_scale * with_scale.transpose() / static_cast<double>(covariance.rows());
 }
-
-namespace {
-
-void check_finite(const PlanTask& task, const FitPlan& plan) {
-  for (Index i = 0; i < plan.values.size(); ++i)
-    if (!std::isfinite(plan.patterns_to_percent[i]))
-      throw InputError(
-          task.free[static_cast<std::size_t>(i)].key, plan.values[i],
-          "has no finite error in percent: it must not be (nearly) 0, and no tilt be 0 "
-          "or (nearly) another");
-}
-
-}  // namespace
 
 FitPlan fit_plan(const PlanTask& task) {
   const Planned planned(task);
