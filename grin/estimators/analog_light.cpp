@@ -103,7 +103,9 @@ class AnalogWalk {
     now.of_beam = lane.end.is_beam;
     tally_.emitted(now.from);
     now.absorption.begin(now.from, now.direction);
-    if (moving_) now.flight = moving_->begin(now.from.point.x, now.direction);
+    if (moving_)
+      now.flight =
+          moving_->begin(now.from.point.x, now.direction, lights.by_index(lane.end, now.direction));
     draw_flight(now, fresh.place);
   }
   /// The first.

@@ -80,6 +80,12 @@ RayState start_ray(const RayField& field, const Vec3& x, const Vec3& direction) 
 
 }  // namespace
 
+double MovingField::index_change(std::size_t parameter, const Vec3& x) const {
+  const Sides& of = sides_[parameter];
+  const double less = of.less->excess(x), more = of.more->excess(x);
+  return (more - less) / (2 * of.step * (1 + (less + more) / 2));
+}
+
 std::vector<Flight> MovingField::flown(std::span<const Ray> starts) const {
   std::vector<Flight> found(starts.size());
   RandomStream none(0, 0, 0);

@@ -28,6 +28,8 @@ class MovingField {
   const std::vector<SensorEdges>& edges() const { return edges_; }
   const ScatteringMedium& medium() const { return medium_; }
   IndexGradient index(const Vec3& x) const { return field_->gradient(x); }
+  /// d(ln n) for each unit of a parameter.
+  double index_change(std::size_t parameter, const Vec3& x) const;
 
   struct Ray {
     Vec3 x, direction;

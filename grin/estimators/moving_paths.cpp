@@ -26,9 +26,13 @@ double slope_of_log(const SpacePhaseFunction& phase, double cosine) {
 
 }  // namespace
 
-int MovingPaths::begin(const Vec3& x, const Vec3& direction) {
-  starts_.push_back(
-      {.before = -1, .depth = 0, .x = x, .arrived = direction, .direction = direction});
+int MovingPaths::begin(const Vec3& x, const Vec3& direction, const EmissionChange& by_index) {
+  starts_.push_back({.before = -1,
+                     .depth = 0,
+                     .x = x,
+                     .arrived = direction,
+                     .direction = direction,
+                     .by_index = by_index});
   return static_cast<int>(starts_.size()) - 1;
 }
 
@@ -52,6 +56,7 @@ void MovingPaths::land(int flight, const Vec3& x, const Vec3& arrived, double ar
 
 void MovingPaths::finish() {
   motions_.assign(starts_.size() * field_.parameters(), {});
+  emit();
   for (const auto& flights : followed()) follow(flights);
   std::vector<int> flights;
   Lengths lengths;
@@ -72,6 +77,21 @@ void MovingPaths::finish() {
   }
   starts_.clear();
   landings_.clear();
+}
+
+/// What first flights that land begin with.
+void MovingPaths::emit() {
+  for (const Landing& landing : landings_) {
+    int first = landing.flight;
+    while (start(first).depth > 0) first = start(first).before;
+    const Start& from = start(first);
+    if (from.by_index.weight == 0 && from.by_index.direction.isZero(0)) continue;
+    for (std::size_t i = 0; i < field_.parameters(); ++i) {
+      const double change = field_.index_change(i, from.x);
+      motions(first)[i].direction = change * from.by_index.direction;
+      motions(first)[i].score = change * from.by_index.weight;
+    }
+  }
 }
 
 /// The flights after collisions on whose motion landings depend, by how many there were.

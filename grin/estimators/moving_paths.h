@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "grin/estimators/moving_field.h"
+#include "grin/lights/light_kind.h"
 #include "grin/paths/transport_counts.h"
 
 namespace flatspeckle::grin {
@@ -17,14 +18,16 @@ namespace flatspeckle::grin {
 /// the first as the density of its random numbers changes (score function). How paths are taken
 /// along is free, and chosen such that nothing jumps but at edges, and landings move little:
 ///
+/// - Light begins at the same place, in the direction and with the weight that the same random
+///   numbers have in the other index (EmissionChange).
 /// - Flights end at the same part of the way to the boundary, at arc length s of S: a path that
 ///   collides just before the boundary does so with any parameter. Score: d ln S (1 - mu_t s) of a
 ///   collision, -mu_t dS where light leaves.
-/// - Directions after a collision stay as they are, though those before it turn, as far as the
-/// phase
-///   function has room for that: of a turn w before it, 1/(1 + (I w)^2) is taken back, where I^2 is
-///   the information of the phase function on a turn by a whole of the parameter. Score: that share
-///   of d ln p. Of phase functions whose slope is not known, nothing is taken back.
+/// - Directions after a collision stay as they are, though those before it turn, as far as there is
+///   room for that in the phase function: of a turn w before it, 1/(1 + (I w)^2) is taken back,
+///   where I^2 is the information of the phase function on a turn by a whole of the parameter.
+///   Score: that share of d ln p. Of phase functions whose slope is not known, nothing is taken
+///   back.
 ///
 /// Motions are central differences of rays in the two fields of each parameter. Paths are recorded
 /// on their way; finish() follows those that land on a sensor or near one, side by side.
@@ -36,7 +39,7 @@ class MovingPaths {
 
   /// A path's first flight, those after collisions, and its landing. A flight has the number that
   /// is returned.
-  int begin(const Vec3& x, const Vec3& direction);
+  int begin(const Vec3& x, const Vec3& direction, const EmissionChange& by_index = {});
   int go_on(int flight, const Vec3& x, const Vec3& arrived, double arc_length,
             const Vec3& direction);
   void land(int flight, const Vec3& x, const Vec3& arrived, double arc_length, double power);
@@ -54,6 +57,7 @@ class MovingPaths {
     Vec3 x, arrived, direction;
     double arc_length = 0;  ///< of the flight, where it ends in a collision
     bool is_followed = false;
+    EmissionChange by_index = {};  ///< of a first flight
   };
   struct Landing {
     int flight;
@@ -70,6 +74,7 @@ class MovingPaths {
   Motion* motions(int flight) {
     return motions_.data() + static_cast<std::size_t>(flight) * field_.parameters();
   }
+  void emit();
   std::vector<std::vector<int>> followed();
   void follow(std::span<const int> flights);
   std::vector<Exit> exits(std::span<const int> flights) const;

@@ -35,6 +35,7 @@ class BeamLightEnd {
   EndDirection towards(const EndPosition&, const Vec3& direction) const {
     return {.direction = direction};
   }
+  EmissionChange by_index(const EndPosition&, const Vec3&) const { return {}; }
 
  private:
   LightDisk disk_;

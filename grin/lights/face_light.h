@@ -27,6 +27,7 @@ class FaceLightEnd {
   BoundaryPoint sample(RandomStream& random) const { return patch_.sample(random); }
   EndDirection sample_direction(const EndPosition& at, RandomStream& random) const;
   EndDirection towards(const EndPosition& at, const Vec3& direction) const;
+  EmissionChange by_index(const EndPosition&, const Vec3&) const { return {.weight = 2}; }
   bool contains(const Vec3& x) const { return patch_.contains(x); }
   Vec3 inward(const Vec3& x) const { return patch_.inward(x); }
 

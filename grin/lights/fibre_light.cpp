@@ -50,6 +50,11 @@ EndDirection FibreLightEnd::towards(const EndPosition& at, const Vec3& direction
   return along(at, direction, cosine, profile.density(square));
 }
 
+/// The sine from the axis goes as 1/n.
+EmissionChange FibreLightEnd::by_index(const EndPosition& at, const Vec3& direction) const {
+  return {.direction = at.inward / direction.dot(at.inward) - direction};
+}
+
 EndDirection FibreLightEnd::along(const EndPosition& at, const Vec3& direction, double cosine,
                                   double density) const {
   return {.direction = direction,

@@ -34,6 +34,7 @@ class FibreLightEnd {
   BoundaryPoint sample(RandomStream& random) const { return disk_.sample(random); }
   EndDirection sample_direction(const EndPosition& at, RandomStream& random) const;
   EndDirection towards(const EndPosition& at, const Vec3& direction) const;
+  EmissionChange by_index(const EndPosition& at, const Vec3& direction) const;
 
  private:
   RadialProfile sines(const EndPosition& at) const { return {spread_, aperture_ / at.index, 1}; }

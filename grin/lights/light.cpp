@@ -137,6 +137,11 @@ EndDirection Lights::sample_direction(const EndPosition& at, RandomStream& rando
   return to;
 }
 
+EmissionChange Lights::by_index(const EndPosition& at, const Vec3& direction) const {
+  return std::visit([&](const auto& end) { return end.by_index(at, direction); },
+                    source_[at.light].end);
+}
+
 EndDirection Lights::towards(const EndPosition& at, const Vec3& direction) const {
   return std::visit([&](const auto& end) { return end.towards(at, direction); },
                     source_[at.light].end);

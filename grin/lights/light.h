@@ -47,6 +47,9 @@ class Lights {
   /// Towards a given direction, for joins.
   EndDirection towards(const EndPosition& at, const Vec3& direction) const;
 
+  /// Of light that sample_direction gave.
+  EmissionChange by_index(const EndPosition& at, const Vec3& direction) const;
+
   /// Power of all beams.
   double beam_power() const { return beam_power_; }
   /// A place on one of the beams: which, by their power, says `stratum` in (0, 1); where, (u, v) in

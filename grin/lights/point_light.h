@@ -35,6 +35,7 @@ class PointLightEnd {
     constexpr double sphere = 4 * std::numbers::pi;
     return {.direction = direction, .density = 1 / sphere, .strength = light_.power / sphere};
   }
+  EmissionChange by_index(const EndPosition&, const Vec3&) const { return {}; }
 
  private:
   PointLight light_;

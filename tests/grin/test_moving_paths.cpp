@@ -125,6 +125,40 @@ TEST_CASE("derivatives by the field are those of differences of the same paths")
   }
 }
 
+/// Far from a lens: rays are straight, and of all lights that are given by L/n^2 or by a numerical
+/// aperture as much lands within as the square of the index says.
+TEST_CASE("light begins as the index has it there") {
+  RenderValues straight = guided_values({1e-4, 4}, {1});
+  straight.lights = {};
+  SUBCASE("a face") {
+    straight.lights.face_light = {0, 0, 0, 0.5, 1};
+    const Powers all = powers(with(straight, {"index"}), 20000);
+    const double exact = 2 / 1.5 * all.found.within->power.value[0].real();
+    CHECK(all.found.gradients->within.value[0].real() == doctest::Approx(exact).epsilon(1e-6));
+  }
+  SUBCASE("a fibre") {
+    straight.lights.fibre_light = {0, 0, 0, 0, 0, 1, 1e-6, 0.6, 1};
+    const Powers all = powers(with(straight, {"index"}), 200000);
+    const Estimate& within = all.found.gradients->within;
+    const double sine2 = 1 / (1.0 + 4 * 4), exact = 2 * 1.5 * sine2 / (0.6 * 0.6);
+    CHECK(std::abs(within.value[0].real() - exact) < 4 * within.error[0]);
+    CHECK(within.error[0] < 0.02 * exact);
+  }
+}
+
+TEST_CASE("derivatives by the index are those of differences, whatever shines") {
+  const auto index = [](RenderValues& values) -> double& {
+    return values.field.of<ParabolicValues>().index;
+  };
+  RenderValues fog = guided_values({0.1, 6}, {2}, 0.05, 0.8);
+  fog.lights = {};
+  SUBCASE("a face") { fog.lights.face_light = {0, 0, 0, 1, 1}; }
+  SUBCASE("the environment") { fog.lights.environment = 1; }
+  SUBCASE("a fibre") { fog.lights.fibre_light = {0, 0, 0, 0, 0, 1, 0.5, 0.6, 1}; }
+  SUBCASE("a Gaussian fibre") { fog.lights.gaussian_fibre = {0, 0, 0, 0, 0, 1, 0.5, 0.3, 1}; }
+  check_differences(fog, "index", index, 0, pi * 2 * 2);
+}
+
 /// A turn of 1e-9 is none, and light of a sharp picture lands as if nothing scattered it.
 TEST_CASE("fog that does not turn light changes nothing") {
   const GuidedBeam guide{0.2, 6};
