@@ -266,6 +266,18 @@ Eigen::MatrixXd errors_of(const Contents& there, const std::vector<Curve>& curve
   });
 }
 
+/// Squares over variances are numbers.
+void check_sizes(const mc::Measurement& measurement) {
+  constexpr double most = 1e50;
+  const auto is_fit = [](double variance) {
+    return !(variance > 0) || (variance >= 1 / (most * most) && variance <= most * most);
+  };
+  const Eigen::VectorXd variances = measurement.covariance.diagonal();
+  if (!(measurement.values.array().abs() <= most).all() || !std::ranges::all_of(variances, is_fit))
+    throw InputError("measurement", measurement.name,
+                     "must have values of at most 1e50 and errors from 1e-50 to 1e50");
+}
+
 }  // namespace
 
 Eigen::MatrixXd independent_errors(const std::string& path, const std::vector<double>& errors) {
@@ -337,8 +349,10 @@ mc::Measurement measurement_of_result(const std::string& path, const Keys& asked
 
 mc::Measurement read_measurement(const std::string& path, const Keys& asked,
                                  const mc::MovingSpec& medium) {
-  return path.ends_with(".h5") ? measurement_of_result(path, asked, medium)
-                               : measurement_of_table(path, medium);
+  mc::Measurement found = path.ends_with(".h5") ? measurement_of_result(path, asked, medium)
+                                                : measurement_of_table(path, medium);
+  check_sizes(found);
+  return found;
 }
 
 }  // namespace flatspeckle::apps

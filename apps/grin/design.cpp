@@ -48,6 +48,19 @@ void tell_unfinished(const Kept& kept) {
                        : "another search, which is given up");
 }
 
+/// Whether a step was done before a signal came; what of one was, is lost.
+bool advance(Designer& designer, DesignState& state) {
+  if (interrupted()) return false;
+  DesignState next = state;
+  try {
+    designer.advance(next);
+  } catch (const Interrupted&) {
+    return false;
+  }
+  state = std::move(next);
+  return true;
+}
+
 /// Until it ends or a signal comes; about once a second what it goes on from is kept.
 DesignState search(Designer& designer, const Kept& kept) {
   constexpr double pause = 1;
@@ -56,8 +69,7 @@ DesignState search(Designer& designer, const Kept& kept) {
   double saved = 0;
   DesignState state = start(designer, kept);
   const std::size_t before = state.history.rms.size();
-  while (!state.ended && !interrupted()) {
-    designer.advance(state);
+  while (!state.ended && advance(designer, state)) {
     const double steps = static_cast<double>(state.history.rms.size() - before);
     const Progress::Figures figures{
         .done = progress_of(state), .samples = steps, .rate = steps / clock.seconds()};
@@ -172,6 +184,7 @@ int design(const Arguments& arguments) {
     std::filesystem::remove(kept.path);
     return status;
   }
+  if (!std::filesystem::exists(kept.path)) return status;
   std::printf("interrupted; %s holds what is done, --resume goes on\n", kept.path.c_str());
   return ExitStatus::interrupted_resumable;
 }

@@ -41,6 +41,9 @@ class BadFit(RefusingTest):
                                     "0.1,0.5,1,0.5\n0.2,0.5,0.4,1\n")
         self.refused(["positive definite"], "tilt,field_correlation,covariance_1,covariance_2\n"
                                             "0.1,0.5,1,2\n0.2,0.5,2,1\n")
+        for value, error in (("-1e308", 0.05), (0.8, "1e308"), (0.8, "1e-200")):
+            self.refused(["m.csv", "at most 1e50" if error != "1e-200" else "positive"],
+                         f"tilt,field_correlation,error\n0.002,{value},{error}\n0.004,0.6,0.05\n")
         self.refused(["leave one out"], "tilt,field_correlation,error,covariance_1\n0.1,0.5,1,1\n")
 
     def test_shapes(self):

@@ -143,7 +143,8 @@ class Design(RefusingTest):
         keys = {**SMALL, "nodes": [5, 9], "directions": 40, "rays_per_direction": 60, "threads": 1}
         self.design("whole.h5", **keys)
         run = self.start("design", out="cut.h5", **keys)
-        time.sleep(1.5)
+        while not (self.folder / "cut.h5.state").exists() and run.poll() is None:
+            time.sleep(0.05)
         run.send_signal(signal.SIGINT)
         run.communicate()
         self.assertIn(run.returncode, (0, 75))
@@ -174,6 +175,18 @@ class Design(RefusingTest):
         self.assertEqual(run.returncode, 75)
         self.write("asked.csv", "\n".join(reversed(picture.splitlines())))
         self.assert_refused(["another search", "asked.csv"], "design", resume=True, **keys)
+
+    def test_a_signal_within_a_long_step(self):
+        """Of a million rays a step takes some ten seconds."""
+        run = self.start("design", design="guide", goal="equal_path", delta=0.01, coefficients=0, ray_count=1000000,
+                         threads=1, out="cut.h5")
+        time.sleep(3)
+        began = time.monotonic()
+        run.send_signal(signal.SIGINT)
+        run.communicate()
+        self.assertLess(time.monotonic() - began, 1.5)
+        self.assertIn(run.returncode, (75, 130))
+        self.assertFalse((self.folder / "cut.h5").exists())
 
     def test_threads_do_not_matter(self):
         for threads in (1, 2, 4):

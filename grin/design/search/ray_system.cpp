@@ -5,6 +5,7 @@
 #include <functional>
 #include <utility>
 
+#include "core/run/interrupt.h"
 #include "core/run/parallel.h"
 
 namespace flatspeckle::grin::design {
@@ -85,8 +86,10 @@ class RaySystemOf : public RaySystem {
     std::vector<std::vector<double>> of_share(shares);
     parallel_for(shares, [&](std::size_t s) {
       CoefficientSums<1> sums(shape);
-      for (std::size_t i = s * rays() / shares; i < (s + 1) * rays() / shares; ++i)
+      for (std::size_t i = s * rays() / shares; i < (s + 1) * rays() / shares; ++i) {
+        stop_if_interrupted();
         pull_back<Pefrl>(field, rays_[i], walk_, ends_[i], weighted(i, &weights[K * i]), sums);
+      }
       of_share[s].assign(shape.size(), 0.0);
       sums.take(
           [&](std::size_t number, const std::array<double, 1>& d) { of_share[s][number] = d[0]; });
@@ -111,8 +114,10 @@ class RaySystemOf : public RaySystem {
   template <class Body>
   void each_block(const Body& body) const {
     constexpr std::size_t size = RayRows::block_size;
-    parallel_for((rays() + size - 1) / size,
-                 [&](std::size_t b) { body(b, b * size, std::min((b + 1) * size, rays())); });
+    parallel_for((rays() + size - 1) / size, [&](std::size_t b) {
+      stop_if_interrupted();
+      body(b, b * size, std::min((b + 1) * size, rays()));
+    });
   }
 
   std::vector<DesignRay> rays_;
