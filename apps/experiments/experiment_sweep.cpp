@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "apps/experiments/at_point.h"
 #include "core/error.h"
 #include "core/keys/number_text.h"
 #include "core/result/version.h"
@@ -126,11 +127,10 @@ std::vector<std::size_t> ExperimentSweep::points_to_check() const {
 }
 
 std::unique_ptr<Experiment> ExperimentSweep::checked(std::size_t point,
-                                                     const std::vector<const Keys*>& joined) const
-    try {
-  return family_.run([&](const Keys& keys) { set_point(points_, point, keys); }, joined);
-} catch (const InputError& error) {
-  throw InputError("point " + points_.name(point) + ": " + error.what());
+                                                     const std::vector<const Keys*>& joined) const {
+  return at_point(points_, point, [&] {
+    return family_.run([&](const Keys& keys) { set_point(points_, point, keys); }, joined);
+  });
 }
 
 std::unique_ptr<Experiment> ExperimentSweep::experiment(std::size_t point) const {

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "apps/experiments/at_point.h"
 #include "core/result/provenance.h"
 
 namespace flatspeckle::apps {
@@ -18,7 +19,7 @@ RunList ExperimentWork::list() {
               [this](std::size_t number) {
                 // what is planned may look at what it is planned of
                 const std::shared_ptr<Experiment> experiment = sweep_.experiment(points_[number]);
-                BatchJob job = experiment->plan().batches;
+                BatchJob job = plan_at(sweep_.points(), points_[number], *experiment).batches;
                 job.run = [experiment, run = job.run](
                               std::uint64_t batch, std::span<Complex> sums) { run(batch, sums); };
                 return job;
@@ -30,7 +31,7 @@ std::optional<OpenRun> ExperimentWork::open(std::size_t point) {
   auto open = std::make_unique<Open>();
   open->started = utc_now();
   open->experiment = sweep_.experiment(point);
-  open->planned = open->experiment->plan();
+  open->planned = plan_at(sweep_.points(), point, *open->experiment);
   open->state = store_->unfinished(point, open->planned.batches.size);
   OpenRun run{open->planned.batches, open->experiment->stop(), &open->state};
   const std::lock_guard lock(mutex_);

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <mutex>
 
+#include "apps/experiments/at_point.h"
 #include "apps/sweep/varied_points.h"
 #include "core/error.h"
 #include "core/keys/number_text.h"
@@ -35,8 +36,11 @@ Evaluations::Evaluations(const ExperimentFamily& family, const Objective& object
 std::vector<Measured> Evaluations::measure(const std::vector<SweepPoints>& points,
                                            const SearchEffort& effort) {
   std::vector<SweepPoints> missing;
-  for (const SweepPoints& point : points)
-    if (!journal_.has(name_of(point, effort))) missing.push_back(point);
+  std::set<std::string> asked;
+  for (const SweepPoints& point : points) {
+    const std::string name = name_of(point, effort);
+    if (!journal_.has(name) && asked.insert(name).second) missing.push_back(point);
+  }
   if (!missing.empty()) run(missing, effort);
   std::vector<Measured> found;
   for (const SweepPoints& point : points) {
@@ -79,21 +83,20 @@ void Evaluations::run(const std::vector<SweepPoints>& points, const SearchEffort
   list.count = points.size();
   list.open = [&](std::size_t i) -> std::optional<OpenRun> {
     auto made = std::make_unique<Open>();
-    try {
-      made->experiment = family_.run([&](const Keys& keys) { set_point(points[i], 0, keys); }, {},
-                                     settings_.seed + effort.draw);
-    } catch (const InputError& error) {
-      throw InputError("at " + points[i].name(0) + ": " + error.what());
-    }
-    made->planned = made->experiment->plan();
+    made->experiment = at_point(points[i], 0, [&] {
+      return family_.run([&](const Keys& keys) { set_point(points[i], 0, keys); }, {},
+                         settings_.seed + effort.draw);
+    });
+    made->planned = plan_at(points[i], 0, *made->experiment);
     const BatchJob& job = made->planned.batches;
     const std::uint64_t samples = job.one_by_one ? fewest_batches : samples_of(job, effort);
     open[i] = std::move(made);
     return OpenRun{job, StopRule{samples, {}, {}}, &open[i]->state};
   };
   list.ended = [&](std::size_t i, StopReason) {
-    journal_.add(name_of(points[i], effort),
-                 finished(open[i]->planned, open[i]->state, effort.draw == winner_draw));
+    journal_.add(name_of(points[i], effort), at_point(points[i], 0, [&] {
+                   return finished(open[i]->planned, open[i]->state, effort.draw == winner_draw);
+                 }));
     open[i].reset();
   };
   list.checkpoint = [](std::size_t) {};

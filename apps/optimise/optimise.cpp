@@ -5,6 +5,7 @@
 
 #include "apps/command/key_lists.h"
 #include "apps/command/subcommands.h"
+#include "apps/experiments/at_point.h"
 #include "apps/experiments/sweep_experiments.h"
 #include "apps/optimise/optimum.h"
 #include "apps/results/datasets.h"
@@ -46,6 +47,8 @@ void add_run_keys_of_search(Keys& keys, RunSettings& run) {
       .between(0, 1);
 }
 
+constexpr std::int64_t most_scattered = 100000;
+
 void add_keys(Keys& keys, OptimiseKeys& values) {
   add_run_keys_of_search(keys, values.run);
   keys.group("Search");
@@ -65,8 +68,8 @@ void add_keys(Keys& keys, OptimiseKeys& values) {
   keys.add("scattered", values.scattered,
            "Places to begin with, spread evenly, and half as many again around the best of those: "
            "the more, the surer that no maximum is missed (default: 128 for one key between "
-           "bounds, 256 for two, 512 for more; times the choices, at most 512)")
-      .from(2, 100000);
+           "bounds, 256 for two, 512 for more; times the choices, at most 512 or four of each)")
+      .from(2, most_scattered);
   keys.add("starts", values.starts, "Of these the best, around which the search goes on")
       .from(1, 1000);
   keys.add("key_tolerance", values.tolerance, "Of keys at the end, as a share of their ranges")
@@ -82,10 +85,21 @@ bool print_keys_of_search(const Arguments& arguments) {
 }
 
 std::size_t default_scattered(const SearchAxes& axes) {
-  constexpr std::size_t least = 64, most = 512;
+  constexpr std::size_t least = 64, usual = 512, of_each = 4;
   std::size_t count = least;
-  for (std::size_t i = 0; i < axes.dimensions() && count < most; ++i) count *= 2;
-  return std::min(most, count * axes.choices());
+  for (std::size_t i = 0; i < axes.dimensions() && count < usual; ++i) count *= 2;
+  const std::size_t choices = axes.choices();
+  const std::size_t wanted = std::max(std::min(usual, count * choices), of_each * choices);
+  return std::min(wanted, static_cast<std::size_t>(most_scattered));
+}
+
+std::size_t scattered_of(const std::optional<std::int64_t>& given, const SearchAxes& axes) {
+  const std::size_t count = given ? static_cast<std::size_t>(*given) : default_scattered(axes);
+  if (count < axes.choices())
+    throw InputError("scattered", count,
+                     "must be at least " + std::to_string(axes.choices()) +
+                         ", the combinations of the values to choose from");
+  return count;
 }
 
 /// A search as it was asked for.
@@ -130,9 +144,7 @@ class Optimisation {
     search_.target_error = keys.read(values_.run.target_error).value_or(default_target_error);
     search_.tolerance = keys.read(values_.tolerance);
     search_.starts = static_cast<std::size_t>(keys.read(values_.starts));
-    search_.scattered = static_cast<std::size_t>(
-        keys.read(values_.scattered)
-            .value_or(static_cast<std::int64_t>(default_scattered(*axes_))));
+    search_.scattered = scattered_of(keys.read(values_.scattered), *axes_);
     take_scene();
   }
 
@@ -159,10 +171,10 @@ class Optimisation {
       checked(point_against(axes_->point({UnitPlace(axes_->dimensions(), 0), 0})));
   }
 
-  std::unique_ptr<Experiment> checked(const SweepPoints& point) const try {
-    return family_.run([&](const Keys& keys) { set_point(point, 0, keys); }, {&command_.keys()});
-  } catch (const InputError& error) {
-    throw InputError("at " + point.name(0) + ": " + error.what());
+  std::unique_ptr<Experiment> checked(const SweepPoints& point) const {
+    return at_point(point, 0, [&] {
+      return family_.run([&](const Keys& keys) { set_point(point, 0, keys); }, {&command_.keys()});
+    });
   }
 
   /// The point with the keys of `against` at their values there.
@@ -241,8 +253,8 @@ int Optimisation::search(const Session& session) {
     journal.sync();
     std::cout << "interrupted; " << journal_path.string() << " holds " << journal.size()
               << " evaluations, --resume goes on\n";
-  } catch (const InputError&) {
-    if (journal.size() == 0) fs::remove(journal_path);
+  } catch (const InputError&) {  // which would come again
+    fs::remove(journal_path);
     throw;
   }
   return status;

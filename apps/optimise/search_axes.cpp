@@ -87,6 +87,8 @@ SearchAxes::SearchAxes(const std::vector<std::string>& vary, const Keys& of) {
     axes_.push_back(axis_of(of, text));
     if (!seen.insert(axes_.back().key).second)
       throw InputError("vary", text, axes_.back().key + " is varied already");
+    if (axes_.back().key == "seed")
+      throw InputError("vary", text, "random numbers are not searched; sweep tries several seeds");
   }
   if (dimensions() == 0)
     throw InputError("vary: give a key between bounds, key=low:high; sweep tries lists of values");

@@ -100,7 +100,8 @@ const char* must_be_number(Written kind) {
 double NumberRange::at(std::size_t number) const {
   if (number + 1 == count) return last;
   const double step = (last - first) / static_cast<double>(count - 1);
-  const bool is_whole = first == std::round(first) && step == std::round(step);
+  const bool is_whole =
+      std::isfinite(step) && first == std::round(first) && step == std::round(step);
   if (!in_ratios && is_whole) return first + step * static_cast<double>(number);
   const double share = static_cast<double>(number) / static_cast<double>(count - 1);
   return in_ratios ? first * std::pow(last / first, share) : first * (1 - share) + last * share;

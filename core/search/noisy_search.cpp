@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <set>
 
 namespace flatspeckle {
 
@@ -32,12 +33,15 @@ SearchBox all_of(const SearchTask& task) {
   return box;
 }
 
-std::vector<SearchPlace> scattered_places(const SearchBox& box, std::size_t count) {
+/// So many, but for those that were there before. Each choice has places that follow one another in
+/// the sequence, which are spread as evenly as all.
+std::vector<SearchPlace> scattered_places(const SearchBox& box, std::size_t count,
+                                          std::set<SearchPlace>& before) {
   const std::size_t dimensions = box.low.size();
   const double root = root_of(dimensions);
   std::vector<SearchPlace> places;
   for (std::size_t i = 0; i < count; ++i) {
-    SearchPlace place{{}, box.choices[i % box.choices.size()]};
+    SearchPlace place{{}, box.choices[i * box.choices.size() / count]};
     double share = 1;
     for (std::size_t k = 0; k < dimensions; ++k) {
       share /= root;
@@ -45,7 +49,7 @@ std::vector<SearchPlace> scattered_places(const SearchBox& box, std::size_t coun
       const double within = std::lerp(box.low[k], box.high[k], at - std::floor(at));
       place.at.push_back(std::clamp(within, 0.0, 1.0));
     }
-    places.push_back(std::move(place));
+    if (before.insert(place).second) places.push_back(std::move(place));
   }
   return places;
 }
@@ -97,6 +101,7 @@ SearchBox around_best(std::vector<FoundPlace> places) {
     box.low[k] -= more;
     box.high[k] += more;
   }
+  std::ranges::sort(box.choices);
   return box;
 }
 
@@ -234,10 +239,12 @@ bool until_spent(const Work& work) {
 
 SearchEnd noisy_search(const SearchTask& task, const SearchSettings& settings) {
   const std::size_t count = std::max(settings.scattered, std::size_t{2});
-  auto places = measured_at(task, scattered_places(all_of(task), count), {});
+  std::set<SearchPlace> tried;
+  auto places = measured_at(task, scattered_places(all_of(task), count, tried), {});
   SearchEnd end;
   end.finished = until_spent([&] {
-    const auto near = measured_at(task, scattered_places(around_best(places), count / 2), {});
+    const auto near =
+        measured_at(task, scattered_places(around_best(places), count / 2, tried), {});
     places.insert(places.end(), near.begin(), near.end());
   });
   const double of_each = static_cast<double>(count) / static_cast<double>(task.choices);

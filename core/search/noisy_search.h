@@ -15,7 +15,7 @@ struct SearchPlace {
   UnitPlace at;
   std::size_t choice = 0;
 
-  bool operator==(const SearchPlace&) const = default;
+  auto operator<=>(const SearchPlace&) const = default;
 };
 
 /// How often to measure, and with which random numbers: those of a draw are the same everywhere.
@@ -38,7 +38,7 @@ struct SearchTask {
 };
 
 struct SearchSettings {
-  std::size_t scattered = 64;     ///< places to begin with
+  std::size_t scattered = 64;     ///< places to begin with, one of each choice at least
   std::size_t starts = 4;         ///< of these, so many of the best are searched around
   double tolerance = 1e-3;        ///< of a place, as a share of its range
   double target_error = 0.01;     ///< of the winner's value, relative

@@ -6,7 +6,7 @@ namespace flatspeckle::grin {
 
 // Rays side by side in lanes, which loops over all of them make vectors of: nothing in such a loop
 // depends on another lane, so that what becomes of a ray depends neither on its lane nor on its
-// neighbours, nor on how wide vectors are.
+// neighbours, nor on how wide vectors are but for fused multiply-adds, which SSE2 has none of.
 
 /// Three of the widest vectors: a step is a long chain, of which some work while others wait; and
 /// so few that short batches fill them.

@@ -129,6 +129,16 @@ class Optimise(ProgramTest):
         with h5py.File(self.folder / path) as file:
             return bool(file.attrs[name])
 
+    def test_a_place_without_a_result(self):
+        """It is named, and nothing is left that would stand in the way of the next search."""
+        failed = self.call("optimise", **{**FOCUS, "field": "homogeneous", "lens": [0, 0, 0, 12.5, 60, 0, 5, 1.5168, 0, 0, 0],
+                                          "light": "disk", "ray_count": 20, "origin": [0, 0, -20], "beam_radius": 5,
+                                          "sound_wavenumber": None, "index": None, "stop_plane": [0, 0, 50, 0, 0, 1],
+                                          "image_plane": [0, 0, 100, 0, 0, 1], "max_length": None, "integrator": None,
+                                          "vary": ["max_length=19:22"], "minimise": "image/spot_radius"}, out="no.h5", status=2)
+        self.assertRegex(failed.stderr, "point max_length=.*: image_plane")
+        self.assertEqual(list(self.folder.iterdir()), [])
+
     def test_refused(self):
         for change, words in (
                 ({"maximise": None}, ("maximise", "minimise")),
@@ -144,6 +154,8 @@ class Optimise(ProgramTest):
                 ({"vary": ["samples=1:2"]}, ("samples", "run")),
                 ({"vary": ["amplitude=0:1e-3", "amplitude=0:1e-3"]}, ("varied already",)),
                 ({"vary": ["amplitude=0:1e-3", "g=0:2"]}, ("g", "-1")),
+                ({"vary": ["amplitude=0:1e-3", "seed=1:9:9"]}, ("seed=1:9:9", "random numbers")),
+                ({"vary": ["amplitude=0:1e-3", "g=0.8:0.9:4", "mu_s=0.1:0.2:4"]}, ("scattered = 12", "16")),
                 ({"of": "place"}, ("of", "render")),
                 ({"against": "amplitude"}, ("amplitude",)),
                 ({"target_error": 2}, ("target_error",))):

@@ -287,6 +287,14 @@ class SweepOf(SweepTest):
         self.check("vary = ", "sweeps of another subcommand", of=None, **dict.fromkeys(
             key for key in GUIDE if key not in ("g", "samples")), depth=10, optical_depth=1, tilts=[0, 0.1])
 
+    def test_a_point_without_a_result_is_named(self):
+        """Rays that end within a lens, some before it."""
+        lens = {"of": "trace", "field": "homogeneous", "lens": [0, 0, 0, 12.5, 60, 0, 5, 1.5168, 0, 0, 0], "light": "disk",
+                "ray_count": 20, "origin": [0, 0, -20], "beam_radius": 5, "stop_plane": [0, 0, 50, 0, 0, 1],
+                "image_plane": [0, 0, 100, 0, 0, 1], "vary": ["max_length=19,20.1"], "out": "lens.h5"}
+        failed = self.call("sweep", **lens, status=2)
+        self.assert_one_line(failed.stderr, "point max_length=20.1", "different indices")
+
     def test_refused_tables(self):
         for text, *words in (["amplitude\n", "row"], ["colour\n1\n", "colour"],
                              ["amplitude\n0\n0.0\n", "twice"], ["method\n1\n", "no numbers"]):

@@ -157,6 +157,31 @@ TEST_CASE("one key alone, and a choice") {
   CHECK(winner.best.place.at[0] == doctest::Approx(0.7).epsilon(3e-3));
 }
 
+/// Without measuring any twice.
+TEST_CASE("places of many choices are spread evenly over each") {
+  for (const std::size_t choices : {1, 8, 21, 34, 55, 100}) {
+    CAPTURE(choices);
+    std::vector<std::vector<double>> tried(choices);
+    SearchTask task{.dimensions = 1, .choices = choices, .measure = {}};
+    bool is_first = true;
+    task.measure = [&](const std::vector<SearchPlace>& places, const SearchEffort&) {
+      for (const auto& [at, choice] : places)
+        if (is_first) tried[choice].push_back(at[0]);
+      is_first = false;
+      return std::vector<Measured>(places.size());
+    };
+    noisy_search(task, {.scattered = 16 * choices});
+    for (std::vector<double>& places : tried) {
+      std::ranges::sort(places);
+      CHECK(std::ranges::adjacent_find(places) == places.end());
+      double widest = std::max(places.front(), 1 - places.back());
+      for (std::size_t i = 1; i < places.size(); ++i)
+        widest = std::max(widest, places[i] - places[i - 1]);
+      CHECK(widest < 3.0 / 16);
+    }
+  }
+}
+
 /// The winner's value is fresh: its mean over searches is that of the place, where values that the
 /// search went by are too high.
 TEST_CASE("with noise") {

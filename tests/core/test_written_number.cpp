@@ -57,6 +57,8 @@ TEST_CASE("lists and ranges of numbers") {
   REQUIRE(steps.size() == 4);
   for (int i = 0; i < 4; ++i)
     CHECK(steps[i] == doctest::Approx(std::pow(10, i - 4)).epsilon(1e-14));
+  CHECK(numbers("1:40:40")[11] == 12);
+  CHECK(numbers("-1e308:1e308:3") == std::vector<double>{-1e308, 0, 1e308});
   CHECK(numbers("0:10deg:11").back() == doctest::Approx(pi / 18).epsilon(1e-15));
   CHECK(written_range("tilts", "0:1:5", Written::number)->at(3) == 0.75);
   CHECK_FALSE(written_range("tilts", "0:1:5,2", Written::number).has_value());
