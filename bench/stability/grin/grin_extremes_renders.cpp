@@ -323,7 +323,7 @@ void add_deep_slabs(ExtremeRows& rows) {
 /// What the pilot chooses brings the right number where it sees no light, or nothing but one path,
 /// or far more than it can try.
 void add_choices(ExtremeRows& rows) {
-  constexpr Chosen chosen;
+  static constexpr Chosen chosen;
   rows.add("chosen method, a beam that misses the sensor, clear", "no light", [] {
     RenderScene scene = slab({}, 1, false);
     scene.lights = {BeamLight{{0, 0, 0.5}, Vec3::UnitX(), 0.01}};
