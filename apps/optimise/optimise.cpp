@@ -253,8 +253,8 @@ int Optimisation::search(const Session& session) {
     journal.sync();
     std::cout << "interrupted; " << journal_path.string() << " holds " << journal.size()
               << " evaluations, --resume goes on\n";
-  } catch (const InputError&) {  // which would come again
-    fs::remove(journal_path);
+  } catch (const InputError&) {  // of other bounds what there is can be gone on with
+    if (journal.size() == 0) fs::remove(journal_path);
     throw;
   }
   return status;

@@ -130,14 +130,16 @@ class Optimise(ProgramTest):
             return bool(file.attrs[name])
 
     def test_a_place_without_a_result(self):
-        """It is named, and nothing is left that would stand in the way of the next search."""
-        failed = self.call("optimise", **{**FOCUS, "field": "homogeneous", "lens": [0, 0, 0, 12.5, 60, 0, 5, 1.5168, 0, 0, 0],
-                                          "light": "disk", "ray_count": 20, "origin": [0, 0, -20], "beam_radius": 5,
-                                          "sound_wavenumber": None, "index": None, "stop_plane": [0, 0, 50, 0, 0, 1],
-                                          "image_plane": [0, 0, 100, 0, 0, 1], "max_length": None, "integrator": None,
-                                          "vary": ["max_length=19:22"], "minimise": "image/spot_radius"}, out="no.h5", status=2)
+        """It is named, and within bounds that leave it out the search goes on with what there is."""
+        keys = {**FOCUS, "field": "homogeneous", "lens": [0, 0, 0, 12.5, 60, 0, 5, 1.5168, 0, 0, 0], "light": "disk",
+                "ray_count": 20, "origin": [0, 0, -20], "beam_radius": 5, "sound_wavenumber": None, "index": None,
+                "stop_plane": [0, 0, 50, 0, 0, 1], "image_plane": [0, 0, 100, 0, 0, 1], "max_length": None,
+                "integrator": None, "minimise": "image/spot_radius", "out": "lens.h5"}
+        failed = self.call("optimise", **{**keys, "vary": ["max_length=19:22"]}, status=2)
         self.assertRegex(failed.stderr, "point max_length=.*: image_plane")
-        self.assertEqual(list(self.folder.iterdir()), [])
+        self.assertEqual([path.name for path in self.folder.iterdir()], ["lens.h5.evaluations"])
+        self.call("optimise", **{**keys, "vary": ["max_length=21.5:22"]}, resume=True)
+        self.assertEqual([path.name for path in self.folder.iterdir()], ["lens.h5"])
 
     def test_refused(self):
         for change, words in (
