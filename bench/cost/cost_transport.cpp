@@ -17,10 +17,12 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-/// The next batch at every call.
-std::function<void()> batches(const BatchJob& job) {
-  return [job, number = std::make_shared<std::uint64_t>(),
-          sums = std::make_shared<std::vector<Complex>>(job.size)] { job.run((*number)++, *sums); };
+/// The next batches at every call, of so many samples together: long paths have small batches.
+std::function<void()> samples(double count, const BatchJob& job) {
+  return [=, number = std::make_shared<std::uint64_t>(),
+          sums = std::make_shared<std::vector<Complex>>(job.size)] {
+    for (double done = 0; done < count; done += job.samples_per_batch) job.run((*number)++, *sums);
+  };
 }
 
 CostRun run_of(const Scaling& scaling) {
@@ -49,7 +51,7 @@ SceneSpec slab(double optical_depth) {
 /// Paths are, whatever the optical depth, as long as a mean chord on average in even light.
 CostRun path_against_depth() {
   return run_of({"100 paths, Monte Carlo", "optical depth", 2, 256, 1,
-                 [](double depth) { return batches(covariance_job(slab(depth)).batches); }});
+                 [](double depth) { return samples(100, covariance_job(slab(depth)).batches); }});
 }
 
 /// CPU seconds to an error of 1 % of the memory effect in transmission.
@@ -112,24 +114,24 @@ SceneSpec box(double channels, const std::string& covariance) {
 
 CostRun intensities_against_channels() {
   return run_of({"100 paths, intensities", "channels", 256, 8192, 1, [](double channels) {
-                   return batches(covariance_job(box(channels, "intensity")).batches);
+                   return samples(100, covariance_job(box(channels, "intensity")).batches);
                  }});
 }
 
 CostRun full_against_channels() {
   return run_of({"100 paths, full covariance", "channels", 32, 1024, 2, [](double channels) {
-                   return batches(covariance_job(box(channels, "full")).batches);
+                   return samples(100, covariance_job(box(channels, "full")).batches);
                  }});
 }
 
 CostRun render_against_depth() {
   constexpr double mean_chord = 4.0 / 3;
-  return run_of({"pairs of paths, bidirectional", "optical depth", 1, 128, 1, [](double depth) {
+  return run_of({"128 pairs of paths, bidirectional", "optical depth", 1, 128, 1, [](double depth) {
                    grin::RenderScene scene = even_luneburg();
                    scene.field = grin::Homogeneous{};
                    scene.stage.medium.mu_s = depth / mean_chord;
-                   return batches(
-                       render_job(scene, {grin::RenderMethod::bidirectional}, 1).batches);
+                   return samples(
+                       128, render_job(scene, {grin::RenderMethod::bidirectional}, 1).batches);
                  }});
 }
 

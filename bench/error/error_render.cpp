@@ -87,16 +87,6 @@ std::vector<ErrorRun> closed_form(const RenderScenePointer& named) {
   return runs;
 }
 
-/// A ring of triangles, of fog with an index of its own.
-std::shared_ptr<const RenderScene> even_ring() {
-  RenderScene scene = even_luneburg();
-  scene.field = grin::Homogeneous{0.4};
-  scene.stage = {.boundary = grin::Box{{-1, -1, -1}, {1, 1, 1}},
-                 .medium = {},
-                 .bodies = {{smooth(torus_mesh(), 0.05), {.mu_s = 2}}}};
-  return std::make_shared<const RenderScene>(scene);
-}
-
 /// What a ball of this radius leaves of a beam of radius 1 that it absorbs within a radius.
 double left_by_ball(double radius) {
   constexpr double depth = 2;  // across the ball
@@ -122,7 +112,7 @@ ErrorRun absorbing_ball() {
 }
 
 std::vector<ErrorRun> mesh_runs() {
-  const RenderScenePointer ring{"ring_even", even_ring()};
+  const RenderScenePointer ring{"ring_even", std::make_shared<const RenderScene>(even_ring())};
   const auto irradiance = [scene = ring.scene] {
     return even_light(render_job(*scene, {RenderMethod::light}, 0).pictures);
   };

@@ -3,6 +3,8 @@
 #include <limits>
 #include <numbers>
 
+#include "bench/scenes/meshes.h"
+
 namespace flatspeckle::bench {
 
 using namespace grin;
@@ -171,6 +173,15 @@ RenderScene even_balls() {
   scene.stage.bodies.push_back({Sphere{{1, 0, -2}, 2}, fog(0.5, 0, 0), 0.3});
   scene.stage.bodies.push_back({Sphere{{-2, 1, 6}, 2}, fog(0.5, 0, 0), 0.4});
   scene.lights = even_luneburg().lights;
+  return scene;
+}
+
+RenderScene even_ring() {
+  RenderScene scene = even_luneburg();
+  scene.field = Homogeneous{0.4};
+  scene.stage = {.boundary = Box{{-1, -1, -1}, {1, 1, 1}},
+                 .medium = {},
+                 .bodies = {{smooth(torus_mesh(), 0.05), {.mu_s = 2}}}};
   return scene;
 }
 

@@ -26,6 +26,8 @@ std::vector<NamedRender> lamp_scenes();
 grin::RenderScene even_luneburg();
 /// Balls in each other and side by side, in the same light.
 grin::RenderScene even_balls();
+/// A ring of triangles, of fog with an index of its own.
+grin::RenderScene even_ring();
 /// The glass ball in fog under a beam, seen from the side.
 grin::RenderScene beam_on_glass_ball();
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 namespace flatspeckle::grin {
 
@@ -84,12 +85,13 @@ void MovingPaths::emit() {
   for (const Landing& landing : landings_) {
     int first = landing.flight;
     while (start(first).depth > 0) first = start(first).before;
-    const Start& from = start(first);
-    if (from.by_index.weight == 0 && from.by_index.direction.isZero(0)) continue;
+    const EmissionChange& by_index = start(first).by_index;
+    if (std::exchange(start(first).is_followed, true)) continue;
+    if (by_index.weight == 0 && by_index.direction.isZero(0)) continue;
     for (std::size_t i = 0; i < field_.parameters(); ++i) {
-      const double change = field_.index_change(i, from.x);
-      motions(first)[i].direction = change * from.by_index.direction;
-      motions(first)[i].score = change * from.by_index.weight;
+      const double change = field_.index_change(i, start(first).x);
+      motions(first)[i].direction = change * by_index.direction;
+      motions(first)[i].score = change * by_index.weight;
     }
   }
 }

@@ -9,8 +9,9 @@ struct JoiningCurve {
   Vec3 start_direction, end_direction;  ///< unit tangents
   double spreading;                     ///< |J| from the light's vertex to the sensor's
   double optical_depth;                 ///< reference
+  double optical_path = 1;              ///< where there are passages
   int passages = 0;                     ///< of surfaces that refract
-  double fresnel = 1;                   ///< chance of these
+  double ease = 1;                      ///< of finding these
 };
 
 struct JoinedPath {
@@ -71,8 +72,9 @@ inline JoinedPath joined_path(const Strategies& strategies, const PathVertex& y,
           heuristic(z.choice()) +
       rivals(z, z_from_y, from_z.density, strategies.most_light() - y.vertices, y.vertices, share) /
           heuristic(y.choice());
+  const double wider = curve.spreading * std::pow(z.index / curve.optical_path, 2);
   const double ours = (y.end || z.end ? 1 : heuristic(share)) *
-                      heuristic(found_share(curve.passages, curve.fresnel));
+                      heuristic(found_share(curve.passages, curve.ease, wider));
   return {value, ours / (ours + others), from_z.pixel};
 }
 

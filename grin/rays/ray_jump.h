@@ -17,7 +17,8 @@ class RayJump {
         face_(ray.v, normal_, from.excess, to.excess),
         turn_(curvature(surface, ray.x)),
         force_(ray_force(from)),
-        change_of_force_(ray_force(to) - force_) {
+        change_of_force_(ray_force(to) - force_),
+        ease_(ease_of(surface)) {
     if (ray.v.dot(normal_) >= 0) return;
     normal_ = -normal_;
     turn_ = -turn_;
@@ -25,6 +26,11 @@ class RayJump {
 
   bool is_total() const { return face_.is_total(); }
   double reflectance() const { return face_.reflectance(); }
+  /// Of what happens here, Fresnel's.
+  double chance(bool reflected) const { return reflected ? reflectance() : 1 - reflectance(); }
+  /// With which searches find ways by this surface, against others: where it is not convex, they
+  /// are many.
+  double ease() const { return ease_; }
 
   /// Not where the reflection is total.
   void refract(RayState& ray, RayTangent* tangent = nullptr) const {
@@ -49,6 +55,12 @@ class RayJump {
   }
 
  private:
+  static double ease_of(const Surface& surface) {
+    constexpr double of_many = 0.3;  // found by trials with rings and balls of triangles
+    const auto* level = std::get_if<LevelSurface>(&surface);
+    return level && !level->looks_convex() ? of_many : 1;
+  }
+
   using RowVec3 = Eigen::RowVector3d;
   /// Derivatives by v0 where neighbours meet the surface: of the normal, and of q1 = v.normal.
   struct Turned {
@@ -67,6 +79,7 @@ class RayJump {
   Interface face_;
   Mat3 turn_;
   Vec3 force_, change_of_force_;
+  double ease_;
 };
 
 }  // namespace flatspeckle::grin

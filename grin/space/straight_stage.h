@@ -84,8 +84,8 @@ class StraightStage {
     flight.crosses_body = true;
     flight.is_joinable = flight.is_joinable && flight.passages.count < Passages::most;
     if (flight.is_joinable) flight.passages.add(reflected);
-    const double chance = reflected ? reflectance : 1 - reflectance;
-    flight.fresnel *= chance;
+    const double chance = jump.chance(reflected);
+    flight.ease *= chance * jump.ease();
     flight.optical_depth -= std::log(chance);
     flight.direction = ray.v.normalized();
     if (!reflected) flight.point.part = to;
@@ -133,13 +133,13 @@ class StraightStage {
     const auto join = this->join(p, from, random);
     if (!join) return std::nullopt;
     return BeamWay{.start_direction = join->start_direction,
-                    .place = from.x,
-                    .thinning = 1,
-                    .orientation = 1,
-                    .arc_length = length,
-                    .optical_path = join->optical_path,
-                    .transmittance = join->transmittance,
-                    .optical_depth = join->optical_depth};
+                   .place = from.x,
+                   .thinning = 1,
+                   .orientation = 1,
+                   .arc_length = length,
+                   .optical_path = join->optical_path,
+                   .transmittance = join->transmittance,
+                   .optical_depth = join->optical_depth};
   }
 
   /// Of the straight line between two points at the least, whether light goes it or not.

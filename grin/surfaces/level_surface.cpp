@@ -10,10 +10,36 @@
 
 namespace flatspeckle::grin {
 
+namespace {
+
+std::vector<Vec3> places_inside(const LevelGrid& grid) {
+  constexpr int across = 6;
+  const Box& box = grid.bounds();
+  std::vector<Vec3> places;
+  for (int i = 0; i < across * across * across; ++i) {
+    const Vec3 cell(i % across, i / across % across, i / across / across);
+    const Vec3 share = (cell.array() + 0.5) / across;
+    const Vec3 x = box.low + (box.high - box.low).cwiseProduct(share);
+    if (grid.f().excess(x) < 0) places.push_back(x);
+  }
+  return places;
+}
+
+bool seems_convex(const LevelGrid& grid) {
+  const std::vector<Vec3> inside = places_inside(grid);
+  for (const Vec3& a : inside)
+    for (const Vec3& b : inside)
+      if (grid.f().excess((a + b) / 2) > 0) return false;
+  return true;
+}
+
+}  // namespace
+
 LevelSurface::LevelSurface(const Vec3& origin, double spacing, const std::array<int, 3>& nodes,
                            std::vector<double> coefficients, double meant_volume)
     : grid_(std::make_shared<const LevelGrid>(origin, spacing, nodes, std::move(coefficients))),
-      meant_volume_(meant_volume) {}
+      meant_volume_(meant_volume),
+      looks_convex_(seems_convex(*grid_)) {}
 
 double LevelSurface::distance(const Vec3& x) const {
   const double beyond = bounds().distance(x);

@@ -36,10 +36,13 @@ class LevelSurface {
   double spacing() const;
   double volume() const;
   double meant_volume() const { return meant_volume_; }
+  /// Of some places inside, no two have one outside halfway between them.
+  bool looks_convex() const { return looks_convex_; }
 
  private:
   std::shared_ptr<const LevelGrid> grid_;
   double meant_volume_;
+  bool looks_convex_;
 };
 
 }  // namespace flatspeckle::grin

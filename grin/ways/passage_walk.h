@@ -55,6 +55,7 @@ class PassageWalk {
     Part part;
     RayState ray;
     double chance = 1;              ///< Fresnel's, that light takes the passages so far
+    double ease = 1;                ///< of finding them
     Vec3 first_met = Vec3::Zero();  ///< where it is refracted or reflected first
   };
   /// Through the passages given, with a tangent where that is not null; nothing where no ray goes.
@@ -68,8 +69,9 @@ class PassageWalk {
       if (i == 0) head.first_met = head.ray.x;
       const RayJump jump = legs_.jump(head.part, *met, head.ray);
       const bool reflects = passages.reflects(i);
-      const double reflectance = jump.reflectance();
-      head.chance *= reflects ? reflectance : 1 - reflectance;
+      const double chance = jump.chance(reflects);
+      head.chance *= chance;
+      head.ease *= chance * jump.ease();
       if (!(head.chance > 0)) return std::nullopt;
       jump.pass(reflects, head.ray, tangent);
       if (!reflects) head.part = met->beyond;
@@ -169,7 +171,8 @@ class PassageWalk {
   template <class Use>
   void last_leg(Part part, RayState ray, double arc_length, RandomStream& random,
                 const Use& use) const {
-    for (int stretch = 0; stretch < legs_.regions().most_legs() && !legs_.is_alone(part); ++stretch) {
+    for (int stretch = 0; stretch < legs_.regions().most_legs() && !legs_.is_alone(part);
+         ++stretch) {
       const RayState start = ray;
       const auto met = legs_.to_surface(part, ray, nullptr, random);
       if (!met || ray.arc_length >= arc_length || !legs_.are_alike(part, met->beyond))

@@ -18,6 +18,7 @@ struct Way {
   double arc_length, optical_path;
   Passages passages;
   double chance;  ///< Fresnel's, that light takes these passages
+  double ease;    ///< of finding it
   double sigma;   ///< of the last leg, ray parameter
 };
 

@@ -6,6 +6,7 @@
 
 #include <doctest/doctest.h>
 
+#include "bench/scenes/meshes.h"
 #include "bench/scenes/random_fields.h"
 #include "grin/connections/geometric_spreading.h"
 #include "grin/ends/path_end.h"
@@ -220,6 +221,7 @@ std::vector<NamedSpace> refracting() {
   return {{"glass ball", with(ball), Homogeneous{0.5}},
           {"bubble", with(ball), Homogeneous{-0.2}},
           {"glass block", with(block), Homogeneous{0.5}},
+          {"ball of triangles", with(bench::smooth(bench::ball_mesh(5), 0.2)), Homogeneous{0.5}},
           {"Luneburg ball", Stage{room, thin, {Body{Sphere{}, thick}}}, Luneburg({})},
           {"fisheye ball", with(ball), Fisheye({.centre_excess = 0.6, .radius = 2})},
           {"fisheye block", with(block), Fisheye({.centre_excess = 0.6, .radius = 2})},
@@ -278,6 +280,7 @@ TEST_CASE("a flight that a body refracts and the join of its ends are one way") 
         CHECK((join->end_direction - flight.direction).norm() < 1e-4);
         CHECK(join->spreading == doctest::Approx(flight.spreading).epsilon(1e-4));
         CHECK(join->optical_depth == doctest::Approx(flight.optical_depth).epsilon(1e-4));
+        CHECK(join->ease == doctest::Approx(flight.ease).epsilon(1e-4));
         Flight there;
         there.point = p;
         there.start_direction = -flight.direction;
@@ -285,6 +288,7 @@ TEST_CASE("a flight that a body refracts and the join of its ends are one way") 
         const auto back = same_way(space, flight.point, there, random);
         if (!back) continue;
         const double n_p = space.index(p), n_q = space.index(flight.point);
+        CHECK(join->ease == doctest::Approx(back->ease).epsilon(1e-4));
         CHECK(n_q * n_q * join->spreading ==
               doctest::Approx(n_p * n_p * back->spreading).epsilon(1e-4));
       }

@@ -1,11 +1,15 @@
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
+#include <vector>
 
 #include <Eigen/Geometry>
 #include <doctest/doctest.h>
 
 #include "bench/scenes/meshes.h"
 #include "bench/scenes/random_fields.h"
+#include "bench/scenes/render_scenes.h"
 #include "grin/straight/straight_space.h"
 #include "tests/grin/furnace.h"
 #include "tests/grin/space_stages.h"
@@ -95,6 +99,24 @@ TEST_CASE("light stays uniform about a body of triangles, by every estimator") {
         if (method != RenderMethod::light) CHECK(check_furnace_camera(scene, method, 4000) < 0.1);
       }
     }
+}
+
+/// Ways by its curved surface are many, and some are found by one trial of thousands.
+TEST_CASE("no path by a ring of triangles is worth far more than others") {
+  const RenderJob job = render_job(even_ring(), {RenderMethod::bidirectional}, 4);
+  std::vector<Complex> sums(job.batches.size);
+  double most = 0, sum = 0;
+  constexpr int batches = 6000;
+  for (int i = 0; i < batches; ++i) {
+    std::ranges::fill(sums, 0);
+    job.batches.run(i, sums);
+    for (const Complex& pixel : std::span(sums).first(job.pictures)) {
+      most = std::max(most, pixel.real());
+      sum += pixel.real() / batches / static_cast<double>(job.pictures);
+    }
+  }
+  CHECK(sum / job.batches.samples_per_batch == doctest::Approx(std::numbers::pi).epsilon(0.01));
+  CHECK(most < 40 * sum);
 }
 
 }  // namespace flatspeckle::grin::tests

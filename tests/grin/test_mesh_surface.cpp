@@ -130,6 +130,7 @@ TEST_CASE("the smooth surface of a cube has its faces, and rounds its edges") {
   CHECK(surface.distance(Vec3(1, 1, 0.3)) > 0);
   CHECK(surface.distance(Vec3(0.97, 0.97, 0.3)) < 0);
   CHECK(std::abs(surface.volume() / 8 - 1) < 0.005);
+  CHECK(surface.looks_convex());
   RandomStream random(1, 1, 1);
   for (int i = 0; i < 2000; ++i) {
     const Vec3 x = random_point(random, 2);
@@ -147,6 +148,7 @@ TEST_CASE("the smooth surface of a ball is off by the fourth power of the spacin
     const LevelSurface surface = smooth(mesh, spacing);
     const double allowed = spacing > 0.2 ? 1e-3 : 1.5e-4;
     CHECK(std::abs(surface.volume() / volume(mesh) - 1) < 3 * allowed);
+    CHECK(surface.looks_convex());
     for (int i = 0; i < 300; ++i) {
       const Vec3 from = any_direction(random) * 4;
       const Vec3 d = (random_point(random, 0.4) - from).normalized();
@@ -168,6 +170,7 @@ TEST_CASE("the smooth surface of a ball is off by the fourth power of the spacin
 
 TEST_CASE("lines cross a torus where its sign changes, each crossing once and none missed") {
   const LevelSurface surface = smooth(torus_mesh(), 0.06);
+  CHECK(!surface.looks_convex());
   RandomStream random(1, 1, 3);
   int crossings[6] = {};
   for (int i = 0; i < 1500; ++i) {

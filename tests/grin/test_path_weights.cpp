@@ -41,9 +41,10 @@ Flight as_flight(const Join& join, const PathPoint& to) {
   flight.start_direction = join.start_direction;
   flight.direction = join.end_direction;
   flight.spreading = join.spreading;
+  flight.optical_path = join.optical_path;
   flight.optical_depth = join.optical_depth;
   flight.passages = join.passages;
-  flight.fresnel = join.fresnel;
+  flight.ease = join.ease;
   return flight;
 }
 
@@ -158,8 +159,9 @@ std::optional<double> weight_of(const Transport& transport, const CurvedSpace& s
   const EndPosition chosen = path.chosen_sensor(transport);
   const PathVertex z = s == all - 1 ? end_vertex(transport.strategies, chosen)
                                     : sensor_subpath(transport, path, all - s);
-  const JoiningCurve curve{edge.start_direction, edge.direction,      edge.spreading,
-                           edge.optical_depth,   edge.passages.count, edge.fresnel};
+  const JoiningCurve curve{
+      edge.start_direction, edge.direction,      edge.spreading, edge.optical_depth,
+      edge.optical_path,    edge.passages.count, edge.ease};
   return joined_path(allowed, y, leaving(transport, transport.lights, y, curve.start_direction), z,
                      leaving(transport, transport.sensors[0], z, -curve.end_direction), curve)
       .weight;
