@@ -19,11 +19,13 @@ GUIDE = {"color": "0.6", "linewidth": 0.7, "zorder": 0}
 TITLES = {"box_points": "31 points in a box, OD 1", "box_cylinders": "67 cylinders in a box, OD 1",
           "box_points_absorbing": "absorbing points in a box", "slab_hg": "slab, OD 5, g 0.8",
           "slab_two_term_hg": "slab, OD 5, two terms",
-          "slab_hg, in space": "slab in space, OD 5, g 0.8",
+          "slab_hg, in space": "slab in space, OD 5",
           "luneburg": "Luneburg ball", "waveguide": "ultrasonic waveguide",
           "slab": "slab, straight rays", "glass_ball": "glass ball in fog",
           "luneburg_even": "Luneburg ball, even light",
-          "glass_ball_beam": "glass ball under a beam", "balls_even": "balls, even light"}
+          "glass_ball_beam": "glass ball under a beam", "balls_even": "balls, even light",
+          "ring_even": "ring of triangles, even light", "absorbing_ball": "absorbing ball of triangles",
+          "slab_hg, flow": "slab, OD 5, flow"}
 ROOM_NAMES = {"mc": "Monte Carlo", "wave": "wave solver", "wave_solver": "wave solver"}
 
 
