@@ -289,9 +289,9 @@ class Bidirectional {
     if (!curve) return;
     const EndDirection from_y = leaving(transport_, transport_.lights, y, curve->start_direction);
     const EndDirection from_z = leaving(transport_, sensor(), z, -curve->end_direction);
-    const JoiningCurve as_weighed{
-        curve->start_direction, curve->end_direction,  curve->spreading, curve->optical_depth,
-        curve->optical_path,    curve->passages.count, curve->ease};
+    const JoiningCurve as_weighed{curve->start_direction, curve->end_direction,  curve->spreading,
+                                  curve->optical_depth,   curve->passages.count, curve->fresnel,
+                                  curve->hollows,         curve->optical_path};
     const JoinedPath path = joined_path(transport_.strategies, y, from_y, z, from_z, as_weighed);
     const double value =
         path.value * path.weight * curve->transmittance * curve->multiplicity / chance;

@@ -9,9 +9,10 @@ struct JoiningCurve {
   Vec3 start_direction, end_direction;  ///< unit tangents
   double spreading;                     ///< |J| from the light's vertex to the sensor's
   double optical_depth;                 ///< reference
-  double optical_path = 1;              ///< where there are passages
   int passages = 0;                     ///< of surfaces that refract
-  double ease = 1;                      ///< of finding these
+  double fresnel = 1;                   ///< chance of these
+  int hollows = 0;                      ///< of these, at surfaces that are not convex
+  double optical_path = 1;              ///< where there are such
 };
 
 struct JoinedPath {
@@ -74,7 +75,7 @@ inline JoinedPath joined_path(const Strategies& strategies, const PathVertex& y,
           heuristic(y.choice());
   const double wider = curve.spreading * std::pow(z.index / curve.optical_path, 2);
   const double ours = (y.end || z.end ? 1 : heuristic(share)) *
-                      heuristic(found_share(curve.passages, curve.ease, wider));
+                      heuristic(found_share(curve.passages, curve.fresnel, curve.hollows, wider));
   return {value, ours / (ours + others), from_z.pixel};
 }
 

@@ -11,17 +11,18 @@ namespace flatspeckle::grin {
 /// What weights take for the density of ways found by search, over that of other joins: sums over
 /// such ways vary more than what else makes a path, where there is something else, and the fainter
 /// a way is, by Fresnel's chance of it, and the more often it is refracted or reflected, the more:
-/// one trial of 1e4 or less finds ways through balls in balls. The more a way spreads light,
-/// the fewer directions it is found from: beside a ring, sums over ways have no finite variance by
-/// themselves.
+/// one trial of 1e4 or less finds ways through balls in balls. By hollow surfaces (RayJump) the
+/// more a way spreads light, the fewer directions it is found from, and sums over such ways have no
+/// finite variance by themselves.
 ///
-/// ease: Fresnel's chance of the passages, and what RayJump says of their surfaces. wider: n^2 |J|
-/// over the square of the optical path, n at its end; 1 of straight lines.
-inline double found_share(int passages, double ease, double wider) {
+/// wider: n^2 |J| over the square of the optical path, n at its end; 1 of straight lines.
+inline double found_share(int passages, double fresnel, int hollows, double wider) {
   if (passages == 0) return 1;
   constexpr int easy = 2;
-  return 0.03 * std::max(ease, 1e-40) / std::clamp(wider, 1.0, 1e40) *
-         std::pow(0.2, std::max(passages - easy, 0));
+  // found by trials with balls in balls, and with rings and balls of triangles
+  const double share =
+      0.03 * std::max(fresnel, 1e-40) * std::pow(0.2, std::max(passages - easy, 0));
+  return hollows == 0 ? share : share * std::pow(0.3, hollows) / std::clamp(wider, 1.0, 1e40);
 }
 
 /// What a ratio of densities counts in the weights of multiple importance sampling (power
@@ -153,7 +154,7 @@ inline void weigh(PathVertex& next, const Strategies& strategies, const PathVert
   next.before = fewer_of_ours(here, 1 / heuristic(here.density),
                               heuristic(direction_density * here.back / here.density), others);
   const bool can_be_joined = flight.is_joinable && !(here.end && here.end->is_beam);
-  const double share = found_share(flight.passages.count, flight.ease,
+  const double share = found_share(flight.passages.count, flight.fresnel, flight.hollows,
                                    spreading * std::pow(next.index / flight.optical_path, 2));
   next.first_of_other = can_be_joined ? heuristic(share * choice) : 0;
 }

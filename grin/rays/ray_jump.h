@@ -18,7 +18,7 @@ class RayJump {
         turn_(curvature(surface, ray.x)),
         force_(ray_force(from)),
         change_of_force_(ray_force(to) - force_),
-        ease_(ease_of(surface)) {
+        is_hollow_(hollow(surface)) {
     if (ray.v.dot(normal_) >= 0) return;
     normal_ = -normal_;
     turn_ = -turn_;
@@ -28,9 +28,8 @@ class RayJump {
   double reflectance() const { return face_.reflectance(); }
   /// Of what happens here, Fresnel's.
   double chance(bool reflected) const { return reflected ? reflectance() : 1 - reflectance(); }
-  /// With which searches find ways by this surface, against others: where it is not convex, they
-  /// are many.
-  double ease() const { return ease_; }
+  /// Of a surface by which there may be many ways between two points, each seldom found.
+  bool is_hollow() const { return is_hollow_; }
 
   /// Not where the reflection is total.
   void refract(RayState& ray, RayTangent* tangent = nullptr) const {
@@ -55,10 +54,9 @@ class RayJump {
   }
 
  private:
-  static double ease_of(const Surface& surface) {
-    constexpr double of_many = 0.3;  // found by trials with rings and balls of triangles
+  static bool hollow(const Surface& surface) {
     const auto* level = std::get_if<LevelSurface>(&surface);
-    return level && !level->looks_convex() ? of_many : 1;
+    return level && !level->looks_convex();
   }
 
   using RowVec3 = Eigen::RowVector3d;
@@ -79,7 +77,7 @@ class RayJump {
   Interface face_;
   Mat3 turn_;
   Vec3 force_, change_of_force_;
-  double ease_;
+  bool is_hollow_;
 };
 
 }  // namespace flatspeckle::grin

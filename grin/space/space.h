@@ -53,7 +53,8 @@ struct Flight {
   double absorbed_in_body = 0;  ///< in any; of 1 - weight
   bool crosses_body = false;    ///< passes the surface of one or is reflected there
   Passages passages = {};       ///< there, where it refracts; of a way that joins can find
-  double ease = 1;              ///< of finding these, as weights take it: see found_share()
+  double fresnel = 1;           ///< chance of these
+  int hollows = 0;              ///< of these, at surfaces that are not convex
   bool is_joinable = true;      ///< a join of its ends finds the same way
 };
 
@@ -67,7 +68,8 @@ struct Join {
                          ///< chance of what happens at surfaces of bodies, Fresnel's
   double multiplicity;   ///< K of C26: f multiplicity is unbiased for the sum of f over the curves
   Passages passages = {};  ///< of surfaces that refract, found by search
-  double ease = 1;         ///< of finding these
+  double fresnel = 1;      ///< chance of these
+  int hollows = 0;         ///< of these, at surfaces that are not convex
 };
 
 /// Light of one direction, at the plane across it through x.

@@ -85,7 +85,8 @@ class StraightStage {
     flight.is_joinable = flight.is_joinable && flight.passages.count < Passages::most;
     if (flight.is_joinable) flight.passages.add(reflected);
     const double chance = jump.chance(reflected);
-    flight.ease *= chance * jump.ease();
+    flight.fresnel *= chance;
+    flight.hollows += jump.is_hollow();
     flight.optical_depth -= std::log(chance);
     flight.direction = ray.v.normalized();
     if (!reflected) flight.point.part = to;

@@ -55,7 +55,7 @@ class PassageWalk {
     Part part;
     RayState ray;
     double chance = 1;              ///< Fresnel's, that light takes the passages so far
-    double ease = 1;                ///< of finding them
+    int hollows = 0;                ///< of these, at surfaces that are not convex
     Vec3 first_met = Vec3::Zero();  ///< where it is refracted or reflected first
   };
   /// Through the passages given, with a tangent where that is not null; nothing where no ray goes.
@@ -69,9 +69,8 @@ class PassageWalk {
       if (i == 0) head.first_met = head.ray.x;
       const RayJump jump = legs_.jump(head.part, *met, head.ray);
       const bool reflects = passages.reflects(i);
-      const double chance = jump.chance(reflects);
-      head.chance *= chance;
-      head.ease *= chance * jump.ease();
+      head.chance *= jump.chance(reflects);
+      head.hollows += jump.is_hollow();
       if (!(head.chance > 0)) return std::nullopt;
       jump.pass(reflects, head.ray, tangent);
       if (!reflects) head.part = met->beyond;

@@ -18,7 +18,7 @@ struct Way {
   double arc_length, optical_path;
   Passages passages;
   double chance;  ///< Fresnel's, that light takes these passages
-  double ease;    ///< of finding it
+  int hollows;    ///< of these, at surfaces that are not convex
   double sigma;   ///< of the last leg, ray parameter
 };
 

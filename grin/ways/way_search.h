@@ -79,7 +79,8 @@ class WaySearch {
     Part part = around;
     RayState last = {}, end = {};  // where the last leg begins and ends
     RayTangent tangent = {};
-    double chance = 1, ease = 1;
+    double chance = 1;
+    int hollows = 0;
     Vec3 error = {};  // of the end, and its length
     double miss = 0;
   };
@@ -143,7 +144,7 @@ class WaySearch {
     shot.is_ray = true;
     shot.part = head->part;
     shot.chance = head->chance;
-    shot.ease = head->ease;
+    shot.hollows = head->hollows;
     shot.last = shot.end = head->ray;
     legs_.advance(shot.part, aim.sigma, aim.steps, shot.end, &shot.tangent);
     statistics.tangent_steps += aim.steps;
@@ -217,7 +218,7 @@ class WaySearch {
     const double spreading = signed_spreading(shot.tangent, n_from_, aim.direction, shot.end.v);
     return {TrialOutcome::converged,
             {aim.direction, shot.end.v.normalized(), std::abs(spreading), spreading < 0 ? -1 : 1,
-             shot.end.arc_length, shot.end.optical_path, aim.passages, shot.chance, shot.ease,
+             shot.end.arc_length, shot.end.optical_path, aim.passages, shot.chance, shot.hollows,
              aim.sigma}};
   }
 
@@ -248,7 +249,8 @@ std::optional<Join> join_by_way(const Legs& legs, const PathPoint& p, const Path
             .transmittance = way->chance,
             .multiplicity = multiplicity,
             .passages = way->passages,
-            .ease = way->ease};
+            .fresnel = way->chance,
+            .hollows = way->hollows};
   if (backwards) {  // n_p^2 / |J_pq| = n_q^2 / |J_qp|
     join.start_direction = -way->end_direction;
     join.end_direction = -way->start_direction;

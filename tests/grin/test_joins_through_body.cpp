@@ -280,7 +280,8 @@ TEST_CASE("a flight that a body refracts and the join of its ends are one way") 
         CHECK((join->end_direction - flight.direction).norm() < 1e-4);
         CHECK(join->spreading == doctest::Approx(flight.spreading).epsilon(1e-4));
         CHECK(join->optical_depth == doctest::Approx(flight.optical_depth).epsilon(1e-4));
-        CHECK(join->ease == doctest::Approx(flight.ease).epsilon(1e-4));
+        CHECK(join->fresnel == doctest::Approx(flight.fresnel).epsilon(1e-4));
+        CHECK(join->hollows == flight.hollows);
         Flight there;
         there.point = p;
         there.start_direction = -flight.direction;
@@ -288,7 +289,8 @@ TEST_CASE("a flight that a body refracts and the join of its ends are one way") 
         const auto back = same_way(space, flight.point, there, random);
         if (!back) continue;
         const double n_p = space.index(p), n_q = space.index(flight.point);
-        CHECK(join->ease == doctest::Approx(back->ease).epsilon(1e-4));
+        CHECK(join->fresnel == doctest::Approx(back->fresnel).epsilon(1e-4));
+        CHECK(join->hollows == back->hollows);
         CHECK(n_q * n_q * join->spreading ==
               doctest::Approx(n_p * n_p * back->spreading).epsilon(1e-4));
       }

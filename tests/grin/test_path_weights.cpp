@@ -44,7 +44,8 @@ Flight as_flight(const Join& join, const PathPoint& to) {
   flight.optical_path = join.optical_path;
   flight.optical_depth = join.optical_depth;
   flight.passages = join.passages;
-  flight.ease = join.ease;
+  flight.fresnel = join.fresnel;
+  flight.hollows = join.hollows;
   return flight;
 }
 
@@ -159,9 +160,8 @@ std::optional<double> weight_of(const Transport& transport, const CurvedSpace& s
   const EndPosition chosen = path.chosen_sensor(transport);
   const PathVertex z = s == all - 1 ? end_vertex(transport.strategies, chosen)
                                     : sensor_subpath(transport, path, all - s);
-  const JoiningCurve curve{
-      edge.start_direction, edge.direction,      edge.spreading, edge.optical_depth,
-      edge.optical_path,    edge.passages.count, edge.ease};
+  const JoiningCurve curve{edge.start_direction, edge.direction, edge.spreading, edge.optical_depth,
+                           edge.passages.count,  edge.fresnel,   edge.hollows,   edge.optical_path};
   return joined_path(allowed, y, leaving(transport, transport.lights, y, curve.start_direction), z,
                      leaving(transport, transport.sensors[0], z, -curve.end_direction), curve)
       .weight;
