@@ -27,9 +27,9 @@ std::vector<Vec3> places_inside(const LevelGrid& grid) {
 
 bool seems_convex(const LevelGrid& grid) {
   const std::vector<Vec3> inside = places_inside(grid);
-  for (const Vec3& a : inside)
-    for (const Vec3& b : inside)
-      if (grid.f().excess((a + b) / 2) > 0) return false;
+  for (std::size_t i = 0; i < inside.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      if (grid.f().excess((inside[i] + inside[j]) / 2) > 0) return false;
   return true;
 }
 
