@@ -148,6 +148,7 @@ constexpr double most_doubt = 0.25;
 /// Work to a given error, of the sensor for which it is most, and whether the trial knows it well.
 struct Needed {
   double work = 0;
+  double doubt = 0;  ///< largest of all sensors, relative: a standard error
   bool is_known = true;
 };
 Needed needed(const Trial& trial, const std::vector<double>& light) {
@@ -155,6 +156,7 @@ Needed needed(const Trial& trial, const std::vector<double>& light) {
   for (std::size_t i = 0; i < light.size(); ++i) {
     const PictureMoments& picture = trial.pictures[i];
     if (!(light[i] > 0)) continue;
+    most.doubt = std::max(most.doubt, picture.doubt);
     most.is_known &= picture.lit > fewest_lit && picture.doubt < most_doubt;
     const bool is_missing = !(picture.total > light[i] / 2 && picture.lit > fewest_lit);
     most.work =
@@ -241,27 +243,47 @@ double preference(const Tracer& tracer) {
   return tracer.method == RenderMethod::analog && are_pixels ? 2 : 1;
 }
 
+Needed preferred(const Candidate& candidate, const std::vector<double>& light) {
+  Needed own = needed(candidate.trial, light);
+  own.work *= preference(candidate.tracer);
+  return own;
+}
+
 /// With the least work, known or not. Nothing where no trial tells.
 struct Best {
   const Candidate* candidate = nullptr;
-  Needed needed = {std::numeric_limits<double>::infinity(), false};
+  Needed needed = {std::numeric_limits<double>::infinity(), 0, false};
 };
+
 Best best_of(const std::vector<Candidate>& all, bool of_known) {
   Best best;
   const auto light = light_of_pictures(all);
   for (const Candidate& candidate : all) {
-    Needed own = needed(candidate.trial, light);
+    const Needed own = preferred(candidate, light);
     if (of_known && !own.is_known) continue;
-    own.work *= preference(candidate.tracer);
     if (own.work < best.needed.work) best = {&candidate, own};
   }
   return best;
 }
 
+/// Known well, and within two standard errors no other that finds the light needs much less.
+bool is_settled(const Best& best, const std::vector<Candidate>& all) {
+  constexpr double much = 1.5;
+  const auto light = light_of_pictures(all);
+  const double most = best.needed.work * (1 + 2 * best.needed.doubt);
+  const auto needs_less = [&](const Candidate& candidate) {
+    const Needed other = preferred(candidate, light);
+    const double least = std::max(1 - 2 * other.doubt, 0.0);
+    return &candidate != best.candidate && std::isfinite(other.work) &&
+           most > much * other.work * least;
+  };
+  return best.needed.is_known && std::ranges::none_of(all, needs_less);
+}
+
 }  // namespace
 
-/// Trials go on, longer and longer, until what seems best is known well: an estimate that still
-/// lacks the strongest paths is too good. After the last, one that is known goes before others.
+/// Trials go on, longer and longer, until the best is settled: an estimate that still lacks the
+/// strongest paths is too good. After the last, one that is known goes before others.
 Tracer best_tracer(const Tracers& tracers) {
   if (!tracers.walks()) return tracers.make(RenderMethod::light);
   auto all = candidates(tracers);
@@ -270,7 +292,7 @@ Tracer best_tracer(const Tracers& tracers) {
     try_all(tracers, effort, all);
     if (all.empty()) break;
     best = best_of(all, false);
-    if (all.size() == 1 || best.needed.is_known) break;
+    if (all.size() == 1 || is_settled(best, all)) break;
   }
   if (all.empty()) return tracers.make(RenderMethod::bidirectional);
   if (!best.needed.is_known)
