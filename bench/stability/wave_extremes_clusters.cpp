@@ -50,7 +50,7 @@ std::vector<ExtremeCase> wave_cluster_extremes() {
         {"k a 1, index 1 + 1e-8", 1 / k, 1 + 1e-8, 0.5},
         {"k a 1, index 0.1 + 5i", 1 / k, {0.1, 5}, 0.5}})
     rows.add("two copies of a cluster, disks of " + std::string(name), "all disks in one",
-             [=] { return against_all_disks(radius, index, gap, 1e-7); });
+             [a = radius, n = index, g = gap] { return against_all_disks(a, n, g, 1e-7); });
   rows.add_refused("copies closer than the gap of their T-matrix", "gap", [] {
     const auto cluster = cluster_t_matrix(four_disks(1 / k, 1.5), k, 0.5, tolerance);
     ClusterSolution(cluster, rows_of_places(1, 2, 2 * cluster.radius), {0});

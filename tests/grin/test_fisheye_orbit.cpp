@@ -96,7 +96,7 @@ TEST_CASE("flights in the fisheye and their neighbours are those of small steps"
     RayTangent tangent;
     Stepped exact{ray};
     double weight = 1;
-    const LegRoom room{Room({&rim, 1}), clear, 0.05};
+    const LegRoom room{Room{{&rim, 1}}, clear, 0.05};
     const double n = ray.v.norm();
     const Vec3 first = ray.v.normalized();
     if (closed->fly(room, 100, weight, random, ray, &tangent) != LegStop::surface) continue;
