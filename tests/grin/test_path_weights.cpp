@@ -383,8 +383,9 @@ TEST_CASE("weights sum to 1 on paths from beams that sensors' paths are joined t
   Strategies joined{.joins_beams = true}, soon = soon_left, short_light = path_tracing;
   soon.joins_beams = short_light.joins_beams = true;
   RandomStream random(8, 91, 0);
-  for (const auto& [name, stage, field] : rows) {
-    CAPTURE(name);
+  for (const auto& row : rows) {
+    CAPTURE(row.name);
+    const auto& [name, stage, field] = row;
     const auto space = make_curved_space(field, stage, {0.02, 20});
     int paths = 0, in_beam = 0;
     for (const Sensor& sensor : {sensors[0], sensors[1], sensors[2]})

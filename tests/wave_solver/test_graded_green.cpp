@@ -69,11 +69,11 @@ TEST_CASE("It satisfies the equation, as differences of sixth order see it") {
                {linear({0.03, -0.02}), {1, 2}, {4, 2.5}}, {linear({0, 0.05}), {0, 0}, {0.1, 0.2}},
                {parabolic(0.06), {0, -4}, {3, 7}},        {parabolic(0.06), {4, 1}, {-4, 3}},
                {parabolic(0.1), {2, 1}, {2.2, 1.1}}};
-  for (const auto& [field, p, q] : cases) {
+  for (const auto& row : cases) {
+    const auto& [field, p, q] = row;
     const double coarse = residual(field, p, q, 0.02), fine = residual(field, p, q, 0.01);
-    const std::string name = field.describe();
-    CAPTURE(name);
-    CAPTURE(fine);
+    CAPTURE(row.field.describe());
+    CAPTURE(row.q.x);
     CHECK(coarse < 2e-5);
     CHECK(fine < coarse / 20);  // the differences' error, not the function's
   }

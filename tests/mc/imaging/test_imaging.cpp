@@ -286,8 +286,9 @@ TEST_CASE("the speckle of a point that moves is shifted, and as alike as predict
     bool near;
     double x;
   };
-  for (const auto& [near, x] : {Case{false, 0}, Case{true, 0}, Case{false, 1500}}) {
-    CAPTURE(x);
+  for (const Case& place : {Case{false, 0}, Case{true, 0}, Case{false, 1500}}) {
+    CAPTURE(place.x);
+    const auto& [near, x] = place;
     const LineObject object{{x, x + 30}, {1, 1}};
     LineCamera camera{std::nullopt, -0.3, 0.3, 700};
     if (near) camera = {3020.0, -900, 900, 700};

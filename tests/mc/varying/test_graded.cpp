@@ -85,8 +85,9 @@ TEST_CASE("Waves satisfy the eikonal equation and carry their power") {
                                                              {linear({0.03, -0.05}), 1e-6},
                                                              {parabolic(0.06), 2e-3},
                                                              {blobs(0.06), 2e-3}};
-  for (const auto& [field, tolerance] : fields) {
-    CAPTURE(field.describe());
+  for (const auto& row : fields) {
+    CAPTURE(row.first.describe());
+    const auto& [field, tolerance] = row;
     const Scene scene = graded(field);
     const auto medium = graded_medium(scene);
     std::vector<std::shared_ptr<const Wavefront>> waves;
