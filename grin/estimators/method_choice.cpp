@@ -243,41 +243,38 @@ double preference(const Tracer& tracer) {
   return tracer.method == RenderMethod::analog && are_pixels ? 2 : 1;
 }
 
-Needed preferred(const Candidate& candidate, const std::vector<double>& light) {
-  Needed own = needed(candidate.trial, light);
-  own.work *= preference(candidate.tracer);
-  return own;
+/// Of each method, with its preference.
+std::vector<Needed> needs_of(const std::vector<Candidate>& all) {
+  const auto light = light_of_pictures(all);
+  std::vector<Needed> needs;
+  for (const Candidate& candidate : all) {
+    needs.push_back(needed(candidate.trial, light));
+    needs.back().work *= preference(candidate.tracer);
+  }
+  return needs;
 }
 
-/// With the least work, known or not. Nothing where no trial tells.
-struct Best {
-  const Candidate* candidate = nullptr;
-  Needed needed = {std::numeric_limits<double>::infinity(), 0, false};
-};
-
-Best best_of(const std::vector<Candidate>& all, bool of_known) {
-  Best best;
-  const auto light = light_of_pictures(all);
-  for (const Candidate& candidate : all) {
-    const Needed own = preferred(candidate, light);
-    if (of_known && !own.is_known) continue;
-    if (own.work < best.needed.work) best = {&candidate, own};
+/// Which has the least work, known or not. Nothing where no trial tells.
+std::optional<std::size_t> best_of(const std::vector<Needed>& needs, bool of_known) {
+  std::optional<std::size_t> best;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < needs.size(); ++i) {
+    if ((of_known && !needs[i].is_known) || !(needs[i].work < least)) continue;
+    best = i;
+    least = needs[i].work;
   }
   return best;
 }
 
 /// Known well, and within two standard errors no other that finds the light needs much less.
-bool is_settled(const Best& best, const std::vector<Candidate>& all) {
+bool is_settled(const std::vector<Needed>& needs, std::size_t best) {
   constexpr double much = 1.5;
-  const auto light = light_of_pictures(all);
-  const double most = best.needed.work * (1 + 2 * best.needed.doubt);
-  const auto needs_less = [&](const Candidate& candidate) {
-    const Needed other = preferred(candidate, light);
-    const double least = std::max(1 - 2 * other.doubt, 0.0);
-    return &candidate != best.candidate && std::isfinite(other.work) &&
-           most > much * other.work * least;
-  };
-  return best.needed.is_known && std::ranges::none_of(all, needs_less);
+  const double most = needs[best].work * (1 + 2 * needs[best].doubt);
+  for (std::size_t i = 0; i < needs.size(); ++i) {
+    const double least = needs[i].work * std::max(1 - 2 * needs[i].doubt, 0.0);
+    if (i != best && std::isfinite(needs[i].work) && most > much * least) return false;
+  }
+  return needs[best].is_known;
 }
 
 }  // namespace
@@ -287,17 +284,18 @@ bool is_settled(const Best& best, const std::vector<Candidate>& all) {
 Tracer best_tracer(const Tracers& tracers) {
   if (!tracers.walks()) return tracers.make(RenderMethod::light);
   auto all = candidates(tracers);
-  Best best;
+  std::vector<Needed> needs;
+  std::optional<std::size_t> best;
   for (const double effort : {1, 4, 16}) {
     try_all(tracers, effort, all);
-    if (all.empty()) break;
-    best = best_of(all, false);
-    if (all.size() == 1 || is_settled(best, all)) break;
+    if (all.empty()) return tracers.make(RenderMethod::bidirectional);
+    needs = needs_of(all);
+    best = best_of(needs, false);
+    if (all.size() == 1 || (best && is_settled(needs, *best))) break;
   }
-  if (all.empty()) return tracers.make(RenderMethod::bidirectional);
-  if (!best.needed.is_known)
-    if (const Best known = best_of(all, true); known.candidate) best = known;
-  return best.candidate ? best.candidate->tracer : all.front().tracer;
+  if (best && !needs[*best].is_known)
+    if (const auto known = best_of(needs, true)) best = known;
+  return all[best.value_or(0)].tracer;
 }
 
 }  // namespace flatspeckle::grin

@@ -140,7 +140,8 @@ inline void SplineField::add_rows(const std::array<LaneAxis, 3>& axes, int lane,
   for (int i = 0; i < 4; ++i) {
     WideFour g{}, gy{};
     for (int j = 0; j < 4; ++j) {
-      const WideFour values = loose_four_at(first + (i * extent_[1] + j) * extent_[2]);
+      WideFour values;
+      load(first + (i * extent_[1] + j) * extent_[2], values);
       g += b.w[j][lane] * values;
       gy += b.d[j][lane] * values;
     }

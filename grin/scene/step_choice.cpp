@@ -61,7 +61,8 @@ class PilotStarts {
  private:
   Vec3 anywhere() {
     for (;;) {
-      const Vec3 share(random_.uniform(), random_.uniform(), random_.uniform());
+      Vec3 share;
+      for (const int axis : {2, 1, 0}) share[axis] = random_.uniform();
       const Vec3 x = box_.low + share.cwiseProduct(box_.high - box_.low);
       if (distance(region_, x) < 0) return x;
     }

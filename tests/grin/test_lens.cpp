@@ -28,7 +28,7 @@ Vec3 random_point(std::mt19937& random, double size) {
 }
 Vec3 random_direction(std::mt19937& random) {
   std::normal_distribution<double> normal;
-  return Vec3(normal(random), normal(random), normal(random)).normalized();
+  return Vec3{normal(random), normal(random), normal(random)}.normalized();
 }
 /// By small steps, to where the side changes.
 double marched(const Lens& lens, const Vec3& x, const Vec3& d) {
@@ -58,7 +58,7 @@ TEST_CASE("ways into and out of a lens are those of small steps, and end where i
     CAPTURE(shape.name);
     const Lens lens = lens_of(shape);
     int met = 0;
-    for (int i = 0; i < 600; ++i) {
+    for (int i = 0; i < 800; ++i) {
       const Vec3 x = random_point(random, 1.8), d = random_direction(random);
       const bool inside = lens.distance(x) < 0;
       const double way = inside ? way_out(lens, x, d) : way_in(lens, x, d);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstring>
+
 namespace flatspeckle {
 
 /// Four numbers that compilers work on at once: in one register where there are such wide ones.
@@ -11,11 +13,8 @@ inline const WideFour& wide_four_at(const double* aligned) {
 inline WideFour& wide_four_at(double* aligned) {
   return *reinterpret_cast<WideFour*>(aligned);
 }
-/// The same of any four that follow each other.
-using LooseFour = double __attribute__((vector_size(32), aligned(8), may_alias));
-inline const LooseFour& loose_four_at(const double* first) {
-  return *reinterpret_cast<const LooseFour*>(first);
-}
+/// Any four that follow each other, wherever they begin.
+inline void load(const double* first, WideFour& four) { std::memcpy(&four, first, sizeof four); }
 
 /// Of a matrix of four rows: eight shuffles, which a compiler does not find by itself.
 [[gnu::always_inline]] inline void transpose(WideFour* rows) {
