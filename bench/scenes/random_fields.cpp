@@ -11,12 +11,13 @@ namespace flatspeckle::bench {
 using namespace grin;
 
 Vec3 random_direction(RandomStream& random) {
-  return direction_about(Vec3::UnitX(), 2 * random.uniform() - 1,
-                         2 * std::numbers::pi * random.uniform());
+  const double azimuth = 2 * std::numbers::pi * random.uniform();
+  return direction_about(Vec3::UnitX(), 2 * random.uniform() - 1, azimuth);
 }
 
 Vec3 random_point(RandomStream& random, double radius) {
-  return radius * std::cbrt(random.uniform()) * random_direction(random);
+  const Vec3 direction = random_direction(random);
+  return radius * std::cbrt(random.uniform()) * direction;
 }
 
 GaussianBlobs random_blobs(RandomStream& random, double height) {

@@ -62,7 +62,7 @@ class PilotStarts {
   Vec3 anywhere() {
     for (;;) {
       Vec3 share;
-      for (const int axis : {2, 1, 0}) share[axis] = random_.uniform();
+      for (const int axis : {2, 1, 0}) share[axis] = random_.uniform();  // steps hang on the order
       const Vec3 x = box_.low + share.cwiseProduct(box_.high - box_.low);
       if (distance(region_, x) < 0) return x;
     }

@@ -1,8 +1,6 @@
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <numbers>
-#include <numeric>
 #include <optional>
 #include <string>
 #include <vector>
@@ -27,7 +25,7 @@ const Surface ball = Sphere{Vec3(0.1, 0, 0), 1};
 const Surface block = Box{{-0.9, -0.8, -1}, {0.7, 1, 0.9}};
 const Surface bodies[] = {ball, block};
 const Box room{Vec3::Constant(-2), Vec3::Constant(2)};
-constexpr double reach = 1.99;  // of points in it
+constexpr double reach = 1.99, near_bodies = 1;  // of points in it
 
 /// Length of the straight way between two points inside of a convex body.
 double length_inside(const Surface& body, const Vec3& p, const Vec3& q) {
@@ -253,7 +251,7 @@ bool alike(const Join& join, const Way& way) {
          std::abs(join.optical_path - way.optical_path) < 1e-4;
 }
 
-/// A join that is this way from p to q, among those that so many trials find.
+/// A join that is this way from p to q, among those that the trials find.
 template <Space S, class Way>
 std::optional<Join> same_way(const S& space, const PathPoint& p, const PathPoint& q, const Way& way,
                              int trials, RandomStream& random) {
@@ -268,20 +266,20 @@ std::optional<Join> same_way(const S& space, const PathPoint& p, const PathPoint
 }  // namespace
 
 TEST_CASE("a flight that a body refracts and the join of its ends are one way") {
-  int all_flights = 0, all_missed = 0;
   for (const NamedSpace& named : refracting())
     with_space(named, [&](const auto& space) {
       CAPTURE(named.name);
       RandomStream random(3, 97, 0);
+      constexpr int trials = 3000;
       int flights = 0, missed = 0;
-      for (int i = 0; i < 500; ++i) {
+      for (int i = 0; i < 1000; ++i) {
         const PathPoint p = random_point_of(named.stage, random);
         const Flight flight = space.fly(p, bench::random_direction(random), random);
         if (flight.passages.count == 0 || flight.passages.count > 3 ||
             flight.end == Flight::End::lost)
           continue;
         ++flights;
-        const auto join = same_way(space, p, flight.point, flight, 500, random);
+        const auto join = same_way(space, p, flight.point, flight, trials, random);
         missed += !join;
         if (!join) continue;
         CHECK((join->end_direction - flight.direction).norm() < 1e-4);
@@ -292,7 +290,7 @@ TEST_CASE("a flight that a body refracts and the join of its ends are one way") 
         Flight there;
         there.start_direction = -flight.direction;
         there.optical_path = flight.optical_path;
-        const auto back = same_way(space, flight.point, p, there, 500, random);
+        const auto back = same_way(space, flight.point, p, there, trials, random);
         if (!back) continue;
         const double n_p = space.index(p), n_q = space.index(flight.point);
         CHECK(join->fresnel == doctest::Approx(back->fresnel).epsilon(1e-4));
@@ -301,12 +299,8 @@ TEST_CASE("a flight that a body refracts and the join of its ends are one way") 
               doctest::Approx(n_p * n_p * back->spreading).epsilon(1e-4));
       }
       CHECK(flights > 25);
-      // rare ways, of many trials; by chance three standard deviations more
-      CHECK(missed < flights / 20. + 3 * std::sqrt(flights / 20.));
-      all_flights += flights;
-      all_missed += missed;
+      CHECK(missed < flights / 20);  // rare ways, of many trials
     });
-  CHECK(all_missed < all_flights / 40);
 }
 
 TEST_CASE("|J| of a refracted flight is that of the flights beside it") {
@@ -379,7 +373,7 @@ double density_of_points(const Vec3& x) {
   const auto in_cube = [&](double size) {
     return x.cwiseAbs().maxCoeff() < size ? std::pow(2 * size, -3) : 0;
   };
-  return (in_cube(reach) + in_cube(1)) / 2;
+  return (in_cube(reach) + in_cube(near_bodies)) / 2;
 }
 
 }  // namespace
@@ -402,7 +396,7 @@ TEST_CASE("flights and joins agree on where light collides in and around a refra
         const double seen = counts ? share(*space, p, flight.point, flight, random) : 0;
         for (Part part = around; part < named.stage.parts(); ++part)
           flown[part].add(flight.point.part == part ? seen : 0);
-        const PathPoint q = random_point_of(named.stage, random, i % 2 ? 1 : reach);
+        const PathPoint q = random_point_of(named.stage, random, i % 2 ? near_bodies : reach);
         const auto join = space->join_through(p, q, random, statistics);
         const ScatteringMedium& medium = named.stage.medium_in(q.part);
         const double value = join ? medium.mu_t() * join->transmittance * join->multiplicity /
@@ -412,8 +406,6 @@ TEST_CASE("flights and joins agree on where light collides in and around a refra
         for (Part part = around; part < named.stage.parts(); ++part)
           joined[part].add(q.part == part ? value : 0);
       }
-      const double all = std::transform_reduce(flown.begin(), flown.end(), 0.0, std::plus(),
-                                               [](const Mean& part) { return part.mean(); });
       for (Part k = around; k < named.stage.parts(); ++k) {
         CAPTURE(k);
         CAPTURE(flown[k].mean());
@@ -421,7 +413,7 @@ TEST_CASE("flights and joins agree on where light collides in and around a refra
         const double error = std::hypot(flown[k].error(), joined[k].error());
         CAPTURE(error);
         CHECK(std::abs(flown[k].mean() - joined[k].mean()) <= 4 * error);
-        CHECK(error <= 0.1 * all);
+        CHECK(error <= 0.3 * flown[k].mean() + 1e-3);
       }
     }
 }

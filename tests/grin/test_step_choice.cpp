@@ -30,7 +30,8 @@ Errors end_errors(const F& field, const Surface& region, double step, double sig
   RandomStream random(5, 0, 0);
   Errors errors;
   for (int i = 0; i < rays;) {
-    const Vec3 share(random.uniform(), random.uniform(), random.uniform());
+    Vec3 share;
+    for (const int axis : {2, 1, 0}) share[axis] = random.uniform();
     const Vec3 x = box.low + share.cwiseProduct(box.high - box.low);
     const Vec3 direction = random_turn(Vec3::UnitZ(), 2 * random.uniform(), random);
     if (distance(region, x) > 0) continue;
