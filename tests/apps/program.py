@@ -4,8 +4,10 @@ import contextlib
 import os
 import pathlib
 import resource
+import signal
 import subprocess
 import tempfile
+import time
 import unittest
 
 import h5py
@@ -17,8 +19,9 @@ DATA = pathlib.Path(os.environ["FLATSPECKLE_DATA"])
 BOX = {"width": 20, "depth": 10, "count": 31}
 CYLINDERS = {"width": 20, "depth": 10, "count": 20, "scatterer": "tm", "radius": 0.16}
 SLAB = {"domain": "slab", "depth": 100, "scatterer": "hg", "optical_depth": 2, "g": 0.5}
-# Bad input is refused before anything is computed; a program with sanitizers takes longer.
-MOST_CPU_S = 0.3 * float(os.environ.get("FLATSPECKLE_SLOWNESS", 1))
+SLOWNESS = float(os.environ.get("FLATSPECKLE_SLOWNESS", 1))  # above 1 of a program with sanitizers
+LLVM_OPENMP = "libomp" in subprocess.run(["ldd", PROGRAM], capture_output=True, text=True).stdout
+MOST_CPU_S = 0.3 * SLOWNESS  # bad input is refused before anything is computed
 TILTS = {"covariance": "memory_effect", "tilts": [0, 0.04, 0.16], "view_angles": [0.1, 0.5]}
 
 
@@ -117,6 +120,18 @@ class ProgramTest(unittest.TestCase):
             process.kill()
         process.wait()
         process.stderr.close()
+
+    def wait_until(self, process, condition):
+        """Until it holds, while the process runs."""
+        deadline = time.monotonic() + 60
+        while not condition():
+            time.sleep(0.002)
+            self.assertIsNone(process.poll(), "it ended before")
+            self.assertLess(time.monotonic(), deadline)
+
+    def wait_until_it_catches(self, process, number=signal.SIGHUP):
+        """What can be resumed catches SIGHUP, too."""
+        self.wait_until(process, lambda: catches(process, number))
 
     def write(self, name, text):
         path = self.folder / name

@@ -8,7 +8,7 @@ import time
 import h5py
 import numpy as np
 
-from program import ProgramTest, catches, datasets
+from program import ProgramTest, datasets
 
 # 2 x 2 x 2 points.
 SWEEP = {"depth": 100, "optical_depth": [1, 2], "g": [0, 0.5], "albedo": [1, 0.9],
@@ -54,18 +54,10 @@ class SweepTest(ProgramTest):
         """Leaves every point finished in the folder and no result yet."""
         self.call("sweep", **keys, shard="0/1", out=out)
 
-    def wait_until(self, process, condition):
-        """Until it holds, while the process runs."""
-        deadline = time.monotonic() + 60
-        while not condition():
-            time.sleep(0.002)
-            self.assertIsNone(process.poll(), "the sweep ended before")
-            self.assertLess(time.monotonic(), deadline)
-
     def interrupted(self, number=signal.SIGINT, cpu_s=0.1, **keys):
         """Signals a sweep after so much work, in the midst of its points; it ends resumable."""
         process = self.start("sweep", **keys)
-        self.wait_until(process, lambda: catches(process, signal.SIGHUP))
+        self.wait_until_it_catches(process)
         self.wait_until(process, lambda: cpu_seconds(process) >= cpu_s)
         process.send_signal(number)
         status = process.wait(timeout=60)

@@ -1,14 +1,12 @@
 """Speckle fields: what the file holds, that it is what `covariance` says, and what is refused."""
 
 import signal
-import time
 import unittest
 
 import h5py
 import numpy as np
 
 from program import BOX, CYLINDERS, DATA, SLAB, ProgramTest, attributes, datasets
-from test_interruption import catches
 
 SENSORS = "x,z\n" + "".join(f"{0.5 * i},14\n" for i in range(10))
 VIEWS = {"light_angles": [0, 0.03], "view_angles": [0.1, 0.13, 3.1]}
@@ -185,10 +183,7 @@ class BadInput(FieldTest):
         before = self.listing()
         process = self.start("field", **BOX, **VIEWS, fields=1_000_000, method="paths",
                              out="field.h5")
-        deadline = time.monotonic() + 60
-        while not catches(process, signal.SIGHUP):
-            time.sleep(0.002)
-            self.assertLess(time.monotonic(), deadline)
+        self.wait_until_it_catches(process)
         process.send_signal(signal.SIGINT)
         self.assertEqual(process.wait(timeout=60), 130)
         self.assertEqual(self.listing(), before)

@@ -33,17 +33,10 @@ class Interruption(ProgramTest):
     def interrupt(self, number, delay, *words, **keys):
         """Signals once the run has begun; returns the exit status."""
         process = self.start(*words, **keys)
-        self.wait_until_it_catches(process, signal.SIGHUP, True)
+        self.wait_until_it_catches(process)
         time.sleep(delay)
         process.send_signal(number)
         return process.wait(timeout=60)
-
-    def wait_until_it_catches(self, process, number, wanted):
-        deadline = time.monotonic() + 60
-        while bool(catches(process, number)) != wanted:
-            time.sleep(0.002)
-            self.assertIsNone(process.poll())
-            self.assertLess(time.monotonic(), deadline)
 
     def check_resumable(self, name):
         with h5py.File(self.folder / name) as file:
@@ -149,10 +142,10 @@ class Interruption(ProgramTest):
         before = self.listing()
         process = self.start("covariance", width=200, depth=200, count=3000, method="wave",
                              threads=1, samples=9, out="run.h5")
-        self.wait_until_it_catches(process, signal.SIGHUP, True)
+        self.wait_until_it_catches(process)
         time.sleep(0.1)
         process.send_signal(signal.SIGINT)
-        self.wait_until_it_catches(process, signal.SIGINT, False)
+        self.wait_until(process, lambda: not catches(process, signal.SIGINT))
         process.send_signal(signal.SIGINT)
         self.assertEqual(process.wait(timeout=60), -signal.SIGINT)
         (self.folder / ".run.h5.lock").unlink()  # it holds no longer
@@ -161,6 +154,7 @@ class Interruption(ProgramTest):
     def test_solve_ends_at_once(self):
         """It has nothing to resume."""
         process = self.start("solve", width=200, depth=200, count=3000, out="run.h5")
+        self.wait_until_it_catches(process, signal.SIGINT)
         time.sleep(0.1)
         process.send_signal(signal.SIGINT)
         self.assertEqual(process.wait(timeout=60), 130)
@@ -290,6 +284,7 @@ class Extension(ProgramTest):
         self.call("covariance", **WIDE, samples=120_000, out="run.h5")
         before = (self.folder / "run.h5").read_bytes()
         process = self.start("covariance", "--resume", **WIDE, samples=50_000_000, out="run.h5")
+        self.wait_until_it_catches(process)
         time.sleep(0.5)
         process.send_signal(signal.SIGINT)
         self.assertEqual(process.wait(timeout=60), 75)

@@ -176,7 +176,8 @@ class ClosedForms(RenderTest):
 
     def test_white_furnace(self):
         """L/n^2 of the environment everywhere (C24), by every method in a straight and a curved
-        scene."""
+        scene. By light, joins with the pinhole through the field have no finite variance: that
+        is told."""
         for field in ({}, FIBRE):
             for method in METHODS:
                 with self.subTest(field=field, method=method):
@@ -185,7 +186,10 @@ class ClosedForms(RenderTest):
                                         if method == "photon_map" else None)
                     if method != "photon_map":
                         self.assert_within(found["mean"], found["mean_error"], 1.5)
-                    self.assertAlmostEqual(found["mean"], 1.5, delta=0.3)
+                    if method == "light" and field:
+                        self.assertTrue(found["mean_rare"])
+                    else:
+                        self.assertAlmostEqual(found["mean"], 1.5, delta=0.3)
 
     def test_arrival(self):
         """Unscattered light through a Luneburg ball: pi/2 + 1 from one tangent plane to the focus

@@ -52,6 +52,7 @@ class Checks(ProgramTest):
         cls.library = Library(pathlib.Path(folder.name))
         with h5py.File(cls.library.files / "infinite.h5", "w") as file:
             file["excess"] = [1, float("inf")]
+        cls.whole = cls.library.whole("covariance", OLDER)
 
     def complaints(self, script, keys, hindrance=Hindrance()):
         """Of a program that is this script, with an older result in place."""
@@ -59,9 +60,8 @@ class Checks(ProgramTest):
         program.chmod(0o755)
         case = Case(self.library, tempfile.mkdtemp(dir=self.folder), 1, 1)
         (case.folder / "older.h5").rename(case.folder / "x.h5")
-        whole = self.library.whole("covariance", OLDER)
         with mock.patch("torture_run.PROGRAM", str(program)):
-            case.run("covariance", keys, hindrance, whole=whole)
+            case.run("covariance", keys, hindrance, whole=self.whole)
         return [what for what, _ in case.failures]
 
     def test_misbehaviour_is_found(self):

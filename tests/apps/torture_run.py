@@ -10,9 +10,8 @@ import subprocess
 import tempfile
 import time
 
-from program import PROGRAM, catches
+from program import PROGRAM, SLOWNESS, catches
 
-SLOWNESS = float(os.environ.get("FLATSPECKLE_SLOWNESS", 1))
 MOST_S = 20 * SLOWNESS  # for scenes of hundredths of a second
 OBEYS_S = 2 * SLOWNESS
 # Keeps the machine; a program with sanitizers asks for more memory than there is.
