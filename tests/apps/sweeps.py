@@ -58,7 +58,8 @@ class SweepTest(ProgramTest):
         """Signals a sweep after so much work, in the midst of its points; it ends resumable."""
         process = self.start("sweep", **keys)
         self.wait_until_it_catches(process)
-        self.wait_until(process, lambda: cpu_seconds(process) >= cpu_s)
+        began = cpu_seconds(process)
+        self.wait_until(process, lambda: cpu_seconds(process) >= began + cpu_s)
         process.send_signal(number)
         status = process.wait(timeout=60)
         self.assertEqual(status, 75, process.stderr.read())

@@ -16,14 +16,13 @@ LONG = {**MANY, "samples": 40_000}
 
 class Kill(SweepTest):
     def test_at_twenty_moments(self):
-        started = time.monotonic()
-        self.call("sweep", **LONG, out="whole.h5")
-        duration = time.monotonic() - started
+        start = self.seconds_of("--version")
+        duration = self.seconds_of("sweep", **LONG, out="whole.h5") - start
         moments = random.Random(1)
         kept, ended, midway = {}, 0, 0
         for _ in range(20):
             process = self.start("sweep", "--resume", **LONG, out="sweep.h5")
-            time.sleep(moments.random() * 0.15 * duration)
+            time.sleep(start + moments.random() * 0.15 * duration)
             process.kill()
             if process.wait() == 0:
                 (self.folder / "sweep.h5").unlink()
@@ -37,6 +36,11 @@ class Kill(SweepTest):
         self.assertNotIn("warning", done.stderr)
         self.assert_same_data("sweep.h5", "whole.h5")
         self.assertFalse(self.points().exists())
+
+    def seconds_of(self, *words, **keys):
+        started = time.monotonic()
+        self.call(*words, **keys)
+        return time.monotonic() - started
 
     def check_left_behind(self, before):
         """A finished point stays as it is until the result is there."""

@@ -174,11 +174,17 @@ class Refusals(PackageTest):
 class Interruption(PackageTest):
     def interrupted(self, **given):
         """As by Ctrl-C, once the program is at work."""
-        timer = threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT))
-        timer.start()
+        def interrupt():
+            while not any(self.folder.rglob(".*.h5.lock")):
+                time.sleep(0.01)
+            time.sleep(0.3)
+            os.kill(os.getpid(), signal.SIGINT)
+
+        thread = threading.Thread(target=interrupt, daemon=True)
+        thread.start()
         with self.assertRaises(KeyboardInterrupt):
             fs.covariance(LONG, **given)
-        timer.join()
+        thread.join()
 
     def assert_same(self, one, other):
         for name in ("intensity", "intensity_error"):
