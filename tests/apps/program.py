@@ -107,6 +107,12 @@ class ProgramTest(unittest.TestCase):
             self.assertLess(cpu_of_children() - before, MOST_CPU_S, f"{command}\n{done.stderr}")
         return done
 
+    def seconds_of(self, *words, **keys):
+        """That a call takes."""
+        started = time.monotonic()
+        self.call(*words, **keys)
+        return time.monotonic() - started
+
     def start(self, *words, **keys):
         """Starts the program and does not wait for it; stopped at the latest when the test ends."""
         process = subprocess.Popen([PROGRAM, *map(str, words), *flags(keys)], cwd=self.folder,

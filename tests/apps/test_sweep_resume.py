@@ -37,11 +37,6 @@ class Kill(SweepTest):
         self.assert_same_data("sweep.h5", "whole.h5")
         self.assertFalse(self.points().exists())
 
-    def seconds_of(self, *words, **keys):
-        started = time.monotonic()
-        self.call(*words, **keys)
-        return time.monotonic() - started
-
     def check_left_behind(self, before):
         """A finished point stays as it is until the result is there."""
         if (self.folder / "sweep.h5").exists():

@@ -172,15 +172,15 @@ class Refusals(PackageTest):
 
 
 class Interruption(PackageTest):
-    def interrupted(self, **given):
-        """As by Ctrl-C, once the program is at work."""
-        def interrupt():
-            while not any(self.folder.rglob(".*.h5.lock")):
-                time.sleep(0.01)
-            time.sleep(0.3)
-            os.kill(os.getpid(), signal.SIGINT)
+    def interrupt(self):
+        """As by Ctrl-C, once the program is at work and has had time for some batches."""
+        while not any(self.folder.rglob(".*.h5.lock")):
+            time.sleep(0.01)
+        time.sleep(0.3)
+        os.kill(os.getpid(), signal.SIGINT)
 
-        thread = threading.Thread(target=interrupt, daemon=True)
+    def interrupted(self, **given):
+        thread = threading.Thread(target=self.interrupt, daemon=True)
         thread.start()
         with self.assertRaises(KeyboardInterrupt):
             fs.covariance(LONG, **given)
