@@ -11,6 +11,7 @@
 #include "core/result/result_group.h"
 #include "flatland/scene/scene_datasets.h"
 #include "wave_solver/dense/blas.h"
+#include "wave_solver/dense/columns.h"
 
 namespace flatspeckle::wave {
 

@@ -9,7 +9,7 @@
 
 #include "core/numbers/random.h"
 #include "wave_solver/dense/blas.h"
-#include "wave_solver/dense/combinations.h"
+#include "wave_solver/dense/columns.h"
 #include "wave_solver/dense/symmetric_factor.h"
 
 namespace flatspeckle::wave {

@@ -11,7 +11,7 @@ namespace flatspeckle::wave {
 /// A complex symmetric system M x = b: L L^T without pivoting (symmetric_factor.h), or LU with row
 /// exchanges where that leaves a backward error |b - M x| / (|M| |x| + |b|) above 1e-14 after
 /// refinement. It is measured in the 2- and Frobenius norms on combinations of all columns
-/// (combinations.h), or on each where they are refined.
+/// (columns.h), or on each where they are refined.
 ///
 /// Cost: n^3/6 complex multiplications and as many additions, half of LU's. For the points and
 /// disks of this room that is 0.51 of LAPACK's zgetrf (zsytrf: 0.59). Single precision with
@@ -28,7 +28,7 @@ class DenseFactor {
 
   /// Whether rows had to be exchanged.
   bool is_pivoted() const { return pivoted_; }
-  /// B - M X of combinations (combinations.h) of the last columns B and their solution X.
+  /// B - M X of combinations (columns.h) of the last columns B and their solution X.
   const std::vector<Complex>& remainder() const { return remainder_; }
   /// Condition number of M in the Frobenius norm, about: at least that in the 2-norm. Four random
   /// vectors tell it within a factor of two or so (Kenney and Laub 1994). Of the last solve that

@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "core/error.h"
+#include "wave_solver/dense/columns.h"
 #include "wave_solver/dense/dense_factor.h"
-#include "wave_solver/solutions/light_solution.h"
 
 namespace flatspeckle::wave {
 

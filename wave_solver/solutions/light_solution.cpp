@@ -5,26 +5,9 @@
 #include <utility>
 
 #include "wave_solver/dense/blas.h"
-#include "wave_solver/dense/combinations.h"
+#include "wave_solver/dense/columns.h"
 
 namespace flatspeckle::wave {
-
-void require_finite(std::span<const Complex> values) {
-  for (const Complex& value : values)
-    if (!std::isfinite(value.real()) || !std::isfinite(value.imag()))
-      throw std::runtime_error("the multiple-scattering equations have no finite solution");
-}
-
-std::vector<Complex> transposed_product(const std::vector<Complex>& a, const Complex* b,
-                                        std::size_t columns_b, std::size_t n) {
-  if (n == 0) return {};
-  const std::size_t columns_a = a.size() / n;
-  std::vector<Complex> result(columns_b * columns_a);
-  if (result.empty()) return result;
-  multiply(CblasTrans, CblasNoTrans, columns_a, columns_b, n, 1, a.data(), n, b, n, 0,
-           result.data(), columns_a);
-  return result;
-}
 
 std::vector<Complex> expanded(const LightBasis& basis, std::vector<Complex> columns,
                               std::size_t n) {

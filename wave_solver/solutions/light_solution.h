@@ -23,7 +23,7 @@ struct SolveOptions {
 
 /// How far a solution can be trusted; NaN-free, -1 where it was not asked for.
 struct Diagnosis {
-  /// ||b - T(a + S b)|| / ||T a||, over all lights (C10); of many an estimate (combinations.h)
+  /// ||b - T(a + S b)|| / ||T a||, over all lights (C10); of many an estimate (columns.h)
   double residual = -1;
   double condition = -1;          ///< of the scaled matrix, in the Frobenius norm (an estimate)
   double boundary_residual = -1;  ///< see boundary_residual.h
@@ -44,12 +44,5 @@ EquationSolver solver_of(const WaveEquations& equations, const SolveOptions& opt
 
 /// Columns of the basis, n long, to those of all lights.
 std::vector<Complex> expanded(const LightBasis& basis, std::vector<Complex> columns, std::size_t n);
-
-/// a^T b of matrices with n rows, columns by columns: [column of b][column of a].
-std::vector<Complex> transposed_product(const std::vector<Complex>& a, const Complex* b,
-                                        std::size_t columns_b, std::size_t n);
-
-/// Throws std::runtime_error.
-void require_finite(std::span<const Complex> values);
 
 }  // namespace flatspeckle::wave

@@ -7,6 +7,7 @@
 
 #include "core/result/result_group.h"
 #include "flatland/scene/scene_datasets.h"
+#include "wave_solver/dense/columns.h"
 #include "wave_solver/solutions/boundary_residual.h"
 
 namespace flatspeckle::wave {

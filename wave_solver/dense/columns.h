@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "core/numbers/complex.h"
@@ -16,5 +17,12 @@ std::vector<Complex> combinations(const std::vector<Complex>& columns, std::size
 /// combinations(). weights: [row]
 double relative_size(const std::vector<Complex>& combined_r, const std::vector<Complex>& b,
                      const std::vector<double>& weights);
+
+/// a^T b of matrices with n rows, columns by columns: [column of b][column of a].
+std::vector<Complex> transposed_product(const std::vector<Complex>& a, const Complex* b,
+                                        std::size_t columns_b, std::size_t n);
+
+/// Throws std::runtime_error where a value is infinite or not a number.
+void require_finite(std::span<const Complex> values);
 
 }  // namespace flatspeckle::wave

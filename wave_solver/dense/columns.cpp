@@ -1,7 +1,8 @@
-#include "wave_solver/dense/combinations.h"
+#include "wave_solver/dense/columns.h"
 
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
 
 #include "core/numbers/random.h"
 #include "wave_solver/dense/blas.h"
@@ -39,6 +40,23 @@ double relative_size(const std::vector<Complex>& combined_r, const std::vector<C
   const bool all = combined_r.size() == b.size();
   const double sums = all ? 1 : static_cast<double>(combined_r.size() / weights.size());
   return std::sqrt(weighted_square(weights, combined_r) / sums / given);
+}
+
+void require_finite(std::span<const Complex> values) {
+  for (const Complex& value : values)
+    if (!std::isfinite(value.real()) || !std::isfinite(value.imag()))
+      throw std::runtime_error("the multiple-scattering equations have no finite solution");
+}
+
+std::vector<Complex> transposed_product(const std::vector<Complex>& a, const Complex* b,
+                                        std::size_t columns_b, std::size_t n) {
+  if (n == 0) return {};
+  const std::size_t columns_a = a.size() / n;
+  std::vector<Complex> result(columns_b * columns_a);
+  if (result.empty()) return result;
+  multiply(CblasTrans, CblasNoTrans, columns_a, columns_b, n, 1, a.data(), n, b, n, 0,
+           result.data(), columns_a);
+  return result;
 }
 
 }  // namespace flatspeckle::wave
