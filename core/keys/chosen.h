@@ -1,9 +1,10 @@
 #pragma once
 
 #include <algorithm>
-#include <cassert>
 #include <string>
 #include <vector>
+
+#include "core/contract.h"
 
 namespace flatspeckle {
 
@@ -11,7 +12,7 @@ namespace flatspeckle {
 template <typename Choice>
 Choice chosen(const std::vector<std::string>& words, const std::string& word) {
   const auto found = std::ranges::find(words, word);
-  assert(found != words.end());
+  FS_EXPECT(found != words.end());
   return static_cast<Choice>(found - words.begin());
 }
 

@@ -11,6 +11,7 @@
 #include <numbers>
 #include <utility>
 
+#include "core/contract.h"
 #include "core/numbers/hankel_fit.h"
 
 namespace flatspeckle {
@@ -227,7 +228,7 @@ void for_groups(std::span<const double> x, Body body) {
 }  // namespace
 
 void hankel0(std::span<const double> x, std::span<Complex> h) {
-  assert(x.size() == h.size());
+  FS_EXPECT(x.size() == h.size());
   const Fits& fits = hankel_fits();
   for_groups(x, [&](const double* arguments, std::size_t first, std::size_t n) {
     Hankel values[1];
@@ -237,7 +238,7 @@ void hankel0(std::span<const double> x, std::span<Complex> h) {
 }
 
 void hankel_sets(std::span<const double> x, int order, double* re, double* im) {
-  assert(order >= 0);
+  FS_EXPECT(order >= 0);
   const Fits& fits = hankel_fits();
   for_groups(x, [&](const double* arguments, std::size_t first, std::size_t n) {
     Hankel values[2];

@@ -1,10 +1,10 @@
 #include "core/numbers/statistics.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <limits>
 
+#include "core/contract.h"
 #include "core/error.h"
 #include "core/numbers/mean_errors.h"
 
@@ -45,7 +45,7 @@ GroupedSums::GroupedSums(std::size_t size) : size_(size), most_groups_(most_grou
 }
 
 void GroupedSums::add(double samples, std::span<const Complex> sums) {
-  assert(sums.size() == size_);
+  FS_EXPECT(sums.size() == size_);
   if (batches_ < most_groups_) {
     samples_.push_back(samples);
     sums_.insert(sums_.end(), sums.begin(), sums.end());

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cassert>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
@@ -16,6 +15,7 @@
 
 #include <hdf5_hl.h>
 
+#include "core/contract.h"
 #include "core/error.h"
 #include "core/result/collected_result.h"
 #include "core/result/hdf5_handle.h"
@@ -435,7 +435,7 @@ void ResultFile::commit() {
 }
 
 void ResultFile::commit_sealed(Durable durable) {
-  assert(!beside_);
+  FS_EXPECT(!beside_);
   auto bytes = image();
   seal(bytes);
   replace_file(path_, bytes, durable);

@@ -9,6 +9,7 @@
 
 #include <omp.h>
 
+#include "core/contract.h"
 #include "core/run/batch_pool.h"
 #include "core/run/interrupt.h"
 #include "core/run/ranks.h"
@@ -78,6 +79,8 @@ PoolEnd run_pool(const RunList& runs, const PoolOptions& options) {
 
 StopReason run_batches(const BatchJob& job, const RunOptions& options, RunState& state) {
   const auto& [samples, seconds, target_error] = options.stop;
+  FS_EXPECT(job.run && job.size > 0 && job.samples_per_batch > 0);
+  FS_EXPECT(samples || seconds || target_error);
   StopReason ended = StopReason::samples;
   RunList one{1,
               [&](std::size_t) {

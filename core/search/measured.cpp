@@ -1,16 +1,17 @@
 #include "core/search/measured.h"
 
-#include <cassert>
 #include <cmath>
 #include <limits>
 #include <numbers>
+
+#include "core/contract.h"
 
 namespace flatspeckle {
 
 namespace {
 
 Measured combined(const Measured& a, const Measured& b, auto&& of) {
-  assert(a.without.size() == b.without.size());
+  FS_EXPECT(a.without.size() == b.without.size());
   Measured made{of(a.value, b.value)};
   for (std::size_t i = 0; i < a.without.size(); ++i)
     made.without.push_back(of(a.without[i], b.without[i]));

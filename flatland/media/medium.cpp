@@ -15,6 +15,12 @@ double structure_amplitude(const StructureTable& structure, double k, double the
 
 }  // namespace
 
+bool is_physical(const BulkMedium& medium) {
+  constexpr double rounding = 1e-9;
+  return std::isfinite(medium.mu_t) && medium.mu_s >= 0 &&
+         medium.mu_s <= (1 + rounding) * medium.mu_t && std::abs(medium.g) <= 1 + rounding;
+}
+
 BulkMedium bulk_medium(const Scatterer& scatterer, double k, double density) {
   constexpr double tolerance = 1e-13;
   BulkMedium medium;

@@ -29,6 +29,9 @@ struct BulkMedium {
   double transport_mean_free_path() const { return 1 / (mu_t - mu_s * g); }
 };
 
+/// Whether its coefficients are finite and scattering is at most extinction, up to rounding.
+bool is_physical(const BulkMedium& medium);
+
 /// A medium of scatterers with a T-matrix, at a number per area.
 BulkMedium bulk_medium(const Scatterer& scatterer, double k, double density);
 /// Gives a medium of scatterers another number per area.

@@ -1,10 +1,10 @@
 #include "flatland/media/structure_factor.h"
 
-#include <cassert>
 #include <cmath>
 #include <map>
 #include <numbers>
 
+#include "core/contract.h"
 #include "core/result/result_group.h"
 
 namespace flatspeckle {
@@ -74,7 +74,7 @@ HardDiskFluid::HardDiskFluid(double packing, double diameter)
       diameter_(diameter),
       stiffness_(stiffness_numerator(packing) / std::pow(1 - packing, 3)),
       scale_(overlap_scale(packing)) {
-  assert(packing >= 0 && packing <= 0.7 && diameter > 0);
+  FS_EXPECT(packing >= 0 && packing <= 0.7 && diameter > 0);
 }
 
 double HardDiskFluid::contact_value() const {
@@ -164,7 +164,7 @@ std::vector<double> MeasuredStructureFactor::values() const {
 }
 
 std::vector<double> MeasuredStructureFactor::errors() const {
-  assert(realizations_ >= 2);
+  FS_EXPECT(realizations_ >= 2);
   const auto n = static_cast<double>(realizations_);
   std::vector<double> errors;
   for (double squares : squares_) errors.push_back(std::sqrt(squares / (n * (n - 1))));

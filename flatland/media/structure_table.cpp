@@ -1,13 +1,13 @@
 #include "flatland/media/structure_table.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <filesystem>
 #include <limits>
 #include <numbers>
 #include <sstream>
 
+#include "core/contract.h"
 #include "core/error.h"
 #include "core/result/guarded_read.h"
 #include "core/result/result_reader.h"
@@ -32,7 +32,7 @@ void check_same(const std::string& path, const std::string& what, double measure
 StructureTable::StructureTable(std::string origin, std::vector<double> q,
                                std::vector<double> values)
     : origin_(std::move(origin)), q_(std::move(q)), values_(std::move(values)) {
-  assert(q_.size() == values_.size() && std::is_sorted(q_.begin(), q_.end()));
+  FS_EXPECT(q_.size() == values_.size() && std::is_sorted(q_.begin(), q_.end()));
 }
 
 double StructureTable::operator()(double q) const {

@@ -1,8 +1,9 @@
 #include "flatland/placement/event_chain.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
+
+#include "core/contract.h"
 
 namespace flatspeckle {
 
@@ -33,7 +34,7 @@ EventChains::EventChains(const Domain& box, std::span<const double> radii)
   const double most_cells = 3 + 2 * std::sqrt(static_cast<double>(size()));
   for (std::size_t axis = 0; axis < 2; ++axis) {
     const double cells = std::floor(std::min(length_[axis] / contact, most_cells));
-    assert(cells >= 3);
+    FS_EXPECT(cells >= 3);
     cells_[axis] = static_cast<std::uint32_t>(cells);
     cell_size_[axis] = length_[axis] / cells;
     at_[axis].resize(size());

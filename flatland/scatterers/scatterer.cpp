@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cassert>
 #include <cmath>
 
+#include "core/contract.h"
 #include "core/error.h"
 #include "flatland/scatterers/scatterer_kinds.h"
 
@@ -58,7 +58,7 @@ std::string index_fault(Complex index) {
 }
 
 std::vector<ScaledComplex> scaled_t_matrix(const Scatterer& scatterer, double k, int order) {
-  assert(!scatterer.is_bulk());
+  FS_EXPECT(!scatterer.is_bulk());
   return kind_of(scatterer).t_matrix(scatterer, k * scatterer.radius, order);
 }
 

@@ -1,8 +1,8 @@
 #include "flatland/scatterers/scatterer_kinds.h"
 
 #include <algorithm>
-#include <cassert>
 
+#include "core/contract.h"
 #include "core/keys/number_text.h"
 
 namespace flatspeckle {
@@ -15,7 +15,7 @@ const ScattererKind* const kinds[] = {&point_kind, &soft_kind, &hard_kind, &tm_k
 }  // namespace
 
 const ScattererKind& kind_of(const Scatterer& scatterer) {
-  assert(scatterer.kind != Scatterer::Kind::other_bulk);
+  FS_EXPECT(scatterer.kind != Scatterer::Kind::other_bulk);
   return **std::ranges::find(kinds, scatterer.kind, &ScattererKind::kind);
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/contract.h"
 #include "core/error.h"
 #include "core/keys/chosen.h"
 #include "core/keys/number_text.h"
@@ -212,6 +213,7 @@ Scene make_scene(const Keys& keys, const SceneSpec& spec) {
   scene.placement.mean_count = scene.medium.density * scene.domain.area();
   check_packing(scene);
   if (spec.structure != "none") scene.medium = correlated(spec.structure, scene);
+  FS_ENSURE(is_physical(scene.medium));
   return scene;
 }
 

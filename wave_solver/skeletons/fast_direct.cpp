@@ -1,13 +1,13 @@
 #include "wave_solver/skeletons/fast_direct.h"
 
 #include <algorithm>
-#include <cassert>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
 #include <omp.h>
 
+#include "core/contract.h"
 #include "core/error.h"
 #include "core/run/interrupt.h"
 #include "core/run/parallel.h"
@@ -215,7 +215,7 @@ class FastDirect::Builder {
 
 FastDirect::FastDirect(const WaveEquations& system, double tolerance, double memory)
     : unknowns_(system.unknowns()) {
-  assert(tolerance > 0 && tolerance < 1);
+  FS_EXPECT(tolerance > 0 && tolerance < 1);
   blas_single_thread();
   const Stopwatch watch;
   Builder(system, tolerance, memory).build(*this);

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <utility>
 
+#include "core/contract.h"
 #include "core/result/result_group.h"
 #include "flatland/scene/scene_datasets.h"
 #include "wave_solver/dense/columns.h"
@@ -116,6 +117,7 @@ std::vector<Complex> WaveSolution::fields(std::span<const View> views) const {
 
 WaveSolution solve(const Placement& placement, double k, const std::vector<double>& light_angles,
                    const SolveOptions& options) {
+  FS_EXPECT(k > 0 && options.tolerance > 0 && options.tolerance < 1);
   check_no_overlap(placement);
   TMatrixSystem system(placement, k, options.tolerance, options.sensors);
   auto found = solve_lights(system, light_angles, enclosing_circle(placement), options);
@@ -141,6 +143,7 @@ FieldPlan make_field_plan(const Lights& lights, std::vector<View> views, double 
 // With R the rows of the views and L the right sides of the lights, R^T M^-1 L either way round.
 std::vector<Complex> scattered_fields(const Placement& placement, double k, const FieldPlan& plan,
                                       const SolveOptions& options) {
+  FS_EXPECT(k > 0 && options.tolerance > 0 && options.tolerance < 1);
   const TMatrixSystem system(placement, k, options.tolerance, options.sensors);
   const std::size_t n = system.unknowns();
   const bool compressed = !plan.far_views.weights.empty();

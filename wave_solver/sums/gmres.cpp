@@ -1,10 +1,10 @@
 #include "wave_solver/sums/gmres.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <limits>
 
+#include "core/contract.h"
 #include "core/run/interrupt.h"
 #include "wave_solver/dense/blas.h"
 #include "wave_solver/sums/block_krylov.h"
@@ -141,7 +141,7 @@ GmresResult gmres(const BlockMap& a, std::size_t unknowns, std::span<const Compl
                   const GmresOptions& options) {
   GmresResult result;
   if (unknowns == 0) return result;
-  assert(right_sides.size() % unknowns == 0);
+  FS_EXPECT(right_sides.size() % unknowns == 0);
   blas_single_thread();
   const std::size_t most = unknowns * static_cast<std::size_t>(options.block);
   for (std::size_t at = 0; at < right_sides.size(); at += most) {

@@ -1,12 +1,12 @@
 #include "wave_solver/sums/ring_product.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <map>
 #include <numeric>
 #include <utility>
 
+#include "core/contract.h"
 #include "core/run/parallel.h"
 #include "wave_solver/dense/blas.h"
 #include "wave_solver/sums/near_sum.h"
@@ -137,7 +137,7 @@ void RingProduct::subtract_far(std::span<const WaveEquations::Body> bodies, std:
 }
 
 std::vector<Complex> RingProduct::operator()(std::span<const Complex> x) const {
-  assert(resolved_);
+  FS_EXPECT(resolved_);
   const std::size_t unknowns = first_.back(), columns = unknowns ? x.size() / unknowns : 0;
   std::vector<Complex> charges(columns * ring_points_), fields(charges.size()), y(x.size());
   if (far_) {
