@@ -6,6 +6,7 @@
 #include "core/result/dataset_row.h"
 #include "mc/changes/changed_fields.h"
 #include "mc/changes/motion.h"
+#include "mc/walk/plan.h"
 
 namespace flatspeckle::mc {
 

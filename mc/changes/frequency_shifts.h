@@ -6,7 +6,9 @@
 
 #include "core/result/dataset_row.h"
 #include "core/result/result_file.h"
+#include "flatland/scene/scene.h"
 #include "mc/changes/changed_fields.h"
+#include "mc/walk/plan.h"
 
 namespace flatspeckle::mc {
 

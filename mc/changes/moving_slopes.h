@@ -5,7 +5,8 @@
 
 #include "mc/changes/motion.h"
 #include "mc/estimators/medium_slope.h"
-#include "mc/estimators/path_job.h"
+#include "mc/jobs/path_job.h"
+#include "mc/walk/plan.h"
 
 namespace flatspeckle::mc {
 

@@ -2,7 +2,9 @@
 
 #include <cstdint>
 
-#include "mc/estimators/path_job.h"
+#include "flatland/scene/scene.h"
+#include "mc/jobs/path_job.h"
+#include "mc/walk/plan.h"
 
 namespace flatspeckle::mc {
 

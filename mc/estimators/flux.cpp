@@ -9,12 +9,11 @@
 #include "core/result/result_group.h"
 #include "flatland/scene/scene_datasets.h"
 #include "grin/media/diffusion_rate.h"
-#include "mc/ends/scattering.h"
 #include "mc/estimators/flux_walk.h"
 #include "mc/estimators/varying_flux_walk.h"
-#include "mc/walk/importance.h"
+#include "mc/jobs/path_job.h"
 #include "mc/walk/plan.h"
-#include "mc/walk/walks.h"
+#include "mc/walk/scene_scattering.h"
 
 namespace flatspeckle::mc {
 

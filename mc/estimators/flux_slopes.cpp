@@ -8,7 +8,7 @@
 #include "core/run/interrupt.h"
 #include "mc/estimators/flux_walk.h"
 #include "mc/walk/plan.h"
-#include "mc/walk/walks.h"
+#include "mc/walk/scene_scattering.h"
 
 namespace flatspeckle::mc {
 

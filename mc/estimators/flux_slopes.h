@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "mc/estimators/medium_slope.h"
-#include "mc/estimators/path_job.h"
+#include "mc/jobs/path_job.h"
 
 namespace flatspeckle::mc {
 

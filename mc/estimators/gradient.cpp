@@ -9,6 +9,7 @@
 #include "core/result/result_group.h"
 #include "mc/estimators/directional_slope.h"
 #include "mc/estimators/gradient_scorer.h"
+#include "mc/estimators/scored_paths.h"
 #include "mc/estimators/single_scattering.h"
 #include "mc/theory/memory_effect.h"
 #include "mc/theory/moments_datasets.h"
@@ -50,33 +51,22 @@ Values amplitude_slopes(const Scene& scene, const AmplitudeSlope& slope) {
   return slopes;
 }
 
-struct GradientKind {
-  using Sums = std::span<Complex>;
-  std::shared_ptr<const std::vector<MediumSlope>> slopes;
-
-  std::size_t quantities() const { return 1 + slopes->size(); }
-
-  GradientTally tally(const Scene&) const { return {*slopes}; }
-
-  template <bool reversed, bool phases, typename Scattering>
-  auto scorer(const Scene& scene, const Scattering& scattering, Sums sums) const {
-    return GradientScorer<Scattering, reversed, phases>(scene, scattering, *slopes, sums);
+/// Of paths of one scatterer.
+Values single_gradient(const PathWalks& walks, const std::vector<MediumSlope>& slopes) {
+  const Scene& scene = walks.scene();
+  const auto closed_form = [&](const Scene& any) {
+    return single_scattering(any, walks.scattering());
+  };
+  const Values single = closed_form(scene), by_mu_t = extinction_slope(scene, closed_form);
+  Values all = single;
+  for (const MediumSlope& slope : slopes) {
+    const Values turned = amplitude_slopes(scene, slope.amplitude);
+    const double mu_t = slope.log_mu_t * scene.medium.mu_t;
+    for (std::size_t e = 0; e < single.size(); ++e)
+      all.push_back(mu_t * by_mu_t[e] + product(single[e], turned[e] + slope.log_albedo));
   }
-
-  template <typename Scattering>
-  Values single(const Scene& scene, const Scattering& scattering) const {
-    const auto closed_form = [&](const Scene& any) { return single_scattering(any, scattering); };
-    const Values single = closed_form(scene), by_mu_t = extinction_slope(scene, closed_form);
-    Values all = single;
-    for (const MediumSlope& slope : *slopes) {
-      const Values turned = amplitude_slopes(scene, slope.amplitude);
-      const double mu_t = slope.log_mu_t * scene.medium.mu_t;
-      for (std::size_t e = 0; e < single.size(); ++e)
-        all.push_back(mu_t * by_mu_t[e] + product(single[e], turned[e] + slope.log_albedo));
-    }
-    return all;
-  }
-};
+  return all;
+}
 
 /// [parameter][entry] with the optical depth last.
 Estimator gradient_of(const PathJob& job, double depth) {
@@ -155,8 +145,13 @@ GradientJob gradient_job(const Scene& scene, const Plan& plan, std::uint64_t see
 PathJob slope_job(const Scene& scene, const Plan& plan, const std::vector<MediumSlope>& slopes,
                   std::uint64_t seed) {
   assert(slopes.size() <= most_slopes);
-  return path_job(GradientKind{std::make_shared<const std::vector<MediumSlope>>(slopes)}, scene,
-                  plan, seed);
+  const auto shared = std::make_shared<const std::vector<MediumSlope>>(slopes);
+  return path_job({1 + slopes.size(),
+                   [shared](const PathWalks& walks, std::span<Complex> sums) {
+                     return std::make_unique<GradientScorer>(walks, *shared, sums);
+                   },
+                   [shared](const PathWalks& walks) { return single_gradient(walks, *shared); }},
+                  scene, plan, seed);
 }
 
 CorrelationGradient memory_effect_gradient(const CovarianceRequest& request,

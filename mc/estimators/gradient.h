@@ -6,7 +6,8 @@
 
 #include "core/result/dataset_row.h"
 #include "mc/estimators/medium_slope.h"
-#include "mc/estimators/path_job.h"
+#include "mc/jobs/path_job.h"
+#include "mc/walk/plan.h"
 
 namespace flatspeckle::mc {
 

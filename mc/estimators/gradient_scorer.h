@@ -10,22 +10,21 @@
 namespace flatspeckle::mc {
 
 /// Adds weight f_a conj(f_b) and its derivatives, [1 + parameter][entry].
-template <typename Scattering, bool reversed, bool phases>
-class GradientScorer {
-  using Direction = typename Scattering::Direction;
-
+class GradientScorer : public TallyScorer<GradientTally> {
  public:
-  GradientScorer(const Scene& scene, const Scattering& scattering,
-                 std::span<const MediumSlope> slopes, std::span<Complex> sums)
-      : channels_(scene.request.channels),
-        scattering_(scattering),
-        slopes_(scene, scattering, slopes),
-        sums_(channels_.size(), scene.request.entries, slopes.size(), sums),
-        ends_(scene, [](std::size_t ends) { return SlopedEnds(ends); }) {}
+  GradientScorer(const PathWalks& walks, std::span<const MediumSlope> slopes,
+                 std::span<Complex> sums)
+      : TallyScorer(GradientTally{slopes}),
+        channels_(walks.scene().request.channels),
+        scattering_(walks.scattering()),
+        slopes_(walks, slopes),
+        sums_(channels_.size(), walks.scene().request.entries, slopes.size(), sums),
+        ends_(walks, [](std::size_t ends) { return SlopedEnds(ends); }) {}
 
   /// B = 1 at x.
-  void single(Vec2 x, double weight) {
-    auto& [lights, views, light_first, light, view_first, view] = ends_;
+  void single(Vec2 x, double weight) override {
+    EndFactors &lights = ends_.lights(), &views = ends_.views();
+    SlopedEnds &light = ends_.light_last, &view = ends_.view_last;
     slopes_.attenuate(lights, x, light);
     slopes_.attenuate(views, x, view);
     sums_.clear();
@@ -33,20 +32,20 @@ class GradientScorer {
       const auto [i, v] = channels_[c];
       const Vec2 from = -lights.direction(i), to = views.direction(v);
       add_term(c, slopes_.half_of_one(from, to), light, view,
-               local(scattering_, x).amplitude(from, to));
+               scattering_.amplitude(x, from, to));
     }
     sums_.accumulate(weight);
   }
 
-  void multiple(const TalliedPath<Direction, GradientTally>& path) {
-    ends_.find(path, [this](auto& ends, Vec2 x, const Direction& arrival, SlopedEnds& out) {
+  void multiple(const Path& path) override {
+    ends_.find(path, [this](EndFactors& ends, Vec2 x, const SpaceDirection& arrival, SlopedEnds& out) {
       slopes_.at(ends, x, arrival, out);
     });
-    const LogSlopes half = slopes_.half(path.tally);
+    const LogSlopes half = slopes_.half(tally());
     sums_.clear();
     for (std::size_t c = 0; c < channels_.size(); ++c) {
       add_term(c, half, ends_.light_first, ends_.view_last, 1.0);
-      if constexpr (reversed) add_term(c, half, ends_.light_last, ends_.view_first, 1.0);
+      if (ends_.reversed()) add_term(c, half, ends_.light_last, ends_.view_first, 1.0);
     }
     sums_.accumulate(path.weight);
   }
@@ -63,10 +62,10 @@ class GradientScorer {
   }
 
   const std::vector<Channel>& channels_;
-  const Scattering& scattering_;
-  MediumSlopes<Scattering, phases> slopes_;
+  const EndScattering& scattering_;
+  MediumSlopes slopes_;
   SlopeSums sums_;
-  PathEnds<SlopedEnds, reversed, phases> ends_;
+  PathEnds<SlopedEnds> ends_;
 };
 
 }  // namespace flatspeckle::mc

@@ -9,7 +9,7 @@
 #include "core/numbers/complex.h"
 #include "flatland/scene/scene.h"
 #include "mc/ends/space_scattering.h"
-#include "mc/estimators/bulk_parameter.h"
+#include "mc/jobs/bulk_parameter.h"
 
 namespace flatspeckle::mc {
 

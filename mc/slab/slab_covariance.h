@@ -4,7 +4,7 @@
 #include "flatland/scene/scene.h"
 #include "mc/changes/field_change.h"
 #include "mc/estimators/gradient.h"
-#include "mc/estimators/path_job.h"
+#include "mc/jobs/path_job.h"
 #include "mc/slab/refinement.h"
 
 namespace flatspeckle::mc {

@@ -2,6 +2,7 @@
 
 #include "core/error.h"
 #include "flatland/media/layers.h"
+#include "mc/estimators/scored_paths.h"
 #include "mc/varying/layer_gradient_scorer.h"
 
 namespace flatspeckle::mc {
@@ -22,28 +23,6 @@ std::vector<LayerParameter> layer_parameters(const Scene& scene) {
   return parameters;
 }
 
-struct LayerGradientKind {
-  using Sums = std::span<Complex>;
-  static constexpr bool only_varying = true;
-  std::vector<LayerParameter> parameters;
-
-  std::size_t quantities() const { return 1 + parameters.size(); }
-
-  LayerTally tally(const Scene& scene) const { return {layers_of(scene)}; }
-
-  template <bool reversed, bool phases, typename Scattering>
-  auto scorer(const Scene& scene, const Scattering& scattering, Sums sums) const {
-    return LayerGradientScorer<Scattering, reversed, phases>(scene, scattering, *layers_of(scene),
-                                                             parameters, sums);
-  }
-
-  /// Paths have it all.
-  template <typename Scattering>
-  Values single(const Scene&, const Scattering&) const {
-    return {};
-  }
-};
-
 }  // namespace
 
 void check_layer_gradient(const Scene& scene) {
@@ -61,7 +40,12 @@ void check_layer_gradient(const Scene& scene) {
 GradientJob layer_gradient_job(const Scene& scene, const Plan& plan, std::uint64_t seed) {
   check_layer_gradient(scene);
   const auto parameters = layer_parameters(scene);
-  GradientJob job{path_job(LayerGradientKind{parameters}, scene, plan, seed), {}, {}};
+  const ScoredPaths paths{1 + parameters.size(),
+                          [parameters](const PathWalks& walks, std::span<Complex> sums) {
+                            return std::make_unique<LayerGradientScorer>(
+                                walks, *layers_of(walks.scene()), parameters, sums);
+                          }};
+  GradientJob job{path_job(paths, scene, plan, seed), {}, {}};
   for (const auto& [layer, parameter] : parameters)
     job.parameters.push_back(name_of(parameter) + " of layer " + std::to_string(layer + 1));
   job.gradient = [all = job.all, entries = job.entries](double samples,

@@ -16,25 +16,24 @@ struct LayerParameter {
 };
 
 /// As GradientScorer, of layers seen from far.
-template <typename Scattering, bool reversed, bool phases>
-class LayerGradientScorer {
-  using Direction = typename Scattering::Direction;
-
+class LayerGradientScorer : public TallyScorer<LayerTally> {
  public:
-  LayerGradientScorer(const Scene& scene, const Scattering& scattering, const Layers& layers,
+  LayerGradientScorer(const PathWalks& walks, const Layers& layers,
                       std::span<const LayerParameter> parameters, std::span<Complex> sums)
-      : channels_(scene.request.channels),
-        domain_(scene.domain),
-        scattering_(scattering),
+      : TallyScorer(LayerTally{&layers}),
+        channels_(walks.scene().request.channels),
+        domain_(walks.scene().domain),
+        scattering_(walks.scattering()),
         layers_(layers),
         parameters_(parameters),
         path_slopes_(parameters.size()),
-        sums_(scene.request.channels.size(), scene.request.entries, parameters.size(), sums),
-        ends_(scene, [&](std::size_t ends) { return EndValues(ends, parameters.size()); }) {}
+        sums_(channels_.size(), walks.scene().request.entries, parameters.size(), sums),
+        ends_(walks, [&](std::size_t ends) { return EndValues(ends, parameters.size()); }) {}
 
   /// B = 1 at x.
-  void single(Vec2 x, double weight) {
-    auto& [lights, views, light_first, light, view_first, view] = ends_;
+  void single(Vec2 x, double weight) override {
+    EndFactors &lights = ends_.lights(), &views = ends_.views();
+    EndValues &light = ends_.light_last, &view = ends_.view_last;
     attenuate(lights, x, light);
     attenuate(views, x, view);
     sums_.clear();
@@ -44,28 +43,27 @@ class LayerGradientScorer {
       LayerTally tally{&layers_};
       tally.scattering(x, from, to);
       find_path_slopes(tally, x);
-      add_term(c, light, view, local(scattering_, x).amplitude(from, to));
+      add_term(c, light, view, scattering_.amplitude(x, from, to));
     }
     sums_.accumulate(weight);
   }
 
-  void multiple(const TalliedPath<Direction, LayerTally>& path) {
-    ends_.find(path, [this](auto& ends, Vec2 x, const Direction& arrival, EndValues& out) {
+  void multiple(const Path& path) override {
+    ends_.find(path, [this](EndFactors& ends, Vec2 x, const SpaceDirection& arrival, EndValues& out) {
       attenuate(ends, x, out);
-      local(scattering_, x).towards(arrival, ends.directions(), out.value);
+      scattering_.towards(x, arrival, ends.directions(), out.value);
       turn(ends, x, arrival, out);
     });
-    find_path_slopes(path.tally, path.first);
+    find_path_slopes(tally(), path.first);
     sums_.clear();
     for (std::size_t c = 0; c < channels_.size(); ++c) {
       add_term(c, ends_.light_first, ends_.view_last, 1.0);
-      if constexpr (reversed) add_term(c, ends_.light_last, ends_.view_first, 1.0);
+      if (ends_.reversed()) add_term(c, ends_.light_last, ends_.view_first, 1.0);
     }
     sums_.accumulate(path.weight);
   }
 
  private:
-  using Ends = EndFactors<phases>;
   /// A e of every end and its logarithmic derivatives, [end][parameter].
   struct EndValues {
     std::vector<Complex> value;
@@ -74,7 +72,7 @@ class LayerGradientScorer {
     EndValues(std::size_t ends, std::size_t parameters) : value(ends), slope(ends * parameters) {}
   };
 
-  void attenuate(Ends& ends, Vec2 x, EndValues& out) const {
+  void attenuate(EndFactors& ends, Vec2 x, EndValues& out) const {
     ends.attenuate(x, out.value);
     for (std::size_t j = 0; j < ends.size(); ++j) {
       const Vec2 w = ends.direction(j);
@@ -90,7 +88,7 @@ class LayerGradientScorer {
   }
 
   /// Towards the ends, by g.
-  void turn(const Ends& ends, Vec2 x, const Direction& arrival, EndValues& out) const {
+  void turn(const EndFactors& ends, Vec2 x, const SpaceDirection& arrival, EndValues& out) const {
     const std::size_t here = layers_.material_at(x);
     for (std::size_t p = 0; p < parameters_.size(); ++p) {
       const auto [layer, parameter] = parameters_[p];
@@ -98,7 +96,7 @@ class LayerGradientScorer {
       for (std::size_t j = 0; j < ends.size(); ++j)
         out.slope[j * parameters_.size() + p] +=
             henyey_greenstein_slope(layers_.materials()[layer].medium.g,
-                                    one_minus_cosine(arrival, Direction(ends.direction(j)))) /
+                                    one_minus_cosine(arrival, SpaceDirection(ends.direction(j)))) /
             2;
     }
   }
@@ -129,12 +127,12 @@ class LayerGradientScorer {
 
   const std::vector<Channel>& channels_;
   Domain domain_;
-  const Scattering& scattering_;
+  const EndScattering& scattering_;
   const Layers& layers_;
   std::span<const LayerParameter> parameters_;
   std::vector<double> path_slopes_;
   SlopeSums sums_;
-  PathEnds<EndValues, reversed, phases> ends_;
+  PathEnds<EndValues> ends_;
 };
 
 }  // namespace flatspeckle::mc

@@ -3,7 +3,8 @@
 #include <array>
 
 #include "flatland/media/layers.h"
-#include "mc/estimators/bulk_parameter.h"
+#include "mc/ends/space_direction.h"
+#include "mc/jobs/bulk_parameter.h"
 
 namespace flatspeckle::mc {
 
@@ -20,14 +21,12 @@ struct LayerTally {
   PerLayer scatterers{}, length{};
   PerLayer phase_slope{};  ///< sum of d log p / d g over the inner scatterers
 
-  template <typename Direction>
-  void flight(Vec2 x, const Direction& to, double r) {
+  void flight(Vec2 x, const SpaceDirection& to, double r) {
     const Vec2 w = to;
     layers->each_part(x, w, r, [this](std::size_t layer, double part) { length[layer] += part; });
     ++scatterers[layers->material_at(x + r * w)];
   }
-  template <typename Direction>
-  void scattering(Vec2 x, const Direction& from, const Direction& to) {
+  void scattering(Vec2 x, const SpaceDirection& from, const SpaceDirection& to) {
     const std::size_t layer = layers->material_at(x);
     phase_slope[layer] += henyey_greenstein_slope(layers->materials()[layer].medium.g,
                                                   one_minus_cosine(from, to));

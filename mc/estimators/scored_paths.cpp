@@ -1,8 +1,21 @@
-#include "mc/estimators/path_job.h"
+#include "mc/estimators/scored_paths.h"
 
+#include "flatland/scene/index_fields.h"
 #include "mc/ends/coherent_field.h"
 
 namespace flatspeckle::mc {
+
+PathJob path_job(const ScoredPaths& paths, const Scene& scene, const Plan& plan,
+                 std::uint64_t seed) {
+  refuse_graded(scene, "this; take covariances, fields or validate");
+  const auto walks = path_walks(scene, plan, seed);
+  const bool has_closed_form = walks && paths.single && !plan.sampled_single && !scene.profile;
+  return path_job(scene, plan, paths.quantities,
+                  has_closed_form ? paths.single(*walks) : std::vector<Complex>(),
+                  [walks, scorer = paths.scorer](std::uint64_t number, std::span<Complex> sums) {
+                    if (walks) walks->batch(number, *scorer(*walks, sums));
+                  });
+}
 
 PathJob path_job(const Scene& scene, const Plan& plan, std::size_t quantities,
                  const std::vector<Complex>& single, const SummedBatches& batches) {

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <memory>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "mc/ends/end_scattering.h"
+#include "mc/ends/space_scattering.h"
+#include "mc/graded/graded_scattering.h"
+#include "mc/walk/plan.h"
+
+namespace flatspeckle::mc {
+
+/// Calls f with the scattering of a scene of the plane in one of its forms.
+template <typename F>
+void with_scattering(const Scene& scene, Plan::Phase phase, F f) {
+  switch (phase) {
+    case Plan::Phase::isotropic:
+      return f(IsotropicScattering{});
+    case Plan::Phase::henyey_greenstein:
+      return f(HenyeyGreensteinScattering{{scene.scatterer.g}});
+    case Plan::Phase::tabulated:
+      return f(TabulatedScattering(scene.medium, scene.k));
+    case Plan::Phase::space:
+    case Plan::Phase::varying:
+    case Plan::Phase::graded:
+      break;
+  }
+  throw std::logic_error("with_scattering: not the phase function of a scatterer in the plane");
+}
+
+/// Of a medium that varies: of each material in its form.
+VaryingScattering varying_scattering(const Scene& scene);
+
+/// Of a medium whose index varies.
+GradedScattering graded_scattering(const Scene& scene);
+
+/// Calls f with the scattering of any scene.
+template <typename F>
+void with_any_scattering(const Scene& scene, Plan::Phase phase, F f) {
+  if (phase == Plan::Phase::varying) return f(varying_scattering(scene));
+  if (phase == Plan::Phase::graded) return f(graded_scattering(scene));
+  if (phase == Plan::Phase::space) return f(SpaceScattering(scene.medium.space_phase));
+  with_scattering(scene, phase, f);
+}
+
+}  // namespace flatspeckle::mc
