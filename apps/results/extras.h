@@ -6,7 +6,7 @@
 
 #include "apps/results/estimation.h"
 #include "core/result/result_file.h"
-#include "mc/changes/contrast.h"
+#include "mc/jobs/contrast.h"
 #include "mc/jobs/path_job.h"
 
 namespace flatspeckle::apps {

@@ -8,11 +8,9 @@
 
 #include "core/error.h"
 #include "core/numbers/phasor.h"
-#include "core/result/result_group.h"
 #include "mc/estimators/path_ends.h"
 #include "mc/estimators/scored_paths.h"
 #include "mc/estimators/single_scattering.h"
-#include "mc/theory/diffusion.h"
 
 namespace flatspeckle::mc {
 
@@ -124,7 +122,8 @@ class DelayScorer : public TallyScorer<Tally> {
   }
 
   void multiple(const Path& path) override {
-    ends_.find(path, [this](EndFactors& ends, Vec2 x, const SpaceDirection& arrival, Decaying<Tally>& out) {
+    ends_.find(path, [this](EndFactors& ends, Vec2 x, const SpaceDirection& arrival,
+                            Decaying<Tally>& out) {
       ends.attenuate(x, out.value);
       scattering_.towards(x, arrival, ends.directions(), out.value);
       for (std::size_t j = 0; j < ends.size(); ++j)
@@ -172,8 +171,7 @@ class DelayScorer : public TallyScorer<Tally> {
     for (std::size_t t = 0; t < delays_.size(); ++t) {
       const std::size_t light = t * lights + i, view = t * views + v;
       Factor sum = with_forward * light_first.decay[light] * view_last.decay[view];
-      if (ends_.reversed())
-        sum += with_backward * light_last.decay[light] * view_first.decay[view];
+      if (ends_.reversed()) sum += with_backward * light_last.decay[light] * view_first.decay[view];
       sums_[(1 + t) * channels_.size() + c] += inner_.decay[t] * sum;
     }
   }
@@ -187,8 +185,8 @@ class DelayScorer : public TallyScorer<Tally> {
   Decay decay_;
 };
 
-/// Of paths of one scatterer, in a medium that is the same everywhere; shear is a slope of the phase
-/// along z.
+/// Of paths of one scatterer, in a medium that is the same everywhere; shear is a slope of the
+/// phase along z.
 Values single_covariances(const PathWalks& walks, const std::vector<double>& delays,
                           const Motion& motion) {
   const Scene& scene = walks.scene();
@@ -215,14 +213,6 @@ Values single_covariances(const PathWalks& walks, const std::vector<double>& del
 
 }  // namespace
 
-void check_delays(const Scene& scene, const std::vector<double>& delays) {
-  if (!scene.medium.structure.independent())
-    throw InputError("delays: scatterers at correlated positions do not move independently");
-  for (const double delay : delays)
-    if (!(delay >= 0 && delay <= 1e100))
-      throw InputError("delays", delay, "must not be negative, nor above 1e100");
-}
-
 PathJob delay_job(const Scene& scene, const Plan& plan, const std::vector<double>& delays,
                   std::uint64_t seed, const Motion& motion) {
   if (scene.request.kind != CovarianceRequest::Kind::intensity)
@@ -241,57 +231,6 @@ PathJob delay_job(const Scene& scene, const Plan& plan, const std::vector<double
   PathJob job = path_job({1 + delays.size(), scorer, single}, scene, plan, seed);
   job.field.batches.relative_error = relative_error_of(job.all);
   return job;
-}
-
-Estimate magnitude(Estimate estimate) {
-  for (Complex& value : estimate.value) value = std::abs(value);
-  return estimate;
-}
-
-const DatasetTable delays_table{
-    "delays",
-    {{"delay", Data::scale, "", "1", "k^2 D tau"},
-     {"covariance", Data::estimate, "delay LIGHT VIEW", "COVARIANCE",
-      "covariance of the field with itself after a delay"},
-     {"field_correlation", Data::estimate, "delay LIGHT VIEW", "1",
-      "field correlation after a delay, |g1|"},
-     {"complex_covariance", Data::complex_estimate, "delay LIGHT VIEW", "COVARIANCE",
-      "covariance of the field with itself after a delay, where scatterers flow"},
-     {"complex_correlation", Data::complex_estimate, "delay LIGHT VIEW", "1",
-      "field correlation after a delay, g1, where scatterers flow"},
-     {"diffusion_theory", Data::real, "delay", "1",
-      "field correlation of transmitted light in diffusion theory"},
-     {"delayed_covariance", Data::complex_estimate, "delay tilt VIEW", "COVARIANCE",
-      "covariance of reference and moved field after a delay"},
-     {"delayed_correlation", Data::estimate, "delay tilt", "1",
-      "C_E of reference and moved field after a delay"}}};
-
-void write_delays(ResultFile& file, const Scene& scene, const std::vector<double>& delays,
-                  const ChangeEstimates& found, const Motion& motion) {
-  const ResultGroup root(file, delays_table);
-  root.put("delay", delays);
-  if (scene.request.has_reference()) {
-    root.put("delayed_covariance", found.covariance);
-    return root.put("delayed_correlation", found.correlation);
-  }
-  if (!motion.only_diffuses(scene)) {
-    root.put("complex_covariance", found.covariance);
-    root.put("complex_correlation", found.correlation);
-    return root.put("field_correlation", magnitude(found.correlation));
-  }
-  root.put("covariance", found.covariance);
-  root.put("field_correlation", found.correlation);
-  if (scene.domain.kind != Domain::Kind::slab || !scene.request.transmission_only()) return;
-  root.put("diffusion_theory", column(delays, [&](double delay) {
-             return diffusion_delay_correlation(scene.medium, scene.domain.depth, delay);
-           }));
-}
-
-double diffusion_delay_correlation(const BulkMedium& medium, double thickness, double delay) {
-  // kappa^2 = mu_a dimension / l*, and what adds to it acts like the square of a tilt's wavenumber
-  const double loss = 2 * delay * (1 - medium.g) * medium.mu_s;
-  const double q = std::sqrt(medium.dimension * loss / medium.transport_mean_free_path());
-  return diffusion_field_correlation(medium, thickness, q);
 }
 
 }  // namespace flatspeckle::mc

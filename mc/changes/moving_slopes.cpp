@@ -1,6 +1,5 @@
 #include "mc/changes/moving_slopes.h"
 
-#include <cassert>
 #include <cmath>
 #include <memory>
 
@@ -85,26 +84,25 @@ class MovingScorer : public TallyScorer<MovingTally> {
       LogSlopes log = slopes_.half_of_one(from, to);
       add(log, light.slopes[i]);
       add(log, view.slopes[v]);
-      add_term(c, light.value[i] * view.value[v] * scattering_.amplitude(x, from, to), log,
-               turned);
+      add_term(c, light.value[i] * view.value[v] * scattering_.amplitude(x, from, to), log, turned);
     }
     sums_.accumulate(weight);
   }
 
   void multiple(const Path& path) override {
-    ends_.find(path, [this](EndFactors& ends, Vec2 x, const SpaceDirection& arrival, MovingEnds& out) {
-      slopes_.at(ends, x, arrival, out);
-      for (std::size_t j = 0; j < ends.size(); ++j) {
-        out.turned[j] = {};
-        out.turned[j].add(x, arrival, ends.direction(j));
-      }
-    });
+    ends_.find(path,
+               [this](EndFactors& ends, Vec2 x, const SpaceDirection& arrival, MovingEnds& out) {
+                 slopes_.at(ends, x, arrival, out);
+                 for (std::size_t j = 0; j < ends.size(); ++j) {
+                   out.turned[j] = {};
+                   out.turned[j].add(x, arrival, ends.direction(j));
+                 }
+               });
     const LogSlopes half = slopes_.half(tally());
     sums_.clear();
     for (std::size_t c = 0; c < channels_.size(); ++c) {
       add_ends(c, half, tally().turned, ends_.light_first, ends_.view_last);
-      if (ends_.reversed())
-        add_ends(c, half, tally().turned, ends_.light_last, ends_.view_first);
+      if (ends_.reversed()) add_ends(c, half, tally().turned, ends_.light_last, ends_.view_first);
     }
     sums_.accumulate(path.weight);
   }
@@ -162,10 +160,10 @@ class MovingScorer : public TallyScorer<MovingTally> {
 PathJob moving_slope_job(const Scene& scene, const Plan& plan, const std::vector<double>& delays,
                          const Motion& motion, const std::vector<MovingSlope>& slopes,
                          std::uint64_t seed) {
-  assert(!scene.profile && slopes.size() <= most_slopes && plan.sampled_single);
   check_delays(scene, delays);
   MovingSlopes all{delays, motion, slopes, {}, {}};
   for (const MovingSlope& slope : slopes) all.media.push_back(slope.medium);
+  require_slopes(scene, all.media);
   const auto channels = static_cast<std::uint32_t>(scene.request.channels.size());
   for (std::uint32_t t = 0; t <= delays.size(); ++t)
     for (std::uint32_t c = 0; c < channels; ++c) all.entries.push_back({c, t * channels + c});

@@ -100,7 +100,8 @@ double StraightEnds::log_magnitude(Vec2 x, Vec2 w, double inside) const {
 void StraightEnds::attenuate(Vec2 x, std::span<Complex> out) {
   if (extinction_.profile == nullptr) {
     for (std::size_t j = 0; j < size(); ++j)
-      log_attenuation_[j] = std::max(-extinction_.mu_t * distance_to_edge(j, x) / 2, log_of_nothing);
+      log_attenuation_[j] =
+          std::max(-extinction_.mu_t * distance_to_edge(j, x) / 2, log_of_nothing);
   } else {
     for (std::size_t j = 0; j < size(); ++j)
       log_attenuation_[j] = log_magnitude(x, directions_[j], distance_to_edge(j, x));

@@ -1,6 +1,5 @@
 #include "mc/estimators/fixed_count.h"
 
-#include <cassert>
 #include <memory>
 #include <vector>
 
@@ -42,9 +41,8 @@ class FixedCountScorer : public TallyScorer<GradientTally> {
   }
 
   void multiple(const Path& path) override {
-    ends_.find(path, [this](EndFactors& ends, Vec2 x, const SpaceDirection& arrival, SlopedEnds& out) {
-      slopes_.at(ends, x, arrival, out);
-    });
+    ends_.find(path, [this](EndFactors& ends, Vec2 x, const SpaceDirection& arrival,
+                            SlopedEnds& out) { slopes_.at(ends, x, arrival, out); });
     const Complex half = slopes_.half(tally())[0];
     for (std::size_t c = 0; c < fields_.size(); ++c) {
       fields_[c] = {};
@@ -93,8 +91,8 @@ class FixedCountScorer : public TallyScorer<GradientTally> {
 }  // namespace
 
 PathJob fixed_count_job(const Scene& scene, const Plan& plan, std::uint64_t seed) {
-  assert(!scene.profile && plan.sampled_single);
   static const std::vector<MediumSlope> by_number = {{"number", 1, 0, {}}};
+  require_slopes(scene, by_number);
   return path_job({2,
                    [](const PathWalks& walks, std::span<Complex> sums) {
                      return std::make_unique<FixedCountScorer>(walks, by_number, sums);

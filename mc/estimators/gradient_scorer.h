@@ -31,16 +31,14 @@ class GradientScorer : public TallyScorer<GradientTally> {
     for (std::size_t c = 0; c < channels_.size(); ++c) {
       const auto [i, v] = channels_[c];
       const Vec2 from = -lights.direction(i), to = views.direction(v);
-      add_term(c, slopes_.half_of_one(from, to), light, view,
-               scattering_.amplitude(x, from, to));
+      add_term(c, slopes_.half_of_one(from, to), light, view, scattering_.amplitude(x, from, to));
     }
     sums_.accumulate(weight);
   }
 
   void multiple(const Path& path) override {
-    ends_.find(path, [this](EndFactors& ends, Vec2 x, const SpaceDirection& arrival, SlopedEnds& out) {
-      slopes_.at(ends, x, arrival, out);
-    });
+    ends_.find(path, [this](EndFactors& ends, Vec2 x, const SpaceDirection& arrival,
+                            SlopedEnds& out) { slopes_.at(ends, x, arrival, out); });
     const LogSlopes half = slopes_.half(tally());
     sums_.clear();
     for (std::size_t c = 0; c < channels_.size(); ++c) {

@@ -64,9 +64,9 @@ class PathFields {
   void find_listed(Vec2 x) {
     for (std::size_t c = 0; c < channels_.size(); ++c) {
       const auto [i, v] = channels_[c];
-      field_[c] =
-          product(product(ends_.light_last[i], ends_.view_last[v]),
-                  scattering_.amplitude(x, -ends_.lights().direction(i), ends_.views().direction(v)));
+      field_[c] = product(
+          product(ends_.light_last[i], ends_.view_last[v]),
+          scattering_.amplitude(x, -ends_.lights().direction(i), ends_.views().direction(v)));
     }
   }
 

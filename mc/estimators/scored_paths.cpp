@@ -1,5 +1,7 @@
 #include "mc/estimators/scored_paths.h"
 
+#include <stdexcept>
+
 #include "flatland/scene/index_fields.h"
 #include "mc/ends/coherent_field.h"
 
@@ -9,9 +11,11 @@ PathJob path_job(const ScoredPaths& paths, const Scene& scene, const Plan& plan,
                  std::uint64_t seed) {
   refuse_graded(scene, "this; take covariances, fields or validate");
   const auto walks = path_walks(scene, plan, seed);
-  const bool has_closed_form = walks && paths.single && !plan.sampled_single && !scene.profile;
+  const bool has_closed_form = paths.single && !scene.profile;
+  if (!plan.sampled_single && !has_closed_form)
+    throw std::logic_error("a plan that leaves paths of one scatterer to a closed form: has none");
   return path_job(scene, plan, paths.quantities,
-                  has_closed_form ? paths.single(*walks) : std::vector<Complex>(),
+                  walks && !plan.sampled_single ? paths.single(*walks) : std::vector<Complex>(),
                   [walks, scorer = paths.scorer](std::uint64_t number, std::span<Complex> sums) {
                     if (walks) walks->batch(number, *scorer(*walks, sums));
                   });

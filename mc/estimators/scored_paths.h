@@ -21,7 +21,8 @@ struct ScoredPaths {
   std::function<std::vector<Complex>(const PathWalks&)> single{};
 };
 
-/// Throws InputError where light is bent: only fields and covariances are estimated there.
+/// Throws InputError where light is bent: only fields and covariances are estimated there. Throws
+/// std::logic_error for a plan that leaves paths of one scatterer to a closed form that is missing.
 PathJob path_job(const ScoredPaths& paths, const Scene& scene, const Plan& plan,
                  std::uint64_t seed);
 

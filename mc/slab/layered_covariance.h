@@ -2,7 +2,7 @@
 
 #include "flatland/request/field_moments.h"
 #include "flatland/scene/scene.h"
-#include "mc/changes/field_change.h"
+#include "mc/jobs/field_change.h"
 #include "mc/jobs/path_job.h"
 #include "mc/slab/refinement.h"
 

@@ -49,11 +49,12 @@ class LayerGradientScorer : public TallyScorer<LayerTally> {
   }
 
   void multiple(const Path& path) override {
-    ends_.find(path, [this](EndFactors& ends, Vec2 x, const SpaceDirection& arrival, EndValues& out) {
-      attenuate(ends, x, out);
-      scattering_.towards(x, arrival, ends.directions(), out.value);
-      turn(ends, x, arrival, out);
-    });
+    ends_.find(path,
+               [this](EndFactors& ends, Vec2 x, const SpaceDirection& arrival, EndValues& out) {
+                 attenuate(ends, x, out);
+                 scattering_.towards(x, arrival, ends.directions(), out.value);
+                 turn(ends, x, arrival, out);
+               });
     find_path_slopes(tally(), path.first);
     sums_.clear();
     for (std::size_t c = 0; c < channels_.size(); ++c) {

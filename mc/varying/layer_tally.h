@@ -28,8 +28,8 @@ struct LayerTally {
   }
   void scattering(Vec2 x, const SpaceDirection& from, const SpaceDirection& to) {
     const std::size_t layer = layers->material_at(x);
-    phase_slope[layer] += henyey_greenstein_slope(layers->materials()[layer].medium.g,
-                                                  one_minus_cosine(from, to));
+    phase_slope[layer] +=
+        henyey_greenstein_slope(layers->materials()[layer].medium.g, one_minus_cosine(from, to));
   }
 };
 

@@ -39,8 +39,8 @@ class PathScorer {
   /// It is scattered at x, and flies on along `to`.
   virtual void step(Vec2 /*x*/, const SpaceDirection& /*from*/, const SpaceDirection& /*to*/,
                     double /*length*/) {}
-  /// Its tally is kept for the paths that it splits into, then taken up again by each; last: for the
-  /// last time. What was kept last is taken up first.
+  /// Its tally is kept for the paths that it splits into, then taken up again by each; last: for
+  /// the last time. What was kept last is taken up first.
   virtual void keep() {}
   virtual void take_up(bool /*last*/) {}
 };

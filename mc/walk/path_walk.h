@@ -119,7 +119,7 @@ class PathWalk {
       const ProfileFlight flight(*profile_, x, w, edge);
       return {flight.sample(random.uniform()), flight.probability()};
     }
-    const StretchedFlight flight{medium_.mu_t, edge, pull(x, w)};
+    const BoundedStretchedFlight flight{medium_.mu_t, edge, pull(x, w)};
     const double length = flight.sample(random.uniform());
     return {length, flight.weight(length)};
   }
@@ -130,7 +130,7 @@ class PathWalk {
       const auto place = scattering_.medium().flown(x, w, length);
       return place ? std::pair(place->x, place->w) : std::pair(x, w);
     } else {
-      return {x + length * w, w};
+      return {x + length * Vec2(w), w};
     }
   }
 
@@ -152,7 +152,7 @@ class PathWalk {
                  flight = sample_flight(walker, w, edge, random);
     if (flight >= edge) return false;
     if (has_tally_) scorer.step(walker.x, walker.arrival, w, flight);
-    walker.x = walker.x + flight * w;
+    walker.x = walker.x + flight * Vec2(w);
     walker.arrival = w;
     return true;
   }
@@ -175,7 +175,7 @@ class PathWalk {
     const double mu_t = medium_.mu_t;
     if (plan_.weighted) {
       if (const double gain = pull(walker.x, w); gain > 0) {
-        const double stretched = 1 - std::min(gain, StretchedFlight::most_pull);
+        const double stretched = 1 - std::min(gain, grin::StretchedFlight::most_pull);
         const bool stretch = random.uniform() < 0.5;
         const double flight =
             grin::sample_free_flight(stretch ? stretched * mu_t : mu_t, random.uniform());
@@ -277,7 +277,7 @@ class PathWalk {
   const BulkMedium& medium_;
   const MediumProfile* profile_;  ///< of a medium that varies
   const Scattering& scattering_;
-  DepthImportance importance_;
+  DiffusionImportance importance_;
   First first_;
   ExpectedContribution expected_view_;
   std::vector<Walker> waiting_;

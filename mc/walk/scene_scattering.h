@@ -12,9 +12,12 @@
 
 namespace flatspeckle::mc {
 
-/// Calls f with the scattering of a scene of the plane in one of its forms.
+/// Calls f with the scattering of a scene of the plane in one of its forms. Throws std::logic_error
+/// for any other scene.
 template <typename F>
 void with_scattering(const Scene& scene, Plan::Phase phase, F f) {
+  if (scene.medium.dimension != 2)
+    throw std::logic_error("with_scattering: a scene in space has no form in the plane");
   switch (phase) {
     case Plan::Phase::isotropic:
       return f(IsotropicScattering{});
