@@ -1,8 +1,7 @@
-#include "mc/estimators/fixed_count.h"
-
 #include <memory>
 #include <vector>
 
+#include "mc/estimators/gradient.h"
 #include "mc/estimators/path_ends.h"
 #include "mc/estimators/scored_paths.h"
 #include "mc/estimators/sloped_ends.h"

@@ -1,10 +1,9 @@
-#include "mc/estimators/flux_slopes.h"
-
 #include <array>
 #include <cmath>
 #include <memory>
 
 #include "core/run/interrupt.h"
+#include "mc/estimators/gradient.h"
 #include "mc/estimators/flux_walk.h"
 #include "mc/walk/plan.h"
 #include "mc/walk/scene_scattering.h"

@@ -3,7 +3,6 @@
 #include "core/error.h"
 #include "mc/fit/fit_report.h"
 #include "mc/fit/model/slab_model.h"
-#include "mc/fit/path_fit.h"
 #include "mc/fit/task/fit_data.h"
 
 namespace flatspeckle::mc {

@@ -1,5 +1,3 @@
-#include "mc/fit/path_fit.h"
-
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -10,6 +8,7 @@
 #include "core/run/interrupt.h"
 #include "core/run/stopwatch.h"
 #include "mc/fit/fit_report.h"
+#include "mc/fit/medium_fit.h"
 #include "mc/fit/model/neglected.h"
 #include "mc/fit/model/path_model.h"
 #include "mc/fit/task/fit_data.h"

@@ -5,8 +5,6 @@
 #include <utility>
 #include <vector>
 
-#include "mc/ends/end_scattering.h"
-#include "mc/ends/space_scattering.h"
 #include "mc/graded/graded_scattering.h"
 #include "mc/walk/plan.h"
 
@@ -38,14 +36,5 @@ VaryingScattering varying_scattering(const Scene& scene);
 
 /// Of a medium whose index varies.
 GradedScattering graded_scattering(const Scene& scene);
-
-/// Calls f with the scattering of any scene.
-template <typename F>
-void with_any_scattering(const Scene& scene, Plan::Phase phase, F f) {
-  if (phase == Plan::Phase::varying) return f(varying_scattering(scene));
-  if (phase == Plan::Phase::graded) return f(graded_scattering(scene));
-  if (phase == Plan::Phase::space) return f(SpaceScattering(scene.medium.space_phase));
-  with_scattering(scene, phase, f);
-}
 
 }  // namespace flatspeckle::mc

@@ -1,5 +1,6 @@
 #include "mc/walk/walks.h"
 
+#include "mc/ends/space_scattering.h"
 #include "mc/graded/graded_ends.h"
 #include "mc/walk/path_walk.h"
 #include "mc/walk/scene_scattering.h"
@@ -55,6 +56,15 @@ class WalksBy final : public PathWalks {
   const ScatteringAtEnds<Scattering> scattering_;
   const PathWalk<Scattering> walk_;
 };
+
+/// Calls f with the scattering of any scene.
+template <typename F>
+void with_any_scattering(const Scene& scene, Plan::Phase phase, F f) {
+  if (phase == Plan::Phase::varying) return f(varying_scattering(scene));
+  if (phase == Plan::Phase::graded) return f(graded_scattering(scene));
+  if (phase == Plan::Phase::space) return f(SpaceScattering(scene.medium.space_phase));
+  with_scattering(scene, phase, f);
+}
 
 }  // namespace
 

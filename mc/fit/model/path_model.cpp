@@ -5,8 +5,6 @@
 #include <functional>
 
 #include "core/error.h"
-#include "mc/estimators/fixed_count.h"
-#include "mc/estimators/flux_slopes.h"
 #include "mc/estimators/gradient.h"
 #include "mc/fit/task/correlated_errors.h"
 #include "mc/fit/task/curve_values.h"
