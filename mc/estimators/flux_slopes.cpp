@@ -3,8 +3,8 @@
 #include <memory>
 
 #include "core/run/interrupt.h"
-#include "mc/estimators/gradient.h"
 #include "mc/estimators/flux_walk.h"
+#include "mc/estimators/gradient.h"
 #include "mc/walk/plan.h"
 #include "mc/walk/scene_scattering.h"
 
