@@ -270,7 +270,7 @@ int run_fit(const Session& session, const Subcommand& command, const FitKeys& va
   if (task.paths) {
     journal.emplace(session.out(), identity_of(command.keys(), task), values.run.resume);
     task.made = journal->steps();
-    task.keep = [&](const mc::SearchStep& step) { journal->add(step); };
+    task.keep = [&](const mc::FitStep& step) { journal->add(step); };
   }
   const int status =
       session.once(ResultFile(session.out()), [&](ResultFile& file) -> std::optional<Made> {

@@ -10,9 +10,9 @@
 #include "core/result/guarded_read.h"
 #include "core/result/result_reader.h"
 #include "core/result/run_state_file.h"
-#include "mc/estimators/flux_walk.h"
 #include "mc/fit/task/correlated_errors.h"
 #include "mc/fit/task/curve_values.h"
+#include "mc/jobs/flux_job.h"
 
 namespace flatspeckle::apps {
 

@@ -6,8 +6,8 @@
 #include "core/error.h"
 #include "core/keys/csv.h"
 #include "core/keys/number_text.h"
-#include "mc/changes/contrast.h"
 #include "mc/fit/task/curve_values.h"
+#include "mc/jobs/contrast.h"
 
 namespace flatspeckle::apps {
 

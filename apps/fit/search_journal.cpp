@@ -15,7 +15,7 @@ std::string head_of(const std::string& identity) {
   return "search " + std::to_string(std::hash<std::string>{}(identity));
 }
 
-std::string line_of(const mc::SearchStep& step) {
+std::string line_of(const mc::FitStep& step) {
   std::string line = std::to_string(step.start) + ' ' + std::to_string(step.iteration);
   for (const double value : {step.paths, step.damping, step.chi_squared, step.cpu_s})
     line += ' ' + number_text(value);
@@ -23,9 +23,9 @@ std::string line_of(const mc::SearchStep& step) {
   return line;
 }
 
-std::optional<mc::SearchStep> step_of(const std::string& line) {
+std::optional<mc::FitStep> step_of(const std::string& line) {
   std::istringstream words(line);
-  mc::SearchStep step;
+  mc::FitStep step;
   std::vector<double> at;
   words >> step.start >> step.iteration >> step.paths >> step.damping >> step.chi_squared >>
       step.cpu_s;
@@ -55,11 +55,11 @@ SearchJournal::SearchJournal(const std::string& out, const std::string& identity
     if (auto step = step_of(lines[i])) steps_.push_back(std::move(*step));
   file_.open(path_);
   file_ << head_of(identity) << '\n';
-  for (const mc::SearchStep& step : steps_) file_ << line_of(step) << '\n';
+  for (const mc::FitStep& step : steps_) file_ << line_of(step) << '\n';
   file_.flush();
 }
 
-void SearchJournal::add(const mc::SearchStep& step) {
+void SearchJournal::add(const mc::FitStep& step) {
   file_ << line_of(step) << '\n' << std::flush;
 }
 

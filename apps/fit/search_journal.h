@@ -17,13 +17,13 @@ class SearchJournal {
   /// begins anew where there are none. Throws InputError for those of another search.
   SearchJournal(const std::string& out, const std::string& identity, bool resume);
 
-  const std::vector<mc::SearchStep>& steps() const { return steps_; }
-  void add(const mc::SearchStep& step);
+  const std::vector<mc::FitStep>& steps() const { return steps_; }
+  void add(const mc::FitStep& step);
   void remove();
 
  private:
   std::filesystem::path path_;
-  std::vector<mc::SearchStep> steps_;
+  std::vector<mc::FitStep> steps_;
   std::ofstream file_;
 };
 

@@ -151,7 +151,7 @@ class FieldExperiment : public OneShot {
   ResultFile::Storage storage() const override { return ResultFile::Storage::disk; }
 
   std::optional<Made> make(ResultFile& file, bool tells) const override {
-    const auto tell_plan = [&](const mc::FieldPlan& chosen) {
+    const auto tell_plan = [&](const mc::DrawingPlan& chosen) {
       if (!tells) return;
       std::printf("%s\n", chosen.describe().c_str());
       std::fflush(stdout);

@@ -6,8 +6,8 @@
 
 #include "apps/results/estimation.h"
 #include "core/result/result_file.h"
-#include "mc/changes/contrast.h"
-#include "mc/estimators/path_job.h"
+#include "mc/jobs/contrast.h"
+#include "mc/jobs/path_job.h"
 
 namespace flatspeckle::apps {
 

@@ -5,10 +5,10 @@
 #include <random>
 #include <vector>
 
-#include "mc/changes/contrast.h"
-#include "mc/estimators/flux_walk.h"
 #include "mc/fit/medium_fit.h"
 #include "mc/fit/task/curve_values.h"
+#include "mc/jobs/contrast.h"
+#include "mc/jobs/flux_job.h"
 #include "mc/slab/slab_covariance.h"
 #include "mc/slab/slab_flux.h"
 #include "mc/theory/memory_effect.h"

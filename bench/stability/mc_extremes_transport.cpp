@@ -6,7 +6,7 @@
 #include "bench/stability/mc_extremes.h"
 #include "bench/stability/mc_extremes_fit.h"
 #include "grin/media/phase_function.h"
-#include "mc/estimators/flux_walk.h"
+#include "mc/jobs/flux_job.h"
 #include "mc/slab/slab_covariance.h"
 #include "mc/slab/slab_flux.h"
 #include "mc/space/space_flux.h"

@@ -8,10 +8,9 @@
 
 #include "core/error.h"
 #include "core/numbers/phasor.h"
-#include "core/result/result_group.h"
 #include "mc/estimators/path_ends.h"
+#include "mc/estimators/scored_paths.h"
 #include "mc/estimators/single_scattering.h"
-#include "mc/theory/diffusion.h"
 
 namespace flatspeckle::mc {
 
@@ -24,10 +23,8 @@ struct TurnTally {
   using Factor = double;  ///< what motion leaves of a covariance
   double turn = 0;
 
-  template <typename Direction>
-  void flight(Vec2, const Direction&, double) {}
-  template <typename Direction>
-  void scattering(Vec2, const Direction& from, const Direction& to) {
+  void flight(Vec2, const SpaceDirection&, double) {}
+  void scattering(Vec2, const SpaceDirection& from, const SpaceDirection& to) {
     turn += one_minus_cosine(from, to);
   }
 };
@@ -38,10 +35,8 @@ struct FlowTally {
   const LocalMotion* motion = nullptr;
   double turn = 0, slip = 0;
 
-  template <typename Direction>
-  void flight(Vec2, const Direction&, double) {}
-  template <typename Direction>
-  void scattering(Vec2 x, const Direction& from, const Direction& to) {
+  void flight(Vec2, const SpaceDirection&, double) {}
+  void scattering(Vec2 x, const SpaceDirection& from, const SpaceDirection& to) {
     turn += motion->diffusion(x) * one_minus_cosine(from, to);
     slip += dot(Vec2(from) - Vec2(to), motion->velocity(x));
   }
@@ -92,33 +87,33 @@ class Decay {
 /// Adds weight |f|^2 of every channel, then weight f(0) conj(f(t)) for every delay, of which
 /// without flow only the real part is not 0 in the mean. C14's F and R turn by other angles at the
 /// path's ends, so each has its own decay.
-template <typename Scattering, bool reversed, bool phases, typename Tally>
-class DelayScorer {
-  using Direction = typename Scattering::Direction;
+template <typename Tally>
+class DelayScorer : public TallyScorer<Tally> {
   using Factor = typename Tally::Factor;
 
  public:
-  DelayScorer(const Scene& scene, const Scattering& scattering, std::span<const double> delays,
-              const Tally& none, std::span<Complex> sums)
-      : channels_(scene.request.channels),
-        scattering_(scattering),
+  DelayScorer(const PathWalks& walks, std::span<const double> delays, const Tally& none,
+              std::span<Complex> sums)
+      : TallyScorer<Tally>(none),
+        channels_(walks.scene().request.channels),
+        scattering_(walks.scattering()),
         delays_(delays),
         sums_(sums),
-        none_(none),
-        ends_(scene, [&](std::size_t ends) { return Decaying<Tally>(ends, delays.size(), none); }),
+        ends_(walks, [&](std::size_t ends) { return Decaying<Tally>(ends, delays.size(), none); }),
         inner_(1, delays.size(), none),
-        decay_(delays, scene.k, std::max(ends_.lights.size(), ends_.views.size())) {}
+        decay_(delays, walks.scene().k, std::max(ends_.lights().size(), ends_.views().size())) {}
 
   /// B = 1 at x.
-  void single(Vec2 x, double weight) {
-    auto& [lights, views, light_first, light, view_first, view] = ends_;
+  void single(Vec2 x, double weight) override {
+    EndFactors &lights = ends_.lights(), &views = ends_.views();
+    auto &light = ends_.light_last, &view = ends_.view_last;
     lights.attenuate(x, light.value);
     views.attenuate(x, view.value);
     for (std::size_t c = 0; c < channels_.size(); ++c) {
       const auto [i, v] = channels_[c];
       const Vec2 from = -lights.direction(i), to = views.direction(v);
       const double square =
-          std::norm(light.value[i] * view.value[v] * local(scattering_, x).amplitude(from, to));
+          std::norm(light.value[i] * view.value[v] * scattering_.amplitude(x, from, to));
       sums_[c] += weight * square;
       find_inner(turned(x, from, to));
       for (std::size_t t = 0; t < delays_.size(); ++t)
@@ -126,22 +121,23 @@ class DelayScorer {
     }
   }
 
-  void multiple(const TalliedPath<Direction, Tally>& path) {
-    ends_.find(path, [this](auto& ends, Vec2 x, const Direction& arrival, Decaying<Tally>& out) {
-      ends.at(x, arrival, scattering_, out.value);
+  void multiple(const Path& path) override {
+    ends_.find(path, [this](EndFactors& ends, Vec2 x, const SpaceDirection& arrival,
+                            Decaying<Tally>& out) {
+      ends.attenuate(x, out.value);
+      scattering_.towards(x, arrival, ends.directions(), out.value);
       for (std::size_t j = 0; j < ends.size(); ++j)
-        out.tally[j] = turned(x, arrival, Direction(ends.direction(j)));
+        out.tally[j] = turned(x, arrival, ends.direction(j));
       decay_.find(out.tally, out.decay);
     });
-    find_inner(path.tally);
+    find_inner(this->tally());
     for (std::size_t c = 0; c < channels_.size(); ++c) score(c, path.weight);
   }
 
  private:
   /// What one scatterer adds.
-  template <typename Any>
-  Tally turned(Vec2 x, const Any& from, const Any& to) const {
-    Tally tally = none_;
+  Tally turned(Vec2 x, const SpaceDirection& from, const SpaceDirection& to) const {
+    Tally tally = this->none();
     tally.scattering(x, from, to);
     return tally;
   }
@@ -161,153 +157,80 @@ class DelayScorer {
   }
 
   void score(std::size_t c, double weight) {
-    const auto& [lights, views, light_first, light_last, view_first, view_last] = ends_;
+    const auto &light_first = ends_.light_first, &light_last = ends_.light_last,
+               &view_first = ends_.view_first, &view_last = ends_.view_last;
+    const std::size_t lights = light_first.value.size(), views = view_first.value.size();
     const auto [i, v] = channels_[c];
     const Complex forward = product(light_first.value[i], view_last.value[v]);
     Complex backward = 0;
-    if constexpr (reversed) backward = product(light_last.value[i], view_first.value[v]);
+    if (ends_.reversed()) backward = product(light_last.value[i], view_first.value[v]);
     const Complex field = forward + backward;
     const Factor with_forward = with_field(weight, field, forward),
                  with_backward = with_field(weight, field, backward);
     sums_[c] += std::real(with_forward + with_backward);
     for (std::size_t t = 0; t < delays_.size(); ++t) {
-      const std::size_t light = t * lights.size() + i, view = t * views.size() + v;
+      const std::size_t light = t * lights + i, view = t * views + v;
       Factor sum = with_forward * light_first.decay[light] * view_last.decay[view];
-      if constexpr (reversed)
-        sum += with_backward * light_last.decay[light] * view_first.decay[view];
+      if (ends_.reversed()) sum += with_backward * light_last.decay[light] * view_first.decay[view];
       sums_[(1 + t) * channels_.size() + c] += inner_.decay[t] * sum;
     }
   }
 
   const std::vector<Channel>& channels_;
-  const Scattering& scattering_;
+  const EndScattering& scattering_;
   std::span<const double> delays_;
   std::span<Complex> sums_;
-  Tally none_;
-  PathEnds<Decaying<Tally>, reversed, phases> ends_;
+  PathEnds<Decaying<Tally>> ends_;
   Decaying<Tally> inner_;  ///< of the inner scatterers, or the only one
   Decay decay_;
 };
 
-/// Of scatterers that only diffuse, and of all others.
-template <typename Tally>
-struct DelayKind {
-  using Sums = std::span<Complex>;
-  std::vector<double> delays;
-  Motion motion;
-  std::shared_ptr<const LocalMotion> local;  ///< of FlowTally
-
-  std::size_t quantities() const { return 1 + delays.size(); }
-
-  Tally tally(const Scene&) const {
-    if constexpr (std::is_same_v<Tally, FlowTally>) return {local.get()};
-    return {};
-  }
-
-  template <bool reversed, bool phases, typename Scattering>
-  auto scorer(const Scene& scene, const Scattering& scattering, Sums sums) const {
-    return DelayScorer<Scattering, reversed, phases, Tally>(scene, scattering, delays, tally(scene),
-                                                            sums);
-  }
-
-  /// Of a medium that is the same everywhere; shear is a slope of the phase along z.
-  template <typename Scattering>
-  Values single(const Scene& scene, const Scattering& scattering) const {
-    Values all = single_scattering(scene, scattering);
-    const std::size_t channels = all.size();
-    for (const double delay : delays) {
-      for (std::size_t c = 0; c < channels; ++c) {
-        const auto [light, view] = scene.request.channels[c];
-        const Vec2 from = direction(scene.request.lights[light].angle),
-                   to = direction(scene.request.views[view].angle), turn = from - to;
-        const double slope = -scene.k * delay * turn.x * motion.shear;
-        const Complex value =
-            slope == 0 ? all[c]
-                       : scene.medium.mu_s * std::norm(scattering.amplitude(from, to)) *
-                             attenuated_wave_integral(scene.domain, scene.medium.mu_t, {0, slope},
-                                                      {-from, to, -from, to});
-        all.push_back(value *
-                      std::polar(std::exp(-2 * delay * motion.diffusion * dot(turn, turn) / 2),
-                                 -scene.k * delay * dot(turn, motion.velocity)));
-      }
+/// Of paths of one scatterer, in a medium that is the same everywhere; shear is a slope of the
+/// phase along z.
+Values single_covariances(const PathWalks& walks, const std::vector<double>& delays,
+                          const Motion& motion) {
+  const Scene& scene = walks.scene();
+  Values all = single_scattering(scene, walks.scattering());
+  const std::size_t channels = all.size();
+  for (const double delay : delays) {
+    for (std::size_t c = 0; c < channels; ++c) {
+      const auto [light, view] = scene.request.channels[c];
+      const Vec2 from = direction(scene.request.lights[light].angle),
+                 to = direction(scene.request.views[view].angle), turn = from - to;
+      const double slope = -scene.k * delay * turn.x * motion.shear;
+      const Complex value =
+          slope == 0 ? all[c]
+                     : scene.medium.mu_s * std::norm(walks.scattering().amplitude({}, from, to)) *
+                           attenuated_wave_integral(scene.domain, scene.medium.mu_t, {0, slope},
+                                                    {-from, to, -from, to});
+      all.push_back(value *
+                    std::polar(std::exp(-2 * delay * motion.diffusion * dot(turn, turn) / 2),
+                               -scene.k * delay * dot(turn, motion.velocity)));
     }
-    return all;
   }
-};
+  return all;
+}
 
 }  // namespace
-
-void check_delays(const Scene& scene, const std::vector<double>& delays) {
-  if (!scene.medium.structure.independent())
-    throw InputError("delays: scatterers at correlated positions do not move independently");
-  for (const double delay : delays)
-    if (!(delay >= 0 && delay <= 1e100))
-      throw InputError("delays", delay, "must not be negative, nor above 1e100");
-}
 
 PathJob delay_job(const Scene& scene, const Plan& plan, const std::vector<double>& delays,
                   std::uint64_t seed, const Motion& motion) {
   if (scene.request.kind != CovarianceRequest::Kind::intensity)
     throw InputError("delays: needs covariance = intensity");
   check_delays(scene, delays);
-  const auto job_of = [&](const auto& kind) { return path_job(kind, scene, plan, seed); };
-  PathJob job = motion.only_diffuses(scene)
-                    ? job_of(DelayKind<TurnTally>{delays, motion, {}})
-                    : job_of(DelayKind<FlowTally>{
-                          delays, motion, std::make_shared<const LocalMotion>(scene, motion)});
+  const auto scorer = [=, local = LocalMotion(scene, motion), flows = !motion.only_diffuses(scene)](
+                          const PathWalks& walks,
+                          std::span<Complex> sums) -> std::unique_ptr<PathScorer> {
+    if (flows)
+      return std::make_unique<DelayScorer<FlowTally>>(walks, delays, FlowTally{&local}, sums);
+    return std::make_unique<DelayScorer<TurnTally>>(walks, delays, TurnTally{}, sums);
+  };
+  const auto single = [=](const PathWalks& walks) {
+    return single_covariances(walks, delays, motion);
+  };
+  PathJob job = path_job({1 + delays.size(), scorer, single}, scene, plan, seed);
   job.field.batches.relative_error = relative_error_of(job.all);
   return job;
-}
-
-Estimate magnitude(Estimate estimate) {
-  for (Complex& value : estimate.value) value = std::abs(value);
-  return estimate;
-}
-
-const DatasetTable delays_table{
-    "delays",
-    {{"delay", Data::scale, "", "1", "k^2 D tau"},
-     {"covariance", Data::estimate, "delay LIGHT VIEW", "COVARIANCE",
-      "covariance of the field with itself after a delay"},
-     {"field_correlation", Data::estimate, "delay LIGHT VIEW", "1",
-      "field correlation after a delay, |g1|"},
-     {"complex_covariance", Data::complex_estimate, "delay LIGHT VIEW", "COVARIANCE",
-      "covariance of the field with itself after a delay, where scatterers flow"},
-     {"complex_correlation", Data::complex_estimate, "delay LIGHT VIEW", "1",
-      "field correlation after a delay, g1, where scatterers flow"},
-     {"diffusion_theory", Data::real, "delay", "1",
-      "field correlation of transmitted light in diffusion theory"},
-     {"delayed_covariance", Data::complex_estimate, "delay tilt VIEW", "COVARIANCE",
-      "covariance of reference and moved field after a delay"},
-     {"delayed_correlation", Data::estimate, "delay tilt", "1",
-      "C_E of reference and moved field after a delay"}}};
-
-void write_delays(ResultFile& file, const Scene& scene, const std::vector<double>& delays,
-                  const ChangeEstimates& found, const Motion& motion) {
-  const ResultGroup root(file, delays_table);
-  root.put("delay", delays);
-  if (scene.request.has_reference()) {
-    root.put("delayed_covariance", found.covariance);
-    return root.put("delayed_correlation", found.correlation);
-  }
-  if (!motion.only_diffuses(scene)) {
-    root.put("complex_covariance", found.covariance);
-    root.put("complex_correlation", found.correlation);
-    return root.put("field_correlation", magnitude(found.correlation));
-  }
-  root.put("covariance", found.covariance);
-  root.put("field_correlation", found.correlation);
-  if (scene.domain.kind != Domain::Kind::slab || !scene.request.transmission_only()) return;
-  root.put("diffusion_theory", column(delays, [&](double delay) {
-             return diffusion_delay_correlation(scene.medium, scene.domain.depth, delay);
-           }));
-}
-
-double diffusion_delay_correlation(const BulkMedium& medium, double thickness, double delay) {
-  // kappa^2 = mu_a dimension / l*, and what adds to it acts like the square of a tilt's wavenumber
-  const double loss = 2 * delay * (1 - medium.g) * medium.mu_s;
-  const double q = std::sqrt(medium.dimension * loss / medium.transport_mean_free_path());
-  return diffusion_field_correlation(medium, thickness, q);
 }
 
 }  // namespace flatspeckle::mc

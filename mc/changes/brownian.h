@@ -3,9 +3,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/result/dataset_row.h"
-#include "mc/changes/changed_fields.h"
-#include "mc/changes/motion.h"
+#include "mc/jobs/delays.h"
+#include "mc/walk/plan.h"
 
 namespace flatspeckle::mc {
 
@@ -19,21 +18,5 @@ namespace flatspeckle::mc {
 /// negative delays.
 PathJob delay_job(const Scene& scene, const Plan& plan, const std::vector<double>& delays,
                   std::uint64_t seed, const Motion& motion = {});
-
-/// Throws InputError for a structure factor, and for negative delays.
-void check_delays(const Scene& scene, const std::vector<double>& delays);
-
-/// Of each value; its error is not smaller than that of the magnitude.
-Estimate magnitude(Estimate estimate);
-
-extern const DatasetTable delays_table;
-/// With diffusion theory for light through a slab, where scatterers only diffuse. The request's
-/// axes must have been written.
-void write_delays(ResultFile& file, const Scene& scene, const std::vector<double>& delays,
-                  const ChangeEstimates& found, const Motion& motion = {});
-
-/// Diffusion theory of the correlation in transmission through a slab: motion is absorption 2 t (1
-/// - g) mu_s, which is added to mu_a in the kappa^2 of C20. A limit for thick slabs and small t.
-double diffusion_delay_correlation(const BulkMedium& medium, double thickness, double delay);
 
 }  // namespace flatspeckle::mc

@@ -1,11 +1,11 @@
 #include "mc/changes/moving_slopes.h"
 
-#include <cassert>
 #include <cmath>
 #include <memory>
 
 #include "mc/changes/brownian.h"
 #include "mc/estimators/path_ends.h"
+#include "mc/estimators/scored_paths.h"
 #include "mc/estimators/slope_sums.h"
 #include "mc/estimators/sloped_ends.h"
 
@@ -19,8 +19,7 @@ struct Turned {
   Vec2 slip{};
   double sheared = 0;
 
-  template <typename Direction>
-  void add(Vec2 x, const Direction& from, const Direction& to) {
+  void add(Vec2 x, const SpaceDirection& from, const SpaceDirection& to) {
     const Vec2 turned = Vec2(from) - Vec2(to);
     turn += one_minus_cosine(from, to);
     slip = slip + turned;
@@ -37,8 +36,7 @@ Complex rate(const Turned& turned, double k, double diffusion, Vec2 velocity, do
 struct MovingTally : GradientTally {
   Turned turned;
 
-  template <typename Direction>
-  void scattering(Vec2 x, const Direction& from, const Direction& to) {
+  void scattering(Vec2 x, const SpaceDirection& from, const SpaceDirection& to) {
     GradientTally::scattering(x, from, to);
     turned.add(x, from, to);
   }
@@ -59,24 +57,22 @@ struct MovingSlopes {
   std::vector<Entry> entries;      ///< of fields [1 + delay][channel]
 };
 
-template <typename Scattering, bool reversed, bool phases>
-class MovingScorer {
-  using Direction = typename Scattering::Direction;
-
+class MovingScorer : public TallyScorer<MovingTally> {
  public:
-  MovingScorer(const Scene& scene, const Scattering& scattering, const MovingSlopes& of,
-               std::span<Complex> sums)
-      : of_(of),
-        k_(scene.k),
-        channels_(scene.request.channels),
-        scattering_(scattering),
-        slopes_(scene, scattering, of.media),
+  MovingScorer(const PathWalks& walks, const MovingSlopes& of, std::span<Complex> sums)
+      : TallyScorer(MovingTally{{of.media}, {}}),
+        of_(of),
+        k_(walks.scene().k),
+        channels_(walks.scene().request.channels),
+        scattering_(walks.scattering()),
+        slopes_(walks, of.media),
         sums_(of.entries.size(), of.entries, of.media.size(), sums),
-        ends_(scene, [](std::size_t ends) { return MovingEnds(ends); }) {}
+        ends_(walks, [](std::size_t ends) { return MovingEnds(ends); }) {}
 
   /// B = 1 at x.
-  void single(Vec2 x, double weight) {
-    auto& [lights, views, light_first, light, view_first, view] = ends_;
+  void single(Vec2 x, double weight) override {
+    EndFactors &lights = ends_.lights(), &views = ends_.views();
+    auto &light = ends_.light_last, &view = ends_.view_last;
     slopes_.attenuate(lights, x, light);
     slopes_.attenuate(views, x, view);
     sums_.clear();
@@ -88,26 +84,25 @@ class MovingScorer {
       LogSlopes log = slopes_.half_of_one(from, to);
       add(log, light.slopes[i]);
       add(log, view.slopes[v]);
-      add_term(c, light.value[i] * view.value[v] * local(scattering_, x).amplitude(from, to), log,
-               turned);
+      add_term(c, light.value[i] * view.value[v] * scattering_.amplitude(x, from, to), log, turned);
     }
     sums_.accumulate(weight);
   }
 
-  void multiple(const TalliedPath<Direction, MovingTally>& path) {
-    ends_.find(path, [this](auto& ends, Vec2 x, const Direction& arrival, MovingEnds& out) {
-      slopes_.at(ends, x, arrival, out);
-      for (std::size_t j = 0; j < ends.size(); ++j) {
-        out.turned[j] = {};
-        out.turned[j].add(x, arrival, Direction(ends.direction(j)));
-      }
-    });
-    const LogSlopes half = slopes_.half(path.tally);
+  void multiple(const Path& path) override {
+    ends_.find(path,
+               [this](EndFactors& ends, Vec2 x, const SpaceDirection& arrival, MovingEnds& out) {
+                 slopes_.at(ends, x, arrival, out);
+                 for (std::size_t j = 0; j < ends.size(); ++j) {
+                   out.turned[j] = {};
+                   out.turned[j].add(x, arrival, ends.direction(j));
+                 }
+               });
+    const LogSlopes half = slopes_.half(tally());
     sums_.clear();
     for (std::size_t c = 0; c < channels_.size(); ++c) {
-      add_ends(c, half, path.tally.turned, ends_.light_first, ends_.view_last);
-      if constexpr (reversed)
-        add_ends(c, half, path.tally.turned, ends_.light_last, ends_.view_first);
+      add_ends(c, half, tally().turned, ends_.light_first, ends_.view_last);
+      if (ends_.reversed()) add_ends(c, half, tally().turned, ends_.light_last, ends_.view_first);
     }
     sums_.accumulate(path.weight);
   }
@@ -154,30 +149,10 @@ class MovingScorer {
   const MovingSlopes& of_;
   double k_;
   const std::vector<Channel>& channels_;
-  const Scattering& scattering_;
-  MediumSlopes<Scattering, phases> slopes_;
+  const EndScattering& scattering_;
+  MediumSlopes slopes_;
   SlopeSums sums_;
-  PathEnds<MovingEnds, reversed, phases> ends_;
-};
-
-struct MovingKind {
-  using Sums = std::span<Complex>;
-  std::shared_ptr<const MovingSlopes> of;
-
-  std::size_t quantities() const { return (1 + of->media.size()) * (1 + of->delays.size()); }
-
-  MovingTally tally(const Scene&) const { return {{of->media}, {}}; }
-
-  template <bool reversed, bool phases, typename Scattering>
-  auto scorer(const Scene& scene, const Scattering& scattering, Sums sums) const {
-    return MovingScorer<Scattering, reversed, phases>(scene, scattering, *of, sums);
-  }
-
-  /// Walks sample these paths.
-  template <typename Scattering>
-  std::vector<Complex> single(const Scene&, const Scattering&) const {
-    return {};
-  }
+  PathEnds<MovingEnds> ends_;
 };
 
 }  // namespace
@@ -185,15 +160,20 @@ struct MovingKind {
 PathJob moving_slope_job(const Scene& scene, const Plan& plan, const std::vector<double>& delays,
                          const Motion& motion, const std::vector<MovingSlope>& slopes,
                          std::uint64_t seed) {
-  assert(!scene.profile && slopes.size() <= most_slopes && plan.sampled_single);
   check_delays(scene, delays);
   MovingSlopes all{delays, motion, slopes, {}, {}};
   for (const MovingSlope& slope : slopes) all.media.push_back(slope.medium);
+  require_slopes(scene, all.media);
   const auto channels = static_cast<std::uint32_t>(scene.request.channels.size());
   for (std::uint32_t t = 0; t <= delays.size(); ++t)
     for (std::uint32_t c = 0; c < channels; ++c) all.entries.push_back({c, t * channels + c});
-  return path_job(MovingKind{std::make_shared<const MovingSlopes>(std::move(all))}, scene, plan,
-                  seed);
+  const std::size_t quantities = (1 + all.media.size()) * (1 + delays.size());
+  return path_job({quantities,
+                   [of = std::make_shared<const MovingSlopes>(std::move(all))](
+                       const PathWalks& walks, std::span<Complex> sums) {
+                     return std::make_unique<MovingScorer>(walks, *of, sums);
+                   }},
+                  scene, plan, seed);
 }
 
 }  // namespace flatspeckle::mc

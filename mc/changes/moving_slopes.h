@@ -3,9 +3,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "mc/changes/motion.h"
 #include "mc/estimators/medium_slope.h"
-#include "mc/estimators/path_job.h"
+#include "mc/jobs/motion.h"
+#include "mc/jobs/path_job.h"
+#include "mc/walk/plan.h"
 
 namespace flatspeckle::mc {
 

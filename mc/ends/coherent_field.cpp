@@ -12,9 +12,9 @@ namespace {
 /// The integral along z at one distance from the side x = -width/2, for a light with w.x, w.z >= 0:
 /// shallow points were reached through the face z = 0, deeper ones through the side, so the
 /// exponent is linear in z on two pieces.
-class Column {
+class ColumnIntegral {
  public:
-  Column(const Domain& box, Vec2 w, Complex extra, double beta)
+  ColumnIntegral(const Domain& box, Vec2 w, Complex extra, double beta)
       : box_(box), w_(w), extra_(extra), beta_(0, beta) {}
 
   Complex operator()(double from_side) const {
@@ -51,7 +51,7 @@ Complex mean_field(const Scene& scene, double light, double view) {
   }
   const double alpha = scene.k * (w.x - v.x), beta = scene.k * (w.z - v.z);
   const Complex extra(-scene.medium.mu_t / 2, scene.medium.k_shift);
-  const Column column(box, w, extra, beta);
+  const ColumnIntegral column(box, w, extra, beta);
   const auto integrand = [&](double from_side) {
     return std::polar(1.0, alpha * (from_side - box.width / 2)) * column(from_side);
   };
@@ -69,7 +69,8 @@ Complex mean_field(const Scene& scene, double light, double view) {
 
 bool has_coherent_field(const Scene& scene) {
   return scene.domain.kind == Domain::Kind::box && scene.medium.has_scatterers && !scene.profile &&
-         (!scene.index || !scene.index->is_around()) && scene.request.lights.all(Light::Kind::plane) &&
+         (!scene.index || !scene.index->is_around()) &&
+         scene.request.lights.all(Light::Kind::plane) &&
          std::none_of(scene.request.views.begin(), scene.request.views.end(),
                       [](const View& view) { return view.near; });
 }

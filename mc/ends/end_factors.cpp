@@ -63,9 +63,12 @@ std::vector<End> view_ends(const Scene& scene) {
   return ends;
 }
 
-template <bool phases>
-EndFactors<phases>::EndFactors(const Scene& scene, const std::vector<End>& ends)
-    : domain_(scene.domain), k_(scene.k), extinction_(scene), directions_(ends.size()) {
+StraightEnds::StraightEnds(const Scene& scene, const std::vector<End>& ends, bool phases)
+    : EndFactors(ends.size()),
+      domain_(scene.domain),
+      k_(scene.k),
+      phases_(phases),
+      extinction_(scene) {
   const bool box = domain_.kind == Domain::Kind::box;
   for (std::size_t j = 0; j < ends.size(); ++j) {
     const Vec2 w = ends[j].towards;
@@ -83,7 +86,6 @@ EndFactors<phases>::EndFactors(const Scene& scene, const std::vector<End>& ends)
     per_cosine_z_.push_back(deep.per_cosine);
   }
   phase_.resize(size());
-  log_magnitude_.resize(size());
   magnitude_.resize(size());
   point_r_.resize(points_.size());
   point_phase_.resize(points_.size());
@@ -91,34 +93,32 @@ EndFactors<phases>::EndFactors(const Scene& scene, const std::vector<End>& ends)
   point_wave_.resize(points_.size());
 }
 
-template <bool phases>
-double EndFactors<phases>::log_attenuation(Vec2 x, Vec2 w, double inside) const {
+double StraightEnds::log_magnitude(Vec2 x, Vec2 w, double inside) const {
   return std::max(-extinction_.optical_depth(x, w, inside) / 2, log_of_nothing);
 }
 
-template <bool phases>
-void EndFactors<phases>::attenuate(Vec2 x, std::span<Complex> out) {
+void StraightEnds::attenuate(Vec2 x, std::span<Complex> out) {
   if (extinction_.profile == nullptr) {
     for (std::size_t j = 0; j < size(); ++j)
-      log_magnitude_[j] = std::max(-extinction_.mu_t * distance_to_edge(j, x) / 2, log_of_nothing);
+      log_attenuation_[j] =
+          std::max(-extinction_.mu_t * distance_to_edge(j, x) / 2, log_of_nothing);
   } else {
     for (std::size_t j = 0; j < size(); ++j)
-      log_magnitude_[j] = log_attenuation(x, directions_[j], distance_to_edge(j, x));
+      log_attenuation_[j] = log_magnitude(x, directions_[j], distance_to_edge(j, x));
   }
-  if constexpr (phases) {
+  if (phases_) {
     for (std::size_t j = 0; j < size(); ++j)
       phase_[j] = -k_ * (directions_.x[j] * x.x + directions_.z[j] * x.z);
-    damped_phasors(phase_, log_magnitude_, out);
+    damped_phasors(phase_, log_attenuation_, out);
   } else {
-    damping(log_magnitude_, magnitude_);
+    damping(log_attenuation_, magnitude_);
     std::copy(magnitude_.begin(), magnitude_.end(), out.begin());
   }
   if (!points_.empty()) attenuate_points(x, out);
   if (!beams_.empty()) attenuate_beams(x, out);
 }
 
-template <bool phases>
-void EndFactors<phases>::attenuate_points(Vec2 x, std::span<Complex> out) {
+void StraightEnds::attenuate_points(Vec2 x, std::span<Complex> out) {
   constexpr double closest = 1e-200;
   for (std::size_t i = 0; i < points_.size(); ++i) {
     const Vec2 way = points_[i].point - x;
@@ -128,8 +128,8 @@ void EndFactors<phases>::attenuate_points(Vec2 x, std::span<Complex> out) {
     point_r_[i] = r;
     point_phase_[i] = k_ * r;
     const double inside = std::min(domain_.distance_to_edge(x, w), r);
-    point_log_[i] = log_attenuation(x, w, inside);
-    log_magnitude_[points_[i].number] = point_log_[i];
+    point_log_[i] = log_magnitude(x, w, inside);
+    log_attenuation_[points_[i].number] = point_log_[i];
   }
   damped_phasors(point_phase_, point_log_, point_wave_);
   for (std::size_t i = 0; i < points_.size(); ++i) {
@@ -138,22 +138,18 @@ void EndFactors<phases>::attenuate_points(Vec2 x, std::span<Complex> out) {
                              : std::exp(point_log_[i]) * outgoing_wave(k_, point_r_[i]);
     Complex& value = out[points_[i].number];
     value = product(points_[i].strength, wave);
-    if constexpr (!phases) value = std::abs(value);
+    if (!phases_) value = std::abs(value);
   }
 }
 
-template <bool phases>
-void EndFactors<phases>::attenuate_beams(Vec2 x, std::span<Complex> out) {
+void StraightEnds::attenuate_beams(Vec2 x, std::span<Complex> out) {
   for (const auto& [j, beam] : beams_) {
     const Vec2 w = -beam.ray(x);
     directions_.set(j, w, angle_of(w));
-    log_magnitude_[j] = log_attenuation(x, w, domain_.distance_to_edge(x, w));
-    out[j] = std::exp(log_magnitude_[j]) * beam.field(x);
-    if constexpr (!phases) out[j] = std::abs(out[j]);
+    log_attenuation_[j] = log_magnitude(x, w, domain_.distance_to_edge(x, w));
+    out[j] = std::exp(log_attenuation_[j]) * beam.field(x);
+    if (!phases_) out[j] = std::abs(out[j]);
   }
 }
-
-template class EndFactors<false>;
-template class EndFactors<true>;
 
 }  // namespace flatspeckle::mc

@@ -10,7 +10,7 @@
 #include "flatland/scene/scene.h"
 #include "mc/ends/extinction.h"
 #include "mc/ends/gaussian_beam.h"
-#include "mc/ends/varying_scattering.h"
+#include "mc/ends/scattering.h"
 
 namespace flatspeckle::mc {
 
@@ -31,31 +31,35 @@ struct End {
 std::vector<End> light_ends(const Scene& scene);
 std::vector<End> view_ends(const Scene& scene);
 
-/// End factors e of C13 for a list of ends, times the amplitude towards them (C14). Phases: without
-/// them only magnitudes, which is all that intensities need.
-template <bool phases>
+/// End factors e of C13 for a list of ends.
 class EndFactors {
  public:
-  EndFactors(const Scene& scene, const std::vector<End>& ends);
+  virtual ~EndFactors() = default;
 
   std::size_t size() const { return directions_.size(); }
 
-  /// out[j] = A(arrival -> end j) e_j(x), for light that reaches x along `arrival`.
-  template <typename Scattering>
-  void at(Vec2 x, const typename Scattering::Direction& arrival, const Scattering& scattering,
-          std::span<Complex> out) {
-    attenuate(x, out);
-    local(scattering, x).towards(arrival, directions_, out);
-  }
-
-  /// out[j] = e_j(x) alone.
-  void attenuate(Vec2 x, std::span<Complex> out);
+  /// out[j] = e_j(x)
+  virtual void attenuate(Vec2 x, std::span<Complex> out) = 0;
 
   /// Towards the ends, from where attenuate() was called last, and the logarithm of what is left of
   /// the field on the way there: -mu_t d/2.
   Vec2 direction(std::size_t j) const { return directions_[j]; }
   const Directions& directions() const { return directions_; }
-  double log_attenuation(std::size_t j) const { return log_magnitude_[j]; }
+  double log_attenuation(std::size_t j) const { return log_attenuation_[j]; }
+
+ protected:
+  explicit EndFactors(std::size_t ends) : directions_(ends), log_attenuation_(ends) {}
+
+  Directions directions_;
+  std::vector<double> log_attenuation_;
+};
+
+/// Those of straight rays. Without phases they are magnitudes, which is all that intensities need.
+class StraightEnds : public EndFactors {
+ public:
+  StraightEnds(const Scene& scene, const std::vector<End>& ends, bool phases);
+
+  void attenuate(Vec2 x, std::span<Complex> out) override;
 
  private:
   double distance_to_edge(std::size_t j, Vec2 x) const {
@@ -63,12 +67,13 @@ class EndFactors {
                                   (edge_z_[j] - x.z) * per_cosine_z_[j]));
   }
   /// Of the field on the way to an edge or a near end, but for what exp makes 0 of anyway.
-  double log_attenuation(Vec2 x, Vec2 w, double inside) const;
+  double log_magnitude(Vec2 x, Vec2 w, double inside) const;
   void attenuate_points(Vec2 x, std::span<Complex> out);
   void attenuate_beams(Vec2 x, std::span<Complex> out);
 
   Domain domain_;
   double k_;
+  bool phases_;
   Extinction extinction_;
   struct PointEnd {
     std::size_t number;
@@ -81,10 +86,9 @@ class EndFactors {
   };
   std::vector<PointEnd> points_;
   std::vector<BeamEnd> beams_;
-  Directions directions_;
   // Distance to the edge = min((edge - x) per_cosine) over both axes.
   std::vector<double> edge_x_, edge_z_, per_cosine_x_, per_cosine_z_;
-  std::vector<double> phase_, log_magnitude_, magnitude_;
+  std::vector<double> phase_, magnitude_;
   std::vector<double> point_r_, point_phase_, point_log_;
   std::vector<Complex> point_wave_;
 };

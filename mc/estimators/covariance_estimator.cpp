@@ -2,7 +2,7 @@
 
 #include "core/numbers/blas.h"
 #include "mc/estimators/path_fields.h"
-#include "mc/estimators/path_job.h"
+#include "mc/estimators/scored_paths.h"
 #include "mc/estimators/single_scattering.h"
 
 namespace flatspeckle::mc {
@@ -10,38 +10,29 @@ namespace flatspeckle::mc {
 namespace {
 
 /// Gives the field of every channel to an accumulator.
-template <typename Scattering, bool reversed, bool phases>
-class FieldScorer {
+class FieldScorer : public PathScorer {
  public:
-  FieldScorer(const Scene& scene, const Scattering& scattering, Accumulator& accumulator)
-      : fields_(scene, scattering), accumulator_(accumulator) {}
+  FieldScorer(const PathWalks& walks, Accumulator& accumulator)
+      : fields_(walks, walks.scene(), walks.plan().phases || walks.plan().reversed),
+        accumulator_(accumulator) {}
 
-  void single(Vec2 x, double weight) { accumulator_.add(weight, fields_.single(x)); }
-  void multiple(const Path<typename Scattering::Direction>& path) {
+  void single(Vec2 x, double weight) override { accumulator_.add(weight, fields_.single(x)); }
+  void multiple(const Path& path) override {
     accumulator_.add(path.weight, fields_.multiple(path));
   }
 
  private:
-  PathFields<Scattering, reversed, phases> fields_;
+  PathFields fields_;
   Accumulator& accumulator_;
 };
 
-struct CovarianceKind {
-  using Sums = Accumulator&;
-  static constexpr bool bent = true;
-
-  NoTally tally(const Scene&) const { return {}; }
-
-  template <bool reversed, bool phases, typename Scattering>
-  auto scorer(const Scene& scene, const Scattering& scattering, Accumulator& accumulator) const {
-    return FieldScorer<Scattering, reversed, phases>(scene, scattering, accumulator);
-  }
-
-  template <typename Scattering>
-  std::vector<Complex> single(const Scene& scene, const Scattering& scattering) const {
-    return single_scattering(scene, scattering);
-  }
-};
+PathBatches path_batches(const std::shared_ptr<const PathWalks>& walks) {
+  return [walks](std::uint64_t number, Accumulator& accumulator) {
+    if (!walks) return;
+    FieldScorer scorer(*walks, accumulator);
+    walks->batch(number, scorer);
+  };
+}
 
 template <typename Entries>
 auto into(const CovarianceRequest& request, const PathBatches& batches) {
@@ -55,12 +46,15 @@ auto into(const CovarianceRequest& request, const PathBatches& batches) {
 }  // namespace
 
 PathBatches path_batches(const Scene& scene, const Plan& plan, std::uint64_t seed) {
-  return walks(CovarianceKind(), scene, plan, seed);
+  return path_batches(path_walks(scene, plan, seed));
 }
 
 FieldJob covariance_job(const Scene& scene, const Plan& plan, std::uint64_t seed) {
-  const auto batches = path_batches(scene, plan, seed);
-  const auto single = unsampled(CovarianceKind(), scene, plan);
+  const auto walks = path_walks(scene, plan, seed);
+  const PathBatches batches = path_batches(walks);
+  std::vector<Complex> single;
+  if (walks && !plan.sampled_single && !scene.profile && !scene.index)
+    single = single_scattering(scene, walks->scattering());
   if (!plan.rank_k)
     return path_job(scene, plan, 1, single, into<EntryAccumulator>(scene.request, batches)).field;
   blas_single_thread();  // before threads compete for its memory

@@ -1,10 +1,9 @@
-#include "mc/estimators/fixed_count.h"
-
-#include <cassert>
 #include <memory>
 #include <vector>
 
+#include "mc/estimators/gradient.h"
 #include "mc/estimators/path_ends.h"
+#include "mc/estimators/scored_paths.h"
 #include "mc/estimators/sloped_ends.h"
 
 namespace flatspeckle::mc {
@@ -12,23 +11,22 @@ namespace flatspeckle::mc {
 namespace {
 
 /// Fields with their first two derivatives by the number of scatterers, relative to it.
-template <typename Scattering, bool reversed, bool phases>
-class FixedCountScorer {
-  using Direction = typename Scattering::Direction;
-
+class FixedCountScorer : public TallyScorer<GradientTally> {
  public:
-  FixedCountScorer(const Scene& scene, const Scattering& scattering,
-                   std::span<const MediumSlope> by_number, std::span<Complex> sums)
-      : request_(scene.request),
-        scattering_(scattering),
-        slopes_(scene, scattering, by_number),
+  FixedCountScorer(const PathWalks& walks, std::span<const MediumSlope> by_number,
+                   std::span<Complex> sums)
+      : TallyScorer(GradientTally{by_number}),
+        request_(walks.scene().request),
+        scattering_(walks.scattering()),
+        slopes_(walks, by_number),
         sums_(sums),
         fields_(request_.channels.size()),
-        ends_(scene, [](std::size_t ends) { return SlopedEnds(ends); }) {}
+        ends_(walks, [](std::size_t ends) { return SlopedEnds(ends); }) {}
 
   /// B = 1 at x.
-  void single(Vec2 x, double weight) {
-    auto& [lights, views, light_first, light, view_first, view] = ends_;
+  void single(Vec2 x, double weight) override {
+    EndFactors &lights = ends_.lights(), &views = ends_.views();
+    auto &light = ends_.light_last, &view = ends_.view_last;
     slopes_.attenuate(lights, x, light);
     slopes_.attenuate(views, x, view);
     for (std::size_t c = 0; c < fields_.size(); ++c) {
@@ -36,21 +34,20 @@ class FixedCountScorer {
       const Vec2 from = -lights.direction(i), to = views.direction(v);
       fields_[c] = {};
       add_term(c, slopes_.half_of_one(from, to)[0], light, view, 1,
-               local(scattering_, x).amplitude(from, to));
+               scattering_.amplitude(x, from, to));
     }
     accumulate(weight);
   }
 
-  void multiple(const TalliedPath<Direction, GradientTally>& path) {
-    ends_.find(path, [this](auto& ends, Vec2 x, const Direction& arrival, SlopedEnds& out) {
-      slopes_.at(ends, x, arrival, out);
-    });
-    const Complex half = slopes_.half(path.tally)[0];
+  void multiple(const Path& path) override {
+    ends_.find(path, [this](EndFactors& ends, Vec2 x, const SpaceDirection& arrival,
+                            SlopedEnds& out) { slopes_.at(ends, x, arrival, out); });
+    const Complex half = slopes_.half(tally())[0];
     for (std::size_t c = 0; c < fields_.size(); ++c) {
       fields_[c] = {};
-      add_term(c, half, ends_.light_first, ends_.view_last, path.tally.scatterers, 1.0);
-      if constexpr (reversed)
-        add_term(c, half, ends_.light_last, ends_.view_first, path.tally.scatterers, 1.0);
+      add_term(c, half, ends_.light_first, ends_.view_last, tally().scatterers, 1.0);
+      if (ends_.reversed())
+        add_term(c, half, ends_.light_last, ends_.view_first, tally().scatterers, 1.0);
     }
     accumulate(path.weight);
   }
@@ -83,39 +80,22 @@ class FixedCountScorer {
   }
 
   const CovarianceRequest& request_;
-  const Scattering& scattering_;
-  MediumSlopes<Scattering, phases> slopes_;
+  const EndScattering& scattering_;
+  MediumSlopes slopes_;
   std::span<Complex> sums_;
   std::vector<Field> fields_;
-  PathEnds<SlopedEnds, reversed, phases> ends_;
-};
-
-struct FixedCountKind {
-  using Sums = std::span<Complex>;
-  std::shared_ptr<const std::vector<MediumSlope>> by_number;
-
-  std::size_t quantities() const { return 2; }
-
-  GradientTally tally(const Scene&) const { return {*by_number}; }
-
-  template <bool reversed, bool phases, typename Scattering>
-  auto scorer(const Scene& scene, const Scattering& scattering, Sums sums) const {
-    return FixedCountScorer<Scattering, reversed, phases>(scene, scattering, *by_number, sums);
-  }
-
-  /// Walks sample these paths.
-  template <typename Scattering>
-  std::vector<Complex> single(const Scene&, const Scattering&) const {
-    return {};
-  }
+  PathEnds<SlopedEnds> ends_;
 };
 
 }  // namespace
 
 PathJob fixed_count_job(const Scene& scene, const Plan& plan, std::uint64_t seed) {
-  assert(!scene.profile && plan.sampled_single);
-  const std::vector<MediumSlope> by_number = {{"number", 1, 0, {}}};
-  return path_job(FixedCountKind{std::make_shared<const std::vector<MediumSlope>>(by_number)},
+  static const std::vector<MediumSlope> by_number = {{"number", 1, 0, {}}};
+  require_slopes(scene, by_number);
+  return path_job({2,
+                   [](const PathWalks& walks, std::span<Complex> sums) {
+                     return std::make_unique<FixedCountScorer>(walks, by_number, sums);
+                   }},
                   scene, plan, seed);
 }
 

@@ -3,24 +3,75 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <numbers>
 #include <sstream>
 
-#include "core/result/result_group.h"
-#include "flatland/scene/scene_datasets.h"
 #include "grin/media/diffusion_rate.h"
-#include "mc/ends/scattering.h"
+#include "mc/ends/profile_flight.h"
 #include "mc/estimators/flux_walk.h"
-#include "mc/estimators/varying_flux_walk.h"
-#include "mc/walk/importance.h"
+#include "mc/jobs/path_job.h"
 #include "mc/walk/plan.h"
-#include "mc/walk/walks.h"
+#include "mc/walk/scene_scattering.h"
 
 namespace flatspeckle::mc {
 
 namespace {
 
 constexpr std::uint64_t walks_per_batch = 200;
+
+/// Walks light through a medium that varies, as FluxWalk does through one that is the same
+/// everywhere: from the first collision on, which is forced, to where it ends. Plain flights;
+/// absorption by weight, with roulette.
+class VaryingFluxWalk {
+ public:
+  VaryingFluxWalk(const Scene& scene, const VaryingScattering& scattering, const LightEntry& entry,
+                  RandomStream& random, std::span<Complex> sums)
+      : domain_(scene.domain),
+        profile_(*scene.profile),
+        scattering_(scattering),
+        entry_(entry),
+        random_(random),
+        tally_(scene.domain, sums) {}
+
+  /// u: uniform in (0, 1), picks the depth of the first collision.
+  void walk(double u) {
+    const Vec2 start = entry_.sample(random_);
+    Vec2 w = entry_.light();
+    const ProfileFlight first(profile_, start, w, domain_.distance_to_edge(start, w));
+    double power = first.probability();
+    if (power == 0) return;
+    Vec2 x = start + first.sample(u) * w;
+    while (collide(x, power)) {
+      w = scattering_.at(x).sample(w, random_);
+      const double edge = domain_.distance_to_edge(x, w),
+                   flight = profile_.reach(x, w, -std::log(random_.uniform()), edge);
+      x = x + flight * w;
+      if (flight >= edge) return tally_.leave(x, w, power);
+    }
+  }
+
+ private:
+  /// False if nothing is left.
+  bool collide(Vec2 x, double& power) {
+    constexpr std::uint64_t between_looks = 4096;
+    if (++collisions_ % between_looks == 0) stop_if_interrupted();
+    const double albedo = profile_.albedo(x);
+    tally_.absorb(power * (1 - albedo));
+    power *= albedo;
+    constexpr double little = 0.1;
+    if (power >= little) return true;
+    const bool survives = random_.uniform() * little < power;
+    power = little;
+    return survives;
+  }
+
+  Domain domain_;
+  const MediumProfile& profile_;
+  const VaryingScattering& scattering_;
+  const LightEntry& entry_;
+  RandomStream& random_;
+  FluxTally tally_;
+  std::uint64_t collisions_ = 0;
+};
 
 template <typename Walk, typename Scattering>
 SummedBatches walks(const std::shared_ptr<const Scene>& scene, const Scattering& scattering,
@@ -104,105 +155,6 @@ FluxJob flux_job(const Scene& original, std::size_t angle_bins, std::uint64_t se
   };
   job.batches.run = batches(scene, kappa, seed);
   return job;
-}
-
-FluxEstimates flux_estimates(const FluxJob& job, const GroupedSums& sums) {
-  const Estimate all = jackknife(sums, sample_mean);
-  const std::size_t size = flux_shares + job.angle_bins;
-  const double per_radian = static_cast<double>(job.angle_bins) / job.angles;
-  FluxEstimates flux;
-  Estimate* const shares[flux_shares] = {&flux.reflectance, &flux.transmittance, &flux.side_loss,
-                                         &flux.absorptance};
-  for (std::size_t entry = 0; entry < all.value.size(); ++entry) {
-    const std::size_t number = entry % size;
-    Estimate& estimate = number < flux_shares ? *shares[number] : flux.exit_radiance;
-    const double factor = number < flux_shares ? 1 : per_radian;
-    estimate.value.push_back(factor * all.value[entry]);
-    estimate.error.push_back(factor * all.error[entry]);
-    estimate.rare.push_back(all.rare[entry]);
-  }
-  return flux;
-}
-
-namespace {
-
-/// Over the rays of a light that meet a medium that varies.
-double mean_transmittance(const Scene& scene, double light) {
-  const LightEntry entry(scene.domain, light, 0);
-  const Vec2 w = entry.light();
-  const int rays = scene.domain.kind == Domain::Kind::slab ? 1 : 4096;
-  double sum = 0;
-  for (int ray = 0; ray < rays; ++ray) {
-    const Vec2 start = entry.at((ray + 0.5) / rays);
-    sum +=
-        std::exp(-scene.profile->optical_depth(start, w, scene.domain.distance_to_edge(start, w)));
-  }
-  return sum / rays;
-}
-
-}  // namespace
-
-double direct_transmittance(const Scene& scene, double light) {
-  const Domain& domain = scene.domain;
-  const double sine = std::abs(std::sin(light)), cosine = std::abs(std::cos(light));
-  if (scene.profile) return mean_transmittance(scene, light);
-  if (domain.kind == Domain::Kind::slab)
-    return std::exp(-scene.medium.mu_t * domain.depth / cosine);
-  // Seen along the light, chords rise from 0 to the longest, stay, and fall again.
-  const double face = domain.width * cosine, side = domain.depth * sine;
-  const double longest = scene.medium.mu_t * domain.area() / std::max(face, side);
-  const double rising = longest > 0 ? -std::expm1(-longest) / longest : 1;
-  return (std::abs(face - side) * std::exp(-longest) + 2 * std::min(face, side) * rising) /
-         (face + side);
-}
-
-std::vector<double> direct_transmittances(const Scene& scene) {
-  return column(scene.request.lights,
-                [&](const Light& light) { return direct_transmittance(scene, light.angle); });
-}
-
-const DatasetTable flux_table{
-    "flux",
-    {{"reflectance", Data::estimate, "light_angle", "1",
-      "share of the light scattered out through z = 0"},
-     {"transmittance", Data::estimate, "light_angle", "1",
-      "share of the light scattered out through z = depth"},
-     {"side_loss", Data::estimate, "light_angle", "1",
-      "share of the light scattered out through the sides"},
-     {"absorptance", Data::estimate, "light_angle", "1", "share of the light that is absorbed"},
-     {"direct_transmittance", Data::estimate, "light_angle", "1",
-      "share of the light that meets no scatterer"},
-     {"exit_angle", Data::scale, "", "rad",
-      "middle of the bin of exit directions, from +z; in space of polar angles"},
-     {"exit_radiance", Data::estimate, "light_angle exit_angle", "1/rad",
-      "share of the light scattered out per radian of exit direction"}}};
-
-namespace {
-
-/// Of bins over (-pi, pi), in space over (0, pi).
-std::vector<double> middles(std::size_t bins, int dimension) {
-  std::vector<double> angles;
-  for (std::size_t bin = 0; bin < bins; ++bin) {
-    const double turn = static_cast<double>(2 * bin + 1) / static_cast<double>(bins);
-    angles.push_back(std::numbers::pi * (dimension == 3 ? turn / 2 : turn - 1));
-  }
-  return angles;
-}
-
-}  // namespace
-
-void write_flux(ResultFile& file, const Scene& scene, const FluxEstimates& flux) {
-  const std::size_t lights = scene.request.lights.size(),
-                    bins = flux.exit_radiance.value.size() / lights;
-  write_light_axis(file, scene.request.lights);
-  const ResultGroup root(file, flux_table);
-  root.put("exit_angle", middles(bins, scene.medium.dimension));
-  root.put("reflectance", flux.reflectance);
-  root.put("transmittance", flux.transmittance);
-  root.put("absorptance", flux.absorptance);
-  if (scene.domain.kind == Domain::Kind::box) root.put("side_loss", flux.side_loss);
-  root.put("direct_transmittance", direct_transmittances(scene), std::vector<double>(lights));
-  root.put("exit_radiance", flux.exit_radiance);
 }
 
 }  // namespace flatspeckle::mc

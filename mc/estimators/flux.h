@@ -1,45 +1,14 @@
 #pragma once
 
 #include <cstdint>
-#include <numbers>
-#include <string>
-#include <vector>
 
-#include "core/result/dataset_row.h"
-#include "core/run/runner.h"
-#include "flatland/scene/scene.h"
+#include "mc/jobs/flux_job.h"
 
 namespace flatspeckle::mc {
-
-/// The classical smooth Monte Carlo: intensity without phases. Shares are of the power of a light
-/// that meets the medium.
-struct FluxJob {
-  BatchJob batches;  ///< samples: light paths of each light
-  std::size_t lights = 0, angle_bins = 0;
-  std::string plan;
-  double angles = 2 * std::numbers::pi;  ///< that the bins cover
-};
 
 /// For the lights of the scene's request; its views do not matter. angle_bins: equal bins of the
 /// exit angle (C2) over (-pi, pi]. The relative error of a run is the largest one of any light's
 /// shares.
 FluxJob flux_job(const Scene& scene, std::size_t angle_bins, std::uint64_t seed);
-
-/// Scattered light per light: its shares that leave through the face z = 0, the face z = depth and
-/// the sides of a box, and what is absorbed. With the direct transmittance they add up to 1.
-struct FluxEstimates {
-  Estimate reflectance, transmittance, side_loss, absorptance;
-  Estimate exit_radiance;  ///< [light][angle bin]: share per radian of exit angle, in space polar
-};
-FluxEstimates flux_estimates(const FluxJob& job, const GroupedSums& sums);
-
-extern const DatasetTable flux_table;
-/// With the axes of lights and exit directions.
-void write_flux(ResultFile& file, const Scene& scene, const FluxEstimates& flux);
-
-/// Share of a light that crosses the medium unscattered and not absorbed (ballistic), in closed
-/// form.
-double direct_transmittance(const Scene& scene, double light);
-std::vector<double> direct_transmittances(const Scene& scene);
 
 }  // namespace flatspeckle::mc

@@ -1,14 +1,12 @@
-#include "mc/estimators/flux_slopes.h"
-
 #include <array>
-#include <cassert>
 #include <cmath>
 #include <memory>
 
 #include "core/run/interrupt.h"
 #include "mc/estimators/flux_walk.h"
+#include "mc/estimators/gradient.h"
 #include "mc/walk/plan.h"
-#include "mc/walk/walks.h"
+#include "mc/walk/scene_scattering.h"
 
 namespace flatspeckle::mc {
 
@@ -115,7 +113,7 @@ SummedBatches batches(const std::shared_ptr<const FluxSlopes>& of, const Scatter
 
 PathJob flux_slope_job(const Scene& scene, const std::vector<MediumSlope>& slopes,
                        std::uint64_t seed) {
-  assert(!scene.profile && scene.medium.mu_s > 0 && slopes.size() <= most_slopes);
+  require_slopes(scene, slopes);
   require_walks(scene, false);
   const auto of = std::make_shared<const FluxSlopes>(FluxSlopes{scene, slopes});
   PathJob job;

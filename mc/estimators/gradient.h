@@ -1,34 +1,13 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
 #include <vector>
 
-#include "core/result/dataset_row.h"
 #include "mc/estimators/medium_slope.h"
-#include "mc/estimators/path_job.h"
+#include "mc/jobs/gradient_job.h"
+#include "mc/walk/plan.h"
 
 namespace flatspeckle::mc {
-
-/// Derivatives of a scene's covariance from the paths that estimate it: the integrand of C14 is
-/// differentiated, the density that the paths are drawn from is not. The parameters are mu_t, g and
-/// albedo where they describe the scatterers as a bulk (all for hg, no g for points), of cylinders
-/// mu_t, radius and index, and the optical depth, mu_t times the depth, at fixed depth.
-struct GradientJob : PathJob {
-  std::vector<std::string> parameters;
-  Estimator gradient;  ///< [parameter][entry]
-};
-
-/// What a scene's paths are differentiated by; the optical depth follows from mu_t. Of cylinders
-/// with a structure factor, which their size would change, mu_t alone.
-std::vector<BulkParameter> bulk_parameters(const Scene& scene);
-
-/// Of a job whose quantities after the covariance are derivatives by the parameters, mu_t first.
-GradientJob gradient_job(const PathJob& job, const std::vector<BulkParameter>& parameters,
-                         const Scene& scene);
-
-/// Throws InputError for a scene that does not scatter or a request of too many entries.
-void check_gradient(const Scene& scene);
 
 /// As make_plan(), but g = 0 of hg is free to change. Throws as check_gradient().
 Plan gradient_plan(const Scene& scene, ReversedPaths reversed);
@@ -39,25 +18,17 @@ GradientJob gradient_job(const Scene& scene, const Plan& plan, std::uint64_t see
 PathJob slope_job(const Scene& scene, const Plan& plan, const std::vector<MediumSlope>& slopes,
                   std::uint64_t seed);
 
-/// Derivatives of what memory_effect() gives: of C_E, [parameter][tilt], and of the range,
-/// [parameter]: 0 where it is censored.
-struct CorrelationGradient {
-  Estimate correlation, range;
-};
-CorrelationGradient memory_effect_gradient(const CovarianceRequest& request,
-                                           const GroupedSums& sums, const GradientJob& job);
+/// Reflectance and transmittance of each light of a scene in the plane, with derivatives from the
+/// same walks: what leaves is weighed by the logarithmic derivative of the walk's density. Entries
+/// [light][reflected, transmitted], quantities [1 + parameter]. Walkers are not drawn to what is
+/// deep: for media that are not thick.
+PathJob flux_slope_job(const Scene& scene, const std::vector<MediumSlope>& slopes,
+                       std::uint64_t seed);
 
-/// Derivatives of all that a gradient's file has, [parameter] first; range of q L.
-struct GradientEstimates {
-  Estimate entries;
-  CorrelationGradient effect;  ///< of a memory_effect request
-};
-GradientEstimates gradient_estimates(const Scene& scene, const GroupedSums& sums,
-                                     const GradientJob& job);
-
-extern const DatasetTable gradient_table;
-/// The request's axes must have been written.
-void write_gradient(ResultFile& file, const CovarianceRequest& request, const GradientJob& job,
-                    const GradientEstimates& gradient);
+/// What a fixed number N of scatterers changes of a covariance C(rho) of a Poisson number, to first
+/// order in 1/N: the mean of C over Poisson numbers being C(rho), that of the number N itself is
+/// C - rho^2 C'' / (2 N). A path of B scatterers and extinction exp(-mu_t L) carries
+/// rho^2 C'' = [(B - mu_t L)^2 - B] C. Quantities: the covariance, then rho^2 C''.
+PathJob fixed_count_job(const Scene& scene, const Plan& plan, std::uint64_t seed);
 
 }  // namespace flatspeckle::mc

@@ -1,6 +1,7 @@
 #include "mc/estimators/medium_slope.h"
 
 #include <algorithm>
+#include <stdexcept>
 #include <utility>
 
 #include "core/error.h"
@@ -75,6 +76,13 @@ AmplitudeSlope AmplitudeSlope::by_g(const BulkMedium& medium, double factor) {
   slope.factor_ = factor;
   slope.dimension_ = medium.dimension;
   return slope;
+}
+
+void require_slopes(const Scene& scene, const std::vector<MediumSlope>& slopes) {
+  if (scene.profile || scene.medium.mu_s == 0)
+    throw std::logic_error("derivatives by a medium: it must scatter, the same everywhere");
+  if (slopes.size() > most_slopes)
+    throw std::logic_error("derivatives by a medium: too many at once");
 }
 
 MediumSlope medium_slope(const Scene& scene, BulkParameter parameter) {

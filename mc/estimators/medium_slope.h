@@ -9,7 +9,7 @@
 #include "core/numbers/complex.h"
 #include "flatland/scene/scene.h"
 #include "mc/ends/space_scattering.h"
-#include "mc/estimators/bulk_parameter.h"
+#include "mc/jobs/bulk_parameter.h"
 
 namespace flatspeckle::mc {
 
@@ -55,6 +55,10 @@ struct MediumSlope {
 
 /// Of all that paths are differentiated by at once.
 inline constexpr std::size_t most_slopes = 8;
+
+/// Throws std::logic_error for a medium that varies or does not scatter, and for more slopes than
+/// paths take.
+void require_slopes(const Scene& scene, const std::vector<MediumSlope>& slopes);
 
 /// By what describes a scene's scatterers (bulk_parameters()).
 MediumSlope medium_slope(const Scene& scene, BulkParameter parameter);

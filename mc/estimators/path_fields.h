@@ -17,65 +17,64 @@ inline bool is_grid(const std::vector<Channel>& channels, std::size_t lights, st
 }
 
 /// The field f of every channel that a path makes (C14).
-template <typename Scattering, bool reversed, bool phases>
 class PathFields {
-  using Direction = typename Scattering::Direction;
-
  public:
-  PathFields(const Scene& scene, const Scattering& scattering)
-      : scattering_(scattering),
+  PathFields(const PathWalks& walks, const Scene& scene, bool phases)
+      : scattering_(walks.scattering()),
         channels_(scene.request.channels),
-        ends_(scene, scattering, [](std::size_t ends) { return std::vector<Complex>(ends); }),
-        is_grid_(is_grid(channels_, ends_.lights.size(), ends_.views.size())),
+        ends_(walks, scene, phases, [](std::size_t ends) { return std::vector<Complex>(ends); }),
+        is_grid_(is_grid(channels_, ends_.lights().size(), ends_.views().size())),
         field_(channels_.size()) {}
 
   /// B = 1 at x.
   std::span<const Complex> single(Vec2 x) {
-    ends_.lights.attenuate(x, ends_.light_last);
-    ends_.views.attenuate(x, ends_.view_last);
-    is_grid_ ? find_rows(local(scattering_, x)) : find_listed(local(scattering_, x));
+    ends_.lights().attenuate(x, ends_.light_last);
+    ends_.views().attenuate(x, ends_.view_last);
+    is_grid_ ? find_rows(x) : find_listed(x);
     return field_;
   }
 
-  std::span<const Complex> multiple(const Path<Direction>& path) {
-    ends_.find(path, [this](auto& ends, Vec2 x, const Direction& arrival, auto& out) {
-      ends.at(x, arrival, scattering_, out);
+  std::span<const Complex> multiple(const Path& path) {
+    ends_.find(path, [this](EndFactors& ends, Vec2 x, const SpaceDirection& arrival, auto& out) {
+      ends.attenuate(x, out);
+      scattering_.towards(x, arrival, ends.directions(), out);
     });
     for (std::size_t c = 0; c < channels_.size(); ++c) {
       const auto [i, v] = channels_[c];
       field_[c] = product(ends_.light_first[i], ends_.view_last[v]);
-      if constexpr (reversed) field_[c] += product(ends_.light_last[i], ends_.view_first[v]);
+    }
+    if (!ends_.reversed()) return field_;
+    for (std::size_t c = 0; c < channels_.size(); ++c) {
+      const auto [i, v] = channels_[c];
+      field_[c] += product(ends_.light_last[i], ends_.view_first[v]);
     }
     return field_;
   }
 
  private:
   /// Of single scattering: each light into all views, a loop of vectors.
-  template <typename Local>
-  void find_rows(const Local& scattering) {
+  void find_rows(Vec2 x) {
     const auto& view = ends_.view_last;
-    for (std::size_t i = 0; i < ends_.lights.size(); ++i) {
+    for (std::size_t i = 0; i < ends_.lights().size(); ++i) {
       const std::span<Complex> row(&field_[i * view.size()], view.size());
       for (std::size_t v = 0; v < row.size(); ++v) row[v] = product(ends_.light_last[i], view[v]);
-      scattering.towards(-ends_.lights.direction(i), ends_.views.directions(), row);
+      scattering_.towards(x, -ends_.lights().direction(i), ends_.views().directions(), row);
     }
   }
-  template <typename Local>
-  void find_listed(const Local& scattering) {
+  void find_listed(Vec2 x) {
     for (std::size_t c = 0; c < channels_.size(); ++c) {
       const auto [i, v] = channels_[c];
-      field_[c] =
-          product(product(ends_.light_last[i], ends_.view_last[v]),
-                  scattering.amplitude(-ends_.lights.direction(i), ends_.views.direction(v)));
+      field_[c] = product(
+          product(ends_.light_last[i], ends_.view_last[v]),
+          scattering_.amplitude(x, -ends_.lights().direction(i), ends_.views().direction(v)));
     }
   }
 
-  const Scattering& scattering_;
+  const EndScattering& scattering_;
   const std::vector<Channel>& channels_;
-  PathEndsOf<std::vector<Complex>, reversed, EndsOf<Scattering, phases>>
-      ends_;                    ///< A e of every end
-  bool is_grid_;                ///< rows of views, a light each
-  std::vector<Complex> field_;  ///< per channel
+  PathEnds<std::vector<Complex>> ends_;  ///< A e of every end
+  bool is_grid_;                         ///< rows of views, a light each
+  std::vector<Complex> field_;           ///< per channel
 };
 
 }  // namespace flatspeckle::mc

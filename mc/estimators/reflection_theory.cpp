@@ -10,7 +10,7 @@
 #include "mc/numbers/log_sinh.h"
 #include "mc/theory/diffusion.h"
 #include "mc/theory/memory_effect.h"
-#include "mc/walk/walks.h"
+#include "mc/walk/scene_scattering.h"
 
 namespace flatspeckle::mc {
 

@@ -6,6 +6,7 @@
 
 #include "core/run/parallel.h"
 #include "flatland/scene/scene.h"
+#include "mc/ends/end_scattering.h"
 
 namespace flatspeckle::mc {
 
@@ -30,18 +31,8 @@ struct FarField {
 };
 
 /// The part B = 1 of the covariance of two fields (conventions, C14).
-template <typename Scattering>
-Complex single_scattering(const Scene& scene, const Scattering& scattering, const FarField& a,
-                          const FarField& b) {
-  const Complex amplitudes = product_with_conjugate(scattering.amplitude(a.light, a.view),
-                                                    scattering.amplitude(b.light, b.view));
-  // Exactly 0 of equal fields.
-  const Vec2 kappa =
-      a.k * ((a.light - b.light) - (a.view - b.view)) + (a.k - b.k) * (b.light - b.view);
-  return scene.medium.mu_s * amplitudes *
-         attenuated_wave_integral(scene.domain, scene.medium.mu_t, kappa,
-                                  {-a.light, a.view, -b.light, b.view});
-}
+Complex single_scattering(const Scene& scene, const EndScattering& scattering, const FarField& a,
+                          const FarField& b);
 
 /// Calls f with the number of each entry, in parallel where there are many: of some ten
 /// microseconds to a millisecond each.
@@ -52,15 +43,6 @@ void for_entries(std::size_t entries, F f) {
 }
 
 /// The same per entry of the request: far lights and views only. What no path has to sample.
-template <typename Scattering>
-std::vector<Complex> single_scattering(const Scene& scene, const Scattering& scattering) {
-  const auto& request = scene.request;
-  std::vector<Complex> entries(request.entries.size());
-  for_entries(entries.size(), [&](std::size_t e) {
-    entries[e] = single_scattering(scene, scattering, FarField(scene, request.entries[e].a),
-                                   FarField(scene, request.entries[e].b));
-  });
-  return entries;
-}
+std::vector<Complex> single_scattering(const Scene& scene, const EndScattering& scattering);
 
 }  // namespace flatspeckle::mc

@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "mc/ends/end_factors.h"
 #include "mc/estimators/medium_slope.h"
+#include "mc/walk/walks.h"
 
 namespace flatspeckle::mc {
 
@@ -16,13 +16,11 @@ struct GradientTally {
   double length = 0;
   std::array<double, most_slopes> phase_slope{};  ///< sums of d log p over the inner scatterers
 
-  template <typename Direction>
-  void flight(Vec2, const Direction&, double r) {
+  void flight(Vec2, const SpaceDirection&, double r) {
     length += r;
     ++scatterers;
   }
-  template <typename Direction>
-  void scattering(Vec2, const Direction& from, const Direction& to) {
+  void scattering(Vec2, const SpaceDirection& from, const SpaceDirection& to) {
     for (std::size_t p = 0; p < slopes.size(); ++p)
       if (slopes[p].amplitude.depends()) phase_slope[p] += 2 * slopes[p].amplitude(from, to).real();
   }
@@ -42,20 +40,15 @@ struct SlopedEnds {
 /// Derivatives of paths and of their ends by what a medium is made of. Each term of a field (C14's
 /// F and R) carries half of the path's own logarithmic derivative, besides those of its end
 /// factors.
-template <typename Scattering, bool phases>
 class MediumSlopes {
-  using Direction = typename Scattering::Direction;
-  using Ends = EndFactors<phases>;
-
  public:
-  MediumSlopes(const Scene& scene, const Scattering& scattering,
-               std::span<const MediumSlope> slopes)
-      : medium_(scene.medium), scattering_(scattering), slopes_(slopes) {}
+  MediumSlopes(const PathWalks& walks, std::span<const MediumSlope> slopes)
+      : medium_(walks.scene().medium), scattering_(walks.scattering()), slopes_(slopes) {}
 
   std::span<const MediumSlope> list() const { return slopes_; }
 
   /// Towards ends from x, without scattering there.
-  void attenuate(Ends& ends, Vec2 x, SlopedEnds& out) const {
+  void attenuate(EndFactors& ends, Vec2 x, SlopedEnds& out) const {
     ends.attenuate(x, out.value);
     for (std::size_t p = 0; p < slopes_.size(); ++p)
       for (std::size_t j = 0; j < ends.size(); ++j)
@@ -63,14 +56,14 @@ class MediumSlopes {
   }
 
   /// Of light that reaches x along `arrival`.
-  void at(Ends& ends, Vec2 x, const Direction& arrival, SlopedEnds& out) const {
+  void at(EndFactors& ends, Vec2 x, const SpaceDirection& arrival, SlopedEnds& out) const {
     attenuate(ends, x, out);
-    local(scattering_, x).towards(arrival, ends.directions(), out.value);
+    scattering_.towards(x, arrival, ends.directions(), out.value);
     for (std::size_t p = 0; p < slopes_.size(); ++p) {
       const AmplitudeSlope& amplitude = slopes_[p].amplitude;
       if (!amplitude.depends()) continue;
       for (std::size_t j = 0; j < ends.size(); ++j)
-        out.slopes[j][p] += amplitude(arrival, Direction(ends.direction(j)));
+        out.slopes[j][p] += amplitude(arrival, SpaceDirection(ends.direction(j)));
     }
   }
 
@@ -94,7 +87,7 @@ class MediumSlopes {
 
  private:
   const BulkMedium& medium_;
-  const Scattering& scattering_;
+  const EndScattering& scattering_;
   std::span<const MediumSlope> slopes_;
 };
 

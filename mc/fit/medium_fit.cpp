@@ -3,7 +3,6 @@
 #include "core/error.h"
 #include "mc/fit/fit_report.h"
 #include "mc/fit/model/slab_model.h"
-#include "mc/fit/path_fit.h"
 #include "mc/fit/task/fit_data.h"
 
 namespace flatspeckle::mc {
@@ -13,7 +12,7 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-LeastSquares problem_of(const FitTask& task, const SlabModel& model, const Data& data) {
+LeastSquares problem_of(const FitTask& task, const SlabModel& model, const FitData& data) {
   LeastSquares problem;
   problem.lower = lower_coordinates(task.free);
   problem.upper = upper_coordinates(task.free);
@@ -29,7 +28,7 @@ LeastSquares problem_of(const FitTask& task, const SlabModel& model, const Data&
 /// Other starts are gone on from where the best one does not end in a likely medium. The search is
 /// by as many ordinates as a thousandth of the values needs; it goes on where errors ask for more.
 LeastSquaresFit refined_fit(const FitTask& task, const LeastSquares& problem, SlabModel& model,
-                            const Data& data, MediumFit& fit) {
+                            const FitData& data, MediumFit& fit) {
   constexpr double share = 0.05, tolerance = 1e-3, rough = 1e-3;
   const VectorXd at_first = data.errors().cwiseMax(rough * data.values().cwiseAbs());
   model.refine(media_at(task, middle(task)), at_first, share);
@@ -52,7 +51,7 @@ LeastSquaresFit refined_fit(const FitTask& task, const LeastSquares& problem, Sl
 /// Of fields: least squares with errors as the best medium gives them, until that stays the same;
 /// there the likelihood is largest.
 LeastSquaresFit likeliest_fit(const FitTask& task, const LeastSquares& problem,
-                              const SlabModel& model, LeastSquaresFit best, Data& data) {
+                              const SlabModel& model, LeastSquaresFit best, FitData& data) {
   constexpr int most = 20;
   constexpr double still = 1e-4, tolerance = 1e-6;  // squares, in standard errors
   for (int i = 0; i < most; ++i) {
@@ -71,7 +70,7 @@ LeastSquaresFit likeliest_fit(const FitTask& task, const LeastSquares& problem,
 }  // namespace
 
 void check(const FitTask& task) {
-  const Data data(task);
+  const FitData data(task);
   const std::size_t free = task.free.size();
   if (static_cast<Index>(free) > data.values().size())
     throw InputError("free", free,
@@ -83,7 +82,7 @@ void check(const FitTask& task) {
 
 MediumFit fit_medium(const FitTask& task) {
   if (task.paths) return fit_by_paths(task);
-  Data data(task);
+  FitData data(task);
   SlabModel model(curves_of(task), media_at(task, middle(task)));
   const LeastSquares problem = problem_of(task, model, data);
   MediumFit fit;

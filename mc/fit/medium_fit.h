@@ -44,4 +44,12 @@ void check(const FitTask& task);
 /// Least squares of all measurements at once. Throws InputError.
 MediumFit fit_medium(const FitTask& task);
 
+/// Least squares by Monte Carlo, in any medium: the errors of the model count beside those of the
+/// measurements, and paths become more until they add no more than the stated share. Throws
+/// InputError.
+MediumFit fit_by_paths(const FitTask& task);
+
+/// Throws InputError for what paths cannot tell.
+void check_paths(const FitTask& task);
+
 }  // namespace flatspeckle::mc

@@ -1,5 +1,3 @@
-#include "mc/fit/path_fit.h"
-
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -10,6 +8,7 @@
 #include "core/run/interrupt.h"
 #include "core/run/stopwatch.h"
 #include "mc/fit/fit_report.h"
+#include "mc/fit/medium_fit.h"
 #include "mc/fit/model/neglected.h"
 #include "mc/fit/model/path_model.h"
 #include "mc/fit/task/fit_data.h"
@@ -27,14 +26,14 @@ constexpr double first_paths = 10000;
 /// Least squares at one medium, the errors of the model added to those of the measurements.
 struct Round {
   SampledModel model;
-  Data data;  ///< with errors as this model has them
+  FitData data;  ///< with errors as this model has them
   MatrixXd noise, neglected;
   Eigen::LLT<MatrixXd> root;  ///< of the covariance of all errors
   LeastSquaresFit at;         ///< whitened by it
   MatrixXd fisher;            ///< less what chance in the slopes adds
   double excess = 0;          ///< that, in the combination where it is most, over the rest
 
-  Round(const VectorXd& coordinates, SampledModel sampled, MatrixXd errors, const Data& measured)
+  Round(const VectorXd& coordinates, SampledModel sampled, MatrixXd errors, const FitData& measured)
       : model(std::move(sampled)),
         data(measured.has_fields() ? measured.about(model.values) : measured),
         noise(model.noise()),
@@ -72,9 +71,9 @@ struct Round {
 };
 
 /// The search for the medium.
-class Search {
+class PathSearch {
  public:
-  explicit Search(const FitTask& task) : task_(task), data_(task), model_(task) {
+  explicit PathSearch(const FitTask& task) : task_(task), data_(task), model_(task) {
     bounds_.lower = lower_coordinates(task.free);
     bounds_.upper = upper_coordinates(task.free);
   }
@@ -139,7 +138,7 @@ class Search {
   MediumFit from(const VectorXd& start, std::size_t number) {
     constexpr double far = 4, near = 1, most_damping = 1e12;  // squares, in standard errors
     std::vector<LeastSquaresFit::Step> trace;
-    const SearchStep last = last_made(start, number, trace);
+    const FitStep last = last_made(start, number, trace);
     double paths = last.paths, damping = last.damping;
     Round here = round(last.at, paths);
     for (int i = last.iteration;
@@ -171,11 +170,11 @@ class Search {
   }
 
   /// Where the search from a start stands, after the steps that were made before.
-  SearchStep last_made(const VectorXd& start, std::size_t number,
-                       std::vector<LeastSquaresFit::Step>& trace) {
-    SearchStep last{number, 0, first_paths, 1e-3, 0, 0, start};
+  FitStep last_made(const VectorXd& start, std::size_t number,
+                    std::vector<LeastSquaresFit::Step>& trace) {
+    FitStep last{number, 0, first_paths, 1e-3, 0, 0, start};
     kept_ = 0;
-    for (const SearchStep& step : task_.made) {
+    for (const FitStep& step : task_.made) {
       if (step.start != number) continue;
       if (kept_ > 0) trace.push_back({last.at, last.chi_squared, last.cpu_s});
       last = step;
@@ -206,7 +205,7 @@ class Search {
   }
 
   const FitTask& task_;
-  const Data data_;
+  const FitData data_;
   PathModel model_;
   LeastSquares bounds_;
   Stopwatch clock_;
@@ -216,7 +215,7 @@ class Search {
 }  // namespace
 
 MediumFit fit_by_paths(const FitTask& task) {
-  return Search(task).fit();
+  return PathSearch(task).fit();
 }
 
 void check_paths(const FitTask& task) {

@@ -22,37 +22,37 @@ std::shared_ptr<const Wavefront> wave_from(const End& end, const GradedMedium& m
 
 }  // namespace
 
-template <bool phases>
-GradedEnds<phases>::GradedEnds(const Scene& scene, const std::vector<End>& ends,
-                               const GradedMedium& medium)
-    : k_(scene.k),
+GradedEnds::GradedEnds(const Scene& scene, const std::vector<End>& ends, bool phases,
+                       const GradedMedium& medium)
+    : EndFactors(ends.size()),
+      k_(scene.k),
       mu_t_(scene.medium.mu_t),
-      directions_(ends.size()),
+      phases_(phases),
       phase_(ends.size()),
       log_magnitude_(ends.size()) {
   for (const End& end : ends) ends_.push_back({wave_from(end, medium), end.near, end.strength});
 }
 
-template <bool phases>
-void GradedEnds<phases>::attenuate(Vec2 x, std::span<Complex> out) {
+void GradedEnds::attenuate(Vec2 x, std::span<Complex> out) {
   for (std::size_t j = 0; j < size(); ++j) {
     const auto arrival = ends_[j].wave->at(x);
     if (!arrival) {
       directions_.set(j, {0, 1}, 0);
       phase_[j] = 0;
-      log_magnitude_[j] = log_of_no_light;
+      log_attenuation_[j] = log_magnitude_[j] = log_of_no_light;
       continue;
     }
     const Vec2 w = -arrival->w;
     directions_.set(j, w, angle_of(w));
     phase_[j] = k_ * arrival->path;
+    log_attenuation_[j] = -mu_t_ * arrival->inside / 2;
     log_magnitude_[j] =
-        std::max(std::log(arrival->amplitude) - mu_t_ * arrival->inside / 2, log_of_no_light);
+        std::max(std::log(arrival->amplitude) + log_attenuation_[j], log_of_no_light);
   }
   damped_phasors(phase_, log_magnitude_, out);
   for (std::size_t j = 0; j < size(); ++j) {
     if (!ends_[j].near) {
-      if constexpr (!phases) out[j] = std::abs(out[j]);
+      if (!phases_) out[j] = std::abs(out[j]);
       continue;
     }
     if (phase_[j] < apart_enough && log_magnitude_[j] > log_of_no_light) {
@@ -60,12 +60,9 @@ void GradedEnds<phases>::attenuate(Vec2 x, std::span<Complex> out) {
       out[j] = std::exp(log_magnitude_[j]) * std::sqrt(path) * outgoing_wave(k_, path);
     }
     out[j] = product(out[j], ends_[j].strength);
-    if constexpr (!phases) out[j] = std::abs(out[j]);
+    if (!phases_) out[j] = std::abs(out[j]);
   }
 }
-
-template class GradedEnds<false>;
-template class GradedEnds<true>;
 
 namespace {
 

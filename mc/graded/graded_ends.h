@@ -4,26 +4,18 @@
 #include <span>
 #include <vector>
 
-#include "mc/graded/graded_scattering.h"
+#include "mc/ends/end_factors.h"
+#include "mc/graded/graded_medium.h"
 
 namespace flatspeckle::mc {
 
-/// End factors (end_factors.h) where light is bent (conventions, C32).
-template <bool phases>
-class GradedEnds {
+/// End factors where light is bent (conventions, C32).
+class GradedEnds : public EndFactors {
  public:
-  GradedEnds(const Scene& scene, const std::vector<End>& ends, const GradedMedium& medium);
+  GradedEnds(const Scene& scene, const std::vector<End>& ends, bool phases,
+             const GradedMedium& medium);
 
-  std::size_t size() const { return ends_.size(); }
-
-  void at(Vec2 x, Vec2 arrival, const GradedScattering& scattering, std::span<Complex> out) {
-    attenuate(x, out);
-    scattering.form().towards(arrival, directions_, out);
-  }
-  void attenuate(Vec2 x, std::span<Complex> out);
-
-  Vec2 direction(std::size_t j) const { return directions_[j]; }
-  const Directions& directions() const { return directions_; }
+  void attenuate(Vec2 x, std::span<Complex> out) override;
 
  private:
   struct Towards {
@@ -33,8 +25,8 @@ class GradedEnds {
   };
 
   double k_, mu_t_;
+  bool phases_;
   std::vector<Towards> ends_;
-  Directions directions_;
   std::vector<double> phase_, log_magnitude_;
 };
 

@@ -17,12 +17,12 @@ struct BentBend : Bend {
 };
 
 /// A ray in the parameter sigma (conventions, C30): x' = v, v' = n grad n, |v| = n.
-struct Ray {
+struct BentRay {
   Vec2 x, v;
 };
 
 /// A ray, its optical path, and how it moves as its direction turns where it begins.
-struct RayTube : Ray {
+struct RayTube : BentRay {
   Vec2 y, w;  ///< derivatives of x and v by that angle
   double path = 0;
 
@@ -33,7 +33,7 @@ struct RayTube : Ray {
 
 /// Nystrom's method of fourth order.
 template <typename BendAt>
-Ray stepped(const Ray& ray, double h, const BendAt& bend) {
+BentRay stepped(const BentRay& ray, double h, const BendAt& bend) {
   const auto [x, v] = ray;
   const Vec2 a = bend(x).force, b = bend(x + h / 2 * v + h * h / 8 * a).force,
              c = bend(x + h * v + h * h / 2 * b).force;

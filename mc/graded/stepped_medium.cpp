@@ -90,16 +90,16 @@ bool SteppedMedium<Field>::in_window(Vec2 x) const {
 }
 
 template <class Field>
-BentChords SteppedMedium<Field>::chords(const Ray& from, const Ray& to, double h) const {
+BentChords SteppedMedium<Field>::chords(const BentRay& from, const BentRay& to, double h) const {
   return {domain_, from.x, from.v, 2 / (h * h) * (to.x - from.x - h * from.v), h};
 }
 
 template <class Field>
 double SteppedMedium<Field>::inside(Vec2 x, Vec2 w) const {
-  Ray ray = begun(x, w);
+  BentRay ray = begun(x, w);
   double sum = 0;
   for (int step = 0; step < most_steps && in_window(ray.x); ++step) {
-    const Ray next = stepped(ray, step_, [this](Vec2 place) { return bend(place); });
+    const BentRay next = stepped(ray, step_, [this](Vec2 place) { return bend(place); });
     sum += chords(ray, next, step_).length();
     ray = next;
   }
@@ -109,12 +109,12 @@ double SteppedMedium<Field>::inside(Vec2 x, Vec2 w) const {
 template <class Field>
 std::optional<RayPlace> SteppedMedium<Field>::flown(Vec2 x, Vec2 w, double sigma) const {
   const auto bend_at = [this](Vec2 place) { return bend(place); };
-  Ray ray = begun(x, w);
+  BentRay ray = begun(x, w);
   for (int step = 0; step < most_steps && in_window(ray.x); ++step) {
-    const Ray next = stepped(ray, step_, bend_at);
+    const BentRay next = stepped(ray, step_, bend_at);
     const BentChords parts = chords(ray, next, step_);
     if (const double at = parts.at(sigma); at <= step_) {
-      const Ray end = stepped(ray, at, bend_at);
+      const BentRay end = stepped(ray, at, bend_at);
       return RayPlace{end.x, 1 / length(end.v) * end.v};
     }
     sigma -= parts.length();
@@ -165,7 +165,7 @@ std::optional<WaveTable::Node> SteppedMedium<Field>::arrival(Vec2 source, Vec2 x
   constexpr double largest_turn = 0.3;
   for (int turn = 0; turn < most_turns; ++turn) {
     const auto end = followed(source, direction(launch), true,
-                              [&](const Ray& ray) { return dot(x - ray.x, ray.v); });
+                              [&](const BentRay& ray) { return dot(x - ray.x, ray.v); });
     if (!end) return std::nullopt;
     const RayTube& tube = end->tube;
     const double n = length(tube.v);
@@ -195,7 +195,7 @@ std::optional<WaveTable::Node> SteppedMedium<Field>::plane_arrival(
   constexpr double largest_turn = 0.3;
   for (int turn = 0; turn < most_turns; ++turn) {
     const auto end = followed(x, direction(turned), false,
-                              [&](const Ray& ray) { return (ray.x.z - face) * cosine * -way; });
+                              [&](const BentRay& ray) { return (ray.x.z - face) * cosine * -way; });
     if (!end) return std::nullopt;
     const RayTube& tube = end->tube;
     const double miss = tube.v.x - way * sine,

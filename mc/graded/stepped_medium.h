@@ -30,10 +30,10 @@ class SteppedMedium : public GradedMedium {
   std::shared_ptr<const Wavefront> wave_from_afar(double angle) const override;
   Bend bend(Vec2 x) const;
   BentBend bent_bend(Vec2 x) const;
-  Ray begun(Vec2 x, Vec2 w) const { return {x, std::sqrt(std::max(square(x), 0.0)) * w}; }
+  BentRay begun(Vec2 x, Vec2 w) const { return {x, std::sqrt(std::max(square(x), 0.0)) * w}; }
   bool in_window(Vec2 x) const;
   /// sigma of a step that is in the domain, as a parabola.
-  BentChords chords(const Ray& from, const Ray& to, double h) const;
+  BentChords chords(const BentRay& from, const BentRay& to, double h) const;
 
   struct End {
     RayTube tube;

@@ -215,7 +215,7 @@ std::optional<std::uint64_t> paths_for_fields(const LineScene& line, std::uint64
   FieldDemand demand;
   demand.method = FieldMethod::paths;
   demand.fields = 1;
-  const FieldPlan plan_of_some = make_field_plan(some.scene, read_survey(state.sums), demand);
+  const DrawingPlan plan_of_some = make_field_plan(some.scene, read_survey(state.sums), demand);
   return std::max(plan_of_some.paths_per_field, static_cast<std::uint64_t>(4 * most_grains(line)));
 }
 

@@ -7,8 +7,7 @@
 #include "core/numbers/blas.h"
 #include "core/run/interrupt.h"
 #include "core/run/parallel.h"
-#include "mc/estimators/flux.h"
-#include "mc/estimators/flux_walk.h"
+#include "mc/jobs/flux_job.h"
 
 namespace flatspeckle::mc {
 

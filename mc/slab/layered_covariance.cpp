@@ -10,6 +10,7 @@
 #include "core/numbers/blas.h"
 #include "core/run/interrupt.h"
 #include "core/run/parallel.h"
+#include "flatland/media/layers.h"
 #include "mc/slab/layer_stack.h"
 #include "mc/slab/range_refinement.h"
 #include "mc/slab/transport_jobs.h"

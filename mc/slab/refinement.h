@@ -9,7 +9,7 @@
 #include "core/result/result_file.h"
 #include "core/run/runner.h"
 #include "flatland/request/request.h"
-#include "mc/estimators/path_job.h"
+#include "mc/jobs/path_job.h"
 
 namespace flatspeckle::mc {
 

@@ -2,9 +2,9 @@
 
 #include "flatland/request/field_moments.h"
 #include "flatland/scene/scene.h"
-#include "mc/changes/field_change.h"
-#include "mc/estimators/gradient.h"
-#include "mc/estimators/path_job.h"
+#include "mc/jobs/field_change.h"
+#include "mc/jobs/gradient_job.h"
+#include "mc/jobs/path_job.h"
 #include "mc/slab/refinement.h"
 
 namespace flatspeckle::mc {

@@ -5,7 +5,7 @@
 #include <functional>
 #include <numbers>
 
-#include "mc/estimators/flux_walk.h"
+#include "mc/jobs/flux_job.h"
 #include "mc/slab/flux_refinement.h"
 #include "mc/slab/layer_stack.h"
 #include "mc/transport/chains.h"

@@ -3,9 +3,9 @@
 #include <functional>
 #include <vector>
 
-#include "mc/changes/field_change.h"
-#include "mc/estimators/gradient.h"
-#include "mc/estimators/path_job.h"
+#include "mc/jobs/field_change.h"
+#include "mc/jobs/gradient_job.h"
+#include "mc/jobs/path_job.h"
 #include "mc/slab/refinement.h"
 
 namespace flatspeckle::mc {

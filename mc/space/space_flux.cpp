@@ -4,7 +4,7 @@
 #include <numbers>
 #include <numeric>
 
-#include "mc/estimators/flux_walk.h"
+#include "mc/jobs/flux_job.h"
 #include "mc/slab/flux_refinement.h"
 #include "mc/space/azimuthal_modes.h"
 #include "mc/space/space_scene.h"

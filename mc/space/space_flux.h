@@ -1,7 +1,7 @@
 #pragma once
 
 #include "flatland/scene/scene.h"
-#include "mc/estimators/flux.h"
+#include "mc/jobs/flux_job.h"
 #include "mc/slab/refinement.h"
 
 namespace flatspeckle::mc {

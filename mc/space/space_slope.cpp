@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "mc/estimators/bulk_parameter.h"
+#include "mc/jobs/bulk_parameter.h"
 #include "mc/transport/bulk_slope.h"
 
 namespace flatspeckle::mc {

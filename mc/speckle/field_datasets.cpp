@@ -85,7 +85,7 @@ void write_field(ResultFile& file, const Scene& scene, const DrawnFields& drawn)
   }
 }
 
-void write_plan(const ResultGroup& root, const FieldPlan& plan) {
+void write_plan(const ResultGroup& root, const DrawingPlan& plan) {
   const bool by_paths = plan.method == FieldMethod::paths;
   root.attribute("field", "method", std::string(by_paths ? "paths" : "covariance"));
   if (by_paths) {

@@ -21,13 +21,13 @@ constexpr std::uint64_t siegert_paths = 20000;
 constexpr std::uint64_t covariance_batches = 128;
 
 /// One run after the other, and what they cost.
-class Drawing {
+class FieldDrawing {
  public:
-  Drawing(const Scene& scene, const DrawingSettings& settings)
+  FieldDrawing(const Scene& scene, const DrawingSettings& settings)
       : scene_(scene), settings_(settings), plan_(make_plan(scene, settings.reversed)) {}
 
   std::optional<DrawnFields> draw(const FieldDemand& demand,
-                                  const std::function<void(const FieldPlan&)>& planned) {
+                                  const std::function<void(const DrawingPlan&)>& planned) {
     const RunState survey = run("survey", survey_job(scene_, plan_, settings_.seed), survey_paths);
     if (interrupted()) return std::nullopt;
     drawn_.plan = make_field_plan(scene_, read_survey(survey.sums), demand);
@@ -108,8 +108,8 @@ class Drawing {
 
 std::optional<DrawnFields> draw_fields(const Scene& scene, const FieldDemand& demand,
                                        const DrawingSettings& settings,
-                                       const std::function<void(const FieldPlan&)>& planned) {
-  return Drawing(scene, settings).draw(demand, planned);
+                                       const std::function<void(const DrawingPlan&)>& planned) {
+  return FieldDrawing(scene, settings).draw(demand, planned);
 }
 
 }  // namespace flatspeckle::mc

@@ -14,7 +14,7 @@ namespace flatspeckle::mc {
 
 /// Fields that were drawn, [realization][light][view], and what they are to be compared with.
 struct DrawnFields {
-  FieldPlan plan;
+  DrawingPlan plan;
   std::vector<Complex> field;
   Estimate intensity;  ///< E|u|^2 per channel, from light paths: without the noise of speckle
   Estimate siegert;    ///< what the autocorrelation should be, where it is formed
@@ -32,6 +32,6 @@ struct DrawingSettings {
 /// signal came (catch_interrupts).
 std::optional<DrawnFields> draw_fields(const Scene& scene, const FieldDemand& demand,
                                        const DrawingSettings& settings,
-                                       const std::function<void(const FieldPlan&)>& planned);
+                                       const std::function<void(const DrawingPlan&)>& planned);
 
 }  // namespace flatspeckle::mc

@@ -70,7 +70,7 @@ bool covariance_fits(double channels) {
 /// In complex multiply-adds of a plain loop: of a path's step, that of walking it and of each end
 /// factor is about that of ten; zherk and Cholesky do theirs four times as fast, and products with
 /// a factor too large for the caches twice as fast (measured).
-void set_costs(FieldPlan& plan, const Scene& scene, double contributions, double fields) {
+void set_costs(DrawingPlan& plan, const Scene& scene, double contributions, double fields) {
   constexpr double end_factor = 10, blas_speed = 4, product_speed = 2;
   const auto n = static_cast<double>(scene.request.channels.size());
   const auto ends = static_cast<double>(scene.request.lights.size() + scene.request.views.size());
@@ -126,9 +126,10 @@ PathSurvey read_survey(const GroupedSums& sums) {
   return survey;
 }
 
-FieldPlan make_field_plan(const Scene& scene, const PathSurvey& survey, const FieldDemand& demand) {
+DrawingPlan make_field_plan(const Scene& scene, const PathSurvey& survey,
+                            const FieldDemand& demand) {
   constexpr double accepted_excess = 0.01, fewest_paths = 100;
-  FieldPlan plan;
+  DrawingPlan plan;
   const double excess = largest_magnitude(survey.excess);
   plan.paths_per_field =
       demand.paths_per_field.value_or(rounded_up(excess / accepted_excess, fewest_paths));
@@ -143,7 +144,7 @@ FieldPlan make_field_plan(const Scene& scene, const PathSurvey& survey, const Fi
   return plan;
 }
 
-std::string FieldPlan::describe() const {
+std::string DrawingPlan::describe() const {
   std::ostringstream text;
   text.precision(3);
   if (method == FieldMethod::paths)

@@ -41,7 +41,7 @@ struct FieldDemand {
 };
 
 /// How a scene's fields are drawn.
-struct FieldPlan {
+struct DrawingPlan {
   FieldMethod method = FieldMethod::paths;  ///< never automatic
   std::uint64_t paths_per_field = 0, covariance_paths = 0;
   double excess = 0;  ///< of fields by paths, the magnitude of the largest of all channels
@@ -52,6 +52,7 @@ struct FieldPlan {
 };
 
 /// The cheaper way that gives what is asked for.
-FieldPlan make_field_plan(const Scene& scene, const PathSurvey& survey, const FieldDemand& demand);
+DrawingPlan make_field_plan(const Scene& scene, const PathSurvey& survey,
+                            const FieldDemand& demand);
 
 }  // namespace flatspeckle::mc

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "mc/estimators/gradient.h"
+#include "mc/jobs/gradient_job.h"
 
 namespace flatspeckle::mc {
 

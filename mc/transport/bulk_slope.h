@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "mc/estimators/bulk_parameter.h"
+#include "mc/jobs/bulk_parameter.h"
 #include "mc/numbers/dual.h"
 #include "mc/transport/scattering_law.h"
 

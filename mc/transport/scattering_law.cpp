@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "core/numbers/fourier.h"
-#include "mc/estimators/bulk_parameter.h"
+#include "mc/jobs/bulk_parameter.h"
 
 namespace flatspeckle::mc {
 

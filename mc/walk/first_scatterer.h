@@ -8,7 +8,7 @@
 #include "mc/ends/near_rays.h"
 #include "mc/ends/profile_flight.h"
 #include "mc/ends/varying_scattering.h"
-#include "mc/walk/stretched_flight.h"
+#include "mc/walk/bounded_stretched_flight.h"
 
 namespace flatspeckle::mc {
 
@@ -70,7 +70,7 @@ class FirstScatterer {
     return flight(w, chord).density(behind) / aperture(w);
   }
 
-  StretchedFlight flight(Vec2 w, double chord) const { return {mu_t_, chord, pull_ * w.z}; }
+  BoundedStretchedFlight flight(Vec2 w, double chord) const { return {mu_t_, chord, pull_ * w.z}; }
 
   bool has_near() const { return plane_.size() < static_cast<std::size_t>(count_); }
 

@@ -60,7 +60,7 @@ std::set<double> view_depths(const Scene& scene) {
 
 }  // namespace
 
-DepthImportance::DepthImportance(const Scene& scene) : step_(scene.domain.depth / nodes) {
+DiffusionImportance::DiffusionImportance(const Scene& scene) : step_(scene.domain.depth / nodes) {
   const double depth = scene.domain.depth;
   const auto& medium = scene.medium;
   const double beyond = extrapolation_length(medium);
@@ -110,26 +110,26 @@ DepthImportance::DepthImportance(const Scene& scene) : step_(scene.domain.depth 
   steep_ = *std::max_element(log_worth_.begin(), log_worth_.end()) > steep;
 }
 
-double DepthImportance::log_worth(double z) const {
+double DiffusionImportance::log_worth(double z) const {
   const double position = z / step_;
   const std::size_t i = interval(z);
   const double t = position - static_cast<double>(i);
   return (1 - t) * log_worth_[i] + t * log_worth_[i + 1];
 }
 
-double DepthImportance::slope(double z) const {
+double DiffusionImportance::slope(double z) const {
   if (!steep_) return 0;
   const std::size_t i = interval(z);
   return (log_worth_[i + 1] - log_worth_[i]) / step_;
 }
 
-double DepthImportance::rise() const {
+double DiffusionImportance::rise() const {
   constexpr double worthwhile = 1;
   const double whole = log_worth_.back() - log_worth_.front();
   return std::abs(whole) > worthwhile ? whole / (step_ * nodes) : 0;
 }
 
-std::size_t DepthImportance::interval(double z) const {
+std::size_t DiffusionImportance::interval(double z) const {
   return std::min(static_cast<std::size_t>(z / step_), log_worth_.size() - 2);
 }
 

@@ -12,9 +12,9 @@ namespace flatspeckle::mc {
 /// medium on their sides, by diffusion theory, relative to a mean free path from where the light
 /// enters. Walkers are split where it rises and play roulette where it falls, so that all
 /// contributions weigh alike. It changes the variance alone.
-class DepthImportance {
+class DiffusionImportance {
  public:
-  explicit DepthImportance(const Scene& scene);
+  explicit DiffusionImportance(const Scene& scene);
 
   double log_worth(double z) const;
   /// Its derivative, for stretching flights: 0 where the worth rises so little in all that

@@ -15,53 +15,24 @@
 #include "mc/walk/first_scatterer.h"
 #include "mc/walk/graded_first.h"
 #include "mc/walk/importance.h"
+#include "mc/walk/path_scorer.h"
 #include "mc/walk/plan.h"
 
 namespace flatspeckle::mc {
 
-/// A path of B >= 2 scatterers as the walk found it. The mean of weight f_a conj(f_b) over walks is
-/// the covariance, with f = F, or F + R with reversed paths (conventions, C14), whose amplitudes
-/// are divided by sqrt(sigma_s).
-template <typename Direction>
-struct Path {
-  Vec2 first;  ///< the first scatterer
-  Direction start;
-  Vec2 last;
-  Direction arrival;  ///< at the last scatterer
-  double weight = 0;
-  bool new_start = false;  ///< the first such path from this first scatterer and start
-};
-
-/// What a walk notes of a path's flights and inner scatterings (not those of the first and last
-/// scatterer): here nothing, at no cost.
-struct NoTally {
-  template <typename Direction>
-  void flight(Vec2 /*from*/, const Direction& /*w*/, double /*length*/) {}
-  template <typename Direction>
-  void scattering(Vec2 /*x*/, const Direction& /*from*/, const Direction& /*to*/) {}
-};
-
-template <typename Direction, typename Tally>
-struct TalliedPath : Path<Direction> {
-  [[no_unique_address]] Tally tally;
-};
-
-/// Walks from the lights through a scene (Bar et al. 2019) and gives what it finds to a scorer:
-///   single(x, weight)   paths of one scatterer, where the plan samples them
-///   multiple(path)      paths of more, with their tally
+/// Walks from the lights through a scene (Bar et al. 2019) and gives what it finds to a scorer.
 /// Steps are cheap and scoring is not, so a contribution that promises little plays roulette first.
 /// Walkers split and die by what their depth is worth.
 ///
 /// With reversed paths a path is weighed by the mean of the densities with which the walk would
 /// find it from either end. That is unbiased, because F + R does not change when a path is turned
 /// round, and no |R|^2 can outgrow its weight.
-template <typename Scattering, bool reversed, bool weighted, typename Tally = NoTally>
+template <typename Scattering>
 class PathWalk {
   using Direction = typename Scattering::Direction;
 
  public:
-  /// tally: what every path starts with.
-  PathWalk(const Scene& scene, const Plan& plan, const Scattering& scattering, Tally tally = {})
+  PathWalk(const Scene& scene, const Plan& plan, const Scattering& scattering)
       : plan_(plan),
         domain_(scene.domain),
         medium_(scene.medium),
@@ -69,8 +40,7 @@ class PathWalk {
         scattering_(scattering),
         importance_(scene),
         first_(make_first(scene)),
-        expected_view_(scene, view_ends(scene)),
-        tally_(tally) {}
+        expected_view_(scene, view_ends(scene)) {}
 
   /// To be called before a batch's first walk.
   void begin(RandomStream& random) {
@@ -79,8 +49,8 @@ class PathWalk {
     last_splitting_ = steps_ + steps_of_splitting;
   }
 
-  template <typename Scorer>
-  void walk(RandomStream& random, Scorer& scorer) {
+  void walk(RandomStream& random, PathScorer& scorer) {
+    has_tally_ = scorer.has_tally();
     const auto first = first_.sample(random);
     if constexpr (bends<Scattering>) {
       if (!first.hit) return;
@@ -91,19 +61,21 @@ class PathWalk {
       if (mu_s(x) == 0) return;
     }
     if (plan_.sampled_single) score_single(x, arrival, scorer);
-    path_ = {{x, local(scattering_, x).sample(arrival, random), {}, {}, 0, true}, tally_};
+    start_ = local(scattering_, x).sample(arrival, random);
+    path_ = {x, start_, {}, {}, 0, true};
     start_density_ = -1;
     log_worth_first_ = std::max(importance_.log_worth(x.z), 0.0);
-    if constexpr (reversed) expected_first_ = expected(x, -path_.start);
-    const auto [length, weight] = first_flight(x, path_.start, random);
-    Tally tally = tally_;
-    tally.flight(x, path_.start, length);
-    const auto [end, w] = landed(x, path_.start, length);
-    follow({end, w, weight, 1, tally}, random, scorer);
+    if (plan_.reversed) expected_first_ = expected(x, -start_);
+    const auto [length, weight] = first_flight(x, start_, random);
+    scorer.begin(x, start_, length);
+    const auto [end, w] = landed(x, start_, length);
+    follow({end, w, weight, 1}, random, scorer);
     while (!waiting_.empty()) {
       Walker walker = waiting_.back();
-      if (--waiting_.back().copies == 0) waiting_.pop_back();
-      if (step(walker, random)) follow(walker, random, scorer);
+      const bool last = --waiting_.back().copies == 0;
+      if (last) waiting_.pop_back();
+      scorer.take_up(last);
+      if (step(walker, random, scorer)) follow(walker, random, scorer);
     }
   }
 
@@ -114,7 +86,7 @@ class PathWalk {
     if constexpr (bends<Scattering>)
       return First(scene, scattering_);
     else
-      return First(scene, weighted ? importance_.rise() : 0);
+      return First(scene, plan_.weighted ? importance_.rise() : 0);
   }
 
   /// Weights in units of mu_s^2 / mu_t, that of B = 2.
@@ -123,7 +95,6 @@ class PathWalk {
     Direction arrival;
     double weight;
     std::uint32_t copies;
-    [[no_unique_address]] Tally tally;
   };
 
   // Of the medium at a place.
@@ -148,7 +119,7 @@ class PathWalk {
       const ProfileFlight flight(*profile_, x, w, edge);
       return {flight.sample(random.uniform()), flight.probability()};
     }
-    const StretchedFlight flight{medium_.mu_t, edge, pull(x, w)};
+    const BoundedStretchedFlight flight{medium_.mu_t, edge, pull(x, w)};
     const double length = flight.sample(random.uniform());
     return {length, flight.weight(length)};
   }
@@ -159,43 +130,38 @@ class PathWalk {
       const auto place = scattering_.medium().flown(x, w, length);
       return place ? std::pair(place->x, place->w) : std::pair(x, w);
     } else {
-      return {x + length * w, w};
+      return {x + length * Vec2(w), w};
     }
   }
 
   /// From where a walker has arrived, until it leaves, dies or splits.
-  template <typename Scorer>
-  void follow(Walker walker, RandomStream& random, Scorer& scorer) {
+  void follow(Walker walker, RandomStream& random, PathScorer& scorer) {
     do {
       score(walker, scorer);
-      if constexpr (weighted) {
-        if (!reweigh(walker, random)) return;
-      }
-    } while (step(walker, random));
+      if (plan_.weighted && !reweigh(walker, random, scorer)) return;
+    } while (step(walker, random, scorer));
   }
 
   /// To the next scatterer; false if there is none.
-  bool step(Walker& walker, RandomStream& random) {
+  bool step(Walker& walker, RandomStream& random, PathScorer& scorer) {
     constexpr std::uint64_t between_looks = 4096;
     if (++steps_ % between_looks == 0) stop_if_interrupted();
     const Direction w = local(scattering_, walker.x).sample(walker.arrival, random);
-    if constexpr (bends<Scattering>) return fly_bent(walker, w, random);
+    if constexpr (bends<Scattering>) return fly_bent(walker, w, random, scorer);
     const double edge = domain_.distance_to_edge(walker.x, w),
                  flight = sample_flight(walker, w, edge, random);
     if (flight >= edge) return false;
-    walker.tally.scattering(walker.x, walker.arrival, w);
-    walker.tally.flight(walker.x, w, flight);
-    walker.x = walker.x + flight * w;
+    if (has_tally_) scorer.step(walker.x, walker.arrival, w, flight);
+    walker.x = walker.x + flight * Vec2(w);
     walker.arrival = w;
     return true;
   }
 
-  bool fly_bent(Walker& walker, Vec2 w, RandomStream& random) const {
+  bool fly_bent(Walker& walker, Vec2 w, RandomStream& random, PathScorer& scorer) const {
     const double flight = grin::sample_free_flight(medium_.mu_t, random.uniform());
     const auto place = scattering_.medium().flown(walker.x, w, flight);
     if (!place) return false;
-    walker.tally.scattering(walker.x, walker.arrival, w);
-    walker.tally.flight(walker.x, w, flight);
+    if (has_tally_) scorer.step(walker.x, walker.arrival, w, flight);
     walker.x = place->x;
     walker.arrival = place->w;
     return true;
@@ -207,9 +173,9 @@ class PathWalk {
     if constexpr (varies<Scattering>)
       return profile_->reach(walker.x, w, -std::log(random.uniform()), edge);
     const double mu_t = medium_.mu_t;
-    if constexpr (weighted) {
+    if (plan_.weighted) {
       if (const double gain = pull(walker.x, w); gain > 0) {
-        const double stretched = 1 - std::min(gain, StretchedFlight::most_pull);
+        const double stretched = 1 - std::min(gain, grin::StretchedFlight::most_pull);
         const bool stretch = random.uniform() < 0.5;
         const double flight =
             grin::sample_free_flight(stretch ? stretched * mu_t : mu_t, random.uniform());
@@ -222,14 +188,13 @@ class PathWalk {
 
   /// How fast the worth grows in a direction, per mean free path.
   double pull(Vec2 x, Vec2 w) const {
-    if constexpr (weighted) return importance_.slope(x.z) * w.z / medium_.mu_t;
-    return 0;
+    return plan_.weighted ? importance_.slope(x.z) * w.z / medium_.mu_t : 0;
   }
 
   /// The weight window: false if the walker died, or waits as several. Where depth promises more
   /// than it gives, walkers would multiply for ever: splitting ends for the rest of the batch,
   /// which depends on the past alone and so changes no mean.
-  bool reweigh(Walker& walker, RandomStream& random) {
+  bool reweigh(Walker& walker, RandomStream& random, PathScorer& scorer) {
     walker.weight *= albedo(walker.x);
     const double worth = walker.weight * importance(walker.x);
     if (worth < 0.5) {
@@ -242,15 +207,15 @@ class PathWalk {
     walker.weight /= copies;
     walker.copies = static_cast<std::uint32_t>(copies + random.uniform());
     waiting_.push_back(walker);
+    scorer.keep();
     return false;
   }
 
   /// Contributions that promise less than a score play systematic roulette: every so many of them,
   /// measured in what they promise, one is taken for all.
-  template <typename Scorer>
-  void score(const Walker& walker, Scorer& scorer) {
+  void score(const Walker& walker, PathScorer& scorer) {
     double promise = expected(walker.x, walker.arrival), backward_density = 0;
-    if constexpr (reversed) {
+    if (plan_.reversed) {
       backward_density = first_.density(walker.x, -walker.arrival, scattering_);
       if constexpr (varies<Scattering>) {  // flights end in the first scatterer, not in the last
         const double mu_t = profile_->mu_t(walker.x);
@@ -264,7 +229,6 @@ class PathWalk {
     if (!survives(promise * weight / plan_.score_level, weight)) return;
     path_.last = walker.x;
     path_.arrival = walker.arrival;
-    path_.tally = walker.tally;
     path_.weight =
         mu_s(path_.first) * albedo(walker.x) * weight / (start_density() + backward_density);
     scorer.multiple(path_);
@@ -272,8 +236,7 @@ class PathWalk {
   }
 
   /// A path of one scatterer, in the same units.
-  template <typename Scorer>
-  void score_single(Vec2 x, const Direction& light, Scorer& scorer) {
+  void score_single(Vec2 x, const Direction& light, PathScorer& scorer) {
     double weight = mu_s(x) / first_.density(x);
     if (plan_.single_roulette && albedo(x) > 0 &&
         !survives(expected_view_(x, light) / (albedo(x) * plan_.score_level), weight))
@@ -300,13 +263,12 @@ class PathWalk {
   /// What a path that ends at x is likely to contribute, for a walker of usual weight there.
   double expected(Vec2 x, const Direction& arrival) const {
     const double value = expected_view_(x, arrival);
-    if constexpr (weighted) return value * importance(x);
-    return value;
+    return plan_.weighted ? value * importance(x) : value;
   }
 
   /// Computed when it is first asked for: many walks never score.
   double start_density() {
-    if (start_density_ < 0) start_density_ = first_.density(path_.first, path_.start, scattering_);
+    if (start_density_ < 0) start_density_ = first_.density(path_.first, start_, scattering_);
     return start_density_;
   }
 
@@ -315,12 +277,13 @@ class PathWalk {
   const BulkMedium& medium_;
   const MediumProfile* profile_;  ///< of a medium that varies
   const Scattering& scattering_;
-  DepthImportance importance_;
+  DiffusionImportance importance_;
   First first_;
   ExpectedContribution expected_view_;
   std::vector<Walker> waiting_;
-  [[no_unique_address]] Tally tally_;
-  TalliedPath<Direction, Tally> path_;
+  bool has_tally_ = false;
+  Direction start_;
+  Path path_;
   double start_density_ = -1, log_worth_first_ = 0, expected_first_ = 0;
   double ticket_ = 0;  ///< a score at every whole number
   std::uint64_t steps_ = 0, last_splitting_ = 0;

@@ -37,7 +37,7 @@ double score_level(double g, int dimension) {
 /// Whether a box is so narrow that little reaches the views without absorption either.
 bool loses_by_the_sides(const Scene& scene) {
   if (scene.domain.kind != Domain::Kind::box || scene.medium.mu_s == 0) return false;
-  const DepthImportance importance(scene);
+  const DiffusionImportance importance(scene);
   return importance.steep() && importance.dies_out();
 }
 
@@ -51,7 +51,7 @@ constexpr double longest_path = 1e8;
 std::uint64_t paths_per_batch(const Scene& scene, const Plan& plan) {
   const std::uint64_t most = plan.rank_k && scene.request.channels.size() > 100 ? 2000 : 400;
   if (!plan.weighted || scene.medium.mu_s == 0) return most;
-  const double paths = most_scatterings / DepthImportance(scene).scatterings();
+  const double paths = most_scatterings / DiffusionImportance(scene).scatterings();
   return paths < static_cast<double>(most) ? std::max<std::uint64_t>(1, std::llround(paths)) : most;
 }
 
@@ -101,7 +101,7 @@ void require_walks(const Scene& scene, bool weighted) {
   require(scatterings_of_slowest_mode(scene.medium, scene.domain), longest_path,
           "its longest light paths scatter");
   if (weighted)
-    require(DepthImportance(scene).scatterings(), most_scatterings,
+    require(DiffusionImportance(scene).scatterings(), most_scatterings,
             "light paths with all that they split into scatter");
 }
 

@@ -13,7 +13,7 @@ using tests::pi;
 
 template <bool phases>
 Complex end_factor(const Scene& scene, const End& end, Vec2 x) {
-  EndFactors<phases> factors(scene, {end});
+  StraightEnds factors(scene, {end}, phases);
   std::vector<Complex> out(1);
   factors.attenuate(x, out);
   return out[0];

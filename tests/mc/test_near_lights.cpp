@@ -99,10 +99,7 @@ TEST_CASE("end factors of beams and sources are attenuated on the way in") {
   const auto factor = [&](const Light& light, bool with_phase) {
     const Scene scene = box({light});
     std::vector<Complex> out(1);
-    if (with_phase)
-      EndFactors<true>(scene, light_ends(scene)).attenuate(x, out);
-    else
-      EndFactors<false>(scene, light_ends(scene)).attenuate(x, out);
+    StraightEnds(scene, light_ends(scene), with_phase).attenuate(x, out);
     return out[0];
   };
   const Light beam = gaussian_beam(0, {0.5, -3}, 2);

@@ -13,7 +13,7 @@
 #include "grin/media/free_flight.h"
 #include "grin/media/phase_function.h"
 #include "grin/straight/straight_space.h"
-#include "mc/walk/stretched_flight.h"
+#include "mc/walk/bounded_stretched_flight.h"
 
 namespace flatspeckle::bench {
 
@@ -47,7 +47,7 @@ Finding bounded_flight(double optical_depth) {
 
 /// The mean weight of stretched flights is the chance of a collision, over 1e5 strata.
 Finding stretched_flight(double optical_depth) {
-  const mc::StretchedFlight flight(optical_depth, 1, 0.9);
+  const mc::BoundedStretchedFlight flight(optical_depth, 1, 0.9);
   constexpr int count = 100'000;
   double sum = 0;
   for (int i = 0; i < count; ++i) sum += flight.weight(flight.sample((i + 0.5) / count)) / count;

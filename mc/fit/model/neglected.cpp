@@ -15,16 +15,16 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 /// Sizes of a value's errors and the angle that light is turned by.
-struct Part {
+struct NeglectedPart {
   double common = 0, own = 0;
   double angle = 0;
 };
 
 /// The two shares of what is neglected.
-struct Shares {
+struct NeglectedShares {
   double common, own;
 
-  explicit Shares(const Scene& scene) {
+  explicit NeglectedShares(const Scene& scene) {
     const Allowance part(scene);
     common = part.crossed_paths + part.k_shift + part.correlations;
     own = part.near_zone + part.guided;
@@ -37,9 +37,9 @@ double turned(const Scene& scene, std::size_t entry) {
   return request.views[channel.view].angle - request.lights[channel.light].angle;
 }
 
-Part part_of(const Curve& curve, const Medium& medium, std::size_t entry, double value) {
+NeglectedPart part_of(const Curve& curve, const Medium& medium, std::size_t entry, double value) {
   if (is_flux(curve.observable) || !medium.scene.medium.has_scatterers) return {};
-  const Shares shares(medium.scene);
+  const NeglectedShares shares(medium.scene);
   if (curve.observable == Observable::intensity)
     return {shares.common * value, shares.own * value, turned(medium.scene, entry)};
   const double still = curve.observable == Observable::squared_contrast ? medium.spec.beta : 1;
@@ -47,12 +47,13 @@ Part part_of(const Curve& curve, const Medium& medium, std::size_t entry, double
 }
 
 /// Of all values of one measurement.
-MatrixXd covariance_of(const std::vector<Part>& parts, double width) {
+MatrixXd covariance_of(const std::vector<NeglectedPart>& parts, double width) {
   const Index size = std::ssize(parts);
   MatrixXd found(size, size);
   for (Index i = 0; i < size; ++i)
     for (Index j = 0; j < size; ++j) {
-      const Part &a = parts[static_cast<std::size_t>(i)], &b = parts[static_cast<std::size_t>(j)];
+      const NeglectedPart &a = parts[static_cast<std::size_t>(i)],
+                          &b = parts[static_cast<std::size_t>(j)];
       const double apart = std::remainder(a.angle - b.angle, 2 * std::numbers::pi) / width;
       found(i, j) = a.common * b.common + a.own * b.own * std::exp(-apart * apart / 2);
     }
@@ -72,7 +73,7 @@ MatrixXd neglected_covariance(const FitTask& task, const Media& media, const Vec
   Index first = 0;
   auto medium = media.begin();
   for (const Measurement& one : task.measurements) {
-    std::vector<Part> parts;
+    std::vector<NeglectedPart> parts;
     const double width = width_of(medium->scene);
     for (const Curve& curve : one.curves) {
       for (const std::size_t entry : curve.entries)

@@ -5,13 +5,11 @@
 #include <functional>
 
 #include "core/error.h"
-#include "mc/estimators/directional_slope.h"
-#include "mc/estimators/fixed_count.h"
-#include "mc/estimators/flux_slopes.h"
 #include "mc/estimators/gradient.h"
 #include "mc/fit/task/correlated_errors.h"
 #include "mc/fit/task/curve_values.h"
 #include "mc/fit/task/fit_data.h"
+#include "mc/jobs/directional_slope.h"
 #include "mc/numbers/levenberg_marquardt.h"
 
 namespace flatspeckle::mc {

@@ -7,9 +7,9 @@
 
 #include "core/run/runner.h"
 #include "mc/changes/moving_slopes.h"
-#include "mc/estimators/path_job.h"
 #include "mc/fit/model/slab_model.h"
 #include "mc/fit/task/fit_task.h"
+#include "mc/jobs/path_job.h"
 
 namespace flatspeckle::mc {
 

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "core/error.h"
-#include "mc/estimators/flux_walk.h"
 #include "mc/fit/task/curve_values.h"
+#include "mc/jobs/flux_job.h"
 #include "mc/slab/slab_covariance.h"
 #include "mc/slab/slab_flux.h"
 #include "mc/space/space_flux.h"

@@ -54,18 +54,18 @@ std::vector<MatrixXcd> covariances(Scene scene) {
 }
 
 /// Of each view's fields, with derivatives by the coordinates of the parameters.
-struct Fields {
+struct PlannedFields {
   std::vector<MatrixXcd> covariance;
   std::vector<std::vector<MatrixXcd>> slopes;  ///< [view][parameter]
 };
 
-Fields fields_of(const PlanTask& task, const VectorXd& at) {
+PlannedFields fields_of(const PlanTask& task, const VectorXd& at) {
   constexpr double step = 1e-3;  // of the distance of the bounds
   const auto c = [&](const VectorXd& x) {
     return covariances(scene_of(with_parameters(task.scene, task.free, x)));
   };
   const VectorXd lower = lower_coordinates(task.free), upper = upper_coordinates(task.free);
-  Fields found{c(at), {}};
+  PlannedFields found{c(at), {}};
   found.slopes.resize(found.covariance.size());
   for (Index i = 0; i < at.size(); ++i) {
     VectorXd high = at, low = at;
@@ -87,7 +87,7 @@ MatrixXcd without(const MatrixXcd& matrix, Index field) {
 }
 
 /// Of all views but one, and all fields but one; -1: none is left out.
-MatrixXd total_information(const Fields& fields, Index parameters, Index view, Index field) {
+MatrixXd total_information(const PlannedFields& fields, Index parameters, Index view, Index field) {
   MatrixXd total = MatrixXd::Zero(parameters, parameters);
   for (std::size_t v = 0; v < fields.covariance.size(); ++v) {
     if (static_cast<Index>(v) == view) continue;
@@ -145,7 +145,7 @@ class Planned {
   const PlanTask& task_;
   VectorXd at_;
   LeastSquares bounds_;
-  Fields fields_;
+  PlannedFields fields_;
 };
 
 void check_finite(const PlanTask& task, const FitPlan& plan) {

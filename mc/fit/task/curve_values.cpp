@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mc/changes/contrast.h"
+#include "mc/jobs/contrast.h"
 #include "mc/space/space_scene.h"
 #include "mc/theory/memory_effect.h"
 

@@ -15,7 +15,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 /// A packed number is tr(E S) of a Hermitian matrix E of at most two entries.
-struct Reading {
+struct PatternReading {
   struct Term {
     Index row, column;
     Complex factor;
@@ -23,8 +23,8 @@ struct Reading {
   std::vector<Term> terms;
 };
 
-std::vector<Reading> readings(Index channels) {
-  std::vector<Reading> all;
+std::vector<PatternReading> readings(Index channels) {
+  std::vector<PatternReading> all;
   const Complex half = 0.5, turned(0, 0.5);
   for (Index i = 0; i < channels; ++i) {
     for (Index j = 0; j < i; ++j) {

@@ -53,7 +53,7 @@ std::vector<VectorXd> grid_of_starts(const FitTask& task) {
   return starts;
 }
 
-Data::Data(const FitTask& task) : measurements_(&task.measurements) {
+FitData::FitData(const FitTask& task) : measurements_(&task.measurements) {
   Index size = 0;
   for (const Measurement& one : task.measurements) size += one.values.size();
   values_.resize(size);
@@ -71,8 +71,8 @@ Data::Data(const FitTask& task) : measurements_(&task.measurements) {
   }
 }
 
-Data Data::about(const VectorXd& model) const {
-  Data found = *this;
+FitData FitData::about(const VectorXd& model) const {
+  FitData found = *this;
   Index first = 0;
   for (std::size_t m = 0; m < roots_.size(); ++m) {
     const Measurement& one = (*measurements_)[m];
@@ -96,7 +96,7 @@ Data Data::about(const VectorXd& model) const {
   return found;
 }
 
-MatrixXd Data::whitened(const MatrixXd& of) const {
+MatrixXd FitData::whitened(const MatrixXd& of) const {
   MatrixXd white(of.rows(), of.cols());
   Index first = 0;
   for (const auto& root : roots_) {
@@ -106,7 +106,7 @@ MatrixXd Data::whitened(const MatrixXd& of) const {
   return white;
 }
 
-MatrixXd Data::covariance() const {
+MatrixXd FitData::covariance() const {
   MatrixXd all = MatrixXd::Zero(values_.size(), values_.size());
   Index first = 0;
   for (const auto& root : roots_) {

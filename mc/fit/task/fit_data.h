@@ -19,15 +19,15 @@ Eigen::VectorXd middle(const FitTask& task);
 std::vector<Eigen::VectorXd> grid_of_starts(const FitTask& task);
 
 /// All measurements as one, their errors made independent.
-class Data {
+class FitData {
  public:
   /// Throws InputError where a covariance is not positive definite.
-  explicit Data(const FitTask& task);
+  explicit FitData(const FitTask& task);
 
   bool has_fields() const { return has_fields_; }
   /// With the errors that fields have where the model is right; of a scale that is not known,
   /// fields in that of the model.
-  Data about(const Eigen::VectorXd& model) const;
+  FitData about(const Eigen::VectorXd& model) const;
 
   const Eigen::VectorXd& values() const { return values_; }
   const Eigen::VectorXd& errors() const { return errors_; }

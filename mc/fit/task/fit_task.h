@@ -20,7 +20,7 @@ struct PathSettings {
 };
 
 /// Where a search by Monte Carlo stands: all that it needs to go on.
-struct SearchStep {
+struct FitStep {
   std::size_t start = 0;  ///< which of the starts
   int iteration = 0;
   double paths = 0, damping = 0;
@@ -36,8 +36,8 @@ struct FitTask {
   int most_iterations = 60;
   std::optional<PathSettings> paths;  ///< the model is by Monte Carlo; else by transport
   // Of a search by Monte Carlo: what is told of each step, and steps that were made before.
-  std::function<void(const SearchStep&)> keep{};
-  std::vector<SearchStep> made{};
+  std::function<void(const FitStep&)> keep{};
+  std::vector<FitStep> made{};
 
   /// Whether any curve is of delays or exposures.
   bool moving() const {

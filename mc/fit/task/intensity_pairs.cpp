@@ -48,11 +48,11 @@ double root_of(const Score& score, const ArrayXd& x, const ArrayXd& y) {
 }
 
 /// C_I of two channels, and what each pattern moves it by.
-struct Pair {
+struct PairEstimate {
   double value = 0;
   ArrayXd influence;
 
-  Pair(const ArrayXd& x, const ArrayXd& y) {
+  PairEstimate(const ArrayXd& x, const ArrayXd& y) {
     constexpr double small = 0.1, step = 1e-4;
     value = (x * y).mean() - 1;
     const Score score(value > small);
@@ -79,7 +79,7 @@ PairCorrelations likeliest_correlations(std::span<const double> intensities, std
   found.values.resize(pairs);
   MatrixXd influence(patterns, pairs);
   for (Index i = 0; i < pairs; ++i) {
-    const Pair pair(x.col(0), x.col(i + 1));
+    const PairEstimate pair(x.col(0), x.col(i + 1));
     found.values[i] = pair.value;
     influence.col(i) = pair.influence;
   }

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "flatland/scene/scene.h"
-#include "mc/changes/motion.h"
+#include "mc/jobs/motion.h"
 
 namespace flatspeckle::mc {
 

@@ -6,7 +6,7 @@
 
 #include "core/error.h"
 #include "flatland/scene/frequency_shift.h"
-#include "mc/changes/changed_fields.h"
+#include "mc/jobs/changed_fields.h"
 #include "mc/slab/slab_covariance.h"
 #include "tests/mc/transport/slabs.h"
 

@@ -8,7 +8,7 @@
 #include "mc/graded/graded_ends.h"
 #include "mc/graded/linear_medium.h"
 #include "mc/walk/graded_first.h"
-#include "mc/walk/walks.h"
+#include "mc/walk/scene_scattering.h"
 #include "tests/mc/estimates.h"
 #include "tests/statistics.h"
 

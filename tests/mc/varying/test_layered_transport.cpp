@@ -5,7 +5,7 @@
 #include "core/error.h"
 #include "flatland/media/layers.h"
 #include "mc/changes/brownian.h"
-#include "mc/estimators/flux_walk.h"
+#include "mc/jobs/flux_job.h"
 #include "mc/slab/layered_covariance.h"
 #include "mc/slab/slab_covariance.h"
 #include "mc/slab/slab_flux.h"

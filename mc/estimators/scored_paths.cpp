@@ -1,8 +1,25 @@
-#include "mc/estimators/path_job.h"
+#include "mc/estimators/scored_paths.h"
 
+#include <stdexcept>
+
+#include "flatland/scene/index_fields.h"
 #include "mc/ends/coherent_field.h"
 
 namespace flatspeckle::mc {
+
+PathJob path_job(const ScoredPaths& paths, const Scene& scene, const Plan& plan,
+                 std::uint64_t seed) {
+  refuse_graded(scene, "this; take covariances, fields or validate");
+  const auto walks = path_walks(scene, plan, seed);
+  const bool has_closed_form = paths.single && !scene.profile;
+  if (!plan.sampled_single && !has_closed_form)
+    throw std::logic_error("a plan that leaves paths of one scatterer to a closed form: has none");
+  return path_job(scene, plan, paths.quantities,
+                  walks && !plan.sampled_single ? paths.single(*walks) : std::vector<Complex>(),
+                  [walks, scorer = paths.scorer](std::uint64_t number, std::span<Complex> sums) {
+                    if (walks) walks->batch(number, *scorer(*walks, sums));
+                  });
+}
 
 PathJob path_job(const Scene& scene, const Plan& plan, std::size_t quantities,
                  const std::vector<Complex>& single, const SummedBatches& batches) {

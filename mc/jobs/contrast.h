@@ -4,7 +4,7 @@
 
 #include "core/result/dataset_row.h"
 #include "core/result/result_file.h"
-#include "mc/changes/changed_fields.h"
+#include "mc/jobs/changed_fields.h"
 
 namespace flatspeckle::mc {
 

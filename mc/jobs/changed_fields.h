@@ -1,6 +1,6 @@
 #pragma once
 
-#include "mc/estimators/path_job.h"
+#include "mc/jobs/path_job.h"
 
 namespace flatspeckle::mc {
 

@@ -1,4 +1,4 @@
-#include "mc/changes/contrast.h"
+#include "mc/jobs/contrast.h"
 
 #include <algorithm>
 #include <cmath>

@@ -6,14 +6,12 @@
 
 namespace flatspeckle::mc {
 
-/// A flight that stays inside. Where the worth grows along it as exp(pull mu_t s), half of them are
-/// stretched (Dwivedi 1982): else long ones, rare and worth all the more, carry the result, and
-/// from a pull of 1/2 on its variance has no bound but the depth of the medium.
-class StretchedFlight {
+/// As grin::StretchedFlight, of flights that stay inside. Without stretched ones the variance has
+/// no bound but the depth of the medium, from a pull of 1/2 on.
+class BoundedStretchedFlight {
  public:
-  static constexpr double most_pull = 0.9;
-
-  StretchedFlight(double mu_t, double longest, double pull) : plain_{mu_t, longest}, pull_(pull) {}
+  BoundedStretchedFlight(double mu_t, double longest, double pull)
+      : plain_{mu_t, longest}, pull_(pull) {}
 
   double sample(double u) const {
     if (pull_ <= 0) return plain_.sample(u);
@@ -31,7 +29,7 @@ class StretchedFlight {
 
  private:
   grin::BoundedFlight stretched() const {
-    return {(1 - std::min(pull_, most_pull)) * plain_.mu_t, plain_.longest};
+    return {(1 - std::min(pull_, grin::StretchedFlight::most_pull)) * plain_.mu_t, plain_.longest};
   }
 
   grin::BoundedFlight plain_;

@@ -1,4 +1,4 @@
-#include "mc/changes/changed_fields.h"
+#include "mc/jobs/changed_fields.h"
 
 #include <algorithm>
 

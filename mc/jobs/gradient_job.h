@@ -1,0 +1,55 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/result/dataset_row.h"
+#include "core/result/result_file.h"
+#include "flatland/scene/scene.h"
+#include "mc/jobs/bulk_parameter.h"
+#include "mc/jobs/path_job.h"
+
+namespace flatspeckle::mc {
+
+/// Derivatives of a scene's covariance from the paths that estimate it: the integrand of C14 is
+/// differentiated, the density that the paths are drawn from is not. The parameters are mu_t, g and
+/// albedo where they describe the scatterers as a bulk (all for hg, no g for points), of cylinders
+/// mu_t, radius and index, and the optical depth, mu_t times the depth, at fixed depth.
+struct GradientJob : PathJob {
+  std::vector<std::string> parameters;
+  Estimator gradient;  ///< [parameter][entry]
+};
+
+/// What a scene's paths are differentiated by; the optical depth follows from mu_t. Of cylinders
+/// with a structure factor, which their size would change, mu_t alone.
+std::vector<BulkParameter> bulk_parameters(const Scene& scene);
+
+/// Of a job whose quantities after the covariance are derivatives by the parameters, mu_t first.
+GradientJob gradient_job(const PathJob& job, const std::vector<BulkParameter>& parameters,
+                         const Scene& scene);
+
+/// Throws InputError for a scene that does not scatter or a request of too many entries.
+void check_gradient(const Scene& scene);
+
+/// Derivatives of what memory_effect() gives: of C_E, [parameter][tilt], and of the range,
+/// [parameter]: 0 where it is censored.
+struct CorrelationGradient {
+  Estimate correlation, range;
+};
+CorrelationGradient memory_effect_gradient(const CovarianceRequest& request,
+                                           const GroupedSums& sums, const GradientJob& job);
+
+/// Derivatives of all that a gradient's file has, [parameter] first; range of q L.
+struct GradientEstimates {
+  Estimate entries;
+  CorrelationGradient effect;  ///< of a memory_effect request
+};
+GradientEstimates gradient_estimates(const Scene& scene, const GroupedSums& sums,
+                                     const GradientJob& job);
+
+extern const DatasetTable gradient_table;
+/// The request's axes must have been written.
+void write_gradient(ResultFile& file, const CovarianceRequest& request, const GradientJob& job,
+                    const GradientEstimates& gradient);
+
+}  // namespace flatspeckle::mc
