@@ -4,9 +4,8 @@
 
 #include "bench/plan/plan_rooms.h"
 #include "bench/plan/plan_timing.h"
-#include "grin/curved/curved_space.h"
+#include "grin/space/space.h"
 #include "grin/rays/trace.h"
-#include "grin/straight/straight_space.h"
 
 namespace flatspeckle::bench {
 
@@ -47,8 +46,7 @@ std::vector<Complex> traced(const F& field) {
 }
 
 /// Flights from anywhere in the unit ball, with the same random numbers in every call.
-template <Space S>
-std::vector<Complex> flown(const S& space) {
+std::vector<Complex> flown(const Space& space) {
   std::vector<Complex> values;
   RandomStream random(1, 0, 0);
   for (int i = 0; i < rays; ++i) {
@@ -61,8 +59,7 @@ std::vector<Complex> flown(const S& space) {
 
 /// Joins of pairs of points, the same in every space: per batch, sums of what the curves have, each
 /// weighted so that those not found count (C26).
-template <Space S>
-SampledKernel joins(const S& space) {
+SampledKernel joins(const Space& space) {
   constexpr int pairs = 50;
   return {2, pairs,
           [&space](std::uint64_t number, std::span<Complex> sums) {
@@ -94,12 +91,6 @@ struct LookedUpField {
   }
 };
 
-constexpr RenderPlan fog_plan{.curved = false,
-                              .scatters = true,
-                              .absorbs = false,
-                              .gridded = false,
-                              .body = false,
-                              .timed = false};
 Stage foggy_ball_stage() {
   return {.boundary = Sphere{}, .medium = {.mu_s = 2}};
 }
@@ -134,9 +125,9 @@ PlanRow kind_of_field(double cpu_seconds) {
 PlanRow spreading(double cpu_seconds) {
   const Fisheye field({1, 1.5});
   const auto full =
-      make_curved_space(field, foggy_ball_stage(), {step, max_length, Spreading::all});
+      make_space(field, foggy_ball_stage(), {step, max_length, Spreading::all});
   const auto quick =
-      make_curved_space(field, foggy_ball_stage(), {step, max_length, Spreading::none});
+      make_space(field, foggy_ball_stage(), {step, max_length, Spreading::none});
   return same_values([&] { return flown(*full); }, [&] { return flown(*quick); }, "flight", 1e-11,
                      cpu_seconds);
 }
@@ -213,8 +204,8 @@ PlanRow one_ray_at_a_time(double cpu_seconds) {
 PlanRow search_for_curves(double cpu_seconds) {
   PlanRow row{.per = "join"};
   const auto general =
-      make_curved_space(constant_guide(), foggy_ball_stage(), {step, max_length, Spreading::all});
-  const StraightSpace<fog_plan> special(foggy_ball_stage(), 0.5);
+      make_space(constant_guide(), foggy_ball_stage(), {step, max_length, Spreading::all});
+  const Space special(Homogeneous{0.5}, foggy_ball_stage(), {});
   compare_sampled(row, joins(*general), joins(special), Numbers::other, Measure::sample,
                   cpu_seconds);
   return row;

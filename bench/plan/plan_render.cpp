@@ -37,10 +37,10 @@ std::shared_ptr<Transport> transport_in(const RenderScene& scene) {
 PathKernel path_kernel(const RenderPlan& plan, const std::shared_ptr<Transport>& transport,
                        const RenderScene& scene) {
   const double excess = std::get<Homogeneous>(scene.field).n_excess;
-  if (!plan.curved) return straight_kernel(plan, transport, excess);
-  std::shared_ptr<const CurvedSpace> space =
-      make_curved_space(ParabolicGuide({excess, 0}), scene.stage, {scene.step, scene.max_length});
-  return curved_kernel(plan, transport, space, false);
+  if (!plan.curved) return path_kernel(plan, transport, make_space(scene.field, scene.stage));
+  return path_kernel(
+      plan, transport,
+      make_space(ParabolicGuide({excess, 0}), scene.stage, {scene.step, scene.max_length}));
 }
 
 /// The steady picture, whatever its bins.
@@ -154,9 +154,9 @@ PlanCase rays_alone() {
     const Tracers tracers(scene, request);
     const Tracer special = tracers.make(RenderMethod::analog);
     Tracer general = special;
-    const CurvedSpaceOptions options{scene.step, scene.max_length, Spreading::none};
-    general.kernel = analog_kernel(false, special.transport,
-                                   make_curved_space(scene.field, scene.stage, options), {}, false);
+    const SpaceOptions options{scene.step, scene.max_length, Spreading::none};
+    general.kernel = analog_kernel(special.transport,
+                                   make_space(scene.field, scene.stage, options), {}, false);
     compare_sampled(row, kernel_of(general), kernel_of(special), Numbers::other, Measure::sample,
                     cpu_seconds);
     return row;
@@ -193,11 +193,11 @@ PlanCase aimed_light() {
                  const Tracers tracers(scene, request);
                  const Tracer special = tracers.make(RenderMethod::analog);
                  Tracer general = special;
-                 const CurvedSpaceOptions options{scene.step, scene.max_length, Spreading::none,
+                 const SpaceOptions options{scene.step, scene.max_length, Spreading::none,
                                                   scene.leapfrogs};
                  general.kernel =
-                     analog_kernel(false, special.transport,
-                                   make_curved_space(scene.field, scene.stage, options), {}, false);
+                     analog_kernel(special.transport,
+                                   make_space(scene.field, scene.stage, options), {}, false);
                  compare_sampled(row, kernel_of(general), kernel_of(special), Numbers::other,
                                  Measure::error, cpu_seconds);
                  return row;
@@ -278,17 +278,7 @@ std::vector<PlanCase> render_plan_cases() {
   const std::string box = "box of fog";
   std::vector<PlanCase> rows{
       flag("curved rays", box, alone, other, [](RenderPlan& p) { p.curved = true; }),
-      flag("scattering", "clear ball in a box", clear, same,
-           [](RenderPlan& p) { p.scatters = p.absorbs = true; }),
-      flag("absorption", box, alone, same, [](RenderPlan& p) { p.absorbs = true; }),
-      flag("density grid", box, alone, same, [](RenderPlan& p) { p.gridded = p.absorbs = true; }),
-      flag("body", box, alone, same, [](RenderPlan& p) { p.body = true; }),
       flag("time bins", box, alone, same, [](RenderPlan& p) { p.timed = true; }),
-      flag("all but curves", box, alone, same,
-           [](RenderPlan& p) {
-             p = RenderPlan{};
-             p.curved = p.deep = false;
-           }),
       rays_alone(),
       aimed_light(),
       powers_alone(),

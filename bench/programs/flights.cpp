@@ -9,8 +9,7 @@
 #include <string>
 
 #include "core/run/stopwatch.h"
-#include "grin/curved/curved_space.h"
-#include "grin/straight/straight_space.h"
+#include "grin/space/space.h"
 
 using namespace flatspeckle;
 using namespace flatspeckle::grin;
@@ -18,29 +17,7 @@ using namespace flatspeckle::grin;
 namespace {
 
 double seconds_per_figure = 0.3;
-constexpr RenderPlan least{.curved = false,
-                           .scatters = false,
-                           .absorbs = false,
-                           .gridded = false,
-                           .body = false,
-                           .timed = false};
 double sink = 0;
-
-constexpr RenderPlan scattering() {
-  RenderPlan plan = least;
-  plan.scatters = plan.absorbs = true;
-  return plan;
-}
-constexpr RenderPlan with_body() {
-  RenderPlan plan = scattering();
-  plan.body = true;
-  return plan;
-}
-constexpr RenderPlan gridded() {
-  RenderPlan plan = scattering();
-  plan.gridded = true;
-  return plan;
-}
 
 Vec3 random_direction(RandomStream& random) {
   return random_turn(Vec3::UnitX(), 2 * random.uniform(), random);
@@ -67,8 +44,7 @@ double nanoseconds(const Do& once) {
 struct Figures {
   double fly, join, found, trials, refind;
 };
-template <Space S>
-Figures measure(const S& space, Part part) {
+Figures measure(const Space& space, Part part) {
   // the points' own time is taken off
   const double points = nanoseconds([&](RandomStream& random) {
     sink += random_point(random, part).x[0] + random_direction(random)[0];
@@ -97,8 +73,8 @@ void print_straight(const char* name, const Figures& f) {
 }
 
 void print_curved(const char* name, const AnyIndexField& field, const Stage& stage, double step) {
-  const auto quick = make_curved_space(field, stage, {step, 8, Spreading::none});
-  const auto full = make_curved_space(field, stage, {step, 8, Spreading::all});
+  const auto quick = make_space(field, stage, {step, 8, Spreading::none});
+  const auto full = make_space(field, stage, {step, 8, Spreading::all});
   const Part part = stage.field_part();
   const Figures without = measure(*quick, part), with = measure(*full, part);
   std::printf("%-34s %8.2f %8.2f %8.2f %7.2f %7.2f %7.2f\n", name, without.fly / 1e3,
@@ -127,14 +103,13 @@ int main(int argc, char** argv) {
   cloud.medium.density =
       std::make_shared<const DensityGrid>(grid, std::vector<double>(grid.size(), 1));
   std::printf("%-34s %8s %8s\n", "straight, ns", "flight", "join");
-  print_straight("nothing in it", measure(StraightSpace<least>(clear, 0), around));
-  print_straight("scattering", measure(StraightSpace<scattering()>(foggy, 0), around));
+  print_straight("nothing in it", measure(Space(Homogeneous{0}, clear, {}), around));
+  print_straight("scattering", measure(Space(Homogeneous{0}, foggy, {}), around));
   print_straight("scattering, box",
-                 measure(StraightSpace<scattering()>(
-                             Stage{.boundary = Box{{-1, -1, -1}, {1, 1, 1}}, .medium = fog}, 0),
+                 measure(Space(Homogeneous{0}, Stage{.boundary = Box{{-1, -1, -1}, {1, 1, 1}}, .medium = fog}, {}),
                          around));
-  print_straight("grid of density 1", measure(StraightSpace<gridded()>(cloud, 0), around));
-  print_straight("glass ball in fog", measure(StraightSpace<with_body()>(glass, 0.5), around));
+  print_straight("grid of density 1", measure(Space(Homogeneous{0}, cloud, {}), around));
+  print_straight("glass ball in fog", measure(Space(Homogeneous{0.5}, glass, {}), around));
   std::printf("\n%-34s %8s %8s %8s %7s %7s %7s\n", "curved, us", "flight", "with |J|", "join",
               "found", "trials", "success");
   print_curved("homogeneous", Homogeneous{0.33}, foggy, 0.05);

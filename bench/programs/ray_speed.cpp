@@ -15,7 +15,7 @@
 #include "bench/measure/median.h"
 #include "core/numbers/random.h"
 #include "core/run/stopwatch.h"
-#include "grin/curved/curved_space.h"
+#include "grin/space/space.h"
 #include "grin/rays/ray_lanes.h"
 #include "grin/scene/ray_tracing.h"
 
@@ -90,7 +90,7 @@ double side_by_side(const F& field) {
   const auto from = bundle(field);
   for (int lane = 0; lane < lanes; ++lane) all.put(lane, from[static_cast<std::size_t>(lane)]);
   std::fill_n(all.step, lanes, step);
-  make_steps<false>(Integrator(), field, all, 4 * steps);
+  make_steps(Integrator(), field, all, 4 * steps);
   for (int lane = 0; lane < lanes; ++lane) sink += all.optical_path[lane];
   return 4 * lanes * steps;
 }
@@ -108,15 +108,15 @@ double traced(const F& field, const std::vector<RayStart>& from) {
 }
 
 /// Rays of the same light through a box, as unscattered light goes.
-double flown(const CurvedSpace& space, const std::vector<RayStart>& from) {
+double flown(const Space& space, const std::vector<RayStart>& from) {
   RandomStream random(1, 2, 0);
   double arc = 0;
   std::size_t next = 0;
   const auto count = [&](const Flight& flight) { arc += flight.optical_path; };
-  const auto start = [&]() -> std::optional<CurvedSpace::FlightStart> {
+  const auto start = [&]() -> std::optional<Space::FlightStart> {
     if (next == from.size()) return std::nullopt;
     const RayStart& one = from[next++];
-    return CurvedSpace::FlightStart{{one.x}, one.direction, &random};
+    return Space::FlightStart{{one.x}, one.direction, &random};
   };
   if (space.has_lanes()) {
     space.fly_side_by_side([&](int, const Flight* flight) {
@@ -147,8 +147,8 @@ Row row(const std::string& name, const F& field) {
   const bool leaps = std::same_as<Integrator, Leapfrog>;
   if (leaps ? goes_by_leapfrog<F> : std::same_as<Integrator, Sharma>) {
     const Stage box{.boundary = Box{{-3, -3, -1e-3}, {3, 3, 2}}};
-    const std::shared_ptr<const CurvedSpace> space =
-        make_curved_space(field, box, {step, 100, Spreading::none, leaps});
+    const std::shared_ptr<const Space> space =
+        make_space(field, box, {step, 100, Spreading::none, leaps});
     found.contest.push_back({[=] { return flown(*space, *from); }});
   }
   return found;

@@ -12,6 +12,30 @@
 
 namespace flatspeckle::grin {
 
+namespace connection_parts {
+
+/// Far from Q: Leapfrog, unless a step knows better.
+template <class Step>
+struct RoughStep {
+  using type = Leapfrog;
+};
+template <class Step>
+requires requires { typename Step::Rough; }
+struct RoughStep<Step> {
+  using type = typename Step::Rough;
+};
+
+/// Whether a step is no better than that.
+template <class Step, class F>
+bool is_rough(const F& field) {
+  if constexpr (requires { Step::is_rough(field); })
+    return Step::is_rough(field);
+  else
+    return std::same_as<Step, Leapfrog>;
+}
+
+}  // namespace connection_parts
+
 /// Curves from P to Q through a field, inside a region, with an integrator of ray_step.h. One trial
 /// (conventions, C26) draws a start direction, follows its ray, picks one of the points where the
 /// ray comes closest to Q, and mends direction and length from there by damped Gauss-Newton steps
@@ -73,13 +97,14 @@ class ConnectionTrial {
 
   /// Caustics counted along the curve.
   Connection with_caustics(Connection curve, ConnectionStatistics& statistics) const {
-    curve.caustics = follow({curve.start_direction, curve.sigma, curve.steps}, statistics).count();
+    curve.caustics = follow({curve.start_direction, curve.sigma, curve.steps, true}, statistics).count();
     return curve;
   }
 
   const ConnectionOptions& options() const { return options_; }
 
  private:
+  using Rough = typename connection_parts::RoughStep<Step>::type;
   static constexpr double suspicious = 1e-2;  // narrow against length: look closer
   static constexpr double near = 1e-2;        // of Q, in units of |PQ|
   static constexpr int most_steps = 1 << 20;  // of a ray that creeps where the index is near 0
@@ -88,7 +113,7 @@ class ConnectionTrial {
     Vec3 direction;  // unit
     double sigma;
     int steps;
-    bool precise = std::same_as<Step, Leapfrog>;
+    bool precise;
     bool raised = false;  // the number of steps, at the last change
   };
   struct Shot {
@@ -99,6 +124,10 @@ class ConnectionTrial {
     Vec3 error = {};      // of the end, and its length
     double miss = 0;
   };
+
+  Aim rough(const Vec3& direction, double sigma) const {
+    return {direction, sigma, steps_for(sigma), connection_parts::is_rough<Step>(field_)};
+  }
 
   /// Or so close that no direction is known well enough to tell whether two curves are one.
   bool coincident() const { return gap_ * std::min(options_.same, 1e-3) <= rounding_; }
@@ -113,7 +142,7 @@ class ConnectionTrial {
     const Vec3 direction = options_.start.sample((to_ - from_) / gap_, random);
     const double sigma = draw_approach(direction, random, statistics);
     if (!(sigma > 0)) return {TrialOutcome::no_approach, {}};
-    return refine({direction, sigma, steps_for(sigma)}, statistics);
+    return refine(rough(direction, sigma), statistics);
   }
 
   Result search_along_chord(ConnectionStatistics& statistics) const {
@@ -125,7 +154,7 @@ class ConnectionTrial {
       return false;
     });
     if (!(first > 0)) return {TrialOutcome::no_approach, {}};
-    return refine({direction, first, steps_for(first)}, statistics);
+    return refine(rough(direction, first), statistics);
   }
 
   /// The sigma of one of the points where the ray comes closest to Q, drawn with weights
@@ -152,7 +181,7 @@ class ConnectionTrial {
     for (int i = 0; i < most_steps; ++i) {
       const RayState before = ray;
       const double was_nearing = nearing;
-      Leapfrog::step(field_, ray, h);
+      Rough::step(field_, ray, h);
       ++statistics.guess_steps;
       if (!(ray.arc_length > before.arc_length)) return;  // no ray: the index is not positive
       nearing = (to_ - ray.x).dot(ray.v);
@@ -170,7 +199,7 @@ class ConnectionTrial {
 
   Shot shoot(const Aim& aim, ConnectionStatistics& statistics) const {
     return aim.precise ? shoot_by<Step>(aim, statistics.tangent_steps)
-                       : shoot_by<Leapfrog>(aim, statistics.rough_steps);
+                       : shoot_by<Rough>(aim, statistics.rough_steps);
   }
 
   template <class Integrator>

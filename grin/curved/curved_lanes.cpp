@@ -2,20 +2,20 @@
 #include <array>
 #include <cmath>
 
-#include "grin/curved/curved_space.h"
+#include "grin/space/space.h"
 #include "grin/rays/lane_pool.h"
 
 namespace flatspeckle::grin {
 
-bool CurvedSpace::has_lanes() const {
+bool Space::has_lanes() const {
   return setup_->field_part == around && room().surfaces.size() == 1 && !setup_->is_straight &&
          setup_->options.spreading == Spreading::none && field_->has_lanes();
 }
 
 /// LanePool's work.
-class CurvedSpace::Lanes {
+class Space::Lanes {
  public:
-  Lanes(const CurvedSpace& space, const NextFlight& next)
+  Lanes(const Space& space, const NextFlight& next)
       : space_(space),
         next_(next),
         room_(space.leg_room()),
@@ -103,7 +103,7 @@ class CurvedSpace::Lanes {
     RandomStream* random;
     bool has_flown = false;
   };
-  const CurvedSpace& space_;
+  const Space& space_;
   const NextFlight& next_;
   LegRoom room_;
   double step_, longest_;
@@ -111,7 +111,7 @@ class CurvedSpace::Lanes {
   alignas(64) double collision_[grin::lanes] = {};  ///< tentative, that of at_
 };
 
-void CurvedSpace::fly_side_by_side(const NextFlight& next) const {
+void Space::fly_side_by_side(const NextFlight& next) const {
   Lanes all(*this, next);
   LanePool(all).run();
 }

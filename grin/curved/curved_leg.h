@@ -3,8 +3,7 @@
 #include <optional>
 #include <tuple>
 
-#include "grin/curved/leg_room.h"
-#include "grin/rays/ray_step.h"
+#include "grin/curved/ray_field.h"
 #include "grin/rays/step_curve.h"
 #include "grin/surfaces/first_crossing.h"
 
@@ -13,10 +12,9 @@ namespace flatspeckle::grin {
 /// The part of a flight that lies in an index field, in a room: equal steps, and a shorter
 /// one at the end. As trace() it does not ask for the distance from the surface where that
 /// is far away; places within a step are found on its StepCurve.
-template <IndexField F, class Step = Sharma>
 class CurvedLeg {
  public:
-  CurvedLeg(const F& field, const LegRoom& room)
+  CurvedLeg(const RayField& field, const LegRoom& room)
       : field_(field),
         room_(room.room),
         medium_(room.medium),
@@ -48,7 +46,7 @@ class CurvedLeg {
       if (steps == most_steps) return LegStop::steps;
       const std::tuple<RayState, Tangent...> before(ray, tangent...);
       const RayState& start = std::get<0>(before);
-      Step::step(field_, ray, tangent..., step_);
+      field_.step(ray, tangent..., step_);
       const bool is_lost = !(ray.arc_length > start.arc_length);
       const double arc = is_lost ? 3 * start.v.norm() * step_  // more than it might have been
                                  : 1.1 * (ray.arc_length - start.arc_length);
@@ -68,7 +66,7 @@ class CurvedLeg {
           return;
         }
         std::tie(ray, tangent...) = before;
-        Step::step(field_, ray, tangent..., part * step_);
+        field_.step(ray, tangent..., part * step_);
       };
       if (exit) go_only(*exit);
       const double part = exit.value_or(1);
@@ -89,7 +87,7 @@ class CurvedLeg {
     double left = 1, collision = next_collision(0, random);
     for (int i = 0; i < steps && left > 0; ++i) {
       const RayState start = ray;
-      Step::step(field_, ray, sigma / steps);
+      field_.step(ray, sigma / steps);
       const StepCurve curve(start, ray, sigma / steps);
       for (; collision < ray.arc_length; collision = next_collision(collision, random))
         left *= medium_.lacking(curve.x(curve.theta_at(collision)));
@@ -103,7 +101,7 @@ class CurvedLeg {
     double left = 1, collision = next_collision(ray.arc_length, random);
     while (left > 0 && collision < end) {
       const RayState start = ray;
-      Step::step(field_, ray, step_);
+      field_.step(ray, step_);
       if (!(ray.arc_length > start.arc_length)) return 0;
       const StepCurve curve(start, ray, step_);
       for (; collision < std::min(ray.arc_length, end);
@@ -137,7 +135,7 @@ class CurvedLeg {
                                 double arc, bool is_lost, PartOfStep& tried) const {
     const auto exact = [&](double theta) {
       tried = {theta, start};
-      Step::step(field_, tried.end, theta * step_);
+      field_.step(tried.end, theta * step_);
       return put_back - room_.distance(tried.end.x);
     };
     if (is_lost) return search(exact, arc);
@@ -182,7 +180,7 @@ class CurvedLeg {
     return std::nullopt;
   }
 
-  const F& field_;
+  const RayField& field_;
   const Room room_;
   const PartMedium& medium_;
   double step_, tolerance_;

@@ -20,20 +20,31 @@ struct CurveEnds {
   Sides region;
 };
 
-/// An index field as rays meet it: one virtual call for each ray, leg or curve, behind which every
-/// step knows the type of the field.
+/// An index field as rays meet it: one virtual call for each step, behind which the type of the
+/// field is known. Legs and curves are made of steps here, but where a field has closed forms.
 class RayField {
  public:
   virtual ~RayField() = default;
 
   // As of any IndexField.
+  virtual double index(const Vec3& x) const = 0;
   virtual double excess(const Vec3& x) const = 0;
   virtual IndexGradient gradient(const Vec3& x) const = 0;
   virtual IndexHessian hessian(const Vec3& x) const = 0;
 
+  /// Steps of the integrator that suits the field, and of any (ray_step.h).
+  virtual void step(RayState& ray, double h) const = 0;
+  virtual void step(RayState& ray, RayTangent& tangent, double h) const = 0;
+  virtual void step(Sharma, RayState& ray, double h) const = 0;
+  virtual void step(Yoshida4, RayState& ray, double h) const = 0;
+  virtual void step(Leapfrog, RayState& ray, double h) const = 0;
+  virtual void step(Leapfrog, RayState& ray, RayTangent& tangent, double h) const = 0;
+  /// The one that suits is Leapfrog.
+  virtual bool leapfrogs() const = 0;
+
   /// trace().
   virtual TraceEnd follow(std::span<const Surface> surfaces, const TraceLimits& limits, RayLog& log,
-                          RayState& ray) const = 0;
+                          RayState& ray) const;
 
   /// Whether rays may go side by side, at less cost than one by one.
   virtual bool has_lanes() const = 0;
@@ -44,38 +55,42 @@ class RayField {
 
   /// CurvedLeg::go(), with a tangent where there is one.
   virtual LegStop fly(const LegRoom& room, double longest, double& weight, RandomStream& random,
-                      RayState& ray, RayTangent* tangent) const = 0;
+                      RayState& ray, RayTangent* tangent) const;
   /// CurvedLeg::go_on().
-  virtual LegStop go_on(const LegRoom& room, double longest, int most_steps, LegProgress& progress,
-                        RandomStream& random, RayState& ray) const = 0;
+  LegStop go_on(const LegRoom& room, double longest, int most_steps, LegProgress& progress,
+                RandomStream& random, RayState& ray) const;
   /// Equal steps, with a tangent where there is one.
   virtual void advance(double sigma, int steps, RayState& ray, RayTangent* tangent) const = 0;
   /// CurvedLeg::ratio_tracked().
-  virtual double ratio_tracked(const LegRoom& room, const RayState& ray, double sigma, int steps,
-                               RandomStream& random) const = 0;
+  double ratio_tracked(const LegRoom& room, const RayState& ray, double sigma, int steps,
+                       RandomStream& random) const;
   /// The same of an arc, by the room's steps.
-  virtual double ratio_tracked(const LegRoom& room, const RayState& ray, double arc_length,
-                               RandomStream& random) const = 0;
+  double ratio_tracked(const LegRoom& room, const RayState& ray, double arc_length,
+                       RandomStream& random) const;
 
   /// In flights, no more than what connect() costs.
-  virtual double cost_of_curve() const = 0;
+  virtual double cost_of_curve() const { return leapfrogs() ? 2 : 4; }
   /// What it costs by clocks where it is a closed form; 0 where it is iterations, which are
   /// counted.
   virtual double cost_of_closed_curve() const { return 0; }
   /// connect_chord_first().
   virtual ConnectionEstimate connect(const CurveEnds& ends, const ConnectionOptions& options,
-                                     RandomStream& random,
-                                     ConnectionStatistics& statistics) const = 0;
+                                     RandomStream& random, ConnectionStatistics& statistics) const;
   /// all_connections().
   virtual std::vector<FoundConnection> connections(const CurveEnds& ends,
                                                    const ConnectionOptions& options,
                                                    std::uint64_t trials, RandomStream& random,
-                                                   ConnectionStatistics& statistics) const = 0;
+                                                   ConnectionStatistics& statistics) const;
 
   /// The field as light meets it at this phase of the sound, from 0 to 2 pi (conventions, C28).
   /// Throws InputError for a field without sound.
   virtual std::unique_ptr<const RayField> frozen(double phase) const = 0;
 };
+
+/// Of a RayField too.
+inline double index(const RayField& field, const Vec3& x) {
+  return field.index(x);
+}
 
 /// Whose rays may go by Leapfrog, which is cheaper where it is exact enough: sound, weak and finely
 /// structured.
@@ -96,5 +111,11 @@ inline constexpr std::size_t ray_field_files = 3;
 template <std::size_t file>
 std::unique_ptr<const RayField> ray_field_in(const AnyIndexField& field,
                                              std::span<const Surface> room, bool leapfrogs);
+extern template std::unique_ptr<const RayField> ray_field_in<0>(const AnyIndexField&,
+                                                                std::span<const Surface>, bool);
+extern template std::unique_ptr<const RayField> ray_field_in<1>(const AnyIndexField&,
+                                                                std::span<const Surface>, bool);
+extern template std::unique_ptr<const RayField> ray_field_in<2>(const AnyIndexField&,
+                                                                std::span<const Surface>, bool);
 
 }  // namespace flatspeckle::grin

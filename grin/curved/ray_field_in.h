@@ -1,15 +1,48 @@
 #pragma once
 
+#include "grin/connections/connection_solver.h"
 #include "grin/curved/fisheye_rays.h"
 #include "grin/curved/luneburg_rays.h"
 #include "grin/curved/parabolic_rays.h"
+#include "grin/rays/trace.h"
 
 namespace flatspeckle::grin {
+
+/// Rays of the same index everywhere, without steps.
+class StraightRays final : public RayFieldOf<Homogeneous> {
+ public:
+  explicit StraightRays(const Homogeneous& field) : RayFieldOf(field), field_(field) {}
+
+  TraceEnd follow(std::span<const Surface> surfaces, const TraceLimits& limits, RayLog& log,
+                  RayState& ray) const override {
+    const TraceEnd end = trace_straight(field_, surfaces, limits, ray);
+    log.end(field_, ray);
+    return end;
+  }
+  ConnectionEstimate connect(const CurveEnds& ends, const ConnectionOptions& options,
+                             RandomStream& random,
+                             ConnectionStatistics& statistics) const override {
+    return grin::connect(Trial(field_, ends.region, ends.from, ends.to, options), random,
+                         statistics);
+  }
+  std::vector<FoundConnection> connections(const CurveEnds& ends, const ConnectionOptions& options,
+                                           std::uint64_t trials, RandomStream& random,
+                                           ConnectionStatistics& statistics) const override {
+    const Trial trial(field_, ends.region, ends.from, ends.to, options);
+    return all_connections(trial, trials, random, statistics);
+  }
+
+ private:
+  using Trial = ConnectionTrial<Homogeneous, Sides>;
+
+  Homogeneous field_;
+};
 
 /// A field as it is for rays in a room: steps that reach past its outer surface stay smooth.
 template <IndexField F>
 std::unique_ptr<const RayField> ray_field_within(const F& field, std::span<const Surface> room,
                                                  bool leapfrogs) {
+  if constexpr (HomogeneousField<F>) return std::make_unique<StraightRays>(field);
   if constexpr (goes_by_leapfrog<F>)
     if (leapfrogs) return std::make_unique<RayFieldOf<F, Leapfrog>>(field);
   if constexpr (std::same_as<F, ParabolicGuide>)

@@ -24,7 +24,7 @@ namespace {
 /// What all paths of a batch add to.
 struct AnalogBatch {
   const Transport& transport;
-  const CurvedSpace& space;
+  const Space& space;
   const SensorAim* aim;
   Film& film;
   TransportCounts& counts;
@@ -53,7 +53,6 @@ struct FreshPath {
 
 /// The paths of a batch, in lanes that have one branch each at a time; those that wait are taken
 /// up by any.
-template <bool timed>
 class AnalogWalk {
  public:
   struct Lane {
@@ -75,11 +74,11 @@ class AnalogWalk {
   }
 
   /// flown: what became of the lane's last flight, if it had one.
-  std::optional<CurvedSpace::FlightStart> next(Lane& lane, const Flight* flown) {
+  std::optional<Space::FlightStart> next(Lane& lane, const Flight* flown) {
     if (lane.now && !goes_on(*lane.now, *flown)) lane.now.reset();
     if (!lane.now) begin(lane);
     if (!lane.now) return std::nullopt;
-    return CurvedSpace::FlightStart{lane.now->from.point, lane.now->direction, &lane.now->random};
+    return Space::FlightStart{lane.now->from.point, lane.now->direction, &lane.now->random};
   }
 
  private:
@@ -196,7 +195,7 @@ class AnalogWalk {
     for (const SensorEnd& sensor : batch_.transport.sensors)
       sensor.hit(batch_.space, last.point.x, last.arrived, [&](const EndHit& hit) {
         const double value = last.weight * hit.value;
-        deposit<timed>(batch_.film, batch_.counts, hit.direction.pixel, value, last.optical_path);
+        deposit(batch_.film, batch_.counts, hit.direction.pixel, value, last.optical_path);
         if (batch_.film.has_derivatives())
           now.score.add_to(batch_.film, hit.direction.pixel, value,
                            batch_.transport.medium(last.point.part));
@@ -228,10 +227,9 @@ class PathStreams {
   int paths_, next_ = 0;
 };
 
-template <bool timed>
 void walk_in_lanes(const AnalogBatch& batch, PathStreams& streams) {
-  AnalogWalk<timed> walk(batch, [&] { return streams.next(); });
-  std::array<typename AnalogWalk<timed>::Lane, lanes> all;
+  AnalogWalk walk(batch, [&] { return streams.next(); });
+  std::array<AnalogWalk::Lane, lanes> all;
   batch.space.fly_side_by_side([&](int lane, const Flight* flown) {
     return walk.next(all[static_cast<std::size_t>(lane)], flown);
   });
@@ -239,44 +237,35 @@ void walk_in_lanes(const AnalogBatch& batch, PathStreams& streams) {
 }
 
 /// One path.
-template <bool timed>
 void walk(const AnalogBatch& batch, const FreshPath& path) {
   std::optional<FreshPath> one = path;
-  AnalogWalk<timed> walk(batch, [&] { return std::exchange(one, std::nullopt); });
-  typename AnalogWalk<timed>::Lane lane;
+  AnalogWalk walk(batch, [&] { return std::exchange(one, std::nullopt); });
+  AnalogWalk::Lane lane;
   std::optional<Flight> flown;
   while (const auto start = walk.next(lane, flown ? &*flown : nullptr))
     flown = batch.space.fly(start->from, start->direction, *start->random);
   walk.finish();
 }
 
-template <bool timed>
-PathKernel kernel_of(std::shared_ptr<const Transport> transport,
-                     std::shared_ptr<const CurvedSpace> space, std::optional<SensorAim> aim,
-                     bool random_phase, std::shared_ptr<const MovingField> moving) {
+}  // namespace
+
+PathKernel analog_kernel(std::shared_ptr<const Transport> transport,
+                         std::shared_ptr<const Space> space, std::optional<SensorAim> aim,
+                         bool random_phase, std::shared_ptr<const MovingField> moving) {
   return [=](int paths, RandomStream& random, Film& film, TransportCounts& counts, JoinPromises*) {
     const SensorAim* const aimed = aim ? &*aim : nullptr;
     PathStreams streams(paths, random);
     if (!random_phase && space->has_lanes())
-      return walk_in_lanes<timed>({*transport, *space, aimed, film, counts, moving.get()}, streams);
+      return walk_in_lanes({*transport, *space, aimed, film, counts, moving.get()}, streams);
     while (auto own = streams.next()) {
       if (!random_phase) {
-        walk<timed>({*transport, *space, aimed, film, counts, moving.get()}, *own);
+        walk({*transport, *space, aimed, film, counts, moving.get()}, *own);
         continue;
       }
       const auto met = space->frozen(2 * std::numbers::pi * own->random.uniform());
-      walk<timed>({*transport, *met, aimed, film, counts, nullptr}, *own);
+      walk({*transport, *met, aimed, film, counts, nullptr}, *own);
     }
   };
-}
-
-}  // namespace
-
-PathKernel analog_kernel(bool timed, std::shared_ptr<const Transport> transport,
-                         std::shared_ptr<const CurvedSpace> space, std::optional<SensorAim> aim,
-                         bool random_phase, std::shared_ptr<const MovingField> moving) {
-  return timed ? kernel_of<true>(transport, space, aim, random_phase, moving)
-               : kernel_of<false>(transport, space, aim, random_phase, moving);
 }
 
 }  // namespace flatspeckle::grin

@@ -12,8 +12,8 @@ namespace flatspeckle::grin {
 /// path has random numbers of its own. Unscattered light of beams is left out
 /// (unscattered_beams.h). moving: the field of the space, where there are derivatives by its
 /// parameters.
-PathKernel analog_kernel(bool timed, std::shared_ptr<const Transport> transport,
-                         std::shared_ptr<const CurvedSpace> space, std::optional<SensorAim> aim,
+PathKernel analog_kernel(std::shared_ptr<const Transport> transport,
+                         std::shared_ptr<const Space> space, std::optional<SensorAim> aim,
                          bool random_phase, std::shared_ptr<const MovingField> moving = nullptr);
 
 }  // namespace flatspeckle::grin

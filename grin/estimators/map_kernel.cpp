@@ -4,7 +4,6 @@
 #include <numbers>
 
 #include "grin/paths/subpath.h"
-#include "grin/straight/straight_space.h"
 
 namespace flatspeckle::grin {
 
@@ -18,11 +17,10 @@ class MapTally : public LightTally {
            EnergyBalance& energy, TransportCounts& counts)
       : LightTally(energy), cells_(cells), transport_(transport), sums_(sums), counts_(counts) {}
 
-  template <Space S>
-  Flight fly(const S& space, const PathVertex& from, const Vec3& direction, RandomStream& random,
+  Flight fly(const Space& space, const PathVertex& from, const Vec3& direction, RandomStream& random,
              const Vec3* rise) {
     log_.clear();
-    const Flight flight = flown(space, from.point, direction, random, &log_, rise);
+    const Flight flight = space.fly(from.point, direction, random, &log_, rise);
     const double weight = from.weight * flight.stretched;
     for (const FlightLeg& leg : log_) {
       const ScatteringMedium& medium = transport_.medium(leg.start.part);
@@ -56,55 +54,39 @@ class MapTally : public LightTally {
   FlightLog log_;
 };
 
-template <RenderPlan plan, Space S, class Tally>
-void walk_light(const Transport& transport, const S& space, RandomStream& random, Tally& tally,
+template <class Tally>
+void walk_light(const Transport& transport, const Space& space, RandomStream& random, Tally& tally,
                 TransportCounts& counts) {
   LonePath alone;
   const EndPosition end = transport.lights.sample_position(space, random);
   const PathVertex start = end_vertex(transport.strategies, end);
   const EndDirection first = transport.lights.sample_direction(end, random);
-  walk<plan>(
+  walk(
       transport, space, never_chosen, start, first, false, random, counts, alone, tally,
       [](const PathVertex&) {}, [](const PathVertex&, const PathVertex&) {});
   tally.end_path();
 }
 
-/// with_space(random, use): calls use(space), the same or another for each path.
-template <RenderPlan plan, class WithSpace>
-MapKernel map_kernel_of(const LightMap& map, std::shared_ptr<const Transport> transport,
-                        const WithSpace& with_space) {
+}  // namespace
+
+MapKernel map_kernel(const LightMap& map, std::shared_ptr<const Transport> transport,
+                     std::shared_ptr<const Space> space, bool random_phase) {
   return [=](int paths, RandomStream& random, std::span<Complex> sums, EnergyBalance& energy,
              TransportCounts& counts) {
     std::visit(
         [&](const auto& cells) {
           MapTally tally(cells, *transport, sums, energy, counts);
-          for (int path = 0; path < paths; ++path)
-            with_space(random, [&](const auto& space) {
-              walk_light<plan>(*transport, space, random, tally, counts);
-            });
+          for (int path = 0; path < paths; ++path) {
+            if (random_phase) {
+              const auto met = space->frozen(2 * std::numbers::pi * random.uniform());
+              walk_light(*transport, *met, random, tally, counts);
+            } else {
+              walk_light(*transport, *space, random, tally, counts);
+            }
+          }
         },
         map);
   };
-}
-
-}  // namespace
-
-MapKernel map_kernel(const LightMap& map, std::shared_ptr<const Transport> transport,
-                     double excess) {
-  constexpr RenderPlan plan{.curved = false, .timed = false};
-  const StraightSpace<plan> space(transport->stage, excess);
-  return map_kernel_of<plan>(map, transport, [=](RandomStream&, const auto& use) { use(space); });
-}
-
-MapKernel map_kernel(const LightMap& map, std::shared_ptr<const Transport> transport,
-                     std::shared_ptr<const CurvedSpace> space, bool random_phase) {
-  constexpr RenderPlan plan{.timed = false};
-  return map_kernel_of<plan>(map, transport, [=](RandomStream& random, const auto& use) {
-    if (random_phase)
-      use(*space->frozen(2 * std::numbers::pi * random.uniform()));
-    else
-      use(*space);
-  });
 }
 
 }  // namespace flatspeckle::grin

@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "core/numbers/complex.h"
-#include "grin/curved/curved_space.h"
+#include "grin/space/space.h"
 #include "grin/estimators/light_map.h"
 #include "grin/paths/transport.h"
 
@@ -17,12 +17,8 @@ using MapKernel = std::function<void(int paths, RandomStream& random, std::span<
                                      EnergyBalance& energy, TransportCounts& counts)>;
 inline constexpr std::size_t sums_per_cell = 2;
 
-/// Index 1 + excess in the part that the field fills.
-MapKernel map_kernel(const LightMap& map, std::shared_ptr<const Transport> transport,
-                     double excess);
-
 /// random_phase: each light path meets its own phase of the sound.
 MapKernel map_kernel(const LightMap& map, std::shared_ptr<const Transport> transport,
-                     std::shared_ptr<const CurvedSpace> space, bool random_phase);
+                     std::shared_ptr<const Space> space, bool random_phase);
 
 }  // namespace flatspeckle::grin

@@ -9,7 +9,7 @@ namespace flatspeckle::grin {
 
 MovingField::MovingField(const Scene& scene)
     : field_(make_ray_field(scene.field, {}, scene.options.leapfrogs)),
-      clear_(make_curved_space(scene.field, without_scattering(scene.stage), scene.options)),
+      clear_(make_space(scene.field, without_scattering(scene.stage), scene.options)),
       stage_(std::get<Box>(scene.stage.boundary)),
       medium_(scene.stage.medium),
       step_(scene.options.step),
@@ -97,12 +97,12 @@ std::vector<Flight> MovingField::flown(std::span<const Ray> starts) const {
   std::array<std::size_t, lanes> number{};
   std::size_t next = 0;
   clear_->fly_side_by_side(
-      [&](int lane, const Flight* flight) -> std::optional<CurvedSpace::FlightStart> {
+      [&](int lane, const Flight* flight) -> std::optional<Space::FlightStart> {
         std::size_t& own = number[static_cast<std::size_t>(lane)];
         if (flight) found[own] = *flight;
         if (next == starts.size()) return std::nullopt;
         own = next++;
-        return CurvedSpace::FlightStart{{starts[own].x, around}, starts[own].direction, &none};
+        return Space::FlightStart{{starts[own].x, around}, starts[own].direction, &none};
       });
   return found;
 }

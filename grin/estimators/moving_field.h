@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "grin/curved/curved_space.h"
+#include "grin/space/space.h"
 #include "grin/estimators/field_parameter.h"
 #include "grin/media/scattering_medium.h"
 #include "grin/sensors/sensor_edges.h"
@@ -17,7 +17,7 @@ class MovingField {
   struct Scene {
     const AnyIndexField& field;
     const Stage& stage;  ///< a box, of one uniform medium
-    CurvedSpaceOptions options;
+    SpaceOptions options;
     std::span<const FieldParameter> parameters;
     std::vector<SensorEdges> edges;
   };
@@ -61,7 +61,7 @@ class MovingField {
   };
 
   std::unique_ptr<const RayField> field_;
-  std::unique_ptr<const CurvedSpace> clear_;  ///< where flights go to the boundary
+  std::unique_ptr<const Space> clear_;  ///< where flights go to the boundary
   std::vector<Sides> sides_;
   Box stage_;
   ScatteringMedium medium_;

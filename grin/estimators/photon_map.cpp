@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <limits>
 
-#include "grin/straight/straight_space.h"
 
 namespace flatspeckle::grin {
 
@@ -46,7 +45,7 @@ std::span<const std::uint32_t> GatherGrid::buckets_around(
 namespace {
 
 /// One map: sensor rays and as many light paths.
-template <bool timed, Space S>
+template <bool timed, class S>
 class PhotonMap {
  public:
   PhotonMap(const Transport& transport, const S& space, double radius, RandomStream& random,
@@ -168,7 +167,7 @@ class PhotonMap {
   }
 
   void add(int pixel, double value, double optical_path) {
-    deposit<timed>(film_, counts_, pixel, value, optical_path);
+    deposit(film_, counts_, pixel, value, optical_path);
   }
 
   const Transport& transport_;
@@ -179,7 +178,7 @@ class PhotonMap {
   TransportCounts& counts_;
 };
 
-using AnyStraightSpace = StraightSpace<RenderPlan{.curved = false}>;
+using AnyStraightSpace = Space;
 
 /// As many paths meet the same phase of the sound as make a map.
 constexpr int paths_per_phase = 256;
@@ -187,7 +186,7 @@ constexpr int paths_per_phase = 256;
 template <bool timed>
 PathKernel straight_kernel_timed(std::shared_ptr<const Transport> transport, double excess,
                                  double radius) {
-  auto space = std::make_shared<const AnyStraightSpace>(transport->stage, excess);
+  auto space = std::make_shared<const Space>(Homogeneous{excess}, transport->stage, SpaceOptions());
   return [=](int paths, RandomStream& random, Film& film, TransportCounts& counts,
              JoinPromises*) {
     PhotonMap<timed, AnyStraightSpace>(*transport, *space, radius, random, film, counts).add(paths);
@@ -196,12 +195,12 @@ PathKernel straight_kernel_timed(std::shared_ptr<const Transport> transport, dou
 
 template <bool timed>
 PathKernel curved_kernel_timed(std::shared_ptr<const Transport> transport,
-                               std::shared_ptr<const CurvedSpace> space, bool random_phase,
+                               std::shared_ptr<const Space> space, bool random_phase,
                                double radius) {
   return [=](int paths, RandomStream& random, Film& film, TransportCounts& counts,
              JoinPromises*) {
-    const auto add = [&](const CurvedSpace& met, int count) {
-      PhotonMap<timed, CurvedSpace>(*transport, met, radius, random, film, counts).add(count);
+    const auto add = [&](const Space& met, int count) {
+      PhotonMap<timed, Space>(*transport, met, radius, random, film, counts).add(count);
     };
     if (!random_phase) return add(*space, paths);
     for (int done = 0; done < paths; done += paths_per_phase)
@@ -234,7 +233,7 @@ PathKernel photon_kernel(bool timed, std::shared_ptr<const Transport> transport,
 }
 
 PathKernel photon_kernel(bool timed, std::shared_ptr<const Transport> transport,
-                         std::shared_ptr<const CurvedSpace> space, bool random_phase,
+                         std::shared_ptr<const Space> space, bool random_phase,
                          double radius) {
   return timed ? curved_kernel_timed<true>(std::move(transport), std::move(space), random_phase,
                                            radius)

@@ -25,7 +25,7 @@ RandomStream stream_of_trials() {
 
 }  // namespace
 
-std::optional<SensorAim> SensorAim::of(const Transport& transport, const CurvedSpace& space,
+std::optional<SensorAim> SensorAim::of(const Transport& transport, const Space& space,
                                        double bending) {
   constexpr double small = 0.1;  // of the stage
   const ScatteringMedium& medium = transport.stage.medium;
@@ -43,7 +43,7 @@ std::optional<SensorAim> SensorAim::of(const Transport& transport, const CurvedS
 }
 
 /// About as large as the sensor's places are spread; nothing where that is too large, or bent.
-std::optional<SensorAim::Disk> SensorAim::disk_of(const SensorEnd& sensor, const CurvedSpace& space,
+std::optional<SensorAim::Disk> SensorAim::disk_of(const SensorEnd& sensor, const Space& space,
                                                   double largest) {
   constexpr double flat = 0.99;
   RandomStream random = stream_of_trials();
@@ -70,7 +70,7 @@ SensorAim::SensorAim(std::vector<Disk> disks, const ScatteringMedium& medium, do
       bending_(share_kept * bending),
       turn_(1 - std::abs(medium.phase.mean_cosine())) {}
 
-double SensorAim::usual(const Transport& transport, const CurvedSpace& space) const {
+double SensorAim::usual(const Transport& transport, const Space& space) const {
   RandomStream random = stream_of_trials();
   double sum = 0;
   for (int i = 0; i < some; ++i) {

@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "grin/curved/curved_space.h"
+#include "grin/space/space.h"
 #include "grin/media/free_flight.h"
 #include "grin/paths/transport.h"
 
@@ -15,7 +15,7 @@ namespace flatspeckle::grin {
 class SensorAim {
  public:
   /// Nothing where a sensor is no small disk. bending: rad, of light that the field keeps.
-  static std::optional<SensorAim> of(const Transport& transport, const CurvedSpace& space,
+  static std::optional<SensorAim> of(const Transport& transport, const Space& space,
                                      double bending);
 
   /// The first flight of light, by a place in (0, 1).
@@ -35,10 +35,10 @@ class SensorAim {
     Vec3 centre, outwards;
     double radius;
   };
-  static std::optional<Disk> disk_of(const SensorEnd& sensor, const CurvedSpace& space,
+  static std::optional<Disk> disk_of(const SensorEnd& sensor, const Space& space,
                                      double largest);
   SensorAim(std::vector<Disk> disks, const ScatteringMedium& medium, double bending);
-  double usual(const Transport& transport, const CurvedSpace& space) const;
+  double usual(const Transport& transport, const Space& space) const;
 
   double worth(const Vec3& x, const Vec3& direction, double turn) const;
   double worth(const Disk& disk, const Vec3& x, const Vec3& direction, double turn) const;

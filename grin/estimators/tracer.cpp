@@ -118,22 +118,17 @@ void Tracers::find_beams() {
   const auto transport = transport_of(scene_, request_, RenderMethod::bidirectional);
   if (!(transport->lights.beam_power() > 0)) return;
   walks_ = plan_.scatters || !transport->lights.are_beams() || !are_followed(*transport);
-  const BeamsRequest asked{plan_.timed, scene_.random_phase, !walks_, moving_};
-  if (const auto* homogeneous = std::get_if<Homogeneous>(&scene_.field)) {
-    unscattered_beams_ = beams_kernel(asked, transport, homogeneous->n_excess);
-    return;
-  }
-  const std::shared_ptr<const CurvedSpace> space =
-      make_curved_space(scene_.field, without_scattering(scene_.stage), options(Spreading::none));
+  const BeamsRequest asked{scene_.random_phase, !walks_, moving_};
+  const std::shared_ptr<const Space> space =
+      make_space(scene_.field, without_scattering(scene_.stage), options(Spreading::none));
   unscattered_beams_ = beams_kernel(asked, transport, space);
-  if (walks_) few_rays_per_path_ = rays_beside_path(transport->lights, *space);
+  if (walks_ && plan_.curved) few_rays_per_path_ = rays_beside_path(transport->lights, *space);
 }
 
 Tracer Tracers::make(RenderMethod method) const {
-  const bool is_analog = method == RenderMethod::analog;
-  Tracer tracer = plan_.curved || is_analog ? curved(method) : straight(method);
+  Tracer tracer = untuned(method);
   if (method != RenderMethod::photon_map) tracer.unscattered_beams = unscattered_beams_;
-  if (is_analog) tracer.rays_per_path = few_rays_per_path_;
+  if (method == RenderMethod::analog) tracer.rays_per_path = few_rays_per_path_;
   if (!walks_ && method != RenderMethod::photon_map) {
     tracer.kernel = nullptr;
     return tracer;
@@ -153,10 +148,8 @@ double Tracers::flights(const Tracer& tracer) const {
 MapKernel Tracers::map_kernel() const {
   if (!scene_.map) return {};
   const auto transport = transport_of(scene_, request_, RenderMethod::light);
-  if (const auto* homogeneous = std::get_if<Homogeneous>(&scene_.field))
-    return grin::map_kernel(*scene_.map, transport, homogeneous->n_excess);
-  const std::shared_ptr<const CurvedSpace> space =
-      make_curved_space(scene_.field, scene_.stage, options(Spreading::none));
+  const std::shared_ptr<const Space> space =
+      make_space(scene_.field, scene_.stage, options(Spreading::none));
   return grin::map_kernel(*scene_.map, transport, space, scene_.random_phase);
 }
 
@@ -179,17 +172,7 @@ double Tracers::steps_of_flight() const {
   return across / (1 + scene_.stage.medium.mu_s * across) / scene_.step;
 }
 
-Tracer Tracers::straight(RenderMethod method) const {
-  const double excess = std::get<Homogeneous>(scene_.field).n_excess;
-  const auto transport = transport_of(scene_, request_, method);
-  transport->depth = depth_;
-  if (method == RenderMethod::photon_map)
-    return {method, transport,
-            photon_kernel(plan_.timed, transport, excess, photon_radius(scene_, request_))};
-  return {method, transport, straight_kernel(plan_, transport, excess)};
-}
-
-CurvedSpaceOptions Tracers::options(Spreading spreading) const {
+SpaceOptions Tracers::options(Spreading spreading) const {
   return {scene_.step, scene_.max_length, spreading, scene_.leapfrogs};
 }
 
@@ -197,7 +180,7 @@ CurvedSpaceOptions Tracers::options(Spreading spreading) const {
 /// second time, which pays where many come before it.
 Spreading Tracers::spreading_of(RenderMethod method) const {
   if (method == RenderMethod::photon_map || method == RenderMethod::analog) return Spreading::none;
-  if (method != RenderMethod::light) return Spreading::all;
+  if (method != RenderMethod::light || !plan_.curved) return Spreading::all;
   constexpr double many = 6;  // scattering depth
   const Part part = scene_.stage.field_part();
   const Box box = bounds(scene_.stage.surface(part));
@@ -205,20 +188,21 @@ Spreading Tracers::spreading_of(RenderMethod method) const {
   return depth > many ? Spreading::to_boundary : Spreading::all;
 }
 
-Tracer Tracers::curved(RenderMethod method) const {
+Tracer Tracers::untuned(RenderMethod method) const {
   const auto transport = transport_of(scene_, request_, method);
-  const std::shared_ptr<const CurvedSpace> space =
-      make_curved_space(scene_.field, scene_.stage, options(spreading_of(method)));
+  if (!plan_.curved) transport->depth = depth_;
+  const std::shared_ptr<const Space> space =
+      make_space(scene_.field, scene_.stage, options(spreading_of(method)));
   if (method == RenderMethod::photon_map)
     return {method, transport,
             photon_kernel(plan_.timed, transport, space, scene_.random_phase,
                           photon_radius(scene_, request_))};
   if (method == RenderMethod::analog)
     return {method, transport,
-            analog_kernel(plan_.timed, transport, space,
-                          SensorAim::of(*transport, *space, bending_of(scene_)),
+            analog_kernel(transport, space, SensorAim::of(*transport, *space, bending_of(scene_)),
                           scene_.random_phase, moving_)};
-  Tracer tracer{method, transport, curved_kernel(plan_, transport, space, scene_.random_phase)};
+  Tracer tracer{method, transport, path_kernel(plan_, transport, space, scene_.random_phase)};
+  if (!plan_.curved) return tracer;
   tracer.flights_per_join = space->cost_of_join();
   tracer.cost_of_closed_join = space->cost_of_closed_join();
   tracer.spreading = spreading_of(method);

@@ -3,7 +3,7 @@
 #include <memory>
 #include <optional>
 
-#include "grin/curved/curved_space.h"
+#include "grin/space/space.h"
 #include "grin/estimators/map_kernel.h"
 #include "grin/estimators/path_kernels.h"
 #include "grin/estimators/render_scene.h"
@@ -68,11 +68,10 @@ class Tracers {
   void find_depth();
   void find_motion();
   void find_beams();
-  Tracer straight(RenderMethod method) const;
-  Tracer curved(RenderMethod method) const;
+  Tracer untuned(RenderMethod method) const;
   /// Of a pair, as a pilot has it that tunes joins.
   double flights(const Tracer& tracer) const;
-  CurvedSpaceOptions options(Spreading spreading) const;
+  SpaceOptions options(Spreading spreading) const;
   Spreading spreading_of(RenderMethod method) const;
 
   const RenderScene& scene_;

@@ -9,7 +9,6 @@
 #include "grin/estimators/beam_edges.h"
 #include "grin/paths/light_tally.h"
 #include "grin/paths/path_score.h"
-#include "grin/straight/straight_space.h"
 
 namespace flatspeckle::grin {
 
@@ -26,8 +25,7 @@ double fraction(double x) {
 }
 
 /// Rays do not say all of what this sensor sees of beams.
-template <Space S>
-bool needs_ways(const S& space, const SensorEnd& sensor) {
+bool needs_ways(const Space& space, const SensorEnd& sensor) {
   return !sensor.can_be_hit() || space.joins_through();
 }
 
@@ -48,8 +46,7 @@ bool is_among(std::span<const BeamWay> ways, const BeamWay& one) {
 
 /// Of the ways that random trials find from a few places of the sensor, those that bring most
 /// light, each once. Decided by the scene alone.
-template <Space S>
-std::vector<BeamSeed> seeds_of(const S& space, const SensorEnd& sensor, const Lights::Beam& beam,
+std::vector<BeamSeed> seeds_of(const Space& space, const SensorEnd& sensor, const Lights::Beam& beam,
                                int trials, bool& is_any_seen) {
   constexpr std::size_t most = 24;
   const int places = sensor.can_be_hit() ? 4 : 1;
@@ -84,8 +81,7 @@ std::vector<BeamSeed> seeds_of(const S& space, const SensorEnd& sensor, const Li
   return seeds;
 }
 
-template <Space S>
-BeamSeeds all_seeds(const Transport& transport, const S& space, int trials) {
+BeamSeeds all_seeds(const Transport& transport, const Space& space, int trials) {
   trials /= static_cast<int>(std::min<std::size_t>(transport.lights.beams(), 8));
   BeamSeeds seeds;
   for (const SensorEnd& sensor : transport.sensors)
@@ -109,10 +105,9 @@ struct BeamsSetup {
 /// places of the sensors back to the beams, ways_per_ray of them. A way that the body's surface
 /// refracts or reflects can be found by both, and is shared by multiple importance sampling; of
 /// sensors that can be hit the others are the rays' alone.
-template <bool timed, Space S>
 class UnscatteredBeams {
  public:
-  UnscatteredBeams(const Transport& transport, const BeamsSetup& setup, const S& space,
+  UnscatteredBeams(const Transport& transport, const BeamsSetup& setup, const Space& space,
                    double worth, RandomStream& random, Film& film, TransportCounts& counts)
       : transport_(transport),
         setup_(setup),
@@ -212,12 +207,12 @@ class UnscatteredBeams {
     return setup_.ways_per_ray * by_ways / by_rays;
   }
   void add(int pixel, double value, double optical_path) {
-    deposit<timed>(film_, counts_, pixel, value, optical_path);
+    deposit(film_, counts_, pixel, value, optical_path);
   }
 
   const Transport& transport_;
   const BeamsSetup& setup_;
-  const S& space_;
+  const Space& space_;
   double worth_;
   RandomStream& random_;
   Film& film_;
@@ -243,21 +238,20 @@ class EvenRays {
 };
 
 /// Rays side by side.
-template <bool timed>
-void add_rays(const CurvedSpace& space, int rays, const EvenRays& from, RandomStream& random,
-              UnscatteredBeams<timed, CurvedSpace>& light) {
+void add_rays(const Space& space, int rays, const EvenRays& from, RandomStream& random,
+              UnscatteredBeams& light) {
   std::array<int, lanes> number{};
   std::array<EndPosition, lanes> starts{};
   int next = 0;
   space.fly_side_by_side(
-      [&](int lane, const Flight* flown) -> std::optional<CurvedSpace::FlightStart> {
+      [&](int lane, const Flight* flown) -> std::optional<Space::FlightStart> {
         int& own = number[static_cast<std::size_t>(lane)];
         EndPosition& start = starts[static_cast<std::size_t>(lane)];
         if (flown) light.add_ray(start, *flown, from.stratum(own));
         if (next == rays) return std::nullopt;
         own = next++;
         start = from.start(own);
-        return CurvedSpace::FlightStart{start.point, start.inward, &random};
+        return Space::FlightStart{start.point, start.inward, &random};
       });
   light.finish();
 }
@@ -279,11 +273,9 @@ void add_edges(const MovingField& field, const Lights& lights, int rays, double 
   }
 }
 
-/// with_space(use): calls use(space), the same or another for each ray. in_lanes: the space of all
-/// rays, if they may go side by side.
-template <bool timed, class WithSpace>
+/// in_lanes: all rays may go side by side.
 BeamsKernel kernel(std::shared_ptr<const Transport> transport, const BeamsSetup& setup,
-                   const WithSpace& with_space, std::shared_ptr<const CurvedSpace> in_lanes) {
+                   std::shared_ptr<const Space> space, bool random_phase, bool in_lanes) {
   return [=](int rays, double worth, RandomStream& random, Film& film, TransportCounts& counts) {
     const EvenRays from(transport->lights, rays, random);
     const double beam_of_way = random.uniform(), first_way = random.uniform();
@@ -292,33 +284,27 @@ BeamsKernel kernel(std::shared_ptr<const Transport> transport, const BeamsSetup&
     };
     const bool follows_rays = has_area(*transport);
     if (follows_rays && in_lanes) {
-      UnscatteredBeams<timed, CurvedSpace> light(*transport, setup, *in_lanes, worth, random, film,
-                                                 counts);
-      add_rays<timed>(*in_lanes, rays, from, random, light);
+      UnscatteredBeams light(*transport, setup, *space, worth, random, film, counts);
+      add_rays(*space, rays, from, random, light);
     }
-    for (int ray = 0; ray < rays; ++ray)
-      with_space(random, [&](const auto& space) {
-        UnscatteredBeams<timed, std::decay_t<decltype(space)>> light(*transport, setup, space,
-                                                                     worth, random, film, counts);
-        if (follows_rays && !in_lanes) {
-          light.add_ray(from.start(ray), from.stratum(ray));
-          light.finish();
-        }
-        if (const double way = ways_before(ray); ways_before(ray + 1) > way)
-          light.add_ways(fraction(beam_of_way + way * golden));
-      });
+    const auto add = [&](const Space& met, int ray) {
+      UnscatteredBeams light(*transport, setup, met, worth, random, film, counts);
+      if (follows_rays && !in_lanes) {
+        light.add_ray(from.start(ray), from.stratum(ray));
+        light.finish();
+      }
+      if (const double way = ways_before(ray); ways_before(ray + 1) > way)
+        light.add_ways(fraction(beam_of_way + way * golden));
+    };
+    for (int ray = 0; ray < rays; ++ray) {
+      if (random_phase)
+        add(*space->frozen(2 * std::numbers::pi * random.uniform()), ray);
+      else
+        add(*space, ray);
+    }
     if (setup.moving)
       add_edges(*setup.moving, transport->lights, rays, worth, random, film, counts);
   };
-}
-
-template <class WithSpace>
-BeamsKernel kernel(const BeamsRequest& request, std::shared_ptr<const Transport> transport,
-                   const BeamSeeds& seeds, const WithSpace& with_space,
-                   std::shared_ptr<const CurvedSpace> in_lanes = nullptr) {
-  const BeamsSetup setup{seeds, share_of_ways(seeds.is_any_seen), request.books, request.moving};
-  return request.timed ? kernel<true>(transport, setup, with_space, in_lanes)
-                       : kernel<false>(transport, setup, with_space, in_lanes);
 }
 
 }  // namespace
@@ -328,27 +314,14 @@ bool are_followed(const Transport& transport) {
 }
 
 BeamsKernel beams_kernel(const BeamsRequest& request, std::shared_ptr<const Transport> transport,
-                         double excess) {
-  using Straight = StraightSpace<RenderPlan{.curved = false, .scatters = false}>;
-  const Straight space(without_scattering(transport->stage), excess);
-  return kernel(request, transport, all_seeds(*transport, space, 32768),
-                [=](RandomStream&, const auto& use) { use(space); });
+                         std::shared_ptr<const Space> space) {
+  const BeamSeeds seeds = all_seeds(*transport, *space, space->has_curves() ? 512 : 32768);
+  const BeamsSetup setup{seeds, share_of_ways(seeds.is_any_seen), request.books, request.moving};
+  return kernel(transport, setup, space, request.random_phase,
+                !request.random_phase && space->has_lanes());
 }
 
-BeamsKernel beams_kernel(const BeamsRequest& request, std::shared_ptr<const Transport> transport,
-                         std::shared_ptr<const CurvedSpace> space) {
-  const auto seeds = all_seeds(*transport, *space, 512);
-  const bool goes_in_lanes = !request.random_phase && space->has_lanes();
-  const auto with_space = [=](RandomStream& random, const auto& use) {
-    if (request.random_phase)
-      use(*space->frozen(2 * std::numbers::pi * random.uniform()));
-    else
-      use(*space);
-  };
-  return kernel(request, transport, seeds, with_space, goes_in_lanes ? space : nullptr);
-}
-
-double rays_beside_path(const Lights& lights, const CurvedSpace& space) {
+double rays_beside_path(const Lights& lights, const Space& space) {
   constexpr int some = 16;
   RandomStream random(0, static_cast<std::uint64_t>(Stream::render), 0);
   const EvenRays from(lights, some, random);

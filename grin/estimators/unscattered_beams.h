@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "grin/curved/curved_space.h"
+#include "grin/space/space.h"
 #include "grin/estimators/moving_field.h"
 #include "grin/estimators/path_kernels.h"
 
@@ -17,7 +17,6 @@ namespace flatspeckle::grin {
 // The space is that of without_scattering(stage), where each flight goes to the boundary.
 
 struct BeamsRequest {
-  bool timed = false;
   bool random_phase = false;  ///< each ray meets its own phase of the sound
   bool books = false;         ///< where the power of rays goes, as nothing else does
   std::shared_ptr<const MovingField> moving =
@@ -29,14 +28,12 @@ using BeamsKernel = std::function<void(int rays, double worth, RandomStream& ran
                                        TransportCounts& counts)>;
 
 BeamsKernel beams_kernel(const BeamsRequest& request, std::shared_ptr<const Transport> transport,
-                         double excess);
-BeamsKernel beams_kernel(const BeamsRequest& request, std::shared_ptr<const Transport> transport,
-                         std::shared_ptr<const CurvedSpace> space);
+                         std::shared_ptr<const Space> space);
 
 /// Rays that a light path that is only counted where it hits (analog_light.h) needs beside it. The
 /// less light is left to them, the fewer; as they are spread evenly, their error falls faster than
 /// that of paths.
-double rays_beside_path(const Lights& lights, const CurvedSpace& space);
+double rays_beside_path(const Lights& lights, const Space& space);
 
 /// Whether there are beams, and a sensor that their rays can hit.
 bool are_followed(const Transport& transport);

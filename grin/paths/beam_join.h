@@ -19,10 +19,9 @@ inline std::optional<Vec3> straight_place(const ParallelLight& light, const Vec3
 }
 
 /// Weights of a light path's first collision, after weigh().
-template <Space S>
-void weigh_in_beam(const Transport& transport, const S& space, const PathVertex& start,
-                   const Flight& flight, RandomStream& random, TransportCounts& counts,
-                   PathVertex& next) {
+inline void weigh_in_beam(const Transport& transport, const Space& space, const PathVertex& start,
+                          const Flight& flight, RandomStream& random, TransportCounts& counts,
+                          PathVertex& next) {
   constexpr double same = 1e-4;  // rad
   const Lights::Beam beam = transport.lights.beam_of(*start.end);
   const ParallelLight light = beam.light();

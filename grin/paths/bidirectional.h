@@ -16,10 +16,12 @@ namespace flatspeckle::grin {
 /// to one of the vertices of the light path, drawn by what it promises. What a join promises is
 /// what the straight line would give; joins that promise little are left to chance. One light path
 /// serves all sensors, each of which has a path of its own.
-template <RenderPlan plan, Space S>
+///
+/// Family: what a light path is split into, LightFamily, or LonePath.
+template <class Family>
 class Bidirectional {
  public:
-  Bidirectional(const Transport& transport, const S& space, RandomStream& random, Film& film,
+  Bidirectional(const Transport& transport, const Space& space, RandomStream& random, Film& film,
                 TransportCounts& counts)
       : transport_(transport),
         space_(space),
@@ -45,12 +47,11 @@ class Bidirectional {
 
  private:
   /// The root of what a search for ways through the body's surface costs more than another join.
-  static constexpr double search_cost = plan.curved ? 1 : 10;
+  double search_cost() const { return space_.has_curves() ? 1 : 10; }
   static constexpr double elsewhere = 0.1;
 
-  using Family = std::conditional_t<plan.deep, LightFamily, LonePath>;
   static Family family(const Transport& transport, [[maybe_unused]] Film& film) {
-    if constexpr (plan.deep)
+    if constexpr (Family::is_split())
       return Family(*transport.depth, film.drift);
     else
       return {};
@@ -85,7 +86,7 @@ class Bidirectional {
       if (vertex.vertices < last_kept) vertices_.offer(vertex, random_);
     };
     LightTally tally(film_.energy);
-    walk<plan>(transport_, space_, never_chosen, start, first, transport_.strategies.short_light,
+    walk(transport_, space_, never_chosen, start, first, transport_.strategies.short_light,
                random_, counts_, family_, tally, collided, left);
     tally.end_path();
   }
@@ -110,14 +111,14 @@ class Bidirectional {
     };
     LonePath alone;
     const NoTally tally;
-    walk<plan>(transport_, space_, choice, start, first, transport_.strategies.short_sensor,
+    walk(transport_, space_, choice, start, first, transport_.strategies.short_sensor,
                random_, counts_, alone, tally, collided, left);
   }
 
   /// Joins to sensors are considered where light has a chance to come there: that counts in their
   /// density as the choice of a place does.
   double chance_considered(const PathPoint& from) const {
-    if constexpr (plan.deep)
+    if constexpr (Family::is_split())
       return transport_.depth->chance_to_join(from) * transport_.depth->share_of_joins(at_);
     return 1;
   }
@@ -148,7 +149,7 @@ class Bidirectional {
   }
 
   void join_to_sensors(const PathVertex& y) {
-    if constexpr (plan.deep) {
+    if constexpr (Family::is_split()) {
       const double draw = random_.uniform();
       if (draw >= transport_.depth->most_joins()) return;
       const double chance = transport_.depth->chance_to_join(y.point);
@@ -195,7 +196,7 @@ class Bidirectional {
     const auto place = straight_place(light, z.point.x);
     if (!place) return 0;
     double density = beam.disk.contains(*place) ? beam.disk.density(*place) : 0;
-    if (plan.curved || space_.joins_through())
+    if (space_.has_curves() || space_.joins_through())
       density = std::max(density, elsewhere * beam.disk.density(light.x));
     if (!(density > 0)) return 0;
     const double depth = space_.least_depth(z.point, {*place, z.point.part});
@@ -251,7 +252,7 @@ class Bidirectional {
   template <class End>
   EndDirection facing(const End& ends, const PathVertex& vertex, const Vec3& direction) {
     EndDirection way = leaving(transport_, ends, vertex, direction);
-    if (plan.curved || space_.joins_through()) {
+    if (space_.has_curves() || space_.joins_through()) {
       if (vertex.end)
         way.strength = std::max(way.strength,
                                 elsewhere * ends.sample_direction(*vertex.end, random_).strength);
@@ -268,12 +269,9 @@ class Bidirectional {
       promised_[at_].made += promised / chance;
       add_joined(y, z, space_.join(y.point, z.point, random_, counts_.connections), chance);
     }
-    if constexpr (plan.body) {
-      if (!space_.joins_through()) return;
-      if (const double chance = chance_to_join(promised, search_cost * level); chance > 0)
-        add_joined(y, z, space_.join_through(y.point, z.point, random_, counts_.connections),
-                   chance);
-    }
+    if (!space_.joins_through()) return;
+    if (const double chance = chance_to_join(promised, search_cost() * level); chance > 0)
+      add_joined(y, z, space_.join_through(y.point, z.point, random_, counts_.connections), chance);
   }
 
   /// 0 where the join is left out.
@@ -300,11 +298,11 @@ class Bidirectional {
   }
 
   void add(int pixel, double value, double optical_path) {
-    deposit<plan.timed>(film_, counts_, pixel, value, optical_path);
+    deposit(film_, counts_, pixel, value, optical_path);
   }
 
   const Transport& transport_;
-  const S& space_;
+  const Space& space_;
   RandomStream& random_;
   Film& film_;
   TransportCounts& counts_;

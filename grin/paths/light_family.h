@@ -20,6 +20,7 @@ inline constexpr double capture_level = 0.25;
 /// A path that stays one.
 class LonePath {
  public:
+  static constexpr bool is_split() { return false; }
   void begin(const PathVertex&, const Vec3&) { throughput_ = 1; }
   const Vec3* rise() const { return nullptr; }
   void stretched(double) {}
@@ -52,6 +53,7 @@ class LonePath {
 /// not see it: they still sum to 1 for each path.
 class LightFamily {
  public:
+  static constexpr bool is_split() { return true; }
   /// Refers to it, and adds up its drift.
   LightFamily(const DepthImportance& importance, double& drift)
       : importance_(importance), drift_(drift) {}

@@ -4,28 +4,16 @@
 
 #include "grin/paths/energy_balance.h"
 #include "grin/paths/path_vertex.h"
-#include "grin/space/flight_log.h"
 #include "grin/space/space.h"
 
 namespace flatspeckle::grin {
 
-/// A flight, stretched where the space stretches any.
-template <Space S>
-Flight flown(const S& space, const PathPoint& from, const Vec3& direction, RandomStream& random,
-             FlightLog* log, const Vec3* rise) {
-  if constexpr (requires { space.fly(from, direction, random, log, rise); })
-    return space.fly(from, direction, random, log, rise);
-  else
-    return space.fly(from, direction, random, log);
-}
-
 /// Of a path whose power is nobody's concern. `from`: the vertex that a flight began at, whose
 /// weight is the power before the flight.
 struct NoTally {
-  template <Space S>
-  Flight fly(const S& space, const PathVertex& from, const Vec3& direction, RandomStream& random,
+  Flight fly(const Space& space, const PathVertex& from, const Vec3& direction, RandomStream& random,
              const Vec3* rise) const {
-    return flown(space, from.point, direction, random, nullptr, rise);
+    return space.fly(from.point, direction, random, nullptr, rise);
   }
   void emitted(const PathVertex&) const {}
   void left(const PathVertex&, const Flight&) const {}

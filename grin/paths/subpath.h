@@ -4,14 +4,13 @@
 #include "grin/paths/light_family.h"
 #include "grin/paths/light_tally.h"
 #include "grin/paths/transport.h"
-#include "grin/space/render_plan.h"
+#include "grin/space/space.h"
 
 namespace flatspeckle::grin {
 
 /// Whether a short path (Strategies) goes on from here: the next way may be one that cannot be
 /// joined.
-template <Space S>
-bool short_path_goes_on(const S& space, const PathVertex& here) {
+inline bool short_path_goes_on(const Space& space, const PathVertex& here) {
   if (!here.end) return !space.joins_all();
   return here.end->is_beam || (here.end->is_point && !space.joins_all());
 }
@@ -24,9 +23,8 @@ inline constexpr auto never_chosen = [](const EndPosition&, const PathPoint&) { 
 /// left(vertex, the one before) on the boundary. choice(end, point): of our end, if it were chosen
 /// for a join from there (EndPosition). family: the path, or all that it is split into. tally: what
 /// becomes of its power (LightTally), of a path that is not short.
-template <RenderPlan plan, Space S, class Choice, class Family, class Tally, class Collided,
-          class Left>
-void walk(const Transport& transport, const S& space, const Choice& choice, const PathVertex& start,
+template <class Choice, class Family, class Tally, class Collided, class Left>
+void walk(const Transport& transport, const Space& space, const Choice& choice, const PathVertex& start,
           const EndDirection& first, bool is_short, RandomStream& random, TransportCounts& counts,
           Family& family, Tally& tally, const Collided& collided, const Left& left) {
   PathVertex here = start;
@@ -34,6 +32,7 @@ void walk(const Transport& transport, const S& space, const Choice& choice, cons
   tally.emitted(here);
   family.begin(here, first.direction);
   Vec3 direction = first.direction;
+  const bool absorbs = family.is_split() || transport.absorbs;
   // of light tracing that of the last flight alone
   const bool weighs_all = is_short || !transport.strategies.short_sensor;
   const auto phase = [&]() -> const auto& {
@@ -45,7 +44,7 @@ void walk(const Transport& transport, const S& space, const Choice& choice, cons
     counts.add_flight(flight.end == Flight::End::lost);
     const double before = here.weight;
     if (flight.stretched != 1) {
-      tally.reweighed(here.point.part, plan.absorbs, (1 - flight.stretched) * before);
+      tally.reweighed(here.point.part, true, (1 - flight.stretched) * before);
       here.weight *= flight.stretched;
       family.stretched(flight.stretched);
     }
@@ -65,7 +64,7 @@ void walk(const Transport& transport, const S& space, const Choice& choice, cons
         weigh_in_beam(transport, space, here, flight, random, counts, next);
     }
     if (is_short && next.first_of_other > 0) return false;
-    if (!plan.scatters || flight.end == Flight::End::boundary) {
+    if (flight.end == Flight::End::boundary) {
       tally.left(here, flight);
       left(next, here);
       return false;
@@ -75,10 +74,9 @@ void walk(const Transport& transport, const S& space, const Choice& choice, cons
       return false;
     }
     const ScatteringMedium& medium = transport.medium(next.point.part);
-    if constexpr (plan.absorbs) next.weight *= medium.albedo();
+    if (absorbs) next.weight *= medium.albedo();
     collided(next);
-    if constexpr (plan.absorbs)
-      if (!family.collide(here, flight, medium, next, random, counts, tally)) return false;
+    if (absorbs && !family.collide(here, flight, medium, next, random, counts, tally)) return false;
     here = next;
     return true;
   };

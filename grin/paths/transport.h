@@ -22,6 +22,7 @@ struct Transport {
   /// they promise.
   std::vector<double> join_levels = std::vector<double>(sensors.size());
   std::vector<double> beam_levels = join_levels;  ///< of those to beams
+  bool absorbs = stage.absorbs();                 ///< some medium does
 
   /// Of all sensors.
   int pixels() const {

@@ -37,17 +37,14 @@ struct TransportCounts {
 };
 
 /// Adds to a pixel of a film, if there is one (-1: none) and the value is finite.
-template <bool timed>
-void deposit(Film& film, TransportCounts& counts, int pixel, double value, double optical_path) {
+inline void deposit(Film& film, TransportCounts& counts, int pixel, double value,
+                    double optical_path) {
   if (pixel < 0 || value == 0) return;
   if (!std::isfinite(value)) {
     ++counts.lost_values;
     return;
   }
-  if constexpr (timed)
-    film.add(pixel, value, optical_path);
-  else
-    film.add(pixel, value);
+  film.add(pixel, value, optical_path);
 }
 /// Likewise to a sum of derivatives by the field.
 inline void deposit_by_field(Film& film, TransportCounts& counts, int pixel, int number,

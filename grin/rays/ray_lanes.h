@@ -1,5 +1,7 @@
 #pragma once
 
+#include <span>
+
 #include "core/numbers/wide/every_width.h"
 #include "grin/index/lanes.h"
 #include "grin/rays/ray_step.h"
@@ -84,8 +86,55 @@ inline void advance(RayLanes& rays, const LaneGradients& a, const LaneGradients&
   }
 }
 
+// The steps of ray_step.h, of all lanes.
+
 template <LaneField F>
-void look(const F& field, RayLanes& rays) {
+void leap(const F& field, RayLanes& rays, double part) {
+  drift(rays, part / 2);
+  LaneGradients at;
+  field.gradients(rays.x, at);
+  kick(rays, at, part);
+}
+template <LaneField F>
+void sharma(const F& field, RayLanes& rays) {
+  LaneGradients a, b, c;
+  LaneVectors x;
+  field.gradients(rays.x, a);
+  displaced(rays, 0.5, a, x);
+  field.gradients(x, b);
+  displaced(rays, 1, b, x);
+  field.gradients(x, c);
+  advance(rays, a, b, c);
+}
+
+}  // namespace lane_parts
+
+/// So many steps.
+template <LaneField F>
+FLATSPECKLE_EVERY_WIDTH void make_steps(Sharma, const F& field, RayLanes& __restrict rays,
+                                        int steps) {
+  for (int i = 0; i < steps; ++i) lane_parts::sharma(field, rays);
+}
+/// Each made of leaps, by parts of the step.
+template <LaneField F>
+FLATSPECKLE_EVERY_WIDTH void make_leaps(const F& field, RayLanes& __restrict rays,
+                                        std::span<const double> parts, int steps) {
+  for (int i = 0; i < steps; ++i)
+    for (const double part : parts) lane_parts::leap(field, rays, part);
+}
+template <LaneField F>
+void make_steps(Leapfrog, const F& field, RayLanes& rays, int steps) {
+  constexpr double whole = 1;
+  make_leaps(field, rays, {&whole, 1}, steps);
+}
+template <LaneField F>
+void make_steps(Yoshida4, const F& field, RayLanes& rays, int steps) {
+  make_leaps(field, rays, Yoshida4::parts, steps);
+}
+
+/// For the largest ||v| - n|.
+template <LaneField F>
+FLATSPECKLE_EVERY_WIDTH void look_for_mismatch(const F& field, RayLanes& __restrict rays) {
   LaneGradients at;
   field.gradients(rays.x, at);
 #pragma omp simd
@@ -95,42 +144,6 @@ void look(const F& field, RayLanes& rays) {
     const double most = rays.index_mismatch[k];
     rays.index_mismatch[k] = off <= most ? most : off;  // NaN is kept
   }
-}
-
-}  // namespace lane_parts
-
-// The steps of ray_step.h, of all lanes.
-
-template <LaneField F>
-void step(Leapfrog, const F& field, RayLanes& rays, double part = 1) {
-  lane_parts::drift(rays, part / 2);
-  LaneGradients at;
-  field.gradients(rays.x, at);
-  lane_parts::kick(rays, at, part);
-}
-template <LaneField F>
-void step(Yoshida4, const F& field, RayLanes& rays) {
-  for (const double part : {Yoshida4::outer, Yoshida4::inner, Yoshida4::outer})
-    step(Leapfrog(), field, rays, part);
-}
-template <LaneField F>
-void step(Sharma, const F& field, RayLanes& rays) {
-  LaneGradients a, b, c;
-  LaneVectors x;
-  field.gradients(rays.x, a);
-  lane_parts::displaced(rays, 0.5, a, x);
-  field.gradients(x, b);
-  lane_parts::displaced(rays, 1, b, x);
-  field.gradients(x, c);
-  lane_parts::advance(rays, a, b, c);
-}
-
-/// So many steps; looks: for the index mismatch, at their end.
-template <bool looks, class Integrator, LaneField F>
-FLATSPECKLE_EVERY_WIDTH void make_steps(Integrator by, const F& field, RayLanes& __restrict rays,
-                                        int steps) {
-  for (int i = 0; i < steps; ++i) step(by, field, rays);
-  if constexpr (looks) lane_parts::look(field, rays);
 }
 
 }  // namespace flatspeckle::grin

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <numbers>
 
 #include "grin/rays/ray.h"
@@ -108,17 +109,18 @@ struct Yoshida4 {
   static constexpr int order = 4;
   static constexpr double outer = 1.3512071919596576340476878089715;  ///< 1 / (2 - 2^(1/3))
   static constexpr double inner = 1 - 2 * outer;
+  static constexpr std::array<double, 3> parts{outer, inner, outer};
 
   template <IndexField F, class Ray>
   [[gnu::flatten]] static void step(const F& field, Ray& ray, double h) {
     if constexpr (HomogeneousField<F>) return straight_step(field, ray, h);
-    for (const double part : {outer, inner, outer}) Leapfrog::step(field, ray, part * h);
+    for (const double part : parts) Leapfrog::step(field, ray, part * h);
   }
 
   template <IndexField F, class Ray>
   static void step(const F& field, Ray& ray, RayTangent& tangent, double h) {
     if constexpr (HomogeneousField<F>) return straight_step(field, ray, tangent, h);
-    for (const double part : {outer, inner, outer}) Leapfrog::step(field, ray, tangent, part * h);
+    for (const double part : parts) Leapfrog::step(field, ray, tangent, part * h);
   }
 };
 

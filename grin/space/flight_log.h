@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "grin/space/part_medium.h"
-#include "grin/space/space.h"
+#include "grin/space/flight.h"
 
 namespace flatspeckle::grin {
 

@@ -5,7 +5,6 @@
 
 #include "grin/media/free_flight.h"
 #include "grin/media/scattering_medium.h"
-#include "grin/space/render_plan.h"
 
 namespace flatspeckle::grin {
 
@@ -47,25 +46,20 @@ class PartMedium {
 
   /// The arc length to the next collision along a path x(s), from Woodcock's tentative collisions;
   /// infinity if it would be beyond `longest`.
-  template <RenderPlan plan, class Path>
+  template <class Path>
   double free_path(const Path& x, double longest, RandomStream& random) const {
-    if constexpr (!plan.scatters) return std::numeric_limits<double>::infinity();
     if (!scatters_) return std::numeric_limits<double>::infinity();
     double s = sample_free_flight(majorant(), random.uniform());
-    if constexpr (plan.gridded)
-      while (s < longest && !accepts(x(s), random))
-        s += sample_free_flight(majorant(), random.uniform());
+    while (s < longest && !accepts(x(s), random))
+      s += sample_free_flight(majorant(), random.uniform());
     return s < longest ? s : std::numeric_limits<double>::infinity();
   }
 
   /// exp(-integral of mu_t) along the path; in a grid an unbiased estimate by ratio tracking.
-  template <RenderPlan plan, class Path>
+  template <class Path>
   double transmitted(const Path& x, double length, RandomStream& random) const {
-    if constexpr (!plan.scatters && !plan.absorbs) return 1;
-    if constexpr (plan.gridded) {
-      if (grid_) return ratio_tracked(x, length, random);
-    }
-    return transmittance(mu_t_, length);
+    if (!(mu_t_ > 0)) return 1;
+    return grid_ ? ratio_tracked(x, length, random) : transmittance(mu_t_, length);
   }
 
  private:

@@ -4,9 +4,8 @@
 
 namespace flatspeckle::grin {
 
-/// What light transport in a scene has to do. A constant of the compiler: an estimator or a space
-/// made for a plan has no code for what the plan leaves out, and leaving it out never changes a
-/// result beyond rounding. Each `false` is a promise about the scene.
+/// What light transport in a scene has to do; stored with the result. Leaving out what a scene does
+/// not need never changes a result beyond rounding.
 struct RenderPlan {
   bool curved = true;    ///< the index changes from point to point, not only at surfaces of bodies
   bool scatters = true;  ///< some medium does

@@ -1,134 +1,193 @@
 #pragma once
 
-#include <cstdint>
-#include <optional>
-#include <span>
-#include <vector>
+#include <functional>
+#include <memory>
 
-#include "core/numbers/random.h"
-#include "grin/connections/connection.h"
-#include "grin/space/regions.h"
+#include "grin/curved/ray_field.h"
+#include "grin/rays/step_curve.h"
+#include "grin/space/flight_log.h"
+#include "grin/space/stage.h"
+#include "grin/space/straight_stage.h"
 
 namespace flatspeckle::grin {
 
-/// Where a way of light is refracted or reflected at surfaces of bodies, one after the other; those
-/// where the index does not jump are none.
-struct Passages {
-  int count = 0;
-  std::uint32_t reflected = 0;  ///< bit i: the i-th is a reflection
+/// Which flights tell |J|, about half of their cost where rays are curved; joins always do.
+enum class Spreading { none, to_boundary, all };
 
-  /// Of ways that can be joined.
-  static constexpr int most = 16;
-
-  bool reflects(int i) const { return (reflected >> i) & 1; }
-  Passages reversed() const {
-    Passages back;
-    for (int i = count; i-- > 0;) back.add(reflects(i));
-    return back;
-  }
-  void add(bool reflects) {
-    reflected |= static_cast<std::uint32_t>(reflects) << count;
-    ++count;
-  }
-  bool operator==(const Passages&) const = default;
+struct SpaceOptions {
+  double step = 1;  ///< of curved rays in sigma: length at index 1
+  double max_length = std::numeric_limits<double>::infinity();  ///< arc length of a curved flight
+                                                                ///< or join; longer ones are lost
+  Spreading spreading = Spreading::all;
+  bool leapfrogs = false;  ///< make_ray_field()
 };
 
-/// The way of light from a point to the next event, along a curve, through surfaces of bodies where
-/// it meets them.
-struct Flight {
-  enum class End {
-    collision,  ///< in a medium
-    boundary,   ///< left the stage; `point` is on the boundary
-    lost        ///< no ray (index not positive, or too many steps): counted, contributes nothing
+/// What the estimators ask of space. Rays are straight where the index is the same everywhere in a
+/// part, and those of a RayField, by one virtual call for each leg, in the part that a field of
+/// varying index fills.
+class Space {
+ public:
+  /// Use make_space.
+  Space(const AnyIndexField& field, const Stage& stage, const SpaceOptions& options);
+
+  double index(const PathPoint& p) const {
+    return 1 + (is_curved(p.part) ? field_->excess(p.x) : setup_->stage.excess(p.part));
+  }
+  /// The index varies in some part.
+  bool has_curves() const { return !setup_->is_straight; }
+  bool is_curved(Part part) const { return part == setup_->field_part && has_curves(); }
+
+  /// log: its legs are added to that. rise: the first leg, if straight, is stretched along it
+  /// (StraightStage).
+  Flight fly(const PathPoint& from, const Vec3& direction, RandomStream& random,
+             FlightLog* log = nullptr, const Vec3* rise = nullptr) const;
+  /// Whether flights may go side by side, at less cost than one by one: in one part that the field
+  /// fills, without |J|.
+  bool has_lanes() const;
+  /// Flights side by side. next(lane, flight) is told what became of the lane's last (null at
+  /// first) and says where its next begins, if there is one; its random numbers are its own.
+  struct FlightStart {
+    PathPoint from;
+    Vec3 direction;
+    RandomStream* random;
   };
-  End end = End::lost;
-  PathPoint point;       ///< where it ended
-  Vec3 start_direction;  ///< unit
-  Vec3 direction;        ///< unit tangent at the end
-  double arc_length = 0, optical_path = 0;
-  double spreading = 0;         ///< |J| from start to end (C25); 0 where no join finds it
-  double optical_depth = 0;     ///< reference depth, see below
-  double weight = 1;            ///< exp(-mu_a s) in media that do not scatter, else 1
-  double stretched = 1;         ///< density of plain flights over that of those sampled
-  double absorbed_in_body = 0;  ///< in any; of 1 - weight
-  bool crosses_body = false;    ///< passes the surface of one or is reflected there
-  Passages passages = {};       ///< there, where it refracts; of a way that joins can find
-  double fresnel = 1;           ///< chance of these
-  int hollows = 0;              ///< of these, at surfaces that are not convex
-  bool is_joinable = true;      ///< a join of its ends finds the same way
+  using NextFlight = std::function<std::optional<FlightStart>(int lane, const Flight*)>;
+  void fly_side_by_side(const NextFlight& next) const;
+  /// Of a leg of a flight (flight_log.h).
+  template <class Use>
+  void for_points(const FlightLeg& leg, double apart, RandomStream& random, const Use& use) const;
+
+  /// All ways of light between two points.
+  bool joins_all() const { return !joins_through(); }
+  /// Any, between points of these parts.
+  bool can_join(const PathPoint& p, const PathPoint& q) const {
+    return setup_->stage.are_alike(p.part, q.part) || joins_through();
+  }
+  double least_depth(const PathPoint& p, const PathPoint& q) const {
+    return setup_->stage.least_depth(p, q);
+  }
+  /// A way that surfaces of bodies leave alone.
+  std::optional<Join> join(const PathPoint& p, const PathPoint& q, RandomStream& random,
+                           ConnectionStatistics& statistics) const;
+  /// In flights, roughly.
+  double cost_of_join() const { return field_->cost_of_curve(); }
+  double cost_of_closed_join() const { return field_->cost_of_closed_curve(); }
+  bool joins_through() const { return setup_->stage.refracts(); }
+  /// One of the ways that are refracted or reflected there.
+  std::optional<Join> join_through(const PathPoint& p, const PathPoint& q, RandomStream& random,
+                                   ConnectionStatistics& statistics) const;
+
+  /// Those of parallel light, backwards.
+  std::vector<BeamWay> ways_to_beam(const PathPoint& p, const ParallelLight& light,
+                                    std::span<const BeamSeed> seeds, RandomStream& random,
+                                    ConnectionStatistics& statistics) const;
+  /// The one that is refracted wherever it can be: always the same, if one is found.
+  std::optional<BeamWay> plainest_way_to_beam(const PathPoint& p, const ParallelLight& light,
+                                              RandomStream& random,
+                                              ConnectionStatistics& statistics) const;
+  /// What one random trial finds of them.
+  std::optional<BeamWay> some_way_to_beam(const PathPoint& p, const ParallelLight& light,
+                                          RandomStream& random,
+                                          ConnectionStatistics& statistics) const;
+  /// The one that starts so.
+  std::optional<BeamWay> beam_way(const PathPoint& p, const ParallelLight& light,
+                                  const Vec3& direction, const Passages& passages,
+                                  RandomStream& random) const;
+
+  /// The same space as light meets it at this phase of the sound, from 0 to 2 pi: S = cos(phase)
+  /// of a standing wave (conventions, C28). Throws InputError for a field without sound.
+  std::unique_ptr<const Space> frozen(double phase) const;
+
+ private:
+  /// What is the same at all phases.
+  struct Setup {
+    StraightStage stage;
+    Part field_part;
+    bool is_straight;
+    std::vector<double> sides;  ///< of the surfaces of the field's room
+    SpaceOptions options;
+    double longest;                ///< arc length of a flight
+    ConnectionOptions connection;  ///< by curves of the field
+    ConnectionOptions search;      ///< of ways that are refracted, or to a beam
+  };
+  Space(std::shared_ptr<const Setup> setup, std::shared_ptr<const RayField> field)
+      : setup_(std::move(setup)), field_(std::move(field)) {}
+
+  /// As stage has it, but in the field of this phase.
+  IndexGradient side(Part part, const Vec3& x) const {
+    if (is_curved(part)) return field_->gradient(x);
+    return {setup_->stage.excess(part), Vec3::Zero()};
+  }
+  /// That of the field.
+  Room room() const { return setup_->stage.regions().room(setup_->field_part); }
+  const PartMedium& medium() const { return setup_->stage.medium(setup_->field_part); }
+  LegRoom leg_room() const { return {room(), medium(), setup_->options.step}; }
+  /// The surface on which it ends at x.
+  LegEnd end_at(const Vec3& x) const {
+    return setup_->field_part + static_cast<Part>(room().nearest(x));
+  }
+
+  friend class Legs;
+  class Lanes;
+  struct Neighbours;
+  class Curve;
+
+  bool searches_for_beams() const { return joins_through() || is_curved(around); }
+  bool stays_inside(RayState ray, double sigma, int steps) const;
+  Flight fly_once(const PathPoint& from, const Vec3& direction, bool spreads, RandomStream& random,
+                  FlightLog* log, const Vec3* rise) const;
+  Flight& go_on(Flight& flight, std::optional<LegEnd> end, bool spreads, RandomStream& random,
+                FlightLog* log) const;
+  bool goes_outside(const Vec3& x, const Vec3& direction) const;
+  void end_leg(Flight& flight, const RayState& ray, double weight) const;
+  std::optional<LegEnd> leg(Flight& flight, Neighbours& neighbours, RandomStream& random) const;
+  std::optional<LegEnd> curved_leg(Flight& flight, Neighbours& neighbours,
+                                   RandomStream& random) const;
+  void cross(Flight& flight, LegEnd surface, Neighbours& neighbours, RandomStream& random) const;
+  double transmitted(const PathPoint& p, const Connection& curve, RandomStream& random) const;
+
+  std::shared_ptr<const Setup> setup_;
+  std::shared_ptr<const RayField> field_;
 };
 
-/// A curve that joins two points.
-struct Join {
-  Vec3 start_direction, end_direction;  ///< unit tangents along the way from the first point
-  double spreading;                     ///< |J_PQ|
-  double optical_path;
-  double optical_depth;  ///< reference depth, see below
-  double transmittance;  ///< or an unbiased estimate of it, where the density is a grid; and the
-                         ///< chance of what happens at surfaces of bodies, Fresnel's
-  double multiplicity;   ///< K of C26: f multiplicity is unbiased for the sum of f over the curves
-  Passages passages = {};  ///< of surfaces that refract, found by search
-  double fresnel = 1;      ///< chance of these
-  int hollows = 0;         ///< of these, at surfaces that are not convex
+/// Points of a leg, one after the other.
+class Space::Curve {
+ public:
+  Curve(const Space& space, const FlightLeg& leg)
+      : field_(*space.field_),
+        step_(space.setup_->options.step),
+        now_(start_ray(field_, leg.start.x, leg.direction)),
+        before_(now_) {}
+
+  /// Increasing arc lengths.
+  Vec3 operator()(double s) {
+    while (now_.arc_length < s) {
+      before_ = now_;
+      field_.advance(step_, 1, now_, nullptr);
+      if (!(now_.arc_length > before_.arc_length)) return before_.x;
+    }
+    const StepCurve curve(before_, now_, step_);
+    return curve.x(curve.theta_at(s));
+  }
+
+ private:
+  const RayField& field_;
+  double step_;
+  RayState now_, before_;
 };
 
-/// Light of one direction, at the plane across it through x.
-struct ParallelLight {
-  Vec3 x, direction;  ///< unit
-};
+template <class Use>
+void Space::for_points(const FlightLeg& leg, double apart, RandomStream& random,
+                       const Use& use) const {
+  const PartMedium& in = setup_->stage.medium(leg.start.part);
+  if (is_curved(leg.start.part))
+    return grin::for_points(leg, in, apart, random, Curve(*this, leg), use);
+  const auto x_at = [&](double s) -> Vec3 { return leg.start.x + s * leg.direction; };
+  grin::for_points(leg, in, apart, random, x_at, use);
+}
 
-/// A way from a point to where parallel light comes from.
-struct BeamWay {
-  Vec3 start_direction;           ///< unit tangent, against the light
-  Vec3 place;                     ///< on the plane
-  Vec3 first_met = Vec3::Zero();  ///< where it is refracted or reflected first, if it is
-  double thinning;                ///< area across the light at the point per area at the plane
-  int orientation;                ///< sign of the determinant in it
-  double arc_length, optical_path;
-  Passages passages = {};
-  double transmittance;      ///< or an unbiased estimate; Fresnel's alone where not stated
-  double multiplicity = 1;   ///< as in Join
-  double optical_depth = 0;  ///< reference depth, see below; 0 where not stated
-};
-
-/// Where a search for ways to parallel light begins: along a direction, or from outside of all
-/// bodies towards the place where it is first refracted or reflected.
-struct BeamSeed {
-  Vec3 start_direction;
-  Passages passages = {};
-  Vec3 first_met = Vec3::Zero();
-};
-
-// The reference depth of a way is the integral of the reference extinction along it, and -ln of the
-// chance of its refractions and reflections. The reference extinction of a part that scatters:
-// mu_t, or mu_t times the mean in it of the relative density where that is a grid; of a part that
-// does not: 0, as no flight ends there. Weights of multiple importance sampling use it in place of
-// the true one, which leaves them weights and needs no second estimate.
-
-/// What the estimators ask of space. join() finds ways that surfaces of bodies leave alone,
-/// join_through() one of those that are refracted or reflected there; ways_to_beam() those of
-/// parallel light, backwards, plainest_way_to_beam() the one that is refracted wherever it can be
-/// (always the same, if one is found), some_way_to_beam() what one random trial finds of them, and
-/// beam_way() that which starts so. StraightSpace<plan> answers inline; CurvedSpace (abstract) by
-/// one virtual call per flight, behind which the field's type is known to every step.
-template <class S>
-concept Space = requires(const S& space, const PathPoint& p, const Vec3& v, RandomStream& random,
-                         ConnectionStatistics& statistics, const ParallelLight& light,
-                         std::span<const BeamSeed> seeds, const Passages& passages) {
-  { space.index(p) } -> std::convertible_to<double>;
-  { space.fly(p, v, random) } -> std::same_as<Flight>;
-  { space.joins_all() } -> std::same_as<bool>;
-  { space.can_join(p, p) } -> std::same_as<bool>;
-  { space.least_depth(p, p) } -> std::same_as<double>;
-  { space.join(p, p, random, statistics) } -> std::same_as<std::optional<Join>>;
-  { space.joins_through() } -> std::same_as<bool>;
-  { space.join_through(p, p, random, statistics) } -> std::same_as<std::optional<Join>>;
-  { space.ways_to_beam(p, light, seeds, random, statistics) } -> std::same_as<std::vector<BeamWay>>;
-  {
-    space.plainest_way_to_beam(p, light, random, statistics)
-    } -> std::same_as<std::optional<BeamWay>>;
-  { space.some_way_to_beam(p, light, random, statistics) } -> std::same_as<std::optional<BeamWay>>;
-  { space.beam_way(p, light, v, passages, random) } -> std::same_as<std::optional<BeamWay>>;
-};
+/// Throws InputError for a bad stage.
+std::unique_ptr<const Space> make_space(const AnyIndexField& field, const Stage& stage,
+                                        const SpaceOptions& options = {});
 
 }  // namespace flatspeckle::grin

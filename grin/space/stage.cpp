@@ -97,6 +97,12 @@ Part Stage::field_part() const {
   return around;
 }
 
+bool Stage::absorbs() const {
+  return medium.mu_a > 0 || std::any_of(bodies.begin(), bodies.end(), [](const Body& body) {
+           return body.medium.mu_a > 0;
+         });
+}
+
 Stage without_scattering(const Stage& stage) {
   Stage black = stage;
   black.medium = without_scattering(stage.medium);

@@ -40,6 +40,8 @@ struct Stage {
     return part == around ? medium : bodies[part - 1].medium;
   }
   Part field_part() const;
+  /// Some medium absorbs.
+  bool absorbs() const;
   /// Of a part that the field does not fill.
   double excess_in(Part part) const {
     return part == around ? excess_around : *bodies[part - 1].excess;

@@ -2,7 +2,7 @@
 
 #include "grin/rays/ray_jump.h"
 #include "grin/space/part_medium.h"
-#include "grin/space/space.h"
+#include "grin/space/flight.h"
 
 namespace flatspeckle::grin {
 
@@ -13,7 +13,6 @@ inline void attenuate(Flight& flight, double weight) {
 }
 
 /// A stage for light that goes straight within a part.
-template <RenderPlan plan>
 class StraightStage {
  public:
   /// field_excess: of the part that the field fills, where it is the same everywhere.
@@ -28,18 +27,18 @@ class StraightStage {
   }
 
   const Regions& regions() const { return regions_; }
-  const PartMedium& medium(Part part) const { return parts_[plan.body ? part : around].medium; }
+  const PartMedium& medium(Part part) const { return parts_[part].medium; }
   /// Index - 1 of a part where it is the same everywhere.
-  double excess(Part part) const { return *parts_[plan.body ? part : around].excess; }
+  double excess(Part part) const { return *parts_[part].excess; }
 
   /// Light goes from one part into the other as if they were one.
   bool are_alike(Part a, Part b) const {
-    return !plan.body || parts_[a].first_alike == parts_[b].first_alike;
+    return parts_[a].first_alike == parts_[b].first_alike;
   }
   /// No other part is alike.
-  bool is_alone(Part part) const { return !plan.body || parts_[part].is_alone; }
+  bool is_alone(Part part) const { return parts_[part].is_alone; }
   /// The index jumps anywhere.
-  bool refracts() const { return plan.body && refracts_; }
+  bool refracts() const { return refracts_; }
 
   /// To the next collision or to the end of the part. rise: gradient of the logarithm of what light
   /// is worth, along which flights are stretched; or null.
@@ -51,7 +50,7 @@ class StraightStage {
     const PartMedium& in = medium(part);
     const double pull = rise && in.is_uniform() ? rise->dot(d) / in.mu_t() : 0;
     const double free = pull > 0 ? stretched(flight, in.mu_t(), pull, way, random)
-                                 : in.template free_path<plan>(path, way, random);
+                                 : in.free_path(path, way, random);
     if (free < way) {
       way = free;
       end = at_collision;
@@ -59,10 +58,8 @@ class StraightStage {
     flight.point.x = path(way);
     flight.arc_length += way;
     flight.optical_path += (1 + excess(part)) * way;
-    if constexpr (plan.scatters) flight.optical_depth += in.reference() * way;
-    if constexpr (plan.absorbs)
-      if (!in.scatters())
-        attenuate(flight, flight.weight * in.template transmitted<plan>(path, way, random));
+    flight.optical_depth += in.reference() * way;
+    if (!in.scatters()) attenuate(flight, flight.weight * in.transmitted(path, way, random));
     return end;
   }
 
@@ -114,7 +111,7 @@ class StraightStage {
     const auto pass = [&](Part part, double from, double to) {
       const auto path = [&](double s) -> Vec3 { return p.x + (from + s) * d; };
       join.optical_depth += medium(part).reference() * (to - from);
-      join.transmittance *= medium(part).template transmitted<plan>(path, to - from, random);
+      join.transmittance *= medium(part).transmitted(path, to - from, random);
     };
     if (is_alone(p.part)) {
       if (is_blocked(p, d, length)) return std::nullopt;
@@ -148,7 +145,7 @@ class StraightStage {
     const Vec3 chord = q.x - p.x;
     const double length = chord.norm();
     const bool in_one_part = p.part == q.part && p.part == regions_.parts() - 1;
-    if (!plan.body || in_one_part) return medium(p.part).least_extinction() * length;
+    if (in_one_part) return medium(p.part).least_extinction() * length;
     double depth = 0;
     for_each_part<true>(p, chord / length, length, [&](Part part, double from, double to) {
       depth += medium(part).least_extinction() * (to - from);
@@ -158,8 +155,7 @@ class StraightStage {
 
   /// From a point of a part or on its surface to where it ends.
   Regions::WayOut way_to_surface(const PathPoint& p, const Vec3& d) const {
-    if constexpr (plan.body) return regions_.way_out(p, d);
-    return {way_out(regions_.surface(at_boundary), p.x, d), at_boundary};
+    return regions_.way_out(p, d);
   }
   /// To where light cannot go on straight.
   double way_to_jump(const PathPoint& p, const Vec3& d) const {
@@ -225,11 +221,10 @@ class StraightStage {
   bool is_blocked(const PathPoint& p, const Vec3& d, double length) const {
     // The end may be on the surface itself.
     const double shorter = (1 - 1e-9) * length;
-    const Room room = regions_.room(plan.body ? p.part : around);
+    const Room room = regions_.room(p.part);
     if (!is_convex(room.surfaces[0]) && way_out(room.surfaces[0], p.x, d) < shorter) return true;
-    if constexpr (plan.body)
-      for (const Surface& hole : room.surfaces.subspan(1))
-        if (way_in(hole, p.x, d) < shorter) return true;
+    for (const Surface& hole : room.surfaces.subspan(1))
+      if (way_in(hole, p.x, d) < shorter) return true;
     return false;
   }
 

@@ -8,9 +8,7 @@
 #include <vector>
 
 #include "grin/media/start_directions.h"
-#include "grin/rays/ray_jump.h"
-#include "grin/space/straight_stage.h"
-#include "grin/ways/way.h"
+#include "grin/ways/legs.h"
 
 namespace flatspeckle::grin {
 
@@ -23,9 +21,6 @@ enum class Seek {
 /// Rays from a point, in a space without collisions, that are refracted or reflected at surfaces of
 /// bodies: what searches for ways of light are made of. A leg goes from one of these places to the
 /// next, through surfaces where the index does not jump.
-///
-/// Legs: a space without collisions, as straight_legs.h says.
-template <class Legs>
 class PassageWalk {
  public:
   /// Refers to the legs.

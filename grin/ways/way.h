@@ -1,6 +1,6 @@
 #pragma once
 
-#include "grin/space/space.h"
+#include "grin/space/flight.h"
 
 namespace flatspeckle::grin {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/result/hdf5_handle.h"
-#include "grin/curved/curved_space.h"
+#include "grin/space/space.h"
 #include "grin/media/density_grid.h"
 #include "grin/render/render_job.h"
 #include "grin/scene/ray_tracing.h"
@@ -98,7 +98,7 @@ void fly_through_index(const std::string&) {
   constexpr double most_steps = 400;
   if (size > most_steps * step) return;
   const grin::Stage stage{.boundary = box, .medium = {1 / size, 1 / size}};
-  const auto space = grin::make_curved_space(scene.field, stage, {step, 3 * size});
+  const auto space = grin::make_space(scene.field, stage, {step, 3 * size});
   RandomStream random(1, 0, 0);
   for (const RayStart& start : starts_in(box)) {
     if (!(space->index({start.x}) > 1e-3)) continue;  // make_stage refuses what is not above 0

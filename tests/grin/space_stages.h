@@ -4,12 +4,10 @@
 #include <vector>
 
 #include "core/numbers/random.h"
-#include "grin/curved/curved_space.h"
-#include "grin/straight/straight_space.h"
+#include "grin/space/space.h"
 
 namespace flatspeckle::grin::tests {
 
-inline constexpr RenderPlan straight_plan{.curved = false};
 
 /// A relative density that varies by a factor of about 4 on a coarse grid about the unit ball.
 inline std::shared_ptr<const DensityGrid> random_density(std::uint64_t seed) {

@@ -86,8 +86,8 @@ TEST_CASE("all power of analog light is accounted for") {
 
 namespace {
 
-std::shared_ptr<const CurvedSpace> space_of(const RenderScene& scene, Spreading spreading) {
-  return make_curved_space(scene.field, scene.stage,
+std::shared_ptr<const Space> space_of(const RenderScene& scene, Spreading spreading) {
+  return make_space(scene.field, scene.stage,
                            {scene.step, scene.max_length, spreading, scene.leapfrogs});
 }
 
@@ -106,7 +106,7 @@ Counted counted(const RenderScene& scene, Spreading spreading, bool is_aimed, in
   Counted found;
   Film film(2, scene.bins, found.sums);
   RandomStream random(3, 0, batch);
-  analog_kernel(false, transport, space, aim, false)(paths, random, film, found.counts, nullptr);
+  analog_kernel(transport, space, aim, false)(paths, random, film, found.counts, nullptr);
   return found;
 }
 
@@ -126,7 +126,7 @@ TEST_CASE("rays of beams are spread evenly over each") {
     CAPTURE(power);
     std::get<RadialDetector>(scene.sensors[0]).centre = {at, 0, 6};
     const auto transport = transport_of(scene, {RenderMethod::analog}, RenderMethod::analog);
-    const BeamsKernel kernel = beams_kernel({}, transport, 0);
+    const BeamsKernel kernel = beams_kernel({}, transport, make_space(scene.field, scene.stage));
     double sum = 0, square = 0;
     for (std::uint64_t batch = 0; batch < batches; ++batch) {
       std::vector<Complex> sums(2);

@@ -44,13 +44,12 @@ std::vector<BentSpace> bent_spaces() {
 template <class Use>
 void with_space(const BentSpace& bent, const Use& use) {
   if (const auto* homogeneous = std::get_if<Homogeneous>(&bent.field))
-    use(StraightSpace<straight_plan>(bent.stage, homogeneous->n_excess));
-  use(*make_curved_space(bent.field, bent.stage, {0.02, 40}));
+    use(Space(Homogeneous{homogeneous->n_excess}, bent.stage, {}));
+  use(*make_space(bent.field, bent.stage, {0.02, 40}));
 }
 
 /// A flight with the same passages as another, at the body's surface drawn at random.
-template <Space S>
-std::optional<Flight> alike(const S& space, const PathPoint& from, const Vec3& direction,
+std::optional<Flight> alike(const Space& space, const PathPoint& from, const Vec3& direction,
                             const Flight& other, RandomStream& random) {
   for (int i = 0; i < 2000; ++i) {
     const Flight flight = space.fly(from, direction, random);
@@ -60,8 +59,7 @@ std::optional<Flight> alike(const S& space, const PathPoint& from, const Vec3& d
 }
 
 /// Area across the light where a flight ends per area where it starts, by flights beside it.
-template <Space S>
-std::optional<double> thinning_by_differences(const S& space, const PathPoint& from,
+std::optional<double> thinning_by_differences(const Space& space, const PathPoint& from,
                                               const Flight& flight, RandomStream& random) {
   constexpr double apart = 1e-5;
   const Frame start = frame_across(flight.start_direction), end = frame_across(flight.direction);
@@ -225,8 +223,8 @@ TEST_CASE("the ways of a beam to a point behind a glass ball, by impact paramete
                             {-Vec3::UnitZ(), through, Vec3::UnitZ()}};
   for (const std::span<const BeamSeed> some :
        {std::span<const BeamSeed>(), std::span<const BeamSeed>(seeds)}) {
-    check(StraightSpace<straight_plan>(stage, glass - 1), some);
-    check(*make_curved_space(Homogeneous{glass - 1}, stage, {0.1, 40}), some);
+    check(Space(Homogeneous{glass - 1}, stage, {}), some);
+    check(*make_space(Homogeneous{glass - 1}, stage, {0.1, 40}), some);
   }
 }
 
@@ -260,7 +258,7 @@ TEST_CASE(
 
 TEST_CASE("a wide lens sees the glints of a beam in a glass ball as rays say") {
   const RenderScene scene = glints(lens_at, 1.2);
-  const StraightSpace<straight_plan> space(scene.stage, glass - 1);
+  const Space space(Homogeneous{glass - 1}, scene.stage, {});
   const Lights lights(scene.lights, scene.stage, [](const PathPoint&) { return 1.0; });
   const SensorEnd lens(scene.sensors[0], scene.stage);
   RandomStream random(9, 98, 0);

@@ -57,7 +57,7 @@ Estimate traced(const RenderScene& scene, bool deep, RenderMethod method, int ba
   RenderPlan plan = tracers.plan();
   plan.deep = deep;
   const auto kernel =
-      straight_kernel(plan, tracer.transport, std::get<Homogeneous>(scene.field).n_excess);
+      path_kernel(plan, tracer.transport, make_space(scene.field, scene.stage));
   const auto pixels = static_cast<std::size_t>(tracer.transport->pixels());
   GroupedSums sums(pixels + EnergyBalance::size);
   for (int batch = 0; batch < batches; ++batch) {

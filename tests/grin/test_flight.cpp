@@ -21,8 +21,6 @@ using bench::cube_mesh;
 using bench::random_direction;
 using bench::random_point;
 using bench::smooth;
-using tests::straight_plan;
-using StraightAll = StraightSpace<straight_plan>;
 
 const Sphere ball;
 const Box box{{-1, -0.8, -1.2}, {0.9, 1, 1}};
@@ -59,8 +57,7 @@ double straight_depth(const ScatteringMedium& medium, const Vec3& x, const Vec3&
   return medium.mu_t() * length * sum;
 }
 
-template <Space S>
-void check_free_flights(const S& space, const ScatteringMedium& medium, const Vec3& x,
+void check_free_flights(const Space& space, const ScatteringMedium& medium, const Vec3& x,
                         const Vec3& d, const std::function<double(double)>& depth, double way,
                         int flights) {
   std::vector<double> survived;
@@ -83,7 +80,7 @@ TEST_CASE("straight flights end on the boundary, as sphere tracing finds it") {
   const Surface surfaces[] = {ball, box, smooth(cube, 0.08)};
   const LinearRamp even{0.25, Vec3::Zero()};
   for (const Surface& boundary : surfaces) {
-    const StraightAll space(stage_of(boundary), 0.25);
+    const Space space(Homogeneous{0.25}, stage_of(boundary), {});
     RandomStream random(1, 91, 0);
     for (int i = 0; i < 300; ++i) {
       const Vec3 x = random_point(random, 0.75), d = random_direction(random);
@@ -126,11 +123,11 @@ TEST_CASE("free flights follow the extinction along the way, straight and curved
       const Stage stage = stage_of(ball, medium);
       const double way = way_out(ball, x, d);
       check_free_flights(
-          StraightAll(stage, 0.1), medium, x, d,
+          Space(Homogeneous{0.1}, stage, {}), medium, x, d,
           [&](double s) { return straight_depth(medium, x, d, s); }, way, 6000);
       const auto check_curved = [&](const auto& field) {
         // through a grid by steps, so small that they end where closed forms do
-        const auto curved = make_curved_space(field, stage, {0.02, 8});
+        const auto curved = make_space(field, stage, {0.02, 8});
         // depth by small steps, tabulated
         RayState ray = start_ray(field, x, d);
         std::vector<double> arcs{0}, depths{0};
@@ -150,7 +147,7 @@ TEST_CASE("free flights follow the extinction along the way, straight and curved
           return depths[i - 1] + part * (depths[i] - depths[i - 1]);
         };
         RandomStream random(1, 1, 1);
-        const auto clear = make_curved_space(field, stage_of(ball), {0.02, 8});
+        const auto clear = make_space(field, stage_of(ball), {0.02, 8});
         const double out = clear->fly({x}, d, random).arc_length;
         CHECK(std::abs(out - arcs.back()) < 1e-3);
         check_free_flights(*curved, medium, x, d, depth, out, 6000);
@@ -170,8 +167,8 @@ TEST_CASE("absorption without scattering weighs a flight, exactly or by ratio tr
     const double expected = std::exp(-straight_depth(medium, x, d, way));
     // a curved space so weak that the way is straight
     const auto curved =
-        make_curved_space(LinearRamp{0, 1e-9 * Vec3::UnitX()}, stage_of(ball, medium), {0.1, 8});
-    const StraightAll straight(stage_of(ball, medium), 0);
+        make_space(LinearRamp{0, 1e-9 * Vec3::UnitX()}, stage_of(ball, medium), {0.1, 8});
+    const Space straight(Homogeneous{0}, stage_of(ball, medium), {});
     const auto check_mean = [&](const auto& space, std::uint64_t seed) {
       RandomStream random(seed, 92, 0);
       double sum = 0, squares = 0;
@@ -193,14 +190,14 @@ TEST_CASE("absorption without scattering weighs a flight, exactly or by ratio tr
 }
 
 TEST_CASE("curved flights in a Luneburg ball: place, direction, |J|, optical path (C27)") {
-  const auto space = make_curved_space(Luneburg({}), stage_of(ball), {0.02, 8});
-  const auto coarse = make_curved_space(Luneburg({}), stage_of(ball, {.mu_s = 2}), {0.05, 8});
+  const auto space = make_space(Luneburg({}), stage_of(ball), {0.02, 8});
+  const auto coarse = make_space(Luneburg({}), stage_of(ball, {.mu_s = 2}), {0.05, 8});
   RandomStream random(3, 91, 0);
   for (int i = 0; i < 300; ++i) {
     const Vec3 x = random_point(random, 0.98), d = random_direction(random);
     const double n = std::sqrt(2 - x.squaredNorm());
     const tests::LuneburgRay exact{x, n * d};
-    for (const CurvedSpace* by : {space.get(), coarse.get()}) {
+    for (const Space* by : {space.get(), coarse.get()}) {
       const Flight flight = by->fly({x}, d, random);
       REQUIRE(flight.end != Flight::End::lost);
       // sigma from the place: both coordinates in the ray's plane
@@ -226,7 +223,7 @@ TEST_CASE("curved flights in a Luneburg ball: place, direction, |J|, optical pat
 TEST_CASE("curved flights in a fisheye: |J| by the optical path, and the angular momentum (C27)") {
   const double a = 0.8;
   const Fisheye field({.centre_excess = 0.7, .radius = a});
-  const auto space = make_curved_space(field, stage_of(box, {.mu_s = 0.7}), {0.01, 8});
+  const auto space = make_space(field, stage_of(box, {.mu_s = 0.7}), {0.01, 8});
   RandomStream random(4, 91, 0);
   const double big = 1.7 * a / 2;
   for (int i = 0; i < 300; ++i) {
@@ -246,7 +243,7 @@ TEST_CASE("curved flights in a fisheye: |J| by the optical path, and the angular
 TEST_CASE("a flight walked back spreads as n_P^2 / |J_PQ| = n_Q^2 / |J_QP|") {
   RandomStream fields(5, 91, 0);
   const auto blobs = bench::random_blobs(fields, 0.2);
-  const auto space = make_curved_space(blobs, stage_of(ball), {0.01, 8});
+  const auto space = make_space(blobs, stage_of(ball), {0.01, 8});
   RandomStream random(6, 91, 0);
   for (int i = 0; i < 200; ++i) {
     const PathPoint p{random_point(random, 0.9)};
@@ -264,7 +261,7 @@ TEST_CASE("a flight walked back spreads as n_P^2 / |J_PQ| = n_Q^2 / |J_QP|") {
 
 TEST_CASE("a glass sphere splits light by Fresnel, bends it by Snell and keeps angular momentum") {
   const double n = 1.5;
-  const StraightAll space(with_body(Sphere{Vec3::Zero(), 3}, ball), n - 1);
+  const Space space(Homogeneous{n - 1}, with_body(Sphere{Vec3::Zero(), 3}, ball), {});
   for (const double impact : {0.1, 0.6, 0.95}) {
     const Vec3 x(impact, 0, -2);
     const double at = std::asin(impact), in = std::asin(impact / n);
@@ -305,7 +302,7 @@ TEST_CASE("a glass sphere splits light by Fresnel, bends it by Snell and keeps a
 }
 
 TEST_CASE("what total reflection traps is lost, and what it does not trap is not") {
-  const StraightAll space(with_body(Sphere{Vec3::Zero(), 3}, ball), 0.5);
+  const Space space(Homogeneous{0.5}, with_body(Sphere{Vec3::Zero(), 3}, ball), {});
   RandomStream random(8, 91, 0);
   const double free = 1 / 1.5;
   for (const double radius : {0.5, 0.9}) {
@@ -321,8 +318,8 @@ TEST_CASE("what total reflection traps is lost, and what it does not trap is not
 
 TEST_CASE("a flight is the same through a mesh of a cube as through the cube") {
   const Box cube{Vec3::Constant(-0.8), Vec3::Constant(0.8)};
-  const StraightAll exact(with_body(Sphere{Vec3::Zero(), 3}, cube), 0);
-  const StraightAll mesh(with_body(Sphere{Vec3::Zero(), 3}, smooth(cube_mesh(0.8), 0.04)), 0);
+  const Space exact(Homogeneous{0}, with_body(Sphere{Vec3::Zero(), 3}, cube), {});
+  const Space mesh(Homogeneous{0}, with_body(Sphere{Vec3::Zero(), 3}, smooth(cube_mesh(0.8), 0.04)), {});
   RandomStream random(9, 91, 0);
   for (int i = 0; i < 300; ++i) {
     const Vec3 x = 2.5 * random_direction(random), d = (random_point(random, 1) - x).normalized();
@@ -337,7 +334,7 @@ TEST_CASE("a flight is the same through a mesh of a cube as through the cube") {
 TEST_CASE("a Luneburg body in a box: a beam meets at the far pole, whatever the step") {
   for (const double step : {0.05, 0.02}) {
     const auto space =
-        make_curved_space(Luneburg({}), with_body(Box{{-2, -2, -2}, {2, 2, 2}}, ball), {step, 10});
+        make_space(Luneburg({}), with_body(Box{{-2, -2, -2}, {2, 2, 2}}, ball), {step, 10});
     RandomStream random(10, 91, 0);
     for (int i = 0; i < 100; ++i) {
       const double rho = 0.95 * std::sqrt(random.uniform()), turn = 6.28 * random.uniform();
@@ -356,12 +353,12 @@ TEST_CASE("a Luneburg body in a box: a beam meets at the far pole, whatever the 
 
 TEST_CASE("flights that are too long, or where there is no index, are lost") {
   RandomStream random(11, 91, 0);
-  const auto brief = make_curved_space(Fisheye({}), stage_of(ball), {0.05, 0.3});
+  const auto brief = make_space(Fisheye({}), stage_of(ball), {0.05, 0.3});
   CHECK(brief->fly({Vec3::Zero()}, Vec3::UnitX(), random).end == Flight::End::lost);
   CHECK(brief->fly({0.8 * Vec3::UnitX()}, Vec3::UnitX(), random).end == Flight::End::boundary);
-  const auto dark = make_curved_space(LinearRamp{0, Vec3(0, 0, -2)}, stage_of(ball), {0.01, 8});
+  const auto dark = make_space(LinearRamp{0, Vec3(0, 0, -2)}, stage_of(ball), {0.01, 8});
   CHECK(dark->fly({0.8 * Vec3::UnitZ()}, Vec3::UnitX(), random).end == Flight::End::lost);
-  const auto guide = make_curved_space(ParabolicGuide({.axis_excess = 0.1, .alpha = 2}),
+  const auto guide = make_space(ParabolicGuide({.axis_excess = 0.1, .alpha = 2}),
                                        stage_of(ball), {0.01, 8});
   CHECK(guide->fly({0.9 * Vec3::UnitX()}, Vec3::UnitZ(), random).end == Flight::End::lost);
 }
@@ -370,9 +367,9 @@ TEST_CASE("spreading is left out where it is not wanted, and nothing else change
   const Stage stage = stage_of(ball, {.mu_s = 1});
   const AnyIndexField fields[] = {Luneburg({}), Fisheye({1, 1.5})};
   for (const AnyIndexField& field : fields) {
-    const auto with = make_curved_space(field, stage, {0.05, 8, Spreading::all});
-    const auto without = make_curved_space(field, stage, {0.05, 8, Spreading::none});
-    const auto last = make_curved_space(field, stage, {0.05, 8, Spreading::to_boundary});
+    const auto with = make_space(field, stage, {0.05, 8, Spreading::all});
+    const auto without = make_space(field, stage, {0.05, 8, Spreading::none});
+    const auto last = make_space(field, stage, {0.05, 8, Spreading::to_boundary});
     for (int i = 0; i < 50; ++i) {
       RandomStream a(12, 91, i), b(12, 91, i), c(12, 91, i);
       const Vec3 x(0.1, 0.2, 0.3), d = random_direction(a);
@@ -393,14 +390,14 @@ TEST_CASE("spreading is left out where it is not wanted, and nothing else change
 TEST_CASE("a frozen wave is the wave at that phase; other fields have none") {
   const StandingWave wave(0.3, 0.05, 0, 9, 40);
   const Stage stage = stage_of(ball);
-  const auto space = make_curved_space(wave, stage, {0.02, 8});
+  const auto space = make_space(wave, stage, {0.02, 8});
   const auto frozen = space->frozen(1.1),
-             exact = make_curved_space(wave.frozen(std::cos(1.1)), stage, {0.02, 8});
+             exact = make_space(wave.frozen(std::cos(1.1)), stage, {0.02, 8});
   RandomStream random(13, 91, 0);
   const Vec3 x(0.3, -0.2, 0.1), d = random_direction(random);
   CHECK(frozen->index({x}) == exact->index({x}));
   CHECK(frozen->fly({x}, d, random).point.x == exact->fly({x}, d, random).point.x);
-  CHECK_THROWS_AS(make_curved_space(Fisheye({}), stage, {0.1, 8})->frozen(1), InputError);
+  CHECK_THROWS_AS(make_space(Fisheye({}), stage, {0.1, 8})->frozen(1), InputError);
 }
 
 }  // namespace flatspeckle::grin

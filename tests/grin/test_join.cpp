@@ -14,7 +14,6 @@ namespace {
 
 using bench::random_direction;
 using bench::random_point;
-using StraightAll = StraightSpace<tests::straight_plan>;
 
 const Sphere ball;
 
@@ -37,8 +36,7 @@ struct Mean {
 
 /// A path from p flies to a point q of density sum over curves of mu_t(q) T / (4 pi |J|): the share
 /// of flights that collide in each octant about p, by flights and by joins to even points.
-template <Space S>
-void check_flights_against_joins(const S& space, const PathPoint& p, const ScatteringMedium& medium,
+void check_flights_against_joins(const Space& space, const PathPoint& p, const ScatteringMedium& medium,
                                  int samples) {
   const auto octant = [&](const Vec3& x) {
     const Vec3 d = x - p.x;
@@ -85,7 +83,7 @@ TEST_CASE("the reference extinction is that of the density inside of the part") 
   }
   const ScatteringMedium medium{2, 0, {}, std::make_shared<DensityGrid>(grid, density)};
   const Stage stage{box, medium, {Body{core, medium}}};
-  const StraightSpace<RenderPlan{.curved = false}> space(stage, 0);
+  const Space space(Homogeneous{0}, stage, {});
   RandomStream random(2, 94, 0);
   ConnectionStatistics statistics;
   const auto depth = [&](const Vec3& p, const Vec3& q, Part part) {
@@ -100,7 +98,7 @@ TEST_CASE("straight joins: closed form, none through a body or to another part")
                     .medium = {.mu_s = 0.4, .mu_a = 0.1},
                     .bodies = {Body{ball, {.mu_a = 0.7}}},
                     .excess_around = 0.2};
-  const StraightAll space(stage, 0.5);
+  const Space space(Homogeneous{0.5}, stage, {});
   RandomStream random(1, 96, 0);
   ConnectionStatistics statistics;
   int blocked = 0;
@@ -139,7 +137,7 @@ TEST_CASE("a curved flight and the join of its ends are one curve") {
                                StandingWave(0.33, 1e-3, 0, 20, 40),
                                ParabolicGuide({.axis_excess = 0.5, .alpha = 0.6})};
   for (const AnyIndexField& field : all) {
-    const auto space = make_curved_space(field, stage, {0.01, 8});
+    const auto space = make_space(field, stage, {0.01, 8});
     RandomStream random(4, 96, 0);
     ConnectionStatistics statistics;
     int same = 0;
@@ -173,10 +171,10 @@ TEST_CASE("flights and joins agree on where light from a point collides") {
   for (const bool gridded : {false, true}) {
     if (gridded) medium.density = tests::random_density(5);
     const Stage stage{.boundary = ball, .medium = medium};
-    check_flights_against_joins(StraightAll(stage, 0.1), p, medium, 20000);
+    check_flights_against_joins(Space(Homogeneous{0.1}, stage, {}), p, medium, 20000);
     // the focus of light from p is outside: at one inside, 1/|J| has no variance
     const auto fisheye =
-        make_curved_space(Fisheye({.centre_excess = 1, .radius = 1.1}), stage, {0.05, 8});
+        make_space(Fisheye({.centre_excess = 1, .radius = 1.1}), stage, {0.05, 8});
     check_flights_against_joins(*fisheye, p, medium, 8000);
   }
 }
@@ -184,7 +182,7 @@ TEST_CASE("flights and joins agree on where light from a point collides") {
 TEST_CASE("flights and joins agree within a body") {
   const ScatteringMedium medium{.mu_s = 1.5};
   const Stage stage{.boundary = Box{{-2, -2, -2}, {2, 2, 2}}, .bodies = {Body{ball, medium}}};
-  const auto space = make_curved_space(Luneburg({}), stage, {0.05, 10});
+  const auto space = make_space(Luneburg({}), stage, {0.05, 10});
   check_flights_against_joins(*space, {Vec3(0.4, 0.3, -0.5), Part{1}}, medium, 8000);
   // around the body light is straight, and no solver runs
   ConnectionStatistics statistics;
@@ -199,7 +197,7 @@ TEST_CASE("flights and joins agree within a body") {
 TEST_CASE("no curve begins or ends outside the boundary, however short") {
   // rays bend towards the middle of a fisheye: between points of a face they run outside
   const Stage stage{.boundary = Box{{-1, -1, -1}, {1, 1, 1}}};
-  const auto space = make_curved_space(Fisheye({.centre_excess = 1, .radius = 2}), stage, {0.2, 8});
+  const auto space = make_space(Fisheye({.centre_excess = 1, .radius = 2}), stage, {0.2, 8});
   ConnectionStatistics statistics;
   RandomStream random(8, 96, 0);
   const PathPoint p{Vec3(1, -0.05, 0.1)}, q{Vec3(1, 0.05, 0.05)}, inner{Vec3(0.95, 0.05, 0.05)};
@@ -213,7 +211,7 @@ TEST_CASE("no curve begins or ends outside the boundary, however short") {
 TEST_CASE("no curve runs outside the boundary between the ends of its steps") {
   // one step; it bulges by alpha^2 rho z^2 / (8 beta^2) at the most
   const Stage stage{.boundary = Box{{-0.9, -0.9, 0}, {0.9, 0.9, 4}}};
-  const auto space = make_curved_space(ParabolicGuide({0.6, 0.5}), stage, {2, 40});
+  const auto space = make_space(ParabolicGuide({0.6, 0.5}), stage, {2, 40});
   ConnectionStatistics statistics;
   RandomStream random(8, 97, 0);
   const auto joins = [&](double rho) {
@@ -227,8 +225,8 @@ TEST_CASE("no curve runs outside the boundary between the ends of its steps") {
 
 TEST_CASE("a homogeneous field runs no solver") {
   const Stage stage{.boundary = ball, .medium = {.mu_s = 1}};
-  const auto space = make_curved_space(Homogeneous{0.4}, stage, {0.1, 1e-3});
-  const StraightAll straight(stage, 0.4);
+  const auto space = make_space(Homogeneous{0.4}, stage, {0.1, 1e-3});
+  const Space straight(Homogeneous{0.4}, stage, {});
   ConnectionStatistics statistics;
   RandomStream a(6, 96, 0), b(6, 96, 0);
   for (int i = 0; i < 100; ++i) {

@@ -6,7 +6,7 @@
 
 #include "bench/scenes/random_fields.h"
 #include "core/numbers/random.h"
-#include "grin/curved/curved_space.h"
+#include "grin/space/space.h"
 #include "grin/paths/beam_join.h"
 #include "grin/paths/path_join.h"
 
@@ -74,7 +74,7 @@ PathVertex arrived(const Transport& transport, const PathVertex& here, const Fli
   return next;
 }
 
-PathVertex light_subpath(const Transport& transport, const CurvedSpace& space,
+PathVertex light_subpath(const Transport& transport, const Space& space,
                          const WholePath& path, int count) {
   PathVertex vertex = end_vertex(transport.strategies, path.light);
   for (int i = 0; i + 1 < count; ++i) {
@@ -117,7 +117,7 @@ double weight_of_hit(const Strategies& allowed, PathVertex last, const EndPositi
 
 /// Where the first collision of a sensor's path is joined to a beam; nothing where light came to it
 /// in another way.
-std::optional<double> weight_in_beam(const Transport& transport, const CurvedSpace& space,
+std::optional<double> weight_in_beam(const Transport& transport, const Space& space,
                                      const WholePath& path) {
   if (!transport.strategies.joins_beams || path.points.size() < 3) return {};
   RandomStream random(7, 91, 0);
@@ -134,7 +134,7 @@ std::optional<double> weight_in_beam(const Transport& transport, const CurvedSpa
 }
 
 /// Of the strategy with s vertices made from the light; nothing where there is no such strategy.
-std::optional<double> weight_of(const Transport& transport, const CurvedSpace& space,
+std::optional<double> weight_of(const Transport& transport, const Space& space,
                                 const WholePath& path, int s) {
   const int all = static_cast<int>(path.points.size());
   const Strategies& allowed = transport.strategies;
@@ -169,7 +169,7 @@ std::optional<double> weight_of(const Transport& transport, const CurvedSpace& s
 
 /// Over all strategies that could have made a path: of a short end, those with the fewest vertices
 /// from there, and if that is a hit the next.
-double sum_of_weights(const Transport& transport, const CurvedSpace& space, const WholePath& path,
+double sum_of_weights(const Transport& transport, const Space& space, const WholePath& path,
                       int& strategies) {
   const int all = static_cast<int>(path.points.size());
   const bool is_short = transport.strategies.short_light || transport.strategies.short_sensor;
@@ -195,7 +195,7 @@ Stage foggy_ball() {
   return {Sphere{Vec3::Zero(), radius}, {1.2, 0.1, {HgPhase{0.4}}}};
 }
 
-Transport transport_of(const CurvedSpace& space, const Stage& stage, const Light& light,
+Transport transport_of(const Space& space, const Stage& stage, const Light& light,
                        const Sensor& sensor, const Strategies& strategies = {}) {
   return {stage, Lights({light}, stage, [&](const PathPoint& p) { return space.index(p); }),
           sensor_ends({sensor}, stage), strategies};
@@ -207,7 +207,7 @@ const Strategies soon_left{.joined_share = 0.3, .kept = 0.4};
 
 /// Through random points, each way of each edge solved for by itself; nothing where one of them
 /// has no curve or the two differ.
-std::optional<WholePath> random_path(const Transport& transport, const CurvedSpace& space,
+std::optional<WholePath> random_path(const Transport& transport, const Space& space,
                                      int scatterings, RandomStream& random) {
   WholePath path;
   path.light = transport.lights.sample_position(space, random);
@@ -239,7 +239,7 @@ const Sensor sensors[] = {Camera{Vec3(0, 0.1, -0.6), Vec3::UnitZ(), Vec3::UnitY(
 TEST_CASE("the weights of all strategies that make a path sum to 1 where rays are curved") {
   const Stage stage = foggy_ball();
   const auto space =
-      make_curved_space(Fisheye({.centre_excess = 0.7, .radius = 2.5}), stage, {0.02, 20});
+      make_space(Fisheye({.centre_excess = 0.7, .radius = 2.5}), stage, {0.02, 20});
   RandomStream random(3, 91, 0);
   int paths = 0;
   for (const Light& light : lights)
@@ -275,7 +275,7 @@ bool sees(const Transport& transport, const EndPosition& sensor, const Vec3& dir
 }
 
 /// Walks from the light, then to the sensor's point if that can be joined, and is seen.
-std::optional<WholePath> walked_path(const Transport& transport, const CurvedSpace& space,
+std::optional<WholePath> walked_path(const Transport& transport, const Space& space,
                                      int scatterings, RandomStream& random) {
   WholePath path;
   path.light = transport.lights.sample_position(space, random);
@@ -316,7 +316,7 @@ int joined_through(const WholePath& path) {
 TEST_CASE("weights sum to 1 on paths through a body that refracts nothing") {
   Stage stage = foggy_ball();
   stage.bodies.push_back({Sphere{Vec3(0.1, 0, 0), 0.8}, {2.5, 0, {}}});
-  const auto space = make_curved_space(Homogeneous{}, stage, {0.02, 20});
+  const auto space = make_space(Homogeneous{}, stage, {0.02, 20});
   RandomStream random(5, 91, 0);
   int paths = 0, through = 0;
   const Light point = PointLight{Vec3(0.3, -0.2, 1.1)};
@@ -344,7 +344,7 @@ TEST_CASE("weights sum to 1 on paths that cross a body, and of beams") {
   Stage stage = foggy_ball();
   stage.bodies.push_back({Sphere{Vec3(0.1, 0, 0), 0.8}, {2.5, 0, {}}});
   const auto space =
-      make_curved_space(Fisheye({.centre_excess = 0.7, .radius = 1.5}), stage, {0.02, 20});
+      make_space(Fisheye({.centre_excess = 0.7, .radius = 1.5}), stage, {0.02, 20});
   const Light beam = BeamLight{Vec3(0, 0, -1.4), Vec3::UnitZ(), 0.07, 1, Spread::gaussian};
   const Light fibre = FibreLight{Vec3(0, 0, -1.4), Vec3::UnitZ(), 0.1, 0.8};
   RandomStream random(4, 91, 0);
@@ -386,7 +386,7 @@ TEST_CASE("weights sum to 1 on paths from beams that sensors' paths are joined t
   for (const auto& row : rows) {
     CAPTURE(row.name);
     const auto& [name, stage, field] = row;
-    const auto space = make_curved_space(field, stage, {0.02, 20});
+    const auto space = make_space(field, stage, {0.02, 20});
     int paths = 0, in_beam = 0;
     for (const Sensor& sensor : {sensors[0], sensors[1], sensors[2]})
       for (const Strategies& mask : {joined, soon, short_light}) {

@@ -62,8 +62,8 @@ double blurred_furnace(const Index& n, double mu, double radius) {
 
 /// Of many small maps: their pairs cost less.
 void check_furnace(const RenderScene& scene, double radius, double expected) {
-  const std::shared_ptr<const CurvedSpace> space =
-      make_curved_space(scene.field, scene.stage, {scene.step, scene.max_length, Spreading::none});
+  const std::shared_ptr<const Space> space =
+      make_space(scene.field, scene.stage, {scene.step, scene.max_length, Spreading::none});
   const auto index = [&](const PathPoint& p) { return space->index(p); };
   const auto transport =
       std::make_shared<Transport>(Transport{.stage = scene.stage,

@@ -4,7 +4,7 @@
 #include <Eigen/Geometry>
 #include <doctest/doctest.h>
 
-#include "grin/curved/curved_space.h"
+#include "grin/space/space.h"
 #include "grin/lights/light.h"
 #include "tests/grin/example_sensors.h"
 
@@ -64,7 +64,7 @@ struct Pair {
   Light light;
   Sensor sensor;
   double n = 1.3;
-  std::shared_ptr<const CurvedSpace> field = {};
+  std::shared_ptr<const Space> field = {};
 
   double index(const PathPoint& p) const { return field ? field->index(p) : n; }
   /// Where light leaves the stage, and along what.
@@ -331,8 +331,8 @@ TEST_CASE(
     "in a field: from the sensor and from the light the same, and n^2 is the one at the end") {
   // bends light by some 15 degrees on its way across
   const Vec3 slope(0.1, -0.07, 0.05);
-  const auto space = [&](const Surface& boundary) -> std::shared_ptr<const CurvedSpace> {
-    return make_curved_space(LinearRamp{0.4, slope}, empty_stage(boundary),
+  const auto space = [&](const Surface& boundary) -> std::shared_ptr<const Space> {
+    return make_space(LinearRamp{0.4, slope}, empty_stage(boundary),
                              {0.2, 100, Spreading::none});
   };
   const auto n_squared = [&](const Vec3& x) { return std::pow(1.4 + slope.dot(x), 2); };

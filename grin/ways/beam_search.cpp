@@ -1,5 +1,3 @@
-#pragma once
-
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -14,6 +12,8 @@
 
 namespace flatspeckle::grin {
 
+namespace {
+
 /// Ways of parallel light to a point, found backwards: rays from the point that arrive at a plane
 /// against the light. As WaySearch, but what a trial mends by damped Gauss-Newton steps is the
 /// direction of arrival; where on the plane that is decides afterwards whether the light is there.
@@ -22,16 +22,13 @@ namespace flatspeckle::grin {
 /// medium's transmittance over S = |det d(p_beam)/d(p_point)|, p = n times the unit tangent across
 /// the ray: the map of transverse position and p along a ray is symplectic, so that neighbours
 /// which are parallel in the beam lie 1/S as dense at the point.
-///
-/// Legs: a space without collisions, as straight_legs.h says.
-template <class Legs>
 class BeamSearch {
  public:
-  /// Refers to the legs.
-  BeamSearch(const Legs& legs, const PathPoint& to, const ParallelLight& light,
+  /// Refers to the space.
+  BeamSearch(const Space& space, const PathPoint& to, const ParallelLight& light,
              const ConnectionOptions& options)
-      : legs_(legs),
-        walk_(legs, to, Seek::reflections),
+      : legs_(space),
+        walk_(legs_, to, Seek::reflections),
         light_(light),
         options_(options),
         to_(to) {}
@@ -82,7 +79,7 @@ class BeamSearch {
 
   struct Shot {
     bool is_ray = false;  // goes through the passages
-    typename PassageWalk<Legs>::Head last;
+    PassageWalk::Head last;
     PlaneCrossing crossing;
     RayState end;
     RayTangent tangent = {};
@@ -255,11 +252,44 @@ class BeamSearch {
                     .multiplicity = 1}};
   }
 
-  const Legs& legs_;
-  PassageWalk<Legs> walk_;
+  Legs legs_;
+  PassageWalk walk_;
   ParallelLight light_;
   const ConnectionOptions& options_;
   PathPoint to_;
 };
+
+}  // namespace
+
+std::vector<BeamWay> Space::ways_to_beam(const PathPoint& p, const ParallelLight& light,
+                                         std::span<const BeamSeed> seeds, RandomStream& random,
+                                         ConnectionStatistics& statistics) const {
+  if (searches_for_beams())
+    return BeamSearch(*this, p, light, setup_->search).find(seeds, random, statistics);
+  if (const auto way = plainest_way_to_beam(p, light, random, statistics)) return {*way};
+  return {};
+}
+
+std::optional<BeamWay> Space::plainest_way_to_beam(const PathPoint& p, const ParallelLight& light,
+                                                   RandomStream& random,
+                                                   ConnectionStatistics& statistics) const {
+  if (searches_for_beams())
+    return BeamSearch(*this, p, light, setup_->search).find_plainest(random, statistics);
+  if (is_curved(p.part)) return std::nullopt;
+  return setup_->stage.way_to_beam(p, light, random);
+}
+
+std::optional<BeamWay> Space::some_way_to_beam(const PathPoint& p, const ParallelLight& light,
+                                               RandomStream& random,
+                                               ConnectionStatistics& statistics) const {
+  if (!searches_for_beams()) return std::nullopt;
+  return BeamSearch(*this, p, light, setup_->search).find_one(random, statistics);
+}
+
+std::optional<BeamWay> Space::beam_way(const PathPoint& p, const ParallelLight& light,
+                                       const Vec3& direction, const Passages& passages,
+                                       RandomStream& random) const {
+  return BeamSearch(*this, p, light, setup_->search).along(direction, passages, random);
+}
 
 }  // namespace flatspeckle::grin

@@ -1,5 +1,3 @@
-#pragma once
-
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -9,6 +7,8 @@
 #include "grin/ways/way.h"
 
 namespace flatspeckle::grin {
+
+namespace {
 
 /// A way and its weight (C26): f(way) multiplicity is unbiased for the sum of f over all ways.
 struct WayEstimate {
@@ -21,12 +21,9 @@ struct WayEstimate {
 /// refracted or reflected at random, picks one of the points where the ray comes closest to the
 /// end, and mends the direction and the length of the last leg from there by damped Gauss-Newton
 /// steps, through the same passages. What converges is a ray of light: no other check is needed.
-///
-/// Legs: a space without collisions, as straight_legs.h says.
-template <class Legs>
 class WaySearch {
  public:
-  /// Refers to the legs. start: how the trials of a point in the body begin.
+  /// Refers to the legs. options.start: how the trials of a point in the body begin.
   WaySearch(const Legs& legs, const PathPoint& from, const PathPoint& to,
             const ConnectionOptions& options)
       : legs_(legs),
@@ -97,6 +94,15 @@ class WaySearch {
            std::abs(a.arc_length - b.arc_length) <= options_.same * length;
   }
 
+  /// offer(passages, sigma of the last leg, squared distance there) where a ray comes closest.
+  template <class Offer>
+  auto approaches(const Offer& offer) const {
+    return [this, offer](const Passages& met, Part part, const RayState& ray) {
+      if (met.count == 0 || !legs_.are_alike(part, to_.part)) return;
+      legs_.approach(part, ray, to_.x,
+                     [&](double sigma, double square) { offer(met, sigma, square); });
+    };
+  }
   /// Rays are refracted wherever they can be; the closest approach.
   Trial along_chord(RandomStream& random, ConnectionStatistics& statistics) const {
     Aim aim{(to_.x - from_.x) / gap_};
@@ -123,15 +129,6 @@ class WaySearch {
                       aim.sigma = sigma;
                     }));
     return counted(refined(aim, random, statistics), statistics);
-  }
-  /// offer(passages, sigma of the last leg, squared distance there) where a ray comes closest.
-  template <class Offer>
-  auto approaches(const Offer& offer) const {
-    return [this, offer](const Passages& met, Part part, const RayState& ray) {
-      if (met.count == 0 || !legs_.are_alike(part, to_.part)) return;
-      legs_.approach(part, ray, to_.x,
-                     [&](double sigma, double square) { offer(met, sigma, square); });
-    };
   }
   static Trial counted(const Trial& trial, ConnectionStatistics& statistics) {
     ++statistics.outcomes[static_cast<int>(trial.outcome)];
@@ -223,22 +220,24 @@ class WaySearch {
   }
 
   const Legs& legs_;
-  PassageWalk<Legs> walk_;
+  PassageWalk walk_;
   PathPoint from_, to_;
   const ConnectionOptions& options_;
   double n_from_, gap_;
   double rounding_;  ///< of the end points' coordinates
 };
 
-/// One random way between two points as a join: backwards if that leads into the denser part, where
-/// no ray is lost by total reflection.
-template <class Legs>
-std::optional<Join> join_by_way(const Legs& legs, const PathPoint& p, const PathPoint& q,
-                                const ConnectionOptions& options, RandomStream& random,
-                                ConnectionStatistics& statistics) {
+}  // namespace
+
+/// Backwards if that leads into the denser part, where no ray is lost by total reflection.
+std::optional<Join> Space::join_through(const PathPoint& p, const PathPoint& q,
+                                        RandomStream& random,
+                                        ConnectionStatistics& statistics) const {
+  if (!joins_through()) return std::nullopt;
+  const Legs legs(*this);
   const double n_p = legs.index(p), n_q = legs.index(q);
   const bool backwards = n_q < n_p;
-  const WaySearch search(legs, backwards ? q : p, backwards ? p : q, options);
+  const WaySearch search(legs, backwards ? q : p, backwards ? p : q, setup_->search);
   const auto [way, multiplicity] = search.find(random, statistics);
   if (!way) return std::nullopt;
   Join join{.start_direction = way->start_direction,

@@ -1,0 +1,87 @@
+#include "grin/curved/ray_field.h"
+
+#include "grin/connections/connection_solver.h"
+#include "grin/curved/curved_leg.h"
+#include "grin/rays/trace.h"
+
+namespace flatspeckle::grin {
+
+std::unique_ptr<const RayField> make_ray_field(const AnyIndexField& field,
+                                               std::span<const Surface> room, bool leapfrogs) {
+  constexpr decltype(&make_ray_field) in_file[ray_field_files] = {ray_field_in<0>, ray_field_in<1>,
+                                                                  ray_field_in<2>};
+  return in_file[field.index() % ray_field_files](field, room, leapfrogs);
+}
+
+namespace {
+
+/// An integrator of a RayField.
+template <class Integrator>
+struct StepBy {
+  static constexpr int order = Integrator::order;
+  static void step(const RayField& field, RayState& ray, double h) {
+    field.step(Integrator(), ray, h);
+  }
+  static void step(const RayField& field, RayState& ray, RayTangent& tangent, double h) {
+    field.step(Integrator(), ray, tangent, h);
+  }
+};
+
+/// That which suits it.
+struct OwnStep {
+  using Rough = StepBy<Leapfrog>;
+  static bool is_rough(const RayField& field) { return field.leapfrogs(); }
+  static void step(const RayField& field, RayState& ray, double h) { field.step(ray, h); }
+  static void step(const RayField& field, RayState& ray, RayTangent& tangent, double h) {
+    field.step(ray, tangent, h);
+  }
+};
+
+using Trial = ConnectionTrial<RayField, Sides, OwnStep>;
+
+}  // namespace
+
+TraceEnd RayField::follow(std::span<const Surface> surfaces, const TraceLimits& limits, RayLog& log,
+                          RayState& ray) const {
+  const auto by = [&]<class Integrator>(const Integrator&) {
+    LoggedSteps<StepBy<Integrator>> steps(log);
+    return trace(*this, surfaces, limits, steps, ray);
+  };
+  const TraceEnd end = std::visit(by, log.steps().integrator);
+  log.end(*this, ray);
+  return end;
+}
+
+LegStop RayField::fly(const LegRoom& room, double longest, double& weight, RandomStream& random,
+                      RayState& ray, RayTangent* tangent) const {
+  const CurvedLeg leg(*this, room);
+  return tangent ? leg.go(longest, weight, random, ray, *tangent)
+                 : leg.go(longest, weight, random, ray);
+}
+LegStop RayField::go_on(const LegRoom& room, double longest, int most_steps, LegProgress& progress,
+                        RandomStream& random, RayState& ray) const {
+  return CurvedLeg(*this, room).go_on(longest, most_steps, progress, random, ray);
+}
+double RayField::ratio_tracked(const LegRoom& room, const RayState& ray, double sigma, int steps,
+                               RandomStream& random) const {
+  return CurvedLeg(*this, room).ratio_tracked(ray, sigma, steps, random);
+}
+double RayField::ratio_tracked(const LegRoom& room, const RayState& ray, double arc_length,
+                               RandomStream& random) const {
+  return CurvedLeg(*this, room).ratio_tracked(ray, arc_length, random);
+}
+
+ConnectionEstimate RayField::connect(const CurveEnds& ends, const ConnectionOptions& options,
+                                     RandomStream& random, ConnectionStatistics& statistics) const {
+  const Trial trial(*this, ends.region, ends.from, ends.to, options);
+  return connect_chord_first(trial, random, statistics);
+}
+std::vector<FoundConnection> RayField::connections(const CurveEnds& ends,
+                                                   const ConnectionOptions& options,
+                                                   std::uint64_t trials, RandomStream& random,
+                                                   ConnectionStatistics& statistics) const {
+  const Trial trial(*this, ends.region, ends.from, ends.to, options);
+  return all_connections(trial, trials, random, statistics);
+}
+
+}  // namespace flatspeckle::grin
