@@ -26,6 +26,13 @@ class Subcommand {
 
   Keys& keys() { return keys_; }
   const Keys& keys() const { return keys_; }
+  /// With those that follow from others, once these are added.
+  const Keys& all_keys();
+
+  /// The first argument may stand alone.
+  void take_word() { takes_word_ = true; }
+  /// That argument; empty where it is not given.
+  const std::string& word() const { return word_; }
 
   /// Fills the members of the keys and checks what their rows accept. Throws InputError. False
   /// where there is no more to do: after --help and the like.
@@ -44,6 +51,7 @@ class Subcommand {
 
  private:
   void add_length_unit();
+  Arguments flags_of(const Arguments& arguments);
   void add_flags();
   std::vector<std::string> results_of(const Key& key) const;
   std::optional<double> take_length_unit();
@@ -54,11 +62,17 @@ class Subcommand {
   template <typename Parser>
   void parse_by(const Parser& parser);
 
-  std::string name_, purpose_, text_;
+  std::string name_, purpose_, text_, word_;
   std::unique_ptr<CLI::App> app_;
   Keys keys_;
   std::optional<double> length_unit_;
-  bool print_config_ = false;
+  bool print_config_ = false, takes_word_ = false;
 };
+
+/// The value of a key that says which others there are, from the flags or the scene file that they
+/// name; empty where it is not given. What else is wrong shows when all is parsed.
+std::string value_ahead(const std::string& key, const Arguments& arguments);
+/// The same from the text of a scene file.
+std::string value_in(const std::string& key, const std::string& config);
 
 }  // namespace flatspeckle::apps

@@ -149,13 +149,20 @@ std::vector<const DatasetTable*> all_tables() {
   return tables;
 }
 
-int datasets(const Arguments& arguments) {
-  Subcommand command("datasets", "Tables of what result files hold, for docs/format.md");
-  if (!command.parse(arguments)) return ExitStatus::done;
+namespace {
+
+int print_tables(const Subcommand&, NoKeys&) {
   const auto tables = all_tables();
   print_roles(tables);
   for (const DatasetTable* table : tables) print(*table);
   return ExitStatus::done;
+}
+
+}  // namespace
+
+std::unique_ptr<Call> datasets(const std::string&) {
+  return call_with<NoKeys>("datasets", "Tables of what result files hold, for docs/format.md",
+                           print_tables);
 }
 
 }  // namespace flatspeckle::apps
