@@ -178,8 +178,8 @@ void print_all(const std::string& path) {
   print_drawings(file);
 }
 
-int explain_file(const Subcommand& command, NoKeys&) {
-  const std::string& path = command.word();
+int explain_file(const Subcommand&, OneWord& values) {
+  const std::string& path = values.word;
   if (path.empty()) throw InputError("explain: must have one result file, and no more");
   if (!std::filesystem::exists(path)) throw InputError("explain", path, "no such file");
   read_in_child(path, [&] { const ResultReader file(path); });
@@ -190,8 +190,8 @@ int explain_file(const Subcommand& command, NoKeys&) {
 }  // namespace
 
 std::unique_ptr<Call> explain(const std::string&) {
-  return call_with<NoKeys>("explain", "What a result holds, in words: explain FILE.h5",
-                           explain_file);
+  return call_with<OneWord>("explain", "What a result holds, in words: explain FILE.h5",
+                            explain_file);
 }
 
 }  // namespace flatspeckle::apps

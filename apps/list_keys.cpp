@@ -71,8 +71,8 @@ void print_heading(const std::string& form, const SubcommandEntry& entry) {
 }
 
 /// JSON begins with the version, and each subcommand's purpose.
-int print_all_keys(const Subcommand& command, NoKeys&) {
-  const std::string form = command.word().empty() ? "json" : command.word();
+int print_all_keys(const Subcommand&, OneWord& values) {
+  const std::string form = values.word.empty() ? "json" : values.word;
   const Frame& frame = frame_named(form);
   if (form == "json")
     std::cout << "{\"version\": " << quoted(version()) << ", \"commit\": " << quoted(git_commit())
@@ -95,8 +95,8 @@ int print_all_keys(const Subcommand& command, NoKeys&) {
 }  // namespace
 
 std::unique_ptr<Call> list_keys(const std::string&) {
-  return call_with<NoKeys>("keys", "The keys of all subcommands: keys FORM, json if not given",
-                           print_all_keys);
+  return call_with<OneWord>("keys", "The keys of all subcommands: keys FORM, json if not given",
+                            print_all_keys);
 }
 
 }  // namespace flatspeckle::apps

@@ -192,13 +192,11 @@ const Keys& Subcommand::all_keys() {
   return keys_;
 }
 
-/// In the order in which CLI11 takes them, last first; less the word.
+/// In the order in which CLI11 takes them, last first; less the words before them.
 Arguments Subcommand::flags_of(const Arguments& arguments) {
   Arguments flags = reversed(arguments);
-  if (takes_word_ && !flags.empty() && !flags.back().starts_with('-')) {
-    word_ = flags.back();
-    flags.pop_back();
-  }
+  for (; word_ != nullptr && !flags.empty() && !flags.back().starts_with('-'); flags.pop_back())
+    *word_ += (word_->empty() ? "" : " ") + flags.back();
   return flags;
 }
 

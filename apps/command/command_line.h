@@ -29,10 +29,8 @@ class Subcommand {
   /// With those that follow from others, once these are added.
   const Keys& all_keys();
 
-  /// The first argument may stand alone.
-  void take_word() { takes_word_ = true; }
-  /// That argument; empty where it is not given.
-  const std::string& word() const { return word_; }
+  /// Binds what stands before the flags to a text, as `explain FILE` has it.
+  void take_word(std::string& word) { word_ = &word; }
 
   /// Fills the members of the keys and checks what their rows accept. Throws InputError. False
   /// where there is no more to do: after --help and the like.
@@ -62,11 +60,12 @@ class Subcommand {
   template <typename Parser>
   void parse_by(const Parser& parser);
 
-  std::string name_, purpose_, text_, word_;
+  std::string name_, purpose_, text_;
+  std::string* word_ = nullptr;
   std::unique_ptr<CLI::App> app_;
   Keys keys_;
   std::optional<double> length_unit_;
-  bool print_config_ = false, takes_word_ = false;
+  bool print_config_ = false;
 };
 
 /// The value of a key that says which others there are, from the flags or the scene file that they

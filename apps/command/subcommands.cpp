@@ -27,87 +27,49 @@ std::unique_ptr<Call> datasets(const std::string& of);
 
 std::span<const SubcommandEntry> subcommands() {
   static constexpr SubcommandEntry entries[] = {
-      {.name = "place",
-       .purpose = "a placement of scatterers, drawn and written as CSV",
-       .make = place},
-      {.name = "solve",
-       .purpose = "exact fields of one placement of scatterers",
-       .title = "Exact fields of one placement of scatterers",
-       .experiment = solve_experiment},
-      {.name = "covariance",
-       .purpose = "covariance and intensity of the speckle of a scene, by Monte Carlo or exactly",
-       .title = "Covariance and intensity of the speckle field of a scene",
-       .experiment = covariance_experiment},
-      {.name = "validate",
-       .purpose = "both methods on one scene, compared entry by entry",
-       .make = validate},
-      {.name = "flux",
-       .purpose = "reflected, transmitted and absorbed power, intensity only",
-       .title = "Reflected, transmitted and absorbed power of a scene: intensity only",
-       .experiment = flux_experiment},
-      {.name = "sweep",
-       .purpose =
-           "memory-effect curves over g, albedo, optical depth, radius, index; any result by --of",
-       .make = sweep,
-       .of = ""},
-      {.name = "merge",
-       .purpose = "the points of a sweep that ran in shares, as one result",
-       .make = merge},
-      {.name = "optimise",
-       .purpose = "the values of keys that make a number of a result as large as can be, or small",
-       .make = optimise,
-       .of = "render"},
-      {.name = "field",
-       .purpose =
-           "speckle fields drawn with the covariance of a scene, also over tilts of the light",
-       .title = "Speckle fields of a scene, drawn with its covariance",
-       .experiment = field_experiment},
-      {.name = "image",
-       .purpose =
-           "pictures of hidden points through a medium, and what the memory effect finds in them",
-       .title = "Pictures of hidden points through a scattering medium, and the points found in "
-                "the autocorrelation of each",
-       .experiment = image_experiment},
-      {.name = "recover",
-       .purpose = "points found in the autocorrelation of measured frames",
-       .make = recover},
-      {.name = "fit",
-       .purpose = "the medium that gave measured curves and fluxes, with errors",
-       .make = fit},
-      {.name = "trace",
-       .purpose = "rays and the curves between two points in a gradient-index field",
-       .title = "Rays and the curves between two points in a gradient-index field",
-       .experiment = trace_experiment},
-      {.name = "render",
-       .purpose = "pictures of scattering media with a gradient index: 3D refractive path tracing",
-       .title = "Pictures of scattering media with a gradient index, in space: radiance that "
-                "curves and scatters",
-       .experiment = render_experiment},
-      {.name = "design",
-       .purpose = "an index field from what its light should do: inverse design by rays",
-       .make = design},
+      {"place", "a placement of scatterers, drawn and written as CSV", place},
+      {"solve", "exact fields of one placement of scatterers", nullptr,
+       "Exact fields of one placement of scatterers", solve_experiment},
+      {"covariance",
+       "covariance and intensity of the speckle of a scene, by Monte Carlo or exactly", nullptr,
+       "Covariance and intensity of the speckle field of a scene", covariance_experiment},
+      {"validate", "both methods on one scene, compared entry by entry", validate},
+      {"flux", "reflected, transmitted and absorbed power, intensity only", nullptr,
+       "Reflected, transmitted and absorbed power of a scene: intensity only", flux_experiment},
+      {"sweep",
+       "memory-effect curves over g, albedo, optical depth, radius, index; any result by --of",
+       sweep, nullptr, nullptr, ""},
+      {"merge", "the points of a sweep that ran in shares, as one result", merge},
+      {"optimise", "the values of keys that make a number of a result as large as can be, or small",
+       optimise, nullptr, nullptr, "render"},
+      {"field", "speckle fields drawn with the covariance of a scene, also over tilts of the light",
+       nullptr, "Speckle fields of a scene, drawn with its covariance", field_experiment},
+      {"image",
+       "pictures of hidden points through a medium, and what the memory effect finds in them",
+       nullptr,
+       "Pictures of hidden points through a scattering medium, and the points found in the "
+       "autocorrelation of each",
+       image_experiment},
+      {"recover", "points found in the autocorrelation of measured frames", recover},
+      {"fit", "the medium that gave measured curves and fluxes, with errors", fit},
+      {"trace", "rays and the curves between two points in a gradient-index field", nullptr,
+       "Rays and the curves between two points in a gradient-index field", trace_experiment},
+      {"render", "pictures of scattering media with a gradient index: 3D refractive path tracing",
+       nullptr,
+       "Pictures of scattering media with a gradient index, in space: radiance that curves and "
+       "scatters",
+       render_experiment},
+      {"design", "an index field from what its light should do: inverse design by rays", design},
 #ifdef FLATSPECKLE_BENCH
-      {.name = "bench",
-       .purpose =
-           "what accuracy costs, where it breaks, what plans leave out: error, stability, plan",
-       .make = bench,
-       .takes_word = true},
+      {"bench",
+       "what accuracy costs, where it breaks, what plans leave out: error, stability, plan", bench},
 #endif
-      {.name = "keys",
-       .purpose = "the keys of all subcommands, for programs: json, markdown, man, completion",
-       .make = list_keys,
-       .takes_word = true},
-      {.name = "new",
-       .purpose = "a commented scene to begin with, for a purpose",
-       .make = new_scene,
-       .takes_word = true},
-      {.name = "explain",
-       .purpose = "what a result file holds, in words: its medium, sizes, and what draws it",
-       .make = explain,
-       .takes_word = true},
-      {.name = "datasets",
-       .purpose = "what result files hold, as in docs/format.md",
-       .make = datasets},
+      {"keys", "the keys of all subcommands, for programs: json, markdown, man, completion",
+       list_keys},
+      {"new", "a commented scene to begin with, for a purpose", new_scene},
+      {"explain", "what a result file holds, in words: its medium, sizes, and what draws it",
+       explain},
+      {"datasets", "what result files hold, as in docs/format.md", datasets},
   };
   return entries;
 }
@@ -138,9 +100,8 @@ class ExperimentCall : public Call {
 }  // namespace
 
 std::unique_ptr<Call> make_call(const SubcommandEntry& entry, const std::string& of) {
-  auto call = entry.experiment ? std::make_unique<ExperimentCall>(entry) : entry.make(of);
-  if (entry.takes_word) call->command().take_word();
-  return call;
+  if (entry.make != nullptr) return entry.make(of);
+  return std::make_unique<ExperimentCall>(entry);
 }
 
 int run_subcommand(const SubcommandEntry& entry, const Arguments& arguments) {

@@ -22,7 +22,8 @@ class Call {
   virtual int run() = 0;
 };
 
-/// With a struct of values; add_keys(keys, values) is found by the struct's name.
+/// With a struct of values; add_keys(keys, values) is found by the struct's name. A member `word`
+/// is what stands before the flags, as in `explain FILE`.
 template <typename Values>
 class CallWith : public Call {
  public:
@@ -31,6 +32,7 @@ class CallWith : public Call {
   CallWith(const char* name, const std::string& title, Run work)
       : command_(name, title), work_(work) {
     add_keys(command_.keys(), values_);
+    if constexpr (requires { values_.word; }) command_.take_word(values_.word);
   }
   Subcommand& command() override { return command_; }
   int run() override { return work_(command_, values_); }
@@ -50,19 +52,20 @@ std::unique_ptr<Call> call_with(const char* name, const std::string& title,
 struct NoKeys {
   friend void add_keys(Keys&, NoKeys&) {}
 };
+struct OneWord : NoKeys {
+  std::string word;
+};
 
-/// What the program can be asked for.
+/// What the program can be asked for: a call of its own, or an experiment, which makes one result
+/// and which sweeps and searches run too.
 struct SubcommandEntry {
   const char *name, *purpose;
   /// of: the subcommand whose keys it has too, empty where its own keys alone are wanted.
-  std::unique_ptr<Call> (*make)(const std::string& of) = nullptr;
-  /// In place of `make`, where each call makes one result, which can be swept and searched: the
-  /// head of --help, and one run.
-  const char* title = nullptr;
+  std::unique_ptr<Call> (*make)(const std::string& of);
+  const char* title = nullptr;  ///< of an experiment: the head of --help
   std::unique_ptr<Experiment> (*experiment)() = nullptr;
   /// The subcommand meant where the key `of` is not given; nullptr where there is no such key.
   const char* of = nullptr;
-  bool takes_word = false;  ///< as `explain FILE`
 };
 
 /// All of them, in the order of the help. A new subcommand is declared and listed in

@@ -16,6 +16,7 @@ namespace flatspeckle::apps {
 namespace {
 
 struct BenchKeys {
+  std::string word;
   bool quick = false;
   RunSettings run;
 };
@@ -170,9 +171,8 @@ void add_keys(Keys& keys, BenchKeys& values) {
 
 int run_benchmark(const Subcommand& command, BenchKeys& values) {
   const Keys& keys = command.keys();
-  if (command.word().empty())
-    throw InputError("bench: must be followed by error, stability or plan");
-  const Report kind = report_named(command.word());
+  if (values.word.empty()) throw InputError("bench: must be followed by error, stability or plan");
+  const Report kind = report_named(values.word);
   const Session session(command.text(), keys, values.run, command.only_prints());
   keys.read(values.quick);
   if (!command.settle()) return ExitStatus::done;
