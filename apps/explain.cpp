@@ -4,7 +4,6 @@
 #include <regex>
 #include <set>
 
-#include "apps/command/command_line.h"
 #include "apps/command/subcommands.h"
 #include "apps/results/all_tables.h"
 #include "core/error.h"
@@ -179,19 +178,20 @@ void print_all(const std::string& path) {
   print_drawings(file);
 }
 
-}  // namespace
-
-int explain(const Arguments& arguments) {
-  if (arguments.size() == 3 && arguments[2].starts_with("--")) {
-    Subcommand command("explain", "What a result holds, in words: explain FILE.h5");
-    if (!command.parse(arguments)) return ExitStatus::done;
-  }
-  if (arguments.size() != 3) throw InputError("explain: must have one result file, and no more");
-  const std::string& path = arguments[2];
+int explain_file(const Subcommand&, OneWord& values) {
+  const std::string& path = values.word;
+  if (path.empty()) throw InputError("explain: must have one result file, and no more");
   if (!std::filesystem::exists(path)) throw InputError("explain", path, "no such file");
   read_in_child(path, [&] { const ResultReader file(path); });
   print_all(path);
   return ExitStatus::done;
+}
+
+}  // namespace
+
+std::unique_ptr<Call> explain(const std::string&) {
+  return call_with<OneWord>("explain", "What a result holds, in words: explain FILE.h5",
+                            explain_file);
 }
 
 }  // namespace flatspeckle::apps

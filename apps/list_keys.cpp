@@ -1,15 +1,14 @@
-#include <algorithm>
-#include <cstring>
 #include <iostream>
 
 #include "apps/command/key_lists.h"
-#include "apps/command/key_owners.h"
 #include "apps/command/subcommands.h"
 #include "core/error.h"
 #include "core/keys/number_text.h"
 #include "core/result/version.h"
 
 namespace flatspeckle::apps {
+
+std::unique_ptr<Call> list_keys(const std::string& of);
 
 namespace {
 
@@ -71,11 +70,9 @@ void print_heading(const std::string& form, const SubcommandEntry& entry) {
     std::cout << ".SH flatspeckle " << roff(entry.name) << '\n' << roff(entry.purpose) << '\n';
 }
 
-}  // namespace
-
-/// Each subcommand prints its own. JSON begins with the version, and each subcommand's purpose.
-int list_keys(const Arguments& arguments) {
-  const std::string form = arguments.size() > 2 ? arguments[2] : "json";
+/// JSON begins with the version, and each subcommand's purpose.
+int print_all_keys(const Subcommand&, OneWord& values) {
+  const std::string form = values.word.empty() ? "json" : values.word;
   const Frame& frame = frame_named(form);
   if (form == "json")
     std::cout << "{\"version\": " << quoted(version()) << ", \"commit\": " << quoted(git_commit())
@@ -85,14 +82,21 @@ int list_keys(const Arguments& arguments) {
   if (form == "markdown") print_owners();
   const char* between = "";
   for (const SubcommandEntry& entry : subcommands()) {
-    if (entry.run == list_keys) continue;
+    if (entry.make == list_keys) continue;
     std::cout << between;
     print_heading(form, entry);
-    entry.run({"flatspeckle", entry.name, "--keys=" + form});
+    print_keys(make_call(entry)->command().all_keys(), entry.name, form);
     between = frame.between;
   }
   std::cout << frame.after;
   return ExitStatus::done;
+}
+
+}  // namespace
+
+std::unique_ptr<Call> list_keys(const std::string&) {
+  return call_with<OneWord>("keys", "The keys of all subcommands: keys FORM, json if not given",
+                            print_all_keys);
 }
 
 }  // namespace flatspeckle::apps

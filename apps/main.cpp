@@ -57,7 +57,7 @@ int run(const Arguments& arguments) {
   const SubcommandEntry& subcommand = subcommand_named(word);
   if (word != "sweep" && launched_ranks().size > 1)
     throw InputError("subcommand", word, "runs as one process; of these, sweep alone takes many");
-  return subcommand.run(arguments);
+  return run_subcommand(subcommand, arguments);
 }
 
 /// Of long texts the beginning and the end, between which a value is left out.

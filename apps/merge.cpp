@@ -20,29 +20,38 @@ void refuse_to_shrink(const std::string& out) {
     throw InputError("out", out, "holds a complete sweep; --partial does not replace one");
 }
 
-}  // namespace
-
-int merge(const Arguments& arguments) {
-  RunSettings run;
+struct MergeKeys {
   std::vector<std::string> folders;
   bool partial = false;
-  Subcommand command("merge", "The points of a sweep, from one or several folders, as one result");
-  Keys& keys = command.keys();
-  keys.group("Points");
-  keys.add("shards", folders, "Folders of points (default OUT.shards)");
-  keys.add("partial", partial, "Take the points that are there, as a list");
-  add_output_key(keys, run);
-  if (!command.parse(arguments)) return ExitStatus::done;
-  const Session session(command.text(), keys, run, command.only_prints());
-  if (keys.read(partial)) refuse_to_shrink(run.out);
-  keys.read(folders);
-  if (!command.settle()) return ExitStatus::done;
-  if (folders.empty()) folders = {shards_of(run.out)};
+  RunSettings run;
+};
 
+void add_keys(Keys& keys, MergeKeys& values) {
+  keys.group("Points");
+  keys.add("shards", values.folders, "Folders of points (default OUT.shards)");
+  keys.add("partial", values.partial, "Take the points that are there, as a list");
+  add_output_key(keys, values.run);
+}
+
+int merge_folders(const Subcommand& command, MergeKeys& values) {
+  const Keys& keys = command.keys();
+  const std::string& out = values.run.out;
+  const Session session(command.text(), keys, values.run, command.only_prints());
+  if (keys.read(values.partial)) refuse_to_shrink(out);
+  keys.read(values.folders);
+  if (!command.settle()) return ExitStatus::done;
+  if (values.folders.empty()) values.folders = {shards_of(out)};
   const bool of_experiments = std::ranges::any_of(
-      folders, [](const std::string& folder) { return !journals_in(folder).empty(); });
-  return of_experiments ? merge_experiments(folders, run.out, partial, command.text())
-                        : merge_points(folders, run.out, partial, command.text());
+      values.folders, [](const std::string& folder) { return !journals_in(folder).empty(); });
+  return (of_experiments ? merge_experiments : merge_points)(values.folders, out, values.partial,
+                                                             command.text());
+}
+
+}  // namespace
+
+std::unique_ptr<Call> merge(const std::string&) {
+  return call_with<MergeKeys>(
+      "merge", "The points of a sweep, from one or several folders, as one result", merge_folders);
 }
 
 }  // namespace flatspeckle::apps

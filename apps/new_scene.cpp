@@ -2,7 +2,6 @@
 #include <iostream>
 #include <iterator>
 
-#include "apps/command/command_line.h"
 #include "apps/command/subcommands.h"
 #include "core/error.h"
 
@@ -96,22 +95,21 @@ std::string words() {
   return all;
 }
 
-}  // namespace
-
-int new_scene(const Arguments& arguments) {
-  if (arguments.size() == 3 && arguments[2].starts_with("--")) {
-    Subcommand command("new", "A commented scene to begin with: new PURPOSE, one of" + words());
-    if (!command.parse(arguments)) return ExitStatus::done;
-  }
-  if (arguments.size() != 3) throw InputError("new: must have one purpose, of" + words());
-  const auto* const found =
-      std::find_if(std::begin(purposes), std::end(purposes),
-                   [&](const Purpose& purpose) { return arguments[2] == purpose.word; });
-  if (found == std::end(purposes))
-    throw InputError("new", arguments[2], "must be one of" + words());
+int print_scene(const Subcommand&, OneWord& values) {
+  const std::string& word = values.word;
+  if (word.empty()) throw InputError("new: must have one purpose, of" + words());
+  const auto* const found = std::ranges::find(purposes, word, &Purpose::word);
+  if (found == std::end(purposes)) throw InputError("new", word, "must be one of" + words());
   std::cout << found->lines << "# To run it: flatspeckle " << found->subcommand
             << " --config THIS_FILE --out result.h5; then: flatspeckle explain result.h5\n";
   return ExitStatus::done;
+}
+
+}  // namespace
+
+std::unique_ptr<Call> new_scene(const std::string&) {
+  return call_with<OneWord>("new", "A commented scene to begin with: new PURPOSE, one of" + words(),
+                            print_scene);
 }
 
 }  // namespace flatspeckle::apps

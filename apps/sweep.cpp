@@ -4,9 +4,8 @@
 
 namespace flatspeckle::apps {
 
-int sweep(const Arguments& arguments) {
-  const std::string of = swept_subcommand(arguments);
-  return of.empty() ? curve_sweep(arguments) : sweep_experiments(of, arguments);
+std::unique_ptr<Call> sweep(const std::string& of) {
+  return of.empty() ? curve_sweep() : sweep_of(of);
 }
 
 }  // namespace flatspeckle::apps

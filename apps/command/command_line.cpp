@@ -9,9 +9,9 @@
 #include <CLI/CLI.hpp>
 
 #include "apps/command/key_lists.h"
-#include "apps/command/key_owners.h"
 #include "apps/command/nearest_key.h"
 #include "apps/command/scene_file.h"
+#include "apps/command/subcommands.h"
 #include "apps/command/written_lengths.h"
 #include "core/error.h"
 #include "core/keys/number_text.h"
@@ -30,6 +30,13 @@ std::string with_figure(const std::string& argument) {
   const bool number = argument.starts_with("-.") || argument.starts_with("-pi");
   const std::string first = argument.substr(0, argument.find_first_of(",:"));
   return number && written_number(first, Written::angle) ? "0" + argument : argument;
+}
+
+/// Those behind the subcommand.
+Arguments reversed(const Arguments& arguments) {
+  Arguments flags;
+  std::transform(arguments.rbegin(), arguments.rend() - 2, std::back_inserter(flags), with_figure);
+  return flags;
 }
 
 std::string line_of(const Arguments& arguments) {
@@ -180,14 +187,25 @@ void Subcommand::parse_by(const Parser& parser) {
   keys_.check();
 }
 
+const Keys& Subcommand::all_keys() {
+  add_length_unit();
+  return keys_;
+}
+
+/// In the order in which CLI11 takes them, last first; less the words before them.
+Arguments Subcommand::flags_of(const Arguments& arguments) {
+  Arguments flags = reversed(arguments);
+  for (; word_ != nullptr && !flags.empty() && !flags.back().starts_with('-'); flags.pop_back())
+    *word_ += (word_->empty() ? "" : " ") + flags.back();
+  return flags;
+}
+
 bool Subcommand::parse(const Arguments& arguments) {
   add_length_unit();
-  if (print_keys(keys_, name_, arguments)) return false;
-  std::vector<std::string> own;
-  std::transform(arguments.rbegin(), arguments.rend() - 2, std::back_inserter(own), with_figure);
+  const Arguments own = flags_of(arguments);
   const auto parser = [&] {
     try {
-      app_->parse(own);
+      app_->parse(Arguments(own));
     } catch (const InputError& error) {  // from the scene file
       throw InputError(app_->get_config_ptr()->as<std::string>() + ", " + error.what());
     }
@@ -223,6 +241,30 @@ void Subcommand::print_help() const {
       "  -h,--help                       Print this help and exit\n"
       "  --config FILE                   Scene file: these flags as keys, one a line (TOML)\n"
       "  --print-config                  Check all, print the resolved scene and exit");
+}
+
+std::string value_ahead(const std::string& key, const Arguments& arguments) {
+  CLI::App app;
+  app.set_help_flag();
+  app.set_config("--config");
+  app.config_formatter(std::make_shared<SceneFile>());
+  app.allow_config_extras(CLI::config_extras_mode::ignore_all);
+  app.allow_extras();
+  std::string value;
+  app.add_option("--" + key, value);
+  try {
+    app.parse(reversed(arguments));
+  } catch (const CLI::ParseError&) {
+  } catch (const InputError&) {
+  }
+  return value;
+}
+
+std::string value_in(const std::string& key, const std::string& config) {
+  std::istringstream text(config);
+  for (const CLI::ConfigItem& item : SceneFile().from_config(text))
+    if (item.name == key && item.inputs.size() == 1) return item.inputs.front();
+  return "";
 }
 
 }  // namespace flatspeckle::apps

@@ -26,6 +26,11 @@ class Subcommand {
 
   Keys& keys() { return keys_; }
   const Keys& keys() const { return keys_; }
+  /// With those that follow from others, once these are added.
+  const Keys& all_keys();
+
+  /// Binds what stands before the flags to a text, as `explain FILE` has it.
+  void take_word(std::string& word) { word_ = &word; }
 
   /// Fills the members of the keys and checks what their rows accept. Throws InputError. False
   /// where there is no more to do: after --help and the like.
@@ -44,6 +49,7 @@ class Subcommand {
 
  private:
   void add_length_unit();
+  Arguments flags_of(const Arguments& arguments);
   void add_flags();
   std::vector<std::string> results_of(const Key& key) const;
   std::optional<double> take_length_unit();
@@ -55,10 +61,17 @@ class Subcommand {
   void parse_by(const Parser& parser);
 
   std::string name_, purpose_, text_;
+  std::string* word_ = nullptr;
   std::unique_ptr<CLI::App> app_;
   Keys keys_;
   std::optional<double> length_unit_;
   bool print_config_ = false;
 };
+
+/// The value of a key that says which others there are, from the flags or the scene file that they
+/// name; empty where it is not given. What else is wrong shows when all is parsed.
+std::string value_ahead(const std::string& key, const Arguments& arguments);
+/// The same from the text of a scene file.
+std::string value_in(const std::string& key, const std::string& config);
 
 }  // namespace flatspeckle::apps

@@ -104,12 +104,6 @@ void print_completion(const Keys& keys, const std::string& subcommand) {
   std::cout << "\" ;;\n";
 }
 
-void print_names(const Keys& keys) {
-  std::set<std::string> names;
-  for (const Key& key : keys.rows())
-    if (names.insert(key.name()).second) std::cout << key.name() << '\n';
-}
-
 void print_dictionary(const Keys& keys) {
   for (const Key& key : keys.rows()) {
     std::cout << quoted(key.name()) << '\n';
@@ -149,17 +143,12 @@ void print_help_lines(const Keys& keys) {
   }
 }
 
-bool print_keys(const Keys& keys, const std::string& subcommand,
-                const std::vector<std::string>& arguments) {
-  if (arguments.size() != 3 || !arguments[2].starts_with("--keys=")) return false;
-  const std::string form = arguments[2].substr(sizeof "--keys=" - 1);
+void print_keys(const Keys& keys, const std::string& subcommand, const std::string& form) {
   if (form == "json") print_json(keys);
   if (form == "markdown") print_markdown(keys, subcommand);
   if (form == "man") print_man(keys);
   if (form == "completion" || form == "zsh") print_completion(keys, subcommand);
   if (form == "dictionary") print_dictionary(keys);
-  if (form == "names") print_names(keys);
-  return true;
 }
 
 }  // namespace flatspeckle::apps

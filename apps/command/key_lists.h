@@ -1,7 +1,6 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include "core/keys/keys.h"
 
@@ -17,9 +16,8 @@ std::string roff(const std::string& text);
 /// The lines of --help, by groups.
 void print_help_lines(const Keys& keys);
 
-/// Prints the keys of a subcommand where its only argument asks for that: --keys=json, =markdown,
-/// =man, =completion, =dictionary (of fuzzers) or =names. False where it does not.
-bool print_keys(const Keys& keys, const std::string& subcommand,
-                const std::vector<std::string>& arguments);
+/// The keys of a subcommand as json, markdown, man, completion (of bash), zsh or dictionary (of
+/// fuzzers).
+void print_keys(const Keys& keys, const std::string& subcommand, const std::string& form);
 
 }  // namespace flatspeckle::apps

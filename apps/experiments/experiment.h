@@ -77,13 +77,4 @@ class OneShot : public Experiment {
   }
 };
 
-/// A subcommand that makes one result.
-struct ExperimentEntry {
-  const char *name, *purpose;
-  std::unique_ptr<Experiment> (*make)();
-};
-/// nullptr where there is none of this name.
-const ExperimentEntry* experiment_entry(const std::string& name);
-std::vector<std::string> experiment_names();
-
 }  // namespace flatspeckle::apps

@@ -7,11 +7,14 @@ namespace flatspeckle::apps {
 
 namespace {
 
-const ExperimentEntry& entry_of(const std::string& of) {
-  const ExperimentEntry* const entry = experiment_entry(of);
-  if (entry == nullptr)
-    throw InputError("of", of, "must be one of " + joined(experiment_names(), " "));
-  return *entry;
+const SubcommandEntry& entry_of(const std::string& of) {
+  std::vector<std::string> names;
+  for (const SubcommandEntry& entry : subcommands()) {
+    if (entry.experiment == nullptr) continue;
+    if (of == entry.name) return entry;
+    names.emplace_back(entry.name);
+  }
+  throw InputError("of", of, "must be one of " + joined(names, " "));
 }
 
 }  // namespace

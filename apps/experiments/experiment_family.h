@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "apps/command/subcommands.h"
 #include "apps/experiments/experiment.h"
 
 namespace flatspeckle::apps {
@@ -22,9 +23,9 @@ class ExperimentFamily {
   explicit ExperimentFamily(const std::string& of);
 
   const std::string& of() const { return of_; }
-  const char* purpose() const { return entry_->purpose; }
+  const char* purpose() const { return entry_->title; }
   /// With all keys at their defaults.
-  std::unique_ptr<Experiment> unset() const { return entry_->make(); }
+  std::unique_ptr<Experiment> unset() const { return entry_->experiment(); }
 
   /// What all runs have: all that is given here, but for some keys.
   void take_given(const Keys& keys, std::set<std::string> without);
@@ -40,7 +41,7 @@ class ExperimentFamily {
 
  private:
   std::string of_;
-  const ExperimentEntry* entry_;
+  const SubcommandEntry* entry_;
   std::vector<std::pair<std::string, std::vector<std::string>>> given_;
 };
 

@@ -67,8 +67,7 @@ ExperimentSweep::ExperimentSweep(const std::string& of)
       .no_file();
 }
 
-bool ExperimentSweep::parse(const Arguments& arguments) {
-  if (!command_.parse(arguments)) return false;
+bool ExperimentSweep::read() {
   out_ = settings().out;
   session_.emplace(command_.text(), command_.keys(), settings(), command_.only_prints(),
                    Session::Out::shared);

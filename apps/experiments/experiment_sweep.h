@@ -22,9 +22,10 @@ class ExperimentSweep {
   /// Throws InputError for the name of what cannot be swept.
   explicit ExperimentSweep(const std::string& of);
 
-  /// From the command line. False if there is nothing to run (--help). Throws InputError for
-  /// whatever is wrong; of very many points, only some are looked at in full.
-  bool parse(const Arguments& arguments);
+  Subcommand& command() { return command_; }
+  /// Once its keys are filled. False if there is nothing to run (--print-config). Throws InputError
+  /// for whatever is wrong; of very many points, only some are looked at in full.
+  bool read();
   /// From a resolved configuration, for a result that is made otherwise: by this command line.
   void parse_config(const std::string& config, const std::string& command_line = "");
 

@@ -1,11 +1,9 @@
 #include "apps/experiments/sweep_experiments.h"
 
 #include <algorithm>
-#include <fstream>
 #include <iostream>
 #include <set>
 
-#include "apps/command/scene_file.h"
 #include "apps/experiments/experiment_work.h"
 #include "apps/experiments/stacked_result.h"
 #include "apps/results/datasets.h"
@@ -24,25 +22,6 @@ namespace flatspeckle::apps {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// The value of a flag, as --flag value or --flag=value; empty where it is not given.
-std::string value_of(const Arguments& arguments, const std::string& flag) {
-  for (std::size_t i = 2; i < arguments.size(); ++i) {
-    if (arguments[i] == flag && i + 1 < arguments.size()) return arguments[i + 1];
-    if (arguments[i].starts_with(flag + '=')) return arguments[i].substr(flag.size() + 1);
-  }
-  return "";
-}
-
-/// The key `of` of a scene file; whatever is wrong with the file shows when it is parsed.
-std::string of_in_file(const std::string& path) try {
-  std::ifstream file(path);
-  for (const CLI::ConfigItem& item : SceneFile().from_config(file))
-    if (item.name == "of" && item.inputs.size() == 1) return item.inputs.front();
-  return "";
-} catch (const InputError&) {
-  return "";
-}
 
 std::string count_text(const ExperimentSweep& sweep, const PointStore& store) {
   return std::to_string(store.finished()) + " of " + std::to_string(sweep.points().count()) +
@@ -163,30 +142,33 @@ void follow(const ExperimentSweep& sweep) {
   work_for_rank_0(work.list(), sweep.session().threads());
 }
 
+class SweepOf : public Call {
+ public:
+  explicit SweepOf(const std::string& of) : sweep_(of) {}
+
+  Subcommand& command() override { return sweep_.command(); }
+  int run() override {
+    if (!sweep_.read()) return ExitStatus::done;
+    if (!sweep_.is_share()) join_ranks();
+    return on_all_ranks([&](RankServer* server) { return lead(sweep_, server); },
+                        [&] { follow(sweep_); });
+  }
+
+ private:
+  ExperimentSweep sweep_;
+};
+
 }  // namespace
 
-std::string swept_subcommand(const Arguments& arguments) {
-  const std::string given = value_of(arguments, "--of");
-  if (!given.empty()) return given;
-  const std::string config = value_of(arguments, "--config");
-  return config.empty() ? "" : of_in_file(config);
-}
-
-int sweep_experiments(const std::string& of, const Arguments& arguments) {
-  ExperimentSweep sweep(of);
-  if (!sweep.parse(arguments)) return ExitStatus::done;
-  if (!sweep.is_share()) join_ranks();
-  return on_all_ranks([&](RankServer* server) { return lead(sweep, server); },
-                      [&] { follow(sweep); });
+std::unique_ptr<Call> sweep_of(const std::string& of) {
+  return std::make_unique<SweepOf>(of);
 }
 
 int merge_experiments(const std::vector<std::string>& folders, const std::string& out, bool partial,
                       const std::string& command_line) {
   const Stopwatch clock;
   const SweepHead head = PointJournal::head_of(journals_in(folders.front()).front());
-  const auto of_line = head.config.find("of = \"");
-  const auto of_end = head.config.find('"', of_line + 6);
-  ExperimentSweep sweep(head.config.substr(of_line + 6, of_end - of_line - 6));
+  ExperimentSweep sweep(value_in("of", head.config));
   sweep.parse_config(head.config, command_line);
   sweep.set_out(out);
   const PointStore store(sweep, folders);

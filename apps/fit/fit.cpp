@@ -285,19 +285,21 @@ int run_fit(const Session& session, const Subcommand& command, const FitKeys& va
   return status;
 }
 
-}  // namespace
-
-int fit(const Arguments& arguments) {
-  FitKeys values;
-  Subcommand command("fit", "The medium that gave these measurements, with errors");
-  add_keys(command.keys(), values);
-  if (!command.parse(arguments)) return ExitStatus::done;
-  if (!command.keys().read(values.compare).empty()) {
+int fit_or_plan(const Subcommand& command, FitKeys& values) {
+  const Keys& keys = command.keys();
+  if (!keys.read(values.compare).empty()) {
     if (command.settle()) print_comparison(values.compare);
     return ExitStatus::done;
   }
-  const Session session(command.text(), command.keys(), values.run, command.only_prints());
-  return (command.keys().read(values.plan) ? run_plan : run_fit)(session, command, values);
+  const Session session(command.text(), keys, values.run, command.only_prints());
+  return (keys.read(values.plan) ? run_plan : run_fit)(session, command, values);
+}
+
+}  // namespace
+
+std::unique_ptr<Call> fit(const std::string&) {
+  return call_with<FitKeys>("fit", "The medium that gave these measurements, with errors",
+                            fit_or_plan);
 }
 
 }  // namespace flatspeckle::apps

@@ -1,6 +1,6 @@
 #include <cstdio>
 
-#include "apps/experiments/single_run.h"
+#include "apps/experiments/experiment.h"
 #include "apps/results/extras.h"
 #include "apps/results/moments_table.h"
 #include "apps/results/tilt_search.h"
@@ -126,10 +126,6 @@ class CovarianceExperiment : public Experiment {
 
 std::unique_ptr<Experiment> covariance_experiment() {
   return std::make_unique<CovarianceExperiment>();
-}
-
-int covariance(const Arguments& arguments) {
-  return single_run("covariance", arguments);
 }
 
 }  // namespace flatspeckle::apps

@@ -3,7 +3,7 @@
 #include <cstdio>
 #include <limits>
 
-#include "apps/experiments/single_run.h"
+#include "apps/experiments/experiment.h"
 #include "apps/results/estimation.h"
 #include "core/error.h"
 #include "core/numbers/blas.h"
@@ -176,10 +176,6 @@ class FieldExperiment : public OneShot {
 
 std::unique_ptr<Experiment> field_experiment() {
   return std::make_unique<FieldExperiment>();
-}
-
-int field(const Arguments& arguments) {
-  return single_run("field", arguments);
 }
 
 }  // namespace flatspeckle::apps

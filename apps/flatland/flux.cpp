@@ -2,7 +2,7 @@
 
 #include <cstdio>
 
-#include "apps/experiments/single_run.h"
+#include "apps/experiments/experiment.h"
 #include "apps/results/estimation.h"
 #include "core/error.h"
 #include "core/session/identity.h"
@@ -109,10 +109,6 @@ class FluxExperiment : public Experiment {
 
 std::unique_ptr<Experiment> flux_experiment() {
   return std::make_unique<FluxExperiment>();
-}
-
-int flux(const Arguments& arguments) {
-  return single_run("flux", arguments);
 }
 
 }  // namespace flatspeckle::apps

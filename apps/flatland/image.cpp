@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "apps/experiments/single_run.h"
+#include "apps/experiments/experiment.h"
 #include "apps/results/estimation.h"
 #include "core/error.h"
 #include "core/numbers/memory.h"
@@ -470,10 +470,6 @@ class ImageExperiment : public OneShot {
 
 std::unique_ptr<Experiment> image_experiment() {
   return std::make_unique<ImageExperiment>();
-}
-
-int image(const Arguments& arguments) {
-  return single_run("image", arguments);
 }
 
 }  // namespace flatspeckle::apps

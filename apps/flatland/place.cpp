@@ -234,15 +234,8 @@ void put_placement(const std::string& path, const std::string& text, bool is_all
   if (is_all) result_is_there();
 }
 
-}  // namespace
-
-int place(const Arguments& arguments) {
-  PlaceKeys values;
-  Subcommand command("place", "Draws one placement of scatterers, which solve --placement reads");
-  Keys& keys = command.keys();
-  add_keys(keys, values);
-  if (!command.parse(arguments)) return ExitStatus::done;
-
+int draw_one(const Subcommand& command, PlaceKeys& values) {
+  const Keys& keys = command.keys();
   const Session session(command.text(), keys, values.run, command.only_prints(),
                         Session::Out::other);
   const Drawing drawing = make_drawing(keys, values);
@@ -254,6 +247,13 @@ int place(const Arguments& arguments) {
   std::printf("%zu scatterers, packing fraction %.3g\nwrote %s\n", drawing.count,
               drawing.packing(0), session.out().c_str());
   return values.structure.empty() ? ExitStatus::done : save_structure(values, drawing, session);
+}
+
+}  // namespace
+
+std::unique_ptr<Call> place(const std::string&) {
+  return call_with<PlaceKeys>(
+      "place", "Draws one placement of scatterers, which solve --placement reads", draw_one);
 }
 
 }  // namespace flatspeckle::apps

@@ -222,23 +222,22 @@ Make sources_of(const Keys& keys, const RecoverKeys& values, const Table& table)
   };
 }
 
-}  // namespace
-
-int recover(const Arguments& arguments) {
-  RecoverKeys values;
-  Subcommand command("recover", "Points found in the autocorrelation of measured frames");
-  Keys& keys = command.keys();
-  add_keys(keys, values);
-  if (!command.parse(arguments)) return ExitStatus::done;
-
+int recover_points(const Subcommand& command, RecoverKeys& values) {
+  const Keys& keys = command.keys();
   const Session session(command.text(), keys, values.run, command.only_prints());
   const Table table = read_csv(keys.required(values.frames));
   const Make make = keys.read(values.recovery) == "sources" ? sources_of(keys, values, table)
                                                             : search_of(keys, values, table);
-  keys.refuse_unread();
   if (!command.settle()) return ExitStatus::done;
   return session.once(ResultFile(session.out()),
                       [&](ResultFile& file) -> std::optional<Made> { return make(file); });
+}
+
+}  // namespace
+
+std::unique_ptr<Call> recover(const std::string&) {
+  return call_with<RecoverKeys>("recover", "Points found in the autocorrelation of measured frames",
+                                recover_points);
 }
 
 }  // namespace flatspeckle::apps

@@ -4,7 +4,7 @@
 #include <numbers>
 #include <sstream>
 
-#include "apps/experiments/single_run.h"
+#include "apps/experiments/experiment.h"
 #include "apps/results/field_map_output.h"
 #include "apps/results/wavelengths.h"
 #include "core/error.h"
@@ -387,10 +387,6 @@ class SolveExperiment : public OneShot {
 
 std::unique_ptr<Experiment> solve_experiment() {
   return std::make_unique<SolveExperiment>();
-}
-
-int solve(const Arguments& arguments) {
-  return single_run("solve", arguments);
 }
 
 }  // namespace flatspeckle::apps

@@ -192,30 +192,29 @@ Refer by_transport(const Keys& keys, MethodSettings& methods, const SceneSpec& s
   };
 }
 
-}  // namespace
-
-int validate(const Arguments& arguments) {
+struct ValidateKeys {
   SceneSpec spec;
   RunSettings run;
   MethodSettings methods;
   Shifts shifts;
-  Subcommand command(
-      "validate",
-      "Monte Carlo held against exact solutions, or in a slab against transport, entry by "
-      "entry");
-  Keys& keys = command.keys();
-  add_keys(keys, spec);
-  add_places_key(keys, spec);
   std::vector<double> q_depths;
-  add_q_depths_key(keys, q_depths);
-  add_frequency_key(keys, shifts);
-  add_mc_keys(keys, methods);
-  add_wave_keys(keys, methods);
-  add_transport_keys(keys, methods);
-  add_dimension_key(keys, spec);
-  add_run_keys(keys, run);
-  if (!command.parse(arguments)) return ExitStatus::done;
+};
 
+void add_keys(Keys& keys, ValidateKeys& values) {
+  add_keys(keys, values.spec);
+  add_places_key(keys, values.spec);
+  add_q_depths_key(keys, values.q_depths);
+  add_frequency_key(keys, values.shifts);
+  add_mc_keys(keys, values.methods);
+  add_wave_keys(keys, values.methods);
+  add_transport_keys(keys, values.methods);
+  add_dimension_key(keys, values.spec);
+  add_run_keys(keys, values.run);
+}
+
+int compare_methods(const Subcommand& command, ValidateKeys& values) {
+  auto& [spec, run, methods, shifts, q_depths] = values;
+  const Keys& keys = command.keys();
   Session session(command.text(), keys, run, command.only_prints());
   take_q_depths(keys, q_depths, spec);
   const bool slab = spec.domain == "slab";
@@ -270,6 +269,16 @@ int validate(const Arguments& arguments) {
             file, scene, shifts, name, mc::change_estimates(scene.request, mc.job, mc_sums),
             mc::change_estimates(scene.request, reference.job, reference_sums), chosen.bias);
       });
+}
+
+}  // namespace
+
+std::unique_ptr<Call> validate(const std::string&) {
+  return call_with<ValidateKeys>(
+      "validate",
+      "Monte Carlo held against exact solutions, or in a slab against transport, entry by "
+      "entry",
+      compare_methods);
 }
 
 }  // namespace flatspeckle::apps

@@ -155,28 +155,29 @@ std::optional<Made> make(const DesignScene& scene, const Kept& kept, ResultFile&
               reached ? ExitStatus::done : ExitStatus::error_not_reached};
 }
 
-}  // namespace
-
-int design(const Arguments& arguments) {
-  grin::design::DesignValues values;
+struct DesignKeys {
+  grin::design::DesignValues design;
   RunSettings run;
-  Subcommand command("design", "An index field from what its light should do");
-  Keys& keys = command.keys();
-  add_keys(keys, values);
-  add_thread_key(keys, run);
-  keys.add("resume", run.resume,
+};
+
+void add_keys(Keys& keys, DesignKeys& values) {
+  add_keys(keys, values.design);
+  add_thread_key(keys, values.run);
+  keys.add("resume", values.run.resume,
            "Go on from the search that was cut off before it ended, if there is one")
       .effort();
-  add_output_key(keys, run);
-  if (!command.parse(arguments)) return ExitStatus::done;
+  add_output_key(keys, values.run);
+}
 
-  const Session session(command.text(), keys, run, command.only_prints());
-  const DesignScene scene = make_design_scene(keys, values);
+int search_design(const Subcommand& command, DesignKeys& values) {
+  const Keys& keys = command.keys();
+  const Session session(command.text(), keys, values.run, command.only_prints());
+  const DesignScene scene = make_design_scene(keys, values.design);
   if (!command.settle()) return ExitStatus::done;
   catch_interrupts();
   const Kept kept{grin::design::state_path(session.out()),
                   "flatspeckle " + version() + '\n' + keys.identity() + inputs_text(keys),
-                  run.resume};
+                  values.run.resume};
   tell_unfinished(kept);
   const int status = session.once(ResultFile(session.out()),
                                   [&](ResultFile& file) { return make(scene, kept, file); });
@@ -187,6 +188,13 @@ int design(const Arguments& arguments) {
   if (!std::filesystem::exists(kept.path)) return status;
   std::printf("interrupted; %s holds what is done, --resume goes on\n", kept.path.c_str());
   return ExitStatus::interrupted_resumable;
+}
+
+}  // namespace
+
+std::unique_ptr<Call> design(const std::string&) {
+  return call_with<DesignKeys>("design", "An index field from what its light should do",
+                               search_design);
 }
 
 }  // namespace flatspeckle::apps

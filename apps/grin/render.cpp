@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/experiments/single_run.h"
+#include "apps/experiments/experiment.h"
 #include "core/keys/number_text.h"
 #include "core/session/identity.h"
 #include "grin/render/energy_datasets.h"
@@ -232,10 +232,6 @@ class RenderExperiment : public Experiment {
 
 std::unique_ptr<Experiment> render_experiment() {
   return std::make_unique<RenderExperiment>();
-}
-
-int render(const Arguments& arguments) {
-  return single_run("render", arguments);
 }
 
 }  // namespace flatspeckle::apps

@@ -4,7 +4,7 @@
 #include <iomanip>
 #include <sstream>
 
-#include "apps/experiments/single_run.h"
+#include "apps/experiments/experiment.h"
 #include "core/result/result_group.h"
 #include "grin/geometry/vector_values.h"
 #include "grin/rays/light_speed.h"
@@ -146,10 +146,6 @@ class TraceExperiment : public OneShot {
 
 std::unique_ptr<Experiment> trace_experiment() {
   return std::make_unique<TraceExperiment>();
-}
-
-int trace(const Arguments& arguments) {
-  return single_run("trace", arguments);
 }
 
 }  // namespace flatspeckle::apps

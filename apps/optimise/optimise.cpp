@@ -3,10 +3,8 @@
 #include <filesystem>
 #include <iostream>
 
-#include "apps/command/key_lists.h"
 #include "apps/command/subcommands.h"
 #include "apps/experiments/at_point.h"
-#include "apps/experiments/sweep_experiments.h"
 #include "apps/optimise/optimum.h"
 #include "apps/results/datasets.h"
 #include "apps/sweep/varied_points.h"
@@ -76,14 +74,6 @@ void add_keys(Keys& keys, OptimiseKeys& values) {
       .between(0, 1);
 }
 
-/// For lists of all keys: those of what is searched are that subcommand's.
-bool print_keys_of_search(const Arguments& arguments) {
-  OptimiseKeys values;
-  Keys keys;
-  add_keys(keys, values);
-  return print_keys(keys, "optimise", arguments);
-}
-
 std::size_t default_scattered(const SearchAxes& axes) {
   constexpr std::size_t least = 64, usual = 512, of_each = 4;
   std::size_t count = least;
@@ -103,9 +93,9 @@ std::size_t scattered_of(const std::optional<std::int64_t>& given, const SearchA
 }
 
 /// A search as it was asked for.
-class Optimisation {
+class Optimisation : public Call {
  public:
-  Optimisation(const std::string& of, const Arguments& arguments)
+  explicit Optimisation(const std::string& of)
       : family_(of),
         base_(family_.unset()),
         scene_(family_.unset()),
@@ -114,11 +104,10 @@ class Optimisation {
     scene_->add_keys(scene_keys_);
     base_->add_keys(command_.keys());
     add_keys(command_.keys(), values_);
-    is_asked_ = command_.parse(arguments);
   }
 
-  int run() {
-    if (!is_asked_) return ExitStatus::done;
+  Subcommand& command() override { return command_; }
+  int run() override {
     const Keys& keys = command_.keys();
     const Session session(command_.text(), keys, values_.run, command_.only_prints());
     read(session);
@@ -225,7 +214,6 @@ class Optimisation {
   Keys scene_keys_;  ///< of a single run
   OptimiseKeys values_;
   Subcommand command_;
-  bool is_asked_ = false;
   std::optional<SearchAxes> axes_;
   std::optional<Objective> objective_;
   EvaluationSettings settings_;
@@ -315,10 +303,10 @@ int Optimisation::write(const Session& session, const Evaluations& evaluations,
 
 }  // namespace
 
-int optimise(const Arguments& arguments) {
-  const std::string of = swept_subcommand(arguments);
-  if (of.empty() && print_keys_of_search(arguments)) return ExitStatus::done;
-  return Optimisation(of.empty() ? "render" : of, arguments).run();
+std::unique_ptr<Call> optimise(const std::string& of) {
+  const auto nothing = [](const Subcommand&, OptimiseKeys&) -> int { return ExitStatus::done; };
+  if (of.empty()) return call_with<OptimiseKeys>("optimise", "", nothing);
+  return std::make_unique<Optimisation>(of);
 }
 
 }  // namespace flatspeckle::apps

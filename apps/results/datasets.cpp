@@ -4,38 +4,36 @@
 
 #include "apps/command/subcommands.h"
 #include "apps/results/all_tables.h"
-#include "core/result/provenance.h"
-#include "core/result/run_state_file.h"
-#include "flatland/media/density_map.h"
-#include "flatland/media/layers.h"
-#include "flatland/media/structure_factor.h"
-#include "flatland/scene/scene_datasets.h"
-#include "grin/design/scene/design_datasets.h"
-#include "grin/render/energy_datasets.h"
-#include "grin/render/map_datasets.h"
-#include "grin/render/render_datasets.h"
-#include "grin/scene/trace_datasets.h"
-#include "mc/changes/brownian.h"
-#include "mc/changes/frequency_shifts.h"
-#include "mc/estimators/flux.h"
-#include "mc/estimators/gradient.h"
-#include "mc/estimators/reflection_theory.h"
-#include "mc/fit/fit_datasets.h"
-#include "mc/fit/plan/plan_datasets.h"
-#include "mc/imaging/blinking_datasets.h"
-#include "mc/imaging/imaging_datasets.h"
-#include "mc/imaging/picture_datasets.h"
-#include "mc/jobs/contrast.h"
-#include "mc/recovery/recovery_datasets.h"
-#include "mc/slab/refinement.h"
-#include "mc/speckle/field_datasets.h"
-#include "mc/theory/moments_datasets.h"
-#include "mc/unmixing/unmixing_datasets.h"
-#include "wave_solver/clusters/cluster_file.h"
-#include "wave_solver/clusters/cluster_solution.h"
-#include "wave_solver/graded/graded_fields.h"
-#include "wave_solver/maps/map_datasets.h"
-#include "wave_solver/solutions/spectrum.h"
+
+// The tables are declared here without the code beside which they stand: what is listed below must
+// not wait for all of it to be compiled.
+namespace flatspeckle {
+
+extern const DatasetTable provenance_table, scene_table, layers_table, density_table, axes_table,
+    beams_table, trace_table, structure_factor_table, state_table;
+
+namespace wave {
+extern const DatasetTable solution_table, spectrum_table, cluster_table, cluster_solution_table,
+    graded_table, map_table;
+}
+
+namespace mc {
+extern const DatasetTable mean_table, intensity_table, full_table, pairs_table, moves_table,
+    reflection_theory_table, gradient_table, delays_table, contrast_table, frequency_table,
+    numerical_table, flux_table, field_table, imaging_table, picture_table, blinking_table,
+    recovery_table, unmixing_table, fit_table, plan_table;
+}
+
+namespace grin {
+extern const DatasetTable rays_table, trials_table, camera_table, area_table, radial_table,
+    directional_table, polar_table, render_table, energy_table, box_map_table, ring_map_table;
+
+namespace design {
+extern const DatasetTable design_table;
+}
+}  // namespace grin
+
+}  // namespace flatspeckle
 
 namespace flatspeckle::apps {
 
@@ -151,13 +149,20 @@ std::vector<const DatasetTable*> all_tables() {
   return tables;
 }
 
-int datasets(const Arguments& arguments) {
-  Subcommand command("datasets", "Tables of what result files hold, for docs/format.md");
-  if (!command.parse(arguments)) return ExitStatus::done;
+namespace {
+
+int print_tables(const Subcommand&, NoKeys&) {
   const auto tables = all_tables();
   print_roles(tables);
   for (const DatasetTable* table : tables) print(*table);
   return ExitStatus::done;
+}
+
+}  // namespace
+
+std::unique_ptr<Call> datasets(const std::string&) {
+  return call_with<NoKeys>("datasets", "Tables of what result files hold, for docs/format.md",
+                           print_tables);
 }
 
 }  // namespace flatspeckle::apps

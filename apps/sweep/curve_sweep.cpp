@@ -106,14 +106,24 @@ void follow(const SweepPlan& plan) {
   work_for_rank_0(work.list(), plan.session().threads());
 }
 
+class CurveSweep : public Call {
+ public:
+  Subcommand& command() override { return plan_.command(); }
+  int run() override {
+    if (!plan_.read()) return ExitStatus::done;
+    if (!plan_.share) join_ranks();
+    return on_all_ranks([&](RankServer* server) { return lead(plan_, server); },
+                        [&] { follow(plan_); });
+  }
+
+ private:
+  SweepPlan plan_;
+};
+
 }  // namespace
 
-int curve_sweep(const Arguments& arguments) {
-  SweepPlan plan;
-  if (!plan.parse(arguments)) return ExitStatus::done;
-  if (!plan.share) join_ranks();
-  return on_all_ranks([&](RankServer* server) { return lead(plan, server); },
-                      [&] { follow(plan); });
+std::unique_ptr<Call> curve_sweep() {
+  return std::make_unique<CurveSweep>();
 }
 
 }  // namespace flatspeckle::apps

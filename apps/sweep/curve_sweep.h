@@ -1,10 +1,10 @@
 #pragma once
 
-#include "apps/command/command_line.h"
+#include "apps/command/subcommands.h"
 
 namespace flatspeckle::apps {
 
 /// `sweep` of memory-effect curves.
-int curve_sweep(const Arguments& arguments);
+std::unique_ptr<Call> curve_sweep();
 
 }  // namespace flatspeckle::apps

@@ -77,8 +77,7 @@ SweepPlan::SweepPlan()
       .no_file();
 }
 
-bool SweepPlan::parse(const Arguments& arguments) {
-  if (!command_.parse(arguments)) return false;
+bool SweepPlan::read() {
   session_.emplace(command_.text(), command_.keys(), settings, command_.only_prints(),
                    Session::Out::shared);
   check();

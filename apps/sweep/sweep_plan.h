@@ -24,9 +24,10 @@ class SweepPlan {
  public:
   SweepPlan();
 
-  /// From the command line. False if there is nothing to run (--help). Throws InputError for
-  /// whatever is wrong, with any of the points too.
-  bool parse(const Arguments& arguments);
+  Subcommand& command() { return command_; }
+  /// Once its keys are filled. False if there is nothing to run (--print-config). Throws InputError
+  /// for whatever is wrong, with any of the points too.
+  bool read();
   /// From a resolved configuration, for a result that is made otherwise: by this command line.
   void parse_config(const std::string& config, const std::string& command_line = "");
 
@@ -62,7 +63,7 @@ class SweepPlan {
 
   SweepLists lists_;
   std::string method_ = "auto", share_, of_;
-  VaryValues vary_;  ///< of another subcommand (sweep_experiments.h)
+  VaryValues vary_;               ///< of another subcommand (sweep_experiments.h)
   std::vector<double> q_depths_;  ///< empty once the tilts are made of it
   mc::ReversedPaths reversed_ = mc::ReversedPaths::automatic;
   StopRule mc_stop_, wave_stop_;

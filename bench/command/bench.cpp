@@ -16,6 +16,7 @@ namespace flatspeckle::apps {
 namespace {
 
 struct BenchKeys {
+  std::string word;
   bool quick = false;
   RunSettings run;
 };
@@ -168,25 +169,10 @@ void add_keys(Keys& keys, BenchKeys& values) {
   add_output_key(keys, values.run);
 }
 
-}  // namespace
-
-int bench(const Arguments& arguments) {
-  BenchKeys values;
-  Subcommand command(
-      "bench",
-      "What accuracy costs (bench error), where it breaks (bench stability), and what "
-      "leaving things out saves (bench plan)");
-  Keys& keys = command.keys();
-  add_keys(keys, values);
-  Arguments flags = arguments;
-  std::string word;
-  if (flags.size() > 2 && !flags[2].starts_with('-')) {
-    word = flags[2];
-    flags.erase(flags.begin() + 2);
-  }
-  if (!command.parse(flags)) return ExitStatus::done;
-  if (word.empty()) throw InputError("bench: must be followed by error, stability or plan");
-  const Report kind = report_named(word);
+int run_benchmark(const Subcommand& command, BenchKeys& values) {
+  const Keys& keys = command.keys();
+  if (values.word.empty()) throw InputError("bench: must be followed by error, stability or plan");
+  const Report kind = report_named(values.word);
   const Session session(command.text(), keys, values.run, command.only_prints());
   keys.read(values.quick);
   if (!command.settle()) return ExitStatus::done;
@@ -199,6 +185,16 @@ int bench(const Arguments& arguments) {
     return Made{outcome.plan, static_cast<double>(outcome.count),
                 outcome.failed == 0 ? ExitStatus::done : ExitStatus::row_failed};
   });
+}
+
+}  // namespace
+
+std::unique_ptr<Call> bench(const std::string&) {
+  return call_with<BenchKeys>(
+      "bench",
+      "What accuracy costs (bench error), where it breaks (bench stability), and what "
+      "leaving things out saves (bench plan)",
+      run_benchmark);
 }
 
 }  // namespace flatspeckle::apps
