@@ -2,14 +2,10 @@
 """A field that `flatspeckle design` found: index over a slice with rays before and after, profile beside
 the closed form, pictures beside what was asked for, and how the search went."""
 
-from lib import style
+from lib import script, style
 
 import matplotlib.pyplot as plt
 import numpy as np
-
-from matplotlib.colors import LinearSegmentedColormap
-
-INDEX = LinearSegmentedColormap.from_list("index", ["white", "#56B4E9", "#00456b"])
 
 
 def closed_form(r, focus, radius):
@@ -22,19 +18,16 @@ def draw_slice(figure, axis, result):
     x, z, index = (result.values(name) for name in ("slice_x", "slice_z", "slice_index"))
     radius = x[-1]
     low, high = min(1, index.min()), index.max()
-    mesh = axis.pcolormesh(z, x, index, cmap=INDEX, vmin=low, vmax=high + 0.5 * (high - low) + 1e-9,
+    mesh = axis.pcolormesh(z, x, index, cmap=style.INDEX, vmin=low, vmax=high + 0.5 * (high - low) + 1e-9,
                            rasterized=True, shading="nearest")
     bar = figure.colorbar(mesh, ax=axis, label="index $n$", pad=0.02, shrink=0.8)
     bar.ax.set_ylim(low, high + 1e-9)
     for name, colour, width in (("before", "0.6", 0.5), ("after", style.COLOURS[1], 0.7)):
         for px, pz in zip(result.values(f"{name}/x"), result.values(f"{name}/z")):
             axis.plot(pz, px, color=colour, linewidth=width)
-    if result.has("excess"):
-        around = radius * np.array([(-1, -1), (-1, 1), (1, 1), (1, -1), (-1, -1)]).T
-    else:
-        turn = np.linspace(0, 2 * np.pi, 200)
-        around = radius * np.array([np.cos(turn), np.sin(turn)])
-    axis.plot(*around, color="black", linewidth=0.8)
+    square = np.array([(-1, -1), (-1, 1), (1, 1), (1, -1), (-1, -1)]).T
+    around = square if result.has("excess") else style.circle()
+    axis.plot(*(radius * around), color="black", linewidth=0.8)
     axis.set(xlabel="$z$", ylabel="$x$", xlim=(-1.3 * radius, 1.5 * radius),
              ylim=(-1.2 * radius, 1.2 * radius), aspect="equal")
 
@@ -58,12 +51,11 @@ def draw_search(axis, result):
     for number, count in enumerate(np.unique(counts)):
         here = np.flatnonzero(counts == count)
         shown = np.concatenate([here[:1] - 1, here]) if here[0] > 0 else here
-        axis.semilogy(traces[shown], rms[shown], "o-", color=style.COLOURS[number % 6], markersize=2.5,
-                      label=f"$s$: {count}")
-    held_out = result.values("rms/held_out_half_step") if result.has("rms/held_out_half_step") else None
-    if held_out is not None:
-        axis.axhline(float(held_out), color="black", linewidth=0.8, linestyle=":",
-                     label="held out")
+        axis.semilogy(traces[shown], rms[shown], "o-", color=style.COLOURS[number % 6],
+                      markersize=2.5, label=f"$s$: {count}")
+    if result.has("rms/held_out_half_step"):
+        axis.axhline(float(result.values("rms/held_out_half_step")), color="black", linewidth=0.8,
+                     linestyle=":", label="held out")
     axis.set(xlabel="traces of each ray", ylabel="rays miss by (rms)")
     axis.legend(loc="upper right", handlelength=1.2, fontsize=6)
 
@@ -110,8 +102,8 @@ def draw_guide_design(result):
     return figure
 
 
-def draw(results):
-    result = results[0]
+@script.plot()
+def draw(result):
     if result.has("picture/shown"):
         return draw_picture_design(result)
     if result.has("graded_spline"):
@@ -121,7 +113,3 @@ def draw(results):
     draw_profile(axes[1], result)
     draw_search(axes[2], result)
     return figure
-
-
-if __name__ == "__main__":
-    style.main(draw, __doc__)

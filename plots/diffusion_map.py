@@ -3,7 +3,7 @@
 per albedo, with lines where diffusion theory is wrong by 1, 5 and 20 %. Hatched: the curve stays
 above 1/2 within the tilts. Dashed: thickness in transport mean free paths."""
 
-from lib import page, style, sweep_file
+from lib import page, script, style, sweep_file
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -19,22 +19,18 @@ MAP = plt.get_cmap("cividis")
 def check(sweep):
     """Refuses what is no map."""
     if sweep.optional("diffusion_range") is None:
-        raise style.Unusable(f"{sweep.path}: has no diffusion_range, which slabs alone have")
+        sweep.refuse("has no diffusion_range, which slabs alone have")
     for name in AXES:
         if sweep.is_list or len(sweep.values(name)) < LEAST_VALUES:
-            raise style.Unusable(f"{sweep.path}: the map needs a grid with at least {LEAST_VALUES} "
-                                 "values of g and of optical_depth")
-    others = [name for name in sweep.varying() if name not in (*AXES, "albedo")]
-    if others:
-        raise style.Unusable(f"{sweep.path}: besides g, optical_depth and albedo it varies "
-                             f"{others[0]}; try --select {sweep.example(others[0], 1)}")
-    cells = np.prod([len(sweep.values(name)) for name in (*AXES, "albedo")])
+            sweep.refuse(f"the map needs a grid with at least {LEAST_VALUES} values of g and of "
+                         "optical_depth")
+    shown = (*AXES, "albedo")
+    sweep.refuse_others([name for name in sweep.varying() if name not in shown], ", ".join(shown))
+    cells = np.prod([len(sweep.values(name)) for name in shown])
     if len(sweep.rows) < cells:
-        raise style.Unusable(f"{sweep.path}: {cells - len(sweep.rows)} of {cells} points are not "
-                             "finished")
+        sweep.refuse(f"{cells - len(sweep.rows)} of {cells} points are not finished")
     if len(sweep.values("albedo")) > 4:
-        raise style.Unusable(f"{sweep.path}: more than 4 albedos do not fit a page; "
-                             f"try --select {sweep.example('albedo', 3)}")
+        sweep.refuse("more than 4 albedos do not fit a page", ("albedo", 3))
 
 
 def table(sweep, rows, values):
@@ -72,9 +68,7 @@ def draw_panel(axis, sweep, rows, method, norm):
     grid = thickness_of(depths[None, :], cosines[:, None], sweep.columns["albedo"][rows[0]])
     axis.contour(depths, cosines, grid, THICKNESSES, colors=style.COLOURS[1], linewidths=0.7,
                  linestyles="--")
-    axis.set_xscale("log")
-    axis.set_xlabel("optical depth")
-    axis.set_ylabel("mean cosine $g$")
+    axis.set(xscale="log", xlabel="optical depth", ylabel="mean cosine $g$")
     return image
 
 
@@ -89,8 +83,10 @@ def entries():
            "bound: no crossing of 1/2")
 
 
-def draw(results, arguments):
-    sweep = sweep_file.read(results, arguments)
+@script.plot()
+@sweep_file.SELECT
+def draw(result, arguments):
+    sweep = sweep_file.read(result, arguments)
     check(sweep)
     method = next(iter(sweep.prefixes))
     parts = sweep.groups("albedo" if "albedo" in sweep.columns else None, sweep.rows)
@@ -106,7 +102,3 @@ def draw(results, arguments):
     bar.set_label(r"range $qL$ at $C_I = 1/2$")
     page.legend_outside(figure, list(entries()), sweep.unfinished())
     return figure
-
-
-if __name__ == "__main__":
-    style.main(draw, __doc__, add_options=sweep_file.add_select)

@@ -3,7 +3,7 @@
 
 import pathlib
 
-from lib import style
+from lib import script, style
 
 import h5py
 import matplotlib.pyplot as plt
@@ -73,6 +73,7 @@ def draw_guide(axis, traces):
               linestyle=(0, (4, 2)), label="guide: slope $-1/2$", zorder=0)
 
 
+@script.plot(several=True)
 def draw(results):
     traces = read_all(results)
     figure, axis = plt.subplots(figsize=(style.COLUMN, 2.7))
@@ -89,11 +90,6 @@ def draw(results):
         axis.plot([], [], color=style.COLOURS[0], alpha=0.35, label=f"{len(traces)} runs{middle}")
     draw_guide(axis, traces)
     style.whole_decades(axis)
-    axis.set_xlabel("processor time (s)")
-    axis.set_ylabel("relative error")
+    axis.set(xlabel="processor time (s)", ylabel="relative error")
     axis.legend()
     return figure
-
-
-if __name__ == "__main__":
-    style.main(draw, __doc__, several=True)

@@ -3,15 +3,11 @@
 deviation beneath), or from any number of results of `covariance`, `validate` and `sweep` compared in
 one panel."""
 
-from lib import correlation_panel, covariance_curves, page, style, sweep_curves, sweep_file
+from lib import correlation_panel, covariance_curves, page, script, style, sweep_curves, sweep_file
+from lib.correlation_panel import BELIEVED
 
 MOST_ROWS, MOST_COLUMNS, MOST_CURVES = 5, 4, 8
 BENEATH = 0.35  # height of a panel of deviations, of the one above it
-
-
-def add_options(parser):
-    correlation_panel.add_options(parser)
-    sweep_file.add_select(parser)
 
 
 def refuse_maps(result):
@@ -29,8 +25,7 @@ def arrange(sweep):
         return (None, None, "point") if len(sweep.rows) <= MOST_CURVES else (None, "point", None)
     axes = sweep.varying()
     if len(axes) > 3:
-        raise style.Unusable(f"{sweep.path}: varies {', '.join(axes)}, rows, columns and curves "
-                             f"show three; try --select {sweep.example(axes[0], 1)}")
+        sweep.refuse(f"varies {', '.join(axes)}, rows, columns and curves show three", (axes[0], 1))
     return [None] * (3 - len(axes)) + axes
 
 
@@ -44,9 +39,8 @@ def check_size(sweep, rows, columns, curves):
     if beyond:
         there = ", ".join(f"{count} points" if name == "point" else f"{count} values of {name}"
                           for name, count in counts.items())
-        advice = " ".join(sweep.example(name, min(3, limits[name])) for name in beyond)
-        raise style.Unusable(f"{sweep.path}: {there}; a page holds {MOST_ROWS} x {MOST_COLUMNS} "
-                             f"panels of {MOST_CURVES} curves; try --select {advice}")
+        sweep.refuse(f"{there}; a page holds {MOST_ROWS} x {MOST_COLUMNS} panels of {MOST_CURVES} "
+                     "curves", *((name, min(3, limits[name])) for name in beyond))
 
 
 def parts(sweep, name, rows):
@@ -92,6 +86,11 @@ def draw_sweep(sweep, arguments):
     return figure
 
 
+@script.plot(several=True)
+@script.option("--log", action="store_true", help="logarithmic tilts; those up to 0 are left out")
+@script.option("--log_correlation", action="store_true", help="logarithmic C_I; left out where C_E, a "
+               f"magnitude, is below {BELIEVED} standard errors")
+@sweep_file.SELECT
 def draw(results, arguments):
     for result in results:
         refuse_maps(result)
@@ -100,8 +99,4 @@ def draw(results, arguments):
         raise style.Unusable(f"{results[0].path}: not a sweep, --select has nothing to select")
     if len(results) > 1 or not sweeps:
         return covariance_curves.draw(results, arguments)
-    return draw_sweep(sweep_file.read(results, arguments), arguments)
-
-
-if __name__ == "__main__":
-    style.main(draw, __doc__, several=True, add_options=add_options)
+    return draw_sweep(sweep_file.read(results[0], arguments), arguments)

@@ -2,11 +2,8 @@
 """How a search of `optimise` went: what was found, evaluation by evaluation, and where. Filled: by the random numbers of the search;
 open: by others. The star is the best place, with its value by random numbers of its own."""
 
-from lib import style
+from lib import script, style
 from lib.labels import with_unit
-from lib.result_file import Unusable
-
-import tomllib
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -16,7 +13,7 @@ DRAWS = ("search", "choice", "value")
 
 def keys_of(result):
     if "search" not in result.file:
-        raise Unusable(f"{result.path}: no result of optimise")
+        raise style.Unusable(f"{result.path}: no result of optimise")
     return list(result.file["search"].attrs["swept"])
 
 
@@ -27,17 +24,16 @@ def numbers_of(result, key):
 
 def is_log(result, key):
     """Whether it was searched in ratios."""
-    vary = tomllib.loads(result.attribute("config", "")).get("vary", [])
-    return any(text.replace(".", "_").startswith(f"{key}=") and text.endswith(":log") for text in vary)
+    return any(text.replace(".", "_").startswith(f"{key}=") and text.endswith(":log")
+               for text in result.scene.get("vary", []))
 
 
 def draw_values(axis, place, result):
-    value, error, draw = (result.values(f"search/{name}") for name in ("value", "value_error", "draw"))
+    (value, error), draw = result.measured("search/value"), result.values("search/draw")
     for number, word in enumerate(DRAWS):
         of = draw == number
         if of.any():
-            look = style.look(number)
-            axis.errorbar(place[of], value[of], error[of], marker=look["marker"], color=look["color"], linestyle="none",
+            axis.errorbar(place[of], value[of], error[of], **{**style.look(number), "linestyle": "none"},
                           fillstyle="full" if number == 0 else "none", label=word)
     axis.set_ylabel(with_unit(result.attribute("objective"), result.attribute("objective_unit")))
 
@@ -52,13 +48,13 @@ def draw_key(axis, result, key):
     place = numbers_of(result, key)
     draw_values(axis, place, result)
     axis.plot(result.values(f"best/{key}"), result.values("best/value"), "*", color="black", markersize=9, zorder=5)
-    axis.set_xlabel(with_unit(key, result.dataset(f"search/{key}").attrs.get("units")))
+    axis.set_xlabel(with_unit(key, result.unit(f"search/{key}")))
     if is_log(result, key):
         axis.set_xscale("log")
 
 
-def draw(results):
-    result = results[0]
+@script.plot()
+def draw(result):
     keys = [key for key in keys_of(result) if numbers_of(result, key) is not None]
     figure, axes = plt.subplots(1, 1 + len(keys), figsize=(style.COLUMN * min(1 + len(keys), 4) * 0.85, 2.5), squeeze=False)
     draw_progress(axes[0, 0], result)
@@ -69,7 +65,3 @@ def draw(results):
     style.caption(figure, [f"best {result.values('best/value'):.4g} +- {result.values('best/value_error'):.2g}, better than the "
                            f"runner-up with a confidence of {result.values('best/confidence'):.3g}{apart}"])
     return figure
-
-
-if __name__ == "__main__":
-    style.main(draw, __doc__)

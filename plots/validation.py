@@ -5,7 +5,8 @@ speckle pattern over the mean intensity, and the distribution of their ratio."""
 
 from dataclasses import dataclass
 
-from lib import speckle_ratio, style
+from lib import page, script, speckle_ratio, style
+from lib.labels import with_unit
 from lib.speckle_ratio import FORWARD
 from lib.sweep_file import METHODS
 
@@ -58,8 +59,7 @@ def reference_of(result):
 def read_entries(result, name):
     """Of both methods values and errors, and which are forward ones."""
     methods = ("mc", reference_of(result))
-    entries = [result.values(f"{method}/{name}{ending}")
-               for method in methods for ending in ("", "_error")]
+    entries = [values for method in methods for values in result.measured(f"{method}/{name}")]
     if len({entry.shape for entry in entries}) > 1:
         raise style.Unusable(f"{result.path}: {name} of {' and '.join(methods)} is not of one shape")
     return [*entries, read_forward(result, entries[0])]
@@ -89,20 +89,18 @@ def numbered(reference, entries):
 
 def views_of(result, name):
     """Abscissae of its second axis and what they are: view angles, or numbers of sensors."""
-    kind = result.dataset(name).dims[1][0].name.strip("/")
-    return result.axis(name, 1), "view angle" if kind == "view_angle" else SENSORS
+    kind, views = result.scale(name, 1)
+    return views, "view angle" if kind == "view_angle" else SENSORS
 
 
 def read_comparison(result):
     reference = reference_of(result)
     if result.has("mc/intensity"):
-        lights = result.axis("mc/intensity", 0)
-        kind = result.dataset("mc/intensity").dims[0][0].name.strip("/")
+        kind, lights = result.scale("mc/intensity", 0)
         curves = [f"light {style.angle(light) if kind == 'light_angle' else f'{light:g}'}"
                   for light in lights]
-        unit = result.dataset("mc/intensity").attrs.get("units", "1")
         return Comparison(reference, *views_of(result, "mc/intensity"), curves,
-                          r"intensity $C_{vv}$" + ("" if unit == "1" else f" ({unit})"),
+                          with_unit(r"intensity $C_{vv}$", result.unit("mc/intensity")),
                           *read_entries(result, "intensity"))
     if not result.has("mc/covariance"):
         raise style.Unusable(f"{result.path}: has neither mc/intensity nor mc/covariance")
@@ -211,30 +209,28 @@ def draw_residual(axis, data, allowance):
     axis.set_ylabel(rf"|mc $-$ {data.reference}| / $\sigma$")
 
 
-def add_legend(figure, axis, data, allowance, is_forward):
-    handles, labels = axis.get_legend_handles_labels()
+def entries(axis, data, allowance, is_forward):
+    """Legend entries (handle, label)."""
+    yield from page.labelled([axis])
     own, other = colours(data, 0) if len(data.curve_labels) == 1 else ("black", "black")
-    kinds = ((own, "white", 5, "Monte Carlo"), (other, other, 2.5, METHODS[data.reference]))
-    for colour, fill, size, label in kinds:
-        handles.append(plt.Line2D([], [], color=colour, marker="o", markerfacecolor=fill,
-                                  markersize=size, linestyle="none"))
-        labels.append(label)
-    handles.append(plt.Rectangle((0, 0), 1, 1, color=BAND))
-    labels.append(f"{SIGMAS} standard errors ($\\sigma$)")
+    for colour, fill, size, label in ((own, "white", 5, "Monte Carlo"),
+                                      (other, other, 2.5, METHODS[data.reference])):
+        yield plt.Line2D([], [], color=colour, marker="o", markerfacecolor=fill, markersize=size,
+                         linestyle="none"), label
+    yield plt.Rectangle((0, 0), 1, 1, color=BAND), f"{SIGMAS} standard errors ($\\sigma$)"
     if is_forward:
-        handles.append(plt.Rectangle((0, 0), 1, 1, **FORWARD))
-        labels.append("forward: a fixed number tells (C12)")
+        yield plt.Rectangle((0, 0), 1, 1, **FORWARD), "forward: a fixed number tells (C12)"
     if allowance > 0 and data.reference == "wave":
-        handles.append(plt.Line2D([], [], color="black", alpha=0.2, linewidth=4))
-        labels.append(f"size of what Monte Carlo neglects, {100 * allowance:.2g} %")
-    figure.legend(handles, labels, loc="lower center", bbox_to_anchor=(0.5, 1.0), ncol=3)
+        yield plt.Line2D([], [], color="black", alpha=0.2, linewidth=4), \
+            f"size of what Monte Carlo neglects, {100 * allowance:.2g} %"
 
 
-def draw(results):
-    if results[0].has("intensity_ratio"):
-        return speckle_ratio.draw(results[0])
-    data = read_comparison(results[0])
-    allowance = float(results[0].attribute("bias_allowance", 0))
+@script.plot()
+def draw(result):
+    if result.has("intensity_ratio"):
+        return speckle_ratio.draw(result)
+    data = read_comparison(result)
+    allowance = float(result.attribute("bias_allowance", 0))
     figure, (values, relative, residual) = plt.subplots(
         3, 1, sharex=True, figsize=(1.3 * style.COLUMN, 5), height_ratios=[2.2, 1, 1])
     draw_values(values, data, allowance)
@@ -246,14 +242,10 @@ def draw(results):
     else:
         style.angle_axis(residual, data.x, data.x_label)
     is_forward = shade_forward((values, relative, residual), data)
-    add_legend(figure, values, data, allowance, is_forward)
+    page.legend_above(figure, list(entries(values, data, allowance, is_forward)), 3)
     if is_forward:
         style.caption(figure, ["forward: there a fixed number of scatterers takes a fluctuation of the coherent field "
                                "away from the exact covariance, which Monte Carlo has (conventions, C12)"])
     if len(data.curve_labels) > 1:
         style.caption(figure, ["symbols of one place stand a little apart, side by side"])
     return figure
-
-
-if __name__ == "__main__":
-    style.main(draw, __doc__)

@@ -1,6 +1,6 @@
 """Pictures of the benchmark report: functions of a Bench that return figures."""
 
-from lib import number_text, style
+from lib import number_text, page, style
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -89,11 +89,6 @@ def method_entries(curves):
     yield plt.Line2D([], [], **GUIDE), r"slope $-1/2$"
 
 
-def legend_above(figure, entries, columns):
-    handles, labels = zip(*entries)
-    figure.legend(handles, labels, loc="lower center", bbox_to_anchor=(0.5, 1.0), ncol=columns)
-
-
 def error_panels(error, scenes, across):
     down = -(-len(scenes) // across)
     figure, axes = plt.subplots(down, across, squeeze=False, sharey=across < 3,
@@ -109,7 +104,7 @@ def error_panels(error, scenes, across):
         axis.set_ylabel("relative error")
     figure.supxlabel("processor time, one thread (s)", fontsize=8)
     entries = list(method_entries(shown))
-    legend_above(figure, entries, min(len(entries), 6))
+    page.legend_above(figure, entries, min(len(entries), 6))
     return figure
 
 
@@ -183,7 +178,7 @@ def draw_costs(bench, across=5):
             axes.flat[number].set_ylabel(cost["cost_name"], fontsize=7)
     entries = [(plt.Line2D([], [], color=style.COLOURS[0], marker="o"), "measured, with its fit"),
                (plt.Line2D([], [], color=style.GREY, linestyle="--"), "by counting operations")]
-    legend_above(figure, entries, 2)
+    page.legend_above(figure, entries, 2)
     return figure
 
 
@@ -263,30 +258,5 @@ def draw_limits(bench):
     return figure
 
 
-FIGURES = {  # name: (function, caption)
-    "error_flatland": (
-        draw_flatland,
-        "Relative error against processor time of an ensemble of exact solutions, of the textbook "
-        "Monte Carlo estimator and of this one; both boxes, memory effect over seven tilts, in "
-        "transmission and reflection."),
-    "error_render": (
-        draw_render,
-        "Relative error of pictures against processor time: path tracing, light tracing, "
-        "bidirectional path tracing and a photon map, which levels off at its bias. The glass ball "
-        "under a beam gives path tracing no finite variance: rare paths make its error jump."),
-    "limits": (
-        draw_limits,
-        "(a) How far each extreme case is off its invariant, relative to the limit it was held to "
-        "(line: the limit; to the right: how many are refused, each with a message that says why). "
-        "Arrows: below 1e-9; a ring would mark a failure. (b) What leaving a thing out of a kernel "
-        "saves, where the scene has no need of it; bars are half the distance of the quartiles."),
-    "error_other": (
-        draw_other_flatland,
-        "The other standard scenes of flatland."),
-    "slopes": (
-        draw_slopes,
-        "Fitted slopes of all Monte Carlo curves with their standard errors."),
-    "costs": (
-        draw_costs,
-        "Cost against the size of the problem, with the fitted exponent."),
-}
+FIGURES = {"error_flatland": draw_flatland, "error_render": draw_render, "limits": draw_limits,
+           "error_other": draw_other_flatland, "slopes": draw_slopes, "costs": draw_costs}

@@ -5,11 +5,7 @@ import dataclasses
 import h5py
 import numpy as np
 
-from lib.result_file import Result, Unusable
-
-
-def texts(result, name):
-    return [text.decode() for text in result.dataset(name)[...]]
+from lib.result_file import Result
 
 
 def rows_of(result, columns):
@@ -17,7 +13,7 @@ def rows_of(result, columns):
     found = {}
     for name in columns:
         is_text = h5py.check_string_dtype(result.dataset(name).dtype)
-        found[name] = texts(result, name) if is_text else result.values(name).tolist()
+        found[name] = result.texts(name) if is_text else result.values(name).tolist()
     return [dict(zip(found, values)) for values in zip(*found.values())]
 
 

@@ -8,16 +8,9 @@ FEW_DECADES = 50  # highest over lowest value of an axis
 BELIEVED = 3  # standard errors of C_E, a magnitude, below which its noise lifts it
 
 
-def add_options(parser):
-    parser.add_argument("--log", action="store_true",
-                        help="logarithmic tilts; those up to 0 are left out")
-    parser.add_argument("--log_correlation", action="store_true", help="logarithmic C_I; left out "
-                        f"where C_E, a magnitude, is below {BELIEVED} standard errors")
-
-
 def prepare(axis, tilt, lowest, arguments):
     """Scales and limits for tilts in mrad and, on a logarithm, C_I down to `lowest`."""
-    axis.axhline(0.5, color=style.GREY, linewidth=0.6, linestyle=(0, (1, 2)), zorder=0)
+    style.mark(axis, 0.5)
     axis.set_xlabel("tilt (mrad)")
     axis.set_ylabel(r"intensity correlation $C_I$")
     if arguments.log:

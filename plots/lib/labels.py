@@ -1,7 +1,6 @@
 """What tells results apart, in words: of their scenes what differs, or the names of their files."""
 
 import pathlib
-import tomllib
 
 from lib import style
 
@@ -15,8 +14,10 @@ NAMES = {"optical_depth": "OD", "g": "$g$", "view_angles": "view", "light_angles
 MOST = 2  # differences that a label names
 
 
-def scene_of(result):
-    return tomllib.loads(result.attribute("config", ""))
+def of_slab(result, digits=3):
+    """Optical depth and mean cosine, to so many digits."""
+    depth, g = (result.attribute(name) for name in ("optical_depth", "g"))
+    return rf"OD {depth:.{digits}g}, $g$ = {g:.{digits}g}"
 
 
 def with_unit(name, unit):
@@ -59,7 +60,7 @@ def labels(results):
     """A text for each result; nothing for one alone."""
     if len(results) == 1:
         return [""]
-    scenes = [scene_of(result) for result in results]
+    scenes = [result.scene for result in results]
     keys = differing(scenes)
     if not keys and len({result.path for result in results}) > 1:
         return [""] * len(results)  # one scene: methods tell them apart

@@ -16,8 +16,8 @@ class Drawing:
     def __init__(self, sweep, curves, arguments):
         self.sweep, self.curves, self.arguments = sweep, curves, arguments
         self.tilt = 1000 * sweep.result.values("tilt")  # mrad
-        self.data = [(method, sweep.of(method, "field_correlation"),
-                      sweep.of(method, "field_correlation_error")) for method in sweep.prefixes]
+        self.data = [(method, *sweep.measured(method, "field_correlation"))
+                     for method in sweep.prefixes]
         self.lowest = min(correlation_panel.lowest(field[sweep.rows], error[sweep.rows])
                           for _, field, error in self.data)
         self.unseen = correlation_panel.Unseen()
@@ -58,14 +58,12 @@ class Drawing:
         diffusion = sweep.optional("diffusion_theory")
         if diffusion is not None:
             for number, row in self.numbered(rows):
-                tilt, field = theory.curve(sweep, theory.diffusion, row, diffusion[row], fine)
-                look = style.look(number)
-                axis.plot(1000 * tilt, field**2, color=look["color"], linewidth=0.7,
-                          linestyle=look["linestyle"], zorder=1)
+                tilt, field = theory.of_point(sweep, row, diffusion[row], fine)
+                axis.plot(1000 * tilt, field**2, **style.line(number), linewidth=0.7, zorder=1)
         if sweep.result.has("single_scattering"):
-            stored = sweep.result.values("single_scattering")
-            tilt, field = theory.curve(sweep, theory.single_scattering, rows[0], stored, fine)
-            axis.plot(1000 * tilt, field**2, color="0.55", linewidth=1.6, zorder=0.5)
+            tilt, field = theory.curve(sweep.result, lambda q: theory.single_scattering(sweep.result, q),
+                                       sweep.result.values("single_scattering"), fine)
+            axis.plot(1000 * tilt, field**2, **curve_looks.SINGLE_SCATTERING, zorder=0.5)
 
     def deviations(self, axes, parts):
         """Monte Carlo less the other method, in combined standard errors of C_E."""
@@ -104,7 +102,7 @@ class Drawing:
         if result.has("diffusion_theory"):
             yield plt.Line2D([], [], color="black", linewidth=0.7), "lines: diffusion theory"
         if result.has("single_scattering"):
-            yield plt.Line2D([], [], color="0.55", linewidth=1.6), "single scattering alone"
+            yield plt.Line2D([], [], **curve_looks.SINGLE_SCATTERING), "single scattering alone"
         if result.has("deviation"):
             yield plt.Rectangle((0, 0), 1, 1, color="0.9"), \
                 f"deviation of $C_E$ in standard errors, $\\pm${BAND}"
