@@ -15,14 +15,6 @@ LATE = {"marker": "X", "markersize": 6, "markeredgecolor": "black", "markeredgew
 GUIDE = {"color": "black", "linewidth": 0.7, "linestyle": (0, (1, 2))}
 
 
-def colour_axis(sweep, asked):
-    axes = sweep.varying()
-    if asked and asked not in axes:
-        sweep.refuse(f"{asked} does not vary; --colour one of {', '.join(axes) or 'nothing here'}")
-    few = [name for name in axes if len(sweep.values(name)) <= MOST_COLOURS]
-    return asked or next(iter(few), None)
-
-
 def colours(sweep, axis):
     """Colour, from dark to light, and line style of every value of an axis."""
     values = sweep.values(axis) if axis else [None]
@@ -55,13 +47,6 @@ def describe(sweep, method, row):
     return f"{sweep.label([n for n in names if n in sweep.columns], row)}: {reached}"
 
 
-def draw_guide(axis, curves):
-    """Slope -1/2, below the lowest curve."""
-    x, error = min(curves, key=lambda curve: np.min(curve[1] * np.sqrt(curve[0])))
-    ends = np.array([x.min(), x.max()])
-    axis.plot(ends, 0.6 * np.min(error * np.sqrt(x)) / np.sqrt(ends), **GUIDE, zorder=0)
-
-
 def draw_panel(axis, sweep, method, arguments, looks, coloured):
     curves = traces(sweep, method, X_AXES[arguments.against][0])
     shown = {row: curve for row, curve in curves.items() if len(curve[0]) > 0}
@@ -76,7 +61,9 @@ def draw_panel(axis, sweep, method, arguments, looks, coloured):
                   **(LATE if row in late else {"marker": "o", "markersize": 1.8}))
     if sweep.target(method):
         axis.axhline(sweep.target(method), color=style.GREY, linewidth=0.8, zorder=0)
-    draw_guide(axis, list(shown.values()))
+    x, error = min(shown.values(), key=lambda curve: np.min(curve[1] * np.sqrt(curve[0])))
+    ends = np.array([x.min(), x.max()])  # of a guide of slope -1/2, below the lowest curve
+    axis.plot(ends, 0.6 * np.min(error * np.sqrt(x)) / np.sqrt(ends), **GUIDE, zorder=0)
     axis.set(xscale="log", yscale="log", xlabel=X_AXES[arguments.against][1],
              ylabel="relative error")
     name_missed(axis, sweep, method, late)
@@ -108,16 +95,6 @@ def entries(sweep, coloured, looks):
     yield plt.Line2D([], [], **GUIDE), "slope $-1/2$"
 
 
-def share_limits(axes):
-    """The same decades for both methods."""
-    for axis in axes:
-        style.whole_decades(axis)
-    limits = np.array([(*axis.get_xlim(), *axis.get_ylim()) for axis in axes])
-    for axis in axes:
-        axis.set_xlim(limits[:, 0].min(), limits[:, 1].max())
-        axis.set_ylim(limits[:, 2].min(), limits[:, 3].max())
-
-
 @script.plot()
 @script.option("--against", choices=list(X_AXES), default="cpu")
 @script.option("--colour", choices=list(sweep_file.PARAMETERS),
@@ -125,7 +102,11 @@ def share_limits(axes):
 @sweep_file.SELECT
 def draw(result, arguments):
     sweep = sweep_file.read(result, arguments)
-    coloured = colour_axis(sweep, arguments.colour)
+    axes = sweep.varying()
+    if arguments.colour and arguments.colour not in axes:
+        sweep.refuse(f"{arguments.colour} does not vary; --colour one of {', '.join(axes) or 'nothing here'}")
+    few = [name for name in axes if len(sweep.values(name)) <= MOST_COLOURS]
+    coloured = arguments.colour or next(iter(few), None)
     looks = colours(sweep, coloured)
     if len(looks) > MOST_COLOURS:
         sweep.refuse(f"{len(looks)} values of {coloured}, at most {MOST_COLOURS} are legible; --colour "
@@ -136,6 +117,10 @@ def draw(result, arguments):
                                 figsize=([style.COLUMN, style.PAGE][across - 1], 2.7 + 0.13 * named))
     for axis, method in zip(axes.flat, sweep.prefixes):
         draw_panel(axis, sweep, method, arguments, looks, coloured)
-    share_limits(axes[0])
+    for axis in axes.flat:
+        style.whole_decades(axis)
+    limits = np.array([(*axis.get_xlim(), *axis.get_ylim()) for axis in axes.flat])
+    for axis in axes.flat:  # the same decades for both methods
+        axis.set(xlim=(limits[:, 0].min(), limits[:, 1].max()), ylim=(limits[:, 2].min(), limits[:, 3].max()))
     page.legend_outside(figure, list(entries(sweep, coloured, looks)), sweep.notes())
     return figure

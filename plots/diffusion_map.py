@@ -39,34 +39,25 @@ def table(sweep, rows, values):
     return values[rows[order]].reshape([len(sweep.values(name)) for name in AXES])
 
 
-def wrong_by(diffusion, ranges):
-    """Relative error of diffusion theory, the larger ratio: no less far off where too short."""
-    return np.maximum(diffusion / ranges, ranges / diffusion) - 1
-
-
-def thickness_of(optical_depth, g, albedo):
-    """In transport mean free paths 1/(mu_t - g mu_s)."""
-    return optical_depth * (1 - g * albedo)
-
-
 def draw_panel(axis, sweep, rows, method, norm):
     depths, cosines = (sweep.values(name) for name in reversed(AXES))
-    ranges, bounds, diffusion = (
-        table(sweep, rows, values) for values in (sweep.of(method, "memory_effect_range"),
-                                                  sweep.of(method, "range_censored") > 0,
-                                                  sweep.optional("diffusion_range")))
+    ranges, _, censored, diffusion = (
+        table(sweep, rows, values) for values in (*sweep.ranges(method), sweep.optional("diffusion_range")))
+    bounds = censored > 0
     image = axis.pcolormesh(depths, cosines, ranges, norm=norm, cmap=MAP, shading="gouraud",
                             rasterized=True)
     if bounds.any():
         axis.contourf(depths, cosines, bounds.astype(float), [0.5, 1], colors="none",
                       hatches=["////"])
-    known = np.ma.array(np.log(wrong_by(diffusion, ranges)), mask=bounds)
+    # The larger ratio: diffusion theory is no less far off where it is too short.
+    wrong_by = np.maximum(diffusion / ranges, ranges / diffusion) - 1
+    known = np.ma.array(np.log(wrong_by), mask=bounds)
     for level, line in WRONG_BY.items():
         for colour, width, style_of_line in (("white", 1.8, "-"), ("black", 0.9, line)):
             axis.contour(depths, cosines, known, [np.log(level)], colors=colour, linewidths=width,
                          linestyles=[style_of_line])
-    grid = thickness_of(depths[None, :], cosines[:, None], sweep.columns["albedo"][rows[0]])
-    axis.contour(depths, cosines, grid, THICKNESSES, colors=style.COLOURS[1], linewidths=0.7,
+    thickness = depths[None, :] * (1 - cosines[:, None] * sweep.columns["albedo"][rows[0]])
+    axis.contour(depths, cosines, thickness, THICKNESSES, colors=style.COLOURS[1], linewidths=0.7,
                  linestyles="--")
     axis.set(xscale="log", xlabel="optical depth", ylabel="mean cosine $g$")
     return image

@@ -13,22 +13,19 @@ NAMES = {"field_correlation": r"$C_E$", "intensity_correlation": r"$C_I$", "inte
 
 
 def abscissa(result, observable):
-    """Of every datum: its tilt or angle, its time, or, of covariances of fields, its number."""
-    angle = result.values("datum_angle")
+    """Of every datum, with its name: its tilt or angle, its time, or, of covariances of fields, its
+    number."""
+    angle, is_pair = result.values("datum_angle"), observable == "field_covariance"
     time = result.values("datum_time") if result.has("datum_time") else 0 * angle
-    return np.select([observable == "field_covariance", time > 0], [np.arange(len(angle)), time], angle)
-
-
-def abscissa_name(result, observable):
-    if (observable == "field_covariance").any():
-        return "number of the value"
-    return "delay or exposure" if result.has("datum_time") else "tilt or angle (rad)"
+    name = "delay or exposure" if result.has("datum_time") else "tilt or angle (rad)"
+    return (np.select([is_pair, time > 0], [np.arange(len(angle)), time], angle),
+            "number of the value" if is_pair.any() else name)
 
 
 def draw_data(axis, pulls, result):
     observable = np.array(result.texts("datum_observable"))
-    curve, angle = result.values("datum_curve"), abscissa(result, observable)
-    single = []
+    curve, (angle, name_of_angle) = result.values("datum_curve"), abscissa(result, observable)
+    (value, error), pull, single = result.measured("measured"), result.values("pull"), []
     for number in np.unique(curve):
         rows = np.flatnonzero(curve == number)
         symbols = {**style.look(int(number)), "linestyle": "none"}
@@ -37,34 +34,25 @@ def draw_data(axis, pulls, result):
             single.append((name, rows[0]))
             continue
         rows = rows[np.argsort(angle[rows])]
-        value, error = result.measured("measured")
         axis.errorbar(angle[rows], value[rows], error[rows], **symbols, label=NAMES[name])
         axis.plot(angle[rows], result.values("model")[rows], **style.line(int(number)))
-        pulls.plot(angle[rows], result.values("pull")[rows], **symbols)
+        pulls.plot(angle[rows], pull[rows], **symbols)
     for place, (name, row) in enumerate(single):
-        text = f"{NAMES[name]} {result.values('measured')[row]:.3g}, {result.values('pull')[row]:+.1f} errors"
-        axis.text(0.97, 0.97 - 0.08 * place, text, transform=axis.transAxes, ha="right", va="top", fontsize=7)
-    axis.set(ylabel="measured")
+        axis.text(0.97, 0.97 - 0.08 * place, f"{NAMES[name]} {value[row]:.3g}, {pull[row]:+.1f} errors",
+                  transform=axis.transAxes, ha="right", va="top", fontsize=7)
+    axis.set_ylabel("measured")
     axis.tick_params(labelbottom=False)
     pulls.axhspan(-1, 1, color="0.9")
-    pulls.set(xlabel=abscissa_name(result, observable), ylabel="pull")
-    if result.has("datum_time"):
-        pulls.set_xscale("log")
-    most = 1.2 * max(2, np.abs(result.values("pull")).max())
-    pulls.set_ylim(-most, most)
-
-
-def ellipse(covariance, size):
-    """Points of an ellipse of so many standard errors."""
-    values, vectors = np.linalg.eigh(covariance)
-    return vectors @ (size * np.sqrt(np.maximum(values, 0))[:, None] * style.circle())
+    most = 1.2 * max(2, np.abs(pull).max())
+    pulls.set(xlabel=name_of_angle, ylabel="pull", ylim=(-most, most),
+              xscale="log" if result.has("datum_time") else "linear")
 
 
 def draw_pair(axis, result, i, j):
     names, estimate = result.texts("parameter_name"), result.values("estimate")
-    covariance = result.values("parameter_covariance")[np.ix_([j, i], [j, i])]
-    for size, line in ((1, "-"), (2, "--")):
-        x, y = ellipse(covariance, size)
+    values, vectors = np.linalg.eigh(result.values("parameter_covariance")[np.ix_([j, i], [j, i])])
+    for size, line in ((1, "-"), (2, "--")):  # ellipses of so many standard errors
+        x, y = vectors @ (size * np.sqrt(np.maximum(values, 0))[:, None] * style.circle())
         axis.plot(estimate[j] + x, estimate[i] + y, line, color=style.COLOURS[0])
     axis.plot(estimate[j], estimate[i], "+", color="k")
     axis.set(xlabel=names[j], ylabel=names[i])

@@ -3,9 +3,8 @@
 that are expected of each pair of points, and the points found in all frames, or the first frame
 divided by a reference, beside the object."""
 
-from lib import object_panel, script, style
+from lib import object_panel, page, script, style
 
-import matplotlib.pyplot as plt
 import numpy as np
 
 SHOWN = 400  # pixels of the frame
@@ -75,8 +74,5 @@ def draw_pictures(axis, result):
 
 @script.plot(one_run=True, needs={"camera_place": "needs a result of image"})
 def draw(result):
-    figure, axes = plt.subplots(1, 3, figsize=(1.4 * style.PAGE, 2.9), layout="constrained")
-    draw_frame(axes[0], result)
-    draw_autocorrelation(axes[1], result)
-    (draw_pictures if result.has("picture") else draw_object)(axes[2], result)
-    return figure
+    last = draw_pictures if result.has("picture") else draw_object
+    return page.side_by_side(result, (draw_frame, draw_autocorrelation, last), 1.4 * style.PAGE, 2.9)

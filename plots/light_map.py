@@ -3,8 +3,6 @@
 rate with its standard errors along a line. Of a cylinder: radius and depth, and along the axis in the
 innermost rings; of a box: the plane and the line of cells through the brightest one."""
 
-from dataclasses import dataclass
-
 from lib import pictures, script, style
 
 import matplotlib.pyplot as plt
@@ -14,28 +12,18 @@ NAMES = {"fluence": "fluence rate", "absorbed": "absorbed power density"}
 PLANES = {"x": ("z", "y"), "y": ("z", "x"), "z": ("x", "y")}
 
 
-@dataclass
-class Slice:
-    """Values [up, right] of a plane, and those of the row that is drawn apart with their errors."""
-
-    right: str
-    up: str
-    values: np.ndarray
-    line: np.ndarray
-    errors: np.ndarray
-    where: str
-
-
 def slice_of(result, name, normal):
+    """Names of the axes of a plane, its values [up, right], and those of the row that is drawn apart, with
+    their errors and where it is."""
     values, errors = result.measured(f"map/{name}")
     if values.ndim == 2:
-        return Slice("depth", "radius", values, values[0], errors[0], "on the axis")
+        return "depth", "radius", values, values[0], errors[0], "on the axis"
     right, up = PLANES[normal]
     place = dict(zip("xyz", np.unravel_index(np.argmax(values), values.shape)))
     axes = ["xyz".index(up), "xyz".index(right), "xyz".index(normal)]
     values, errors = (np.transpose(each, axes)[:, :, place[normal]] for each in (values, errors))
     at = ", ".join(f"{axis} = {result.values(f'map/{axis}')[place[axis]]:.3g}" for axis in (up, normal))
-    return Slice(right, up, values, values[place[up]], errors[place[up]], f"at {at}")
+    return right, up, values, values[place[up]], errors[place[up]], f"at {at}"
 
 
 @script.plot(one_run=True)
@@ -45,17 +33,17 @@ def slice_of(result, name, normal):
 def draw(result, arguments):
     length = pictures.length_name(result)
     label = f"{NAMES[arguments.quantity]} ({pictures.unit_name(result, f'map/{arguments.quantity}')})"
-    drawn = slice_of(result, arguments.quantity, arguments.normal)
-    right, up = (result.values(f"map/{name}") for name in (drawn.right, drawn.up))
+    right, up, values, row, errors, where = slice_of(result, arguments.quantity, arguments.normal)
+    across, upwards = (result.values(f"map/{name}") for name in (right, up))
     figure, (plane, line) = plt.subplots(1, 2, figsize=(style.PAGE, 2.6))
-    norm = pictures.tone([drawn.values], arguments.tone, arguments.decades)
-    image = plane.imshow(drawn.values, origin="lower", extent=(*pictures.edges(right), *pictures.edges(up)),
+    norm = pictures.tone([values], arguments.tone, arguments.decades)
+    image = plane.imshow(values, origin="lower", extent=(*pictures.edges(across), *pictures.edges(upwards)),
                          cmap="inferno", norm=norm, interpolation="nearest", aspect="auto")
-    plane.set(xlabel=f"{drawn.right} ({length})", ylabel=f"{drawn.up} ({length})")
+    plane.set(xlabel=f"{right} ({length})", ylabel=f"{up} ({length})")
     plane.tick_params(direction="out", top=False, right=False)
     figure.colorbar(image, ax=plane, label=label, extend="both", pad=0.02)
-    lit = drawn.line > 0
-    line.errorbar(right[lit], drawn.line[lit], pictures.below(drawn.line, drawn.errors)[lit],
+    lit = row > 0
+    line.errorbar(across[lit], row[lit], pictures.below(row, errors)[lit],
                   **{**style.look(0), "marker": "."})
-    line.set(xlabel=f"{drawn.right} ({length})", ylabel=label, yscale="log", title=drawn.where)
+    line.set(xlabel=f"{right} ({length})", ylabel=label, yscale="log", title=where)
     return figure

@@ -48,12 +48,6 @@ def arrange(sweep, arguments):
     return against, *([*reversed(others)] + [None, None])[:2]
 
 
-def check_size(sweep, curves, panels):
-    for name, most, what in ((curves, MOST_CURVES, "curves"), (panels, MOST_PANELS, "panels")):
-        if name and len(sweep.values(name)) > most:
-            sweep.refuse(f"{len(sweep.values(name))} {what}, at most {most} are legible", (name, 3))
-
-
 def draw_bounds(axis, sweep, method, rows, x, numbers):
     """Arrows away from points that are bounds. Those of one place stand side by side, because all
     curves that stay above 1/2 share their bound."""
@@ -84,23 +78,16 @@ def draw_curve(axis, sweep, method, rows, x, number):
     axis.plot(x[rows][few], value[few], transform=place, **curve_looks.RING)
 
 
-def has_lone_points(sweep, names):
-    """Whether a curve, of constant `names`, has one point alone."""
-    constants = [sweep.columns[name][sweep.rows] for name in names if name]
-    return bool(constants) and 1 in np.unique(constants, axis=1, return_counts=True)[1]
-
-
 def entries(sweep, curves, panels, single):
     """Legend entries (handle, label)."""
     theory = range_axes.diffusion_in_view(sweep, single)[1]
     for number, value in enumerate(sweep.values(curves) if curves else []):
-        line = style.look(number)["linestyle"] if theory else "none"
-        look = curve_looks.curve_look(number, curve_looks.last_method(sweep))
-        yield (plt.Line2D([], [], linewidth=0.7, linestyle=line, **{**look, "markersize": 3}),
-               sweep_file.text(curves, value))
+        yield curve_looks.curve_handle(sweep, number, theory), sweep_file.text(curves, value)
     yield from curve_looks.method_entries(sweep)
     if theory:
-        marks = "lines and dashes" if has_lone_points(sweep, (curves, panels)) else "lines"
+        constants = [sweep.columns[name][sweep.rows] for name in (curves, panels) if name]
+        lone = constants and 1 in np.unique(constants, axis=1, return_counts=True)[1]  # of a curve
+        marks = "lines and dashes" if lone else "lines"
         yield plt.Line2D([], [], color="black", linewidth=0.7), f"{marks}: diffusion theory"
     yield from curve_looks.range_entries(sweep)
     if single:
@@ -127,7 +114,8 @@ def diffusion_line(axis, sweep, part, against, x):
 
 
 def draw_panel(axis, sweep, rows, against, curves, single):
-    x = range_axes.horizontal(sweep, against)
+    x = sweep.column(against)
+    x = np.round(1 - x, 12) if against == "albedo" else x
     for limit in single:
         axis.axhline(limit, **curve_looks.SINGLE_SCATTERING, zorder=0.5)
     diffusion, numbers, lines = sweep.optional("diffusion_range"), {}, []
@@ -160,7 +148,9 @@ def draw(result, arguments):
     if sweep.is_list and len(sweep.varying()) > 1 and not (arguments.against or arguments.curves):
         return range_list.draw(sweep, single)
     against, curves, panels = arrange(sweep, arguments)
-    check_size(sweep, curves, panels)
+    for name, most, what in ((curves, MOST_CURVES, "curves"), (panels, MOST_PANELS, "panels")):
+        if name and len(sweep.values(name)) > most:
+            sweep.refuse(f"{len(sweep.values(name))} {what}, at most {most} are legible", (name, 3))
     parts = sweep.groups(panels, sweep.rows)
     across = 2 if len(parts) == 4 else min(ACROSS, len(parts))
     figure, axes = page.page_of_panels(-(-len(parts) // across), across, len(parts))

@@ -58,12 +58,6 @@ def draw_numbers(axis, values, censored, few, norm):
                   fontsize=size, color="white" if norm(value) < 0.55 else "black", bbox=behind)
 
 
-def has_holes(sweep, parts):
-    """Whether a panel lacks points."""
-    cells = len(sweep.values("g")) * len(sweep.values("albedo"))
-    return any(len(rows) < cells for _, _, rows in parts)
-
-
 def contour_levels(sweep, norm, holes):
     """Levels of the contours; none of a map of few cells or with holes."""
     if holes or min(len(sweep.values(name)) for name in ("g", "albedo")) < LEAST_CONTOURED:
@@ -144,7 +138,8 @@ def draw(result, arguments):
                              for method, _, rows in shown])
     spread = 1 if ranges.max() > 1.1 * ranges.min() else 1.2  # for a scale with room for marks
     norm = LogNorm(ranges.min() / spread, ranges.max() * spread)
-    holes = has_holes(sweep, shown)
+    cells = len(sweep.values("g")) * len(sweep.values("albedo"))
+    holes = any(len(rows) < cells for _, _, rows in shown)
     levels = contour_levels(sweep, norm, holes)
     for axis, (method, value, rows) in zip(axes.flat, shown):
         image = draw_panel(axis, sweep, rows, method, norm, levels)

@@ -14,11 +14,6 @@ SAME = 1e-9  # relative difference below which values count as equal
 ROUNDING = 1e-16
 
 
-def transverse(result):
-    """Name of the index map's axis across z."""
-    return result.dataset("index_map").dims[0].label.removeprefix("map_")
-
-
 def draw_map(figure, axis, result, up):
     index, z = result.values("index_map"), result.values("map_z")
     across = result.values(f"map_{up}")
@@ -80,7 +75,7 @@ def draw_spread(axis, result, up):
 
 @script.plot(needs={"path/z": "trace with --path_points"})
 def draw(result):
-    up = transverse(result)
+    up = result.dataset("index_map").dims[0].label.removeprefix("map_")  # the axis across z
     of_rays = result.has("ray")
     figure, axes = plt.subplots(1, 2 if of_rays else 1, squeeze=False,
                                 figsize=(style.PAGE if of_rays else 4.5, 2.5),

@@ -29,29 +29,19 @@ def panel(figure, axis, result, picture, label, extend, **look):
     return figure.colorbar(image, ax=axis, label=label, extend=extend, shrink=0.95, pad=0.02)
 
 
-def root_ticks(high):
-    """Even numbers, of which those too close on a scale of roots are left out."""
-    ticks = [0.0]
-    for tick in MaxNLocator(8).tick_values(0, high):
-        if tick <= high and np.sqrt(tick / high) - np.sqrt(ticks[-1] / high) > 0.12:
-            ticks.append(tick)
-    return ticks
-
-
 def draw_image(figure, axis, result, norm):
     bar = panel(figure, axis, result, result.values("image"), pictures.quantity(result), "max",
                 cmap="inferno", norm=norm)
     if not isinstance(norm, LogNorm):
-        bar.set_ticks(root_ticks(norm.vmax) if isinstance(norm, PowerNorm)
-                      else MaxNLocator(4).tick_values(0, norm.vmax)[:-1])
+        ticks = MaxNLocator(4).tick_values(0, norm.vmax)[:-1]
+        if isinstance(norm, PowerNorm):  # those too close on a scale of roots are left out
+            ticks = [0.0]
+            for tick in MaxNLocator(8).tick_values(0, norm.vmax):
+                if tick <= norm.vmax and norm(tick) - norm(ticks[-1]) > 0.12:
+                    ticks.append(tick)
+        bar.set_ticks(ticks)
         bar.ax.yaxis.get_offset_text().set_ha("left")
         bar.formatter.set_powerlimits((-2, 4))
-
-
-def error_norm(results):
-    """From the decade of the best pixels of any of them."""
-    best = min(np.quantile(relative_error(result).compressed(), 0.01) for result in results)
-    return LogNorm(min(10 ** np.floor(np.log10(best)), MOST / 10), MOST, clip=True)
 
 
 def say_what_is_no_error(axis, result, error):
@@ -74,20 +64,10 @@ def draw_error(figure, axis, result, norm):
     bar.ax.yaxis.set_minor_formatter(NullFormatter())
 
 
-def norms(results, arguments):
-    """One for all that measure the same."""
-    quantities = [pictures.quantity(result) for result in results]
-    shared = {name: pictures.tone([result.values("image") for result, own in zip(results, quantities)
-                                   if own == name], arguments.tone, arguments.decades)
-              for name in set(quantities)}
-    return [shared[name] for name in quantities]
-
-
 @script.plot(several=True, one_run=True, dpi=DPI)
 @pictures.tone_options()
 def draw(results, arguments):
-    names = pictures.sensor_labels(results)
-    results = pictures.sensors(results)
+    names, results = zip(*pictures.sensors(results))
     for result in results:
         if result.values("image").size == 1:
             raise style.Unusable(f"{result.path}: is a single pixel, not a picture")
@@ -96,9 +76,15 @@ def draw(results, arguments):
     height = np.clip(pictures.height_over_width(results[0]), 0.2, 2) * 0.36 * style.PAGE + 0.4
     figure, axes = plt.subplots(len(results), 2, squeeze=False,
                                 figsize=(style.PAGE, len(results) * height))
-    errors = error_norm(results)
-    for (left, right), result, label, norm in zip(axes, results, names, norms(results, arguments)):
-        draw_image(figure, left, result, norm)
+    # From the decade of the best pixels of any of them.
+    best = min(np.quantile(relative_error(result).compressed(), 0.01) for result in results)
+    errors = LogNorm(min(10 ** np.floor(np.log10(best)), MOST / 10), MOST, clip=True)
+    quantities = [pictures.quantity(result) for result in results]  # one scale for all of each
+    norms = {name: pictures.tone([result.values("image") for result, own in zip(results, quantities)
+                                  if own == name], arguments.tone, arguments.decades)
+             for name in set(quantities)}
+    for (left, right), result, label, quantity in zip(axes, results, names, quantities):
+        draw_image(figure, left, result, norms[quantity])
         draw_error(figure, right, result, errors)
         across, up = pictures.axis_names(result)
         left.set(xlabel=across, ylabel=up)

@@ -46,8 +46,9 @@ def draw_pulse(axis, result, parts):
     axis.errorbar(path[lit], pulse[lit], pictures.below(pulse, error)[lit], fmt="none",
                   color=style.COLOURS[0], elinewidth=0.6)
     draw_beyond(axis, result, cuts)
+    units = pictures.unit_name(result, "pulse")
     axis.set(yscale="log", ylim=(0.3 * pulse[lit].min(), None), xlabel=f"optical path ({pictures.length_name(result)})",
-             ylabel=pulse_name(result))
+             ylabel=f"mean in each bin ({units})" if units else "power in each bin")
     if result.has("time"):
         rate = result.values("time")[-1] / path[-1] / PICOSECOND
         above = axis.secondary_xaxis("top", functions=(lambda x: x * rate, lambda t: t / rate))
@@ -65,11 +66,6 @@ def draw_beyond(axis, result, cuts):
             axis.errorbar(edge + side * room / 2, light, pictures.below(light, error), fmt="_",
                           color=style.COLOURS[1], label="shorter or longer")
     axis.set_xlim(cuts[0] - room, cuts[-1] + room)
-
-
-def pulse_name(result):
-    units = pictures.unit_name(result, "pulse")
-    return f"mean in each bin ({units})" if units else "power in each bin"
 
 
 @script.plot(one_run=True, dpi=150)

@@ -18,19 +18,6 @@ plt.rcParams.update({"svg.hashsalt": "flatspeckle", "svg.fonttype": "path"})
 DPI = 220  # at 7 inches across; larger pictures would weigh too much in a repository
 
 
-def svg_of(figure):
-    svg = io.BytesIO()
-    figure.savefig(svg, format="svg", metadata={"Date": None})
-    return svg.getvalue()
-
-
-def save_png(figure, path):
-    """Of few colours, which is a third of the size of all."""
-    full = io.BytesIO()
-    figure.savefig(full, format="png", dpi=DPI)
-    Image.open(full).convert("RGB").quantize(128).save(path, optimize=True)
-
-
 def draw_all(bench, folder):
     """Writes each picture as PNG; name -> SVG of those that there is something to draw for."""
     pictures = {}
@@ -38,8 +25,11 @@ def draw_all(bench, folder):
         figure = draw(bench)
         if figure is None:
             continue
-        save_png(figure, folder / f"{name}.png")
-        pictures[name] = svg_of(figure)
+        png, svg = io.BytesIO(), io.BytesIO()
+        figure.savefig(png, format="png", dpi=DPI)  # of few colours, which is a third of the size of all
+        Image.open(png).convert("RGB").quantize(128).save(folder / f"{name}.png", optimize=True)
+        figure.savefig(svg, format="svg", metadata={"Date": None})
+        pictures[name] = svg.getvalue()
         plt.close(figure)
     return pictures
 

@@ -27,18 +27,14 @@ def draw_values(axis, result, over, name, number, label):
                       color=look["color"], markerfacecolor=face, label=label if face != "white" else None)
 
 
-def draw_lambert(axis, result, number):
-    angles = np.linspace(0, min(result.values("angle")[-1], np.pi / 2), 200)
-    axis.plot(angles, result.values("total") / np.pi * np.cos(angles), color=style.look(number)["color"], linestyle="--",
-              label="Lambert" if number == 0 else None)
-
-
 def draw_kind(axis, results, over):
     for number, (label, result) in enumerate(results):
         name = kinds(result)[over]
         draw_values(axis, result, over, name, number, label)
         if over == "angle":
-            draw_lambert(axis, result, number)
+            angles = np.linspace(0, min(result.values("angle")[-1], np.pi / 2), 200)
+            axis.plot(angles, result.values("total") / np.pi * np.cos(angles), linestyle="--",
+                      color=style.look(number)["color"], label="Lambert" if number == 0 else None)
     first = results[0][1]
     units = pictures.unit_name(first, kinds(first)[over])
     unit = "rad" if over == "angle" else pictures.length_name(first)
@@ -51,7 +47,7 @@ def draw_kind(axis, results, over):
 @script.plot(several=True, one_run=True)
 def draw(results):
     by_kind = {}
-    for label, result in zip(pictures.sensor_labels(results), pictures.sensors(results)):
+    for label, result in pictures.sensors(results):
         for over in kinds(result):
             by_kind.setdefault(over, []).append((label, result))
     if not by_kind:

@@ -2,9 +2,8 @@
 """Sources of frames in which points blink (`flatspeckle image --blinking ...`, or `recover --recovery
 sources`): singular values of the frames, parts of some patterns, and where the sources are."""
 
-from lib import object_panel, script, style
+from lib import object_panel, page, script, style
 
-import matplotlib.pyplot as plt
 import numpy as np
 
 SHOWN = 60  # pixels of a pattern
@@ -62,8 +61,5 @@ def draw_places(axis, result):
 
 @script.plot(one_run=True, needs={"source_x": "needs frames of blinking points"})
 def draw(result):
-    figure, axes = plt.subplots(1, 3, figsize=(1.4 * style.PAGE, 2.9), layout="constrained")
-    draw_singular_values(axes[0], result)
-    draw_patterns(axes[1], result)
-    (draw_object if result.has("object_x") else draw_places)(axes[2], result)
-    return figure
+    last = draw_object if result.has("object_x") else draw_places
+    return page.side_by_side(result, (draw_singular_values, draw_patterns, last), 1.4 * style.PAGE, 2.9)

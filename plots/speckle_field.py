@@ -17,25 +17,17 @@ MOST_ROWS = 24  # of realizations side by side
 FEWEST_EXPECTED = 10  # in a bin, for its error bar to mean something
 
 
-def edges(centres):
-    """Boundaries between cells with these centres."""
-    middle = (centres[1:] + centres[:-1]) / 2
-    first, last = 2 * centres[0] - middle[0], 2 * centres[-1] - middle[-1]
-    return np.concatenate([[first], middle, [last]])
-
-
-def is_even(centres):
-    steps = np.abs(np.diff(centres))
-    return len(steps) == 0 or steps.max() < UNEVEN * steps.min()
-
-
 class Cells:
     """Cells along one axis: at their values where these are about equally far apart; else of one
     width side by side, named by their values, so that no cell looks wider than what was computed."""
 
     def __init__(self, values):
-        self.values, self.even = values, is_even(values)
-        self.edges = edges(values if self.even else np.arange(len(values)))
+        steps = np.abs(np.diff(values))
+        self.values, self.even = values, len(steps) == 0 or steps.max() < UNEVEN * steps.min()
+        centres = values if self.even else np.arange(len(values))
+        middle = (centres[1:] + centres[:-1]) / 2
+        first, last = 2 * centres[0] - middle[0], 2 * centres[-1] - middle[-1]
+        self.edges = np.concatenate([[first], middle, [last]])
 
     def mark(self, side):
         """Ticks of a matplotlib axis."""
@@ -65,13 +57,6 @@ def picture(result):
     return np.abs(field[:rows, 0])**2 / mean, np.arange(rows, dtype=float), "realization"
 
 
-def draw_shear(axis, x, y):
-    """k sin v - k sin i = const: speckles follow these lines as far as the memory effect reaches."""
-    for middle in np.linspace(x[0], x[-1], 7)[1:-1:2]:
-        axis.plot(middle + y - y.mean(), y, color="white", linewidth=0.7, linestyle=(0, (4, 4)),
-                  scalex=False, scaley=False)
-
-
 def draw_picture(figure, axis, result):
     intensity, y, y_label = picture(result)
     x, x_label = views(result)
@@ -86,7 +71,10 @@ def draw_picture(figure, axis, result):
         axis.hlines(up.edges[1:-1], *across.edges[[0, -1]], color="white", linewidth=0.7)
         y_label = "realization (one field in each row)"
     if y_label == r"$\sin i$" and result.has("view_angle") and across.even and up.even:
-        draw_shear(axis, x, y)
+        # Speckles follow k sin v - k sin i = const as far as the memory effect reaches.
+        for middle in np.linspace(x[0], x[-1], 7)[1:-1:2]:
+            axis.plot(middle + y - y.mean(), y, color="white", linewidth=0.7, linestyle=(0, (4, 4)),
+                      scalex=False, scaley=False)
     axis.set(xlabel=x_label, ylabel=y_label, xlim=across.edges[[0, -1]], ylim=up.edges[[0, -1]])
     axis.tick_params(direction="out", top=False, right=False)
     across.mark(axis.xaxis)
@@ -114,14 +102,6 @@ def draw_histogram(axis, result):
     axis.legend(loc="upper right")
 
 
-def mark_grain(axis, result, unit, peak):
-    """The width of a speckle, twice the lag of half the maximum."""
-    width, error = (float(value) / unit for value in result.measured("grain_width"))
-    axis.plot([0, width / 2], [peak / 2] * 2, color="black", linewidth=0.8, marker="|", markersize=5)
-    axis.text(0.97, 0.35, f"grain {width:.3g} $\\pm$ {error:.1g}\n(full width, half maximum)", ha="right",
-              transform=axis.transAxes, fontsize=6.5)
-
-
 def draw_autocorrelation(axis, result):
     if not result.has("intensity_autocorrelation"):
         axis.text(0.5, 0.5, "views are not equally spaced", ha="center", va="center",
@@ -129,7 +109,8 @@ def draw_autocorrelation(axis, result):
         axis.set_axis_off()
         return
     far = result.has("view_angle")
-    lag = result.values("view_lag") / (1 if far else result.attribute("wavelength"))
+    unit = 1 if far else result.attribute("wavelength")
+    lag = result.values("view_lag") / unit
     found, error = result.measured("intensity_autocorrelation")
     expected = result.values("siegert") if result.has("siegert") else np.zeros_like(found)
     reach = lag <= 5 * lag[np.argmax((expected if expected.any() else found) < 0.3)]
@@ -140,7 +121,11 @@ def draw_autocorrelation(axis, result):
     axis.errorbar(lag[reach], found[reach], error[reach], **style.symbols(0), markersize=2.5,
                   label=r"$\langle I I'\rangle/\langle I\rangle\langle I'\rangle-1$")
     if result.has("grain_width"):
-        mark_grain(axis, result, 1 if far else result.attribute("wavelength"), found[0])
+        # The width of a speckle is twice the lag of half the maximum.
+        width, error = (float(value) / unit for value in result.measured("grain_width"))
+        axis.plot([0, width / 2], [found[0] / 2] * 2, color="black", linewidth=0.8, marker="|", markersize=5)
+        axis.text(0.97, 0.35, f"grain {width:.3g} $\\pm$ {error:.1g}\n(full width, half maximum)", ha="right",
+                  transform=axis.transAxes, fontsize=6.5)
     axis.set(xlabel=r"$\sin v'-\sin v$" if far else r"distance of sensors$/\lambda$",
              ylabel="autocorrelation")
     axis.xaxis.set_major_locator(MaxNLocator(4))

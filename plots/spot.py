@@ -45,40 +45,27 @@ def draw_spot(axis, at, radius):
     axis.legend(loc="upper right", handlelength=1)
 
 
-def fans(start):
-    """Rays near each axis of the pupil, in order; of rays in a line, all of it."""
-    for axis in (0, 1):
-        near = np.flatnonzero(np.abs(start[:, 1 - axis]) < NEAR_AXIS)
-        near = near[np.argsort(start[near, axis])]
-        if np.ptp(start[near, axis]) > NEAR_AXIS:
-            yield axis, near
-
-
 def draw_fans(axis, start, values):
-    """values [ray], or [ray, axis]; returns what to write of their power of ten."""
+    """values [ray], or [ray, axis], of rays near each axis of the pupil, in order; of rays in a line all.
+    Returns what to write of their power of ten."""
     size, power = scale_of(values)
-    for number, rays in fans(start):
-        shown = values[rays, number] if values.ndim > 1 else values[rays]
-        axis.plot(start[rays, number], shown / size, label="$" + "xy"[number] + "$",
-                  **style.look(number) | {"linestyle": "", "markersize": 2})
+    for number in (0, 1):
+        near = np.flatnonzero(np.abs(start[:, 1 - number]) < NEAR_AXIS)
+        near = near[np.argsort(start[near, number])]
+        if np.ptp(start[near, number]) > NEAR_AXIS:
+            shown = values[near, number] if values.ndim > 1 else values[near]
+            axis.plot(start[near, number], shown / size, label="$" + "xy"[number] + "$",
+                      **style.look(number) | {"linestyle": "", "markersize": 2})
     return power
 
 
-def draw_fan(axis, start, at):
-    power = draw_fans(axis, start, at)
-    axis.set(xlabel="pupil", ylabel="off the mean" + power, title="ray fan")
-    axis.legend(handlelength=1)
-
-
 def draw_paths(axis, start, difference, wavelength):
-    if wavelength:
-        difference = difference / wavelength
-        dimmed = np.exp(-(2 * np.pi * difference.std())**2)
-        axis.set_title(f"path difference, Strehl {dimmed:.2f}")
-    else:
-        axis.set_title(f"path difference, rms {difference.std():.2g}")
+    difference = difference / (wavelength or 1)
+    spread = f"Strehl {np.exp(-(2 * np.pi * difference.std())**2):.2f}" if wavelength else \
+        f"rms {difference.std():.2g}"
     power = draw_fans(axis, start, difference)
-    axis.set(xlabel="pupil", ylabel=("wavelengths" if wavelength else "length") + power)
+    axis.set(xlabel="pupil", ylabel=("wavelengths" if wavelength else "length") + power,
+             title=f"path difference, {spread}")
 
 
 def draw_focus(axis, result, at, slope):
@@ -104,7 +91,9 @@ def draw(result, arguments):
     figure, axes = plt.subplots(2, 2, figsize=(style.PAGE * 0.75, 4.4))
     start, off = pupil(result), at - at.mean(axis=0)
     draw_spot(axes[0, 0], off, result.values("image/spot_radius"))
-    draw_fan(axes[0, 1], start, off)
+    power = draw_fans(axes[0, 1], start, off)
+    axes[0, 1].set(xlabel="pupil", ylabel="off the mean" + power, title="ray fan")
+    axes[0, 1].legend(handlelength=1)
     draw_paths(axes[1, 0], start, result.values("image/least_path_difference"), arguments.wavelength)
     if result.has("image/focus"):
         draw_focus(axes[1, 1], result, at, slope)

@@ -7,12 +7,6 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 
-def in_spacings(result, q):
-    """q times the mean spacing, which points have too."""
-    area = result.attribute("width") * result.attribute("depth")
-    return q * np.sqrt(area / result.attribute("count"))
-
-
 def label(result):
     word = str(result.attribute("placement"))
     packing = result.attribute("packing_fraction")
@@ -25,7 +19,9 @@ def draw(results):
     style.mark(axis, 1)
     with_theory = False
     for number, result in enumerate(results):
-        q = in_spacings(result, result.axis("structure_factor", 0))
+        # In mean spacings, which points have too.
+        area = result.attribute("width") * result.attribute("depth")
+        q = result.axis("structure_factor", 0) * np.sqrt(area / result.attribute("count"))
         axis.errorbar(q, *result.measured("structure_factor"), **style.symbols(number),
                       markersize=2.2, label=label(result))
         if result.has("structure_factor_theory"):

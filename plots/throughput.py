@@ -68,13 +68,6 @@ def label_of(curve, found, apart):
     return ", ".join(words)
 
 
-def over_the_first(power, error):
-    """Ratios to the first point and their errors; that of the first is in all others."""
-    ratio = power / power[0]
-    return ratio, np.where(np.arange(len(power)) == 0, 0,
-                           ratio * np.hypot(error / power, error[0] / power[0]))
-
-
 @script.plot(several=True, needs={"total": "needs a result of render"})
 @script.option("--key", help="of the horizontal axis")
 @script.option("--curves", metavar="KEY", help="a curve for each of its values")
@@ -83,9 +76,11 @@ def draw(results, arguments):
     found, (key, apart) = curves(results, arguments), drawn_keys(results[0], arguments)
     relative = all(rows[0, 0] == 0 and rows[0, 1] > 0 for rows in found.values())
     for number, (curve, rows) in enumerate(found.items()):
-        place, *power = rows.T
-        axis.errorbar(place, *(over_the_first(*power) if relative else power), **style.look(number),
-                      label=label_of(curve, found, apart))
+        place, power, error = rows.T
+        if relative:  # the error of the first point is in all others
+            spread = np.hypot(error / power, error[0] / power[0]) * (np.arange(len(power)) > 0)
+            power, error = power / power[0], power / power[0] * spread
+        axis.errorbar(place, power, error, **style.look(number), label=label_of(curve, found, apart))
     axis.set(xlabel=labels.with_unit(NAMES.get(key, key), results[0].unit(key) if results[0].has(key) else ""),
              ylabel="power / power at 0" if relative else "power on the detector")
     if style.in_equal_ratios(np.unique(np.concatenate([rows[:, 0] for rows in found.values()]))):

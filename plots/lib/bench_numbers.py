@@ -105,10 +105,9 @@ def of_plan(plan):
 
 
 def of_making(bench):
-    minutes = {name: file.made.wall_s / 60 for name, file in bench.files().items()}
-    for key, value in {**{f"{name}.minutes": value for name, value in minutes.items()},
-                       "minutes": sum(minutes.values())}.items():
-        yield f"made.{key}", number(value, text=number_text.digits(value, 2))
+    seconds = {f"{name}.minutes": file.made.wall_s for name, file in bench.files().items()}
+    for key, value in {**seconds, "minutes": sum(seconds.values())}.items():
+        yield f"made.{key}", number(value / 60, text=number_text.digits(value / 60, 2))
     made = bench.error.made
     for key, text in {"machine": made.machine, "commit": made.short_commit, "date": made.date}.items():
         yield f"made.{key}", {"value": text, "error": 0.0, "text": text}

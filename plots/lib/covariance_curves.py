@@ -16,11 +16,17 @@ class Series:
     """One method's field correlation [tilt], of one result file."""
 
     label: str
+    method: str
+    number: int  # of its colour and symbol
     moves: np.ndarray  # tilts, or translations
     correlation: np.ndarray
     error: np.ndarray
-    look: dict
     line: tuple = None  # (moves, C_E) of theory
+
+    @property
+    def look(self):
+        look = style.look(self.number)
+        return {"marker": look["marker"], **method_look(self.method, look["color"])}
 
 
 MOST_CURVES = 8  # that a panel holds legibly
@@ -45,24 +51,15 @@ def read_groups(result):
     return [(method, "")]
 
 
-def first_scale(result):
-    _, prefix = read_groups(result)[0]
-    return result.scale(f"{prefix}field_correlation", 0)[0]
-
-
 def kind_of_moves(results):
     """tilt or shift (a translation), whichever all results stand on."""
-    kinds = {"tilt" if is_sweep(result) else first_scale(result): result.path for result in results}
+    kinds = {"tilt" if is_sweep(result) else
+             result.scale(f"{read_groups(result)[0][1]}field_correlation", 0)[0]: result.path
+             for result in results}
     if len(kinds) > 1:
         raise style.Unusable(f"{kinds['shift']} is of translations, {kinds['tilt']} of tilts: "
                              "draw them one by one")
     return next(iter(kinds))
-
-
-def file_look(method, number):
-    """A colour and symbol per file."""
-    look = style.look(number)
-    return {"marker": look["marker"], **method_look(method, look["color"])}
 
 
 def sides(result, prefix):
@@ -73,23 +70,20 @@ def sides(result, prefix):
     return [(first, ", transmitted"), (reflected, ", reflected")]
 
 
-def joined(*words):
-    return ", ".join(word for word in words if word)
-
-
 def result_series(result, label, number):
     """Of one result; a side of the medium is a curve."""
     series, groups = [], read_groups(result)
+    only_reflected = np.all(np.cos(result.values("view_angle")) < 0)
     for side, (_, of_side) in enumerate(sides(result, groups[0][1])):
-        line = theory.reflected if side or only_reflected(result) else theory.transmitted
+        line = theory.reflected if side or only_reflected else theory.transmitted
         for method, prefix in groups:
             name = sides(result, prefix)[side][0]
             if result.dataset(name).ndim != 1:
                 raise style.Unusable(f"{result.path}: {name} is not a curve over tilts")
             field, error = result.measured(name)
-            series.append(Series(joined(label, METHODS[method]) + of_side, result.axis(name, 0),
-                                 np.real(field), error, file_look(method, number + side),
-                                 line(result) if method == groups[0][0] else None))
+            words = labels.joined(label, METHODS[method]) + of_side
+            series.append(Series(words, method, number + side, result.axis(name, 0), np.real(field),
+                                 error, line(result) if method == groups[0][0] else None))
     return series
 
 
@@ -101,51 +95,39 @@ def sweep_series(result, label, number, arguments):
         line = None if stored is None else \
             theory.of_point(sweep, row, stored[row], theory.fine_tilts(result))
         for method in sweep.prefixes:
-            words = joined(label, sweep.label(sweep.varying(), row), METHODS.get(method))
-            field, error = sweep.measured(method, "field_correlation")
-            series.append(Series(words, result.values("tilt"), field[row], error[row],
-                                 file_look(method, number + place), line))
-    return series
-
-
-def series_of(results, names, arguments):
-    series = []
-    for result, label in zip(results, names):
-        number = len({s.look["color"] for s in series})
-        series += sweep_series(result, label, number, arguments) if is_sweep(result) else \
-            result_series(result, label, number)
+            words = labels.joined(label, sweep.label(sweep.varying(), row), METHODS.get(method))
+            curve = (column[row] for column in sweep.measured(method, "field_correlation"))
+            series.append(Series(words, method, number + place, result.values("tilt"), *curve, line))
     return series
 
 
 def read_series(results, arguments):
-    series = series_of(results, labels.labels(results), arguments)
-    if len({s.label for s in series}) < len(series):
-        series = series_of(results, labels.stems(results), arguments)
+    """Of all results, told apart by their scenes, or by their files where that is not enough."""
+    for names in (labels.labels(results), labels.stems(results)):
+        series = []
+        for result, label in zip(results, names):
+            number = len({s.look["color"] for s in series})
+            series += sweep_series(result, label, number, arguments) if is_sweep(result) else \
+                result_series(result, label, number)
+        if len({s.label for s in series}) == len(series):
+            break
     if len(series) > MOST_CURVES and len(results) > 1 and any(map(is_sweep, results)):
         raise style.Unusable(f"{len(series)} curves, a panel holds {MOST_CURVES}: choose some by --select")
     return series
 
 
-def only_reflected(result):
-    return np.all(np.cos(result.values("view_angle")) < 0)
-
-
-def same_line(one, other):
-    return all(len(a) == len(b) and np.allclose(a, b, rtol=1e-9, atol=1e-12) for a, b in zip(one.line, other.line))
-
-
 def draw_theory(axis, series):
     """Each line once, in grey where it is of several curves. Returns whether there is any."""
-    drawn = []
     lines = [s for s in series if s.line is not None]
-    for s in lines:
-        if any(same_line(s, other) for other in drawn):
+    same = lambda one, other: one.line[0].shape == other.line[0].shape and \
+        np.allclose(one.line, other.line, rtol=1e-9, atol=1e-12)
+    for number, s in enumerate(lines):
+        if any(same(s, other) for other in lines[:number]):
             continue
-        shared_by = sum(same_line(s, other) for other in lines)
-        colour = s.look["color"] if shared_by == 1 and len(lines) > 1 else style.GREY
-        axis.plot(1000 * s.line[0], s.line[1]**2, color=colour, linewidth=0.9, zorder=1)
-        drawn.append(s)
-    return bool(drawn)
+        alone = sum(same(s, other) for other in lines) == 1 < len(lines)
+        axis.plot(1000 * s.line[0], s.line[1]**2, color=s.look["color"] if alone else style.GREY,
+                  linewidth=0.9, zorder=1)
+    return bool(lines)
 
 
 def theory_name(results):
@@ -171,18 +153,14 @@ def share_q(results):
 
 
 def title(results):
+    """What all results have in common."""
     names = {"optical_depth": "OD", "g": "$g$", "albedo": "albedo"}
-    values = {name: shared(results, name) for name in names}
-    words = [f"{names[name]} = {value:.3g}" for name, value in values.items() if value is not None]
-    return ", ".join(words + view_words(results))
-
-
-def view_words(results):
-    """[The view and its side, where all results have the same one]."""
-    views = [tuple(result.values("view_angle")) if result.has("view_angle") else () for result in results]
-    if len(set(views)) > 1 or len(views[0]) != 1:
-        return []
-    return [f"view {style.angle(views[0][0])}{labels.side(results[0])}"]
+    words = [f"{text} = {shared(results, name):.3g}" for name, text in names.items()
+             if shared(results, name) is not None]
+    views = {tuple(result.values("view_angle")) if result.has("view_angle") else () for result in results}
+    view = views.pop() if len(views) == 1 else ()
+    return ", ".join(words + [f"view {style.angle(one)}{labels.side(results[0])}" for one in view
+                              if len(view) == 1])
 
 
 def draw(results, arguments):

@@ -27,9 +27,11 @@ def curve_look(number, method):
     return {"marker": look["marker"], **method_look(method, look["color"], 3), **fill}
 
 
-def last_method(sweep):
-    """Whose points stand for a curve; None of one method alone."""
-    return list(sweep.prefixes)[-1]
+def curve_handle(sweep, number, with_line):
+    """Of a curve in a legend: the symbol of its last method, and a line where theory has one."""
+    look = {**curve_look(number, list(sweep.prefixes)[-1]), "markersize": 3}
+    line = style.look(number)["linestyle"] if with_line else "none"
+    return plt.Line2D([], [], linewidth=0.7, linestyle=line, **look)
 
 
 def method_entries(sweep):

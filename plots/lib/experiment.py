@@ -4,6 +4,7 @@ import re
 
 from lib import labels
 from lib.result_file import Unusable
+from lib.sweep_file import columns_of
 
 import h5py
 import numpy as np
@@ -46,9 +47,8 @@ class Number:
                            "point, as power_within[0]")
         rank = result.dataset(self.path).ndim - (self.entry is not None)
         scales = dict(result.scale(self.path, axis) for axis in range(rank))
-        grids = np.meshgrid(*scales.values(), indexing="ij")
         self.columns = {key: result.values(key) for key in keys_of(result)} if "point" in scales else \
-            {key: grid.ravel() for key, grid in zip(scales, grids)}
+            columns_of(scales)
 
     def of(self, path):
         """The number itself, its error or derivatives: [point, ...]."""

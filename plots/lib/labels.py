@@ -20,6 +20,10 @@ def of_slab(result, digits=3):
     return rf"OD {depth:.{digits}g}, $g$ = {g:.{digits}g}"
 
 
+def joined(*words):
+    return ", ".join(filter(None, words))
+
+
 def with_unit(name, unit):
     return name if unit in (None, "", "1") else f"{name} ({unit})"
 
@@ -39,16 +43,6 @@ def side(result):
     return ", reflected"
 
 
-def text_of(key, scene):
-    return f"{NAMES.get(key, key)} {'' if key.endswith('_angles') else '= '}{value_text(key, scene[key])}"
-
-
-def differing(scenes):
-    """Keys that not all have alike, or at all."""
-    keys = sorted(set().union(*scenes) - NOT_SCENE)
-    return [key for key in keys if any(scene.get(key) != scenes[0].get(key) for scene in scenes)]
-
-
 def stems(results):
     """Names of their files, with as much of the folder as tells them apart."""
     paths = [pathlib.Path(result.path) for result in results]
@@ -61,10 +55,12 @@ def labels(results):
     if len(results) == 1:
         return [""]
     scenes = [result.scene for result in results]
-    keys = differing(scenes)
+    keys = [key for key in sorted(set().union(*scenes) - NOT_SCENE)
+            if any(scene.get(key) != scenes[0].get(key) for scene in scenes)]
     if not keys and len({result.path for result in results}) > 1:
         return [""] * len(results)  # one scene: methods tell them apart
     if len(keys) > MOST or any(key not in scene for key in keys for scene in scenes):
         return stems(results)
-    return [", ".join(text_of(key, scene) for key in keys) + (side(result) if "view_angles" in keys else "")
-            for scene, result in zip(scenes, results)]
+    sign = lambda key: "" if key.endswith("_angles") else "= "
+    return [", ".join(f"{NAMES.get(key, key)} {sign(key)}{value_text(key, scene[key])}" for key in keys)
+            + (side(result) if "view_angles" in keys else "") for scene, result in zip(scenes, results)]

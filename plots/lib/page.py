@@ -30,6 +30,14 @@ def page_of_panels(down, across, count, beneath=0):
     return figure, *kinds
 
 
+def side_by_side(result, panels, width, height, **looks):
+    """A figure of panels, each drawn by a function of (axis, result)."""
+    figure, axes = plt.subplots(1, len(panels), figsize=(width, height), **looks)
+    for axis, draw_panel in zip(axes, panels):
+        draw_panel(axis, result)
+    return figure
+
+
 def outer_labels(axes, count):
     """Labels at the left and beneath the lowest panel of each column alone."""
     for (row, column), axis in np.ndenumerate(axes):
@@ -57,13 +65,6 @@ def legend_above(figure, entries, columns, **looks):
                   **looks)
 
 
-def columns_that_fit(sizes, letters):
-    """Into how many columns entries of these sizes go, all columns about equally long."""
-    width = lambda columns: sum(max(part) for part in np.array_split(sizes, columns))
-    most = max(n for n in range(1, len(sizes) + 1) if n == 1 or width(n) <= letters)
-    return -(-len(sizes) // -(-len(sizes) // most))
-
-
 def legend_outside(figure, entries, notes=()):
     """A legend of (handle, label), headed by notes: over the figure, or beside a single panel if it
     would be higher than a few rows."""
@@ -71,7 +72,9 @@ def legend_outside(figure, entries, notes=()):
         return
     letters = LETTERS * figure.get_figwidth()
     sizes = [len(label.replace("$", "")) + 9 for _, label in entries] or [0]
-    columns = columns_that_fit(sizes, letters)
+    width = lambda columns: sum(max(part) for part in np.array_split(sizes, columns))
+    most = max(n for n in range(1, len(sizes) + 1) if n == 1 or width(n) <= letters)
+    columns = -(-len(sizes) // -(-len(sizes) // most))  # all about equally long
     rows = len(notes) + -(-len(entries) // columns)
     beside = entries and figure.get_figwidth() <= style.COLUMN and rows > MOST_ROWS
     wrapped = [textwrap.fill(note, 40 if beside else int(letters)) for note in notes]

@@ -33,14 +33,9 @@ def names_of_sensors(result):
 
 
 def sensors(results):
-    """Each sensor of each result."""
-    return [Sensor(result, name) if name else result
-            for result in results for name in names_of_sensors(result) or [""]]
-
-
-def sensor_labels(results):
-    """What tells each of sensors() apart."""
-    return [", ".join(filter(None, [label, name])) for result, label in zip(results, labels.labels(results))
+    """[(what tells it apart, sensor)] of each sensor of each result."""
+    return [(labels.joined(label, name), Sensor(result, name) if name else result)
+            for result, label in zip(results, labels.labels(results))
             for name in names_of_sensors(result) or [""]]
 
 

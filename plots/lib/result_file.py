@@ -90,11 +90,6 @@ class Result:
         """Keys that vary in a sweep of another subcommand; none of other results."""
         return list(self.attribute("swept", [])) if self.attribute("of") else []
 
-    def refuse_sweep(self):
-        if self.swept():
-            raise Unusable(f"{self.path}: a sweep over {', '.join(self.swept())}, no one picture; "
-                           "plots/experiment_map.py --value NAME draws a number of it")
-
 
 def read_table(path):
     """A CSV table with a line of names: [row], each column by its name. Lines that begin with # are

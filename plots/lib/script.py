@@ -20,6 +20,7 @@ class Plot:
     """What a script draws, and of what."""
 
     draw: Callable  # (result, or with `several` results; with options also arguments) -> figure
+    options: list  # (names, settings), as argparse's add_argument takes them
     several: bool = False  # any number of files
     needs: dict = dataclasses.field(default_factory=dict)  # datasets, and what makes them
     one_run: bool = False  # sweeps are refused
@@ -32,10 +33,6 @@ class Plot:
     def description(self):
         return self.draw.__globals__["__doc__"]
 
-    @property
-    def options(self):
-        return getattr(self.draw, "options", [])
-
     def add_options(self, parser):
         for names, settings in self.options:
             parser.add_argument(*names, **settings)
@@ -43,8 +40,9 @@ class Plot:
     def figure(self, files, arguments):
         """files: as `read` returns them."""
         for file in files:
-            if self.one_run:
-                file.refuse_sweep()
+            if self.one_run and file.swept():
+                raise Unusable(f"{file.path}: a sweep over {', '.join(file.swept())}, no one picture; "
+                               "plots/experiment_map.py --value NAME draws a number of it")
             for name, hint in self.needs.items():
                 file.require(name, hint)
         drawn = files if self.several else files[0]
@@ -70,7 +68,7 @@ def plot(**settings):
     """Declares the function that draws: settings are those of Plot. In a script that is run it draws
     at once, so that it must be the last of the script."""
     def declare(draw):
-        draw.plot = Plot(draw, **settings)
+        draw.plot = Plot(draw, getattr(draw, "options", []), **settings)
         if draw.__globals__["__name__"] == "__main__":
             draw.plot.run()
         return draw

@@ -18,7 +18,7 @@ import numpy as np
 from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
-from lib.result_file import Result, Unusable
+from lib.result_file import Unusable
 
 # Okabe and Ito 2008: told apart by the colour blind, and in grey by marker and line style besides.
 COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#8C510A"]
@@ -110,8 +110,12 @@ def whole_decades(axis):
                             (axis.dataLim.intervaly, axis.set_ylim)):
         low, high = np.log10(low_high)
         limit(10 ** np.floor(low - 0.03), 10 ** np.ceil(high + 0.03))
-    axis.xaxis.set_minor_formatter(NullFormatter())
-    axis.yaxis.set_minor_formatter(NullFormatter())
+    no_minor_numbers(axis)
+
+
+def no_minor_numbers(axis):
+    for side in (axis.xaxis, axis.yaxis):
+        side.set_minor_formatter(NullFormatter())
 
 
 def few_decades(side, steps=(1, 2, 5)):
@@ -124,26 +128,6 @@ def few_decades(side, steps=(1, 2, 5)):
 def caption(figure, sentences):
     """Keeps what a figure's caption has to say: it is printed, and stands in both files' metadata."""
     figure.caption = "; ".join([*filter(None, [getattr(figure, "caption", "")]), *sentences])
-
-
-def whole(figure):
-    """Makes the page larger by what stands outside of it, legends above all, and leaves the panels as
-    they are: so that nothing is cut off however the figure is saved."""
-    figure.canvas.draw()
-    width, height = figure.get_size_inches()
-    box = figure.get_tightbbox(figure.canvas.get_renderer())
-    left, bottom = (max(0, PAD - low) for low in (box.x0, box.y0))
-    right, top = max(0, box.x1 + PAD - width), max(0, box.y1 + PAD - height)
-    if max(left, bottom, right, top) <= PAD:
-        return figure
-    wide, high = width + left + right, height + bottom + top
-    places = [legend.get_bbox_to_anchor().transformed(figure.dpi_scale_trans.inverted()) for legend in figure.legends]
-    figure.set_size_inches(wide, high)
-    figure.get_layout_engine().set(rect=(left / wide, bottom / high, width / wide, height / high))
-    for legend, place in zip(figure.legends, places):
-        legend.set_bbox_to_anchor(((place.x0 + left) / wide, (place.y0 + bottom) / high), figure.transFigure)
-    figure.canvas.draw()
-    return figure
 
 
 def save(figure, prefix, dpi=None):

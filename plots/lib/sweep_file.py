@@ -24,9 +24,9 @@ class Sweep:
                          if result.has(f"{method}/memory_effect_range")} or {None: ""}
         grid = result.dataset(next(iter(self.prefixes.values())) + "memory_effect_range")
         if result.attribute("format", 1) < 2 or grid.ndim == 0:
-            raise style.Unusable(f"{self.path}: not a sweep of this version of the program")
+            self.refuse("not a sweep of this version of the program")
         if grid.size == 0:
-            raise style.Unusable(f"{self.path}: no point of the sweep is finished")
+            self.refuse("no point of the sweep is finished")
         scales = dict(result.scale(grid.name, axis) for axis in range(grid.ndim))
         self.shape, self.rows, self.scene = grid.shape, np.arange(grid.size), result.scene
         self.columns = self.read_columns(scales)
@@ -35,8 +35,7 @@ class Sweep:
         self.is_list = "point" in scales and not self.has_part_of_grid()
 
     def read_columns(self, scales):
-        grids = np.meshgrid(*scales.values(), indexing="ij")
-        columns = {name: values.ravel() for name, values in zip(scales, grids)}
+        columns = columns_of(scales)
         for name in PARAMETERS:
             if name not in columns and self.result.has(name):
                 columns[name] = self.table(name)
@@ -78,7 +77,7 @@ class Sweep:
         """A dataset [grid, ...] as [point, ...]."""
         values = self.result.values(name)
         if values.shape[:len(self.shape)] != self.shape:
-            raise style.Unusable(f"{self.path}: {name} is not one value per point of the grid")
+            self.refuse(f"{name} is not one value per point of the grid")
         return values.reshape(-1, *values.shape[len(self.shape):])
 
     def optional(self, name):
@@ -133,21 +132,19 @@ class Sweep:
             name, _, text = choice.partition("=")
             column = self.column(name)
             try:
-                wanted = [float(value) for value in text.split(",")]
+                near = np.isclose(column[:, None], np.array(text.split(","), float), rtol=1e-4, atol=0)
             except ValueError:
                 raise style.Unusable(f"--select {choice}: should be AXIS=VALUE,VALUE")
-            for value in wanted:
-                if not np.isclose(column, value, rtol=1e-4, atol=0).any():
-                    raise style.Unusable(f"--select {choice}: {self.path} has {name} = "
-                                         f"{', '.join(style.short(np.unique(column)))}")
-            near = np.isclose(column[:, None], wanted, rtol=1e-4, atol=0).any(axis=1)
-            self.rows = self.rows[near[self.rows]]
+            if not near.any(axis=0).all():
+                raise style.Unusable(f"--select {choice}: {self.path} has {name} = "
+                                     f"{', '.join(style.short(np.unique(column)))}")
+            self.rows = self.rows[near.any(axis=1)[self.rows]]
         if len(self.rows) == 0:
-            raise style.Unusable(f"{self.path}: no point has all that --select asks for")
+            self.refuse("no point has all that --select asks for")
 
     def column(self, name):
         if name not in self.columns:
-            raise style.Unusable(f"{self.path}: has no axis {name}; has {', '.join(self.columns)}")
+            self.refuse(f"has no axis {name}; has {', '.join(self.columns)}")
         return self.columns[name]
 
     def groups(self, name, rows):
@@ -180,6 +177,12 @@ class Sweep:
         """The relative error that a method was to reach, or None where it stops otherwise."""
         return self.result.attribute("target_error", self.result.attribute("target_error"),
                                      group=self.prefixes[method].rstrip("/") or "/")
+
+
+def columns_of(scales):
+    """{name: its values [point]} of a grid over scales {name: values}."""
+    grids = np.meshgrid(*scales.values(), indexing="ij")
+    return {name: grid.ravel() for name, grid in zip(scales, grids)}
 
 
 def text(name, value):

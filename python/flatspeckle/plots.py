@@ -83,6 +83,25 @@ def file_of(result):
     return os.fspath(result) if isinstance(result, (str, os.PathLike)) else source_of(result)
 
 
+def whole(figure, pad):
+    """Makes the page larger by what stands outside of it, legends above all, with so many inches around,
+    and leaves the panels as they are: so that nothing is cut off however the figure is saved."""
+    figure.canvas.draw()
+    width, height = figure.get_size_inches()
+    box = figure.get_tightbbox(figure.canvas.get_renderer())
+    left, bottom = (max(0, pad - low) for low in (box.x0, box.y0))
+    right, top = max(0, box.x1 + pad - width), max(0, box.y1 + pad - height)
+    if max(left, bottom, right, top) <= pad:
+        return
+    wide, high = width + left + right, height + bottom + top
+    places = [legend.get_bbox_to_anchor().transformed(figure.dpi_scale_trans.inverted()) for legend in figure.legends]
+    figure.set_size_inches(wide, high)
+    figure.get_layout_engine().set(rect=(left / wide, bottom / high, width / wide, height / high))
+    for legend, place in zip(figure.legends, places):
+        legend.set_bbox_to_anchor(((place.x0 + left) / wide, (place.y0 + bottom) / high), figure.transFigure)
+    figure.canvas.draw()
+
+
 def figure(name, results, options):
     with own_libraries() as style:
         plot = plot_of(name)
@@ -95,10 +114,10 @@ def figure(name, results, options):
             drawn = plot.figure(files, parsed(plot, options))
         except style.Unusable as problem:
             raise InputError(str(problem)) from None
-        style.whole(drawn)  # while the look is theirs
+        whole(drawn, style.PAD)  # while the look is theirs
         style.plt.close(drawn)  # it is returned: a notebook need not show it twice
     for file in files:
-        if isinstance(file, style.Result):
+        if hasattr(file, "file"):
             file.file.close()
     return drawn
 
