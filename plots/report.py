@@ -6,13 +6,17 @@ import argparse
 import io
 import json
 import pathlib
+import sys
 
-from lib import bench_document, bench_figures, markdown, script
-from lib.bench_numbers import numbers_of
+from lib import bench_figures, script
 from lib.bench_results import read_bench
 
 import matplotlib.pyplot as plt
 from PIL import Image
+
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "scripts"))
+from report_pages import document, markdown
+from report_pages.numbers import numbers_of
 
 plt.rcParams.update({"svg.hashsalt": "flatspeckle", "svg.fonttype": "path"})
 DPI = 220  # at 7 inches across; larger pictures would weigh too much in a repository
@@ -37,7 +41,7 @@ def draw_all(bench, folder):
 def write_report(bench, folder, coverage):
     folder.mkdir(parents=True, exist_ok=True)
     pictures, numbers = draw_all(bench, folder), numbers_of(bench)
-    text = bench_document.as_markdown(bench, numbers, pictures, coverage)
+    text = document.as_markdown(bench, numbers, pictures, coverage)
     written = {"report.html": markdown.as_html(text, pictures), "report.md": text,
                "numbers.json": json.dumps(numbers, indent=1, ensure_ascii=False, sort_keys=True) + "\n"}
     for name, contents in written.items():

@@ -3,9 +3,10 @@
 import pathlib
 import re
 
-from lib import bench_figures, bench_numbers, number_text
-from lib.bench_numbers import TARGET, has_slope, seconds_to_target, time_to_target
-from lib.markdown import table
+from lib import bench_figures, number_text
+
+from report_pages.markdown import table
+from report_pages.numbers import TARGET, has_slope, seconds_to_target, time_to_target, worst_slope
 
 TEXT = pathlib.Path(__file__).parent / "report.md"
 
@@ -99,7 +100,7 @@ def by_room(file, header, row_of, align):
 
 def parts_of(bench, numbers, coverage_rows):
     """What stands in the braces of the text."""
-    worst = bench_numbers.worst_slope(bench.error)
+    worst = worst_slope(bench.error)
     tables = {
         "warnings": warnings(bench), "made": [made(bench)], "accuracy": accuracy(bench.error),
         "references": [table(["scene", "reference", "its error"],
