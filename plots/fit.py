@@ -13,7 +13,7 @@ NAMES = {"field_correlation": r"$C_E$", "intensity_correlation": r"$C_I$", "inte
 
 
 def abscissa(result, observable):
-    """Of every datum, with its name: its tilt or angle, its time, or, of covariances of fields, its
+    """Abscissa of every datum and its name: a tilt or angle, a time, or, for covariances of fields, a
     number."""
     angle, is_pair = result.values("datum_angle"), observable == "field_covariance"
     time = result.values("datum_time") if result.has("datum_time") else 0 * angle

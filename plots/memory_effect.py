@@ -77,7 +77,7 @@ class Drawing:
         return list(zip(np.searchsorted(self.sweep.values(self.curves), columns), rows))
 
     def panel(self, axis, fixed, rows):
-        """Of the points `rows`, which have the values `fixed` in common."""
+        """Draws the points `rows`, which have the values `fixed` in common."""
         correlation_panel.prepare(axis, self.tilt, self.lowest, self.arguments)
         words = [sweep_file.text(name, value) for name, value in fixed.items()] \
             if "point" not in fixed else [self.sweep.label(self.sweep.varying(), rows[0])]

@@ -27,8 +27,9 @@ def check(sweep):
         if len(sweep.values(name)) > MOST_CELLS:
             sweep.refuse(f"{len(sweep.values(name))} values of {name}, at most {MOST_CELLS} are legible",
                          (name, MOST_CELLS))
-    *others, panels = [None] + [name for name in sweep.varying() if name not in ("g", "albedo")]
-    sweep.refuse_others(others[1:], f"g, albedo and {panels}")
+    others = [name for name in sweep.varying() if name not in ("g", "albedo")]
+    panels = others[-1] if others else None
+    sweep.refuse_others(others[:-1], f"g, albedo and {panels}")
     if panels and len(sweep.values(panels)) * len(sweep.prefixes) > MOST_PANELS:
         sweep.refuse(f"more than {MOST_PANELS} panels do not fit a page", (panels, 4))
     return panels

@@ -76,7 +76,7 @@ def draw(results, arguments):
     height = np.clip(pictures.height_over_width(results[0]), 0.2, 2) * 0.36 * style.PAGE + 0.4
     figure, axes = plt.subplots(len(results), 2, squeeze=False,
                                 figsize=(style.PAGE, len(results) * height))
-    # From the decade of the best pixels of any of them.
+    # The scale of errors begins at the decade of the best pixels of any result.
     best = min(np.quantile(relative_error(result).compressed(), 0.01) for result in results)
     errors = LogNorm(min(10 ** np.floor(np.log10(best)), MOST / 10), MOST, clip=True)
     quantities = [pictures.quantity(result) for result in results]  # one scale for all of each

@@ -19,7 +19,7 @@ def draw(results):
     style.mark(axis, 1)
     with_theory = False
     for number, result in enumerate(results):
-        # In mean spacings, which points have too.
+        # The unit is the mean spacing, which points have too.
         area = result.attribute("width") * result.attribute("depth")
         q = result.axis("structure_factor", 0) * np.sqrt(area / result.attribute("count"))
         axis.errorbar(q, *result.measured("structure_factor"), **style.symbols(number),

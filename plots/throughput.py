@@ -16,7 +16,7 @@ MOST_CURVES = len(style.COLOURS)
 
 
 def values_of(result, key):
-    """Of a key: its value, or those at the points of a sweep."""
+    """Returns the value of a key, or its values at the points of a sweep."""
     values = Number(result, "total").columns[key] if key in keys_of(result) else result.scene.get(key)
     if not np.issubdtype(np.asarray(values).dtype, np.number) or np.ndim(values) != (key in keys_of(result)):
         raise style.Unusable(f"{result.path}: its scene has no number {key}; --key takes one that has")
@@ -60,7 +60,7 @@ def curves(results, arguments):
 
 
 def label_of(curve, found, apart):
-    """What tells a curve from the others."""
+    """Label that distinguishes a curve from the others."""
     second, is_mean = curve
     words = [f"{NAMES.get(apart, apart)} = {second:.4g}"] if apart else []
     if len({phase for _, phase in found}) > 1:

@@ -10,7 +10,7 @@ import numpy as np
 
 
 def positions(scale, wanted):
-    """Where on a scale the wanted values are."""
+    """Indices of the wanted values on a scale."""
     found = np.abs(scale[None, :] - wanted[:, None]).argmin(axis=1)
     if not np.allclose(scale[found], wanted, rtol=0, atol=1e-12):
         raise ValueError("the result lacks angles of the table")

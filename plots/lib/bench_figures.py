@@ -106,7 +106,7 @@ def error_panels(error, scenes, across):
 
 
 def scenes_of(error, flat):
-    """Those of flatland, which have a method of ours, or the others."""
+    """Lists the scenes of flatland, which have a method of ours, or the other scenes."""
     return [scene for scene in error.scenes()
             if flat == any(curve["method"] == "ours" for curve in error.of_scene(scene))]
 

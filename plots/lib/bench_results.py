@@ -84,7 +84,7 @@ class Bench:
 
 
 def read_bench(error, stability, plan):
-    """Of the paths of the three files."""
+    """Reads the three files, given by their paths."""
     return Bench(ErrorFile(Result(error)),
                  RowFile(Result(stability), "name", "invariant", "must_say", "refusal", "figure", "limit"),
                  RowFile(Result(plan), "left_out", "scene", "per", "general_s", "special_s", "ratio",

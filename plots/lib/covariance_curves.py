@@ -71,7 +71,7 @@ def sides(result, prefix):
 
 
 def result_series(result, label, number):
-    """Of one result; a side of the medium is a curve."""
+    """Lists the curves of one result: one for each side of the medium and method."""
     series, groups = [], read_groups(result)
     only_reflected = np.all(np.cos(result.values("view_angle")) < 0)
     for side, (_, of_side) in enumerate(sides(result, groups[0][1])):
@@ -102,7 +102,8 @@ def sweep_series(result, label, number, arguments):
 
 
 def read_series(results, arguments):
-    """Of all results, told apart by their scenes, or by their files where that is not enough."""
+    """Lists the curves of all results, labelled by what differs in their scenes, or by their files where
+    that is not enough."""
     for names in (labels.labels(results), labels.stems(results)):
         series = []
         for result, label in zip(results, names):
@@ -153,7 +154,7 @@ def share_q(results):
 
 
 def title(results):
-    """What all results have in common."""
+    """Names the values that all results have in common."""
     names = {"optical_depth": "OD", "g": "$g$", "albedo": "albedo"}
     words = [f"{text} = {shared(results, name):.3g}" for name, text in names.items()
              if shared(results, name) is not None]

@@ -28,7 +28,7 @@ def curve_look(number, method):
 
 
 def curve_handle(sweep, number, with_line):
-    """Of a curve in a legend: the symbol of its last method, and a line where theory has one."""
+    """Legend handle of a curve: the symbol of its last method, and a line where theory is drawn."""
     look = {**curve_look(number, list(sweep.prefixes)[-1]), "markersize": 3}
     line = style.look(number)["linestyle"] if with_line else "none"
     return plt.Line2D([], [], linewidth=0.7, linestyle=line, **look)

@@ -35,7 +35,7 @@ class Result:
             raise Unusable(complaint(path))
 
     def locate(self, name):
-        """Where the file has what goes by a name."""
+        """Path of a dataset in the file."""
         return name
 
     def has(self, name):

@@ -17,7 +17,7 @@ from lib.result_file import Result, Unusable
 
 @dataclasses.dataclass(frozen=True)
 class Plot:
-    """What a script draws, and of what."""
+    """The function that draws, and the files and options that it takes."""
 
     draw: Callable  # (result, or with `several` results; with options also arguments) -> figure
     options: list  # (names, settings), as argparse's add_argument takes them

@@ -49,12 +49,12 @@ def look(number):
 
 
 def line(number):
-    """The same without its marker."""
+    """Colour and line style of curve `number`."""
     return {key: look(number)[key] for key in ("color", "linestyle")}
 
 
 def symbols(number):
-    """The same of points with error bars that no line joins."""
+    """Look of the points of curve `number` with error bars and without a line between them."""
     return {**look(number), "linestyle": "none", "elinewidth": 0.7}
 
 

@@ -91,7 +91,7 @@ class Sweep:
         return self.of(method, name), self.of(method, f"{name}_error")
 
     def ranges(self, method):
-        """Of all points: q L at C_I = 1/2, its error, and whether it is a bound: 1 where the curve
+        """Returns q L at C_I = 1/2, its error, and whether it is a bound, each [point]: 1 where the curve
         stays above 1/2, 2 where it stays below."""
         return *self.measured(method, "memory_effect_range"), self.of(method, "range_censored")
 

@@ -78,7 +78,7 @@ def dimension(result):
 
 
 def medium(result):
-    """Of a slab, as keywords of the formulas above."""
+    """Keyword arguments of the formulas above for the slab of a result."""
     keys = ("depth", "optical_depth", "g", "albedo")
     return {**{key: result.attribute(key) for key in keys}, "dimension": dimension(result)}
 

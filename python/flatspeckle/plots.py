@@ -56,7 +56,7 @@ def own_libraries():
 
 
 def plot_of(name):
-    """What the script declares."""
+    """Returns the plot that a script declares."""
     spec = importlib.util.spec_from_file_location(f"flatspeckle.plots.{name}", folder() / f"{name}.py")
     script = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(script)

@@ -99,7 +99,7 @@ def by_room(file, header, row_of, align):
 
 
 def parts_of(bench, numbers, coverage_rows):
-    """What stands in the braces of the text."""
+    """Returns the texts that replace the names in braces."""
     worst = worst_slope(bench.error)
     tables = {
         "warnings": warnings(bench), "made": [made(bench)], "accuracy": accuracy(bench.error),
