@@ -15,6 +15,10 @@ install(EXPORT flatspeckle NAMESPACE flatspeckle:: FILE flatspeckle-targets.cmak
 
 install(DIRECTORY plots octave data/scenes data/pictures DESTINATION ${CMAKE_INSTALL_DATADIR}/flatspeckle
         PATTERN __pycache__ EXCLUDE)
+if(FLATSPECKLE_BENCH)  # plots/report.py writes the pages of its results
+  install(DIRECTORY scripts/report_pages DESTINATION ${CMAKE_INSTALL_DATADIR}/flatspeckle/scripts
+          PATTERN __pycache__ EXCLUDE)
+endif()
 # Debian's own place for packages of python3; under another prefix PYTHONPATH names it.
 set(FLATSPECKLE_PYTHON_DIR lib/python3/dist-packages CACHE STRING "Where the Python package goes, under the prefix")
 install(DIRECTORY python/flatspeckle DESTINATION ${FLATSPECKLE_PYTHON_DIR} PATTERN __pycache__ EXCLUDE)

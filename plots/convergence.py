@@ -2,7 +2,7 @@
 """Convergence of a sweep: relative error of every point against its processor time or samples, with
 the target, and the points that missed it (also printed)."""
 
-from lib import page, style, sweep_file
+from lib import page, script, style, sweep_file
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -11,22 +11,8 @@ MOST_NAMED, MOST_COLOURS = 6, 8
 X_AXES = {"cpu": ("cpu_s", "processor time (s)"), "samples": ("samples", "samples")}
 MAP = plt.get_cmap("viridis")
 SHADES = 0.82  # of the map's range; its lightest end is lost on paper
-
-
-def add_options(parser):
-    parser.add_argument("--against", choices=list(X_AXES), default="cpu")
-    parser.add_argument("--colour", choices=list(sweep_file.PARAMETERS),
-                        help="axis that colours the curves (default: the outermost of few values)")
-    sweep_file.add_select(parser)
-
-
-def colour_axis(sweep, asked):
-    axes = sweep.varying()
-    if asked and asked not in axes:
-        raise style.Unusable(f"{sweep.path}: {asked} does not vary; --colour one of "
-                             f"{', '.join(axes) or 'nothing here'}")
-    few = [name for name in axes if len(sweep.values(name)) <= MOST_COLOURS]
-    return asked or (few or [None])[0]
+LATE = {"marker": "X", "markersize": 6, "markeredgecolor": "black", "markeredgewidth": 0.6}
+GUIDE = {"color": "black", "linewidth": 0.7, "linestyle": (0, (1, 2))}
 
 
 def colours(sweep, axis):
@@ -43,20 +29,15 @@ def traces(sweep, method, column):
     prefix = sweep.prefixes[method] + "trace/"
     point, x, error = (sweep.result.values(prefix + name)
                        for name in ("of_point", column, "relative_error"))
-    if not len(point) == len(x) == len(error):
-        raise style.Unusable(f"{sweep.path}: columns of {prefix} differ in length")
     shown = (x > 0) & (error > 0)
     return {row: (x[shown & (point == row)], error[shown & (point == row)]) for row in sweep.rows}
 
 
 def missed(sweep, method):
     """Points that ended above the target or without an error, the worst first."""
-    target = sweep.target(method)
-    if target is None:
-        return []
-    error = sweep.of(method, "relative_error")[sweep.rows]
-    late = sweep.rows[(error > target) | (error == 0)]
-    return sorted(late, key=lambda row: -sweep.of(method, "relative_error")[row])
+    target, error = sweep.target(method), sweep.of(method, "relative_error")
+    late = [row for row in sweep.rows if target is not None and (error[row] > target or error[row] == 0)]
+    return sorted(late, key=lambda row: -error[row])
 
 
 def describe(sweep, method, row):
@@ -66,31 +47,23 @@ def describe(sweep, method, row):
     return f"{sweep.label([n for n in names if n in sweep.columns], row)}: {reached}"
 
 
-def draw_guide(axis, curves):
-    """Slope -1/2, below the lowest curve."""
-    x, error = min(curves, key=lambda curve: np.min(curve[1] * np.sqrt(curve[0])))
-    ends = np.array([x.min(), x.max()])
-    axis.plot(ends, 0.6 * np.min(error * np.sqrt(x)) / np.sqrt(ends), color="black", linewidth=0.7,
-              linestyle=(0, (1, 2)), zorder=0)
-
-
 def draw_panel(axis, sweep, method, arguments, looks, coloured):
     curves = traces(sweep, method, X_AXES[arguments.against][0])
     shown = {row: curve for row, curve in curves.items() if len(curve[0]) > 0}
     if not shown:
-        raise style.Unusable(f"{sweep.path}: no trace has a checkpoint with an error")
+        sweep.refuse("no trace has a checkpoint with an error")
     thin = 0.9 if len(shown) < 30 else 0.5
     late = missed(sweep, method)
     for row, (x, error) in shown.items():
         look = looks[sweep.columns[coloured][row] if coloured else None]
         axis.plot(x, error, linewidth=thin, alpha=0.9, **look)
         axis.plot(x[-1], error[-1], color=look["color"], zorder=3,
-                  **({"marker": "X", "markersize": 6, "markeredgecolor": "black",
-                      "markeredgewidth": 0.6} if row in late else
-                     {"marker": "o", "markersize": 1.8}))
+                  **(LATE if row in late else {"marker": "o", "markersize": 1.8}))
     if sweep.target(method):
         axis.axhline(sweep.target(method), color=style.GREY, linewidth=0.8, zorder=0)
-    draw_guide(axis, list(shown.values()))
+    x, error = min(shown.values(), key=lambda curve: np.min(curve[1] * np.sqrt(curve[0])))
+    ends = np.array([x.min(), x.max()])  # of a guide of slope -1/2, below the lowest curve
+    axis.plot(ends, 0.6 * np.min(error * np.sqrt(x)) / np.sqrt(ends), **GUIDE, zorder=0)
     axis.set(xscale="log", yscale="log", xlabel=X_AXES[arguments.against][1],
              ylabel="relative error")
     name_missed(axis, sweep, method, late)
@@ -118,40 +91,36 @@ def entries(sweep, coloured, looks):
     if any(sweep.target(method) for method in sweep.prefixes):
         yield plt.Line2D([], [], color=style.GREY, linewidth=0.8), "target"
     if any(missed(sweep, method) for method in sweep.prefixes):
-        yield plt.Line2D([], [], color="0.8", linestyle="none", marker="X", markersize=6,
-                         markeredgecolor="black", markeredgewidth=0.6), "missed the target"
-    yield plt.Line2D([], [], color="black", linewidth=0.7, linestyle=(0, (1, 2))), "slope $-1/2$"
+        yield plt.Line2D([], [], color="0.8", linestyle="none", **LATE), "missed the target"
+    yield plt.Line2D([], [], **GUIDE), "slope $-1/2$"
 
 
-def share_limits(axes):
-    """The same decades for both methods."""
-    for axis in axes:
-        style.whole_decades(axis)
-    limits = np.array([(*axis.get_xlim(), *axis.get_ylim()) for axis in axes])
-    for axis in axes:
-        axis.set_xlim(limits[:, 0].min(), limits[:, 1].max())
-        axis.set_ylim(limits[:, 2].min(), limits[:, 3].max())
-
-
-def draw(results, arguments):
-    sweep = sweep_file.read(results, arguments)
-    coloured = colour_axis(sweep, arguments.colour)
+@script.plot()
+@script.option("--against", choices=list(X_AXES), default="cpu")
+@script.option("--colour", choices=list(sweep_file.PARAMETERS),
+               help="axis that colours the curves (default: the outermost of few values)")
+@sweep_file.SELECT
+def draw(result, arguments):
+    sweep = sweep_file.read(result, arguments)
+    axes = sweep.varying()
+    if arguments.colour and arguments.colour not in axes:
+        sweep.refuse(f"{arguments.colour} does not vary; --colour one of {', '.join(axes) or 'nothing here'}")
+    few = [name for name in axes if len(sweep.values(name)) <= MOST_COLOURS]
+    coloured = arguments.colour or next(iter(few), None)
     looks = colours(sweep, coloured)
     if len(looks) > MOST_COLOURS:
-        raise style.Unusable(f"{sweep.path}: {len(looks)} values of {coloured}, at most "
-                             f"{MOST_COLOURS} are legible; --colour another or "
-                             f"--select {sweep.example(coloured, MOST_COLOURS)}")
+        sweep.refuse(f"{len(looks)} values of {coloured}, at most {MOST_COLOURS} are legible; --colour "
+                     "another", (coloured, MOST_COLOURS))
     across = len(sweep.prefixes)
     named = max(min(len(missed(sweep, method)), MOST_NAMED + 1) for method in sweep.prefixes)
     figure, axes = plt.subplots(1, across, squeeze=False,
-                                figsize=([style.COLUMN, style.PAGE][across - 1],
-                                         2.7 + 0.13 * named))
+                                figsize=([style.COLUMN, style.PAGE][across - 1], 2.7 + 0.13 * named))
     for axis, method in zip(axes.flat, sweep.prefixes):
         draw_panel(axis, sweep, method, arguments, looks, coloured)
-    share_limits(axes[0])
+    for axis in axes.flat:
+        style.whole_decades(axis)
+    limits = np.array([(*axis.get_xlim(), *axis.get_ylim()) for axis in axes.flat])
+    for axis in axes.flat:  # the same decades for both methods
+        axis.set(xlim=(limits[:, 0].min(), limits[:, 1].max()), ylim=(limits[:, 2].min(), limits[:, 3].max()))
     page.legend_outside(figure, list(entries(sweep, coloured, looks)), sweep.notes())
     return figure
-
-
-if __name__ == "__main__":
-    style.main(draw, __doc__, add_options=add_options)

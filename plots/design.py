@@ -2,39 +2,26 @@
 """A field that `flatspeckle design` found: index over a slice with rays before and after, profile beside
 the closed form, pictures beside what was asked for, and how the search went."""
 
-from lib import style
+from lib import page, script, style
 
 import matplotlib.pyplot as plt
 import numpy as np
 
-from matplotlib.colors import LinearSegmentedColormap
 
-INDEX = LinearSegmentedColormap.from_list("index", ["white", "#56B4E9", "#00456b"])
-
-
-def closed_form(r, focus, radius):
-    """A lens whose index is 1 at its rim: of a focus inside or on it."""
-    f = focus / radius
-    return np.sqrt(1 + f**2 - (r / radius)**2) / f
-
-
-def draw_slice(figure, axis, result):
+def draw_slice(axis, result):
     x, z, index = (result.values(name) for name in ("slice_x", "slice_z", "slice_index"))
     radius = x[-1]
     low, high = min(1, index.min()), index.max()
-    mesh = axis.pcolormesh(z, x, index, cmap=INDEX, vmin=low, vmax=high + 0.5 * (high - low) + 1e-9,
+    mesh = axis.pcolormesh(z, x, index, cmap=style.INDEX, vmin=low, vmax=high + 0.5 * (high - low) + 1e-9,
                            rasterized=True, shading="nearest")
-    bar = figure.colorbar(mesh, ax=axis, label="index $n$", pad=0.02, shrink=0.8)
+    bar = axis.figure.colorbar(mesh, ax=axis, label="index $n$", pad=0.02, shrink=0.8)
     bar.ax.set_ylim(low, high + 1e-9)
     for name, colour, width in (("before", "0.6", 0.5), ("after", style.COLOURS[1], 0.7)):
         for px, pz in zip(result.values(f"{name}/x"), result.values(f"{name}/z")):
             axis.plot(pz, px, color=colour, linewidth=width)
-    if result.has("excess"):
-        around = radius * np.array([(-1, -1), (-1, 1), (1, 1), (1, -1), (-1, -1)]).T
-    else:
-        turn = np.linspace(0, 2 * np.pi, 200)
-        around = radius * np.array([np.cos(turn), np.sin(turn)])
-    axis.plot(*around, color="black", linewidth=0.8)
+    square = np.array([(-1, -1), (-1, 1), (1, 1), (1, -1), (-1, -1)]).T
+    around = square if result.has("excess") else style.circle()
+    axis.plot(*(radius * around), color="black", linewidth=0.8)
     axis.set(xlabel="$z$", ylabel="$x$", xlim=(-1.3 * radius, 1.5 * radius),
              ylim=(-1.2 * radius, 1.2 * radius), aspect="equal")
 
@@ -44,11 +31,11 @@ def draw_profile(axis, result):
     focus, radius = result.attribute("focus"), r[-1]
     axis.set(xlabel="$r$", ylabel="$n$ over directions")
     if focus is not None and focus <= radius:
-        error = np.abs(index - closed_form(r, focus, radius))
+        f = focus / radius  # a lens whose index is 1 at its rim, of a focus inside or on it
+        error = np.abs(index - np.sqrt(1 + f**2 - (r / radius)**2) / f)
         axis.semilogy(r[:-1], np.maximum(error, 1e-16)[:-1], color=style.COLOURS[0], label="mean")
         axis.set_ylabel("distance from the closed form")
-    axis.semilogy(r[1:-1], np.maximum(spread[1:-1], 1e-16), color=style.COLOURS[1],
-                  label="spread")
+    axis.semilogy(r[1:-1], np.maximum(spread[1:-1], 1e-16), color=style.COLOURS[1], label="spread")
     axis.legend(loc="lower center", handlelength=1.2)
 
 
@@ -58,12 +45,11 @@ def draw_search(axis, result):
     for number, count in enumerate(np.unique(counts)):
         here = np.flatnonzero(counts == count)
         shown = np.concatenate([here[:1] - 1, here]) if here[0] > 0 else here
-        axis.semilogy(traces[shown], rms[shown], "o-", color=style.COLOURS[number % 6], markersize=2.5,
-                      label=f"$s$: {count}")
-    held_out = result.values("rms/held_out_half_step") if result.has("rms/held_out_half_step") else None
-    if held_out is not None:
-        axis.axhline(float(held_out), color="black", linewidth=0.8, linestyle=":",
-                     label="held out")
+        axis.semilogy(traces[shown], rms[shown], "o-", color=style.COLOURS[number % 6],
+                      markersize=2.5, label=f"$s$: {count}")
+    if result.has("rms/held_out_half_step"):
+        axis.axhline(float(result.values("rms/held_out_half_step")), color="black", linewidth=0.8,
+                     linestyle=":", label="held out")
     axis.set(xlabel="traces of each ray", ylabel="rays miss by (rms)")
     axis.legend(loc="upper right", handlelength=1.2, fontsize=6)
 
@@ -81,7 +67,7 @@ def draw_guide(axis, result):
     axis.legend(handlelength=1.2)
 
 
-def draw_pictures(figure, axes, result):
+def draw_pictures(axes, result):
     asked, shown = result.values("picture/asked"), result.values("picture/shown")
     for view, (top, bottom) in enumerate(zip(axes[0], axes[1])):
         brightest = asked[view].max()
@@ -93,35 +79,17 @@ def draw_pictures(figure, axes, result):
     axes[1][0].set_ylabel("shown")
 
 
-def draw_picture_design(result):
+@script.plot()
+def draw(result):
+    if result.has("graded_spline"):
+        return page.side_by_side(result, (draw_guide, draw_search), style.PAGE * 0.75, 2.4)
+    if not result.has("picture/shown"):
+        return page.side_by_side(result, (draw_slice, draw_profile, draw_search), style.PAGE, 2.4,
+                                 width_ratios=[1.6, 1, 1])
     views = len(result.values("picture/psnr_db"))
     figure = plt.figure(figsize=(style.PAGE, 2.4))
     left, middle, right = figure.subfigures(1, 3, width_ratios=[1.5, 0.6 * views, 1])
-    draw_slice(left, left.subplots(), result)
-    draw_pictures(middle, middle.subplots(2, views, squeeze=False), result)
+    draw_slice(left.subplots(), result)
+    draw_pictures(middle.subplots(2, views, squeeze=False), result)
     draw_search(right.subplots(), result)
     return figure
-
-
-def draw_guide_design(result):
-    figure, axes = plt.subplots(1, 2, figsize=(style.PAGE * 0.75, 2.4))
-    draw_guide(axes[0], result)
-    draw_search(axes[1], result)
-    return figure
-
-
-def draw(results):
-    result = results[0]
-    if result.has("picture/shown"):
-        return draw_picture_design(result)
-    if result.has("graded_spline"):
-        return draw_guide_design(result)
-    figure, axes = plt.subplots(1, 3, figsize=(style.PAGE, 2.4), width_ratios=[1.6, 1, 1])
-    draw_slice(figure, axes[0], result)
-    draw_profile(axes[1], result)
-    draw_search(axes[2], result)
-    return figure
-
-
-if __name__ == "__main__":
-    style.main(draw, __doc__)

@@ -4,15 +4,10 @@ each was traced, forward or backward, and where that first comes below --level."
 
 import re
 
-from lib import style
-from lib.result_file import Unusable
+from lib import script, style
 
 import matplotlib.pyplot as plt
 import numpy as np
-
-
-def add_options(parser):
-    parser.add_argument("--level", type=float, default=1e-3, metavar="RMS", help="default: 1e-3")
 
 
 NAMES = {"gauss_newton": "Gauss-Newton", "lbfgs": "L-BFGS", "adam": "Adam"}
@@ -25,28 +20,17 @@ def label(result):
     return NAMES.get(word, word) + (f", rate {keys['rate']}" if word == "adam" else "")
 
 
-def first_below(traces, rms, level):
-    below = np.flatnonzero(rms <= level)
-    return traces[below[0]] if len(below) else None
-
-
+@script.plot(several=True, needs={"history/rms": "needs a result of design"})
+@script.option("--level", type=float, default=1e-3, metavar="RMS", help="default: 1e-3")
 def draw(results, arguments):
     figure, axis = plt.subplots(figsize=(0.7 * style.PAGE, 2.6))
     for number, result in enumerate(results):
-        if not result.has("history/rms"):
-            raise Unusable(f"{result.path}: is no result of design")
         traces, rms = result.values("history/traces"), result.values("history/rms")
-        reached = first_below(traces, rms, arguments.level)
-        text = label(result) + (f": {reached:.0f}" if reached else f": not in {traces[-1]:.0f}")
-        looks = style.look(number)
-        axis.loglog(traces, rms, color=looks["color"], linestyle=looks["linestyle"], label=text)
-        if reached:
-            axis.plot(reached, rms[rms <= arguments.level][0], looks["marker"], color=looks["color"])
+        first = np.flatnonzero(rms <= arguments.level)[:1]
+        reached = f"{traces[first[0]]:.0f}" if len(first) else f"not in {traces[-1]:.0f}"
+        axis.loglog(traces, rms, **style.line(number), label=f"{label(result)}: {reached}")
+        axis.plot(traces[first], rms[first], **style.look(number))
     axis.axhline(arguments.level, color="black", linewidth=0.6, linestyle=":")
     axis.set(xlabel="traces of each ray", ylabel="rays miss by (rms)")
     axis.legend(loc="upper left", bbox_to_anchor=(1.02, 1), title=f"traces to {arguments.level:g}", title_fontsize=7)
     return figure
-
-
-if __name__ == "__main__":
-    style.main(draw, __doc__, several=True, add_options=add_options)

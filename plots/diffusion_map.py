@@ -3,7 +3,7 @@
 per albedo, with lines where diffusion theory is wrong by 1, 5 and 20 %. Hatched: the curve stays
 above 1/2 within the tilts. Dashed: thickness in transport mean free paths."""
 
-from lib import page, style, sweep_file
+from lib import page, script, style, sweep_file
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -19,22 +19,18 @@ MAP = plt.get_cmap("cividis")
 def check(sweep):
     """Refuses what is no map."""
     if sweep.optional("diffusion_range") is None:
-        raise style.Unusable(f"{sweep.path}: has no diffusion_range, which slabs alone have")
+        sweep.refuse("has no diffusion_range, which slabs alone have")
     for name in AXES:
         if sweep.is_list or len(sweep.values(name)) < LEAST_VALUES:
-            raise style.Unusable(f"{sweep.path}: the map needs a grid with at least {LEAST_VALUES} "
-                                 "values of g and of optical_depth")
-    others = [name for name in sweep.varying() if name not in (*AXES, "albedo")]
-    if others:
-        raise style.Unusable(f"{sweep.path}: besides g, optical_depth and albedo it varies "
-                             f"{others[0]}; try --select {sweep.example(others[0], 1)}")
-    cells = np.prod([len(sweep.values(name)) for name in (*AXES, "albedo")])
+            sweep.refuse(f"the map needs a grid with at least {LEAST_VALUES} values of g and of "
+                         "optical_depth")
+    shown = (*AXES, "albedo")
+    sweep.refuse_others([name for name in sweep.varying() if name not in shown], ", ".join(shown))
+    cells = np.prod([len(sweep.values(name)) for name in shown])
     if len(sweep.rows) < cells:
-        raise style.Unusable(f"{sweep.path}: {cells - len(sweep.rows)} of {cells} points are not "
-                             "finished")
+        sweep.refuse(f"{cells - len(sweep.rows)} of {cells} points are not finished")
     if len(sweep.values("albedo")) > 4:
-        raise style.Unusable(f"{sweep.path}: more than 4 albedos do not fit a page; "
-                             f"try --select {sweep.example('albedo', 3)}")
+        sweep.refuse("more than 4 albedos do not fit a page", ("albedo", 3))
 
 
 def table(sweep, rows, values):
@@ -43,38 +39,27 @@ def table(sweep, rows, values):
     return values[rows[order]].reshape([len(sweep.values(name)) for name in AXES])
 
 
-def wrong_by(diffusion, ranges):
-    """Relative error of diffusion theory, the larger ratio: no less far off where too short."""
-    return np.maximum(diffusion / ranges, ranges / diffusion) - 1
-
-
-def thickness_of(optical_depth, g, albedo):
-    """In transport mean free paths 1/(mu_t - g mu_s)."""
-    return optical_depth * (1 - g * albedo)
-
-
 def draw_panel(axis, sweep, rows, method, norm):
     depths, cosines = (sweep.values(name) for name in reversed(AXES))
-    ranges, bounds, diffusion = (
-        table(sweep, rows, values) for values in (sweep.of(method, "memory_effect_range"),
-                                                  sweep.of(method, "range_censored") > 0,
-                                                  sweep.optional("diffusion_range")))
+    ranges, _, censored, diffusion = (
+        table(sweep, rows, values) for values in (*sweep.ranges(method), sweep.optional("diffusion_range")))
+    bounds = censored > 0
     image = axis.pcolormesh(depths, cosines, ranges, norm=norm, cmap=MAP, shading="gouraud",
                             rasterized=True)
     if bounds.any():
         axis.contourf(depths, cosines, bounds.astype(float), [0.5, 1], colors="none",
                       hatches=["////"])
-    known = np.ma.array(np.log(wrong_by(diffusion, ranges)), mask=bounds)
+    # The larger ratio: diffusion theory is no less far off where it is too short.
+    wrong_by = np.maximum(diffusion / ranges, ranges / diffusion) - 1
+    known = np.ma.array(np.log(wrong_by), mask=bounds)
     for level, line in WRONG_BY.items():
         for colour, width, style_of_line in (("white", 1.8, "-"), ("black", 0.9, line)):
             axis.contour(depths, cosines, known, [np.log(level)], colors=colour, linewidths=width,
                          linestyles=[style_of_line])
-    grid = thickness_of(depths[None, :], cosines[:, None], sweep.columns["albedo"][rows[0]])
-    axis.contour(depths, cosines, grid, THICKNESSES, colors=style.COLOURS[1], linewidths=0.7,
+    thickness = depths[None, :] * (1 - cosines[:, None] * sweep.columns["albedo"][rows[0]])
+    axis.contour(depths, cosines, thickness, THICKNESSES, colors=style.COLOURS[1], linewidths=0.7,
                  linestyles="--")
-    axis.set_xscale("log")
-    axis.set_xlabel("optical depth")
-    axis.set_ylabel("mean cosine $g$")
+    axis.set(xscale="log", xlabel="optical depth", ylabel="mean cosine $g$")
     return image
 
 
@@ -89,8 +74,10 @@ def entries():
            "bound: no crossing of 1/2")
 
 
-def draw(results, arguments):
-    sweep = sweep_file.read(results, arguments)
+@script.plot()
+@sweep_file.SELECT
+def draw(result, arguments):
+    sweep = sweep_file.read(result, arguments)
     check(sweep)
     method = next(iter(sweep.prefixes))
     parts = sweep.groups("albedo" if "albedo" in sweep.columns else None, sweep.rows)
@@ -106,7 +93,3 @@ def draw(results, arguments):
     bar.set_label(r"range $qL$ at $C_I = 1/2$")
     page.legend_outside(figure, list(entries()), sweep.unfinished())
     return figure
-
-
-if __name__ == "__main__":
-    style.main(draw, __doc__, add_options=sweep_file.add_select)

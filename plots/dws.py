@@ -2,7 +2,7 @@
 """Diffusing-wave spectroscopy: field correlation against delay in transmission through slabs, from
 any number of `covariance --delays` results."""
 
-from lib import decay, labels, style, theory
+from lib import decay, script, theory
 
 import numpy as np
 
@@ -13,23 +13,15 @@ LABELS = {2: r"$x = 2\,k\sqrt{D\tau}\,L/\ell^*$", 3: r"$x = \sqrt{6}\,k\sqrt{D\t
 def scaled_delay(result, delay):
     """Q L of diffusion theory without absorption: Q l* = sqrt(2 dimension t), t = k^2 D times the delay where `diffusion`
     is given, else the delay."""
-    delay = labels.scene_of(result).get("diffusion", 1) * delay
+    delay = result.scene.get("diffusion", 1) * delay
     transport = result.attribute("transport_mean_free_path")
     return np.sqrt(2 * theory.dimension(result) * delay) * result.attribute("depth") / transport
 
 
-def diffusion(depth, optical_depth, g, albedo, result, delay):
-    return theory.delayed_diffusion(depth, optical_depth, g, albedo, delay,
-                                    theory.dimension(result))
+DELAYS = decay.Decay("field_correlation", "--delays", "diffusion_theory", theory.delayed_diffusion,
+                     lambda result: 1, scaled_delay, LABELS, r"field correlation $g_1$")
 
 
-DELAYS = decay.Decay("field_correlation", "--delays", "diffusion_theory", diffusion, scaled_delay,
-                     LABELS, r"field correlation $g_1$")
-
-
+@script.plot(several=True)
 def draw(results):
     return decay.draw(results, DELAYS, (lambda x: x / np.sinh(x), r"$x/\sinh x$"))
-
-
-if __name__ == "__main__":
-    style.main(draw, __doc__, several=True)

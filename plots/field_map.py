@@ -3,7 +3,7 @@
 with the outlines of the disks. Light of angle 0 travels to the right. The highest 0.1 % of the
 amplitudes share one colour."""
 
-from lib import style
+from lib import script, style
 from lib.pictures import edges
 
 import matplotlib.pyplot as plt
@@ -12,13 +12,12 @@ from matplotlib.collections import EllipseCollection
 from matplotlib.ticker import MaxNLocator
 
 MOST_LIGHTS = 4
-plt.rcParams["savefig.dpi"] = 118  # pictures without white paper make large files
+DPI = 118  # pictures without white paper make large files
 
 
 def outlines(result, wavelength):
     """Rims of the disks, to be drawn once per panel; points have none."""
-    x, z, radius = (result.values(f"placement/{name}") / wavelength
-                    for name in ("x", "z", "radius"))
+    x, z, radius = (result.values(f"placement/{name}") / wavelength for name in ("x", "z", "radius"))
     size = 2 * radius[radius > 0]
     return {"widths": size, "heights": size, "angles": 0 * size,
             "offsets": np.column_stack([z, x])[radius > 0]}
@@ -44,12 +43,12 @@ def draw_light(figure, axes, field, extent, disks):
     bar.set_ticks([-np.pi, 0, np.pi], labels=[r"$-\pi$", "0", r"$\pi$"])
     axes[0].set_ylabel(r"$x/\lambda$")
     for axis in axes:
-        axis.xaxis.set_major_locator(MaxNLocator(6, steps=[1, 2, 5, 10]))
-        axis.yaxis.set_major_locator(MaxNLocator(6, steps=[1, 2, 5, 10]))
+        for side in (axis.xaxis, axis.yaxis):
+            side.set_major_locator(MaxNLocator(6, steps=[1, 2, 5, 10]))
 
 
-def draw(results):
-    result = results[0]
+@script.plot(dpi=DPI)
+def draw(result):
     field = result.dataset("total_field")
     wavelength = field.attrs["wavelength"]
     x, z = (result.values(name) / wavelength for name in ("map_x", "map_z"))
@@ -63,7 +62,3 @@ def draw(results):
         if lights > 1:
             axes[light, 0].set_title(f"light {style.angle(result.values('light_angle')[light])}")
     return figure
-
-
-if __name__ == "__main__":
-    style.main(draw, __doc__)

@@ -2,7 +2,7 @@
 """A fit: data and fitted curves, what is left of them in standard errors, and the ellipses of pairs of
 parameters (1 and 2 standard errors)."""
 
-from lib import style
+from lib import script, style
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -12,73 +12,55 @@ NAMES = {"field_correlation": r"$C_E$", "intensity_correlation": r"$C_I$", "inte
          "field_covariance": r"$\langle u_i u_j^*\rangle$"}
 
 
-def texts(result, name):
-    return [text.decode() for text in result.values(name)]
-
-
 def abscissa(result, observable):
-    """Of every datum: its tilt or angle, its time, or, of covariances of fields, its number."""
-    angle = result.values("datum_angle")
+    """Abscissa of every datum and its name: a tilt or angle, a time, or, for covariances of fields, a
+    number."""
+    angle, is_pair = result.values("datum_angle"), observable == "field_covariance"
     time = result.values("datum_time") if result.has("datum_time") else 0 * angle
-    return np.select([observable == "field_covariance", time > 0], [np.arange(len(angle)), time], angle)
-
-
-def abscissa_name(result, observable):
-    if (observable == "field_covariance").any():
-        return "number of the value"
-    return "delay or exposure" if result.has("datum_time") else "tilt or angle (rad)"
+    name = "delay or exposure" if result.has("datum_time") else "tilt or angle (rad)"
+    return (np.select([is_pair, time > 0], [np.arange(len(angle)), time], angle),
+            "number of the value" if is_pair.any() else name)
 
 
 def draw_data(axis, pulls, result):
-    observable = np.array(texts(result, "datum_observable"))
-    curve, angle = result.values("datum_curve"), abscissa(result, observable)
-    single = []
+    observable = np.array(result.texts("datum_observable"))
+    curve, (angle, name_of_angle) = result.values("datum_curve"), abscissa(result, observable)
+    (value, error), pull, single = result.measured("measured"), result.values("pull"), []
     for number in np.unique(curve):
         rows = np.flatnonzero(curve == number)
-        look = style.look(int(number))
+        symbols = {**style.look(int(number)), "linestyle": "none"}
         name = observable[rows[0]]
         if len(rows) == 1:
-            single.append((name, rows[0], look))
+            single.append((name, rows[0]))
             continue
         rows = rows[np.argsort(angle[rows])]
-        axis.errorbar(angle[rows], result.values("measured")[rows], result.values("measured_error")[rows],
-                      linestyle="none", color=look["color"], marker=look["marker"], label=NAMES[name])
-        axis.plot(angle[rows], result.values("model")[rows], color=look["color"], linestyle=look["linestyle"])
-        pulls.plot(angle[rows], result.values("pull")[rows], color=look["color"], marker=look["marker"],
-                   linestyle="none")
-    for place, (name, row, look) in enumerate(single):
-        text = f"{NAMES[name]} {result.values('measured')[row]:.3g}, {result.values('pull')[row]:+.1f} errors"
-        axis.text(0.97, 0.97 - 0.08 * place, text, transform=axis.transAxes, ha="right", va="top", fontsize=7)
-    axis.set(ylabel="measured")
+        axis.errorbar(angle[rows], value[rows], error[rows], **symbols, label=NAMES[name])
+        axis.plot(angle[rows], result.values("model")[rows], **style.line(int(number)))
+        pulls.plot(angle[rows], pull[rows], **symbols)
+    for place, (name, row) in enumerate(single):
+        axis.text(0.97, 0.97 - 0.08 * place, f"{NAMES[name]} {value[row]:.3g}, {pull[row]:+.1f} errors",
+                  transform=axis.transAxes, ha="right", va="top", fontsize=7)
+    axis.set_ylabel("measured")
     axis.tick_params(labelbottom=False)
     pulls.axhspan(-1, 1, color="0.9")
-    pulls.set(xlabel=abscissa_name(result, observable), ylabel="pull")
-    if result.has("datum_time"):
-        pulls.set_xscale("log")
-    most = 1.2 * max(2, np.abs(result.values("pull")).max())
-    pulls.set_ylim(-most, most)
-
-
-def ellipse(covariance, size):
-    """Points of an ellipse of so many standard errors."""
-    turn = np.linspace(0, 2 * np.pi, 200)
-    values, vectors = np.linalg.eigh(covariance)
-    return vectors @ (size * np.sqrt(np.maximum(values, 0))[:, None] * [np.cos(turn), np.sin(turn)])
+    most = 1.2 * max(2, np.abs(pull).max())
+    pulls.set(xlabel=name_of_angle, ylabel="pull", ylim=(-most, most),
+              xscale="log" if result.has("datum_time") else "linear")
 
 
 def draw_pair(axis, result, i, j):
-    names, estimate = texts(result, "parameter_name"), result.values("estimate")
-    covariance = result.values("parameter_covariance")[np.ix_([j, i], [j, i])]
-    for size, line in ((1, "-"), (2, "--")):
-        x, y = ellipse(covariance, size)
+    names, estimate = result.texts("parameter_name"), result.values("estimate")
+    values, vectors = np.linalg.eigh(result.values("parameter_covariance")[np.ix_([j, i], [j, i])])
+    for size, line in ((1, "-"), (2, "--")):  # ellipses of so many standard errors
+        x, y = vectors @ (size * np.sqrt(np.maximum(values, 0))[:, None] * style.circle())
         axis.plot(estimate[j] + x, estimate[i] + y, line, color=style.COLOURS[0])
     axis.plot(estimate[j], estimate[i], "+", color="k")
     axis.set(xlabel=names[j], ylabel=names[i])
     axis.locator_params(nbins=4)
 
 
-def draw(results):
-    result = results[0]
+@script.plot()
+def draw(result):
     count = len(result.values("estimate"))
     pairs = [(i, j) for i in range(count) for j in range(i)]
     columns = max(1, -(-len(pairs) // 3))
@@ -87,8 +69,8 @@ def draw(results):
     data, pulls = left.subplots(2, 1, sharex=True, height_ratios=[3, 1])
     draw_data(data, pulls, result)
     if not pairs:
-        right.text(0.5, 0.5, f"{texts(result, 'parameter_name')[0]}\n{result.values('estimate')[0]:.4g} "
-                   f"± {result.values('estimate_error')[0]:.2g}", ha="center")
+        (value,), (error,) = result.measured("estimate")
+        right.text(0.5, 0.5, f"{result.texts('parameter_name')[0]}\n{value:.4g} ± {error:.2g}", ha="center")
         return figure
     axes = np.atleast_1d(right.subplots(min(3, len(pairs)), columns)).ravel()
     for axis, (i, j) in zip(axes, pairs):
@@ -96,7 +78,3 @@ def draw(results):
     for axis in axes[len(pairs):]:
         axis.remove()
     return figure
-
-
-if __name__ == "__main__":
-    style.main(draw, __doc__)

@@ -2,7 +2,7 @@
 """How many independent patterns make the error of each free key a hundredth of its value, over the
 values of the first two keys, from `fit --plan` with `--vary`, or several plans."""
 
-from lib import style
+from lib import script, style
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -10,7 +10,7 @@ import numpy as np
 
 def read(result):
     """Names of the keys, values and patterns [plan][key]."""
-    names = [name.decode() for name in result.values("parameter_name")]
+    names = result.texts("parameter_name")
     if result.has("point"):
         return names, result.values("point_planned"), result.values("point_patterns_to_percent")
     return names, result.values("planned")[None], result.values("patterns_to_percent")[None]
@@ -21,7 +21,7 @@ def draw_map(axis, first, second, patterns):
     cells = np.full((len(y), len(x)), np.nan)
     for a, b, value in zip(first, second, patterns):
         cells[np.searchsorted(y, b), np.searchsorted(x, a)] = np.log10(value)
-    image = axis.imshow(cells, origin="lower", aspect="auto", cmap="viridis_r")
+    axis.imshow(cells, origin="lower", aspect="auto", cmap="viridis_r")
     middle = (np.nanmin(cells) + np.nanmax(cells)) / 2
     for (row, column), value in np.ndenumerate(cells):
         if np.isfinite(value):
@@ -30,15 +30,14 @@ def draw_map(axis, first, second, patterns):
     axis.set_xticks(range(len(x)), style.short(x))
     axis.set_yticks(range(len(y)), style.short(y))
     axis.tick_params(top=False, right=False, length=0)
-    return image
 
 
+@script.plot(several=True)
 def draw(results):
-    names, _, _ = read(results[0])
-    if any(read(result)[0] != names for result in results):
+    (names, *others), values, patterns = zip(*map(read, results))
+    if any(other != names for other in others):
         raise style.Unusable(f"{results[0].path}: all plans must have the same free keys")
-    values = np.concatenate([read(result)[1] for result in results])
-    patterns = np.concatenate([read(result)[2] for result in results])
+    values, patterns = np.concatenate(values), np.concatenate(patterns)
     second = values[:, 1] if len(names) > 1 else np.zeros(len(values))
     figure, axes = plt.subplots(1, len(names), figsize=(min(style.PAGE, 2.6 * len(names)), 2.4), sharey=True,
                                 squeeze=False)
@@ -48,7 +47,3 @@ def draw(results):
     if len(names) > 1:
         axes[0, 0].set_ylabel(names[1])
     return figure
-
-
-if __name__ == "__main__":
-    style.main(draw, __doc__, several=True)

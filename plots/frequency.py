@@ -2,7 +2,7 @@
 """Spectral correlation of speckle: the correlation with the field at another frequency against the
 shift, from any number of `covariance --frequency_shifts` results (first light and view)."""
 
-from lib import decay, style, theory
+from lib import decay, script, theory
 
 import numpy as np
 
@@ -20,18 +20,11 @@ def scaled_shift(result, shift):
     return result.attribute("depth") * np.sqrt(per_lag * wavenumber(result) * np.abs(shift))
 
 
-def diffusion(depth, optical_depth, g, albedo, result, shift):
-    return theory.shifted_diffusion(depth, optical_depth, g, albedo, wavenumber(result) * shift,
-                                    theory.dimension(result))
-
-
 SHIFTS = decay.Decay("frequency_correlation", "--frequency_shifts", "frequency_diffusion_theory",
-                     diffusion, scaled_shift, LABELS, r"field correlation $|C_E|$")
+                     theory.shifted_diffusion, wavenumber, scaled_shift, LABELS,
+                     r"field correlation $|C_E|$")
 
 
+@script.plot(several=True)
 def draw(results):
     return decay.draw(results, SHIFTS)
-
-
-if __name__ == "__main__":
-    style.main(draw, __doc__, several=True)

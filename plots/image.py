@@ -3,9 +3,8 @@
 that are expected of each pair of points, and the points found in all frames, or the first frame
 divided by a reference, beside the object."""
 
-from lib import style
+from lib import object_panel, page, script, style
 
-import matplotlib.pyplot as plt
 import numpy as np
 
 SHOWN = 400  # pixels of the frame
@@ -53,17 +52,13 @@ def draw_autocorrelation(axis, result):
 
 
 def draw_object(axis, result):
-    truth, brightness = result.values("object_x"), result.values("object_brightness")
-    axis.plot(truth, brightness / brightness.mean(), "o", markersize=9, markerfacecolor="none",
-              color="0.3", label="object")
+    truth, found = result.values("object_x"), []
     if result.has("found_x"):
         resolution = 3 * result.values("distance")[1]
-        for number, (x, b) in enumerate(zip(result.values("found_x"),
-                                            result.values("found_brightness"))):
-            axis.plot(best_match(truth, x, resolution), b, "x", color="C3", markersize=5,
-                      label=None if number else "found, each frame")
-    axis.set(xlabel="x of the object", ylabel="brightness over its mean",
-             ylim=(0, 1.35 * (brightness / brightness.mean()).max()))
+        found = [(best_match(truth, x, resolution), brightness) for x, brightness in zip(
+            result.values("found_x"), result.values("found_brightness"))]
+    brightness = object_panel.draw(axis, result, found, "found, each frame")
+    axis.set_ylim(0, 1.35 * brightness.max())
     axis.legend(loc="lower left")
 
 
@@ -77,20 +72,7 @@ def draw_pictures(axis, result):
     axis.legend()
 
 
-def draw(results):
-    result = results[0]
-    result.refuse_sweep()
-    if not result.has("camera_place"):
-        raise style.Unusable(f"{result.path}: is no result of image")
-    figure, axes = plt.subplots(1, 3, figsize=(1.4 * style.PAGE, 2.9), layout="constrained")
-    draw_frame(axes[0], result)
-    draw_autocorrelation(axes[1], result)
-    if result.has("picture"):
-        draw_pictures(axes[2], result)
-    else:
-        draw_object(axes[2], result)
-    return figure
-
-
-if __name__ == "__main__":
-    style.main(draw, __doc__)
+@script.plot(one_run=True, needs={"camera_place": "needs a result of image"})
+def draw(result):
+    last = draw_pictures if result.has("picture") else draw_object
+    return page.side_by_side(result, (draw_frame, draw_autocorrelation, last), 1.4 * style.PAGE, 2.9)

@@ -3,9 +3,8 @@
 `covariance --layers --covariance memory_effect`, any number. Across: the standard deviation of the
 depth at which extinction happens, over that of an undivided slab."""
 
-from lib import style
+from lib import script, slab_ranges
 
-import matplotlib.pyplot as plt
 import numpy as np
 
 
@@ -19,32 +18,8 @@ def spread(result):
     return np.sqrt(12 * variance) / thickness.sum()
 
 
-def label(result):
-    return rf"OD {result.attribute('optical_depth'):.2g}, $g$ = {result.attribute('g'):.2g}"
-
-
+@script.plot(several=True, needs={"layer_thickness": "needs --layers", **slab_ranges.NEEDS})
 def draw(results):
-    figure, axis = plt.subplots(figsize=(style.COLUMN, 2.8))
-    curves = {}
-    for result in results:
-        for name in ("layer_thickness", "memory_effect_range"):
-            if not result.has(name):
-                raise style.Unusable(f"{result.path}: has no {name}; needs --layers and "
-                                     "--covariance memory_effect")
-        point = (spread(result), result.values("memory_effect_range"),
-                 result.values("memory_effect_range_error"))
-        curves.setdefault(label(result), []).append([float(np.squeeze(v)) for v in point])
-    for number, (text, points) in enumerate(curves.items()):
-        x, y, error = np.array(sorted(points)).T
-        look = style.look(number)
-        axis.errorbar(x, y, error, elinewidth=0.7, linewidth=0.7, color=look["color"],
-                      linestyle=look["linestyle"], marker=look["marker"], markersize=3, label=text)
-    axis.set_yscale("log")
-    axis.set_xlabel("spread of the extinction over depth (undivided: 1)")
-    axis.set_ylabel(r"range $q L$ at $C_I = 1/2$")
-    axis.legend()
+    figure = slab_ranges.draw(results, spread, "spread of the extinction over depth (undivided: 1)")
+    figure.axes[0].set_yscale("log")
     return figure
-
-
-if __name__ == "__main__":
-    style.main(draw, __doc__, several=True)

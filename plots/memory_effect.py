@@ -3,39 +3,27 @@
 deviation beneath), or from any number of results of `covariance`, `validate` and `sweep` compared in
 one panel."""
 
-from lib import correlation_panel, covariance_curves, page, style, sweep_curves, sweep_file
+from lib import correlation_panel, covariance_curves, curve_looks, page, script, style, sweep_file, theory
+from lib.correlation_panel import BELIEVED
+
+import matplotlib.pyplot as plt
+import numpy as np
 
 MOST_ROWS, MOST_COLUMNS, MOST_CURVES = 5, 4, 8
 BENEATH = 0.35  # height of a panel of deviations, of the one above it
-
-
-def add_options(parser):
-    correlation_panel.add_options(parser)
-    sweep_file.add_select(parser)
-
-
-def refuse_maps(result):
-    for prefix in ("", "mc/"):
-        name = f"{prefix}field_correlation"
-        if result.has(name) and any(scales and scales[0].name == "/shift"
-                                    for scales in list(result.dataset(name).dims)[1:]):
-            raise style.Unusable(f"{result.path}: a map over tilts and shifts; "
-                                 "plots/tilt_shift.py draws it")
+BAND = 4  # standard errors, as everywhere
+STEPS = 300  # of a line
 
 
 def arrange(sweep):
-    """Axes of (rows, columns, curves), None where one is not needed."""
-    if sweep.is_list:
-        return (None, None, "point") if len(sweep.rows) <= MOST_CURVES else (None, "point", None)
+    """Axes of (rows, columns, curves), None where one is not needed; refuses what a page cannot hold
+    legibly."""
     axes = sweep.varying()
+    if sweep.is_list:
+        axes = [None, None, "point"] if len(sweep.rows) <= MOST_CURVES else [None, "point", None]
     if len(axes) > 3:
-        raise style.Unusable(f"{sweep.path}: varies {', '.join(axes)}, rows, columns and curves "
-                             f"show three; try --select {sweep.example(axes[0], 1)}")
-    return [None] * (3 - len(axes)) + axes
-
-
-def check_size(sweep, rows, columns, curves):
-    """Refuses what a page cannot hold legibly."""
+        sweep.refuse(f"varies {', '.join(axes)}, rows, columns and curves show three", (axes[0], 1))
+    rows, columns, curves = axes = [None] * (3 - len(axes)) + axes
     limits = {rows: MOST_ROWS, columns: MOST_COLUMNS, curves: MOST_CURVES}
     if rows is None:
         limits[columns] = MOST_ROWS * MOST_COLUMNS
@@ -44,9 +32,9 @@ def check_size(sweep, rows, columns, curves):
     if beyond:
         there = ", ".join(f"{count} points" if name == "point" else f"{count} values of {name}"
                           for name, count in counts.items())
-        advice = " ".join(sweep.example(name, min(3, limits[name])) for name in beyond)
-        raise style.Unusable(f"{sweep.path}: {there}; a page holds {MOST_ROWS} x {MOST_COLUMNS} "
-                             f"panels of {MOST_CURVES} curves; try --select {advice}")
+        sweep.refuse(f"{there}; a page holds {MOST_ROWS} x {MOST_COLUMNS} panels of {MOST_CURVES} "
+                     "curves", *((name, min(3, limits[name])) for name in beyond))
+    return axes
 
 
 def parts(sweep, name, rows):
@@ -69,22 +57,100 @@ def panels(sweep, rows, columns):
     return table
 
 
+class Drawing:
+    """Panels of one sweep that share axes and legend; `curves`: the axis that sets the curves of a
+    panel apart, or None."""
+
+    def __init__(self, sweep, curves, arguments):
+        self.sweep, self.curves, self.arguments = sweep, curves, arguments
+        self.tilt = 1000 * sweep.result.values("tilt")  # mrad
+        self.data = [(method, *sweep.measured(method, "field_correlation")) for method in sweep.prefixes]
+        self.lowest = min(correlation_panel.lowest(field[sweep.rows], error[sweep.rows])
+                          for _, field, error in self.data)
+        self.unseen = correlation_panel.Unseen()
+
+    def numbered(self, rows):
+        """[(number of its curve, row)]."""
+        if self.curves is None:
+            return [(0, row) for row in rows]
+        columns = self.sweep.columns[self.curves][rows]
+        return list(zip(np.searchsorted(self.sweep.values(self.curves), columns), rows))
+
+    def panel(self, axis, fixed, rows):
+        """Draws the points `rows`, which have the values `fixed` in common."""
+        correlation_panel.prepare(axis, self.tilt, self.lowest, self.arguments)
+        words = [sweep_file.text(name, value) for name, value in fixed.items()] \
+            if "point" not in fixed else [self.sweep.label(self.sweep.varying(), rows[0])]
+        axis.set_title(", ".join(words), fontsize=7.5, pad=3)
+        if len(rows) == 0:
+            axis.text(0.5, 0.5, "no point", ha="center", transform=axis.transAxes, color=style.GREY)
+            return
+        self.theories(axis, rows)
+        for method, field, error in self.data:
+            for number, row in self.numbered(rows):
+                correlation_panel.draw_curve(axis, self.tilt, field[row], error[row],
+                                             curve_looks.curve_look(number, method), self.unseen)
+
+    def theories(self, axis, rows):
+        sweep, tilt = self.sweep, self.tilt / 1000
+        spaced, start = (np.geomspace, tilt[tilt > 0]) if self.arguments.log else (np.linspace, tilt)
+        fine = spaced(start.min(), tilt.max(), STEPS)
+        diffusion = sweep.optional("diffusion_theory")
+        for number, row in self.numbered(rows) if diffusion is not None else []:
+            tilt, field = theory.of_point(sweep, row, diffusion[row], fine)
+            axis.plot(1000 * tilt, field**2, **style.line(number), linewidth=0.7, zorder=1)
+        if sweep.result.has("single_scattering"):
+            tilt, field = theory.curve(sweep.result, lambda q: theory.single_scattering(sweep.result, q),
+                                       sweep.result.values("single_scattering"), fine)
+            axis.plot(1000 * tilt, field**2, **curve_looks.SINGLE_SCATTERING, zorder=0.5)
+
+    def deviations(self, axes, panels):
+        """Monte Carlo less the other method, in combined standard errors of C_E."""
+        deviation = self.sweep.table("deviation")
+        limit = 1.15 * max(np.abs(deviation[self.sweep.rows]).max(), 1.5 * BAND)
+        shown = self.tilt > 0 if self.arguments.log else np.ones(len(self.tilt), bool)
+        for axis, (_, rows) in zip(axes.flat, panels):
+            axis.axhspan(-BAND, BAND, color="0.9", linewidth=0, zorder=0)
+            axis.axhline(0, color=style.GREY, linewidth=0.5, zorder=0.5)
+            for number, row in self.numbered(rows):
+                look = {**curve_looks.curve_look(number, None), "markersize": 2.2}
+                axis.plot(self.tilt[shown], deviation[row][shown], linestyle="none", **look)
+            axis.set(ylim=(-limit, limit), xlabel="tilt (mrad)", ylabel="deviation")
+            if limit < 3 * BAND:
+                axis.set_yticks([-BAND, 0, BAND])
+
+    def entries(self):
+        """Legend entries (handle, label)."""
+        sweep, has = self.sweep, self.sweep.result.has
+        for number, value in enumerate(sweep.values(self.curves) if self.curves else []):
+            row = sweep.rows[sweep.columns[self.curves][sweep.rows] == value][0]
+            names = sweep.varying() or sweep.given() if self.curves == "point" else [self.curves]
+            yield curve_looks.curve_handle(sweep, number, has("diffusion_theory")), sweep.label(names, row)
+        yield from curve_looks.method_entries(sweep)
+        if has("diffusion_theory"):
+            yield plt.Line2D([], [], color="black", linewidth=0.7), "lines: diffusion theory"
+        if has("single_scattering"):
+            yield plt.Line2D([], [], **curve_looks.SINGLE_SCATTERING), "single scattering alone"
+        if has("deviation"):
+            yield plt.Rectangle((0, 0), 1, 1, color="0.9"), \
+                f"deviation of $C_E$ in standard errors, $\\pm${BAND}"
+
+
 def draw_sweep(sweep, arguments):
     rows, columns, curves = arrange(sweep)
-    check_size(sweep, rows, columns, curves)
     table = panels(sweep, rows, columns)
-    count = sum(map(len, table))
-    figure, axes, *beneath = page.page_of_panels(len(table), len(table[0]), count,
+    every = sum(table, [])
+    figure, axes, *beneath = page.page_of_panels(len(table), len(table[0]), len(every),
                                                  BENEATH if sweep.result.has("deviation") else 0)
-    drawing = sweep_curves.Drawing(sweep, curves, arguments)
-    for axis, panel in zip(axes.flat, sum(table, [])):
+    drawing = Drawing(sweep, curves, arguments)
+    for axis, panel in zip(axes.flat, every):
         drawing.panel(axis, *panel)
-    page.outer_labels(axes, count)
+    page.outer_labels(axes, len(every))
     for deviations in beneath:
-        drawing.deviations(deviations, [points for _, points in sum(table, [])])
-        for axis in axes.flat[:count]:
+        drawing.deviations(deviations, every)
+        for axis in axes.flat[:len(every)]:
             page.label_sides(axis, axis.yaxis.label.get_visible(), False)
-        page.outer_labels(deviations, count)
+        page.outer_labels(deviations, len(every))
     for axis in axes[0]:
         correlation_panel.add_q_axis(axis, sweep.result, drawing.tilt)
     page.legend_outside(figure, list(drawing.entries()), sweep.notes())
@@ -92,16 +158,19 @@ def draw_sweep(sweep, arguments):
     return figure
 
 
+@script.plot(several=True)
+@script.option("--log", action="store_true", help="logarithmic tilts; those up to 0 are left out")
+@script.option("--log_correlation", action="store_true", help="logarithmic C_I; left out where C_E, a "
+               f"magnitude, is below {BELIEVED} standard errors")
+@sweep_file.SELECT
 def draw(results, arguments):
     for result in results:
-        refuse_maps(result)
-    sweeps = [result for result in results if covariance_curves.is_sweep(result)]
+        for name in filter(result.has, ("field_correlation", "mc/field_correlation")):
+            if any(scales and scales[0].name == "/shift" for scales in list(result.dataset(name).dims)[1:]):
+                raise style.Unusable(f"{result.path}: a map over tilts and shifts; plots/tilt_shift.py draws it")
+    sweeps = list(filter(covariance_curves.is_sweep, results))
     if arguments.select and not sweeps:
         raise style.Unusable(f"{results[0].path}: not a sweep, --select has nothing to select")
     if len(results) > 1 or not sweeps:
         return covariance_curves.draw(results, arguments)
-    return draw_sweep(sweep_file.read(results, arguments), arguments)
-
-
-if __name__ == "__main__":
-    style.main(draw, __doc__, several=True, add_options=add_options)
+    return draw_sweep(sweep_file.read(results[0], arguments), arguments)

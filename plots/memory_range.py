@@ -3,7 +3,7 @@
 curves, a third as panels. A list of points that differ in several parameters at once: a row for
 each. Arrows: bounds, where a curve does not cross 1/2 within the tilts."""
 
-from lib import curve_looks, page, range_axes, range_list, style, sweep_file, theory
+from lib import curve_looks, page, range_axes, range_list, script, style, sweep_file, theory
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -13,15 +13,6 @@ MOST_CURVES, MOST_PANELS, ACROSS = 8, 12, 3
 ASIDE = {None: 0, "mc": -2.5, "wave": 2.5, "transport": 2.5}  # points of print
 DASH = {"marker": "_", "markersize": 9, "markeredgewidth": 0.7}  # diffusion theory of one point
 STEPS = 300  # of a line
-ABOVE = 1  # in range_censored: the curve stays above 1/2
-
-
-def add_options(parser):
-    parser.add_argument("--against", choices=list(range_axes.LABELS),
-                        help="horizontal axis (default: the innermost that varies)")
-    parser.add_argument("--curves", choices=list(range_axes.LABELS),
-                        help="axis that sets the curves apart")
-    sweep_file.add_select(parser)
 
 
 def carrier(sweep, name):
@@ -42,34 +33,25 @@ def arrange(sweep, arguments):
     """Axes of (horizontal axis, curves, panels); None where one is not needed."""
     axes = sweep.varying()
     if not axes:
-        raise style.Unusable(f"{sweep.path}: one point is no curve")
+        sweep.refuse("one point is no curve")
     against = arguments.against or ([name for name in axes if name != arguments.curves] or axes)[-1]
     if len(np.unique(sweep.column(against)[sweep.rows])) < 2:
-        raise style.Unusable(f"{sweep.path}: {against} does not vary; --against one of "
-                             f"{', '.join(axes)}")
+        sweep.refuse(f"{against} does not vary; --against one of {', '.join(axes)}")
     others = [name for name in axes if name not in (against, carrier(sweep, against))]
     if arguments.curves:
         if arguments.curves not in others:
-            raise style.Unusable(f"{sweep.path}: against {against} --curves should be one of "
-                                 f"{', '.join(others) or 'nothing, as nothing else varies'}")
+            sweep.refuse(f"against {against} --curves should be one of "
+                         f"{', '.join(others) or 'nothing, as nothing else varies'}")
         others = [name for name in others if name != arguments.curves] + [arguments.curves]
     if len(others) > 2:
-        raise style.Unusable(f"{sweep.path}: besides {against} it varies {', '.join(others)}; "
-                             f"try --select {sweep.example(others[0], 1)}")
+        sweep.refuse_others(others, against)
     return against, *([*reversed(others)] + [None, None])[:2]
-
-
-def check_size(sweep, curves, panels):
-    for name, most, what in ((curves, MOST_CURVES, "curves"), (panels, MOST_PANELS, "panels")):
-        if name and len(sweep.values(name)) > most:
-            raise style.Unusable(f"{sweep.path}: {len(sweep.values(name))} {what}, at most {most} "
-                                 f"are legible; try --select {sweep.example(name, 3)}")
 
 
 def draw_bounds(axis, sweep, method, rows, x, numbers):
     """Arrows away from points that are bounds. Those of one place stand side by side, because all
     curves that stay above 1/2 share their bound."""
-    censored, value = (sweep.of(method, name) for name in ("range_censored", "memory_effect_range"))
+    value, _, censored = sweep.ranges(method)
     bounds = rows[censored[rows] > 0]
     for position in np.unique(x[bounds]):
         peers = bounds[x[bounds] == position]
@@ -77,10 +59,8 @@ def draw_bounds(axis, sweep, method, rows, x, numbers):
             look = curve_looks.curve_look(numbers[row], method)
             place = moved(axis, method, (6 if method else 3) * (rank - (len(peers) - 1) / 2))
             axis.plot(position, value[row], linestyle="none", transform=place, **look)
-            axis.annotate("", (position, value[row]), xycoords=place, textcoords="offset points",
-                          xytext=(0, 11 if censored[row] == ABOVE else -11), zorder=1,
-                          arrowprops={"arrowstyle": "<|-", "color": look["color"], "shrinkA": 0,
-                                      "shrinkB": 2, "linewidth": 0.7, "mutation_scale": 6})
+            curve_looks.draw_bound(axis, (position, value[row]), place,
+                                   (0, curve_looks.ARROWS[censored[row]]), look["color"])
 
 
 def moved(axis, method, points):
@@ -90,8 +70,7 @@ def moved(axis, method, points):
 
 def draw_curve(axis, sweep, method, rows, x, number):
     """The points of one curve that are no bounds."""
-    value, error, censored = (sweep.of(method, name)[rows] for name in (
-        "memory_effect_range", "memory_effect_range_error", "range_censored"))
+    value, error, censored = (column[rows] for column in sweep.ranges(method))
     known, place = censored == 0, moved(axis, method, 0)
     axis.errorbar(x[rows][known], value[known], error[known], linestyle="none", elinewidth=0.7,
                   transform=place, **curve_looks.curve_look(number, method))
@@ -99,27 +78,20 @@ def draw_curve(axis, sweep, method, rows, x, number):
     axis.plot(x[rows][few], value[few], transform=place, **curve_looks.RING)
 
 
-def has_lone_points(sweep, names):
-    """Whether a curve, of constant `names`, has one point alone."""
-    constants = [sweep.columns[name][sweep.rows] for name in names if name]
-    return bool(constants) and 1 in np.unique(constants, axis=1, return_counts=True)[1]
-
-
 def entries(sweep, curves, panels, single):
     """Legend entries (handle, label)."""
     theory = range_axes.diffusion_in_view(sweep, single)[1]
     for number, value in enumerate(sweep.values(curves) if curves else []):
-        line = style.look(number)["linestyle"] if theory else "none"
-        look = curve_looks.curve_look(number, curve_looks.last_method(sweep))
-        yield (plt.Line2D([], [], linewidth=0.7, linestyle=line, **{**look, "markersize": 3}),
-               sweep_file.text(curves, value))
+        yield curve_looks.curve_handle(sweep, number, theory), sweep_file.text(curves, value)
     yield from curve_looks.method_entries(sweep)
     if theory:
-        marks = "lines and dashes" if has_lone_points(sweep, (curves, panels)) else "lines"
+        constants = [sweep.columns[name][sweep.rows] for name in (curves, panels) if name]
+        lone = constants and 1 in np.unique(constants, axis=1, return_counts=True)[1]  # of a curve
+        marks = "lines and dashes" if lone else "lines"
         yield plt.Line2D([], [], color="black", linewidth=0.7), f"{marks}: diffusion theory"
     yield from curve_looks.range_entries(sweep)
     if single:
-        yield plt.Line2D([], [], color="0.55", linewidth=1.6), "single scattering"
+        yield plt.Line2D([], [], **curve_looks.SINGLE_SCATTERING), "single scattering"
 
 
 def diffusion_line(axis, sweep, part, against, x):
@@ -142,17 +114,17 @@ def diffusion_line(axis, sweep, part, against, x):
 
 
 def draw_panel(axis, sweep, rows, against, curves, single):
-    x = range_axes.horizontal(sweep, against)
+    x = sweep.column(against)
+    x = np.round(1 - x, 12) if against == "albedo" else x
     for limit in single:
-        axis.axhline(limit, color="0.55", linewidth=1.6, zorder=0.5)
+        axis.axhline(limit, **curve_looks.SINGLE_SCATTERING, zorder=0.5)
     diffusion, numbers, lines = sweep.optional("diffusion_range"), {}, []
     for curve, part in sweep.groups(curves, rows):
         number = list(sweep.values(curves)).index(curve) if curves else 0
         numbers.update({row: number for row in part})
         part = part[np.argsort(x[part], kind="stable")]
         if diffusion is not None:
-            look = {name: style.look(number)[name] for name in ("color", "linestyle")}
-            lines.append((look, part))
+            lines.append((style.line(number), part))
         for method in sweep.prefixes:
             draw_curve(axis, sweep, method, part, x, number)
     for method in sweep.prefixes:
@@ -165,13 +137,20 @@ def draw_panel(axis, sweep, rows, against, curves, single):
     axis.set_ylabel(range_axes.RANGE)
 
 
-def draw(results, arguments):
-    sweep = sweep_file.read(results, arguments)
+@script.plot()
+@script.option("--against", choices=list(range_axes.LABELS),
+               help="horizontal axis (default: the innermost that varies)")
+@script.option("--curves", choices=list(range_axes.LABELS), help="axis that sets the curves apart")
+@sweep_file.SELECT
+def draw(result, arguments):
+    sweep = sweep_file.read(result, arguments)
     single = sweep.single_scattering_range()
     if sweep.is_list and len(sweep.varying()) > 1 and not (arguments.against or arguments.curves):
         return range_list.draw(sweep, single)
     against, curves, panels = arrange(sweep, arguments)
-    check_size(sweep, curves, panels)
+    for name, most, what in ((curves, MOST_CURVES, "curves"), (panels, MOST_PANELS, "panels")):
+        if name and len(sweep.values(name)) > most:
+            sweep.refuse(f"{len(sweep.values(name))} {what}, at most {most} are legible", (name, 3))
     parts = sweep.groups(panels, sweep.rows)
     across = 2 if len(parts) == 4 else min(ACROSS, len(parts))
     figure, axes = page.page_of_panels(-(-len(parts) // across), across, len(parts))
@@ -183,7 +162,3 @@ def draw(results, arguments):
     page.legend_outside(figure, list(entries(sweep, curves, panels, single or [])), sweep.notes())
     style.caption(figure, range_axes.notes(sweep, single))
     return figure
-
-
-if __name__ == "__main__":
-    style.main(draw, __doc__, add_options=add_options)

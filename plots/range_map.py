@@ -3,12 +3,11 @@
 optical depth (and method). Hatched: bounds, where a curve does not cross 1/2 within the tilts.
 White: points that are not finished."""
 
-from lib import curve_looks, page, style, sweep_file
+from lib import curve_looks, page, script, style, sweep_file
 
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.colors import LogNorm
-from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 MOST_PANELS, MOST_CELLS = 12, 16
 LEAST_CONTOURED = 6  # cells across and down: contours of fewer are all corners
@@ -23,20 +22,16 @@ def check(sweep):
     """The axis of the panels, or None; refuses what is no map."""
     for name in ("g", "albedo"):
         if sweep.is_list or name not in sweep.varying():
-            raise style.Unusable(f"{sweep.path}: a map needs a grid with at least two values of g "
-                                 "and of albedo; memory_range.py draws ranges of other sweeps")
+            sweep.refuse("a map needs a grid with at least two values of g and of albedo; "
+                         "memory_range.py draws ranges of other sweeps")
         if len(sweep.values(name)) > MOST_CELLS:
-            raise style.Unusable(f"{sweep.path}: {len(sweep.values(name))} values of {name}, at "
-                                 f"most {MOST_CELLS} are legible; "
-                                 f"try --select {sweep.example(name, MOST_CELLS)}")
+            sweep.refuse(f"{len(sweep.values(name))} values of {name}, at most {MOST_CELLS} are legible",
+                         (name, MOST_CELLS))
     others = [name for name in sweep.varying() if name not in ("g", "albedo")]
     panels = others[-1] if others else None
-    if len(others) > 1:
-        raise style.Unusable(f"{sweep.path}: besides g, albedo and {panels} it varies {others[0]}; "
-                             f"try --select {sweep.example(others[0], 1)}")
+    sweep.refuse_others(others[:-1], f"g, albedo and {panels}")
     if panels and len(sweep.values(panels)) * len(sweep.prefixes) > MOST_PANELS:
-        raise style.Unusable(f"{sweep.path}: more than {MOST_PANELS} panels do not fit a page; "
-                             f"try --select {sweep.example(panels, 4)}")
+        sweep.refuse(f"more than {MOST_PANELS} panels do not fit a page", (panels, 4))
     return panels
 
 
@@ -64,12 +59,6 @@ def draw_numbers(axis, values, censored, few, norm):
                   fontsize=size, color="white" if norm(value) < 0.55 else "black", bbox=behind)
 
 
-def has_holes(sweep, parts):
-    """Whether a panel lacks points."""
-    cells = len(sweep.values("g")) * len(sweep.values("albedo"))
-    return any(len(rows) < cells for _, _, rows in parts)
-
-
 def contour_levels(sweep, norm, holes):
     """Levels of the contours; none of a map of few cells or with holes."""
     if holes or min(len(sweep.values(name)) for name in ("g", "albedo")) < LEAST_CONTOURED:
@@ -90,8 +79,7 @@ def draw_contours(axis, values, censored, levels):
 
 
 def draw_panel(axis, sweep, rows, method, norm, levels):
-    values, censored = (table(sweep, rows, sweep.of(method, name))
-                        for name in ("memory_effect_range", "range_censored"))
+    values, _, censored = (table(sweep, rows, column) for column in sweep.ranges(method))
     edges = [np.arange(count + 1) - 0.5 for count in reversed(values.shape)]
     image = axis.pcolormesh(*edges, values, cmap=MAP, norm=norm, edgecolors="face", linewidth=0.2)
     for row, column in np.argwhere((censored > 0).filled(False)):
@@ -102,17 +90,14 @@ def draw_panel(axis, sweep, rows, method, norm, levels):
     for side, name in ((axis.xaxis, "g"), (axis.yaxis, "albedo")):
         side.set_ticks(range(len(sweep.values(name))), style.short(sweep.values(name)))
     axis.tick_params(length=0)
-    axis.set_xlabel("mean cosine $g$")
-    axis.set_ylabel("albedo")
+    axis.set(xlabel="mean cosine $g$", ylabel="albedo")
     return image
 
 
 def colour_bar(figure, axes, image, levels):
     bar = figure.colorbar(image, ax=[axis for axis in axes.flat if axis.figure], aspect=35,
                           pad=0.015, fraction=0.05)
-    bar.ax.yaxis.set_major_locator(LogLocator(subs=STEPS))
-    bar.ax.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-    bar.ax.yaxis.set_minor_formatter(NullFormatter())
+    style.few_decades(bar.ax.yaxis, STEPS)
     for level in levels:
         bar.ax.axhline(level, color="white", linewidth=1.6)
         bar.ax.axhline(level, color="black", linewidth=0.7)
@@ -123,27 +108,28 @@ def worst_error(sweep):
     """Largest relative error of a range that is no bound, in words."""
     errors = []
     for method in sweep.prefixes:
-        known = sweep.rows[sweep.of(method, "range_censored")[sweep.rows] == 0]
-        errors += list(sweep.of(method, "memory_effect_range_error")[known]
-                       / sweep.of(method, "memory_effect_range")[known])
+        value, error, censored = (column[sweep.rows] for column in sweep.ranges(method))
+        errors += list((error / value)[censored == 0])
     kind = "errors" if sweep.result.attribute("errors") else "standard errors"
     return f"{kind} up to {100 * max(errors):.2g} %" if errors else "bounds alone"
 
 
 def entries(sweep, holes):
     """Legend entries (handle, label)."""
-    if any((sweep.of(method, "range_censored")[sweep.rows] > 0).any() for method in sweep.prefixes):
+    if sweep.has_bounds():
         yield (plt.Rectangle((0, 0), 1, 1, fill=False, hatch="////", edgecolor="0.4"),
                "bound: no crossing of 1/2 within the tilts")
-    if any(sweep.few_steps(method)[sweep.rows].any() for method in sweep.prefixes):
+    if sweep.has_few_steps():
         yield (plt.Line2D([], [], linestyle="none", marker=r"$\dagger$", color="black"),
                curve_looks.FEW_STEPS)
     if holes:
         yield plt.Rectangle((0, 0), 1, 1, fill=False, edgecolor="0.4"), "no point"
 
 
-def draw(results, arguments):
-    sweep = sweep_file.read(results, arguments)
+@script.plot()
+@sweep_file.SELECT
+def draw(result, arguments):
+    sweep = sweep_file.read(result, arguments)
     panels = check(sweep)
     shown = [(method, value, rows) for method in sweep.prefixes
              for value, rows in sweep.groups(panels, sweep.rows)]
@@ -153,7 +139,8 @@ def draw(results, arguments):
                              for method, _, rows in shown])
     spread = 1 if ranges.max() > 1.1 * ranges.min() else 1.2  # for a scale with room for marks
     norm = LogNorm(ranges.min() / spread, ranges.max() * spread)
-    holes = has_holes(sweep, shown)
+    cells = len(sweep.values("g")) * len(sweep.values("albedo"))
+    holes = any(len(rows) < cells for _, _, rows in shown)
     levels = contour_levels(sweep, norm, holes)
     for axis, (method, value, rows) in zip(axes.flat, shown):
         image = draw_panel(axis, sweep, rows, method, norm, levels)
@@ -165,7 +152,3 @@ def draw(results, arguments):
     page.legend_outside(figure, list(entries(sweep, holes)), sweep.notes())
     style.caption(figure, [worst_error(sweep)])
     return figure
-
-
-if __name__ == "__main__":
-    style.main(draw, __doc__, add_options=sweep_file.add_select)

@@ -3,7 +3,7 @@
 plane say: FIRST over SECOND against optical depth, a curve for each g. Points that are bounds in
 either are left out."""
 
-from lib import page, style, sweep_file
+from lib import page, script, style, sweep_file
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -13,22 +13,15 @@ MOST_CURVES = 8
 
 
 def name_of(sweep):
-    dimension = sweep.result.attribute("dimension", 2)
-    return f"{dimension}D"
+    return f"{sweep.result.attribute('dimension', 2)}D"
 
 
 def ranges(sweep):
     """{(optical depth, g): (range, error)} of a sweep's points that are no bounds."""
     for name in AXES:
-        if name not in sweep.columns:
-            raise style.Unusable(f"{sweep.path}: has no axis {name}")
-    others = [name for name in sweep.varying() if name not in AXES]
-    if others:
-        raise style.Unusable(f"{sweep.path}: varies {others[0]} too; "
-                             f"try --select {sweep.example(others[0], 1)}")
-    method = next(iter(sweep.prefixes))
-    value, error, censored = (sweep.of(method, name) for name in (
-        "memory_effect_range", "memory_effect_range_error", "range_censored"))
+        sweep.column(name)
+    sweep.refuse_others([name for name in sweep.varying() if name not in AXES], "optical_depth and g")
+    value, error, censored = sweep.ranges(next(iter(sweep.prefixes)))
     keys = zip(*(np.round(sweep.columns[name], 9) for name in AXES))
     return {key: (value[row], error[row]) for row, key in enumerate(keys)
             if row in sweep.rows and censored[row] == 0}
@@ -44,16 +37,18 @@ def curves(first, second):
         yield g, depths, ratio, ratio * np.hypot(a[1] / a[0], b[1] / b[0])
 
 
+@script.plot(several=True)
+@sweep_file.SELECT
 def draw(results, arguments):
     if len(results) != 2:
         raise style.Unusable("takes two results, FIRST.h5 SECOND.h5")
-    sweeps = [sweep_file.read([result], arguments) for result in results]
+    sweeps = [sweep_file.read(result, arguments) for result in results]
     drawn = list(curves(*map(ranges, sweeps)))
     if not drawn:
         raise style.Unusable(f"{sweeps[0].path} and {sweeps[1].path} have no point in common")
     if len(drawn) > MOST_CURVES:
-        raise style.Unusable(f"{len(drawn)} values of g, at most {MOST_CURVES} are legible; "
-                             f"try --select {sweeps[0].example('g', MOST_CURVES)}")
+        sweeps[0].refuse(f"{len(drawn)} values of g, at most {MOST_CURVES} are legible",
+                         ("g", MOST_CURVES))
     figure, axis = plt.subplots(figsize=(style.COLUMN, 2.5))
     axis.axhline(1, color=style.GREY, linewidth=0.5)
     entries = []
@@ -63,11 +58,7 @@ def draw(results, arguments):
         entries.append((plt.Line2D([], [], **look), sweep_file.text("g", g)))
     axis.set_xscale("log")
     style.few_decades(axis.xaxis)
-    axis.set_xlabel("optical depth")
-    axis.set_ylabel(f"range at $C_I = 1/2$: {' over '.join(map(name_of, sweeps))}")
+    axis.set(xlabel="optical depth",
+             ylabel=f"range at $C_I = 1/2$: {' over '.join(map(name_of, sweeps))}")
     page.legend_outside(figure, entries, sweeps[0].notes())
     return figure
-
-
-if __name__ == "__main__":
-    style.main(draw, __doc__, several=True, add_options=sweep_file.add_select)

@@ -3,23 +3,15 @@
 optical paths also how these are spread over the angles or heights at which the rays start; where
 some end on a stop surface, only of those."""
 
-from lib import style
-from lib.result_file import Unusable
+from lib import script, style
 
 import matplotlib.pyplot as plt
 import numpy as np
-from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.ticker import MaxNLocator
 
 MOST_DRAWN = 60
 SAME = 1e-9  # relative difference below which values count as equal
 ROUNDING = 1e-16
-INDEX = LinearSegmentedColormap.from_list("index", ["white", "#56B4E9", "#00456b"])
-
-
-def transverse(result):
-    """Name of the index map's axis across z."""
-    return result.dataset("index_map").dims[0].label.removeprefix("map_")
 
 
 def draw_map(figure, axis, result, up):
@@ -29,10 +21,10 @@ def draw_map(figure, axis, result, up):
     axis.set_facecolor("0.85")
     low, high = shown.min(), shown.max()
     if high - low < SAME * high:
-        axis.pcolormesh(z, across, shown, cmap=INDEX, vmin=0, vmax=4 * high, rasterized=True)
+        axis.pcolormesh(z, across, shown, cmap=style.INDEX, vmin=0, vmax=4 * high, rasterized=True)
         axis.set_title(f"index $n = {high:.6g}$", loc="right")
         return
-    mesh = axis.pcolormesh(z, across, shown, cmap=INDEX, vmin=low, vmax=high + (high - low),
+    mesh = axis.pcolormesh(z, across, shown, cmap=style.INDEX, vmin=low, vmax=high + (high - low),
                            rasterized=True, shading="nearest")
     bar = figure.colorbar(mesh, ax=axis, label="index $n$", pad=0.02)
     bar.ax.set_ylim(low, high)
@@ -45,8 +37,8 @@ def draw_paths(axis, result, up):
     chosen = np.unique(np.linspace(0, len(z) - 1, min(len(z), MOST_DRAWN)).round().astype(int))
     for n in chosen:
         axis.plot(z[n], across[n], color=style.COLOURS[1], linewidth=0.6)
-    axis.plot(z[chosen, 0], across[chosen, 0], "o", color="black", markersize=1.5)
-    axis.plot(z[chosen, -1], across[chosen, -1], "o", color="black", markersize=1.5)
+    for end in (0, -1):
+        axis.plot(z[chosen, end], across[chosen, end], "o", color="black", markersize=1.5)
     height, width = np.ptp(axis.get_ylim()), np.ptp(axis.get_xlim())
     if 0.25 < height / width < 4:
         axis.set_aspect("equal")
@@ -73,20 +65,17 @@ def draw_spread(axis, result, up):
     where, label = start(result, up)
     spread = np.ptp(paths) / mean
     decade = int(np.floor(np.log10(max(spread, ROUNDING))))
-    axis.set_xlabel(label)
     power = f" / 10^{{{decade}}}" if decade else ""
-    axis.set_ylabel(f"(optical path$/$mean $-\\ 1){power}$")
+    axis.set(xlabel=label, ylabel=f"(optical path$/$mean $-\\ 1){power}$")
     axis.plot(where[shown], (paths / mean - 1) / 10.0**decade, "o", color=style.COLOURS[0])
     axis.set_title(f"relative spread {spread:.2g}, mean {mean:.6g}", loc="right")
     axis.margins(y=0.1)
     axis.xaxis.set_major_locator(MaxNLocator(4))
 
 
-def draw(results):
-    result = results[0]
-    if not result.has("path/z"):
-        raise Unusable(f"{result.path}: holds no paths; trace with --path_points")
-    up = transverse(result)
+@script.plot(needs={"path/z": "trace with --path_points"})
+def draw(result):
+    up = result.dataset("index_map").dims[0].label.removeprefix("map_")  # the axis across z
     of_rays = result.has("ray")
     figure, axes = plt.subplots(1, 2 if of_rays else 1, squeeze=False,
                                 figsize=(style.PAGE if of_rays else 4.5, 2.5),
@@ -100,7 +89,3 @@ def draw(results):
     if of_rays:
         draw_spread(axes[0, 1], result, up)
     return figure
-
-
-if __name__ == "__main__":
-    style.main(draw, __doc__)

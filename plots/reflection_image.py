@@ -2,7 +2,7 @@
 """Image from a reflection matrix: the coherent sum over wavelengths and angles of the far fields of
 `solve --wavelengths`, each turned back by its phase to every point; the smallest disks are circled."""
 
-from lib import style
+from lib import script, style
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -10,11 +10,6 @@ import numpy as np
 STEP = 0.3  # pixels, of the shortest wavelength
 ROWS = 4000  # pixels at a time
 FLOOR = -30  # dB
-
-
-def options(parser):
-    parser.add_argument("--index", type=float, default=1,
-                        help="mean index of the medium, relative to its surroundings (default: 1)")
 
 
 def phases(points, k, angles, index):
@@ -39,8 +34,10 @@ def image(result, points, index):
     return np.abs(total)**2
 
 
-def draw(results, arguments):
-    result = results[0]
+@script.plot()
+@script.option("--index", type=float, default=1,
+               help="mean index of the medium, relative to its surroundings (default: 1)")
+def draw(result, arguments):
     if result.dataset("far_field").ndim != 3:
         raise style.Unusable(f"{result.path}: far_field is of one wavelength; needs --wavelengths")
     x, z, radius = (result.values(f"placement/{name}") for name in ("x", "z", "radius"))
@@ -56,13 +53,7 @@ def draw(results, arguments):
     if not smallest.all():
         axis.scatter(x[smallest], z[smallest], s=28, facecolors="none", edgecolors="#56B4E9",
                      linewidths=0.5)
-    axis.set_aspect("equal")
+    axis.set(aspect="equal", xlabel="x", ylabel="z")
     axis.invert_yaxis()
-    axis.set_xlabel("x")
-    axis.set_ylabel("z")
     figure.colorbar(shown, label="intensity (dB)", shrink=0.8)
     return figure
-
-
-if __name__ == "__main__":
-    style.main(draw, __doc__, add_options=options)

@@ -4,7 +4,7 @@ small tilts, the mean distance along x, at z = 0, of the ray that leaves from th
 `covariance --covariance memory_effect` with far views, say exact placements first, then Monte Carlo with and
 without --index_field mean_field; below, less the first."""
 
-from lib import style
+from lib import script, style
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -20,8 +20,6 @@ def name_of(result):
 
 def displacement(result):
     """View angles, displacements and their errors, which take tilts as independent: they are too large."""
-    if not (result.has("tilt_q") and result.has("view_angle") and result.has("covariance")):
-        raise style.Unusable(f"{result.path}: has no tilts of far views; needs --covariance memory_effect")
     views, q, found = (result.values(name) for name in ("view_angle", "tilt_q", "covariance"))
     if found.shape != (q.size, views.size):
         raise style.Unusable(f"{result.path}: its covariance is not one of tilts and views")
@@ -36,6 +34,10 @@ def displacement(result):
     return views, np.sum(q * phase, 0) / np.sum(q**2), np.sqrt(np.sum(q**2 * error**2 / 2, 0)) / np.sum(q**2)
 
 
+NEEDS = "needs far views and --covariance memory_effect"
+
+
+@script.plot(several=True, needs=dict.fromkeys(("tilt_q", "view_angle", "covariance"), NEEDS))
 def draw(results):
     figure, (axis, below) = plt.subplots(2, sharex=True, figsize=(style.COLUMN, 3.6), height_ratios=[3, 2])
     curves = [displacement(result) for result in results]
@@ -49,8 +51,7 @@ def draw(results):
             axis.plot(angles[side], found[side], **look, label=label)
             if number > 0:
                 below.plot(angles[side], (found - first)[side], **look)
-    below.errorbar(views, 0 * views, error, color=style.COLOURS[0], marker=style.MARKERS[0], linestyle="none",
-                   elinewidth=0.7)
+    below.errorbar(views, 0 * views, error, **style.symbols(0))
     axis.set_ylabel("displacement")
     below.set_ylabel("less the first")
     style.angle_axis(below, views, "view")
@@ -58,7 +59,3 @@ def draw(results):
     shift = results[0].attribute("k_shift", 0) * results[0].attribute("wavelength", 1) / (2 * np.pi)
     style.caption(figure, [f"k_shift/k {shift:.3g}; bars: errors of the first, of tilts as if they were independent"])
     return figure
-
-
-if __name__ == "__main__":
-    style.main(draw, __doc__, several=True)

@@ -3,56 +3,45 @@
 several results or sensors a row each, with one scale where they measure the same. The brightest
 0.1 % of the pixels share one colour."""
 
-from lib import style
-from lib import pictures
-from lib.result_file import Unusable
+from lib import pictures, script, style
 
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.colors import LogNorm, PowerNorm
 from matplotlib.ticker import FuncFormatter, MaxNLocator, NullFormatter
 
-plt.rcParams["savefig.dpi"] = 150  # pictures without white paper make large files
+DPI = 150  # pictures without white paper make large files
 MOST = 1.0  # of relative errors
 
 
 def relative_error(result):
     """Masked where there is no light."""
-    value, error = result.values("image"), result.values("image_error")
-    return np.ma.masked_where(value <= 0, error) / np.ma.masked_where(value <= 0, value)
+    value, error = (np.ma.masked_where(result.values("image") <= 0, values)
+                    for values in result.measured("image"))
+    return error / value
 
 
 def panel(figure, axis, result, picture, label, extend, **look):
     image = pictures.show(axis, result, picture, **look)
     axis.tick_params(direction="out", top=False, right=False)
-    axis.xaxis.set_major_locator(MaxNLocator(5))
-    axis.yaxis.set_major_locator(MaxNLocator(5))
+    for side in (axis.xaxis, axis.yaxis):
+        side.set_major_locator(MaxNLocator(5))
     return figure.colorbar(image, ax=axis, label=label, extend=extend, shrink=0.95, pad=0.02)
-
-
-def root_ticks(high):
-    """Even numbers, of which those too close on a scale of roots are left out."""
-    ticks = [0.0]
-    for tick in MaxNLocator(8).tick_values(0, high):
-        if tick <= high and np.sqrt(tick / high) - np.sqrt(ticks[-1] / high) > 0.12:
-            ticks.append(tick)
-    return ticks
 
 
 def draw_image(figure, axis, result, norm):
     bar = panel(figure, axis, result, result.values("image"), pictures.quantity(result), "max",
                 cmap="inferno", norm=norm)
     if not isinstance(norm, LogNorm):
-        bar.set_ticks(root_ticks(norm.vmax) if isinstance(norm, PowerNorm)
-                      else MaxNLocator(4).tick_values(0, norm.vmax)[:-1])
+        ticks = MaxNLocator(4).tick_values(0, norm.vmax)[:-1]
+        if isinstance(norm, PowerNorm):  # those too close on a scale of roots are left out
+            ticks = [0.0]
+            for tick in MaxNLocator(8).tick_values(0, norm.vmax):
+                if tick <= norm.vmax and norm(tick) - norm(ticks[-1]) > 0.12:
+                    ticks.append(tick)
+        bar.set_ticks(ticks)
         bar.ax.yaxis.get_offset_text().set_ha("left")
         bar.formatter.set_powerlimits((-2, 4))
-
-
-def error_norm(results):
-    """From the decade of the best pixels of any of them."""
-    best = min(np.quantile(relative_error(result).compressed(), 0.01) for result in results)
-    return LogNorm(min(10 ** np.floor(np.log10(best)), MOST / 10), MOST, clip=True)
 
 
 def say_what_is_no_error(axis, result, error):
@@ -75,49 +64,33 @@ def draw_error(figure, axis, result, norm):
     bar.ax.yaxis.set_minor_formatter(NullFormatter())
 
 
-def draw_row(figure, axes, result, norm, errors):
-    draw_image(figure, axes[0], result, norm)
-    draw_error(figure, axes[1], result, errors)
-    across, up = pictures.axis_names(result)
-    axes[0].set_ylabel(up)
-    for axis in axes:
-        axis.set_xlabel(across)
-
-
-def norms(results, arguments):
-    """One for all that measure the same."""
-    by_quantity = {}
-    for result in results:
-        by_quantity.setdefault(pictures.quantity(result), []).append(result.values("image"))
-    shared = {name: pictures.tone(images, arguments.tone, arguments.decades)
-              for name, images in by_quantity.items()}
-    return [shared[pictures.quantity(result)] for result in results]
-
-
+@script.plot(several=True, one_run=True, dpi=DPI)
+@pictures.tone_options()
 def draw(results, arguments):
-    for result in results:
-        result.refuse_sweep()
-    names = pictures.sensor_labels(results)
-    results = pictures.sensors(results)
+    names, results = zip(*pictures.sensors(results))
     for result in results:
         if result.values("image").size == 1:
-            raise Unusable(f"{result.path}: is a single pixel, not a picture")
+            raise style.Unusable(f"{result.path}: is a single pixel, not a picture")
     if not any(np.any(result.values("image") > 0) for result in results):
-        raise Unusable(f"{results[0].path}: no pixel has any light")
-    left, right, bottom, top = pictures.extent(results[0])
-    height = np.clip((top - bottom) / (right - left), 0.2, 2) * 0.36 * style.PAGE + 0.4
+        raise style.Unusable(f"{results[0].path}: no pixel has any light")
+    height = np.clip(pictures.height_over_width(results[0]), 0.2, 2) * 0.36 * style.PAGE + 0.4
     figure, axes = plt.subplots(len(results), 2, squeeze=False,
                                 figsize=(style.PAGE, len(results) * height))
-    errors = error_norm(results)
-    for row, result, label, norm in zip(axes, results, names, norms(results, arguments)):
-        draw_row(figure, row, result, norm, errors)
+    # The scale of errors begins at the decade of the best pixels of any result.
+    best = min(np.quantile(relative_error(result).compressed(), 0.01) for result in results)
+    errors = LogNorm(min(10 ** np.floor(np.log10(best)), MOST / 10), MOST, clip=True)
+    quantities = [pictures.quantity(result) for result in results]  # one scale for all of each
+    norms = {name: pictures.tone([result.values("image") for result, own in zip(results, quantities)
+                                  if own == name], arguments.tone, arguments.decades)
+             for name in set(quantities)}
+    for (left, right), result, label, quantity in zip(axes, results, names, quantities):
+        draw_image(figure, left, result, norms[quantity])
+        draw_error(figure, right, result, errors)
+        across, up = pictures.axis_names(result)
+        left.set(xlabel=across, ylabel=up)
+        right.set_xlabel(across)
         if len(results) > 1:
-            row[0].set_title(label, loc="left")
+            left.set_title(label, loc="left")
     if any(result.has("image_rare") for result in results):
         style.caption(figure, ["errors of pixels that few strong paths make, and of their neighbours, are upper bounds (image_rare)"])
     return figure
-
-
-if __name__ == "__main__":
-    style.main(draw, __doc__, several=True,
-               add_options=pictures.add_tone_options)

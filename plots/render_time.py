@@ -4,14 +4,11 @@ path, all in one scale; beneath it the pulse with its standard errors and the fr
 the pulse alone of a single pixel or of rings. Apart at the sides: what is shorter and longer than
 all bins."""
 
-from lib import style
-from lib import pictures
-from lib.result_file import Unusable
+from lib import pictures, script, style
 
 import matplotlib.pyplot as plt
 import numpy as np
 
-plt.rcParams["savefig.dpi"] = 150
 PICOSECOND = 1e-12
 PULSE_DECADES = 6  # below the peak; what is fainter is noise
 
@@ -38,20 +35,20 @@ def draw_film(figure, axes, result, parts, norm):
 
 
 def draw_pulse(axis, result, parts):
-    path, pulse = result.values("optical_path"), result.values("pulse")
-    error = result.values("pulse_error")
+    path, (pulse, error) = result.values("optical_path"), result.measured("pulse")
     cuts = np.linspace(*pictures.edges(path), len(path) + 1)
     for number, (first, last) in enumerate(parts):
         axis.axvspan(cuts[first], cuts[last], color="0.93" if number % 2 else "white", zorder=0)
     lit = pulse > pulse.max() * 10.0**-PULSE_DECADES
     if not np.any(lit):
-        raise Unusable(f"{result.path}: no bin has any light")
+        raise style.Unusable(f"{result.path}: no bin has any light")
     axis.stairs(np.where(lit, pulse, np.nan), cuts, color=style.COLOURS[0], baseline=None)
-    axis.errorbar(path[lit], pulse[lit], np.minimum(error, 0.999 * pulse)[lit], fmt="none",
+    axis.errorbar(path[lit], pulse[lit], pictures.below(pulse, error)[lit], fmt="none",
                   color=style.COLOURS[0], elinewidth=0.6)
     draw_beyond(axis, result, cuts)
+    units = pictures.unit_name(result, "pulse")
     axis.set(yscale="log", ylim=(0.3 * pulse[lit].min(), None), xlabel=f"optical path ({pictures.length_name(result)})",
-             ylabel=pulse_name(result))
+             ylabel=f"mean in each bin ({units})" if units else "power in each bin")
     if result.has("time"):
         rate = result.values("time")[-1] / path[-1] / PICOSECOND
         above = axis.secondary_xaxis("top", functions=(lambda x: x * rate, lambda t: t / rate))
@@ -63,27 +60,23 @@ def draw_beyond(axis, result, cuts):
     """Beside the bins, behind lines, where there is any."""
     room = 0.06 * (cuts[-1] - cuts[0])
     for name, edge, side in (("before", cuts[0], -1), ("after", cuts[-1], 1)):
-        light, error = result.values(f"pulse_{name}"), result.values(f"pulse_{name}_error")
+        light, error = result.measured(f"pulse_{name}")
         axis.axvline(edge, color="0.6", linewidth=0.6)
         if light > 0:
-            axis.errorbar(edge + side * room / 2, light, min(error, 0.999 * light), fmt="_",
+            axis.errorbar(edge + side * room / 2, light, pictures.below(light, error), fmt="_",
                           color=style.COLOURS[1], label="shorter or longer")
     axis.set_xlim(cuts[0] - room, cuts[-1] + room)
 
 
-def pulse_name(result):
-    units = pictures.unit_name(result, "pulse")
-    return f"mean in each bin ({units})" if units else "power in each bin"
-
-
-def draw(results, arguments):
-    for result in results:
-        result.refuse_sweep()
-    result = pictures.chosen(results[0], arguments.sensor)
-    if not result.has("transient"):
-        raise Unusable(f"{result.path}: is not timed; render with --path_bins")
+@script.plot(one_run=True, dpi=150)
+@pictures.tone_options("log")
+@script.option("--sensor", metavar="NAME", help="of several")
+@script.option("--frames", type=int, default=6, help="of the film (default: 6)")
+def draw(result, arguments):
+    result = pictures.chosen(result, arguments.sensor)
+    result.require("transient", "render with --path_bins")
     if arguments.frames < 1:
-        raise Unusable("--frames must be positive")
+        raise style.Unusable("--frames must be positive")
     transient = result.values("transient")
     if transient.ndim < 3 or transient[:, :, 0].size == 1:
         figure, axis = plt.subplots(figsize=(style.PAGE, 2.1))
@@ -91,22 +84,11 @@ def draw(results, arguments):
         return figure
     parts = shares(transient.shape[2], arguments.frames)
     frames = [transient[:, :, first:last].sum(axis=2) for first, last in parts]
-    left, right, bottom, top = pictures.extent(result)
     width = 0.85 * style.PAGE / len(parts)
-    height = np.clip((top - bottom) / (right - left), 0.3, 3) * width + 0.7
+    height = np.clip(pictures.height_over_width(result), 0.3, 3) * width + 0.7
     figure = plt.figure(figsize=(style.PAGE, height + 1.9))
     film, curve = figure.subfigures(2, 1, height_ratios=[height, 1.9])
     draw_film(film, film.subplots(1, len(parts), sharey=True, squeeze=False)[0], result, parts,
               pictures.tone(frames, arguments.tone, arguments.decades))
     draw_pulse(curve.subplots(), result, parts)
     return figure
-
-
-def add_options(parser):
-    pictures.add_tone_options(parser, "log")
-    parser.add_argument("--sensor", metavar="NAME", help="of several")
-    parser.add_argument("--frames", type=int, default=6, help="of the film (default: 6)")
-
-
-if __name__ == "__main__":
-    style.main(draw, __doc__, add_options=add_options)

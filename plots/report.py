@@ -8,53 +8,44 @@ import json
 import pathlib
 import sys
 
-from lib import bench_document, bench_figures, document, style
-from lib.bench_numbers import numbers_of
+from lib import bench_figures, script
 from lib.bench_results import read_bench
 
 import matplotlib.pyplot as plt
 from PIL import Image
 
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "scripts"))
+from report_pages import document, markdown
+from report_pages.numbers import numbers_of
+
 plt.rcParams.update({"svg.hashsalt": "flatspeckle", "svg.fonttype": "path"})
 DPI = 220  # at 7 inches across; larger pictures would weigh too much in a repository
-
-
-def svg_of(figure):
-    svg = io.BytesIO()
-    figure.savefig(svg, format="svg", metadata={"Date": None})
-    return svg.getvalue()
-
-
-def save_png(figure, path):
-    """Of few colours, which is a third of the size of all."""
-    full = io.BytesIO()
-    figure.savefig(full, format="png", dpi=DPI)
-    Image.open(full).convert("RGB").quantize(128).save(path, optimize=True)
 
 
 def draw_all(bench, folder):
     """Writes each picture as PNG; name -> SVG of those that there is something to draw for."""
     pictures = {}
-    for name, (draw, _) in bench_figures.FIGURES.items():
+    for name, draw in bench_figures.FIGURES.items():
         figure = draw(bench)
         if figure is None:
             continue
-        save_png(figure, folder / f"{name}.png")
-        pictures[name] = svg_of(figure)
+        png, svg = io.BytesIO(), io.BytesIO()
+        figure.savefig(png, format="png", dpi=DPI)  # of few colours, which is a third of the size of all
+        Image.open(png).convert("RGB").quantize(128).save(folder / f"{name}.png", optimize=True)
+        figure.savefig(svg, format="svg", metadata={"Date": None})
+        pictures[name] = svg.getvalue()
         plt.close(figure)
     return pictures
 
 
 def write_report(bench, folder, coverage):
     folder.mkdir(parents=True, exist_ok=True)
-    pictures = draw_all(bench, folder)
-    blocks = bench_document.blocks_of(bench, pictures, coverage)
-    (folder / "report.md").write_text(document.as_markdown(blocks))
-    (folder / "report.html").write_text(
-        document.as_html(blocks, pictures, f"flatspeckle: {bench_document.TITLE}"))
-    numbers = json.dumps(numbers_of(bench), indent=1, ensure_ascii=False, sort_keys=True)
-    (folder / "numbers.json").write_text(numbers + "\n")
-    for name in ("report.html", "report.md", "numbers.json"):
+    pictures, numbers = draw_all(bench, folder), numbers_of(bench)
+    text = document.as_markdown(bench, numbers, pictures, coverage)
+    written = {"report.html": markdown.as_html(text, pictures), "report.md": text,
+               "numbers.json": json.dumps(numbers, indent=1, ensure_ascii=False, sort_keys=True) + "\n"}
+    for name, contents in written.items():
+        (folder / name).write_text(contents)
         print(f"wrote {folder / name}")
 
 
@@ -66,17 +57,10 @@ def main():
                         help="of tests/apps/coverage.py")
     parser.add_argument("--out", metavar="FOLDER", required=True, type=pathlib.Path)
     arguments = parser.parse_args()
-    try:
+    with script.complaints():
         coverage = arguments.coverage and json.loads(arguments.coverage.read_text())
         write_report(read_bench(arguments.error, arguments.stability, arguments.plan),
                      arguments.out, coverage)
-    except style.Unusable as problem:
-        print(problem, file=sys.stderr)
-        sys.exit(2)
-    except OSError as problem:
-        print(f"{problem.filename}: {problem.strerror}" if problem.filename else problem,
-              file=sys.stderr)
-        sys.exit(2)
 
 
 if __name__ == "__main__":

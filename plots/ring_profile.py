@@ -3,9 +3,7 @@
 per solid angle over the polar angle (sensor polar) beside that of a Lambertian surface of the same power, and the power
 within radii; of several results or sensors in one figure. Open symbols: few paths carry the value, and the bar is a bound."""
 
-from lib import style
-from lib import pictures
-from lib.result_file import Unusable
+from lib import pictures, script, style
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -21,19 +19,12 @@ def kinds(result):
 
 
 def draw_values(axis, result, over, name, number, label):
-    at, value, error = result.values(over), result.values(name), result.values(f"{name}_error")
+    at, (value, error), look = result.values(over), result.measured(name), style.look(number)
     lit = value > 0
     rare = result.values(f"{name}_rare") > 0 if result.has(f"{name}_rare") else np.zeros(len(value), bool)
-    look = style.look(number)
     for those, face in ((lit & ~rare, look["color"]), (lit & rare, "white")):
-        axis.errorbar(at[those], value[those], np.minimum(error, 0.999 * value)[those], fmt=look["marker"],
+        axis.errorbar(at[those], value[those], pictures.below(value, error)[those], fmt=look["marker"],
                       color=look["color"], markerfacecolor=face, label=label if face != "white" else None)
-
-
-def draw_lambert(axis, result, number):
-    angles = np.linspace(0, min(result.values("angle")[-1], np.pi / 2), 200)
-    axis.plot(angles, result.values("total") / np.pi * np.cos(angles), color=style.look(number)["color"], linestyle="--",
-              label="Lambert" if number == 0 else None)
 
 
 def draw_kind(axis, results, over):
@@ -41,7 +32,9 @@ def draw_kind(axis, results, over):
         name = kinds(result)[over]
         draw_values(axis, result, over, name, number, label)
         if over == "angle":
-            draw_lambert(axis, result, number)
+            angles = np.linspace(0, min(result.values("angle")[-1], np.pi / 2), 200)
+            axis.plot(angles, result.values("total") / np.pi * np.cos(angles), linestyle="--",
+                      color=style.look(number)["color"], label="Lambert" if number == 0 else None)
     first = results[0][1]
     units = pictures.unit_name(first, kinds(first)[over])
     unit = "rad" if over == "angle" else pictures.length_name(first)
@@ -51,21 +44,16 @@ def draw_kind(axis, results, over):
         axis.legend()
 
 
+@script.plot(several=True, one_run=True)
 def draw(results):
-    for result in results:
-        result.refuse_sweep()
     by_kind = {}
-    for label, result in zip(pictures.sensor_labels(results), pictures.sensors(results)):
+    for label, result in pictures.sensors(results):
         for over in kinds(result):
             by_kind.setdefault(over, []).append((label, result))
     if not by_kind:
-        raise Unusable(f"{results[0].path}: has no rings; render with sensor radial or polar")
+        raise style.Unusable(f"{results[0].path}: has no rings; render with sensor radial or polar")
     figure, axes = plt.subplots(1, len(by_kind), squeeze=False,
                                 figsize=(style.PAGE if len(by_kind) > 1 else style.COLUMN, 2.5))
     for axis, over in zip(axes[0], filter(by_kind.get, QUANTITIES)):
         draw_kind(axis, by_kind[over], over)
     return figure
-
-
-if __name__ == "__main__":
-    style.main(draw, __doc__, several=True)

@@ -2,9 +2,8 @@
 """Sources of frames in which points blink (`flatspeckle image --blinking ...`, or `recover --recovery
 sources`): singular values of the frames, parts of some patterns, and where the sources are."""
 
-from lib import style
+from lib import object_panel, page, script, style
 
-import matplotlib.pyplot as plt
 import numpy as np
 
 SHOWN = 60  # pixels of a pattern
@@ -40,14 +39,12 @@ def best_shift(truth, found):
 
 
 def draw_object(axis, result):
-    truth, brightness = result.values("object_x"), result.values("object_brightness")
-    axis.plot(truth, brightness / brightness.mean(), "o", markersize=9, markerfacecolor="none", color="0.3", label="object")
-    every = zip(result.values("source_x"), result.values("source_brightness"))
-    for number, (x, b) in enumerate(every):
-        x, b = x[b > 0], b[b > 0]
-        axis.plot(x + best_shift(truth, x), b, "x", color="C3", markersize=5,
-                  label=None if number else "sources, each medium")
-    axis.set(xlabel="x of the object", ylabel="brightness over its mean", ylim=(0, None))
+    truth, found = result.values("object_x"), []
+    for x, brightness in zip(result.values("source_x"), result.values("source_brightness")):
+        lit = brightness > 0
+        found.append((x[lit] + best_shift(truth, x[lit]), brightness[lit]))
+    object_panel.draw(axis, result, found, "sources, each medium")
+    axis.set_ylim(0, None)
     axis.legend(loc="lower center")
 
 
@@ -62,17 +59,7 @@ def draw_places(axis, result):
         axis.legend()
 
 
-def draw(results):
-    result = results[0]
-    result.refuse_sweep()
-    if not result.has("source_x"):
-        raise style.Unusable(f"{result.path}: has no sources of blinking points")
-    figure, axes = plt.subplots(1, 3, figsize=(1.4 * style.PAGE, 2.9), layout="constrained")
-    draw_singular_values(axes[0], result)
-    draw_patterns(axes[1], result)
-    (draw_object if result.has("object_x") else draw_places)(axes[2], result)
-    return figure
-
-
-if __name__ == "__main__":
-    style.main(draw, __doc__)
+@script.plot(one_run=True, needs={"source_x": "needs frames of blinking points"})
+def draw(result):
+    last = draw_object if result.has("object_x") else draw_places
+    return page.side_by_side(result, (draw_singular_values, draw_patterns, last), 1.4 * style.PAGE, 2.9)

@@ -4,7 +4,7 @@
 moves speckles; the histogram of all intensities; and their autocorrelation over the first light's
 views."""
 
-from lib import style
+from lib import script, style
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -15,19 +15,6 @@ UNEVEN = 1.5  # widest over narrowest step from which on cells stand side by sid
 MOST_NAMES = 9  # of values along an axis by number
 MOST_ROWS = 24  # of realizations side by side
 FEWEST_EXPECTED = 10  # in a bin, for its error bar to mean something
-plt.rcParams["savefig.dpi"] = 150
-
-
-def edges(centres):
-    """Boundaries between cells with these centres."""
-    middle = (centres[1:] + centres[:-1]) / 2
-    first, last = 2 * centres[0] - middle[0], 2 * centres[-1] - middle[-1]
-    return np.concatenate([[first], middle, [last]])
-
-
-def is_even(centres):
-    steps = np.abs(np.diff(centres))
-    return len(steps) == 0 or steps.max() < UNEVEN * steps.min()
 
 
 class Cells:
@@ -35,8 +22,12 @@ class Cells:
     width side by side, named by their values, so that no cell looks wider than what was computed."""
 
     def __init__(self, values):
-        self.values, self.even = values, is_even(values)
-        self.edges = edges(values if self.even else np.arange(len(values)))
+        steps = np.abs(np.diff(values))
+        self.values, self.even = values, len(steps) == 0 or steps.max() < UNEVEN * steps.min()
+        centres = values if self.even else np.arange(len(values))
+        middle = (centres[1:] + centres[:-1]) / 2
+        first, last = 2 * centres[0] - middle[0], 2 * centres[-1] - middle[-1]
+        self.edges = np.concatenate([[first], middle, [last]])
 
     def mark(self, side):
         """Ticks of a matplotlib axis."""
@@ -58,20 +49,12 @@ def views(result):
 
 def picture(result):
     """Intensity over its mean [row, view], coordinate and label of the rows."""
-    field = result.dataset("field")
-    mean = result.values("intensity")
+    field, mean = result.dataset("field"), result.values("intensity")
     mean = np.where(mean > 0, mean, 1)
     if field.shape[1] > 1:
         return np.abs(field[0])**2 / mean, np.sin(result.values("light_angle")), r"$\sin i$"
     rows = min(len(field), MOST_ROWS)
     return np.abs(field[:rows, 0])**2 / mean, np.arange(rows, dtype=float), "realization"
-
-
-def draw_shear(axis, x, y):
-    """k sin v - k sin i = const: speckles follow these lines as far as the memory effect reaches."""
-    for middle in np.linspace(x[0], x[-1], 7)[1:-1:2]:
-        axis.plot(middle + y - y.mean(), y, color="white", linewidth=0.7, linestyle=(0, (4, 4)),
-                  scalex=False, scaley=False)
 
 
 def draw_picture(figure, axis, result):
@@ -88,7 +71,10 @@ def draw_picture(figure, axis, result):
         axis.hlines(up.edges[1:-1], *across.edges[[0, -1]], color="white", linewidth=0.7)
         y_label = "realization (one field in each row)"
     if y_label == r"$\sin i$" and result.has("view_angle") and across.even and up.even:
-        draw_shear(axis, x, y)
+        # Speckles follow k sin v - k sin i = const as far as the memory effect reaches.
+        for middle in np.linspace(x[0], x[-1], 7)[1:-1:2]:
+            axis.plot(middle + y - y.mean(), y, color="white", linewidth=0.7, linestyle=(0, (4, 4)),
+                      scalex=False, scaley=False)
     axis.set(xlabel=x_label, ylabel=y_label, xlim=across.edges[[0, -1]], ylim=up.edges[[0, -1]])
     axis.tick_params(direction="out", top=False, right=False)
     across.mark(axis.xaxis)
@@ -100,8 +86,7 @@ def draw_picture(figure, axis, result):
 
 
 def draw_histogram(axis, result):
-    low = result.values("intensity_bin")
-    counts, error = result.values("histogram"), result.values("histogram_error")
+    low, (counts, error) = result.values("intensity_bin"), result.measured("histogram")
     expected = result.values("histogram_expected")
     width = low[1] - low[0]
     shown = (expected >= FEWEST_EXPECTED) & (counts > 0)
@@ -110,21 +95,11 @@ def draw_histogram(axis, result):
     x = np.linspace(0, np.max(low[shown], initial=width) + width, 200)
     axis.semilogy(x, np.exp(-x), color=style.COLOURS[1], label=r"$\exp(-I/\langle I\rangle)$")
     axis.errorbar(low[shown] + width / 2, counts[shown] / unit, error[shown] / unit,
-                  color=style.COLOURS[0], marker="o", markersize=2.5, linestyle="none",
-                  elinewidth=0.7, label=f"{len(result.dataset('field'))} fields")
-    contrast, spread = (result.values(name) for name in ("mean_contrast", "mean_contrast_error"))
+                  **style.symbols(0), markersize=2.5, label=f"{len(result.dataset('field'))} fields")
+    contrast, spread = result.measured("mean_contrast")
     axis.text(0.05, 0.06, f"contrast {contrast:.3f} $\\pm$ {spread:.1g}", transform=axis.transAxes)
-    axis.set_xlabel(r"$I/\langle I\rangle$")
-    axis.set_ylabel("probability density")
+    axis.set(xlabel=r"$I/\langle I\rangle$", ylabel="probability density")
     axis.legend(loc="upper right")
-
-
-def mark_grain(axis, result, unit, peak):
-    """The width of a speckle, twice the lag of half the maximum."""
-    width, error = (float(result.values(name)) / unit for name in ("grain_width", "grain_width_error"))
-    axis.plot([0, width / 2], [peak / 2] * 2, color="black", linewidth=0.8, marker="|", markersize=5)
-    axis.text(0.97, 0.35, f"grain {width:.3g} $\\pm$ {error:.1g}\n(full width, half maximum)", ha="right",
-              transform=axis.transAxes, fontsize=6.5)
 
 
 def draw_autocorrelation(axis, result):
@@ -134,33 +109,34 @@ def draw_autocorrelation(axis, result):
         axis.set_axis_off()
         return
     far = result.has("view_angle")
-    lag = result.values("view_lag") / (1 if far else result.attribute("wavelength"))
-    found, error = (result.values("intensity_autocorrelation" + end) for end in ("", "_error"))
+    unit = 1 if far else result.attribute("wavelength")
+    lag = result.values("view_lag") / unit
+    found, error = result.measured("intensity_autocorrelation")
     expected = result.values("siegert") if result.has("siegert") else np.zeros_like(found)
     reach = lag <= 5 * lag[np.argmax((expected if expected.any() else found) < 0.3)]
-    axis.axhline(0, color=style.GREY, linewidth=0.6, linestyle=(0, (1, 2)), zorder=0)
+    style.mark(axis, 0)
     if result.has("siegert"):
         axis.plot(lag[reach], expected[reach], color=style.COLOURS[1],
                   label=r"$|\langle u u'^*\rangle|^2/\langle I\rangle\langle I'\rangle$")
-    axis.errorbar(lag[reach], found[reach], error[reach], color=style.COLOURS[0], marker="o",
-                  markersize=2.5, linestyle="none", elinewidth=0.7,
+    axis.errorbar(lag[reach], found[reach], error[reach], **style.symbols(0), markersize=2.5,
                   label=r"$\langle I I'\rangle/\langle I\rangle\langle I'\rangle-1$")
     if result.has("grain_width"):
-        mark_grain(axis, result, 1 if far else result.attribute("wavelength"), found[0])
-    axis.set_xlabel(r"$\sin v'-\sin v$" if far else r"distance of sensors$/\lambda$")
-    axis.set_ylabel("autocorrelation")
+        # The width of a speckle is twice the lag of half the maximum.
+        width, error = (float(value) / unit for value in result.measured("grain_width"))
+        axis.plot([0, width / 2], [found[0] / 2] * 2, color="black", linewidth=0.8, marker="|", markersize=5)
+        axis.text(0.97, 0.35, f"grain {width:.3g} $\\pm$ {error:.1g}\n(full width, half maximum)", ha="right",
+                  transform=axis.transAxes, fontsize=6.5)
+    axis.set(xlabel=r"$\sin v'-\sin v$" if far else r"distance of sensors$/\lambda$",
+             ylabel="autocorrelation")
     axis.xaxis.set_major_locator(MaxNLocator(4))
     axis.legend(loc="upper right")
 
 
-def draw(results):
+@script.plot(dpi=150)
+def draw(result):
     figure = plt.figure(figsize=(style.PAGE, 3.2))
     grid = figure.add_gridspec(2, 2, width_ratios=[1.9, 1])
-    draw_picture(figure, figure.add_subplot(grid[:, 0]), results[0])
-    draw_histogram(figure.add_subplot(grid[0, 1]), results[0])
-    draw_autocorrelation(figure.add_subplot(grid[1, 1]), results[0])
+    draw_picture(figure, figure.add_subplot(grid[:, 0]), result)
+    draw_histogram(figure.add_subplot(grid[0, 1]), result)
+    draw_autocorrelation(figure.add_subplot(grid[1, 1]), result)
     return figure
-
-
-if __name__ == "__main__":
-    style.main(draw, __doc__)

@@ -4,17 +4,12 @@ the mean by where they start (of rays near the axes of the pupil), optical path 
 point where these are least, and the spot by the plane's place. --wavelength: path differences in
 wavelengths, and how they dim the peak (Strehl ratio of Marechal, for small ones)."""
 
-from lib import style
-from lib.result_file import Unusable
+from lib import script, style
 
 import matplotlib.pyplot as plt
 import numpy as np
 
 NEAR_AXIS = 0.1  # of the pupil's radius
-
-
-def add_options(parser):
-    parser.add_argument("--wavelength", type=float, metavar="LENGTH", help="in the unit of lengths")
 
 
 def pupil(result):
@@ -44,45 +39,33 @@ def scale_of(values):
 def draw_spot(axis, at, radius):
     size, power = scale_of(at)
     axis.plot(*(at / size).T, "o", markersize=1.5, color=style.COLOURS[0])
-    turn = np.linspace(0, 2 * np.pi, 100)
-    axis.plot(radius / size * np.cos(turn), radius / size * np.sin(turn), color=style.COLOURS[1],
-              label="rms")
-    axis.set(xlabel="$x$ from the mean" + power, ylabel="$y$" + power, aspect="equal",
-             title="spot")
+    axis.plot(*(radius / size * style.circle(100)), color=style.COLOURS[1], label="rms")
+    axis.set(xlabel="$x$ from the mean" + power, ylabel="$y$" + power, aspect="equal", title="spot")
     axis.margins(0.15)
     axis.legend(loc="upper right", handlelength=1)
 
 
-def fans(start):
-    """Rays near each axis of the pupil, in order; of rays in a line, all of it."""
-    for axis in (0, 1):
-        near = np.flatnonzero(np.abs(start[:, 1 - axis]) < NEAR_AXIS)
-        near = near[np.argsort(start[near, axis])]
-        if np.ptp(start[near, axis]) > NEAR_AXIS:
-            yield axis, near
-
-
-def draw_fan(axis, start, at):
-    size, power = scale_of(at)
-    for number, rays in fans(start):
-        axis.plot(start[rays, number], at[rays, number] / size, label="$" + "xy"[number] + "$",
-                  **style.look(number) | {"linestyle": "", "markersize": 2})
-    axis.set(xlabel="pupil", ylabel="off the mean" + power, title="ray fan")
-    axis.legend(handlelength=1)
+def draw_fans(axis, start, values):
+    """values [ray], or [ray, axis], of rays near each axis of the pupil, in order; of rays in a line all.
+    Returns what to write of their power of ten."""
+    size, power = scale_of(values)
+    for number in (0, 1):
+        near = np.flatnonzero(np.abs(start[:, 1 - number]) < NEAR_AXIS)
+        near = near[np.argsort(start[near, number])]
+        if np.ptp(start[near, number]) > NEAR_AXIS:
+            shown = values[near, number] if values.ndim > 1 else values[near]
+            axis.plot(start[near, number], shown / size, label="$" + "xy"[number] + "$",
+                      **style.look(number) | {"linestyle": "", "markersize": 2})
+    return power
 
 
 def draw_paths(axis, start, difference, wavelength):
-    if wavelength:
-        difference = difference / wavelength
-        dimmed = np.exp(-(2 * np.pi * difference.std())**2)
-        axis.set_title(f"path difference, Strehl {dimmed:.2f}")
-    else:
-        axis.set_title(f"path difference, rms {difference.std():.2g}")
-    size, power = scale_of(difference)
-    for number, rays in fans(start):
-        axis.plot(start[rays, number], difference[rays] / size,
-                  **style.look(number) | {"linestyle": "", "markersize": 2})
-    axis.set(xlabel="pupil", ylabel=("wavelengths" if wavelength else "length") + power)
+    difference = difference / (wavelength or 1)
+    spread = f"Strehl {np.exp(-(2 * np.pi * difference.std())**2):.2f}" if wavelength else \
+        f"rms {difference.std():.2g}"
+    power = draw_fans(axis, start, difference)
+    axis.set(xlabel="pupil", ylabel=("wavelengths" if wavelength else "length") + power,
+             title=f"path difference, {spread}")
 
 
 def draw_focus(axis, result, at, slope):
@@ -96,29 +79,24 @@ def draw_focus(axis, result, at, slope):
     size, power = scale_of(radius)
     axis.plot(where, radius / size, color=style.COLOURS[0])
     axis.axvline(here, color="black", linestyle=":", label="plane")
-    axis.set(xlabel="along the normal", ylabel="rms radius" + power, ylim=(0, None),
-             title="through focus")
+    axis.set(xlabel="along the normal", ylabel="rms radius" + power, ylim=(0, None), title="through focus")
     axis.legend(handlelength=1.2)
 
 
-def draw(results, arguments):
-    result = results[0]
-    if not result.has("image/x"):
-        raise Unusable(f"{result.path}: holds no image; trace with --image_plane")
+@script.plot(needs={"image/x": "trace with --image_plane"})
+@script.option("--wavelength", type=float, metavar="LENGTH", help="in the unit of lengths")
+def draw(result, arguments):
     at, slope = (np.stack([result.values(f"image/{name}{axis}") for axis in "xy"], axis=-1)
                  for name in ("", "slope_"))
     figure, axes = plt.subplots(2, 2, figsize=(style.PAGE * 0.75, 4.4))
     start, off = pupil(result), at - at.mean(axis=0)
     draw_spot(axes[0, 0], off, result.values("image/spot_radius"))
-    draw_fan(axes[0, 1], start, off)
-    draw_paths(axes[1, 0], start, result.values("image/least_path_difference"),
-               arguments.wavelength)
+    power = draw_fans(axes[0, 1], start, off)
+    axes[0, 1].set(xlabel="pupil", ylabel="off the mean" + power, title="ray fan")
+    axes[0, 1].legend(handlelength=1)
+    draw_paths(axes[1, 0], start, result.values("image/least_path_difference"), arguments.wavelength)
     if result.has("image/focus"):
         draw_focus(axes[1, 1], result, at, slope)
     else:
         axes[1, 1].set_axis_off()
     return figure
-
-
-if __name__ == "__main__":
-    style.main(draw, __doc__, add_options=add_options)

@@ -4,146 +4,90 @@ several results of `render` the amplitude of ultrasound: a curve for each value 
 the power where the first is 0 if that is among them. Means over the sound's period make curves of
 their own."""
 
-from lib import style
-from lib.labels import scene_of, with_unit
-from lib.result_file import Unusable
+from lib import labels, page, script, style
+from lib.experiment import Number, keys_of
 
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.ticker import MaxNLocator
 
 NAMES = {"amplitude": "amplitude of the index", "mu_s": r"$\mu_s$", "mu_a": r"$\mu_a$"}
-
-
-def key_name(result, arguments):
-    return arguments.key or next(iter(result.swept()), "amplitude")
-
-
-def swept_values(result, key):
-    """Of a key that varies, at each point of the sweep, in its axes' order."""
-    axes = [scales[0].name.strip("/") for scales in result.dataset("total").dims]
-    if key not in axes:  # a list of points
-        return result.values(key)
-    grid = np.meshgrid(*(result.values(name) for name in axes), indexing="ij")
-    return grid[axes.index(key)].ravel()
-
-
-def key_of(result, key):
-    """Its value, or those at the points of a sweep."""
-    value = scene_of(result).get(key)
-    if key in result.swept():
-        value = swept_values(result, key)
-        if np.issubdtype(value.dtype, np.number):
-            return value
-    elif isinstance(value, (int, float)):
-        return float(value)
-    raise Unusable(f"{result.path}: its scene has no number {key}; --key takes one that has")
-
-
 MOST_CURVES = len(style.COLOURS)
 
 
-def second_key(result, arguments):
-    """What sets curves apart: as asked for, or the second of two keys that vary."""
-    if arguments.curves:
-        return arguments.curves
-    others = [key for key in result.swept() if key != key_name(result, arguments)]
-    if not others:
-        return None
-    if len(others) > 1 or len(np.unique(key_of(result, others[0]))) > MOST_CURVES:
-        raise Unusable(f"{result.path}: {', '.join(others)} vary too; --curves KEY draws a curve for each value of one key, "
-                       "of at most 8; plots/experiment_map.py draws a map over two")
-    return others[0]
+def values_of(result, key):
+    """Returns the value of a key, or its values at the points of a sweep."""
+    values = Number(result, "total").columns[key] if key in keys_of(result) else result.scene.get(key)
+    if not np.issubdtype(np.asarray(values).dtype, np.number) or np.ndim(values) != (key in keys_of(result)):
+        raise style.Unusable(f"{result.path}: its scene has no number {key}; --key takes one that has")
+    return values
 
 
-def check_others(result, arguments):
-    """Refuses to join points that differ in what is not drawn."""
-    drawn = (key_name(result, arguments), second_key(result, arguments))
-    hidden = [key for key in result.swept() if key not in drawn]
+def drawn_keys(result, arguments):
+    """The key across, and what sets curves apart, or None: as asked for, or the second of two keys
+    that vary. Refuses to join points that differ in what is not drawn."""
+    across = arguments.key or next(iter(keys_of(result)), "amplitude")
+    others = [key for key in keys_of(result) if key != across]
+    apart = arguments.curves or next(iter(others), None)
+    if not arguments.curves and (len(others) > 1 or others and len(np.unique(values_of(result, apart))) > MOST_CURVES):
+        raise style.Unusable(f"{result.path}: {', '.join(others)} vary too; --curves KEY draws a curve for each value of one key, "
+                             "of at most 8; plots/experiment_map.py draws a map over two")
+    hidden = [key for key in others if key != apart]
     if hidden:
-        raise Unusable(f"{result.path}: varies {', '.join(hidden)} besides {' and '.join(filter(None, drawn))}; "
-                       "sweep over two keys at most")
+        raise style.Unusable(f"{result.path}: varies {', '.join(hidden)} besides {across} and {apart}; "
+                             "sweep over two keys at most")
+    return across, apart
 
 
 def rows_of(result, arguments):
     """Second key, key, power and error of each point; NaN where there is none."""
-    power, error = result.values("total").ravel(), result.values("total_error").ravel()
-    check_others(result, arguments)
-    curves = second_key(result, arguments)
-    second = key_of(result, curves) if curves else 0.0
-    key = key_of(result, key_name(result, arguments))
-    rows = np.array(np.broadcast_arrays(second, key, power, error)).T
-    if not np.isfinite(rows[:, 2]).any():
-        raise Unusable(f"{result.path}: no point is there yet")
-    return rows
+    power, error = (values.ravel() for values in result.measured("total"))
+    across, apart = drawn_keys(result, arguments)
+    second = values_of(result, apart) if apart else 0.0
+    if not np.isfinite(power).any():
+        raise style.Unusable(f"{result.path}: no point is there yet")
+    return np.array(np.broadcast_arrays(second, values_of(result, across), power, error)).T
 
 
 def curves(results, arguments):
     """(value of the second key, sound's phase is random) -> rows of key, power, error, by the key."""
     found = {}
     for result in results:
-        is_mean = scene_of(result).get("random_phase", False)
+        is_mean = result.scene.get("random_phase", False)
         for second, *row in rows_of(result, arguments):
             found.setdefault((second, is_mean), []).append(row)
     return {curve: np.array(sorted(rows)) for curve, rows in sorted(found.items())}
 
 
-def labels_of(found, curves_of):
-    """What tells the curves apart."""
-    labels = {curve: [] for curve in found}
-    for (second, is_mean), label in labels.items():
-        if curves_of:
-            label.append(f"{NAMES.get(curves_of, curves_of)} = {second:.4g}")
-        if len({phase for _, phase in found}) > 1:
-            label.append("mean over the period" if is_mean else "at one instant")
-    return {curve: ", ".join(label) for curve, label in labels.items()}
+def label_of(curve, found, apart):
+    """Label that distinguishes a curve from the others."""
+    second, is_mean = curve
+    words = [f"{NAMES.get(apart, apart)} = {second:.4g}"] if apart else []
+    if len({phase for _, phase in found}) > 1:
+        words.append("mean over the period" if is_mean else "at one instant")
+    return ", ".join(words)
 
 
-def over_the_first(power, error):
-    """Ratios to the first point and their errors; that of the first is in all others."""
-    ratio = power / power[0]
-    return ratio, np.where(np.arange(len(power)) == 0, 0,
-                           ratio * np.hypot(error / power, error[0] / power[0]))
-
-
-def scale_key(axis, values):
-    """A logarithm of what was swept in equal ratios."""
-    if style.in_equal_ratios(values):
+@script.plot(several=True, needs={"total": "needs a result of render"})
+@script.option("--key", help="of the horizontal axis")
+@script.option("--curves", metavar="KEY", help="a curve for each of its values")
+def draw(results, arguments):
+    figure, axis = plt.subplots(figsize=(style.COLUMN, 2.4))
+    found, (key, apart) = curves(results, arguments), drawn_keys(results[0], arguments)
+    relative = all(rows[0, 0] == 0 and rows[0, 1] > 0 for rows in found.values())
+    for number, (curve, rows) in enumerate(found.items()):
+        place, power, error = rows.T
+        if relative:  # the error of the first point is in all others
+            spread = np.hypot(error / power, error[0] / power[0]) * (np.arange(len(power)) > 0)
+            power, error = power / power[0], power / power[0] * spread
+        axis.errorbar(place, power, error, **style.look(number), label=label_of(curve, found, apart))
+    axis.set(xlabel=labels.with_unit(NAMES.get(key, key), results[0].unit(key) if results[0].has(key) else ""),
+             ylabel="power / power at 0" if relative else "power on the detector")
+    if style.in_equal_ratios(np.unique(np.concatenate([rows[:, 0] for rows in found.values()]))):
         axis.set_xscale("log")
     else:
         axis.xaxis.set_major_locator(MaxNLocator(4))
         axis.ticklabel_format(axis="x", scilimits=(-2, 4), useMathText=True)
-
-
-def label_of_key(result, key):
-    """With the unit that a sweep's file says."""
-    unit = result.dataset(key).attrs.get("units") if result.has(key) else None
-    return with_unit(NAMES.get(key, key), unit)
-
-
-def draw(results, arguments):
-    figure, axis = plt.subplots(figsize=(style.COLUMN, 2.4))
-    found = curves(results, arguments)
-    key = key_name(results[0], arguments)
-    relative = all(rows[0, 0] == 0 and rows[0, 1] > 0 for rows in found.values())
-    labels = labels_of(found, second_key(results[0], arguments))
-    for number, (curve, rows) in enumerate(found.items()):
-        place, power, error = rows.T
-        if relative:
-            power, error = over_the_first(power, error)
-        axis.errorbar(place, power, error, **style.look(number), label=labels[curve])
-    axis.set_xlabel(label_of_key(results[0], key))
-    axis.set_ylabel("power / power at 0" if relative else "power on the detector")
-    scale_key(axis, np.unique(np.concatenate([rows[:, 0] for rows in found.values()])))
-    if any(labels.values()):
-        figure.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncol=2)
+    if entries := page.labelled([axis]):
+        page.legend_above(figure, entries, 2)
     return figure
-
-
-def add_options(parser):
-    parser.add_argument("--key", help="of the horizontal axis")
-    parser.add_argument("--curves", metavar="KEY", help="a curve for each of its values")
-
-
-if __name__ == "__main__":
-    style.main(draw, __doc__, several=True, add_options=add_options)

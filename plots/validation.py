@@ -5,7 +5,8 @@ speckle pattern over the mean intensity, and the distribution of their ratio."""
 
 from dataclasses import dataclass
 
-from lib import speckle_ratio, style
+from lib import page, script, speckle_ratio, style
+from lib.labels import with_unit
 from lib.speckle_ratio import FORWARD
 from lib.sweep_file import METHODS
 
@@ -33,14 +34,13 @@ class Comparison:
     mc_error: np.ndarray
     exact: np.ndarray
     exact_error: np.ndarray
-    forward: np.ndarray = None  # where a fixed number of scatterers tells (conventions, C12)
+    forward: np.ndarray  # where a fixed number of scatterers tells (conventions, C12)
 
     def residual(self):
         """|mc - reference| in combined standard errors, and those."""
         combined = np.hypot(self.mc_error, self.exact_error)
-        difference = np.abs(self.mc - self.exact)
         # Entries that are exactly 0 for both have no errors and agree.
-        return np.divide(difference, combined, out=np.zeros(combined.shape),
+        return np.divide(np.abs(self.mc - self.exact), combined, out=np.zeros(combined.shape),
                          where=combined > 0), combined
 
     def relative(self):
@@ -50,107 +50,81 @@ class Comparison:
         ratio = np.abs(self.mc) / size
         return 100 * (ratio - 1), 100 * np.hypot(self.mc_error, ratio * self.exact_error) / size
 
+    def curves(self):
+        """(number, places, colours of Monte Carlo and of the reference, marker and line): places stand a
+        little apart, to keep error bars apart; one curve alone has two colours."""
+        count, x = len(self.curve_labels), self.x
+        step = min(0.05 * np.median(np.diff(np.sort(x))), 0.012 * np.ptp(x)) if len(x) > 1 else 0
+        for number in range(count):
+            look = style.look(number)
+            colours = style.COLOURS[:2] if count == 1 else [look["color"]] * 2
+            yield number, x + step * (number - (count - 1) / 2), colours, look
 
-def reference_of(result):
-    return "transport" if result.has("transport/trace") else "wave"
 
-
-def read_entries(result, name):
+def read_entries(result, name, reference):
     """Of both methods values and errors, and which are forward ones."""
-    methods = ("mc", reference_of(result))
-    entries = [result.values(f"{method}/{name}{ending}")
-               for method in methods for ending in ("", "_error")]
-    if len({entry.shape for entry in entries}) > 1:
-        raise style.Unusable(f"{result.path}: {name} of {' and '.join(methods)} is not of one shape")
-    return [*entries, read_forward(result, entries[0])]
-
-
-def read_forward(result, entries):
-    """In the order of the request's entries, of which a full covariance has the lower triangle."""
-    if not result.has("forward"):
-        return np.zeros(entries.shape, bool)
-    stored = result.values("forward") > 0
-    if entries.ndim < 4:
-        return stored[:entries.size].reshape(entries.shape)
-    size = entries.shape[0] * entries.shape[1]
-    forward = np.zeros((size, size), bool)
-    forward[np.tril_indices(size)] = stored
-    return forward.reshape(entries.shape)
-
-
-def numbered(reference, entries):
-    """Pairs, or the lower triangle of a full covariance [light, view, light, view], row by row."""
-    if entries[0].ndim == 4:
-        size = entries[0].shape[0] * entries[0].shape[1]
-        entries = [entry.reshape(size, size)[np.tril_indices(size)] for entry in entries]
-    return Comparison(reference, np.arange(entries[0].size), ENTRIES, ["entries"], "covariance $|C|$",
-                      *(entry[None] for entry in entries))
+    entries = [values for method in ("mc", reference) for values in result.measured(f"{method}/{name}")]
+    shape = entries[0].shape
+    if any(entry.shape != shape for entry in entries):
+        raise style.Unusable(f"{result.path}: {name} of mc and {reference} is not of one shape")
+    forward = np.zeros(shape, bool)
+    if result.has("forward"):  # of a full covariance [light, view, light, view] its lower triangle
+        stored, size = result.values("forward") > 0, np.prod(shape[:2])
+        if len(shape) < 4:
+            forward = stored[:forward.size].reshape(shape)
+        else:
+            forward.reshape(size, size)[np.tril_indices(size)] = stored
+    return [*entries, forward]
 
 
 def views_of(result, name):
     """Abscissae of its second axis and what they are: view angles, or numbers of sensors."""
-    kind = result.dataset(name).dims[1][0].name.strip("/")
-    return result.axis(name, 1), "view angle" if kind == "view_angle" else SENSORS
+    kind, views = result.scale(name, 1)
+    return views, "view angle" if kind == "view_angle" else SENSORS
 
 
-def read_comparison(result):
-    reference = reference_of(result)
-    if result.has("mc/intensity"):
-        lights = result.axis("mc/intensity", 0)
-        kind = result.dataset("mc/intensity").dims[0][0].name.strip("/")
-        curves = [f"light {style.angle(light) if kind == 'light_angle' else f'{light:g}'}"
-                  for light in lights]
-        unit = result.dataset("mc/intensity").attrs.get("units", "1")
-        return Comparison(reference, *views_of(result, "mc/intensity"), curves,
-                          r"intensity $C_{vv}$" + ("" if unit == "1" else f" ({unit})"),
-                          *read_entries(result, "intensity"))
-    if not result.has("mc/covariance"):
-        raise style.Unusable(f"{result.path}: has neither mc/intensity nor mc/covariance")
-    entries = read_entries(result, "covariance")
+def intensities(result, reference):
+    kind, lights = result.scale("mc/intensity", 0)
+    curves = [f"light {style.angle(light) if kind == 'light_angle' else f'{light:g}'}"
+              for light in lights]
+    return *views_of(result, "mc/intensity"), curves, \
+        with_unit(r"intensity $C_{vv}$", result.unit("mc/intensity")), \
+        *read_entries(result, "intensity", reference)
+
+
+def covariances(result, reference):
+    entries = read_entries(result, "covariance", reference)
+    if entries[0].ndim == 4:  # the lower triangle of a full covariance, row by row
+        size = entries[0].shape[0] * entries[0].shape[1]
+        entries = [entry.reshape(size, size)[np.tril_indices(size)] for entry in entries]
     if entries[0].ndim != 2:
-        return numbered(reference, entries)
+        return np.arange(entries[0].size), ENTRIES, ["entries"], "covariance $|C|$", *(
+            entry[None] for entry in entries)
     tilts, (views, kind) = result.axis("mc/covariance", 0), views_of(result, "mc/covariance")
     if len(views) > max(6, len(tilts)):
-        curves = [f"tilt {style.angle(tilt)}" for tilt in tilts]
-        return Comparison(reference, views, kind, curves, "covariance $|C|$", *entries)
-    return Comparison(reference, tilts, "tilt", [f"view {style.angle(view)}" for view in views],
-                      "covariance $|C|$", *(entry.T for entry in entries))
-
-
-def shifted(x, number, count):
-    """x moved a little, to keep the error bars of `count` curves apart."""
-    step = min(0.05 * np.median(np.diff(np.sort(x))), 0.012 * np.ptp(x)) if len(x) > 1 else 0
-    return x + step * (number - (count - 1) / 2)
-
-
-def colours(data, number):
-    """Of Monte Carlo and the reference: of one curve two colours, of several one for each curve."""
-    return style.COLOURS[:2] if len(data.curve_labels) == 1 else [style.look(number)["color"]] * 2
+        return views, kind, [f"tilt {style.angle(tilt)}" for tilt in tilts], "covariance $|C|$", *entries
+    return tilts, "tilt", [f"view {style.angle(view)}" for view in views], "covariance $|C|$", *(
+        entry.T for entry in entries)
 
 
 def draw_values(axis, data, allowance):
-    for number, label in enumerate(data.curve_labels):
-        look, order = style.look(number), np.argsort(data.x)
-        own, other = colours(data, number)
-        x = shifted(data.x, number, len(data.curve_labels))[order]
-        mc, exact = np.abs(data.mc[number][order]), np.abs(data.exact[number][order])
-        common = {"marker": look["marker"], "elinewidth": 0.7}
+    for number, x, (own, other), look in data.curves():
+        mc, exact = np.abs(data.mc[number]), np.abs(data.exact[number])
+        common = {"marker": look["marker"], "elinewidth": 0.7, "linestyle": "none"}
+        order = np.argsort(data.x)
         axis.vlines(x, mc * (1 - allowance), mc * (1 + allowance), color=own, alpha=0.15,
                     linewidth=4, zorder=0)
-        axis.plot(x, mc, color=own, linestyle=look["linestyle"], linewidth=0.5, alpha=0.6)
-        axis.errorbar(x, mc, data.mc_error[number][order], linestyle="none", **common,
-                      color=own, markerfacecolor="white", markersize=5)
-        axis.errorbar(x, exact, data.exact_error[number][order], linestyle="none", **common,
-                      color=other, markersize=2.5, label=label if len(data.curve_labels) > 1 else None)
+        axis.plot(x[order], mc[order], color=own, linestyle=look["linestyle"], linewidth=0.5, alpha=0.6)
+        axis.errorbar(x, mc, data.mc_error[number], **common, color=own, markerfacecolor="white",
+                      markersize=5)
+        label = data.curve_labels[number] if len(data.curve_labels) > 1 else None
+        axis.errorbar(x, exact, data.exact_error[number], **common, color=other, markersize=2.5,
+                      label=label)
     axis.set_ylabel(data.y_label)
-    scale_values(axis, np.abs(np.concatenate([data.mc, data.exact])))
-
-
-def scale_values(axis, values):
-    """A logarithm where a peak stands high over the rest."""
-    if values.min() > 0 and values.max() > PEAKED * values.min():
-        axis.set_yscale("log")
-        axis.set_ylim(values.min() / 1.3, values.max() * 1.3)
+    values = np.abs(np.concatenate([data.mc, data.exact]))
+    low, high = values.min(), values.max()
+    if low > 0 and high > PEAKED * low:
+        axis.set(yscale="log", ylim=(low / 1.3, high * 1.3))
     else:
         axis.set_ylim(bottom=-0.03 * axis.get_ylim()[1])
 
@@ -173,87 +147,78 @@ def reach_of(values, forward, least, most):
     return np.clip(1.15 * np.nanmax(np.abs(values[~forward]), initial=0), least, most)
 
 
-def shade_forward(axes, data):
-    """Behind the places of forward entries."""
-    places = np.unique(data.x[data.forward.any(axis=0)])
-    steps = np.diff(np.unique(data.x))
-    half = 0.5 * (steps.min() if len(steps) else 1)
-    for axis in axes:
-        for place in places:
-            axis.axvspan(place - half, place + half, zorder=-1, **FORWARD)
-    return len(places) > 0
-
-
 def draw_relative(axis, data, allowance):
     deviation, error = data.relative()
     axis.axhspan(-100 * allowance, 100 * allowance, color="black", alpha=0.12, linewidth=0, zorder=0)
     axis.axhline(0, color="black", linewidth=0.5, zorder=1)
     limit = reach_of(np.abs(deviation) + error, data.forward, max(100 * allowance, 1), MOST_RELATIVE)
-    for number in range(len(deviation)):
-        draw_within(axis, shifted(data.x, number, len(deviation)), deviation[number], error[number], limit,
-                    {"color": colours(data, number)[0], "marker": style.look(number)["marker"], "markersize": 2.5})
-    axis.set_ylim(-limit, limit)
-    axis.set_ylabel("deviation (%)")
+    for number, x, (own, _), look in data.curves():
+        draw_within(axis, x, deviation[number], error[number], limit,
+                    {"color": own, "marker": look["marker"], "markersize": 2.5})
+    axis.set(ylim=(-limit, limit), ylabel="deviation (%)")
 
 
 def draw_residual(axis, data, allowance):
     residual, combined = data.residual()
     axis.axhspan(0, SIGMAS, color=BAND, zorder=0)
     limit = reach_of(residual, data.forward, 1.25 * SIGMAS, MOST_SIGMAS)
-    for number in range(len(residual)):
-        colour, x = colours(data, number)[0], shifted(data.x, number, len(residual))
+    for number, x, (own, _), look in data.curves():
         sigma = np.where(combined[number] > 0, combined[number], 1)
-        axis.vlines(x, 0, allowance * np.abs(data.mc[number]) / sigma, color=colour, alpha=0.2, linewidth=3,
+        axis.vlines(x, 0, allowance * np.abs(data.mc[number]) / sigma, color=own, alpha=0.2, linewidth=3,
                     zorder=1)
         draw_within(axis, x, residual[number], 0 * x, limit,
-                    {"color": colour, "marker": style.look(number)["marker"], "markersize": 3})
-    axis.set_ylim(0, limit)
-    axis.set_ylabel(rf"|mc $-$ {data.reference}| / $\sigma$")
+                    {"color": own, "marker": look["marker"], "markersize": 3})
+    axis.set(ylim=(0, limit), ylabel=rf"|mc $-$ {data.reference}| / $\sigma$")
 
 
-def add_legend(figure, axis, data, allowance, is_forward):
-    handles, labels = axis.get_legend_handles_labels()
-    own, other = colours(data, 0) if len(data.curve_labels) == 1 else ("black", "black")
-    kinds = ((own, "white", 5, "Monte Carlo"), (other, other, 2.5, METHODS[data.reference]))
-    for colour, fill, size, label in kinds:
-        handles.append(plt.Line2D([], [], color=colour, marker="o", markerfacecolor=fill,
-                                  markersize=size, linestyle="none"))
-        labels.append(label)
-    handles.append(plt.Rectangle((0, 0), 1, 1, color=BAND))
-    labels.append(f"{SIGMAS} standard errors ($\\sigma$)")
-    if is_forward:
-        handles.append(plt.Rectangle((0, 0), 1, 1, **FORWARD))
-        labels.append("forward: a fixed number tells (C12)")
+def shade_forward(axes, data):
+    """Behind the places of forward entries."""
+    steps = np.diff(np.unique(data.x))
+    half = 0.5 * (steps.min() if len(steps) else 1)
+    for axis in axes:
+        for place in np.unique(data.x[data.forward.any(axis=0)]):
+            axis.axvspan(place - half, place + half, zorder=-1, **FORWARD)
+
+
+def entries(axis, data, allowance):
+    """Legend entries (handle, label)."""
+    yield from page.labelled([axis])
+    own, other = style.COLOURS[:2] if len(data.curve_labels) == 1 else ("black", "black")
+    for colour, fill, size, label in ((own, "white", 5, "Monte Carlo"),
+                                      (other, other, 2.5, METHODS[data.reference])):
+        yield plt.Line2D([], [], color=colour, marker="o", markerfacecolor=fill, markersize=size,
+                         linestyle="none"), label
+    yield plt.Rectangle((0, 0), 1, 1, color=BAND), f"{SIGMAS} standard errors ($\\sigma$)"
+    if data.forward.any():
+        yield plt.Rectangle((0, 0), 1, 1, **FORWARD), "forward: a fixed number tells (C12)"
     if allowance > 0 and data.reference == "wave":
-        handles.append(plt.Line2D([], [], color="black", alpha=0.2, linewidth=4))
-        labels.append(f"size of what Monte Carlo neglects, {100 * allowance:.2g} %")
-    figure.legend(handles, labels, loc="lower center", bbox_to_anchor=(0.5, 1.0), ncol=3)
+        yield plt.Line2D([], [], color="black", alpha=0.2, linewidth=4), \
+            f"size of what Monte Carlo neglects, {100 * allowance:.2g} %"
 
 
-def draw(results):
-    if results[0].has("intensity_ratio"):
-        return speckle_ratio.draw(results[0])
-    data = read_comparison(results[0])
-    allowance = float(results[0].attribute("bias_allowance", 0))
-    figure, (values, relative, residual) = plt.subplots(
-        3, 1, sharex=True, figsize=(1.3 * style.COLUMN, 5), height_ratios=[2.2, 1, 1])
-    draw_values(values, data, allowance)
-    draw_relative(relative, data, allowance)
-    draw_residual(residual, data, allowance)
+@script.plot()
+def draw(result):
+    if result.has("intensity_ratio"):
+        return speckle_ratio.draw(result)
+    if not result.has("mc/intensity") and not result.has("mc/covariance"):
+        raise style.Unusable(f"{result.path}: has neither mc/intensity nor mc/covariance")
+    reference = "transport" if result.has("transport/trace") else "wave"
+    read = intensities if result.has("mc/intensity") else covariances
+    data, allowance = Comparison(reference, *read(result, reference)), float(result.attribute("bias_allowance", 0))
+    figure, axes = plt.subplots(3, 1, sharex=True, figsize=(1.3 * style.COLUMN, 5),
+                                height_ratios=[2.2, 1, 1])
+    for axis, draw_panel in zip(axes, (draw_values, draw_relative, draw_residual)):
+        draw_panel(axis, data, allowance)
     if data.x_label in (ENTRIES, SENSORS):
-        residual.set_xlabel(data.x_label)
-        residual.xaxis.set_major_locator(MaxNLocator(integer=True))
+        axes[-1].set_xlabel(data.x_label)
+        axes[-1].xaxis.set_major_locator(MaxNLocator(integer=True))
     else:
-        style.angle_axis(residual, data.x, data.x_label)
-    is_forward = shade_forward((values, relative, residual), data)
-    add_legend(figure, values, data, allowance, is_forward)
-    if is_forward:
+        style.angle_axis(axes[-1], data.x, data.x_label)
+    shade_forward(axes, data)
+    page.legend_above(figure, list(entries(axes[0], data, allowance)), 3)
+    if data.forward.any():
         style.caption(figure, ["forward: there a fixed number of scatterers takes a fluctuation of the coherent field "
                                "away from the exact covariance, which Monte Carlo has (conventions, C12)"])
     if len(data.curve_labels) > 1:
         style.caption(figure, ["symbols of one place stand a little apart, side by side"])
     return figure
-
-
-if __name__ == "__main__":
-    style.main(draw, __doc__)

@@ -19,7 +19,7 @@ solve_and_compare() {  # KIND FLAG...: KIND as in the names of the reference's t
   awk -F, '{ print $2 "," $3 }' "$reference/nearfield_$kind.csv" > "$sensors"
   "$flatspeckle" solve --placement "$reference/placement.csv" "${@:2}" \
     --light_angles 0 0.7 2.5 --view_angles "${views[@]}" --near_sensors "$sensors" --out "$result"
-  python3 plots/compare_reference.py "$result" "$reference"/{far,near}"field_$kind.csv"
+  python3 scripts/compare_reference.py "$result" "$reference"/{far,near}"field_$kind.csv"
 }
 
 ten_disks() {

@@ -1,10 +1,10 @@
 """Pictures of the benchmark report: functions of a Bench that return figures."""
 
-from lib import number_text, style
+from lib import number_text, page, style
 
 import matplotlib.pyplot as plt
 import numpy as np
-from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter, NullLocator
+from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
 HALF = -0.5
 SLOPE_BAND = 0.05
@@ -26,6 +26,7 @@ TITLES = {"box_points": "31 points in a box, OD 1", "box_cylinders": "67 cylinde
           "glass_ball_beam": "glass ball under a beam", "balls_even": "balls, even light",
           "ring_even": "ring of triangles, even light", "absorbing_ball": "absorbing ball of triangles",
           "slab_hg, flow": "slab, OD 5, flow"}
+BOXES = ("box_points", "box_cylinders")
 ROOM_NAMES = {"mc": "Monte Carlo", "wave": "wave solver", "wave_solver": "wave solver"}
 
 
@@ -46,15 +47,6 @@ def method_look(method):
     return LOOKS.get(base_method(method), style.look(5))
 
 
-def flat_scenes(error):
-    return [scene for scene in error.scenes()
-            if any(curve["method"] == "ours" for curve in error.of_scene(scene))]
-
-
-def render_scenes(error):
-    return [scene for scene in error.scenes() if scene not in flat_scenes(error)]
-
-
 def draw_guide(axis, curves):
     """Slope -1/2, above the curve that is highest at equal times; none where nothing is random."""
     random = [curve for curve in curves if curve["is_monte_carlo"]]
@@ -73,8 +65,7 @@ def draw_error_curves(axis, curves):
     axis.set_xscale("log")
     axis.set_yscale("log", nonpositive="clip")
     draw_guide(axis, curves)
-    for side in (axis.xaxis, axis.yaxis):
-        side.set_minor_formatter(NullFormatter())
+    style.no_minor_numbers(axis)
     low, high = axis.get_ylim()
     if high < 150 * low:  # else too few powers of ten to read it by
         style.few_decades(axis.yaxis)
@@ -89,45 +80,57 @@ def method_entries(curves):
     yield plt.Line2D([], [], **GUIDE), r"slope $-1/2$"
 
 
-def legend_above(figure, entries, columns):
-    handles, labels = zip(*entries)
-    figure.legend(handles, labels, loc="lower center", bbox_to_anchor=(0.5, 1.0), ncol=columns)
+def panels(count, across, head, height, **looks):
+    """Figure and axes of a page of panels."""
+    down = -(-count // across)
+    figure, axes = plt.subplots(down, across, squeeze=False, **looks,
+                                figsize=(style.PAGE, head + height * down))
+    for axis in axes.flat[count:]:
+        axis.remove()
+    return figure, axes
 
 
 def error_panels(error, scenes, across):
-    down = -(-len(scenes) // across)
-    figure, axes = plt.subplots(down, across, squeeze=False, sharey=across < 3,
-                                figsize=(style.PAGE, 0.35 + 2.25 * down))
+    figure, axes = panels(len(scenes), across, 0.35, 2.25, sharey=across < 3)
     shown = []
     for axis, scene in zip(axes.flat, scenes):
         curves = [curve for curve in error.of_scene(scene) if len(curve["cpu_s"]) > 0]
         draw_error_curves(axis, curves)
         shown += curves
-    for axis in axes.flat[len(scenes):]:
-        axis.remove()
     for axis in axes[:, 0]:
         axis.set_ylabel("relative error")
     figure.supxlabel("processor time, one thread (s)", fontsize=8)
     entries = list(method_entries(shown))
-    legend_above(figure, entries, min(len(entries), 6))
+    page.legend_above(figure, entries, min(len(entries), 6))
     return figure
 
 
+def scenes_of(error, flat):
+    """Lists the scenes of flatland, which have a method of ours, or the other scenes."""
+    return [scene for scene in error.scenes()
+            if flat == any(curve["method"] == "ours" for curve in error.of_scene(scene))]
+
+
 def draw_flatland(bench):
-    scenes = flat_scenes(bench.error)
-    wanted = [scene for scene in ("box_points", "box_cylinders") if scene in scenes]
-    return error_panels(bench.error, wanted or scenes[:2], 2)
+    scenes = scenes_of(bench.error, True)
+    return error_panels(bench.error, [scene for scene in BOXES if scene in scenes] or scenes[:2], 2)
 
 
 def draw_other_flatland(bench):
-    scenes = [scene for scene in flat_scenes(bench.error)
-              if scene not in ("box_points", "box_cylinders")]
+    scenes = [scene for scene in scenes_of(bench.error, True) if scene not in BOXES]
     return error_panels(bench.error, scenes, max(len(scenes), 2)) if scenes else None
 
 
 def draw_render(bench):
-    scenes = render_scenes(bench.error)
+    scenes = scenes_of(bench.error, False)
     return error_panels(bench.error, scenes, 3) if scenes else None
+
+
+def name_rows(axis, names, ends=(-0.6, -0.4), **looks):
+    """A row for each name, from above; ends: how far the axis goes beyond the first and last."""
+    axis.set_yticks(range(len(names)), names, **looks)
+    axis.set_ylim(len(names) + ends[1], ends[0])
+    axis.tick_params(axis="y", length=0)
 
 
 def draw_slopes(bench):
@@ -138,14 +141,10 @@ def draw_slopes(bench):
     for row, curve in enumerate(curves):
         look = {**method_look(curve["method"]), "linestyle": "none"}
         axis.errorbar(curve["slope"], row, xerr=curve["slope_error"], elinewidth=0.7, **look)
-    axis.set_yticks(range(len(curves)),
-                    [f"{title(curve['scene'])}: {curve['method']}" for curve in curves])
-    axis.set_ylim(len(curves) - 0.4, -0.6)
-    axis.tick_params(axis="y", length=0)
+    name_rows(axis, [f"{title(curve['scene'])}: {curve['method']}" for curve in curves])
     widest = max(abs(curve["slope"] - HALF) + curve["slope_error"] for curve in curves)
     reach = max(1.6 * SLOPE_BAND, 1.1 * widest)
-    axis.set_xlim(HALF - reach, HALF + reach)
-    axis.set_xlabel("fitted slope (band: $-1/2 \\pm 0.05$)")
+    axis.set(xlim=(HALF - reach, HALF + reach), xlabel="fitted slope (band: $-1/2 \\pm 0.05$)")
     return figure
 
 
@@ -159,10 +158,9 @@ def draw_cost(axis, cost):
                 linestyle="--", zorder=0.4)
     axis.set_title(cost["task"].replace(", ", ",\n"), fontsize=7)
     axis.set_xlabel(cost["size_name"], fontsize=7)
-    text = number_text.exponent(cost["exponent"], cost["exponent_error"])
-    axis.text(0.05, 0.93, text, transform=axis.transAxes, va="top", fontsize=7)
-    axis.xaxis.set_minor_formatter(NullFormatter())
-    axis.yaxis.set_minor_formatter(NullFormatter())
+    axis.text(0.05, 0.93, number_text.exponent(cost["exponent"], cost["exponent_error"]),
+              transform=axis.transAxes, va="top", fontsize=7)
+    style.no_minor_numbers(axis)
     if size.max() < 10 * size.min():
         style.few_decades(axis.xaxis)
 
@@ -171,19 +169,14 @@ def draw_costs(bench, across=5):
     costs = [cost for cost in bench.error.costs if len(cost["size"]) > 0]
     if not costs:
         return None
-    down = -(-len(costs) // across)
-    figure, axes = plt.subplots(down, across, squeeze=False,
-                                figsize=(style.PAGE, 0.4 + 1.6 * down))
-    for axis, cost in zip(axes.flat, costs):
+    figure, axes = panels(len(costs), across, 0.4, 1.6)
+    for number, (axis, cost) in enumerate(zip(axes.flat, costs)):
         draw_cost(axis, cost)
-    for axis in axes.flat[len(costs):]:
-        axis.remove()
-    for number, cost in enumerate(costs):
         if number % across == 0 or cost["cost_name"] != costs[number - 1]["cost_name"]:
-            axes.flat[number].set_ylabel(cost["cost_name"], fontsize=7)
+            axis.set_ylabel(cost["cost_name"], fontsize=7)
     entries = [(plt.Line2D([], [], color=style.COLOURS[0], marker="o"), "measured, with its fit"),
                (plt.Line2D([], [], color=style.GREY, linestyle="--"), "by counting operations")]
-    legend_above(figure, entries, 2)
+    page.legend_above(figure, entries, 2)
     return figure
 
 
@@ -191,36 +184,25 @@ def draw_margins(axis, stability):
     """figure / limit of every case, room by room; those refused at the right."""
     rooms = stability.rooms()
     for place, room in enumerate(rooms):
-        rows = stability.of_room(room)
+        rows, look = stability.of_room(room), {**style.look(place), "linestyle": "none"}
         solved = [row for row in rows if not row["refusal"]]
-        margin = np.array([row["figure"] / row["limit"] if row["limit"] > 0 else row["figure"]
-                           for row in solved])
+        margin = np.array([row["figure"] / (row["limit"] if row["limit"] > 0 else 1) for row in solved])
         order = np.argsort(np.argsort(margin))
         heights = place + 0.62 * ((order * 0.618) % 1 - 0.5)
-        look = style.look(place)
-        seen = margin >= LEAST_MARGIN
-        axis.plot(margin[seen], heights[seen], linestyle="none", color=look["color"],
-                  marker=look["marker"], alpha=0.85, markeredgewidth=0)
-        axis.plot(np.full((~seen).sum(), 1.3 * LEAST_MARGIN), heights[~seen], linestyle="none",
-                  color=look["color"], marker="<")
-        failed = np.array([not row["passed"] for row in solved])
-        axis.plot(margin[failed], heights[failed], linestyle="none", color="black", marker="o",
-                  markersize=7, fillstyle="none")
-        refused = len(rows) - len(solved)
-        axis.text(1.02, place, str(refused), transform=axis.get_yaxis_transform(), va="center",
-                  fontsize=7)
+        seen, failed = margin >= LEAST_MARGIN, np.array([not row["passed"] for row in solved])
+        axis.plot(margin[seen], heights[seen], **look, alpha=0.85, markeredgewidth=0)
+        axis.plot(0 * margin[~seen] + 1.3 * LEAST_MARGIN, heights[~seen], **{**look, "marker": "<"})
+        axis.plot(margin[failed], heights[failed], "o", color="black", markersize=7, fillstyle="none")
+        axis.text(1.02, place, str(len(rows) - len(solved)), transform=axis.get_yaxis_transform(),
+                  va="center", fontsize=7)
     axis.axvline(1, color="black", linewidth=0.8)
-    axis.set_xscale("log")
-    axis.set_xlim(LEAST_MARGIN, 5)
+    axis.set(xscale="log", xlim=(LEAST_MARGIN, 5), xlabel="deviation from the invariant / its limit")
     axis.xaxis.set_major_locator(LogLocator(numticks=6))
     axis.xaxis.set_minor_locator(NullLocator())
-    axis.set_yticks(range(len(rooms)), [f"{room_name(room)}\n{len(stability.of_room(room))} cases"
-                                        for room in rooms])
-    axis.set_ylim(len(rooms) - 0.5, -0.5)
-    axis.tick_params(axis="y", length=0)
+    name_rows(axis, [f"{room_name(room)}\n{len(stability.of_room(room))} cases" for room in rooms],
+              (-0.5, -0.5))
     for place in range(1, len(rooms)):
         axis.axhline(place - 0.5, color="0.9", linewidth=0.5, zorder=0)
-    axis.set_xlabel("deviation from the invariant / its limit")
     axis.text(1.02, 1.0, "refused", transform=axis.transAxes, va="bottom", fontsize=7)
     axis.set_title(f"(a) {len(stability.rows)} extreme cases", loc="left")
 
@@ -263,30 +245,5 @@ def draw_limits(bench):
     return figure
 
 
-FIGURES = {  # name: (function, caption)
-    "error_flatland": (
-        draw_flatland,
-        "Relative error against processor time of an ensemble of exact solutions, of the textbook "
-        "Monte Carlo estimator and of this one; both boxes, memory effect over seven tilts, in "
-        "transmission and reflection."),
-    "error_render": (
-        draw_render,
-        "Relative error of pictures against processor time: path tracing, light tracing, "
-        "bidirectional path tracing and a photon map, which levels off at its bias. The glass ball "
-        "under a beam gives path tracing no finite variance: rare paths make its error jump."),
-    "limits": (
-        draw_limits,
-        "(a) How far each extreme case is off its invariant, relative to the limit it was held to "
-        "(line: the limit; to the right: how many are refused, each with a message that says why). "
-        "Arrows: below 1e-9; a ring would mark a failure. (b) What leaving a thing out of a kernel "
-        "saves, where the scene has no need of it; bars are half the distance of the quartiles."),
-    "error_other": (
-        draw_other_flatland,
-        "The other standard scenes of flatland."),
-    "slopes": (
-        draw_slopes,
-        "Fitted slopes of all Monte Carlo curves with their standard errors."),
-    "costs": (
-        draw_costs,
-        "Cost against the size of the problem, with the fitted exponent."),
-}
+FIGURES = {"error_flatland": draw_flatland, "error_render": draw_render, "limits": draw_limits,
+           "error_other": draw_other_flatland, "slopes": draw_slopes, "costs": draw_costs}

@@ -1,80 +1,49 @@
 """The three result files of `flatspeckle bench` as lists of rows."""
 
-import dataclasses
+from dataclasses import dataclass
+
+from lib.result_file import Result
 
 import h5py
-import numpy as np
-
-from lib.result_file import Result, Unusable
 
 
-def texts(result, name):
-    return [text.decode() for text in result.dataset(name)[...]]
-
-
-def rows_of(result, columns):
+def rows_of(result, *columns):
     """A list of {name: value}, one for each row of the columns."""
-    found = {}
-    for name in columns:
-        is_text = h5py.check_string_dtype(result.dataset(name).dtype)
-        found[name] = texts(result, name) if is_text else result.values(name).tolist()
-    return [dict(zip(found, values)) for values in zip(*found.values())]
+    found = [result.texts(name) if h5py.check_string_dtype(result.dataset(name).dtype) else
+             result.values(name).tolist() for name in columns]
+    return [dict(zip(columns, values)) for values in zip(*found)]
 
 
-@dataclasses.dataclass
+def add_points(result, rows, owner, *columns):
+    """Columns of the points of each row: {name: array}; owner: the row of each point."""
+    for number, row in enumerate(rows):
+        own = result.values(owner) == number
+        row.update({name: result.values(name)[own] for name in columns})
+
+
 class Made:
     """How a file was made."""
-    command: str
-    version: str
-    commit: str
-    machine: str
-    threads: int
-    started: str
-    wall_s: float
-    cpu_s: float
-    quick: bool
 
-    @property
-    def date(self):
-        return self.started[:10]
-
-    @property
-    def short_commit(self):
-        """Its first digits, and whether files differed from it."""
-        digits, plus, _ = self.commit.partition("+")
-        return digits[:10] + (" with changes" if plus else "")
-
-
-def made(result):
-    text = lambda name: str(result.attribute(name, ""))
-    return Made(text("command_line"), text("version"), text("git_commit"), text("machine"),
-                int(result.attribute("threads", 0)), text("started"),
-                float(result.attribute("wall_s", 0)), float(result.attribute("cpu_s", 0)),
-                "quick = true" in text("config"))
-
-
-def points_of(result, axis, number, count):
-    """Columns of the points of each curve: [{name: array}]."""
-    columns = {name: result.values(name) for name in axis}
-    owner = result.values(number)
-    return [{name: values[owner == curve] for name, values in columns.items()}
-            for curve in range(count)]
+    def __init__(self, result):
+        text = lambda name: str(result.attribute(name, ""))
+        self.version, self.commit, self.machine = map(text, ("version", "git_commit", "machine"))
+        self.threads = int(result.attribute("threads", 0))
+        self.wall_s, self.cpu_s = (float(result.attribute(name, 0)) for name in ("wall_s", "cpu_s"))
+        self.date, self.quick = text("started")[:10], "quick = true" in text("config")
+        digits, plus, _ = self.commit.partition("+")  # whether files differed from it
+        self.short_commit = digits[:10] + (" with changes" if plus else "")
 
 
 class ErrorFile:
     def __init__(self, result):
-        self.made = made(result)
-        self.curves = rows_of(result, ["scene", "method", "reference", "reference_uncertainty",
-                                       "slope", "slope_error", "efficiency", "is_monte_carlo"])
-        columns = ["cpu_s", "samples", "relative_error", "relative_error_error"]
-        for curve, points in zip(self.curves, points_of(result, columns, "of_curve",
-                                                        len(self.curves))):
-            curve.update(points)
-        self.costs = rows_of(result, ["task", "size_name", "cost_name", "exponent",
-                                      "exponent_error", "expected_exponent"])
-        for cost, points in zip(self.costs, points_of(result, ["size", "cost_value"], "of_cost",
-                                                      len(self.costs))):
-            cost.update(points)
+        self.made = Made(result)
+        self.curves = rows_of(result, "scene", "method", "reference", "reference_uncertainty", "slope",
+                              "slope_error", "efficiency", "is_monte_carlo")
+        add_points(result, self.curves, "of_curve", "cpu_s", "samples", "relative_error",
+                   "relative_error_error")
+        self.costs = rows_of(result, "task", "size_name", "cost_name", "exponent", "exponent_error",
+                             "expected_exponent")
+        add_points(result, self.costs, "of_cost", "size", "cost_value")
 
     def scenes(self):
         """In the order of the file."""
@@ -90,9 +59,9 @@ class ErrorFile:
 class RowFile:
     """Of stability or plan."""
 
-    def __init__(self, result, columns):
-        self.made = made(result)
-        self.rows = rows_of(result, ["room", *columns, "passed"])
+    def __init__(self, result, *columns):
+        self.made = Made(result)
+        self.rows = rows_of(result, "room", *columns, "passed")
 
     def rooms(self):
         return list(dict.fromkeys(row["room"] for row in self.rows))
@@ -104,16 +73,7 @@ class RowFile:
         return [row for row in self.rows if not row["passed"]]
 
 
-def read_stability(result):
-    return RowFile(result, ["name", "invariant", "must_say", "refusal", "figure", "limit", "cpu_s"])
-
-
-def read_plan(result):
-    return RowFile(result, ["left_out", "scene", "per", "general_s", "special_s", "ratio",
-                            "ratio_spread", "difference", "difference_in", "limit"])
-
-
-@dataclasses.dataclass
+@dataclass
 class Bench:
     error: ErrorFile
     stability: RowFile
@@ -124,5 +84,8 @@ class Bench:
 
 
 def read_bench(error, stability, plan):
-    return Bench(ErrorFile(Result(error)), read_stability(Result(stability)),
-                 read_plan(Result(plan)))
+    """Reads the three files, given by their paths."""
+    return Bench(ErrorFile(Result(error)),
+                 RowFile(Result(stability), "name", "invariant", "must_say", "refusal", "figure", "limit"),
+                 RowFile(Result(plan), "left_out", "scene", "per", "general_s", "special_s", "ratio",
+                         "ratio_spread", "difference", "difference_in", "limit"))

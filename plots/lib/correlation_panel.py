@@ -8,32 +8,22 @@ FEW_DECADES = 50  # highest over lowest value of an axis
 BELIEVED = 3  # standard errors of C_E, a magnitude, below which its noise lifts it
 
 
-def add_options(parser):
-    parser.add_argument("--log", action="store_true",
-                        help="logarithmic tilts; those up to 0 are left out")
-    parser.add_argument("--log_correlation", action="store_true", help="logarithmic C_I; left out "
-                        f"where C_E, a magnitude, is below {BELIEVED} standard errors")
-
-
 def prepare(axis, tilt, lowest, arguments):
     """Scales and limits for tilts in mrad and, on a logarithm, C_I down to `lowest`."""
-    axis.axhline(0.5, color=style.GREY, linewidth=0.6, linestyle=(0, (1, 2)), zorder=0)
-    axis.set_xlabel("tilt (mrad)")
-    axis.set_ylabel(r"intensity correlation $C_I$")
+    style.mark(axis, 0.5)
+    axis.set(xlabel="tilt (mrad)", ylabel=r"intensity correlation $C_I$")
     if arguments.log:
         if not (tilt > 0).any():
             raise style.Unusable("--log: there is no tilt above 0")
-        axis.set_xscale("log")
         low, high = tilt[tilt > 0].min() / 1.2, tilt.max() * 1.2
-        axis.set_xlim(low, high)
+        axis.set(xscale="log", xlim=(low, high))
         if high < FEW_DECADES * low:
             style.few_decades(axis.xaxis)
     else:
         margin = 0.05 * max(np.ptp(tilt), 1e-3)
         axis.set_xlim(tilt.min() - margin, tilt.max() + margin)
     if arguments.log_correlation:
-        axis.set_yscale("log")
-        axis.set_ylim(lowest / 2, 1.6)
+        axis.set(yscale="log", ylim=(lowest / 2, 1.6))
         if 1.6 < FEW_DECADES * lowest / 2:
             style.few_decades(axis.yaxis)
     else:
@@ -49,16 +39,6 @@ def lowest(fields, errors):
     """Least C_I that a logarithmic axis shows."""
     return min(np.min(field[believed(field, error)]**2, initial=1)
                for field, error in zip(fields, errors))
-
-
-def in_scale(axis, tilt, field, error):
-    """Which points the scales of the axes can show."""
-    shown = np.ones(len(tilt), bool)
-    if axis.get_xscale() == "log":
-        shown &= tilt > 0
-    if axis.get_yscale() == "log":
-        shown &= believed(field, error)
-    return shown
 
 
 def apart(axis, x, y, size):
@@ -87,23 +67,20 @@ class Unseen:
             yield f"$C_E$ below {BELIEVED} standard errors is left out"
 
 
-def bars_show(axis, y, error, size):
-    """Whether an error bar reaches beyond its symbol."""
-    low, high = (axis.transData.transform(np.column_stack([0 * y + 1, y + side * error]))[:, 1]
-                 for side in (-1, 1))
-    return np.any((high - low) * 72 / axis.figure.dpi > size)
-
-
 def draw_curve(axis, tilt, field, error, look, unseen):
     """C_I = C_E^2 with its error bars; counts in `unseen` what is not seen of it."""
     order = np.argsort(tilt)
     tilt, field, error = (values[order] for values in (tilt, field, error))
-    shown = np.flatnonzero(in_scale(axis, tilt, field, error))
+    in_scale = ((tilt > 0) | (axis.get_xscale() != "log")) & \
+        (believed(field, error) | (axis.get_yscale() != "log"))
+    shown = np.flatnonzero(in_scale)
     kept = shown[apart(axis, tilt[shown], field[shown]**2, look["markersize"])]
     correlation, spread = field[kept]**2, 2 * np.abs(field[kept]) * error[kept]
     axis.errorbar(tilt[kept], correlation, spread, linestyle="none", elinewidth=0.7, **look)
     unseen.symbols += len(shown) - len(kept)
-    unseen.bars &= not bars_show(axis, correlation, spread, look["markersize"])
+    low, high = (axis.transData.transform(np.column_stack([0 * spread + 1, end]))[:, 1]
+                 for end in (correlation - spread, correlation + spread))
+    unseen.bars &= not np.any((high - low) * 72 / axis.figure.dpi > look["markersize"])
 
 
 def add_q_axis(axis, result, tilt):

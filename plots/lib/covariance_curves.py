@@ -1,10 +1,9 @@
 """Memory-effect curves of any number of results of `covariance`, `validate` and `sweep` in one panel:
 over tilts, or over translations."""
 
-import tomllib
 from dataclasses import dataclass
 
-from lib import correlation_panel, labels, page, smooth, style, sweep_file, theory
+from lib import correlation_panel, labels, page, style, sweep_file, theory
 from lib.curve_looks import method_look
 from lib.sweep_file import METHODS
 
@@ -17,15 +16,20 @@ class Series:
     """One method's field correlation [tilt], of one result file."""
 
     label: str
-    moves: np.ndarray  # tilts in mrad, or translations
+    method: str
+    number: int  # of its colour and symbol
+    moves: np.ndarray  # tilts, or translations
     correlation: np.ndarray
     error: np.ndarray
-    look: dict
     line: tuple = None  # (moves, C_E) of theory
+
+    @property
+    def look(self):
+        look = style.look(self.number)
+        return {"marker": look["marker"], **method_look(self.method, look["color"])}
 
 
 MOST_CURVES = 8  # that a panel holds legibly
-STEPS = 200  # of a line
 
 
 def is_sweep(result):
@@ -50,18 +54,12 @@ def read_groups(result):
 def kind_of_moves(results):
     """tilt or shift (a translation), whichever all results stand on."""
     kinds = {"tilt" if is_sweep(result) else
-             result.dataset(f"{prefix}field_correlation").dims[0][0].name.strip("/"): result.path
-             for result in results for _, prefix in ([("", "")] if is_sweep(result) else read_groups(result))}
+             result.scale(f"{read_groups(result)[0][1]}field_correlation", 0)[0]: result.path
+             for result in results}
     if len(kinds) > 1:
         raise style.Unusable(f"{kinds['shift']} is of translations, {kinds['tilt']} of tilts: "
                              "draw them one by one")
     return next(iter(kinds))
-
-
-def file_look(method, number):
-    """A colour and symbol per file."""
-    look = style.look(number)
-    return {"marker": look["marker"], **method_look(method, look["color"])}
 
 
 def sides(result, prefix):
@@ -72,105 +70,65 @@ def sides(result, prefix):
     return [(first, ", transmitted"), (reflected, ", reflected")]
 
 
-def joined(*words):
-    return ", ".join(word for word in words if word)
-
-
-def result_series(result, label, number, unit):
-    """Of one result; a side of the medium is a curve. unit: what a move of 1 is drawn as."""
+def result_series(result, label, number):
+    """Lists the curves of one result: one for each side of the medium and method."""
     series, groups = [], read_groups(result)
+    only_reflected = np.all(np.cos(result.values("view_angle")) < 0)
     for side, (_, of_side) in enumerate(sides(result, groups[0][1])):
+        line = theory.reflected if side or only_reflected else theory.transmitted
         for method, prefix in groups:
             name = sides(result, prefix)[side][0]
             if result.dataset(name).ndim != 1:
                 raise style.Unusable(f"{result.path}: {name} is not a curve over tilts")
-            line = None if method != groups[0][0] else \
-                reflection_line(result) if side or only_reflected(result) else diffusion_line(result)
-            series.append(Series(joined(label, METHODS[method]) + of_side,
-                                 unit * result.axis(name, 0), np.real(result.values(name)),
-                                 result.values(f"{name}_error"), file_look(method, number + side), line))
+            field, error = result.measured(name)
+            words = labels.joined(label, METHODS[method]) + of_side
+            series.append(Series(words, method, number + side, result.axis(name, 0), np.real(field),
+                                 error, line(result) if method == groups[0][0] else None))
     return series
 
 
 def sweep_series(result, label, number, arguments):
     """A curve for each point of a sweep."""
-    sweep, series = sweep_file.read([result], arguments), []
-    tilt = result.values("tilt")
-    fine, stored = np.linspace(tilt.min(), tilt.max(), STEPS), sweep.optional("diffusion_theory")
+    sweep, series = sweep_file.read(result, arguments), []
+    stored = sweep.optional("diffusion_theory")
     for place, row in enumerate(sweep.rows):
-        words = joined(label, sweep.label(sweep.varying(), row) if sweep.varying() else "")
+        line = None if stored is None else \
+            theory.of_point(sweep, row, stored[row], theory.fine_tilts(result))
         for method in sweep.prefixes:
-            line = None if stored is None else theory.curve(sweep, theory.diffusion, row, stored[row], fine)
-            series.append(Series(joined(words, METHODS[method]) if method else words, 1000 * tilt,
-                                 sweep.of(method, "field_correlation")[row],
-                                 sweep.of(method, "field_correlation_error")[row],
-                                 file_look(method, number + place),
-                                 None if line is None else (1000 * line[0], line[1])))
+            words = labels.joined(label, sweep.label(sweep.varying(), row), METHODS.get(method))
+            curve = (column[row] for column in sweep.measured(method, "field_correlation"))
+            series.append(Series(words, method, number + place, result.values("tilt"), *curve, line))
     return series
 
 
-def read_series(results, unit, arguments):
-    series = series_of(results, labels.labels(results), unit, arguments)
-    if len({s.label for s in series}) < len(series):
-        series = series_of(results, labels.stems(results), unit, arguments)
+def read_series(results, arguments):
+    """Lists the curves of all results, labelled by what differs in their scenes, or by their files where
+    that is not enough."""
+    for names in (labels.labels(results), labels.stems(results)):
+        series = []
+        for result, label in zip(results, names):
+            number = len({s.look["color"] for s in series})
+            series += sweep_series(result, label, number, arguments) if is_sweep(result) else \
+                result_series(result, label, number)
+        if len({s.label for s in series}) == len(series):
+            break
     if len(series) > MOST_CURVES and len(results) > 1 and any(map(is_sweep, results)):
         raise style.Unusable(f"{len(series)} curves, a panel holds {MOST_CURVES}: choose some by --select")
     return series
 
 
-def series_of(results, names, unit, arguments):
-    series = []
-    for result, label in zip(results, names):
-        number = len({s.look["color"] for s in series})
-        series += sweep_series(result, label, number, arguments) if is_sweep(result) else \
-            result_series(result, label, number, unit)
-    return series
-
-
-def only_reflected(result):
-    return np.all(np.cos(result.values("view_angle")) < 0)
-
-
-def diffusion_line(result):
-    """(tilts in mrad, C_E) of light through a slab in diffusion theory; None of other scenes."""
-    scene = tomllib.loads(result.attribute("config", ""))
-    if scene.get("domain") != "slab" or not result.has("tilt_q"):
-        return None
-    order = np.argsort(result.values("tilt"))
-    known, q = result.values("tilt")[order], result.values("tilt_q")[order]
-    tilt = np.linspace(known[0], known[-1], STEPS)
-    medium = (result.attribute(name) for name in ("depth", "optical_depth", "g", "albedo"))
-    return 1000 * tilt, theory.slab_diffusion(*medium, np.interp(tilt, known, q),
-                                              theory.dimension(result))
-
-
-def reflection_line(result):
-    """(tilts in mrad, C_E) of reflected light in theory, smooth between the tilts of the file; None
-    where it has none."""
-    if not result.has("reflection_theory") or len(result.values("tilt")) < 3:
-        return None
-    order = np.argsort(result.values("tilt"))
-    tilt, known = result.values("tilt")[order], result.values("reflection_theory")[order]
-    fine = np.linspace(tilt[0], tilt[-1], STEPS)
-    return 1000 * fine, smooth.cubic(tilt, known, fine)
-
-
-def same_line(one, other):
-    return all(len(a) == len(b) and np.allclose(a, b, rtol=1e-9, atol=1e-12) for a, b in zip(one.line, other.line))
-
-
 def draw_theory(axis, series):
     """Each line once, in grey where it is of several curves. Returns whether there is any."""
-    drawn = []
     lines = [s for s in series if s.line is not None]
-    for s in lines:
-        if any(same_line(s, other) for other in drawn):
+    same = lambda one, other: one.line[0].shape == other.line[0].shape and \
+        np.allclose(one.line, other.line, rtol=1e-9, atol=1e-12)
+    for number, s in enumerate(lines):
+        if any(same(s, other) for other in lines[:number]):
             continue
-        shared_by = sum(same_line(s, other) for other in lines)
-        axis.plot(s.line[0], s.line[1]**2, color=s.look["color"] if shared_by == 1 and len(lines) > 1 else style.GREY,
+        alone = sum(same(s, other) for other in lines) == 1 < len(lines)
+        axis.plot(1000 * s.line[0], s.line[1]**2, color=s.look["color"] if alone else style.GREY,
                   linewidth=0.9, zorder=1)
-        drawn.append(s)
-    return bool(drawn)
+    return bool(lines)
 
 
 def theory_name(results):
@@ -196,35 +154,31 @@ def share_q(results):
 
 
 def title(results):
+    """Names the values that all results have in common."""
     names = {"optical_depth": "OD", "g": "$g$", "albedo": "albedo"}
-    values = {name: shared(results, name) for name in names}
-    words = [f"{names[name]} = {value:.3g}" for name, value in values.items() if value is not None]
-    return ", ".join(words + view_words(results))
-
-
-def view_words(results):
-    """[The view and its side, where all results have the same one]."""
-    views = [tuple(result.values("view_angle")) if result.has("view_angle") else () for result in results]
-    if len(set(views)) > 1 or len(views[0]) != 1:
-        return []
-    return [f"view {style.angle(views[0][0])}{labels.side(results[0])}"]
+    words = [f"{text} = {shared(results, name):.3g}" for name, text in names.items()
+             if shared(results, name) is not None]
+    views = {tuple(result.values("view_angle")) if result.has("view_angle") else () for result in results}
+    view = views.pop() if len(views) == 1 else ()
+    return ", ".join(words + [f"view {style.angle(one)}{labels.side(results[0])}" for one in view
+                              if len(view) == 1])
 
 
 def draw(results, arguments):
     tilts = kind_of_moves(results) == "tilt"
-    series = read_series(results, 1000 if tilts else 1, arguments)
+    series, unit = read_series(results, arguments), 1000 if tilts else 1
     figure, axis = plt.subplots(figsize=(style.COLUMN, 2.6))
     correlation_panel.prepare(
-        axis, np.concatenate([s.moves for s in series]),
+        axis, unit * np.concatenate([s.moves for s in series]),
         correlation_panel.lowest([s.correlation for s in series], [s.error for s in series]),
         arguments)
     unseen = correlation_panel.Unseen()
     for s in series:
-        correlation_panel.draw_curve(axis, s.moves, s.correlation, s.error, s.look, unseen)
+        correlation_panel.draw_curve(axis, unit * s.moves, s.correlation, s.error, s.look, unseen)
     if not tilts:
         axis.set_xlabel("translation (unit of length)")
     elif share_q(results):
-        correlation_panel.add_q_axis(axis, results[0], series[0].moves)
+        correlation_panel.add_q_axis(axis, results[0], unit * series[0].moves)
     entries = [(plt.Line2D([], [], linestyle="none", **s.look), s.label) for s in series]
     if tilts and draw_theory(axis, series):
         entries.append((plt.Line2D([], [], color=style.GREY, linewidth=0.9), theory_name(results)))

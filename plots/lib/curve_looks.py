@@ -7,6 +7,8 @@ import matplotlib.pyplot as plt
 
 RING = {"color": "black", "linestyle": "none", "marker": "o", "markersize": 8,
         "markerfacecolor": "none", "markeredgewidth": 0.6}
+SINGLE_SCATTERING = {"color": "0.55", "linewidth": 1.6}
+ARROWS = {1: 11, 2: -11}  # by range_censored: points of print towards where the range may be
 FEW_STEPS = f"fewer than {LEAST_STEPS} tilts up to the range"
 
 
@@ -25,9 +27,11 @@ def curve_look(number, method):
     return {"marker": look["marker"], **method_look(method, look["color"], 3), **fill}
 
 
-def last_method(sweep):
-    """Whose points stand for a curve; None of one method alone."""
-    return list(sweep.prefixes)[-1]
+def curve_handle(sweep, number, with_line):
+    """Legend handle of a curve: the symbol of its last method, and a line where theory is drawn."""
+    look = {**curve_look(number, list(sweep.prefixes)[-1]), "markersize": 3}
+    line = style.look(number)["linestyle"] if with_line else "none"
+    return plt.Line2D([], [], linewidth=0.7, linestyle=line, **look)
 
 
 def method_entries(sweep):
@@ -40,8 +44,15 @@ def method_entries(sweep):
 
 def range_entries(sweep):
     """Of bounds and doubtful ranges, as far as there are any."""
-    if any((sweep.of(method, "range_censored")[sweep.rows] > 0).any() for method in sweep.prefixes):
+    if sweep.has_bounds():
         yield plt.Line2D([], [], color="black", linestyle="none", marker=r"$\uparrow$",
                          markersize=6), "bound, no error bar"
-    if any(sweep.few_steps(method)[sweep.rows].any() for method in sweep.prefixes):
+    if sweep.has_few_steps():
         yield plt.Line2D([], [], **RING), FEW_STEPS
+
+
+def draw_bound(axis, at, place, away, colour):
+    """An arrow from a point at places of `place` by (x, y) points of print."""
+    axis.annotate("", at, xycoords=place, textcoords="offset points", xytext=away, zorder=1,
+                  arrowprops={"arrowstyle": "<|-", "color": colour, "shrinkA": 0, "shrinkB": 2,
+                              "linewidth": 0.7, "mutation_scale": 6})

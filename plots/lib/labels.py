@@ -1,7 +1,6 @@
 """What tells results apart, in words: of their scenes what differs, or the names of their files."""
 
 import pathlib
-import tomllib
 
 from lib import style
 
@@ -15,8 +14,14 @@ NAMES = {"optical_depth": "OD", "g": "$g$", "view_angles": "view", "light_angles
 MOST = 2  # differences that a label names
 
 
-def scene_of(result):
-    return tomllib.loads(result.attribute("config", ""))
+def of_slab(result, digits=3):
+    """Optical depth and mean cosine, to so many digits."""
+    depth, g = (result.attribute(name) for name in ("optical_depth", "g"))
+    return rf"OD {depth:.{digits}g}, $g$ = {g:.{digits}g}"
+
+
+def joined(*words):
+    return ", ".join(filter(None, words))
 
 
 def with_unit(name, unit):
@@ -38,16 +43,6 @@ def side(result):
     return ", reflected"
 
 
-def text_of(key, scene):
-    return f"{NAMES.get(key, key)} {'' if key.endswith('_angles') else '= '}{value_text(key, scene[key])}"
-
-
-def differing(scenes):
-    """Keys that not all have alike, or at all."""
-    keys = sorted(set().union(*scenes) - NOT_SCENE)
-    return [key for key in keys if any(scene.get(key) != scenes[0].get(key) for scene in scenes)]
-
-
 def stems(results):
     """Names of their files, with as much of the folder as tells them apart."""
     paths = [pathlib.Path(result.path) for result in results]
@@ -59,11 +54,13 @@ def labels(results):
     """A text for each result; nothing for one alone."""
     if len(results) == 1:
         return [""]
-    scenes = [scene_of(result) for result in results]
-    keys = differing(scenes)
+    scenes = [result.scene for result in results]
+    keys = [key for key in sorted(set().union(*scenes) - NOT_SCENE)
+            if any(scene.get(key) != scenes[0].get(key) for scene in scenes)]
     if not keys and len({result.path for result in results}) > 1:
         return [""] * len(results)  # one scene: methods tell them apart
     if len(keys) > MOST or any(key not in scene for key in keys for scene in scenes):
         return stems(results)
-    return [", ".join(text_of(key, scene) for key in keys) + (side(result) if "view_angles" in keys else "")
-            for scene, result in zip(scenes, results)]
+    sign = lambda key: "" if key.endswith("_angles") else "= "
+    return [", ".join(f"{NAMES.get(key, key)} {sign(key)}{value_text(key, scene[key])}" for key in keys)
+            + (side(result) if "view_angles" in keys else "") for scene, result in zip(scenes, results)]

@@ -30,6 +30,14 @@ def page_of_panels(down, across, count, beneath=0):
     return figure, *kinds
 
 
+def side_by_side(result, panels, width, height, **looks):
+    """A figure of panels, each drawn by a function of (axis, result)."""
+    figure, axes = plt.subplots(1, len(panels), figsize=(width, height), **looks)
+    for axis, draw_panel in zip(axes, panels):
+        draw_panel(axis, result)
+    return figure
+
+
 def outer_labels(axes, count):
     """Labels at the left and beneath the lowest panel of each column alone."""
     for (row, column), axis in np.ndenumerate(axes):
@@ -43,24 +51,35 @@ def label_sides(axis, left, bottom):
     axis.yaxis.label.set_visible(left)
 
 
-def columns_that_fit(sizes, letters):
-    """Into how many columns entries of these sizes go, all columns about equally long."""
-    width = lambda columns: sum(max(part) for part in np.array_split(sizes, columns))
-    most = max(n for n in range(1, len(sizes) + 1) if n == 1 or width(n) <= letters)
-    return -(-len(sizes) // -(-len(sizes) // most))
+def labelled(axes):
+    """Legend entries (handle, label) of what is drawn in some axes, each label once."""
+    entries = {label: handle for axis in axes
+               for handle, label in zip(*axis.get_legend_handles_labels())}
+    return [(handle, label) for label, handle in entries.items()]
+
+
+def legend_above(figure, entries, columns, **looks):
+    """A legend of (handle, label) over the figure."""
+    handles, labels = zip(*entries) if entries else ((), ())
+    figure.legend(handles, labels, loc="lower center", bbox_to_anchor=(0.5, 1.0), ncol=columns,
+                  **looks)
 
 
 def legend_outside(figure, entries, notes=()):
     """A legend of (handle, label), headed by notes: over the figure, or beside a single panel if it
     would be higher than a few rows."""
-    handles, labels = zip(*entries) if entries else ((), ())
+    if not entries and not notes:
+        return
     letters = LETTERS * figure.get_figwidth()
-    sizes = [len(label.replace("$", "")) + 9 for label in labels] or [0]
-    columns = columns_that_fit(sizes, letters)
-    rows = len(notes) + -(-len(labels) // columns)
-    beside = labels and figure.get_figwidth() <= style.COLUMN and rows > MOST_ROWS
-    place = {"loc": "center left", "bbox_to_anchor": (1.0, 0.5), "ncol": 1} if beside else \
-        {"loc": "lower center", "bbox_to_anchor": (0.5, 1.0), "ncol": columns}
+    sizes = [len(label.replace("$", "")) + 9 for _, label in entries] or [0]
+    width = lambda columns: sum(max(part) for part in np.array_split(sizes, columns))
+    most = max(n for n in range(1, len(sizes) + 1) if n == 1 or width(n) <= letters)
+    columns = -(-len(sizes) // -(-len(sizes) // most))  # all about equally long
+    rows = len(notes) + -(-len(entries) // columns)
+    beside = entries and figure.get_figwidth() <= style.COLUMN and rows > MOST_ROWS
     wrapped = [textwrap.fill(note, 40 if beside else int(letters)) for note in notes]
-    if labels or notes:
-        figure.legend(handles, labels, title="\n".join(wrapped) or None, title_fontsize=7, **place)
+    head = {"title": "\n".join(wrapped) or None, "title_fontsize": 7}
+    if beside:
+        figure.legend(*zip(*entries), loc="center left", bbox_to_anchor=(1.0, 0.5), ncol=1, **head)
+    else:
+        legend_above(figure, entries, columns, **head)

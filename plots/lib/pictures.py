@@ -1,6 +1,6 @@
 """Pictures of `flatspeckle render`: their axes, units and tone mapping."""
 
-from lib import labels
+from lib import labels, script
 from lib.result_file import Result, Unusable
 
 import numpy as np
@@ -8,7 +8,7 @@ from matplotlib.colors import LogNorm, Normalize, PowerNorm
 
 LENGTHS = {1.0: "m", 1e-2: "cm", 1e-3: "mm", 1e-6: "µm", 1e-9: "nm"}
 BRIGHTEST = 0.999  # of the pixels; those above share one colour
-UNITS = {"1/(length^2 sr)": "{}$^{{-2}}$ sr$^{{-1}}$", "1/length^2": "{}$^{{-2}}$",
+UNITS = {"1/(length^2 sr)": "{}$^{{-2}}$ sr$^{{-1}}$", "1/length^2": "{}$^{{-2}}$", "1/length^3": "{}$^{{-3}}$",
          "1/sr": "sr$^{{-1}}$", "1": ""}
 TONES = ("linear", "root", "log")
 DARK = 0.01  # of the brightest: where half of the lit pixels are below, a logarithm shows more
@@ -22,30 +22,26 @@ class Sensor(Result):
     def __init__(self, result, name):
         self.path, self.file, self.group = f"{result.path}, {name}", result.file, f"sensors/{name}"
 
-    def has(self, name):
-        return f"{self.group}/{name}" in self.file or super().has(name)
-
-    def dataset(self, name):
+    def locate(self, name):
+        """Its own dataset, or that of all sensors."""
         own = f"{self.group}/{name}"
-        return super().dataset(own if own in self.file else name)
+        return own if own in self.file else name
+
+
+def names_of_sensors(result):
+    return list(result.file["sensors"]) if result.has("sensors") else []
 
 
 def sensors(results):
-    """Each sensor of each result."""
-    return [each for result in results
-            for each in ([Sensor(result, name) for name in result.file["sensors"]]
-                         if result.has("sensors") else [result])]
-
-
-def sensor_labels(results):
-    """What tells each of sensors() apart."""
-    return [", ".join(filter(None, [label, sensor])) for result, label in zip(results, labels.labels(results))
-            for sensor in (result.file["sensors"] if result.has("sensors") else [""])]
+    """[(what tells it apart, sensor)] of each sensor of each result."""
+    return [(labels.joined(label, name), Sensor(result, name) if name else result)
+            for result, label in zip(results, labels.labels(results))
+            for name in names_of_sensors(result) or [""]]
 
 
 def chosen(result, name):
     """One sensor of a result, which must be named where there are several."""
-    names = list(result.file["sensors"]) if result.has("sensors") else []
+    names = names_of_sensors(result)
     if (name or names) and name not in names:
         raise Unusable(f"{result.path}: --sensor must be one of {' '.join(names) or 'none'}")
     return Sensor(result, name) if name else result
@@ -106,11 +102,23 @@ def tone(pictures, kind, decades):
     return Normalize(0, high, clip=True) if kind == "linear" else PowerNorm(0.5, 0, high, clip=True)
 
 
-def add_tone_options(parser, default=None):
+def tone_options(default=None):
+    """Options of a plot: --tone and --decades."""
     words = default or "root, or log where most of the picture is dark"
-    parser.add_argument("--tone", choices=TONES, default=default,
-                        help=f"how brightness becomes colour (default: {words})")
-    parser.add_argument("--decades", type=float, help="of log (default: as many as there is light)")
+    tone = script.option("--tone", choices=TONES, default=default,
+                         help=f"how brightness becomes colour (default: {words})")
+    decades = script.option("--decades", type=float, help="of log (default: as many as there is light)")
+    return lambda draw: tone(decades(draw))
+
+
+def height_over_width(result):
+    left, right, bottom, top = extent(result)
+    return (top - bottom) / (right - left)
+
+
+def below(values, errors):
+    """Error bars that a logarithmic axis can show."""
+    return np.minimum(errors, 0.999 * values)
 
 
 def show(axis, result, picture, **look):

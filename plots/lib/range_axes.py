@@ -14,12 +14,6 @@ MOST_TICKS = 16  # at the values themselves
 CLOSE = 0.13  # of an axis: two numbers nearer than this run into each other
 
 
-def horizontal(sweep, against):
-    """Positions of all points along the axis."""
-    column = sweep.column(against)
-    return np.round(1 - column, 12) if against == "albedo" else column
-
-
 def numbers_apart(axis, values):
     """Texts of ticks, the largest first; none where it would run into the next."""
     places = axis.xaxis.get_transform().transform(values)

@@ -9,28 +9,20 @@ from matplotlib.transforms import offset_copy
 MOST_POINTS = 40
 STEP = 0.2  # inches from row to row
 ASIDE = {None: 0, "mc": 2, "wave": -2, "transport": -2}  # points of print
-ABOVE = 1  # in range_censored: the curve stays above 1/2
 THEORY = {"color": "black", "marker": "|", "markersize": 8, "linestyle": "none"}
 
 
-def draw_bounds(axis, places, value, censored, place, colour):
-    for row in np.flatnonzero(censored):
-        axis.annotate("", (value[row], places[row]), xycoords=place, textcoords="offset points",
-                      xytext=(11 if censored[row] == ABOVE else -11, 0), zorder=1,
-                      arrowprops={"arrowstyle": "<|-", "color": colour, "shrinkA": 0, "shrinkB": 2,
-                                  "linewidth": 0.7, "mutation_scale": 6})
-
-
 def draw_method(axis, sweep, method, places):
-    value, error, censored = (sweep.of(method, name)[sweep.rows] for name in (
-        "memory_effect_range", "memory_effect_range_error", "range_censored"))
+    value, error, censored = (column[sweep.rows] for column in sweep.ranges(method))
     look = {"marker": "o", **curve_looks.method_look(method, style.COLOURS[0])}
     place = offset_copy(axis.transData, axis.figure, y=ASIDE[method], units="points")
     axis.plot(value, places, linestyle="none", transform=place, **look)
     known = censored == 0
     axis.errorbar(value[known], places[known], xerr=error[known], fmt="none", elinewidth=0.7,
                   ecolor=look["color"], transform=place)
-    draw_bounds(axis, places, value, censored, place, look["color"])
+    for row in np.flatnonzero(censored):
+        curve_looks.draw_bound(axis, (value[row], places[row]), place,
+                               (curve_looks.ARROWS[censored[row]], 0), look["color"])
     few = sweep.few_steps(method)[sweep.rows]
     axis.plot(value[few], places[few], transform=place, **curve_looks.RING)
 
@@ -42,19 +34,19 @@ def entries(sweep, single):
         yield plt.Line2D([], [], **THEORY), "diffusion theory"
     yield from curve_looks.range_entries(sweep)
     if single:
-        yield plt.Line2D([], [], color="0.55", linewidth=1.6), "single scattering"
+        yield plt.Line2D([], [], **curve_looks.SINGLE_SCATTERING), "single scattering"
 
 
 def draw(sweep, single):
     """single: as Sweep.single_scattering_range gives it."""
     if len(sweep.rows) > MOST_POINTS:
-        raise style.Unusable(f"{sweep.path}: {len(sweep.rows)} points, at most {MOST_POINTS} rows "
-                             f"are legible; try --select {sweep.example(sweep.varying()[0], 3)}")
+        sweep.refuse(f"{len(sweep.rows)} points, at most {MOST_POINTS} rows are legible",
+                     (sweep.varying()[0], 3))
     places = np.arange(len(sweep.rows))
     figure, axis = plt.subplots(figsize=(style.COLUMN + 1.4, 0.6 + STEP * (len(places) + 1)))
     limits = single or []
     for limit in limits:
-        axis.axvline(limit, color="0.55", linewidth=1.6, zorder=0.5)
+        axis.axvline(limit, **curve_looks.SINGLE_SCATTERING, zorder=0.5)
     diffusion = sweep.optional("diffusion_range")
     if diffusion is not None:
         axis.plot(diffusion[sweep.rows], places, zorder=1, **THEORY)

@@ -1,8 +1,11 @@
 """Reading of result files, with one clear complaint about whatever is missing."""
 
+import functools
 import pathlib
+import tomllib
 
 import h5py
+import numpy as np
 
 
 class Unusable(Exception):
@@ -31,43 +34,69 @@ class Result:
         except OSError:
             raise Unusable(complaint(path))
 
-    def has(self, name):
-        return name in self.file
+    def locate(self, name):
+        """Path of a dataset in the file."""
+        return name
 
-    def dataset(self, name):
-        if not isinstance(self.file.get(name), h5py.Dataset):
+    def has(self, name):
+        return self.locate(name) in self.file
+
+    def require(self, name, hint=""):
+        """Refuses a result without a dataset; the hint says what makes it."""
+        if not isinstance(self.file.get(self.locate(name)), h5py.Dataset):
             why = ("is not complete: the same command with --resume goes on; "
                    if self.attribute("complete") == 0 or set(self.file) == {"state"} else "")
-            raise Unusable(f"{self.path}: {why}has no dataset {name}")
-        return self.file[name]
+            raise Unusable(f"{self.path}: {why}has no dataset {name}" + (f"; {hint}" if hint else ""))
+
+    def dataset(self, name):
+        self.require(name)
+        return self.file[self.locate(name)]
+
+    def values(self, name):
+        return self.dataset(name)[...]
+
+    def measured(self, name):
+        """Values of a dataset and their errors."""
+        return self.values(name), self.values(f"{name}_error")
+
+    def texts(self, name):
+        return [text.decode() for text in self.values(name)]
+
+    def scale(self, name, number):
+        """Name and values of the scale of one axis of a dataset."""
+        dimension = self.dataset(name).dims[number]
+        if len(dimension) == 0:
+            raise Unusable(f"{self.path}: axis {number} of {name} has no scale")
+        return dimension[0].name.split("/")[-1], dimension[0][...]
+
+    def axis(self, name, number):
+        """Values of the scale of one axis of a dataset."""
+        return self.scale(name, number)[1]
+
+    def attribute(self, name, default=None, group="/"):
+        return self.file[group].attrs.get(name, default)
+
+    def unit(self, name):
+        """The unit of a dataset; nothing where it has none."""
+        unit = self.dataset(name).attrs.get("units", "")
+        return "" if unit == "1" else unit
+
+    @functools.cached_property
+    def scene(self):
+        """The resolved keys, as the file has them: {key: value}."""
+        return tomllib.loads(self.attribute("config", ""))
 
     def swept(self):
         """Keys that vary in a sweep of another subcommand; none of other results."""
         return list(self.attribute("swept", [])) if self.attribute("of") else []
 
-    def numbers(self):
-        """Names of datasets of numbers over what was swept, errors and times apart."""
-        names = []
-        self.file.visititems(lambda name, thing: names.append(name) if isinstance(thing, h5py.Dataset) else None)
-        swept = {key.replace(".", "_") for key in self.swept()}
-        hidden = ("_error", "_rare", "_s", "samples")
-        return [name for name in names if 0 < self.file[name].ndim <= max(1, len(swept)) and self.file[name].dtype.kind == "f"
-                and name not in swept and not name.endswith(hidden) and not name.startswith("state") and self.file[name].attrs.get("CLASS") != b"DIMENSION_SCALE"]
 
-    def refuse_sweep(self):
-        if self.swept():
-            raise Unusable(f"{self.path}: a sweep over {', '.join(self.swept())}, no one picture; "
-                           "plots/experiment_map.py --value NAME draws a number of it")
-
-    def values(self, name):
-        return self.dataset(name)[...]
-
-    def axis(self, name, number):
-        """Values of the scale of one axis of a dataset."""
-        dimension = self.dataset(name).dims[number]
-        if len(dimension) == 0:
-            raise Unusable(f"{self.path}: axis {number} of {name} has no scale")
-        return dimension[0][...]
-
-    def attribute(self, name, default=None, group="/"):
-        return self.file[group].attrs.get(name, default)
+def read_table(path):
+    """A CSV table with a line of names: [row], each column by its name. Lines that begin with # are
+    comments."""
+    try:
+        with open(path) as file:
+            lines = [line for line in file if not line.startswith("#")]
+        return np.genfromtxt(lines, delimiter=",", names=True, dtype=None, encoding="utf-8")
+    except ValueError:
+        raise Unusable(f"{path}: is no CSV table")

@@ -1,6 +1,6 @@
 """One speckle pattern, of a placement of the user's own, over the mean intensity of Monte Carlo."""
 
-from lib import style
+from lib import page, style
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -11,8 +11,8 @@ FORWARD = {"color": "#E69F00", "alpha": 0.25, "linewidth": 0}  # what stands beh
 def draw_pattern(axis, result):
     """|u|^2 and its mean of the first light."""
     order = np.argsort(result.values("view_angle"))
-    view, mean, error = (values[order] for values in (
-        result.values("view_angle"), result.values("mc/intensity")[0], result.values("mc/intensity_error")[0]))
+    view = result.values("view_angle")[order]
+    mean, error = (values[0][order] for values in result.measured("mc/intensity"))
     axis.plot(view, np.abs(result.values("far_field")[0][order])**2, color=style.COLOURS[1],
               label="your places, exactly: $|u|^2$")
     axis.fill_between(view, mean - error, mean + error, color=style.COLOURS[0], alpha=0.3, linewidth=0)
@@ -20,9 +20,8 @@ def draw_pattern(axis, result):
     forward = view[result.values("forward")[0][order] > 0]
     if len(forward):
         axis.axvspan(forward.min(), forward.max(), label="forward lobe: not counted", zorder=-1, **FORWARD)
-    axis.set_yscale("log")
-    axis.set_ylim(mean.min() / 100, None)
-    axis.set_ylabel(f"intensity ({result.dataset('mc/intensity').attrs['units']})")
+    axis.set(yscale="log", ylim=(mean.min() / 100, None),
+             ylabel=f"intensity ({result.dataset('mc/intensity').attrs['units']})")
     style.angle_axis(axis, view, "view angle")
 
 
@@ -33,8 +32,7 @@ def draw_distribution(axis, result):
     axis.step(ratio, 1 - np.arange(len(ratio)) / len(ratio), where="pre", color=style.COLOURS[1])
     fine = np.linspace(0, ratio[-1], 200)
     axis.plot(fine, np.exp(-fine), color="black", linestyle=":", label=r"$\exp(-r)$, Gaussian fields")
-    axis.set_yscale("log")
-    axis.set(xlabel=r"$r = |u|^2$ / mean intensity", ylabel="share above $r$", ylim=(0.5 / len(ratio), 1.3))
+    axis.set(yscale="log", xlabel=r"$r = |u|^2$ / mean intensity", ylabel="share above $r$", ylim=(0.5 / len(ratio), 1.3))
 
 
 def draw(result):
@@ -45,7 +43,6 @@ def draw(result):
                for word, name in (("mean", "mean_ratio"), ("contrast", "ratio_contrast"))]
     distribution.text(0.97, 0.93, "\n".join([*numbers, f"{float(result.values('independent_grains')):.0f} grains"]),
                       transform=distribution.transAxes, ha="right", va="top")
-    handles = [entry for axis in (pattern, distribution) for entry in zip(*axis.get_legend_handles_labels())]
-    figure.legend(*zip(*handles), loc="lower center", bbox_to_anchor=(0.5, 1.0), ncol=2)
+    page.legend_above(figure, page.labelled([pattern, distribution]), 2)
     style.caption(figure, ["errors of mean and contrast: 1 over the root of the number of independent grains"])
     return figure

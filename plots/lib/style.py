@@ -1,10 +1,7 @@
-"""What the plots share: their look and their command line. To be imported before the packages that
-it looks for."""
+"""The look of the plots. To be imported before the packages that it looks for."""
 
-import argparse
 import importlib
 import logging
-import pathlib
 import sys
 
 for package in ("matplotlib", "h5py", "numpy"):
@@ -15,20 +12,20 @@ for package in ("matplotlib", "h5py", "numpy"):
               "use /usr/bin/python3", file=sys.stderr)
         sys.exit(2)
 
-import matplotlib
-
 logging.getLogger("fontTools").setLevel(logging.ERROR)  # of the ages of fonts
 import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
-from lib.result_file import Result, Unusable
+from lib.result_file import Unusable
 
 # Okabe and Ito 2008: told apart by the colour blind, and in grey by marker and line style besides.
 COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#8C510A"]
 MARKERS = ["o", "s", "^", "D", "v", "P", "X", "p"]
 LINES = ["-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (7, 2)), (0, (1, 1)), (0, (3, 1, 1, 1))]
 GREY = "0.5"
+INDEX = LinearSegmentedColormap.from_list("index", ["white", "#56B4E9", "#00456b"])
 COLUMN, PAGE, PAGE_HEIGHT = 3.4, 7.0, 8.6  # of a journal, inches
 PAD = 0.02  # of paper around what is drawn, inches
 
@@ -49,6 +46,27 @@ def look(number):
     """Colour, marker and line style of curve `number`, all different from its neighbours'."""
     return {"color": COLOURS[number % len(COLOURS)], "marker": MARKERS[number % len(MARKERS)],
             "linestyle": LINES[number % len(LINES)]}
+
+
+def line(number):
+    """Colour and line style of curve `number`."""
+    return {key: look(number)[key] for key in ("color", "linestyle")}
+
+
+def symbols(number):
+    """Look of the points of curve `number` with error bars and without a line between them."""
+    return {**look(number), "linestyle": "none", "elinewidth": 0.7}
+
+
+def mark(axis, height):
+    """A dotted line in grey at a value that has a meaning."""
+    axis.axhline(height, color=GREY, linewidth=0.6, linestyle=(0, (1, 2)), zorder=0)
+
+
+def circle(points=200):
+    """[x or y, point] of the unit circle."""
+    turn = np.linspace(0, 2 * np.pi, points)
+    return np.array([np.cos(turn), np.sin(turn)])
 
 
 def short(values):
@@ -80,7 +98,10 @@ def angle_axis(axis, angles, label):
 
 def in_equal_ratios(values):
     """Whether rising values are, so that a logarithmic axis is theirs."""
-    return len(values) > 2 and values[0] > 0 and np.allclose(np.diff(np.log(values)), np.log(values[1] / values[0]), rtol=1e-3)
+    if len(values) < 3 or values[0] <= 0:
+        return False
+    steps = np.diff(np.log(values))
+    return np.allclose(steps, steps[0], rtol=1e-3)
 
 
 def whole_decades(axis):
@@ -89,13 +110,17 @@ def whole_decades(axis):
                             (axis.dataLim.intervaly, axis.set_ylim)):
         low, high = np.log10(low_high)
         limit(10 ** np.floor(low - 0.03), 10 ** np.ceil(high + 0.03))
-    axis.xaxis.set_minor_formatter(NullFormatter())
-    axis.yaxis.set_minor_formatter(NullFormatter())
+    no_minor_numbers(axis)
 
 
-def few_decades(side):
-    """Numbers 1, 2, 5 of every decade on a logarithmic axis that spans few."""
-    side.set_major_locator(LogLocator(subs=(1, 2, 5)))
+def no_minor_numbers(axis):
+    for side in (axis.xaxis, axis.yaxis):
+        side.set_minor_formatter(NullFormatter())
+
+
+def few_decades(side, steps=(1, 2, 5)):
+    """Numbers at these steps of every decade on a logarithmic axis that spans few."""
+    side.set_major_locator(LogLocator(subs=steps))
     side.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     side.set_minor_formatter(NullFormatter())
 
@@ -105,67 +130,11 @@ def caption(figure, sentences):
     figure.caption = "; ".join([*filter(None, [getattr(figure, "caption", "")]), *sentences])
 
 
-def whole(figure):
-    """Makes the page larger by what stands outside of it, legends above all, and leaves the panels as
-    they are: so that nothing is cut off however the figure is saved."""
-    figure.canvas.draw()
-    width, height = figure.get_size_inches()
-    box = figure.get_tightbbox(figure.canvas.get_renderer())
-    left, bottom = (max(0, PAD - low) for low in (box.x0, box.y0))
-    right, top = max(0, box.x1 + PAD - width), max(0, box.y1 + PAD - height)
-    if max(left, bottom, right, top) <= PAD:
-        return figure
-    wide, high = width + left + right, height + bottom + top
-    places = [legend.get_bbox_to_anchor().transformed(figure.dpi_scale_trans.inverted()) for legend in figure.legends]
-    figure.set_size_inches(wide, high)
-    figure.get_layout_engine().set(rect=(left / wide, bottom / high, width / wide, height / high))
-    for legend, place in zip(figure.legends, places):
-        legend.set_bbox_to_anchor(((place.x0 + left) / wide, (place.y0 + bottom) / high), figure.transFigure)
-    figure.canvas.draw()
-    return figure
-
-
-def save(figure, prefix):
+def save(figure, prefix, dpi=None):
     text = getattr(figure, "caption", "").replace("$", "")
     if text:
         print(f"caption: {text}")
     for ending, metadata in (("png", {"Description": text} if text else {}),
                              ("pdf", {"CreationDate": None, "Subject": text or None})):
-        figure.savefig(f"{prefix}.{ending}", metadata=metadata)
+        figure.savefig(f"{prefix}.{ending}", metadata=metadata, dpi=dpi or LOOK["savefig.dpi"])
         print(f"wrote {prefix}.{ending}")
-
-
-def output_prefix(arguments):
-    """PREFIX of --out, also if it ends like one of the files; beside the first result without."""
-    if not arguments.out:
-        first = pathlib.Path(arguments.results[0])
-        return f"{first.with_suffix('')}_{pathlib.Path(sys.argv[0]).stem}"
-    out = pathlib.Path(arguments.out)
-    if not out.parent.is_dir():
-        raise Unusable(f"--out {out}: there is no folder {out.parent}")
-    return out.with_suffix("") if out.suffix in (".png", ".pdf") else out
-
-
-def main(draw, description, several=False, add_options=None):
-    """Runs draw(results) -> figure on the command line's files; exits 2 if they lack something.
-    With add_options(parser) it runs draw(results, arguments). From Python, python/flatspeckle/plots.py
-    is in its place."""
-    matplotlib.use("Agg")
-    parser = argparse.ArgumentParser(description=description)
-    parser.add_argument("results", metavar="RESULT.h5", nargs="+" if several else 1)
-    parser.add_argument("--out", metavar="PREFIX", help="writes PREFIX.png and PREFIX.pdf "
-                        "(default: beside the first result, named after it and this plot)")
-    if add_options:
-        add_options(parser)
-    arguments = parser.parse_args()
-    try:
-        prefix = output_prefix(arguments)
-        results = [Result(path) for path in arguments.results]
-        save(draw(results, arguments) if add_options else draw(results), prefix)
-    except Unusable as problem:
-        print(problem, file=sys.stderr)
-        sys.exit(2)
-    except OSError as problem:
-        print(f"{problem.filename}: {problem.strerror}" if problem.filename else problem,
-              file=sys.stderr)
-        sys.exit(2)

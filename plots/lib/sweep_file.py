@@ -1,7 +1,7 @@
 """Reading of a sweep's result file. A grid, a grid with holes and a list of points look alike
 here: a table with one row per point."""
 
-from lib import style
+from lib import script, style
 
 import numpy as np
 
@@ -24,27 +24,18 @@ class Sweep:
                          if result.has(f"{method}/memory_effect_range")} or {None: ""}
         grid = result.dataset(next(iter(self.prefixes.values())) + "memory_effect_range")
         if result.attribute("format", 1) < 2 or grid.ndim == 0:
-            raise style.Unusable(f"{self.path}: not a sweep of this version of the program")
+            self.refuse("not a sweep of this version of the program")
         if grid.size == 0:
-            raise style.Unusable(f"{self.path}: no point of the sweep is finished")
-        scales = dict(self.scale(grid, axis) for axis in range(grid.ndim))
-        self.shape, self.rows = grid.shape, np.arange(grid.size)
-        self.scene = read_scene(result.attribute("config", ""))
+            self.refuse("no point of the sweep is finished")
+        scales = dict(result.scale(grid.name, axis) for axis in range(grid.ndim))
+        self.shape, self.rows, self.scene = grid.shape, np.arange(grid.size), result.scene
         self.columns = self.read_columns(scales)
         self.axes = [name for name in (self.given() if "point" in scales else scales)
                      if len(self.values(name)) > 1]
         self.is_list = "point" in scales and not self.has_part_of_grid()
 
-    def scale(self, grid, axis):
-        """Name and values of one axis of the grid."""
-        if len(grid.dims[axis]) == 0:
-            raise style.Unusable(f"{self.path}: axis {axis} of memory_effect_range has no scale")
-        scale = grid.dims[axis][0]
-        return scale.name.split("/")[-1], scale[...]
-
     def read_columns(self, scales):
-        grids = np.meshgrid(*scales.values(), indexing="ij")
-        columns = {name: values.ravel() for name, values in zip(scales, grids)}
+        columns = columns_of(scales)
         for name in PARAMETERS:
             if name not in columns and self.result.has(name):
                 columns[name] = self.table(name)
@@ -54,7 +45,7 @@ class Sweep:
         """The parameters that a list gives; those of scatterers follow from their radius and index,
         the optical depth from a density."""
         scatterer = self.scene.get("scatterer")
-        known = {"g": scatterer == '"hg"', "albedo": scatterer in ('"hg"', '"point"'),
+        known = {"g": scatterer == "hg", "albedo": scatterer in ("hg", "point"),
                  "optical_depth": "density" not in self.columns and
                  not self.scene.keys() & {"density", "count", "mean_free_path"}}
         return [name for name in PARAMETERS if name in self.columns and known.get(name, True)]
@@ -76,7 +67,7 @@ class Sweep:
         """[A sentence on points that are missing, if any]."""
         if self.result.attribute("complete", 1):
             return []
-        lists = [self.scene.get(name, "").count(",") + 1 for name in PARAMETERS]
+        lists = [np.size(self.scene.get(name, 0)) for name in PARAMETERS]
         identity = self.result.attribute("identity", "").splitlines()
         total = np.prod(lists) if "points" not in self.scene else \
             sum("=" in line and " = " not in line for line in identity)  # a line for each point
@@ -86,7 +77,7 @@ class Sweep:
         """A dataset [grid, ...] as [point, ...]."""
         values = self.result.values(name)
         if values.shape[:len(self.shape)] != self.shape:
-            raise style.Unusable(f"{self.path}: {name} is not one value per point of the grid")
+            self.refuse(f"{name} is not one value per point of the grid")
         return values.reshape(-1, *values.shape[len(self.shape):])
 
     def optional(self, name):
@@ -94,6 +85,32 @@ class Sweep:
 
     def of(self, method, name):
         return self.table(self.prefixes[method] + name)
+
+    def measured(self, method, name):
+        """Values of all points and their errors."""
+        return self.of(method, name), self.of(method, f"{name}_error")
+
+    def ranges(self, method):
+        """Returns q L at C_I = 1/2, its error, and whether it is a bound, each [point]: 1 where the curve
+        stays above 1/2, 2 where it stays below."""
+        return *self.measured(method, "memory_effect_range"), self.of(method, "range_censored")
+
+    def has_bounds(self):
+        return any((self.ranges(method)[2][self.rows] > 0).any() for method in self.prefixes)
+
+    def has_few_steps(self):
+        return any(self.few_steps(method)[self.rows].any() for method in self.prefixes)
+
+    def refuse(self, why, *few):
+        """Refuses what a picture cannot show: few are (name, how many of its values it could)."""
+        choice = " ".join(self.example(name, count) for name, count in few)
+        advice = f"; try --select {choice}" if few else ""
+        raise style.Unusable(f"{self.path}: {why}{advice}")
+
+    def refuse_others(self, others, shown):
+        """Refuses what varies besides what is shown."""
+        if others:
+            self.refuse(f"besides {shown} it varies {', '.join(others)}", (others[0], 1))
 
     def values(self, name):
         """The different values of a parameter among the selected points."""
@@ -115,21 +132,19 @@ class Sweep:
             name, _, text = choice.partition("=")
             column = self.column(name)
             try:
-                wanted = [float(value) for value in text.split(",")]
+                near = np.isclose(column[:, None], np.array(text.split(","), float), rtol=1e-4, atol=0)
             except ValueError:
                 raise style.Unusable(f"--select {choice}: should be AXIS=VALUE,VALUE")
-            for value in wanted:
-                if not np.isclose(column, value, rtol=1e-4, atol=0).any():
-                    raise style.Unusable(f"--select {choice}: {self.path} has {name} = "
-                                         f"{', '.join(style.short(np.unique(column)))}")
-            near = np.isclose(column[:, None], wanted, rtol=1e-4, atol=0).any(axis=1)
-            self.rows = self.rows[near[self.rows]]
+            if not near.any(axis=0).all():
+                raise style.Unusable(f"--select {choice}: {self.path} has {name} = "
+                                     f"{', '.join(style.short(np.unique(column)))}")
+            self.rows = self.rows[near.any(axis=1)[self.rows]]
         if len(self.rows) == 0:
-            raise style.Unusable(f"{self.path}: no point has all that --select asks for")
+            self.refuse("no point has all that --select asks for")
 
     def column(self, name):
         if name not in self.columns:
-            raise style.Unusable(f"{self.path}: has no axis {name}; has {', '.join(self.columns)}")
+            self.refuse(f"has no axis {name}; has {', '.join(self.columns)}")
         return self.columns[name]
 
     def groups(self, name, rows):
@@ -164,22 +179,22 @@ class Sweep:
                                      group=self.prefixes[method].rstrip("/") or "/")
 
 
-def read_scene(text):
-    """{key: value as text} of a resolved scene, which has one key a line."""
-    return {key: value for key, _, value in (line.partition(" = ") for line in text.splitlines())}
+def columns_of(scales):
+    """{name: its values [point]} of a grid over scales {name: values}."""
+    grids = np.meshgrid(*scales.values(), indexing="ij")
+    return {name: grid.ravel() for name, grid in zip(scales, grids)}
 
 
 def text(name, value):
     return f"{NAMES[name]} = {value:.4g}"
 
 
-def add_select(parser):
-    parser.add_argument("--select", nargs="+", metavar="AXIS=VALUE,VALUE",
-                        help="draws these points alone: optical_depth=10 g=0,0.9")
+SELECT = script.option("--select", nargs="+", metavar="AXIS=VALUE,VALUE",
+                       help="draws these points alone: optical_depth=10 g=0,0.9")
 
 
-def read(results, arguments):
-    """The one sweep of the command line, with what --select leaves of it."""
-    sweep = Sweep(results[0])
+def read(result, arguments):
+    """A sweep, with what --select leaves of it."""
+    sweep = Sweep(result)
     sweep.select(arguments.select)
     return sweep

@@ -9,7 +9,6 @@ import importlib.util
 import os
 import pathlib
 import sys
-from unittest import mock
 
 from flatspeckle import program
 from flatspeckle.errors import InputError
@@ -28,8 +27,8 @@ def folder():
 
 
 def scripts():
-    """Their names: all that draw results."""
-    return sorted(path.stem for path in folder().glob("*.py") if "style.main(" in path.read_text())
+    """Their names: all that declare a plot."""
+    return sorted(path.stem for path in folder().glob("*.py") if "@script.plot(" in path.read_text())
 
 
 def names_of_lib():
@@ -56,14 +55,12 @@ def own_libraries():
         sys.modules.update(others)
 
 
-def what_it_draws(name, style):
-    """(draw, description, several, add_options): what the script hands to style.main."""
-    spec = importlib.util.spec_from_file_location("__main__", folder() / f"{name}.py")
+def plot_of(name):
+    """Returns the plot that a script declares."""
+    spec = importlib.util.spec_from_file_location(f"flatspeckle.plots.{name}", folder() / f"{name}.py")
     script = importlib.util.module_from_spec(spec)
-    with mock.patch.object(style, "main") as main:
-        spec.loader.exec_module(script)
-    (draw, description), options = main.call_args
-    return draw, description, options.get("several", False), options.get("add_options")
+    spec.loader.exec_module(script)
+    return script.draw.plot
 
 
 class Options(argparse.ArgumentParser):
@@ -71,10 +68,10 @@ class Options(argparse.ArgumentParser):
         raise InputError(message)
 
 
-def parsed(add_options, options):
+def parsed(plot, options):
     """Keyword arguments as the script's command line has them."""
     parser, words = Options(add_help=False, allow_abbrev=False), []
-    add_options(parser)
+    plot.add_options(parser)
     for option, value in options.items():
         several = value if isinstance(value, (list, tuple)) else [value]
         words += [] if value in (None, False) else [f"--{option}", *([] if value is True else map(str, several))]
@@ -86,22 +83,42 @@ def file_of(result):
     return os.fspath(result) if isinstance(result, (str, os.PathLike)) else source_of(result)
 
 
+def whole(figure, pad):
+    """Makes the page larger by what stands outside of it, legends above all, with so many inches around,
+    and leaves the panels as they are: so that nothing is cut off however the figure is saved."""
+    figure.canvas.draw()
+    width, height = figure.get_size_inches()
+    box = figure.get_tightbbox(figure.canvas.get_renderer())
+    left, bottom = (max(0, pad - low) for low in (box.x0, box.y0))
+    right, top = max(0, box.x1 + pad - width), max(0, box.y1 + pad - height)
+    if max(left, bottom, right, top) <= pad:
+        return
+    wide, high = width + left + right, height + bottom + top
+    places = [legend.get_bbox_to_anchor().transformed(figure.dpi_scale_trans.inverted()) for legend in figure.legends]
+    figure.set_size_inches(wide, high)
+    figure.get_layout_engine().set(rect=(left / wide, bottom / high, width / wide, height / high))
+    for legend, place in zip(figure.legends, places):
+        legend.set_bbox_to_anchor(((place.x0 + left) / wide, (place.y0 + bottom) / high), figure.transFigure)
+    figure.canvas.draw()
+
+
 def figure(name, results, options):
     with own_libraries() as style:
-        draw, _, several, add_options = what_it_draws(name, style)
-        if len(results) != 1 and not (several and results):
-            raise InputError(f"{name}: draws {'one result or more' if several else 'one result'}")
-        if options and not add_options:
+        plot = plot_of(name)
+        if len(results) != 1 and not (plot.several and results):
+            raise InputError(f"{name}: draws {'one result or more' if plot.several else 'one result'}")
+        if options and not plot.options:
             raise InputError(f"{name}: has no options")
         try:
-            files = [style.Result(file_of(result)) for result in results]
-            drawn = draw(files, parsed(add_options, options)) if add_options else draw(files)
+            files = [plot.read(file_of(result)) for result in results]
+            drawn = plot.figure(files, parsed(plot, options))
         except style.Unusable as problem:
             raise InputError(str(problem)) from None
-        style.whole(drawn)  # while the look is theirs
+        whole(drawn, style.PAD)  # while the look is theirs
         style.plt.close(drawn)  # it is returned: a notebook need not show it twice
     for file in files:
-        file.file.close()
+        if hasattr(file, "file"):
+            file.file.close()
     return drawn
 
 
@@ -110,14 +127,13 @@ def function_of(name):
     def function(*results, **options):
         return figure(name, results, options)
 
-    with own_libraries() as style:
-        _, description, _, add_options = what_it_draws(name, style)
+    with own_libraries():
+        plot = plot_of(name)
         parser = Options(prog=f"plots.{name}", add_help=False)
-        if add_options:
-            add_options(parser)
+        plot.add_options(parser)
     function.__name__ = function.__qualname__ = name
     function.__module__ = "flatspeckle.plots"
-    function.__doc__ = f"{description}\n\n{parser.format_help()}" if add_options else description
+    function.__doc__ = f"{plot.description}\n\n{parser.format_help()}" if plot.options else plot.description
     return function
 
 

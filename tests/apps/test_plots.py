@@ -23,6 +23,7 @@ import numpy as np
 PLOTS = DATA.parent / "plots"
 sys.path.insert(0, str(PLOTS))
 import experiment_map
+from lib.experiment import Number
 from lib.result_file import Result
 
 FEW = {"samples": 2000, "threads": 1}
@@ -162,15 +163,15 @@ class Plots(ProgramTest):
         with h5py.File(self.folder / "slopes.h5") as file:
             place, values = file["amplitude"][...], file["power_within"][:, 1]
             slopes = file["power_within_gradient"][:, 0, 1]
-        tangents = experiment_map.slopes_of(Result(self.folder / "slopes.h5"), "power_within[1]", "amplitude")
-        np.testing.assert_array_equal(tangents, slopes)
+        number = Number(Result(self.folder / "slopes.h5"), "power_within[1]")
+        np.testing.assert_array_equal(number.derivatives("amplitude"), slopes)
+        self.assertIsNone(number.derivatives("mu_s"))
         axis = mock.Mock()
         experiment_map.draw_tangents(axis, place, values, slopes)
         for call, at, value, slope in zip(axis.plot.call_args_list, place, values, slopes, strict=True):
             x, y = call.args
             np.testing.assert_allclose(y, value + slope * (x - at), rtol=1e-12)
             self.assertTrue(x.min() <= at <= x.max() and np.ptp(x) > 3e-4)
-        self.assertIsNone(experiment_map.slopes_of(Result(self.folder / "slopes.h5"), "power_within[1]", "mu_s"))
 
     def test_captions_say_what_a_reader_does_not_see(self):
         said = run_script("memory_effect", self.make("grid"), "--out", self.folder / "a")[1]
@@ -196,15 +197,14 @@ class Theory(ProgramTest):
             np.testing.assert_allclose(found, stored.reshape(found.shape), rtol=1e-5)
             delays = [0, 0.01, 0.1]
             self.call("covariance", out="d.h5", dimension=dimension, delays=delays, **SLAB)
-            medium = [Result(self.folder / "d.h5").attribute(name)
-                      for name in ("depth", "optical_depth", "g", "albedo")]
+            medium = theory.medium(Result(self.folder / "d.h5"))
             np.testing.assert_allclose(
-                theory.delayed_diffusion(*medium, np.array(delays), dimension),
+                theory.delayed_diffusion(np.array(delays), **medium),
                 Result(self.folder / "d.h5").values("diffusion_theory"), rtol=1e-9)
             shifts = [0, 1e-4, 1e-3]
             self.call("covariance", out="f.h5", dimension=dimension, frequency_shifts=shifts, **SLAB)
             np.testing.assert_allclose(
-                theory.shifted_diffusion(*medium, 2 * np.pi * np.array(shifts), dimension),
+                theory.shifted_diffusion(2 * np.pi * np.array(shifts), **medium),
                 Result(self.folder / "f.h5").values("frequency_diffusion_theory"), rtol=1e-9)
 
 

@@ -5,31 +5,28 @@ relative L2 error against each and exits 1 where one is above the limit."""
 import argparse
 import sys
 
-from lib import style
-
+import h5py
 import numpy as np
 
 
-def positions(result, name, axis, wanted):
-    """Where on an axis of a dataset the wanted values are."""
-    scale = result.axis(name, axis)
+def positions(scale, wanted):
+    """Indices of the wanted values on a scale."""
     found = np.abs(scale[None, :] - wanted[:, None]).argmin(axis=1)
     if not np.allclose(scale[found], wanted, rtol=0, atol=1e-12):
-        raise style.Unusable(f"{result.path}: {name} lacks angles of the table")
+        raise ValueError("the result lacks angles of the table")
     return found
 
 
 def fields_at(result, table):
     """The result's fields row by row: far fields by angle; near fields where the table was the list
     of sensors."""
+    lights = positions(result["light_angle"][...], table["light_angle"])
     if "view_angle" in table.dtype.names:
-        return result.values("far_field")[positions(result, "far_field", 0, table["light_angle"]),
-                                          positions(result, "far_field", 1, table["view_angle"])]
+        return result["far_field"][...][lights, positions(result["view_angle"][...], table["view_angle"])]
     for name in "x", "z":
-        if not np.array_equal(result.values(f"sensor_{name}"), table[name]):
-            raise style.Unusable(f"{result.path}: its sensors are not the points of the table")
-    lights = positions(result, "near_field", 0, table["light_angle"])
-    return result.values("near_field")[lights, np.arange(len(table))]
+        if not np.array_equal(result[f"sensor_{name}"], table[name]):
+            raise ValueError("the result's sensors are not the points of the table")
+    return result["near_field"][...][lights, np.arange(len(table))]
 
 
 def relative_error(result, path):
@@ -44,8 +41,8 @@ def main():
     parser.add_argument("tables", metavar="TABLE.csv", nargs="+")
     parser.add_argument("--limit", type=float, default=1e-9)
     arguments = parser.parse_args()
-    result = style.Result(arguments.result)
-    errors = [relative_error(result, path) for path in arguments.tables]
+    with h5py.File(arguments.result) as result:
+        errors = [relative_error(result, path) for path in arguments.tables]
     for path, error in zip(arguments.tables, errors):
         print(f"{path}: relative L2 error {error:.1e}")
     return 0 if all(error <= arguments.limit for error in errors) else 1
@@ -54,6 +51,6 @@ def main():
 if __name__ == "__main__":
     try:
         sys.exit(main())
-    except (style.Unusable, OSError, ValueError) as problem:
+    except (OSError, KeyError, ValueError) as problem:
         print(problem, file=sys.stderr)
         sys.exit(2)

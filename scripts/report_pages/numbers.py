@@ -18,6 +18,14 @@ def number(value, error=0.0, text=None):
             "text": text or number_text.with_error(value, error)}
 
 
+def count(rows):
+    return number(len(rows), text=str(len(rows)))
+
+
+def of_seconds(seconds):
+    return number(seconds, text=number_text.seconds(seconds))
+
+
 def time_to_target(efficiency):
     return 1 / (efficiency * TARGET**2)
 
@@ -35,16 +43,12 @@ def of_curves(error):
     for curve in error.curves:
         key = f"{slug(curve['scene'])}.{slug(curve['method'])}"
         if not has_slope(curve):
-            seconds = seconds_to_target(curve)
-            yield f"time.{key}", number(seconds, text=number_text.seconds(seconds))
+            yield f"time.{key}", of_seconds(seconds_to_target(curve))
             continue
         yield f"slope.{key}", number(curve["slope"], curve["slope_error"])
-        if not curve["is_monte_carlo"]:
-            continue
-        yield f"efficiency.{key}", number(curve["efficiency"],
-                                          text=number_text.digits(curve["efficiency"]))
-        seconds = time_to_target(curve["efficiency"])
-        yield f"time.{key}", number(seconds, text=number_text.seconds(seconds))
+        if curve["is_monte_carlo"]:
+            yield f"efficiency.{key}", number(curve["efficiency"])
+            yield f"time.{key}", of_seconds(time_to_target(curve["efficiency"]))
     yield from of_speeds(error)
 
 
@@ -62,13 +66,16 @@ def of_speeds(error):
                        number(ratio, text=number_text.factor(ratio)))
 
 
+def worst_slope(error):
+    """The curve that is farthest from -1/2."""
+    return max(error.monte_carlo(), key=lambda curve: abs(curve["slope"] + 0.5))
+
+
 def of_slopes(error):
-    curves = error.monte_carlo()
-    worst = max(curves, key=lambda curve: abs(curve["slope"] + 0.5))
-    slopes = np.array([curve["slope"] for curve in curves])
-    yield "slopes.count", number(len(curves), text=str(len(curves)))
-    yield "slopes.least", number(float(slopes.min()), text=number_text.digits(slopes.min()))
-    yield "slopes.most", number(float(slopes.max()), text=number_text.digits(slopes.max()))
+    slopes, worst = [curve["slope"] for curve in error.monte_carlo()], worst_slope(error)
+    yield "slopes.count", count(slopes)
+    yield "slopes.least", number(min(slopes))
+    yield "slopes.most", number(max(slopes))
     yield "slopes.worst", number(worst["slope"], worst["slope_error"])
 
 
@@ -81,29 +88,26 @@ def of_costs(error):
 
 def of_stability(stability):
     rows = stability.rows
-    refused = sum(1 for row in rows if row["refusal"])
-    for key, count in {"rows": len(rows), "failed": len(stability.failed()), "refused": refused,
-                       "solved": len(rows) - refused}.items():
-        yield f"stability.{key}", number(count, text=str(count))
+    yield "stability.rows", count(rows)
+    yield "stability.failed", count(stability.failed())
+    yield "stability.refused", count([row for row in rows if row["refusal"]])
+    yield "stability.solved", count([row for row in rows if not row["refusal"]])
     for room in stability.rooms():
-        count = len(stability.of_room(room))
-        yield f"stability.rows.{slug(room)}", number(count, text=str(count))
+        yield f"stability.rows.{slug(room)}", count(stability.of_room(room))
 
 
 def of_plan(plan):
-    yield "plan.rows", number(len(plan.rows), text=str(len(plan.rows)))
-    yield "plan.failed", number(len(plan.failed()), text=str(len(plan.failed())))
+    yield "plan.rows", count(plan.rows)
+    yield "plan.failed", count(plan.failed())
     for row in plan.rows:
         yield (f"plan.{slug(row['room'])}.{slug(row['left_out'])}",
                number(row["ratio"], row["ratio_spread"], number_text.factor(row["ratio"])))
 
 
 def of_making(bench):
-    for name, file in bench.files().items():
-        yield f"made.{name}.minutes", number(file.made.wall_s / 60,
-                                             text=number_text.digits(file.made.wall_s / 60, 2))
-    whole = sum(file.made.wall_s for file in bench.files().values()) / 60
-    yield "made.minutes", number(whole, text=number_text.digits(whole, 2))
+    seconds = {f"{name}.minutes": file.made.wall_s for name, file in bench.files().items()}
+    for key, value in {**seconds, "minutes": sum(seconds.values())}.items():
+        yield f"made.{key}", number(value / 60, text=number_text.digits(value / 60, 2))
     made = bench.error.made
     for key, text in {"machine": made.machine, "commit": made.short_commit, "date": made.date}.items():
         yield f"made.{key}", {"value": text, "error": 0.0, "text": text}
