@@ -208,7 +208,7 @@ class Search {
   const FitTask& task_;
   const Data data_;
   PathModel model_;
-  LeastSquares bounds_;
+  BoundedLeastSquares bounds_;
   Stopwatch clock_;
   int kept_ = 0;  ///< iterations that were told before
 };

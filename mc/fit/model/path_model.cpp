@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "core/error.h"
+#include "core/search/levenberg_marquardt.h"
 #include "mc/estimators/directional_slope.h"
 #include "mc/estimators/fixed_count.h"
 #include "mc/estimators/flux_slopes.h"
@@ -12,7 +13,6 @@
 #include "mc/fit/task/correlated_errors.h"
 #include "mc/fit/task/curve_values.h"
 #include "mc/fit/task/fit_data.h"
-#include "mc/numbers/levenberg_marquardt.h"
 
 namespace flatspeckle::mc {
 
@@ -301,10 +301,10 @@ void PathModel::put_power(SampledModel& model) const {
     return some;
   };
   const SlabModel transport(curves, media(at_));
-  const LeastSquares problem{[&](const VectorXd& at) { return transport.values(media(at)); },
-                             {},
-                             lower_coordinates(task_.free),
-                             upper_coordinates(task_.free)};
+  const BoundedLeastSquares problem{[&](const VectorXd& at) { return transport.values(media(at)); },
+                                    {},
+                                    lower_coordinates(task_.free),
+                                    upper_coordinates(task_.free)};
   const VectorXd here = problem.residuals(at_);
   const MatrixXd slopes = jacobian(problem, at_, here);
   Index next = 0;
