@@ -5,9 +5,9 @@
 #include <functional>
 #include <numbers>
 
+#include "core/numbers/gauss.h"
+#include "core/numbers/log_sinh.h"
 #include "core/result/result_group.h"
-#include "mc/numbers/gauss.h"
-#include "mc/numbers/log_sinh.h"
 #include "mc/theory/diffusion.h"
 #include "mc/theory/memory_effect.h"
 #include "mc/walk/scene_scattering.h"
@@ -53,7 +53,7 @@ class ReflectedLight {
     const double length = medium_.transport_mean_free_path(),
                  reduced = medium_.mu_s * (1 - medium_.g),
                  deepest = std::min(depth_, 40 * length / std::max(in + out, 2.0));
-    const Quadrature outer = gauss_legendre(40), inner = gauss_legendre(24);
+    const QuadratureRule outer = gauss_legendre(40), inner = gauss_legendre(24);
     double integral = 0;  // the deeper end first, either of the two
     for (std::size_t i = 0; i < outer.node.size(); ++i) {
       const double far = deepest * outer.node[i] * outer.node[i],

@@ -5,8 +5,8 @@
 #include <set>
 #include <sstream>
 
+#include "core/algebra/row_major.h"
 #include "core/result/result_group.h"
-#include "mc/numbers/row_major.h"
 
 namespace flatspeckle::mc {
 

@@ -55,7 +55,7 @@ std::vector<Derived> derived_at(const FitTask& task, const VectorXd& at,
     for (Index r = 0; r < count; ++r) found[r] = rows[static_cast<std::size_t>(r)].value(of);
     return found;
   };
-  const LeastSquares as_problem{
+  const BoundedLeastSquares as_problem{
       values, {}, lower_coordinates(task.free), upper_coordinates(task.free)};
   const VectorXd here = values(at);
   const MatrixXd slopes = jacobian(as_problem, at, here);

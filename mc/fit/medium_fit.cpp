@@ -12,8 +12,8 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-LeastSquares problem_of(const FitTask& task, const SlabModel& model, const FitData& data) {
-  LeastSquares problem;
+BoundedLeastSquares problem_of(const FitTask& task, const SlabModel& model, const FitData& data) {
+  BoundedLeastSquares problem;
   problem.lower = lower_coordinates(task.free);
   problem.upper = upper_coordinates(task.free);
   problem.residuals = [&](const VectorXd& at) -> VectorXd {
@@ -27,7 +27,7 @@ LeastSquares problem_of(const FitTask& task, const SlabModel& model, const FitDa
 
 /// Other starts are gone on from where the best one does not end in a likely medium. The search is
 /// by as many ordinates as a thousandth of the values needs; it goes on where errors ask for more.
-LeastSquaresFit refined_fit(const FitTask& task, const LeastSquares& problem, SlabModel& model,
+LeastSquaresFit refined_fit(const FitTask& task, const BoundedLeastSquares& problem, SlabModel& model,
                             const FitData& data, MediumFit& fit) {
   constexpr double share = 0.05, tolerance = 1e-3, rough = 1e-3;
   const VectorXd at_first = data.errors().cwiseMax(rough * data.values().cwiseAbs());
@@ -50,7 +50,7 @@ LeastSquaresFit refined_fit(const FitTask& task, const LeastSquares& problem, Sl
 
 /// Of fields: least squares with errors as the best medium gives them, until that stays the same;
 /// there the likelihood is largest.
-LeastSquaresFit likeliest_fit(const FitTask& task, const LeastSquares& problem,
+LeastSquaresFit likeliest_fit(const FitTask& task, const BoundedLeastSquares& problem,
                               const SlabModel& model, LeastSquaresFit best, FitData& data) {
   constexpr int most = 20;
   constexpr double still = 1e-4, tolerance = 1e-6;  // squares, in standard errors
@@ -84,7 +84,7 @@ MediumFit fit_medium(const FitTask& task) {
   if (task.paths) return fit_by_paths(task);
   FitData data(task);
   SlabModel model(curves_of(task), media_at(task, middle(task)));
-  const LeastSquares problem = problem_of(task, model, data);
+  const BoundedLeastSquares problem = problem_of(task, model, data);
   MediumFit fit;
   LeastSquaresFit best = refined_fit(task, problem, model, data, fit);
   if (data.has_fields()) best = likeliest_fit(task, problem, model, std::move(best), data);

@@ -5,8 +5,8 @@
 
 #include <Eigen/Core>
 
+#include "core/search/levenberg_marquardt.h"
 #include "mc/fit/task/fit_task.h"
-#include "mc/numbers/levenberg_marquardt.h"
 
 namespace flatspeckle::mc {
 

@@ -207,7 +207,7 @@ class PathSearch {
   const FitTask& task_;
   const FitData data_;
   PathModel model_;
-  LeastSquares bounds_;
+  BoundedLeastSquares bounds_;
   Stopwatch clock_;
   int kept_ = 0;  ///< iterations that were told before
 };

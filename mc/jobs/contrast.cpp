@@ -5,8 +5,8 @@
 #include <map>
 
 #include "core/error.h"
+#include "core/numbers/gauss.h"
 #include "core/result/result_group.h"
-#include "mc/numbers/gauss.h"
 
 namespace flatspeckle::mc {
 
@@ -55,7 +55,7 @@ double exposed(const std::vector<double>& delays, const std::vector<double>& squ
     x.push_back(root);
     y.push_back(log);
   }
-  static const Quadrature rule = gauss_legendre(4);
+  static const QuadratureRule rule = gauss_legendre(4);
   const double last = std::sqrt(time);
   double sum = 0;
   for (std::size_t i = 0; i + 1 < x.size() && x[i] < last; ++i) {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "mc/numbers/gauss.h"
+#include "core/numbers/gauss.h"
 
 namespace flatspeckle::mc {
 
@@ -64,7 +64,7 @@ class PlaneWaves {
 
 /// Nodes in the mean of two sines, and weights over k; none where no directions of the two differ
 /// by so much.
-Quadrature mean_sines(const PlaneWaves& a, const PlaneWaves& b, double difference, int order) {
+QuadratureRule mean_sines(const PlaneWaves& a, const PlaneWaves& b, double difference, int order) {
   const double horizon = 1 - std::abs(difference) / 2;
   double low = -horizon, high = horizon;
   if (a.is_beam()) {
@@ -76,7 +76,7 @@ Quadrature mean_sines(const PlaneWaves& a, const PlaneWaves& b, double differenc
   if (low >= high) return {};
   // Even in an angle whose cosine vanishes at both horizons, where the integrand is steep.
   const double from = std::asin(low / horizon), to = std::asin(high / horizon);
-  Quadrature nodes = gauss_legendre(order);
+  QuadratureRule nodes = gauss_legendre(order);
   for (std::size_t i = 0; i < nodes.node.size(); ++i) {
     const double angle = from + (to - from) * nodes.node[i];
     nodes.node[i] = horizon * std::sin(angle);
@@ -127,7 +127,7 @@ class Integral {
     const PlaneWaves a = waves(first), b = waves(second);
     const double far_a = far_angle(first), far_b = far_angle(second),
                  difference = std::sin(far_a) - std::sin(far_b);
-    const Quadrature sines = mean_sines(a, b, difference, order);
+    const QuadratureRule sines = mean_sines(a, b, difference, order);
     for (std::size_t i = 0; i < sines.node.size(); ++i) {
       const double at_a = a.direction(sines.node[i] + difference / 2),
                    at_b = b.direction(sines.node[i] - difference / 2);

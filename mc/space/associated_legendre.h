@@ -1,6 +1,6 @@
 #pragma once
 
-#include "mc/numbers/dense.h"
+#include "core/algebra/dense.h"
 
 namespace flatspeckle::mc {
 

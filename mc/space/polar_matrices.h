@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "mc/numbers/dual_dense.h"
+#include "core/algebra/dual_dense.h"
 #include "mc/space/space_slope.h"
 #include "mc/transport/angular_grid.h"
 

@@ -5,9 +5,9 @@
 #include <memory>
 #include <utility>
 
+#include "core/algebra/divided_difference.h"
 #include "core/numbers/blas.h"
 #include "core/run/parallel.h"
-#include "mc/numbers/divided_difference.h"
 #include "mc/space/azimuthal_modes.h"
 
 namespace flatspeckle::mc {

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <utility>
 
-#include "mc/numbers/gauss.h"
+#include "core/numbers/gauss.h"
 
 namespace flatspeckle::mc {
 
@@ -17,7 +17,7 @@ constexpr int moments_per_panel = 4;  // 16 nodes see two periods of P_l to roun
 
 /// int p P_l over the sphere, l = 0 .. 4 panels - 1.
 std::vector<double> legendre_moments(const std::function<double(double)>& p, int panels) {
-  static const Quadrature rule = gauss_legendre(16);
+  static const QuadratureRule rule = gauss_legendre(16);
   std::vector<double> moments(static_cast<std::size_t>(moments_per_panel) * panels);
   for (int panel = 0; panel < panels; ++panel)
     for (std::size_t i = 0; i < rule.node.size(); ++i) {

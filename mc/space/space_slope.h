@@ -3,7 +3,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "mc/numbers/dual.h"
+#include "core/algebra/dual.h"
 #include "mc/space/space_law.h"
 
 namespace flatspeckle::mc {

@@ -96,7 +96,7 @@ bool AngularGrid::is_last(const Panel& panel) const {
   return panel.to >= right_angle;
 }
 
-const Quadrature& AngularGrid::nodes_of(const Panel& panel) const {
+const QuadratureRule& AngularGrid::nodes_of(const Panel& panel) const {
   return is_last(panel) ? last_nodes_ : nodes_;
 }
 
@@ -106,7 +106,7 @@ void AngularGrid::add_panel(double from, double to, double fine) {
   panels_.push_back({from, to, static_cast<Eigen::Index>(panels_.size()) * order_});
   const Panel& panel = panels_.back();
   const bool last = is_last(panel);
-  const Quadrature& rule = nodes_of(panel);
+  const QuadratureRule& rule = nodes_of(panel);
   for (int j = 0; j < order_; ++j) {
     const double u = rule.node[j],
                  complement = last ? width * u * u : right_angle - from - u * width;

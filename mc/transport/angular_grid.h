@@ -3,9 +3,9 @@
 #include <compare>
 #include <vector>
 
+#include "core/algebra/dense.h"
 #include "core/numbers/complex.h"
-#include "mc/numbers/dense.h"
-#include "mc/numbers/gauss.h"
+#include "core/numbers/gauss.h"
 
 namespace flatspeckle::mc {
 
@@ -73,12 +73,12 @@ class AngularGrid {
   };
   void add_panel(double from, double to, double fine);
   bool is_last(const Panel& panel) const;
-  const Quadrature& nodes_of(const Panel& panel) const;
+  const QuadratureRule& nodes_of(const Panel& panel) const;
 
   int order_;
-  Quadrature nodes_, last_nodes_;  ///< of a panel, of the last
-  Quadrature inner_;               ///< of a subpanel
-  Quadrature exact_;               ///< for polynomials of a panel
+  QuadratureRule nodes_, last_nodes_;  ///< of a panel, of the last
+  QuadratureRule inner_;               ///< of a subpanel
+  QuadratureRule exact_;               ///< for polynomials of a panel
   Eigen::VectorXd angle_, cosine_, weight_;
   std::vector<Panel> panels_;
   std::vector<Subpanel> subpanels_;

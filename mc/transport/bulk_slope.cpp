@@ -49,7 +49,7 @@ double scatterer_unit(const Scatterer& scatterer, BulkParameter parameter) {
   return parameter == BulkParameter::radius ? scatterer.radius : scatterer.index.real();
 }
 
-Scatterer scaled(Scatterer scatterer, BulkParameter parameter, double factor) {
+Scatterer with_size(Scatterer scatterer, BulkParameter parameter, double factor) {
   if (parameter == BulkParameter::radius)
     scatterer.radius *= factor;
   else

@@ -66,7 +66,7 @@ BulkSlopeOf<Slope> bulk_slope_of(const BulkMedium& medium, const Law& law,
 
 /// The radius, or the real part of the index, by which a scatterer is differentiated.
 double scatterer_unit(const Scatterer& scatterer, BulkParameter parameter);
-Scatterer scaled(Scatterer scatterer, BulkParameter parameter, double factor);
+Scatterer with_size(Scatterer scatterer, BulkParameter parameter, double factor);
 
 /// By the logarithm of a scatterer's radius or index, by differences of fourth order, to 1e-10 or
 /// so. at(scatterer): a pair of its medium and law.
@@ -80,7 +80,7 @@ BulkSlopeOf<Slope> scatterer_slope(const Scene& scene, const Law& law, BulkParam
   std::vector<typename Slope::Neighbour> neighbours;
   for (const auto& [steps, factor] : {std::pair(1, 8), {-1, -8}, {2, -1}, {-2, 1}}) {
     const double weight = factor / (12 * step);
-    auto [medium, near] = at(scaled(scatterer, parameter, 1 + steps * step));
+    auto [medium, near] = at(with_size(scatterer, parameter, 1 + steps * step));
     log_mu_t += weight * medium.mu_t / scene.medium.mu_t;
     albedo += weight * medium.albedo;
     neighbours.push_back({weight, std::move(near)});

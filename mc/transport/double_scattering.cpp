@@ -5,15 +5,15 @@
 #include <cmath>
 #include <utility>
 
+#include "core/algebra/divided_difference.h"
+#include "core/numbers/gauss.h"
 #include "core/run/interrupt.h"
-#include "mc/numbers/divided_difference.h"
-#include "mc/numbers/gauss.h"
 
 namespace flatspeckle::mc {
 
 namespace {
 
-using mc::divided_difference;
+using flatspeckle::divided_difference;
 using std::numbers::pi;
 
 /// The second divided difference of exp: int exp(a x + b y + c z) over x + y + z = 1, x, y, z > 0.
@@ -81,7 +81,7 @@ ComplexOf<Number> DoubleScatteringOf<Number>::along(double sine, double cosine, 
 
 template <typename Number>
 ComplexOf<Number> DoubleScatteringOf<Number>::gauss(const Law& law, double from, double to) const {
-  static const Quadrature rule = gauss_legendre(10);
+  static const QuadratureRule rule = gauss_legendre(10);
   C sum{};
   for (std::size_t i = 0; i < rule.node.size(); ++i) {
     const double theta = from + rule.node[i] * (to - from), cosine = std::cos(theta);

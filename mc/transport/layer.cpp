@@ -66,7 +66,7 @@ struct Mirrored {
   BothWays<R> both_ways() const { return {0.5 * (sum + difference), 0.5 * (sum - difference)}; }
 };
 
-using mc::scaled;  // of one way's rows
+using flatspeckle::scaled;  // of one way's rows
 
 template <typename C, typename R>
 BothWays<R> scaled(const std::vector<C>& factor, const BothWays<R>& rows) {

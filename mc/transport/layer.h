@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "mc/numbers/dual_dense.h"
+#include "core/algebra/dual_dense.h"
 
 namespace flatspeckle::mc {
 

@@ -5,8 +5,8 @@
 #include <numbers>
 #include <type_traits>
 
+#include "core/algebra/dual.h"
 #include "flatland/scene/scene.h"
-#include "mc/numbers/dual.h"
 
 namespace flatspeckle::mc {
 

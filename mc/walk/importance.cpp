@@ -7,10 +7,10 @@
 #include <set>
 #include <type_traits>
 
+#include "core/numbers/log_sinh.h"
 #include "grin/media/diffusion_rate.h"
 #include "grin/media/phase_function.h"
 #include "mc/ends/space_scattering.h"
-#include "mc/numbers/log_sinh.h"
 #include "mc/theory/diffusion.h"
 #include "mc/walk/representatives.h"
 

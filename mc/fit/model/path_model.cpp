@@ -299,10 +299,10 @@ void PathModel::put_power(SampledModel& model) const {
     return some;
   };
   const SlabModel transport(curves, media(at_));
-  const LeastSquares problem{[&](const VectorXd& at) { return transport.values(media(at)); },
-                             {},
-                             lower_coordinates(task_.free),
-                             upper_coordinates(task_.free)};
+  const BoundedLeastSquares problem{[&](const VectorXd& at) { return transport.values(media(at)); },
+                                    {},
+                                    lower_coordinates(task_.free),
+                                    upper_coordinates(task_.free)};
   const VectorXd here = problem.residuals(at_);
   const MatrixXd slopes = jacobian(problem, at_, here);
   Index next = 0;

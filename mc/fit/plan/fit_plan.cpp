@@ -7,8 +7,8 @@
 #include <Eigen/LU>
 
 #include "core/error.h"
+#include "core/search/levenberg_marquardt.h"
 #include "mc/fit/task/curve_values.h"
-#include "mc/numbers/levenberg_marquardt.h"
 #include "mc/slab/slab_covariance.h"
 #include "mc/space/space_scene.h"
 
@@ -144,7 +144,7 @@ class Planned {
  private:
   const PlanTask& task_;
   VectorXd at_;
-  LeastSquares bounds_;
+  BoundedLeastSquares bounds_;
   PlannedFields fields_;
 };
 

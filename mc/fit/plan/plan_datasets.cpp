@@ -2,8 +2,8 @@
 
 #include <cmath>
 
+#include "core/algebra/row_major.h"
 #include "core/result/result_group.h"
-#include "mc/numbers/row_major.h"
 
 namespace flatspeckle::mc {
 

@@ -3,7 +3,7 @@
 
 #include <doctest/doctest.h>
 
-#include "mc/numbers/levenberg_marquardt.h"
+#include "core/search/levenberg_marquardt.h"
 
 namespace flatspeckle::mc {
 
@@ -19,7 +19,7 @@ constexpr double precise = 1e-12;
 struct Line {
   VectorXd x{{0, 1, 2, 3, 4}}, y{{1.1, 2.9, 5.2, 6.8, 9.1}}, error{{0.1, 0.2, 0.1, 0.3, 0.2}};
 
-  LeastSquares problem(const VectorXd& lower, const VectorXd& upper) const {
+  BoundedLeastSquares problem(const VectorXd& lower, const VectorXd& upper) const {
     return {[this](const VectorXd& p) -> VectorXd {
               return ((p[0] + p[1] * x.array()) - y.array()) / error.array();
             },
@@ -33,7 +33,7 @@ struct Line {
 };
 
 /// y = a exp(-b x)
-LeastSquares decay(const VectorXd& x, const VectorXd& y, double error) {
+BoundedLeastSquares decay(const VectorXd& x, const VectorXd& y, double error) {
   return {[=](const VectorXd& p) -> VectorXd {
             return (p[0] * (-p[1] * x.array()).exp() - y.array()) / error;
           },
@@ -113,13 +113,13 @@ TEST_CASE("pulls of an exponential's parameters are standard normal") {
 }
 
 TEST_CASE("what cannot be told apart is named, not hidden") {
-  const LeastSquares sum_alone{[](const VectorXd& p) {
-                                 return VectorXd{{p[0] + p[1] - 1, 0}};
-                               },
-                               [](const VectorXd&, const VectorXd&) {
-                                 return MatrixXd{{1, 1}, {0, 0}};
-                               },
-                               VectorXd{{0, 0}}, VectorXd{{1, 1}}};
+  const BoundedLeastSquares sum_alone{[](const VectorXd& p) {
+                                        return VectorXd{{p[0] + p[1] - 1, 0}};
+                                      },
+                                      [](const VectorXd&, const VectorXd&) {
+                                        return MatrixXd{{1, 1}, {0, 0}};
+                                      },
+                                      VectorXd{{0, 0}}, VectorXd{{1, 1}}};
   const auto fit = levenberg_marquardt(sum_alone, VectorXd{{0.9, 0.8}});
   CHECK(fit.chi_squared() < 1e-6);
   const auto known = information(sum_alone, fit.jacobian);

@@ -2,7 +2,7 @@
 
 #include <doctest/doctest.h>
 
-#include "mc/numbers/levenberg_marquardt.h"
+#include "core/search/levenberg_marquardt.h"
 #include "tests/mc/transport/slabs.h"
 
 namespace flatspeckle::mc {
@@ -46,7 +46,7 @@ struct Views {
 };
 
 /// Residuals about the truth, of errors that are a share of the truth's values.
-LeastSquares slab(const Views& views, const VectorXd& truth) {
+BoundedLeastSquares slab(const Views& views, const VectorXd& truth) {
   const auto measured = views.values(truth);
   const auto n = static_cast<Index>(measured.size());
   VectorXd data(n);

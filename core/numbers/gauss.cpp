@@ -1,16 +1,16 @@
-#include "mc/numbers/gauss.h"
+#include "core/numbers/gauss.h"
 
 #include <cmath>
 
 #include <Eigen/Eigenvalues>
 
-namespace flatspeckle::mc {
+namespace flatspeckle {
 
 namespace {
 
 /// Golub and Welsch (1969) for the weight (1 + x)^beta on [-1, 1], mapped to [0, 1]; `total`: of
 /// the weights.
-Quadrature gauss(int n, double beta, double total) {
+QuadratureRule gauss(int n, double beta, double total) {
   Eigen::VectorXd diagonal(n), beside(std::max(n - 1, 1));
   for (int j = 0; j < n; ++j) {
     const double a = 2 * j + beta;
@@ -21,7 +21,7 @@ Quadrature gauss(int n, double beta, double total) {
   }
   Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver;
   solver.computeFromTridiagonal(diagonal, beside.head(n - 1));
-  Quadrature rule;
+  QuadratureRule rule;
   for (int j = 0; j < n; ++j) {
     const double first = solver.eigenvectors()(0, j);
     rule.node.push_back((1 + solver.eigenvalues()[j]) / 2);
@@ -32,12 +32,12 @@ Quadrature gauss(int n, double beta, double total) {
 
 }  // namespace
 
-Quadrature gauss_legendre(int n) {
+QuadratureRule gauss_legendre(int n) {
   return gauss(n, 0, 1);
 }
 
-Quadrature gauss_jacobi(int n) {
+QuadratureRule gauss_jacobi(int n) {
   return gauss(n, 1, 0.5);
 }
 
-}  // namespace flatspeckle::mc
+}  // namespace flatspeckle

@@ -1,4 +1,4 @@
-#include "mc/numbers/dense.h"
+#include "core/algebra/dense.h"
 
 #include <algorithm>
 #include <stdexcept>
@@ -8,11 +8,11 @@
 #include "core/numbers/blas.h"
 #include "core/numbers/complex.h"
 
-namespace flatspeckle::mc {
+namespace flatspeckle {
 
 namespace {
 
-constexpr const char* singular = "transport through a slab: singular matrix";
+constexpr const char* singular = "singular matrix";
 
 void multiply(const double* a, Eigen::Index rows, const Matrix& b, double* c) {
   const auto m = static_cast<blasint>(rows), n = static_cast<blasint>(b.cols()),
@@ -60,7 +60,7 @@ Rows product_transposed(const Rows& a, const Rows& b) {
 Rows scaled(std::span<const std::complex<double>> factor, Rows rows) {
   for (Eigen::Index j = 0; j < rows.cols(); ++j)
     for (Eigen::Index i = 0; i < rows.rows(); ++i)
-      rows(i, j) = flatspeckle::product(factor[static_cast<std::size_t>(i)], rows(i, j));
+      rows(i, j) = product(factor[static_cast<std::size_t>(i)], rows(i, j));
   return rows;
 }
 
@@ -132,4 +132,4 @@ Rows FactorsOf<M>::after(Rows rows) const {
 template class FactorsOf<Matrix>;
 template class FactorsOf<Rows>;
 
-}  // namespace flatspeckle::mc
+}  // namespace flatspeckle

@@ -5,10 +5,10 @@
 
 #include <Eigen/Core>
 
-namespace flatspeckle::mc {
+namespace flatspeckle {
 
 /// A least-squares problem within bounds. Residuals are in standard errors.
-struct LeastSquares {
+struct BoundedLeastSquares {
   std::function<Eigen::VectorXd(const Eigen::VectorXd&)> residuals;
   /// Derivatives of the residuals, [residual][parameter], at a point of known residuals; asked for
   /// at accepted points alone.
@@ -34,25 +34,28 @@ struct LeastSquaresFit {
 /// Levenberg's and Marquardt's steps, cut off at the bounds; a parameter that its bound holds back
 /// takes no part in a step. Converged: the last step has lessened chi^2 by less than `tolerance`,
 /// or the next one would be shorter than its root, in standard errors.
-LeastSquaresFit levenberg_marquardt(const LeastSquares& problem, const Eigen::VectorXd& start,
-                                    int most_iterations = 60, double tolerance = 1e-6);
+LeastSquaresFit levenberg_marquardt(const BoundedLeastSquares& problem,
+                                    const Eigen::VectorXd& start, int most_iterations = 60,
+                                    double tolerance = 1e-6);
 
 /// The step from a point of known residuals and jacobian; what a bound holds back takes no part.
-Eigen::VectorXd damped_step(const LeastSquares& problem, const LeastSquaresFit& at, double damping);
+Eigen::VectorXd damped_step(const BoundedLeastSquares& problem, const LeastSquaresFit& at,
+                            double damping);
 
 /// Derivatives by coordinates, in differences towards the middle, for a bound may be the end of
 /// what can be computed. residuals: at a point; here: those of `at`.
-Eigen::MatrixXd jacobian(const LeastSquares& problem, const Eigen::VectorXd& at,
+Eigen::MatrixXd jacobian(const BoundedLeastSquares& problem, const Eigen::VectorXd& at,
                          const Eigen::VectorXd& here);
 
 /// Of all starts, those of the least chi^2.
-std::vector<Eigen::VectorXd> best_starts(const LeastSquares& problem,
+std::vector<Eigen::VectorXd> best_starts(const BoundedLeastSquares& problem,
                                          const std::vector<Eigen::VectorXd>& starts,
                                          std::size_t most);
 
 /// The least chi^2 of all starts, of those that converged if any did.
-LeastSquaresFit best_fit(const LeastSquares& problem, const std::vector<Eigen::VectorXd>& starts,
-                         int most_iterations = 60, double tolerance = 1e-6);
+LeastSquaresFit best_fit(const BoundedLeastSquares& problem,
+                         const std::vector<Eigen::VectorXd>& starts, int most_iterations = 60,
+                         double tolerance = 1e-6);
 
 /// What measurements say of the parameters, linear about a point: of the Fisher information J^T J
 /// of residuals in standard errors. A combination of which they tell nothing has an error of up to
@@ -66,8 +69,8 @@ struct Information {
 };
 
 /// An infinite condition where a combination is not known at all.
-Information information(const LeastSquares& problem, const Eigen::MatrixXd& jacobian);
+Information information(const BoundedLeastSquares& problem, const Eigen::MatrixXd& jacobian);
 /// fisher: J^T J.
-Information information_of(const LeastSquares& problem, const Eigen::MatrixXd& fisher);
+Information information_of(const BoundedLeastSquares& problem, const Eigen::MatrixXd& fisher);
 
-}  // namespace flatspeckle::mc
+}  // namespace flatspeckle

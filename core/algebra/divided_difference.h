@@ -3,9 +3,9 @@
 #include <cmath>
 #include <utility>
 
-#include "mc/numbers/dual.h"
+#include "core/algebra/dual.h"
 
-namespace flatspeckle::mc {
+namespace flatspeckle {
 
 /// (exp(a) - exp(b)) / (a - b)
 template <typename C>
@@ -17,4 +17,4 @@ C divided_difference(C a, C b) {
   return exp(a) * ((exp(z) - 1.0) / z);
 }
 
-}  // namespace flatspeckle::mc
+}  // namespace flatspeckle

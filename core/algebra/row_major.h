@@ -4,7 +4,7 @@
 
 #include <Eigen/Core>
 
-namespace flatspeckle::mc {
+namespace flatspeckle {
 
 /// As datasets have it: last axis fastest.
 inline std::vector<double> row_major(const Eigen::MatrixXd& values) {
@@ -12,4 +12,4 @@ inline std::vector<double> row_major(const Eigen::MatrixXd& values) {
   return {columns.data(), columns.data() + columns.size()};
 }
 
-}  // namespace flatspeckle::mc
+}  // namespace flatspeckle

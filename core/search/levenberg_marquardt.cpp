@@ -1,4 +1,4 @@
-#include "mc/numbers/levenberg_marquardt.h"
+#include "core/search/levenberg_marquardt.h"
 
 #include <algorithm>
 #include <limits>
@@ -9,7 +9,7 @@
 
 #include "core/run/stopwatch.h"
 
-namespace flatspeckle::mc {
+namespace flatspeckle {
 
 namespace {
 
@@ -22,7 +22,7 @@ struct NormalEquations {
   MatrixXd matrix;
   VectorXd descent;
 
-  NormalEquations(const LeastSquares& problem, const LeastSquaresFit& at)
+  NormalEquations(const BoundedLeastSquares& problem, const LeastSquaresFit& at)
       : matrix(at.jacobian.transpose() * at.jacobian),
         descent(-at.jacobian.transpose() * at.residuals) {
     for (Index i = 0; i < descent.size(); ++i) {
@@ -47,18 +47,19 @@ struct NormalEquations {
   }
 };
 
-VectorXd within(const LeastSquares& problem, const VectorXd& parameters) {
+VectorXd within(const BoundedLeastSquares& problem, const VectorXd& parameters) {
   return parameters.cwiseMax(problem.lower).cwiseMin(problem.upper);
 }
 
 }  // namespace
 
-VectorXd damped_step(const LeastSquares& problem, const LeastSquaresFit& at, double damping) {
+VectorXd damped_step(const BoundedLeastSquares& problem, const LeastSquaresFit& at,
+                     double damping) {
   return within(problem, at.parameters + NormalEquations(problem, at).step(damping)) -
          at.parameters;
 }
 
-LeastSquaresFit levenberg_marquardt(const LeastSquares& problem, const VectorXd& start,
+LeastSquaresFit levenberg_marquardt(const BoundedLeastSquares& problem, const VectorXd& start,
                                     int most_iterations, double tolerance) {
   constexpr double first_damping = 1e-3, most_damping = 1e12, factor = 10;
   LeastSquaresFit at;
@@ -91,7 +92,7 @@ LeastSquaresFit levenberg_marquardt(const LeastSquares& problem, const VectorXd&
   return at;
 }
 
-MatrixXd jacobian(const LeastSquares& problem, const VectorXd& at, const VectorXd& here) {
+MatrixXd jacobian(const BoundedLeastSquares& problem, const VectorXd& at, const VectorXd& here) {
   constexpr double step = 1e-3;  // of the distance of the bounds
   MatrixXd slopes(here.size(), at.size());
   for (Index i = 0; i < at.size(); ++i) {
@@ -104,8 +105,8 @@ MatrixXd jacobian(const LeastSquares& problem, const VectorXd& at, const VectorX
   return slopes;
 }
 
-std::vector<VectorXd> best_starts(const LeastSquares& problem, const std::vector<VectorXd>& starts,
-                                  std::size_t most) {
+std::vector<VectorXd> best_starts(const BoundedLeastSquares& problem,
+                                  const std::vector<VectorXd>& starts, std::size_t most) {
   std::multimap<double, VectorXd> by_chi_squared;
   for (const VectorXd& start : starts)
     by_chi_squared.emplace(problem.residuals(within(problem, start)).squaredNorm(), start);
@@ -115,7 +116,7 @@ std::vector<VectorXd> best_starts(const LeastSquares& problem, const std::vector
   return best;
 }
 
-LeastSquaresFit best_fit(const LeastSquares& problem, const std::vector<VectorXd>& starts,
+LeastSquaresFit best_fit(const BoundedLeastSquares& problem, const std::vector<VectorXd>& starts,
                          int most_iterations, double tolerance) {
   std::vector<LeastSquaresFit> fits;
   for (const VectorXd& start : starts)
@@ -125,11 +126,11 @@ LeastSquaresFit best_fit(const LeastSquares& problem, const std::vector<VectorXd
   });
 }
 
-Information information(const LeastSquares& problem, const MatrixXd& jacobian) {
+Information information(const BoundedLeastSquares& problem, const MatrixXd& jacobian) {
   return information_of(problem, jacobian.transpose() * jacobian);
 }
 
-Information information_of(const LeastSquares& problem, const MatrixXd& fisher) {
+Information information_of(const BoundedLeastSquares& problem, const MatrixXd& fisher) {
   const VectorXd range = problem.upper - problem.lower;
   const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(range.asDiagonal() * fisher *
                                                        range.asDiagonal());
@@ -151,4 +152,4 @@ Information information_of(const LeastSquares& problem, const MatrixXd& fisher) 
   return found;
 }
 
-}  // namespace flatspeckle::mc
+}  // namespace flatspeckle

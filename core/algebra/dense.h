@@ -8,14 +8,12 @@
 
 #include "core/numbers/complex.h"
 
-namespace flatspeckle::mc {
+namespace flatspeckle {
 
 using Matrix = Eigen::MatrixXd;
 /// Complex rows, one for each channel: in memory a real matrix of twice as many rows, so that
 /// products with real matrices are real ones.
 using Rows = Eigen::MatrixXcd;
-
-using flatspeckle::product;  // of numbers: those of matrices would hide it
 
 /// Dense algebra by the system's BLAS and LAPACK, on one thread.
 Matrix product(const Matrix& a, const Matrix& b);
@@ -41,4 +39,4 @@ class FactorsOf {
   std::vector<int> pivots_;
 };
 
-}  // namespace flatspeckle::mc
+}  // namespace flatspeckle

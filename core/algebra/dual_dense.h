@@ -4,10 +4,10 @@
 #include <utility>
 #include <vector>
 
-#include "mc/numbers/dense.h"
-#include "mc/numbers/dual.h"
+#include "core/algebra/dense.h"
+#include "core/algebra/dual.h"
 
-namespace flatspeckle::mc {
+namespace flatspeckle {
 
 /// The matrices of calculations with a Number.
 template <typename Number>
@@ -107,4 +107,4 @@ class FactorsOf<Dual<Matrix>> {
   Matrix slope_;
 };
 
-}  // namespace flatspeckle::mc
+}  // namespace flatspeckle

@@ -6,7 +6,7 @@
 
 #include "core/numbers/complex.h"
 
-namespace flatspeckle::mc {
+namespace flatspeckle {
 
 /// A number or matrix with its derivative by one parameter; what is done to it follows the rules of
 /// calculus (automatic differentiation, forward mode).
@@ -135,4 +135,4 @@ inline std::vector<Complex> flat(const std::vector<Dual<Complex>>& list) {
   return all;
 }
 
-}  // namespace flatspeckle::mc
+}  // namespace flatspeckle
