@@ -4,8 +4,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/algebra/dual.h"
 #include "mc/jobs/bulk_parameter.h"
-#include "mc/numbers/dual.h"
 #include "mc/transport/scattering_law.h"
 
 namespace flatspeckle::mc {
