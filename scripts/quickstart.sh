@@ -21,9 +21,10 @@ reference=data/reference/g10
 mapfile -t views < <(awk -F, 'NR > 1 && $1 == 0 { print $2 }' "$reference/farfield_D.csv")
 solve_and_compare() {  # KIND FLAG...: KIND as in the names of the reference's tables
   local kind=$1 result=$results/ten_disks/$1.h5
+  cut -d, -f2,3 "$reference/nearfield_$kind.csv" > "$results/ten_disks/$kind.csv"  # x, z of its rows
   "$flatspeckle" solve --placement "$reference/placement.csv" "${@:2}" \
     --light_angles 0 0.7 2.5 --view_angles "${views[@]}" \
-    --near_sensors "$reference/nearfield_$kind.csv" --out "$result"
+    --near_sensors "$results/ten_disks/$kind.csv" --out "$result"
   python3 scripts/compare_reference.py "$result" "$reference"/{far,near}"field_$kind.csv"
 }
 solve_and_compare D --scatterer soft
