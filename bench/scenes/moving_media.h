@@ -6,6 +6,7 @@
 #include "bench/scenes/synthetic_slab.h"
 #include "core/run/runner.h"
 #include "mc/changes/moving_slopes.h"
+#include "mc/estimators/gradient.h"
 
 namespace flatspeckle::bench {
 

@@ -97,7 +97,7 @@ Blinked blinked(const LineScene& line, const BlinkingTask& task, std::span<const
   made.found = unmixed(made.frames, task.unmixing);
   made.pattern_match = matches(line, field, made.found.factors.pattern);
   made.score = score(shifts(line), made.found.object(),
-                     task.unmixing.resolution_grains * made.found.grain, Mirrored::no);
+                     task.unmixing.resolution_grains * made.found.grain, MirrorImage::no);
   return made;
 }
 

@@ -43,15 +43,15 @@ const DatasetTable blinking_table{
              {"sources_success", Data::estimate, "", "1", "media in which all points have"}}};
 
 FrameContrast frame_contrast(const std::vector<ImagedMedium>& media) {
-  const Measured square =
+  const MeanOverMedia square =
       mean_over(media, 0, [](const ImagedMedium& m) { return m.blinked.square; });
-  const Measured expected =
+  const MeanOverMedia expected =
       mean_over(media, 0, [](const ImagedMedium& m) { return m.blinked.expected_square; });
   const double contrast = std::sqrt(std::max(square.value, 0.0));
   return {{contrast, contrast > 0 ? square.error / (2 * contrast) : 0}, std::sqrt(expected.value)};
 }
 
-Measured sources_success(const std::vector<ImagedMedium>& media) {
+MeanOverMedia sources_success(const std::vector<ImagedMedium>& media) {
   return share_of(media, [](const ImagedMedium& m) { return m.blinked.score.found == 1; });
 }
 
@@ -94,7 +94,7 @@ void write_sources(const ResultGroup& root, const LineScene& line,
   root.put("sources_share", of_medium([](const Blinked& b) { return b.score.found; }));
   root.put("pattern_match", of_each(media, line.object.x.size(),
                                     [](const ImagedMedium& m) { return m.blinked.pattern_match; }));
-  const Measured rate = sources_success(media);
+  const MeanOverMedia rate = sources_success(media);
   root.put("sources_success", rate.value, rate.error);
   if (most == 0) return;
   root.number("source", most);

@@ -17,13 +17,13 @@ extern const DatasetTable blinking_table;
 /// Contrast of single frames: root of the mean square over the media, and what Gaussian speckle of
 /// the brightness that was drawn should have.
 struct FrameContrast {
-  Measured found;
+  MeanOverMedia found;
   double expected = 0;
 };
 FrameContrast frame_contrast(const std::vector<ImagedMedium>& media);
 
 /// Of media whose frames show all points as sources, as success_rate().
-Measured sources_success(const std::vector<ImagedMedium>& media);
+MeanOverMedia sources_success(const std::vector<ImagedMedium>& media);
 
 /// Frames in which points blink, beside what write_imaging() has written.
 void write_blinking(ResultFile& file, const LineScene& line, const ImagingTask& task,

@@ -34,19 +34,19 @@ double fourth_moment(std::span<const Complex> field, std::size_t points) {
 }
 
 /// What the camera has of one medium.
-struct Exposure {
+struct ExposedFrames {
   std::vector<double> frame, reference;
   double fourth_moment = 0;
   Blinked blinked;
 };
 
-Exposure exposed(const LineScene& line, const ImagingTask& task, const FieldDraw& draw,
-                 std::uint64_t number) {
+ExposedFrames exposed(const LineScene& line, const ImagingTask& task, const FieldDraw& draw,
+                      std::uint64_t number) {
   const std::size_t channels = line.scene.request.channels.size();
   std::vector<Complex> field(channels);
   std::vector<double> intensity(channels);
   draw(number, field, intensity);
-  Exposure made;
+  ExposedFrames made;
   const std::size_t of_object = line.object.x.size() * line.camera.pixels;
   made.fourth_moment = fourth_moment(field, line.scene.request.lights.size());
   if (task.blinking.draw) {
@@ -82,7 +82,7 @@ ImagedMedium imaged_one(const LineScene& line, const ImagingTask& task, const Fi
   ImagedMedium medium;
   std::vector<std::vector<double>> frames;
   for (std::uint64_t i = 0; i < task.average; ++i) {
-    Exposure made = exposed(line, task, draw, number * task.average + i);
+    ExposedFrames made = exposed(line, task, draw, number * task.average + i);
     frames.push_back(std::move(made.frame));
     medium.reference = std::move(made.reference);
     medium.fourth_moment += made.fourth_moment / static_cast<double>(task.average);

@@ -87,7 +87,8 @@ void write_axes(ResultFile& file, const ResultGroup& root, const LineScene& line
 
 void write_moments(const ResultGroup& root, const LineScene& line, double background,
                    const std::vector<ImagedMedium>& media) {
-  const Measured contrast = mean_contrast(line.object, media), fourth = mean_fourth_moment(media);
+  const MeanOverMedia contrast = mean_contrast(line.object, media),
+                      fourth = mean_fourth_moment(media);
   root.put("mean_contrast", contrast.value, contrast.error);
   root.put("gaussian_contrast", gaussian_contrast(line.object, background));
   root.put("fourth_moment", fourth.value, fourth.error);

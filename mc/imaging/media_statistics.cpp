@@ -18,8 +18,8 @@ double power_sum(const LineObject& object, int power) {
 
 }  // namespace
 
-Measured mean_over(const std::vector<ImagedMedium>& media, double error_of_one,
-                   const std::function<double(const ImagedMedium&)>& of) {
+MeanOverMedia mean_over(const std::vector<ImagedMedium>& media, double error_of_one,
+                        const std::function<double(const ImagedMedium&)>& of) {
   const auto n = static_cast<double>(media.size());
   double sum = 0, squares = 0;
   for (const ImagedMedium& medium : media) {
@@ -30,8 +30,8 @@ Measured mean_over(const std::vector<ImagedMedium>& media, double error_of_one,
   return {sum, std::sqrt(std::max(squares - sum * sum, 0.0) / (n - 1))};
 }
 
-Measured share_of(const std::vector<ImagedMedium>& media,
-                  const std::function<bool(const ImagedMedium&)>& holds) {
+MeanOverMedia share_of(const std::vector<ImagedMedium>& media,
+                       const std::function<bool(const ImagedMedium&)>& holds) {
   const auto found = static_cast<double>(std::count_if(media.begin(), media.end(), holds)),
              n = static_cast<double>(media.size()), likely = (found + 1) / (n + 2);
   return {found / n, std::sqrt(likely * (1 - likely) / (n + 3))};
@@ -52,23 +52,23 @@ double gaussian_contrast(const LineObject& object, double background) {
   return std::sqrt(power_sum(object, 2)) / power_sum(object, 1) / (1 + background);
 }
 
-Measured mean_contrast(const LineObject& object, const std::vector<ImagedMedium>& media) {
+MeanOverMedia mean_contrast(const LineObject& object, const std::vector<ImagedMedium>& media) {
   const double two = power_sum(object, 2), four = 6 * power_sum(object, 4);
   const double relative = std::sqrt((2 + four / (two * two)) / mean_grains(media));
-  const Measured square =
+  const MeanOverMedia square =
       mean_over(media, 0, [](const ImagedMedium& m) { return m.statistics.square; });
   const double contrast = std::sqrt(std::max(square.value, 0.0));
   if (media.size() == 1) return {contrast, contrast * relative / 2};
   return {contrast, contrast > 0 ? square.error / (2 * contrast) : 0};
 }
 
-Measured mean_fourth_moment(const std::vector<ImagedMedium>& media) {
+MeanOverMedia mean_fourth_moment(const std::vector<ImagedMedium>& media) {
   constexpr double eight = 2 + 6;  // 2 kappa_2^2 + kappa_4 of one point
   return mean_over(media, std::sqrt(eight / mean_grains(media)),
                    [](const ImagedMedium& m) { return m.fourth_moment; });
 }
 
-Measured success_rate(const std::vector<ImagedMedium>& media) {
+MeanOverMedia success_rate(const std::vector<ImagedMedium>& media) {
   return share_of(media, [](const ImagedMedium& medium) { return medium.score.found == 1; });
 }
 
@@ -101,7 +101,7 @@ std::size_t alike_pairs(const LineScene& line, double grains) {
   return alike;
 }
 
-Measured mean_psnr(const std::vector<ImagedMedium>& media) {
+MeanOverMedia mean_psnr(const std::vector<ImagedMedium>& media) {
   constexpr double unknown = std::numeric_limits<double>::infinity();
   return mean_over(media, unknown, [](const ImagedMedium& m) { return m.psnr; });
 }

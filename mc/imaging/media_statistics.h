@@ -9,18 +9,18 @@
 namespace flatspeckle::mc {
 
 /// A number that chance has made, and its standard error.
-struct Measured {
+struct MeanOverMedia {
   double value = 0, error = 0;
 };
 
 /// of: a number of each medium. error_of_one: where there is but one.
-Measured mean_over(const std::vector<ImagedMedium>& media, double error_of_one,
-                   const std::function<double(const ImagedMedium&)>& of);
+MeanOverMedia mean_over(const std::vector<ImagedMedium>& media, double error_of_one,
+                        const std::function<double(const ImagedMedium&)>& of);
 
 /// Of media for which something holds. The error is the standard deviation of what so many trials
 /// leave open, which is not 0 where all succeed (Beta distribution with a uniform prior).
-Measured share_of(const std::vector<ImagedMedium>& media,
-                  const std::function<bool(const ImagedMedium&)>& holds);
+MeanOverMedia share_of(const std::vector<ImagedMedium>& media,
+                       const std::function<bool(const ImagedMedium&)>& holds);
 
 /// Grains of a frame, averaged over all media.
 double mean_grains(const std::vector<ImagedMedium>& media);
@@ -35,14 +35,14 @@ double gaussian_contrast(const LineObject& object, double background);
 /// The root of the mean square of the media's contrast. Of one medium the error is that of Gaussian
 /// speckle: its squared contrast has the variance (2 kappa_2^2 + kappa_4) / grains, kappa_2 = sum
 /// of b^2 and kappa_4 = 6 sum of b^4, where the sum of b is 1.
-Measured mean_contrast(const LineObject& object, const std::vector<ImagedMedium>& media);
+MeanOverMedia mean_contrast(const LineObject& object, const std::vector<ImagedMedium>& media);
 
 /// E|u|^4 / (E|u|^2)^2 of the points' fields: Gaussian, 2. Of one medium the error is that of one
 /// point's Gaussian speckle.
-Measured mean_fourth_moment(const std::vector<ImagedMedium>& media);
+MeanOverMedia mean_fourth_moment(const std::vector<ImagedMedium>& media);
 
 /// Of media in which all points were found.
-Measured success_rate(const std::vector<ImagedMedium>& media);
+MeanOverMedia success_rate(const std::vector<ImagedMedium>& media);
 
 /// What a frame of a repeat should show without being made.
 struct ExpectedPeaks {
@@ -57,6 +57,6 @@ ExpectedPeaks expected_peaks(const LineScene& line, const ImagingTask& task,
 std::size_t alike_pairs(const LineScene& line, double grains);
 
 /// dB.
-Measured mean_psnr(const std::vector<ImagedMedium>& media);
+MeanOverMedia mean_psnr(const std::vector<ImagedMedium>& media);
 
 }  // namespace flatspeckle::mc

@@ -73,7 +73,7 @@ void write_pictures(ResultFile& file, const LineScene& line, const ImagingTask& 
              return turned(m.deconvolved.picture);
            }));
   root.put("psnr", column(media, [](const ImagedMedium& m) { return m.psnr; }));
-  const Measured mean = mean_psnr(media);
+  const MeanOverMedia mean = mean_psnr(media);
   root.put("mean_psnr", mean.value, mean.error);
   if (task.deconvolution.method == DeconvolutionTask::Method::richardson_lucy)
     write_residuals(root, media);

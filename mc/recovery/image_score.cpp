@@ -39,10 +39,10 @@ ImageScore score_at(const LineObject& truth, const LineObject& found, double shi
 }  // namespace
 
 ImageScore score(const LineObject& truth, const LineObject& found, double resolution,
-                 Mirrored mirror) {
+                 MirrorImage mirror) {
   ImageScore best;
   std::vector<LineObject> either{found};
-  if (mirror == Mirrored::perhaps) either.push_back(mirrored(found));
+  if (mirror == MirrorImage::perhaps) either.push_back(mirrored(found));
   for (const LineObject& each : either)
     for (const double to : truth.x)
       for (const double from : each.x) {

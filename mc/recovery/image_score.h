@@ -12,9 +12,9 @@ struct ImageScore {
 };
 
 /// Whether what is found may be the mirror image.
-enum class Mirrored { perhaps, no };
+enum class MirrorImage { perhaps, no };
 
 ImageScore score(const LineObject& truth, const LineObject& found, double resolution,
-                 Mirrored mirror = Mirrored::perhaps);
+                 MirrorImage mirror = MirrorImage::perhaps);
 
 }  // namespace flatspeckle::mc

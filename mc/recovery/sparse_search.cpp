@@ -25,10 +25,10 @@ struct Longer {
   int mark;
 };
 
-class Search {
+class SparseSearch {
  public:
   /// scores: of a pair by its lag.
-  Search(std::vector<double> scores, std::size_t points, int apart, std::size_t beam)
+  SparseSearch(std::vector<double> scores, std::size_t points, int apart, std::size_t beam)
       : scores_(std::move(scores)),
         points_(points),
         apart_(apart),
@@ -172,7 +172,7 @@ SparseFit sparse_search(const PairPeaks& peaks, const SparseTask& task) {
   const int apart = std::max(1, static_cast<int>(std::ceil(resolution)));
   std::vector<RulerFit> fits;
   for (const Ruler& ruler :
-       Search(scores_of(peaks, expected), task.points, apart, task.beam).grown())
+       SparseSearch(scores_of(peaks, expected), task.points, apart, task.beam).grown())
     fits.push_back(fitted_ruler(peaks, expected, {ruler.marks.begin(), ruler.marks.end()}));
   const auto likelier = [](const RulerFit& a, const RulerFit& b) { return a.gain > b.gain; };
   std::stable_sort(fits.begin(), fits.end(), likelier);

@@ -15,9 +15,9 @@ namespace flatspeckle::mc {
 namespace {
 
 /// Correlation of two lines by shift, -(lags - 1) to lags - 1.
-class Correlations {
+class PatternCorrelations {
  public:
-  Correlations(const Eigen::MatrixXd& patterns, std::size_t lags)
+  PatternCorrelations(const Eigen::MatrixXd& patterns, std::size_t lags)
       : lags_(lags),
         spectra_(transform_size(static_cast<double>(patterns.rows()) + static_cast<double>(lags))) {
     for (Eigen::Index s = 0; s < patterns.cols(); ++s) {
@@ -125,7 +125,7 @@ std::vector<std::size_t> by_size(const std::vector<std::size_t>& group) {
 }  // namespace
 
 std::vector<PatternShift> pattern_shifts(const Eigen::MatrixXd& patterns, std::size_t lags) {
-  const Correlations correlations(patterns, lags);
+  const PatternCorrelations correlations(patterns, lags);
   const auto sources = static_cast<std::size_t>(patterns.cols());
   const double pairs = static_cast<double>(sources * (sources - 1) / 2),
                places = 2 * static_cast<double>(lags),

@@ -1,10 +1,11 @@
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include <doctest/doctest.h>
 
 #include "flatland/scatterers/scatterer.h"
-#include "mc/ends/scattering.h"
+#include "mc/walk/scene_scattering.h"
 #include "tests/mc/estimates.h"
 #include "tests/statistics.h"
 
@@ -109,6 +110,15 @@ TEST_CASE("a thin TM cylinder scatters like a point") {
   for (const double turn : {0.0, 1.0, -2.0, pi})
     CHECK(thin.density(direction(0), direction(turn)) ==
           doctest::Approx(1 / (2 * pi)).epsilon(2e-3));
+}
+
+TEST_CASE("scattering in the plane: phase functions of other scenes are rejected") {
+  Scene scene = tests::hg_box(6, 4, {3}, intensity_request({0.0}, {far_view(0)}));
+  const auto ignored = [](const auto&) {};
+  for (const auto phase : {Plan::Phase::space, Plan::Phase::varying, Plan::Phase::graded})
+    CHECK_THROWS_AS(with_scattering(scene, phase, ignored), std::logic_error);
+  scene.medium.dimension = 3;
+  CHECK_THROWS_AS(with_scattering(scene, Plan::Phase::isotropic, ignored), std::logic_error);
 }
 
 }  // namespace flatspeckle::mc

@@ -1,9 +1,11 @@
 #include <functional>
+#include <stdexcept>
 
 #include <doctest/doctest.h>
 
 #include "mc/changes/brownian.h"
 #include "mc/changes/moving_slopes.h"
+#include "mc/estimators/gradient.h"
 #include "mc/slab/slab_covariance.h"
 #include "tests/mc/estimates.h"
 
@@ -129,6 +131,15 @@ TEST_CASE("derivatives of decays through a slab by its medium are those of trans
   };
   check(1, 2 * 0.01 / 100, exact(0.5, 3.01), exact(0.5, 2.99));
   check(2, 0.02, exact(0.51, 3), exact(0.49, 3));
+}
+
+TEST_CASE("derivatives of paths: plans and slopes that would give wrong numbers are rejected") {
+  const Scene scene = box();
+  Plan plan = sampling_singles(scene, ReversedPaths::no);
+  const std::vector<MediumSlope> many(most_slopes + 1, {"mu_t", 1, 0, {}});
+  CHECK_THROWS_AS(slope_job(scene, plan, many, 3), std::logic_error);
+  plan.sampled_single = false;  // moving slopes have no closed form for them
+  CHECK_THROWS_AS(moving_slope_job(scene, plan, delays, motion, {}, 3), std::logic_error);
 }
 
 }  // namespace flatspeckle::mc
