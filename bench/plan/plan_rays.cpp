@@ -4,8 +4,8 @@
 
 #include "bench/plan/plan_rooms.h"
 #include "bench/plan/plan_timing.h"
-#include "grin/space/space.h"
 #include "grin/rays/trace.h"
+#include "grin/space/space.h"
 
 namespace flatspeckle::bench {
 
@@ -124,10 +124,8 @@ PlanRow kind_of_field(double cpu_seconds) {
 
 PlanRow spreading(double cpu_seconds) {
   const Fisheye field({1, 1.5});
-  const auto full =
-      make_space(field, foggy_ball_stage(), {step, max_length, Spreading::all});
-  const auto quick =
-      make_space(field, foggy_ball_stage(), {step, max_length, Spreading::none});
+  const auto full = make_space(field, foggy_ball_stage(), {step, max_length, Spreading::all});
+  const auto quick = make_space(field, foggy_ball_stage(), {step, max_length, Spreading::none});
   return same_values([&] { return flown(*full); }, [&] { return flown(*quick); }, "flight", 1e-11,
                      cpu_seconds);
 }
@@ -205,7 +203,7 @@ PlanRow search_for_curves(double cpu_seconds) {
   PlanRow row{.per = "join"};
   const auto general =
       make_space(constant_guide(), foggy_ball_stage(), {step, max_length, Spreading::all});
-  const Space special(Homogeneous{0.5}, foggy_ball_stage(), {});
+  const Space special(Homogeneous{0.5}, foggy_ball_stage());
   compare_sampled(row, joins(*general), joins(special), Numbers::other, Measure::sample,
                   cpu_seconds);
   return row;

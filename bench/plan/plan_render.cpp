@@ -155,8 +155,8 @@ PlanCase rays_alone() {
     const Tracer special = tracers.make(RenderMethod::analog);
     Tracer general = special;
     const SpaceOptions options{scene.step, scene.max_length, Spreading::none};
-    general.kernel = analog_kernel(special.transport,
-                                   make_space(scene.field, scene.stage, options), {}, false);
+    general.kernel =
+        analog_kernel(special.transport, make_space(scene.field, scene.stage, options), {}, false);
     compare_sampled(row, kernel_of(general), kernel_of(special), Numbers::other, Measure::sample,
                     cpu_seconds);
     return row;
@@ -184,24 +184,22 @@ PlanCase powers_alone() {
 
 /// Light paths that scatter, to a small disk: most are given up, what heads for it is split.
 PlanCase aimed_light() {
-  return named("render", "paths past a small sensor", "guide of sound in tissue",
-               [](double cpu_seconds) {
-                 PlanRow row{.per = "1 % error"};
-                 RenderScene scene = render_scenes()[1].scene;
-                 scene.sensors = {RadialDetector{{0, 0, 30}, 0.2, 1, 1.5}};
-                 const RenderRequest request{RenderMethod::analog};
-                 const Tracers tracers(scene, request);
-                 const Tracer special = tracers.make(RenderMethod::analog);
-                 Tracer general = special;
-                 const SpaceOptions options{scene.step, scene.max_length, Spreading::none,
-                                                  scene.leapfrogs};
-                 general.kernel =
-                     analog_kernel(special.transport,
-                                   make_space(scene.field, scene.stage, options), {}, false);
-                 compare_sampled(row, kernel_of(general), kernel_of(special), Numbers::other,
-                                 Measure::error, cpu_seconds);
-                 return row;
-               });
+  return named(
+      "render", "paths past a small sensor", "guide of sound in tissue", [](double cpu_seconds) {
+        PlanRow row{.per = "1 % error"};
+        RenderScene scene = render_scenes()[1].scene;
+        scene.sensors = {RadialDetector{{0, 0, 30}, 0.2, 1, 1.5}};
+        const RenderRequest request{RenderMethod::analog};
+        const Tracers tracers(scene, request);
+        const Tracer special = tracers.make(RenderMethod::analog);
+        Tracer general = special;
+        const SpaceOptions options{scene.step, scene.max_length, Spreading::none, scene.leapfrogs};
+        general.kernel = analog_kernel(special.transport,
+                                       make_space(scene.field, scene.stage, options), {}, false);
+        compare_sampled(row, kernel_of(general), kernel_of(special), Numbers::other, Measure::error,
+                        cpu_seconds);
+        return row;
+      });
 }
 
 SampledKernel kernel_of(const RenderJob& job) {

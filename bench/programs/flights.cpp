@@ -103,13 +103,14 @@ int main(int argc, char** argv) {
   cloud.medium.density =
       std::make_shared<const DensityGrid>(grid, std::vector<double>(grid.size(), 1));
   std::printf("%-34s %8s %8s\n", "straight, ns", "flight", "join");
-  print_straight("nothing in it", measure(Space(Homogeneous{0}, clear, {}), around));
-  print_straight("scattering", measure(Space(Homogeneous{0}, foggy, {}), around));
-  print_straight("scattering, box",
-                 measure(Space(Homogeneous{0}, Stage{.boundary = Box{{-1, -1, -1}, {1, 1, 1}}, .medium = fog}, {}),
-                         around));
-  print_straight("grid of density 1", measure(Space(Homogeneous{0}, cloud, {}), around));
-  print_straight("glass ball in fog", measure(Space(Homogeneous{0.5}, glass, {}), around));
+  print_straight("nothing in it", measure(Space(Homogeneous{0}, clear), around));
+  print_straight("scattering", measure(Space(Homogeneous{0}, foggy), around));
+  print_straight(
+      "scattering, box",
+      measure(Space(Homogeneous{0}, Stage{.boundary = Box{{-1, -1, -1}, {1, 1, 1}}, .medium = fog}),
+              around));
+  print_straight("grid of density 1", measure(Space(Homogeneous{0}, cloud), around));
+  print_straight("glass ball in fog", measure(Space(Homogeneous{0.5}, glass), around));
   std::printf("\n%-34s %8s %8s %8s %7s %7s %7s\n", "curved, us", "flight", "with |J|", "join",
               "found", "trials", "success");
   print_curved("homogeneous", Homogeneous{0.33}, foggy, 0.05);

@@ -20,7 +20,9 @@ struct RoughStep {
   using type = Leapfrog;
 };
 template <class Step>
-requires requires { typename Step::Rough; }
+requires requires {
+  typename Step::Rough;
+}
 struct RoughStep<Step> {
   using type = typename Step::Rough;
 };
@@ -97,7 +99,8 @@ class ConnectionTrial {
 
   /// Caustics counted along the curve.
   Connection with_caustics(Connection curve, ConnectionStatistics& statistics) const {
-    curve.caustics = follow({curve.start_direction, curve.sigma, curve.steps, true}, statistics).count();
+    curve.caustics =
+        follow({curve.start_direction, curve.sigma, curve.steps, true}, statistics).count();
     return curve;
   }
 

@@ -2,8 +2,8 @@
 #include <array>
 #include <cmath>
 
-#include "grin/space/space.h"
 #include "grin/rays/lane_pool.h"
+#include "grin/space/space.h"
 
 namespace flatspeckle::grin {
 

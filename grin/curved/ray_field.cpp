@@ -2,7 +2,6 @@
 
 #include "grin/connections/connection_solver.h"
 #include "grin/curved/curved_leg.h"
-#include "grin/rays/trace.h"
 
 namespace flatspeckle::grin {
 
@@ -15,21 +14,15 @@ std::unique_ptr<const RayField> make_ray_field(const AnyIndexField& field,
 
 namespace {
 
-/// An integrator of a RayField.
-template <class Integrator>
-struct StepBy {
-  static constexpr int order = Integrator::order;
-  static void step(const RayField& field, RayState& ray, double h) {
-    field.step(Integrator(), ray, h);
-  }
+/// Integrators of a RayField for ConnectionTrial.
+struct Leap {
+  static void step(const RayField& field, RayState& ray, double h) { field.leap(ray, h); }
   static void step(const RayField& field, RayState& ray, RayTangent& tangent, double h) {
-    field.step(Integrator(), ray, tangent, h);
+    field.leap(ray, tangent, h);
   }
 };
-
-/// That which suits it.
 struct OwnStep {
-  using Rough = StepBy<Leapfrog>;
+  using Rough = Leap;
   static bool is_rough(const RayField& field) { return field.leapfrogs(); }
   static void step(const RayField& field, RayState& ray, double h) { field.step(ray, h); }
   static void step(const RayField& field, RayState& ray, RayTangent& tangent, double h) {
@@ -40,17 +33,6 @@ struct OwnStep {
 using Trial = ConnectionTrial<RayField, Sides, OwnStep>;
 
 }  // namespace
-
-TraceEnd RayField::follow(std::span<const Surface> surfaces, const TraceLimits& limits, RayLog& log,
-                          RayState& ray) const {
-  const auto by = [&]<class Integrator>(const Integrator&) {
-    LoggedSteps<StepBy<Integrator>> steps(log);
-    return trace(*this, surfaces, limits, steps, ray);
-  };
-  const TraceEnd end = std::visit(by, log.steps().integrator);
-  log.end(*this, ray);
-  return end;
-}
 
 LegStop RayField::fly(const LegRoom& room, double longest, double& weight, RandomStream& random,
                       RayState& ray, RayTangent* tangent) const {

@@ -21,7 +21,7 @@ struct CurveEnds {
 };
 
 /// An index field as rays meet it: one virtual call for each step, behind which the type of the
-/// field is known. Legs and curves are made of steps here, but where a field has closed forms.
+/// field is known. Flights and connections are made of such steps unless a field has closed forms.
 class RayField {
  public:
   virtual ~RayField() = default;
@@ -32,19 +32,18 @@ class RayField {
   virtual IndexGradient gradient(const Vec3& x) const = 0;
   virtual IndexHessian hessian(const Vec3& x) const = 0;
 
-  /// Steps of the integrator that suits the field, and of any (ray_step.h).
+  /// A step of the integrator that suits the field (ray_step.h).
   virtual void step(RayState& ray, double h) const = 0;
   virtual void step(RayState& ray, RayTangent& tangent, double h) const = 0;
-  virtual void step(Sharma, RayState& ray, double h) const = 0;
-  virtual void step(Yoshida4, RayState& ray, double h) const = 0;
-  virtual void step(Leapfrog, RayState& ray, double h) const = 0;
-  virtual void step(Leapfrog, RayState& ray, RayTangent& tangent, double h) const = 0;
-  /// The one that suits is Leapfrog.
+  /// A step of Leapfrog.
+  virtual void leap(RayState& ray, double h) const = 0;
+  virtual void leap(RayState& ray, RayTangent& tangent, double h) const = 0;
+  /// Whether Leapfrog is the one that suits.
   virtual bool leapfrogs() const = 0;
 
-  /// trace().
+  /// trace(): one call for all steps of a ray.
   virtual TraceEnd follow(std::span<const Surface> surfaces, const TraceLimits& limits, RayLog& log,
-                          RayState& ray) const;
+                          RayState& ray) const = 0;
 
   /// Whether rays may go side by side, at less cost than one by one.
   virtual bool has_lanes() const = 0;

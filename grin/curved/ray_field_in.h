@@ -4,7 +4,6 @@
 #include "grin/curved/fisheye_rays.h"
 #include "grin/curved/luneburg_rays.h"
 #include "grin/curved/parabolic_rays.h"
-#include "grin/rays/trace.h"
 
 namespace flatspeckle::grin {
 
@@ -13,12 +12,6 @@ class StraightRays final : public RayFieldOf<Homogeneous> {
  public:
   explicit StraightRays(const Homogeneous& field) : RayFieldOf(field), field_(field) {}
 
-  TraceEnd follow(std::span<const Surface> surfaces, const TraceLimits& limits, RayLog& log,
-                  RayState& ray) const override {
-    const TraceEnd end = trace_straight(field_, surfaces, limits, ray);
-    log.end(field_, ray);
-    return end;
-  }
   ConnectionEstimate connect(const CurveEnds& ends, const ConnectionOptions& options,
                              RandomStream& random,
                              ConnectionStatistics& statistics) const override {

@@ -2,6 +2,7 @@
 
 #include "core/error.h"
 #include "grin/curved/ray_field.h"
+#include "grin/rays/trace.h"
 
 namespace flatspeckle::grin {
 
@@ -20,12 +21,8 @@ class RayFieldOf : public RayField {
   void step(RayState& ray, RayTangent& tangent, double h) const override {
     Step::step(field_, ray, tangent, h);
   }
-  void step(Sharma, RayState& ray, double h) const override { Sharma::step(field_, ray, h); }
-  void step(Yoshida4, RayState& ray, double h) const override {
-    for (const double part : Yoshida4::parts) Leapfrog::step(field_, ray, part * h);
-  }
-  void step(Leapfrog, RayState& ray, double h) const override { Leapfrog::step(field_, ray, h); }
-  void step(Leapfrog, RayState& ray, RayTangent& tangent, double h) const override {
+  void leap(RayState& ray, double h) const override { Leapfrog::step(field_, ray, h); }
+  void leap(RayState& ray, RayTangent& tangent, double h) const override {
     Leapfrog::step(field_, ray, tangent, h);
   }
   bool leapfrogs() const override { return std::same_as<Step, Leapfrog>; }
@@ -36,6 +33,17 @@ class RayFieldOf : public RayField {
       else
         Step::step(field_, ray, sigma / steps);
     }
+  }
+
+  TraceEnd follow(std::span<const Surface> surfaces, const TraceLimits& limits, RayLog& log,
+                  RayState& ray) const override {
+    const auto by = [&]<class Integrator>(const Integrator&) {
+      LoggedSteps<Integrator> steps(log);
+      return trace(field_, surfaces, limits, steps, ray);
+    };
+    const TraceEnd end = std::visit(by, log.steps().integrator);
+    log.end(field_, ray);
+    return end;
   }
 
   bool has_lanes() const override { return LaneField<F>; }

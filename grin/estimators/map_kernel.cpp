@@ -17,8 +17,8 @@ class MapTally : public LightTally {
            EnergyBalance& energy, TransportCounts& counts)
       : LightTally(energy), cells_(cells), transport_(transport), sums_(sums), counts_(counts) {}
 
-  Flight fly(const Space& space, const PathVertex& from, const Vec3& direction, RandomStream& random,
-             const Vec3* rise) {
+  Flight fly(const Space& space, const PathVertex& from, const Vec3& direction,
+             RandomStream& random, const Vec3* rise) {
     log_.clear();
     const Flight flight = space.fly(from.point, direction, random, &log_, rise);
     const double weight = from.weight * flight.stretched;

@@ -4,9 +4,9 @@
 #include <memory>
 
 #include "core/numbers/complex.h"
-#include "grin/space/space.h"
 #include "grin/estimators/light_map.h"
 #include "grin/paths/transport.h"
+#include "grin/space/space.h"
 
 namespace flatspeckle::grin {
 

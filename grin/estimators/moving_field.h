@@ -4,10 +4,10 @@
 #include <span>
 #include <vector>
 
-#include "grin/space/space.h"
 #include "grin/estimators/field_parameter.h"
 #include "grin/media/scattering_medium.h"
 #include "grin/sensors/sensor_edges.h"
+#include "grin/space/space.h"
 
 namespace flatspeckle::grin {
 
@@ -32,7 +32,7 @@ class MovingField {
   double index_change(std::size_t parameter, const Vec3& x) const;
 
   struct Ray {
-    Vec3 x, direction;
+    Vec3 x = Vec3::Zero(), direction = Vec3::Zero();
   };
   /// To the boundary, without collisions.
   std::vector<Flight> flown(std::span<const Ray> starts) const;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <limits>
 
-
 namespace flatspeckle::grin {
 
 GatherGrid::GatherGrid(std::vector<GatherPoint> points, double radius) : radius_(radius) {
@@ -187,8 +186,7 @@ template <bool timed>
 PathKernel straight_kernel_timed(std::shared_ptr<const Transport> transport, double excess,
                                  double radius) {
   auto space = std::make_shared<const Space>(Homogeneous{excess}, transport->stage, SpaceOptions());
-  return [=](int paths, RandomStream& random, Film& film, TransportCounts& counts,
-             JoinPromises*) {
+  return [=](int paths, RandomStream& random, Film& film, TransportCounts& counts, JoinPromises*) {
     PhotonMap<timed, AnyStraightSpace>(*transport, *space, radius, random, film, counts).add(paths);
   };
 }
@@ -197,8 +195,7 @@ template <bool timed>
 PathKernel curved_kernel_timed(std::shared_ptr<const Transport> transport,
                                std::shared_ptr<const Space> space, bool random_phase,
                                double radius) {
-  return [=](int paths, RandomStream& random, Film& film, TransportCounts& counts,
-             JoinPromises*) {
+  return [=](int paths, RandomStream& random, Film& film, TransportCounts& counts, JoinPromises*) {
     const auto add = [&](const Space& met, int count) {
       PhotonMap<timed, Space>(*transport, met, radius, random, film, counts).add(count);
     };
@@ -233,8 +230,7 @@ PathKernel photon_kernel(bool timed, std::shared_ptr<const Transport> transport,
 }
 
 PathKernel photon_kernel(bool timed, std::shared_ptr<const Transport> transport,
-                         std::shared_ptr<const Space> space, bool random_phase,
-                         double radius) {
+                         std::shared_ptr<const Space> space, bool random_phase, double radius) {
   return timed ? curved_kernel_timed<true>(std::move(transport), std::move(space), random_phase,
                                            radius)
                : curved_kernel_timed<false>(std::move(transport), std::move(space), random_phase,

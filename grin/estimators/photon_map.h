@@ -63,8 +63,7 @@ class GatherGrid {
 PathKernel photon_kernel(bool timed, std::shared_ptr<const Transport> transport, double excess,
                          double radius);
 PathKernel photon_kernel(bool timed, std::shared_ptr<const Transport> transport,
-                         std::shared_ptr<const Space> space, bool random_phase,
-                         double radius);
+                         std::shared_ptr<const Space> space, bool random_phase, double radius);
 
 /// A twentieth of the shortest of the mean free paths and the half widths of stage and bodies.
 double default_photon_radius(const Stage& stage);

@@ -3,9 +3,9 @@
 #include <optional>
 #include <vector>
 
-#include "grin/space/space.h"
 #include "grin/media/free_flight.h"
 #include "grin/paths/transport.h"
+#include "grin/space/space.h"
 
 namespace flatspeckle::grin {
 
@@ -35,8 +35,7 @@ class SensorAim {
     Vec3 centre, outwards;
     double radius;
   };
-  static std::optional<Disk> disk_of(const SensorEnd& sensor, const Space& space,
-                                     double largest);
+  static std::optional<Disk> disk_of(const SensorEnd& sensor, const Space& space, double largest);
   SensorAim(std::vector<Disk> disks, const ScatteringMedium& medium, double bending);
   double usual(const Transport& transport, const Space& space) const;
 

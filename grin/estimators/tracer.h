@@ -3,11 +3,11 @@
 #include <memory>
 #include <optional>
 
-#include "grin/space/space.h"
 #include "grin/estimators/map_kernel.h"
 #include "grin/estimators/path_kernels.h"
 #include "grin/estimators/render_scene.h"
 #include "grin/estimators/unscattered_beams.h"
+#include "grin/space/space.h"
 
 namespace flatspeckle::grin {
 

@@ -46,8 +46,8 @@ bool is_among(std::span<const BeamWay> ways, const BeamWay& one) {
 
 /// Of the ways that random trials find from a few places of the sensor, those that bring most
 /// light, each once. Decided by the scene alone.
-std::vector<BeamSeed> seeds_of(const Space& space, const SensorEnd& sensor, const Lights::Beam& beam,
-                               int trials, bool& is_any_seen) {
+std::vector<BeamSeed> seeds_of(const Space& space, const SensorEnd& sensor,
+                               const Lights::Beam& beam, int trials, bool& is_any_seen) {
   constexpr std::size_t most = 24;
   const int places = sensor.can_be_hit() ? 4 : 1;
   constexpr auto no_batch = std::numeric_limits<std::uint64_t>::max() - 1;
@@ -243,16 +243,15 @@ void add_rays(const Space& space, int rays, const EvenRays& from, RandomStream& 
   std::array<int, lanes> number{};
   std::array<EndPosition, lanes> starts{};
   int next = 0;
-  space.fly_side_by_side(
-      [&](int lane, const Flight* flown) -> std::optional<Space::FlightStart> {
-        int& own = number[static_cast<std::size_t>(lane)];
-        EndPosition& start = starts[static_cast<std::size_t>(lane)];
-        if (flown) light.add_ray(start, *flown, from.stratum(own));
-        if (next == rays) return std::nullopt;
-        own = next++;
-        start = from.start(own);
-        return Space::FlightStart{start.point, start.inward, &random};
-      });
+  space.fly_side_by_side([&](int lane, const Flight* flown) -> std::optional<Space::FlightStart> {
+    int& own = number[static_cast<std::size_t>(lane)];
+    EndPosition& start = starts[static_cast<std::size_t>(lane)];
+    if (flown) light.add_ray(start, *flown, from.stratum(own));
+    if (next == rays) return std::nullopt;
+    own = next++;
+    start = from.start(own);
+    return Space::FlightStart{start.point, start.inward, &random};
+  });
   light.finish();
 }
 

@@ -2,9 +2,9 @@
 
 #include <memory>
 
-#include "grin/space/space.h"
 #include "grin/estimators/moving_field.h"
 #include "grin/estimators/path_kernels.h"
+#include "grin/space/space.h"
 
 namespace flatspeckle::grin {
 

@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "grin/paths/path_join.h"
+#include "grin/space/space.h"
 
 namespace flatspeckle::grin {
 

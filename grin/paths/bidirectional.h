@@ -86,8 +86,8 @@ class Bidirectional {
       if (vertex.vertices < last_kept) vertices_.offer(vertex, random_);
     };
     LightTally tally(film_.energy);
-    walk(transport_, space_, never_chosen, start, first, transport_.strategies.short_light,
-               random_, counts_, family_, tally, collided, left);
+    walk(transport_, space_, never_chosen, start, first, transport_.strategies.short_light, random_,
+         counts_, family_, tally, collided, left);
     tally.end_path();
   }
 
@@ -111,8 +111,8 @@ class Bidirectional {
     };
     LonePath alone;
     const NoTally tally;
-    walk(transport_, space_, choice, start, first, transport_.strategies.short_sensor,
-               random_, counts_, alone, tally, collided, left);
+    walk(transport_, space_, choice, start, first, transport_.strategies.short_sensor, random_,
+         counts_, alone, tally, collided, left);
   }
 
   /// Joins to sensors are considered where light has a chance to come there: that counts in their

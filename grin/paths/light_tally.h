@@ -11,8 +11,8 @@ namespace flatspeckle::grin {
 /// Of a path whose power is nobody's concern. `from`: the vertex that a flight began at, whose
 /// weight is the power before the flight.
 struct NoTally {
-  Flight fly(const Space& space, const PathVertex& from, const Vec3& direction, RandomStream& random,
-             const Vec3* rise) const {
+  Flight fly(const Space& space, const PathVertex& from, const Vec3& direction,
+             RandomStream& random, const Vec3* rise) const {
     return space.fly(from.point, direction, random, nullptr, rise);
   }
   void emitted(const PathVertex&) const {}

@@ -24,9 +24,10 @@ inline constexpr auto never_chosen = [](const EndPosition&, const PathPoint&) { 
 /// for a join from there (EndPosition). family: the path, or all that it is split into. tally: what
 /// becomes of its power (LightTally), of a path that is not short.
 template <class Choice, class Family, class Tally, class Collided, class Left>
-void walk(const Transport& transport, const Space& space, const Choice& choice, const PathVertex& start,
-          const EndDirection& first, bool is_short, RandomStream& random, TransportCounts& counts,
-          Family& family, Tally& tally, const Collided& collided, const Left& left) {
+void walk(const Transport& transport, const Space& space, const Choice& choice,
+          const PathVertex& start, const EndDirection& first, bool is_short, RandomStream& random,
+          TransportCounts& counts, Family& family, Tally& tally, const Collided& collided,
+          const Left& left) {
   PathVertex here = start;
   here.weight *= first.strength / first.density;
   tally.emitted(here);

@@ -42,9 +42,9 @@ struct Flight {
     lost        ///< no ray (index not positive, or too many steps): counted, contributes nothing
   };
   End end = End::lost;
-  PathPoint point;       ///< where it ended
-  Vec3 start_direction;  ///< unit
-  Vec3 direction;        ///< unit tangent at the end
+  PathPoint point;                      ///< where it ended
+  Vec3 start_direction = Vec3::Zero();  ///< unit
+  Vec3 direction = Vec3::Zero();        ///< unit tangent at the end
   double arc_length = 0, optical_path = 0;
   double spreading = 0;         ///< |J| from start to end (C25); 0 where no join finds it
   double optical_depth = 0;     ///< reference depth, see below

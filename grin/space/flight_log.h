@@ -4,8 +4,8 @@
 #include <cmath>
 #include <vector>
 
-#include "grin/space/part_medium.h"
 #include "grin/space/flight.h"
+#include "grin/space/part_medium.h"
 
 namespace flatspeckle::grin {
 

@@ -9,7 +9,7 @@
 namespace flatspeckle::grin {
 
 struct PathPoint {
-  Vec3 x;
+  Vec3 x = Vec3::Zero();
   Part part = around;
 };
 

@@ -45,16 +45,15 @@ ConnectionOptions search_options(const SpaceOptions& options, bool is_straight) 
 
 }  // namespace
 
-Space::Space(const AnyIndexField& field, const Stage& stage,
-                         const SpaceOptions& options)
+Space::Space(const AnyIndexField& field, const Stage& stage, const SpaceOptions& options)
     : setup_(std::make_shared<const Setup>(
           Setup{.stage = StraightStage(stage, excess_of(field)),
                 .field_part = stage.field_part(),
                 .is_straight = excess_of(field).has_value(),
                 .sides = sides_of_room(stage),
                 .options = options,
-                .longest = excess_of(field) ? std::numeric_limits<double>::infinity()
-                                            : options.max_length,
+                .longest =
+                    excess_of(field) ? std::numeric_limits<double>::infinity() : options.max_length,
                 .connection = curve_options(options),
                 .search = search_options(options, excess_of(field).has_value())})),
       field_(make_ray_field(field, room().surfaces, options.leapfrogs)) {}
@@ -93,34 +92,37 @@ class LoggedLeg {
 
 }  // namespace
 
-Flight Space::fly(const PathPoint& from, const Vec3& direction, RandomStream& random,
-                  FlightLog* log, const Vec3* rise) const {
-  const Spreading spreading = setup_->options.spreading;
-  if (spreading != Spreading::to_boundary || log)
-    return fly_once(from, direction, spreading != Spreading::none, random, log, rise);
+/// The last flight of a path a second time, as |J| costs more than that where many come before it.
+Flight Space::fly_again_to_boundary(const PathPoint& from, const Vec3& direction,
+                                    RandomStream& random, const Vec3* rise) const {
   RandomStream again = random;
-  const Flight flight = fly_once(from, direction, false, random, log, rise);
-  return flight.end == Flight::End::boundary ? fly_once(from, direction, true, again, log, rise)
-                                             : flight;
+  const Flight flight = fly_once(from, direction, false, random, nullptr, rise);
+  if (flight.end != Flight::End::boundary) return flight;
+  return fly_once(from, direction, true, again, nullptr, rise);
 }
 
 Flight Space::fly_once(const PathPoint& from, const Vec3& direction, bool spreads,
                        RandomStream& random, FlightLog* log, const Vec3* rise) const {
   Flight flight{.point = from, .start_direction = direction, .direction = direction};
-  if (is_curved(from.part)) return go_on(flight, std::nullopt, spreads, random, log);
+  if (is_curved(from.part)) {
+    go_on(flight, std::nullopt, spreads, random, log);
+    return flight;
+  }
   const LoggedLeg logged(log, flight);
   const LegEnd end = setup_->stage.fly(flight, random, rise);
   logged.end();
-  if (end > at_boundary) return go_on(flight, end, spreads, random, log);
-  if (flight.arc_length > setup_->longest) return flight;
-  flight.end = end == at_collision ? Flight::End::collision : Flight::End::boundary;
-  flight.spreading = flight.arc_length * flight.arc_length;
+  if (end > at_boundary) {
+    go_on(flight, end, spreads, random, log);
+  } else if (flight.arc_length <= setup_->longest) {
+    flight.end = end == at_collision ? Flight::End::collision : Flight::End::boundary;
+    flight.spreading = flight.arc_length * flight.arc_length;
+  }
   return flight;
 }
 
 /// end: of its first leg, on the surface of a body; nothing before that.
-Flight& Space::go_on(Flight& flight, std::optional<LegEnd> end, bool spreads, RandomStream& random,
-                     FlightLog* log) const {
+void Space::go_on(Flight& flight, std::optional<LegEnd> end, bool spreads, RandomStream& random,
+                  FlightLog* log) const {
   Neighbours neighbours{spreads};
   int legs = 0;
   if (end) {
@@ -134,25 +136,23 @@ Flight& Space::go_on(Flight& flight, std::optional<LegEnd> end, bool spreads, Ra
     end = leg(flight, neighbours, random);
     if (!end) {
       logged.drop();
-      return flight;
+      return;
     }
     logged.end();
     if (*end > at_boundary) {
       cross(flight, *end, neighbours, random);
       continue;
     }
-    if (flight.arc_length > setup_->longest) return flight;
+    if (flight.arc_length > setup_->longest) return;
     flight.end = *end == at_collision ? Flight::End::collision : Flight::End::boundary;
-    if (!flight.is_joinable) return flight;
+    if (!flight.is_joinable) return;
     if (!neighbours.bent)
       flight.spreading = flight.arc_length * flight.arc_length;
     else if (neighbours.wanted)
-      flight.spreading =
-          std::abs(signed_spreading(neighbours.tangent, neighbours.n_start, flight.start_direction,
-                                    flight.direction));
-    return flight;
+      flight.spreading = std::abs(signed_spreading(neighbours.tangent, neighbours.n_start,
+                                                   flight.start_direction, flight.direction));
+    return;
   }
-  return flight;
 }
 
 /// Nothing: lost.
@@ -167,7 +167,7 @@ std::optional<LegEnd> Space::leg(Flight& flight, Neighbours& neighbours,
 }
 
 std::optional<LegEnd> Space::curved_leg(Flight& flight, Neighbours& neighbours,
-                                              RandomStream& random) const {
+                                        RandomStream& random) const {
   RayState ray = start_ray(*field_, flight.point.x, flight.direction);
   if (flight.arc_length == 0) neighbours.n_start = ray.v.norm();
   neighbours.bent = true;
@@ -193,7 +193,7 @@ void Space::end_leg(Flight& flight, const RayState& ray, double weight) const {
 }
 
 void Space::cross(Flight& flight, LegEnd surface, Neighbours& neighbours,
-                        RandomStream& random) const {
+                  RandomStream& random) const {
   const Part from = flight.point.part, to = setup_->stage.beyond(flight, surface);
   if (setup_->stage.are_alike(from, to)) return setup_->stage.pass(flight, to);
   if (!neighbours.bent) {
@@ -205,7 +205,7 @@ void Space::cross(Flight& flight, LegEnd surface, Neighbours& neighbours,
 }
 
 std::optional<Join> Space::join(const PathPoint& p, const PathPoint& q, RandomStream& random,
-                                      ConnectionStatistics& statistics) const {
+                                ConnectionStatistics& statistics) const {
   if (!is_curved(p.part)) return setup_->stage.join(p, q, random);
   if (p.part != q.part) return std::nullopt;
   const double slack = 1e-7 * ((q.x - p.x).norm() + setup_->options.step);  // ends on the surface
@@ -244,15 +244,14 @@ bool Space::goes_outside(const Vec3& x, const Vec3& direction) const {
   return room().distance(x) >= -on_surface && direction.dot(room().normal(x)) > 0;
 }
 
-double Space::transmitted(const PathPoint& p, const Connection& curve,
-                                RandomStream& random) const {
+double Space::transmitted(const PathPoint& p, const Connection& curve, RandomStream& random) const {
   if (!medium().grid()) return transmittance(medium().mu_t(), curve.arc_length);
   return field_->ratio_tracked(leg_room(), start_ray(*field_, p.x, curve.start_direction),
                                curve.sigma, curve.steps, random);
 }
 
 std::unique_ptr<const Space> make_space(const AnyIndexField& field, const Stage& stage,
-                                                     const SpaceOptions& options) {
+                                        const SpaceOptions& options) {
   check(stage);
   return std::make_unique<Space>(field, stage, options);
 }

@@ -27,8 +27,8 @@ struct SpaceOptions {
 /// varying index fills.
 class Space {
  public:
-  /// Use make_space.
-  Space(const AnyIndexField& field, const Stage& stage, const SpaceOptions& options);
+  /// The stage has passed check(): make_space() checks it.
+  Space(const AnyIndexField& field, const Stage& stage, const SpaceOptions& options = {});
 
   double index(const PathPoint& p) const {
     return 1 + (is_curved(p.part) ? field_->excess(p.x) : setup_->stage.excess(p.part));
@@ -40,7 +40,12 @@ class Space {
   /// log: its legs are added to that. rise: the first leg, if straight, is stretched along it
   /// (StraightStage).
   Flight fly(const PathPoint& from, const Vec3& direction, RandomStream& random,
-             FlightLog* log = nullptr, const Vec3* rise = nullptr) const;
+             FlightLog* log = nullptr, const Vec3* rise = nullptr) const {
+    const Spreading spreading = setup_->options.spreading;
+    if (spreading == Spreading::to_boundary && !log)
+      return fly_again_to_boundary(from, direction, random, rise);
+    return fly_once(from, direction, spreading != Spreading::none, random, log, rise);
+  }
   /// Whether flights may go side by side, at less cost than one by one: in one part that the field
   /// fills, without |J|.
   bool has_lanes() const;
@@ -136,8 +141,10 @@ class Space {
   bool stays_inside(RayState ray, double sigma, int steps) const;
   Flight fly_once(const PathPoint& from, const Vec3& direction, bool spreads, RandomStream& random,
                   FlightLog* log, const Vec3* rise) const;
-  Flight& go_on(Flight& flight, std::optional<LegEnd> end, bool spreads, RandomStream& random,
-                FlightLog* log) const;
+  Flight fly_again_to_boundary(const PathPoint& from, const Vec3& direction, RandomStream& random,
+                               const Vec3* rise) const;
+  void go_on(Flight& flight, std::optional<LegEnd> end, bool spreads, RandomStream& random,
+             FlightLog* log) const;
   bool goes_outside(const Vec3& x, const Vec3& direction) const;
   void end_leg(Flight& flight, const RayState& ray, double weight) const;
   std::optional<LegEnd> leg(Flight& flight, Neighbours& neighbours, RandomStream& random) const;

@@ -98,9 +98,8 @@ Part Stage::field_part() const {
 }
 
 bool Stage::absorbs() const {
-  return medium.mu_a > 0 || std::any_of(bodies.begin(), bodies.end(), [](const Body& body) {
-           return body.medium.mu_a > 0;
-         });
+  return medium.mu_a > 0 || std::any_of(bodies.begin(), bodies.end(),
+                                        [](const Body& body) { return body.medium.mu_a > 0; });
 }
 
 Stage without_scattering(const Stage& stage) {

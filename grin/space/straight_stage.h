@@ -1,8 +1,8 @@
 #pragma once
 
 #include "grin/rays/ray_jump.h"
-#include "grin/space/part_medium.h"
 #include "grin/space/flight.h"
+#include "grin/space/part_medium.h"
 
 namespace flatspeckle::grin {
 
@@ -32,9 +32,7 @@ class StraightStage {
   double excess(Part part) const { return *parts_[part].excess; }
 
   /// Light goes from one part into the other as if they were one.
-  bool are_alike(Part a, Part b) const {
-    return parts_[a].first_alike == parts_[b].first_alike;
-  }
+  bool are_alike(Part a, Part b) const { return parts_[a].first_alike == parts_[b].first_alike; }
   /// No other part is alike.
   bool is_alone(Part part) const { return parts_[part].is_alone; }
   /// The index jumps anywhere.
@@ -42,7 +40,8 @@ class StraightStage {
 
   /// To the next collision or to the end of the part. rise: gradient of the logarithm of what light
   /// is worth, along which flights are stretched; or null.
-  LegEnd fly(Flight& flight, RandomStream& random, const Vec3* rise = nullptr) const {
+  [[gnu::flatten]] LegEnd fly(Flight& flight, RandomStream& random,
+                              const Vec3* rise = nullptr) const {
     const Vec3 x = flight.point.x, d = flight.direction;
     const auto path = [&](double s) -> Vec3 { return x + s * d; };
     auto [way, end] = way_to_surface(flight.point, d);

@@ -4,10 +4,10 @@
 #include <vector>
 
 #include "core/result/hdf5_handle.h"
-#include "grin/space/space.h"
 #include "grin/media/density_grid.h"
 #include "grin/render/render_job.h"
 #include "grin/scene/ray_tracing.h"
+#include "grin/space/space.h"
 #include "tests/fuzz/input.h"
 
 // Grids of the index and of the density, of any numbers, and a few rays or flights through those
@@ -82,8 +82,8 @@ void trace_grid(const std::string& integrator) {
     fuzz::require_finite(n);
     if (stop_spec.step && n < 1e-3) return;  // thousands of short steps
   }
-  for (const TracedRay& ray :
-       trace_rays(scene, {}, stops, make_ray_steps(keyed.keys, keyed.values, scene.scale), starts, 2)) {
+  for (const TracedRay& ray : trace_rays(
+           scene, {}, stops, make_ray_steps(keyed.keys, keyed.values, scene.scale), starts, 2)) {
     fuzz::require_finite(ray.end.x.sum() + ray.end.v.sum());
     fuzz::require_finite(ray.end.arc_length + ray.end.optical_path);
     for (const Vec3& x : ray.path) fuzz::require_finite(x.sum());

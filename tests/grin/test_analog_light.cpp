@@ -88,7 +88,7 @@ namespace {
 
 std::shared_ptr<const Space> space_of(const RenderScene& scene, Spreading spreading) {
   return make_space(scene.field, scene.stage,
-                           {scene.step, scene.max_length, spreading, scene.leapfrogs});
+                    {scene.step, scene.max_length, spreading, scene.leapfrogs});
 }
 
 /// So many paths of analog light on two rings.

@@ -8,6 +8,7 @@
 
 #include "bench/scenes/furnaces.h"
 #include "bench/scenes/random_fields.h"
+#include "grin/connections/geometric_spreading.h"
 #include "grin/geometry/frame.h"
 #include "tests/grin/render_tests.h"
 #include "tests/grin/space_stages.h"
@@ -44,7 +45,7 @@ std::vector<BentSpace> bent_spaces() {
 template <class Use>
 void with_space(const BentSpace& bent, const Use& use) {
   if (const auto* homogeneous = std::get_if<Homogeneous>(&bent.field))
-    use(Space(Homogeneous{homogeneous->n_excess}, bent.stage, {}));
+    use(Space(Homogeneous{homogeneous->n_excess}, bent.stage));
   use(*make_space(bent.field, bent.stage, {0.02, 40}));
 }
 
@@ -223,7 +224,7 @@ TEST_CASE("the ways of a beam to a point behind a glass ball, by impact paramete
                             {-Vec3::UnitZ(), through, Vec3::UnitZ()}};
   for (const std::span<const BeamSeed> some :
        {std::span<const BeamSeed>(), std::span<const BeamSeed>(seeds)}) {
-    check(Space(Homogeneous{glass - 1}, stage, {}), some);
+    check(Space(Homogeneous{glass - 1}, stage), some);
     check(*make_space(Homogeneous{glass - 1}, stage, {0.1, 40}), some);
   }
 }
@@ -258,7 +259,7 @@ TEST_CASE(
 
 TEST_CASE("a wide lens sees the glints of a beam in a glass ball as rays say") {
   const RenderScene scene = glints(lens_at, 1.2);
-  const Space space(Homogeneous{glass - 1}, scene.stage, {});
+  const Space space(Homogeneous{glass - 1}, scene.stage);
   const Lights lights(scene.lights, scene.stage, [](const PathPoint&) { return 1.0; });
   const SensorEnd lens(scene.sensors[0], scene.stage);
   RandomStream random(9, 98, 0);

@@ -56,8 +56,7 @@ Estimate traced(const RenderScene& scene, bool deep, RenderMethod method, int ba
   const Tracer tracer = tracers.make(method);
   RenderPlan plan = tracers.plan();
   plan.deep = deep;
-  const auto kernel =
-      path_kernel(plan, tracer.transport, make_space(scene.field, scene.stage));
+  const auto kernel = path_kernel(plan, tracer.transport, make_space(scene.field, scene.stage));
   const auto pixels = static_cast<std::size_t>(tracer.transport->pixels());
   GroupedSums sums(pixels + EnergyBalance::size);
   for (int batch = 0; batch < batches; ++batch) {

@@ -80,7 +80,7 @@ TEST_CASE("straight flights end on the boundary, as sphere tracing finds it") {
   const Surface surfaces[] = {ball, box, smooth(cube, 0.08)};
   const LinearRamp even{0.25, Vec3::Zero()};
   for (const Surface& boundary : surfaces) {
-    const Space space(Homogeneous{0.25}, stage_of(boundary), {});
+    const Space space(Homogeneous{0.25}, stage_of(boundary));
     RandomStream random(1, 91, 0);
     for (int i = 0; i < 300; ++i) {
       const Vec3 x = random_point(random, 0.75), d = random_direction(random);
@@ -123,7 +123,7 @@ TEST_CASE("free flights follow the extinction along the way, straight and curved
       const Stage stage = stage_of(ball, medium);
       const double way = way_out(ball, x, d);
       check_free_flights(
-          Space(Homogeneous{0.1}, stage, {}), medium, x, d,
+          Space(Homogeneous{0.1}, stage), medium, x, d,
           [&](double s) { return straight_depth(medium, x, d, s); }, way, 6000);
       const auto check_curved = [&](const auto& field) {
         // through a grid by steps, so small that they end where closed forms do
@@ -168,7 +168,7 @@ TEST_CASE("absorption without scattering weighs a flight, exactly or by ratio tr
     // a curved space so weak that the way is straight
     const auto curved =
         make_space(LinearRamp{0, 1e-9 * Vec3::UnitX()}, stage_of(ball, medium), {0.1, 8});
-    const Space straight(Homogeneous{0}, stage_of(ball, medium), {});
+    const Space straight(Homogeneous{0}, stage_of(ball, medium));
     const auto check_mean = [&](const auto& space, std::uint64_t seed) {
       RandomStream random(seed, 92, 0);
       double sum = 0, squares = 0;
@@ -261,7 +261,7 @@ TEST_CASE("a flight walked back spreads as n_P^2 / |J_PQ| = n_Q^2 / |J_QP|") {
 
 TEST_CASE("a glass sphere splits light by Fresnel, bends it by Snell and keeps angular momentum") {
   const double n = 1.5;
-  const Space space(Homogeneous{n - 1}, with_body(Sphere{Vec3::Zero(), 3}, ball), {});
+  const Space space(Homogeneous{n - 1}, with_body(Sphere{Vec3::Zero(), 3}, ball));
   for (const double impact : {0.1, 0.6, 0.95}) {
     const Vec3 x(impact, 0, -2);
     const double at = std::asin(impact), in = std::asin(impact / n);
@@ -302,7 +302,7 @@ TEST_CASE("a glass sphere splits light by Fresnel, bends it by Snell and keeps a
 }
 
 TEST_CASE("what total reflection traps is lost, and what it does not trap is not") {
-  const Space space(Homogeneous{0.5}, with_body(Sphere{Vec3::Zero(), 3}, ball), {});
+  const Space space(Homogeneous{0.5}, with_body(Sphere{Vec3::Zero(), 3}, ball));
   RandomStream random(8, 91, 0);
   const double free = 1 / 1.5;
   for (const double radius : {0.5, 0.9}) {
@@ -318,8 +318,9 @@ TEST_CASE("what total reflection traps is lost, and what it does not trap is not
 
 TEST_CASE("a flight is the same through a mesh of a cube as through the cube") {
   const Box cube{Vec3::Constant(-0.8), Vec3::Constant(0.8)};
-  const Space exact(Homogeneous{0}, with_body(Sphere{Vec3::Zero(), 3}, cube), {});
-  const Space mesh(Homogeneous{0}, with_body(Sphere{Vec3::Zero(), 3}, smooth(cube_mesh(0.8), 0.04)), {});
+  const Space exact(Homogeneous{0}, with_body(Sphere{Vec3::Zero(), 3}, cube));
+  const Space mesh(Homogeneous{0},
+                   with_body(Sphere{Vec3::Zero(), 3}, smooth(cube_mesh(0.8), 0.04)));
   RandomStream random(9, 91, 0);
   for (int i = 0; i < 300; ++i) {
     const Vec3 x = 2.5 * random_direction(random), d = (random_point(random, 1) - x).normalized();
@@ -358,8 +359,8 @@ TEST_CASE("flights that are too long, or where there is no index, are lost") {
   CHECK(brief->fly({0.8 * Vec3::UnitX()}, Vec3::UnitX(), random).end == Flight::End::boundary);
   const auto dark = make_space(LinearRamp{0, Vec3(0, 0, -2)}, stage_of(ball), {0.01, 8});
   CHECK(dark->fly({0.8 * Vec3::UnitZ()}, Vec3::UnitX(), random).end == Flight::End::lost);
-  const auto guide = make_space(ParabolicGuide({.axis_excess = 0.1, .alpha = 2}),
-                                       stage_of(ball), {0.01, 8});
+  const auto guide =
+      make_space(ParabolicGuide({.axis_excess = 0.1, .alpha = 2}), stage_of(ball), {0.01, 8});
   CHECK(guide->fly({0.9 * Vec3::UnitX()}, Vec3::UnitZ(), random).end == Flight::End::lost);
 }
 

@@ -36,8 +36,8 @@ struct Mean {
 
 /// A path from p flies to a point q of density sum over curves of mu_t(q) T / (4 pi |J|): the share
 /// of flights that collide in each octant about p, by flights and by joins to even points.
-void check_flights_against_joins(const Space& space, const PathPoint& p, const ScatteringMedium& medium,
-                                 int samples) {
+void check_flights_against_joins(const Space& space, const PathPoint& p,
+                                 const ScatteringMedium& medium, int samples) {
   const auto octant = [&](const Vec3& x) {
     const Vec3 d = x - p.x;
     return (d[0] > 0) + 2 * (d[1] > 0) + 4 * (d[2] > 0);
@@ -83,7 +83,7 @@ TEST_CASE("the reference extinction is that of the density inside of the part") 
   }
   const ScatteringMedium medium{2, 0, {}, std::make_shared<DensityGrid>(grid, density)};
   const Stage stage{box, medium, {Body{core, medium}}};
-  const Space space(Homogeneous{0}, stage, {});
+  const Space space(Homogeneous{0}, stage);
   RandomStream random(2, 94, 0);
   ConnectionStatistics statistics;
   const auto depth = [&](const Vec3& p, const Vec3& q, Part part) {
@@ -98,7 +98,7 @@ TEST_CASE("straight joins: closed form, none through a body or to another part")
                     .medium = {.mu_s = 0.4, .mu_a = 0.1},
                     .bodies = {Body{ball, {.mu_a = 0.7}}},
                     .excess_around = 0.2};
-  const Space space(Homogeneous{0.5}, stage, {});
+  const Space space(Homogeneous{0.5}, stage);
   RandomStream random(1, 96, 0);
   ConnectionStatistics statistics;
   int blocked = 0;
@@ -171,10 +171,9 @@ TEST_CASE("flights and joins agree on where light from a point collides") {
   for (const bool gridded : {false, true}) {
     if (gridded) medium.density = tests::random_density(5);
     const Stage stage{.boundary = ball, .medium = medium};
-    check_flights_against_joins(Space(Homogeneous{0.1}, stage, {}), p, medium, 20000);
+    check_flights_against_joins(Space(Homogeneous{0.1}, stage), p, medium, 20000);
     // the focus of light from p is outside: at one inside, 1/|J| has no variance
-    const auto fisheye =
-        make_space(Fisheye({.centre_excess = 1, .radius = 1.1}), stage, {0.05, 8});
+    const auto fisheye = make_space(Fisheye({.centre_excess = 1, .radius = 1.1}), stage, {0.05, 8});
     check_flights_against_joins(*fisheye, p, medium, 8000);
   }
 }
@@ -226,7 +225,7 @@ TEST_CASE("no curve runs outside the boundary between the ends of its steps") {
 TEST_CASE("a homogeneous field runs no solver") {
   const Stage stage{.boundary = ball, .medium = {.mu_s = 1}};
   const auto space = make_space(Homogeneous{0.4}, stage, {0.1, 1e-3});
-  const Space straight(Homogeneous{0.4}, stage, {});
+  const Space straight(Homogeneous{0.4}, stage);
   ConnectionStatistics statistics;
   RandomStream a(6, 96, 0), b(6, 96, 0);
   for (int i = 0; i < 100; ++i) {

@@ -48,7 +48,7 @@ TEST_CASE("where nothing is refracted, joins go straight through a body's surfac
   const ScatteringMedium thin{.mu_s = 0.1, .mu_a = 0.1}, thick{.mu_s = 0.7, .mu_a = 0.3};
   for (const Surface& body : bodies) {
     const Stage stage{room, thin, {Body{body, thick}}, 0.2};
-    const Space space(Homogeneous{0.2}, stage, {});
+    const Space space(Homogeneous{0.2}, stage);
     const auto by_legs = make_space(Homogeneous{0.2}, stage, {0.1, 1});
     CHECK(space.joins_all());
     RandomStream random(1, 97, 0);
@@ -77,7 +77,7 @@ TEST_CASE("where nothing is refracted, joins go straight through a body's surfac
 
 TEST_CASE("a flight through a body where nothing is refracted is what a join finds") {
   const Stage stage{room, {.mu_s = 0.1}, {Body{ball, {.mu_s = 0.5}}}};
-  const Space space(Homogeneous{0}, stage, {});
+  const Space space(Homogeneous{0}, stage);
   RandomStream random(2, 97, 0);
   ConnectionStatistics statistics;
   int across = 0;
@@ -169,7 +169,7 @@ TEST_CASE("a body like the one around it is not seen") {
   const ScatteringMedium medium{.mu_s = 0.5, .mu_a = 0.5};
   Stage whole{room, {.mu_s = 0.2}, {Body{ball, medium, 0.4}}}, divided = whole;
   divided.bodies.push_back({Sphere{Vec3(0.3, 0.2, -0.1), 0.6}, medium, 0.4});
-  const Space one(Homogeneous{0}, whole, {}), two(Homogeneous{0}, divided, {});
+  const Space one(Homogeneous{0}, whole), two(Homogeneous{0}, divided);
   RandomStream random(7, 97, 0);
   ConnectionStatistics statistics;
   int joined = 0;
@@ -240,7 +240,7 @@ std::vector<NamedSpace> refracting() {
 template <class Use>
 void with_space(const NamedSpace& named, const Use& use) {
   if (const auto* homogeneous = std::get_if<Homogeneous>(&named.field))
-    use(Space(Homogeneous{homogeneous->n_excess}, named.stage, {}));
+    use(Space(Homogeneous{homogeneous->n_excess}, named.stage));
   use(*make_space(named.field, named.stage, {0.05, 40}));
 }
 
@@ -253,8 +253,8 @@ bool alike(const Join& join, const Way& way) {
 
 /// A join that is this way from p to q, among those that the trials find.
 template <class Way>
-std::optional<Join> same_way(const Space& space, const PathPoint& p, const PathPoint& q, const Way& way,
-                             int trials, RandomStream& random) {
+std::optional<Join> same_way(const Space& space, const PathPoint& p, const PathPoint& q,
+                             const Way& way, int trials, RandomStream& random) {
   ConnectionStatistics statistics;
   for (int i = 0; i < trials; ++i) {
     const auto join = space.join_through(p, q, random, statistics);

@@ -41,7 +41,7 @@ double length_inside(const TriangleMesh& mesh, const Vec3& from, const Vec3& to)
 TEST_CASE("straight ways through a torus attenuate as triangles say") {
   const TriangleMesh mesh = torus_mesh();
   const Stage stage{room, {}, {Body{smooth(mesh, 0.05), {.mu_a = 1}}}};
-  const Space space(Homogeneous{0}, stage, {});
+  const Space space(Homogeneous{0}, stage);
   CHECK(space.joins_all());
   RandomStream random(1, 98, 0);
   ConnectionStatistics statistics;
@@ -72,7 +72,7 @@ TEST_CASE("a clear ball of triangles keeps no light, whatever its index") {
   for (const double index : {1.0001, 1.4, 0.7}) {
     CAPTURE(index);
     const Stage stage{room, {}, {Body{smooth(ball_mesh(5), 0.2)}}};
-    const Space space(Homogeneous{index - 1}, stage, {});
+    const Space space(Homogeneous{index - 1}, stage);
     RandomStream random(3, 98, 0);
     int lost = 0;
     constexpr int flights = 200000;

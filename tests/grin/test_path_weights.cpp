@@ -6,9 +6,9 @@
 
 #include "bench/scenes/random_fields.h"
 #include "core/numbers/random.h"
-#include "grin/space/space.h"
 #include "grin/paths/beam_join.h"
 #include "grin/paths/path_join.h"
+#include "grin/space/space.h"
 
 namespace flatspeckle::grin::tests {
 
@@ -74,8 +74,8 @@ PathVertex arrived(const Transport& transport, const PathVertex& here, const Fli
   return next;
 }
 
-PathVertex light_subpath(const Transport& transport, const Space& space,
-                         const WholePath& path, int count) {
+PathVertex light_subpath(const Transport& transport, const Space& space, const WholePath& path,
+                         int count) {
   PathVertex vertex = end_vertex(transport.strategies, path.light);
   for (int i = 0; i + 1 < count; ++i) {
     const Edge& edge = path.edges[i];
@@ -238,8 +238,7 @@ const Sensor sensors[] = {Camera{Vec3(0, 0.1, -0.6), Vec3::UnitZ(), Vec3::UnitY(
 
 TEST_CASE("the weights of all strategies that make a path sum to 1 where rays are curved") {
   const Stage stage = foggy_ball();
-  const auto space =
-      make_space(Fisheye({.centre_excess = 0.7, .radius = 2.5}), stage, {0.02, 20});
+  const auto space = make_space(Fisheye({.centre_excess = 0.7, .radius = 2.5}), stage, {0.02, 20});
   RandomStream random(3, 91, 0);
   int paths = 0;
   for (const Light& light : lights)
@@ -343,8 +342,7 @@ TEST_CASE("weights sum to 1 on paths through a body that refracts nothing") {
 TEST_CASE("weights sum to 1 on paths that cross a body, and of beams") {
   Stage stage = foggy_ball();
   stage.bodies.push_back({Sphere{Vec3(0.1, 0, 0), 0.8}, {2.5, 0, {}}});
-  const auto space =
-      make_space(Fisheye({.centre_excess = 0.7, .radius = 1.5}), stage, {0.02, 20});
+  const auto space = make_space(Fisheye({.centre_excess = 0.7, .radius = 1.5}), stage, {0.02, 20});
   const Light beam = BeamLight{Vec3(0, 0, -1.4), Vec3::UnitZ(), 0.07, 1, Spread::gaussian};
   const Light fibre = FibreLight{Vec3(0, 0, -1.4), Vec3::UnitZ(), 0.1, 0.8};
   RandomStream random(4, 91, 0);

@@ -4,8 +4,8 @@
 #include <Eigen/Geometry>
 #include <doctest/doctest.h>
 
-#include "grin/space/space.h"
 #include "grin/lights/light.h"
+#include "grin/space/space.h"
 #include "tests/grin/example_sensors.h"
 
 namespace flatspeckle::grin {
@@ -332,8 +332,7 @@ TEST_CASE(
   // bends light by some 15 degrees on its way across
   const Vec3 slope(0.1, -0.07, 0.05);
   const auto space = [&](const Surface& boundary) -> std::shared_ptr<const Space> {
-    return make_space(LinearRamp{0.4, slope}, empty_stage(boundary),
-                             {0.2, 100, Spreading::none});
+    return make_space(LinearRamp{0.4, slope}, empty_stage(boundary), {0.2, 100, Spreading::none});
   };
   const auto n_squared = [&](const Vec3& x) { return std::pow(1.4 + slope.dot(x), 2); };
   const AreaDetector area = area_on_box();

@@ -9,9 +9,9 @@
 
 #include "bench/oracles/multiprecision.h"
 #include "bench/stability/extreme_rows.h"
-#include "grin/space/space.h"
 #include "grin/media/free_flight.h"
 #include "grin/media/phase_function.h"
+#include "grin/space/space.h"
 #include "mc/walk/bounded_stretched_flight.h"
 
 namespace flatspeckle::bench {
@@ -117,7 +117,6 @@ Finding long_walk() {
   return {worst, 1e-14};
 }
 
-
 /// [0, 4] x [0, 1]^2, density 1 at x = 0 and 1, 1e6 at 2, 1 at 3 and 4, linear between them: in all
 /// 1e6 + 2 along x.
 Stage spike(double mu_s) {
@@ -142,7 +141,7 @@ Finding through_spike(const Space& space) {
 /// Beside it tentative collisions are 1e6 for each true one; transmittance by ratio tracking along
 /// x = 0.5, where the density is 1.
 Finding beside_spike() {
-  const Space space(Homogeneous{0}, spike(0.3), {});
+  const Space space(Homogeneous{0}, spike(0.3));
   RandomStream random(5, 90, 0);
   ConnectionStatistics statistics;
   constexpr int count = 25;
@@ -159,7 +158,8 @@ Finding beside_spike() {
 Finding through_vacuum() {
   const FieldGrid grid{Vec3::Zero(), Vec3::Ones(), {5, 2, 2}};
   const auto empty = std::make_shared<const DensityGrid>(grid, std::vector<double>(grid.size()));
-  const Space space(Homogeneous{0}, {Box{Vec3::Zero(), Vec3(4, 1, 1)}, {.mu_s = 1e6, .density = empty}}, {});
+  const Space space(Homogeneous{0},
+                    {Box{Vec3::Zero(), Vec3(4, 1, 1)}, {.mu_s = 1e6, .density = empty}});
   RandomStream random(6, 90, 0);
   const Flight flight = space.fly({Vec3(0, 0.4, 0.6)}, Vec3::UnitX(), random);
   return {flight.end == Flight::End::boundary ? std::abs(flight.arc_length - 4) : 1, 1e-14};
@@ -194,11 +194,10 @@ std::vector<ExtremeCase> flight_extremes() {
   add_flights(rows);
   add_phases(rows);
   rows.add("density of contrast 1e6, through its spike", "exp(-OD), in errors",
-           [] { return through_spike(Space(Homogeneous{0}, spike(1e-6), {})); });
+           [] { return through_spike(Space(Homogeneous{0}, spike(1e-6))); });
   rows.add("density of contrast 1e6, curved, n - 1 = 1e-6", "exp(-OD), in errors", [] {
     // the bend, 4e-6, changes the depth by as much
-    const auto space =
-        make_space(LinearRamp{0, 1e-6 * Vec3::UnitY()}, spike(1e-6), {0.5, 8});
+    const auto space = make_space(LinearRamp{0, 1e-6 * Vec3::UnitY()}, spike(1e-6), {0.5, 8});
     return through_spike(*space);
   });
   rows.add("density of contrast 1e6, beside its spike", "exp(-OD), in errors", beside_spike);

@@ -44,7 +44,7 @@ Finding crossings(double scale, const Vec3& at, double limit) {
 Finding along_faces(double index) {
   const Stage stage{
       Box{Vec3::Constant(-2), Vec3::Constant(2)}, {}, {Body{smooth(cube_mesh(1), 0.125)}}};
-  const Space space(Homogeneous{index - 1}, stage, {});
+  const Space space(Homogeneous{index - 1}, stage);
   RandomStream random(12, 99, 0);
   int lost = 0;
   for (int flight = 0; flight < 3000; ++flight) {
@@ -59,7 +59,7 @@ Finding along_faces(double index) {
 /// Of light that grazes a ball of triangles: in it for ever, or at 10,000 reflections.
 Finding lost_by_grazing() {
   const Stage stage{Sphere{Vec3::Zero(), 3}, {}, {Body{smooth(ball_mesh(5), 0.2)}}};
-  const Space space(Homogeneous{0.4}, stage, {});
+  const Space space(Homogeneous{0.4}, stage);
   RandomStream random(13, 99, 0);
   int lost = 0;
   constexpr int flights = 20000;
