@@ -9,7 +9,6 @@
 #include "flatland/scene/scene_datasets.h"
 #include "mc/slab/refinement.h"
 #include "mc/slab/slab_flux.h"
-#include "mc/space/space_flux.h"
 
 namespace flatspeckle::apps {
 
@@ -84,9 +83,7 @@ class FluxExperiment : public Experiment {
   mc::FluxJob made_job() const {
     const auto bins = static_cast<std::size_t>(angle_bins_);
     if (by_mc()) return mc::flux_job(*scene_, bins, seed());
-    const auto by_transport =
-        scene_->medium.dimension == 3 ? mc::space_flux_job : mc::slab_flux_job;
-    return by_transport(*scene_, bins, {methods_.tolerance});
+    return mc::slab_flux_job(*scene_, bins, {methods_.tolerance});
   }
 
   void write(ResultFile& file, const GroupedSums& sums, bool tells) const {

@@ -8,8 +8,7 @@
 #include "core/error.h"
 #include "core/numbers/blas.h"
 #include "mc/estimators/covariance_estimator.h"
-#include "mc/slab/layered_covariance.h"
-#include "mc/slab/slab_covariance.h"
+#include "mc/slab/slab_jobs.h"
 #include "mc/space/space_scene.h"
 #include "wave_solver/solutions/ensemble.h"
 
@@ -165,9 +164,6 @@ Estimation transport_estimation(const Scene& scene, mc::ReversedPaths reversed, 
        << (scene.profile ? " through layers" : "") << ", by doubling; "
        << (near ? "near ends as plane waves; " : "")
        << (with_reversed ? "reversed paths" : "no reversed paths") << "; tolerance " << tolerance;
-  if (scene.profile)
-    return {mc::layered_covariance_job(scene, with_reversed, {tolerance}), plan.str()};
-  if (space) return {mc::space_covariance_job(scene, with_reversed, {tolerance}), plan.str()};
   return {mc::slab_covariance_job(scene, with_reversed, {tolerance}), plan.str()};
 }
 

@@ -4,9 +4,7 @@
 #include "core/error.h"
 #include "flatland/scene/frequency_shift.h"
 #include "mc/changes/frequency_shifts.h"
-#include "mc/slab/layered_covariance.h"
-#include "mc/slab/slab_covariance.h"
-#include "mc/space/space_scene.h"
+#include "mc/slab/slab_jobs.h"
 #include "mc/varying/layer_gradient.h"
 #include "wave_solver/solutions/ensemble.h"
 
@@ -49,8 +47,7 @@ ExtendedEstimation transport_gradient(const Scene& scene, mc::ReversedPaths reve
   refuse_layers(scene, "gradient");
   mc::check_gradient(scene);
   const bool with_reversed = mc::make_plan(scene, reversed).reversed;
-  const auto job = scene.medium.dimension == 3 ? mc::space_gradient_job : mc::slab_gradient_job;
-  return with_gradient(scene, job(scene, with_reversed, {tolerance}),
+  return with_gradient(scene, mc::slab_gradient_job(scene, with_reversed, {tolerance}),
                        transport_estimation(scene, reversed, tolerance).plan);
 }
 
@@ -91,10 +88,7 @@ ExtendedEstimation mc_delays(const Scene& scene, mc::ReversedPaths reversed, con
 mc::PathJob change_job(const Scene& scene, mc::ReversedPaths reversed,
                        const std::vector<mc::FieldChange>& changes, double tolerance) {
   const bool with_reversed = mc::make_plan(scene, reversed).reversed;
-  const auto job = scene.profile                 ? mc::layered_change_job
-                   : scene.medium.dimension == 3 ? mc::space_change_job
-                                                 : mc::slab_change_job;
-  return job(scene, with_reversed, {tolerance}, changes);
+  return mc::slab_change_job(scene, with_reversed, {tolerance}, changes);
 }
 
 ExtendedEstimation transport_delays(const Scene& scene, mc::ReversedPaths reversed,

@@ -9,7 +9,6 @@
 #include "bench/oracles/discrete_ordinates.h"
 #include "core/run/stopwatch.h"
 #include "mc/slab/slab_covariance.h"
-#include "mc/space/space_covariance.h"
 #include "mc/space/space_scene.h"
 
 namespace flatspeckle::bench {
@@ -45,18 +44,9 @@ SceneSpec two_term_slab() {
 /// The covariance to a tolerance.
 using Transport = std::function<std::vector<Complex>(double tolerance)>;
 
-Transport in_plane(const std::shared_ptr<const Scene>& scene) {
-  return [=](double tolerance) {
-    return mc::slab_covariance(*scene, plan_of(*scene).reversed, {tolerance}).value;
-  };
-}
-
-Transport in_space(const std::shared_ptr<const Scene>& scene) {
-  return [=](double tolerance) {
-    return mc::space_covariance(mc::space_slab(*scene), mc::space_request(scene->request), false,
-                                {tolerance})
-        .value;
-  };
+Transport by_transport(const std::shared_ptr<const Scene>& scene) {
+  const bool reversed = scene->medium.dimension == 2 && plan_of(*scene).reversed;
+  return [=](double tolerance) { return mc::slab_covariance(*scene, reversed, {tolerance}).value; };
 }
 
 /// A slab, and tolerances of transport: of the reference, and the finest of the curve.
@@ -110,14 +100,14 @@ std::vector<ErrorRun> runs_on(const Slab& slab, const std::vector<Method>& metho
 
 std::vector<ErrorRun> plane_runs() {
   const FlatScene flat{"slab_hg", std::make_shared<const Scene>(make_scene(slab()))};
-  return runs_on({flat, in_plane(flat.scene), 1e-10, 1e-8}, path_methods(flat));
+  return runs_on({flat, by_transport(flat.scene), 1e-10, 1e-8}, path_methods(flat));
 }
 
 std::vector<ErrorRun> space_runs() {
   const FlatScene flat{"slab_hg, in space",
                        std::make_shared<const Scene>(mc::in_space(make_scene(slab()), slab()))};
   return runs_on(
-      {flat, in_space(flat.scene), 1e-6, 1e-4},
+      {flat, by_transport(flat.scene), 1e-6, 1e-4},
       {{.scene = flat.name, .name = "ours", .trial = our_paths(flat.scene), .slow = true}});
 }
 

@@ -4,7 +4,6 @@
 #include "bench/plan/plan_timing.h"
 #include "bench/scenes/standard_scenes.h"
 #include "mc/slab/slab_covariance.h"
-#include "mc/space/space_covariance.h"
 #include "mc/space/space_scene.h"
 
 namespace flatspeckle::bench {
@@ -23,9 +22,7 @@ std::vector<Complex> covariance(const Scene& slab, const mc::FieldChange& change
 }
 
 std::vector<Complex> covariance_in_space(const Scene& slab) {
-  return mc::space_covariance(mc::space_slab(slab), mc::space_request(slab.request), false,
-                              {in_space_tolerance})
-      .value;
+  return mc::slab_covariance(slab, false, {in_space_tolerance}).value;
 }
 
 /// What tilts share, done again for each.

@@ -9,7 +9,6 @@
 #include "mc/jobs/flux_job.h"
 #include "mc/slab/slab_covariance.h"
 #include "mc/slab/slab_flux.h"
-#include "mc/space/space_flux.h"
 #include "mc/space/space_scene.h"
 
 namespace flatspeckle::bench {
@@ -27,7 +26,7 @@ Finding lossless_in_plane(const Bulk& bulk) {
 }
 
 double lost_in_space(const Scene& scene, double optical_depth) {
-  const auto shares = mc::space_flux(scene, 0, {1e-6}).value;
+  const auto shares = mc::slab_flux(scene, 0, {1e-6}).value;
   return std::abs(shares[mc::reflected] + shares[mc::transmitted] + std::expm1(-optical_depth));
 }
 
@@ -52,8 +51,7 @@ Finding by_paths_in_space(const Bulk& bulk, double view, std::uint64_t paths) {
   spec.scatterer = "hg";
   spec.g = bulk.g;
   const Scene scene = mc::in_space(hg_slab(bulk, intensity_request({0}, {far_view(view)})), spec);
-  const auto request = mc::space_request(scene.request);
-  const auto exact = mc::space_covariance(mc::space_slab(scene), request, false, {1e-3}).value;
+  const auto exact = mc::slab_covariance(scene, false, {1e-3}).value;
   const Estimate found = covariance(scene, ReversedPaths::no, paths);
   return in_errors(found.value[0], found.error[0], exact[0], 0.1, 1e-3);
 }
@@ -79,9 +77,7 @@ Finding same_frequencies(const Bulk& bulk, int dimension) {
   spec.g = bulk.g;
   if (dimension == 3) scene = mc::in_space(scene, spec);
   const auto solve = [&](double shift) {
-    const mc::FieldChange change{.shift = shift};
-    return dimension == 3 ? mc::space_covariance(scene, false, {1e-6}, change).value[0]
-                          : mc::slab_covariance(scene, false, {1e-6}, change).value[0];
+    return mc::slab_covariance(scene, false, {1e-6}, {.shift = shift}).value[0];
   };
   const Complex intensity = solve(0);
   return {std::abs(solve(1e-18) / intensity - 1.0), 1e-5};

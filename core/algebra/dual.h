@@ -111,6 +111,9 @@ inline Complex as_complex(Complex a) {
 inline Dual<Complex> as_complex(const Dual<double>& a) {
   return {a.value, a.slope};
 }
+inline Dual<Complex> as_complex(const Dual<Complex>& a) {
+  return a;
+}
 
 /// Calculations with complex extinction have real depths.
 template <typename Number>

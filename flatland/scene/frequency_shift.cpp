@@ -11,15 +11,17 @@ std::size_t changing_entries(const CovarianceRequest& request) {
   return request.has_reference() ? request.reference_intensity(0) : request.entries.size();
 }
 
-double matched_view(const CovarianceRequest& request, const Entry& entry, double shift) {
-  const auto sine = [&](const auto& end) { return std::sin(end.angle); };
-  const Channel a = request.channels[entry.a], b = request.channels[entry.b];
-  const double view = request.views[b.view].angle;
-  if (shift == 0) return view;
+double matched_view(double light1, double view1, double light2, double view2, double shift) {
+  if (shift == 0) return view2;
   const double turned =
-      std::asin(sine(request.lights[b.light]) -
-                (sine(request.lights[a.light]) - sine(request.views[a.view])) / (1 + shift));
-  return std::cos(view) > 0 ? turned : std::numbers::pi - turned;
+      std::asin(std::sin(light2) - (std::sin(light1) - std::sin(view1)) / (1 + shift));
+  return std::cos(view2) > 0 ? turned : std::numbers::pi - turned;
+}
+
+double matched_view(const CovarianceRequest& request, const Entry& entry, double shift) {
+  const Channel a = request.channels[entry.a], b = request.channels[entry.b];
+  return matched_view(request.lights[a.light].angle, request.views[a.view].angle,
+                      request.lights[b.light].angle, request.views[b.view].angle, shift);
 }
 
 Scene at_frequency(const Scene& scene, double shift) {

@@ -15,6 +15,8 @@ std::size_t changing_entries(const CovarianceRequest& request);
 /// The second view of an entry, turned so that transverse momenta match where the wavenumber of the
 /// second field is larger by a share `shift` (conventions, C39); nan past the horizon.
 double matched_view(const CovarianceRequest& request, const Entry& entry, double shift);
+/// The same by the angles of both lights and views.
+double matched_view(double light1, double view1, double light2, double view2, double shift);
 
 /// The scene at k (1 + shift), with a channel for the second field of each changing entry, in their
 /// order: its light in the matched view. The medium stays that of k.

@@ -74,18 +74,6 @@ BatchJob two_batches(std::size_t size, const std::function<Refined()>& solve) {
   return job;
 }
 
-PathJob two_batch_job(std::size_t entries, std::size_t quantities,
-                      const std::function<Refined()>& solve) {
-  PathJob job;
-  job.entries = entries;
-  job.all = sample_mean;
-  job.field.covariance = [entries](double samples, std::span<const Complex> sums) {
-    return sample_mean(samples, sums.first(entries));
-  };
-  job.field.batches = two_batches(quantities * entries, solve);
-  return job;
-}
-
 void write_numerical(ResultFile& file, const std::string& group) {
   ResultGroup(file, numerical_table, group)
       .attribute("errors", "numerical: differences from fewer ordinates");

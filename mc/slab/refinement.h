@@ -9,7 +9,6 @@
 #include "core/result/result_file.h"
 #include "core/run/runner.h"
 #include "flatland/request/request.h"
-#include "mc/jobs/path_job.h"
 
 namespace flatspeckle::mc {
 
@@ -17,23 +16,14 @@ namespace flatspeckle::mc {
 /// ordinates to a relative tolerance.
 struct Refinement {
   double tolerance = 1e-6;
-  int least_order = 5;        ///< nodes of a panel
-  int most_ordinates = 1500;  ///< of both ways; the error tells what is missing. 0: one solution
+  int least_order = 5;  ///< nodes of a panel
+  /// Of both ways; the error tells what is missing. 0: one solution, in space one step.
+  int most_ordinates = 1500;
 
   /// Where small tolerances are asked for, fewer nodes have never been enough.
   int first_order() const { return std::max(least_order, tolerance > 1e-5 ? 5 : 7); }
   static int next_order(int order) { return (4 * order + 2) / 3; }
 };
-
-/// Marks a part of a solution whose last two orders differ by at most `worst`, relative: it is done
-/// where they agree twice, as one small difference may be chance, or where it would become too
-/// large.
-template <typename Part>
-void settle(Part& part, double worst, const Refinement& refinement) {
-  const double tolerance = refinement.tolerance / 2;
-  part.done = (worst <= tolerance && part.near) || 4 * part.size > 3 * refinement.most_ordinates;
-  part.near = worst <= 100 * tolerance;
-}
 
 /// Values and their difference from those of fewer ordinates, which is more than their error.
 struct Refined {
@@ -59,10 +49,6 @@ Refined by_parameter(Refined all, double unit);
 /// statistics of batches call the standard error of any function of them is its difference then.
 /// Solved when the first batch runs.
 BatchJob two_batches(std::size_t size, const std::function<Refined()>& solve);
-
-/// The same of several quantities, [quantity][entry], of which the first is the covariance.
-PathJob two_batch_job(std::size_t entries, std::size_t quantities,
-                      const std::function<Refined()>& solve);
 
 extern const DatasetTable numerical_table;
 /// Says of a result, or of a group of it, that its errors are such differences.

@@ -6,176 +6,244 @@
 #include <memory>
 #include <utility>
 
+#include "core/algebra/divided_difference.h"
 #include "core/numbers/blas.h"
 #include "core/run/interrupt.h"
 #include "core/run/parallel.h"
 #include "mc/slab/finite_ends.h"
-#include "mc/slab/range_refinement.h"
-#include "mc/slab/transport_jobs.h"
+#include "mc/space/space.h"
 #include "mc/transport/chains.h"
-#include "mc/transport/scattering_matrices.h"
+#include "mc/transport/direction_modes.h"
+#include "mc/transport/plane.h"
 
 namespace flatspeckle::mc {
 
 namespace {
 
-/// A slab, and for Dual<double> what it is differentiated by.
-template <typename Number>
-struct Slab {
-  const Scene& scene;
-  const ScatteringLaw& resolved;  ///< what grids are made for
-  const LawOf<Number>& law;
-  RealOf<Number> albedo;
-  Departure<Number> departure{};
+/// Nodes of a panel, and the highest mode of direction.
+struct Resolution {
+  int order, modes;
 
-  RealOf<Number> optical_depth() const {
-    return scene.medium.mu_t * scene.domain.depth / departure.length;
-  }
-  DoubleScatteringOf<Number> twice(const ChainGroup& group, const ChainGroup::Link& link) const {
-    return {scene, group.q, group.lights[static_cast<std::size_t>(link.light)],
-            group.views[static_cast<std::size_t>(link.view)], departure};
-  }
+  Resolution finer_order() const { return {Refinement::next_order(order), modes}; }
+  Resolution finer_modes() const { return {order, Refinement::next_order(modes)}; }
 };
 
-/// What groups of one grid share.
-template <typename Number>
-struct Discrete {
-  AngularGrid grid;
-  ScatteringMatricesOf<Number> matrices;
-
-  Discrete(const std::vector<Focus>& foci, int order, const Slab<Number>& slab)
-      : grid(foci, order, slab.resolved.width()),
-        matrices(grid, slab.law, slab.albedo,
-                 slab.departure.extinction(slab.scene.k / slab.scene.medium.mu_t), slab.departure) {
-  }
-  Discrete(const Discrete&) = delete;
+/// Per link of a group: values, and for Dual<double> then derivatives.
+struct Solution {
+  std::vector<Complex> value;
+  int ordinates = 0;  ///< of both ways, times azimuthal functions that are coupled
 };
 
-/// Paths of one scattering, per entry.
-template <typename Number>
-std::vector<ComplexOf<Number>> scattered_once(const Slab<Number>& slab) {
-  std::vector<ComplexOf<Number>> values;
-  for (const auto& [lights, views, entry] :
-       chains(slab.scene.request, false, slab.departure.shift)) {
-    const DoubleScatteringOf<Number> pair(slab.scene, 0, lights, views, slab.departure);
-    values.push_back(slab.albedo * (pair.once() * slab.law.pair(lights.first - views.first,
-                                                                lights.second - views.second, 0)));
-  }
-  return values;
+double largest_change(const std::vector<Complex>& a, const std::vector<Complex>& b,
+                      const std::vector<double>& scale) {
+  double largest = 0;
+  for (std::size_t i = 0; i < a.size(); ++i)
+    if (scale[i] > 0) largest = std::max(largest, std::abs(a[i] - b[i]) / scale[i]);
+  return largest;
 }
 
-/// Paths of three scatterings and more, per link of the group.
-template <typename Number>
-std::vector<Complex> solved(const Slab<Number>& slab, const ChainGroup& group,
-                            const ScatteringMatricesOf<Number>& matrices) {
-  std::vector<ComplexOf<Number>> values(group.links.size());
-  for (const auto parity : matrices.parities(group.q)) {
-    const auto [lights, views] = matrices.ends(slab.scene, group.lights, group.views, parity);
-    const auto response =
-        layer_response(matrices.transport(group.q, parity), slab.optical_depth(), lights, views);
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      const auto& link = group.links[i];
-      values[i] += entry(response.collected, link.view, link.light) -
-                   matrices.double_scattering(slab.twice(group, link), lights, link.light, views,
-                                              link.view, parity);
-    }
-  }
-  return flat(values);
-}
-
-/// Per entry or link: values, and for Dual<double> then derivatives.
-template <typename Number>
-class Refiner {
+/// Groups of chains, each refined until it is done.
+template <typename Geometry, typename Number>
+class CovarianceRefiner {
  public:
-  Refiner(const Slab<Number>& slab, bool reversed, const Refinement& refinement)
-      : slab_(slab),
-        request_(slab.scene.request),
-        refinement_(refinement),
-        few_(flat(scattered_once(slab))) {
-    for (ChainGroup& group :
-         grouped(slab.scene, slab.resolved, chains(request_, reversed, slab.departure.shift),
-                 slab.departure.shift))
-      parts_.push_back({std::move(group), {}, {}, 0, false, false});
+  using Slab = SlabOf<Geometry, Number>;
+  using Request = RequestOf<typename Geometry::Direction>;
+  using Group = ChainGroup<Geometry>;
+  using Discrete = DiscreteSlabOf<Geometry, Number>;
+  using C = ComplexOf<Number>;
+
+  CovarianceRefiner(const Slab& slab, const Request& request, bool reversed,
+                    const Refinement& refinement)
+      : slab_(slab), request_(request), refinement_(refinement), few_(flat(scattered_once())) {
+    const Resolution first{std::max(refinement.first_order(), slab.least_order()),
+                           Geometry::first_modes};
+    for (Group& group : grouped(slab, chains<Geometry>(request, reversed, slab.departure.shift)))
+      parts_.push_back({std::move(group), first, {}, {}, {}, {}});
   }
 
   Refined refined() {
-    int order = std::max(refinement_.first_order(), slab_.resolved.least_order());
-    step(order);
-    add_double_scattering();
-    if (refinement_.most_ordinates == 0)
+    solve([this](Part& part) { part.coarse = solved(part.group, part.at); });
+    for (Part& part : parts_) part.value = part.coarse.value;
+    if (scatters_twice_apart()) add_double_scattering();
+    if (!Geometry::refines_modes && refinement_.most_ordinates == 0)
       return {sum(&Part::value), std::vector<Complex>(few_.size()), ordinates_};
-    while (step(order = Refinement::next_order(order))) settle();
+    while (std::ranges::any_of(parts_, [](const Part& part) { return !part.done; })) {
+      solve([this](Part& part) { refine(part); });
+      settle();
+    }
     return {sum(&Part::value), difference(), ordinates_};
   }
 
  private:
   struct Part {
-    ChainGroup group;
-    std::vector<Complex> value, before;  ///< of the last two orders
-    int size = 0;
+    Group group;
+    Resolution at;
+    Solution coarse, finer, wider;  ///< at that resolution, with finer order and with more modes
+    std::vector<Complex> value;
     bool done = false, near = false;  ///< near: the last step came close to the tolerance
+    bool moved = false;               ///< to a resolution at which it has not been solved
   };
 
-  /// Solves what is not done with more ordinates; false if that is nothing.
-  bool step(int order) {
+  /// Paths of two scatterings have a closed form in the plane.
+  bool scatters_twice_apart() const {
+    return Geometry::has_double_scattering && slab_.layers.size() == 1;
+  }
+
+  /// Paths of one scattering, per entry.
+  std::vector<C> scattered_once() const {
+    std::vector<C> values;
+    for (const auto& [lights, views, entry] :
+         chains<Geometry>(request_, false, slab_.departure.shift)) {
+      std::vector<std::vector<C>> top, bottom;
+      for (const auto& layer : slab_.layers) {
+        const double k = slab_.k / layer.mu_t;
+        const auto light = pair_wave(k, lights, slab_.departure),
+                   view = pair_wave(k, turned_round(views), slab_.departure);
+        top.push_back({slab_.optical_depth(layer) * (light.top + view.top)});
+        bottom.push_back({slab_.optical_depth(layer) * (light.bottom + view.bottom)});
+      }
+      const auto outside = entering(top, bottom);
+      C value{};
+      for (std::size_t l = 0; l < slab_.layers.size(); ++l) {
+        const auto& layer = slab_.layers[l];
+        const C once = slab_.optical_depth(layer) * divided_difference(top[l][0], bottom[l][0]);
+        value += outside[l][0] *
+                 (layer.albedo * (once * as_complex(Geometry::turned(layer.law, lights, views))));
+      }
+      values.push_back(value);
+    }
+    return values;
+  }
+
+  /// Solves what is not done, on grids that are made once.
+  template <typename Solve>
+  void solve(const Solve& solve_part) {
     std::vector<Part*> open;
-    std::map<std::vector<Focus>, std::unique_ptr<Discrete<Number>>> grids;
+    std::map<GridKey, std::unique_ptr<Discrete>> grids;
     for (Part& part : parts_) {
       if (part.done) continue;
       open.push_back(&part);
-      auto& grid = grids[part.group.foci];
-      if (!grid) grid = std::make_unique<Discrete<Number>>(part.group.foci, order, slab_);
+      for (const int order : {part.at.order, part.at.finer_order().order}) {
+        auto& grid = grids[{part.group.foci, order}];
+        if (!grid) grid = std::move(grids_[{part.group.foci, order}]);
+        if (!grid) grid = std::make_unique<Discrete>(slab_, part.group.foci, order);
+      }
     }
+    grids_ = std::move(grids);
     parallel_for(open.size(), [&](std::size_t i) {
       stop_if_interrupted();
-      Part& part = *open[i];
-      const auto& discrete = *grids.at(part.group.foci);
-      part.before = std::exchange(part.value, solved(slab_, part.group, discrete.matrices));
-      part.size = static_cast<int>(2 * discrete.grid.size());
+      solve_part(*open[i]);
     });
-    for (const Part* part : open) ordinates_ = std::max(ordinates_, part->size);
-    return !open.empty();
+    for (const Part* part : open)
+      for (const Solution* one : {&part->coarse, &part->finer, &part->wider})
+        ordinates_ = std::max(ordinates_, one->ordinates);
+  }
+
+  void refine(Part& part) const {
+    if (part.moved) part.coarse = solved(part.group, part.at);
+    part.finer = solved(part.group, part.at.finer_order());
+    part.value = part.finer.value;
+    if (!Geometry::refines_modes) return;
+    part.wider = solved(part.group, part.at.finer_modes());
+    for (std::size_t i = 0; i < part.value.size(); ++i)
+      part.value[i] += part.wider.value[i] - part.coarse.value[i];
+  }
+
+  /// Of two scatterings and more, or where those of two are apart, of three.
+  Solution solved(const Group& group, Resolution at) const {
+    const Discrete& discrete = *grids_.at({group.foci, at.order});
+    const DirectionModesOf<Geometry, Number> modes(slab_, discrete, at.modes, group.momentum,
+                                                   group.lights, group.views);
+    std::vector<C> values(group.links.size());
+    int ordinates = 0;
+    for (const auto& part : modes.parts()) {
+      const auto layers = modes.layers(part);
+      if (layers.empty()) continue;
+      ordinates = std::max(ordinates, Geometry::ordinates(part.functions.size()));
+      const auto collected = response_of(layers).collected;
+      for (std::size_t i = 0; i < values.size(); ++i) {
+        const auto& [light, view, own] = group.links[i];
+        C value = entry(collected, view, light);
+        if constexpr (Geometry::has_double_scattering)
+          if (scatters_twice_apart())
+            value =
+                value - Geometry::double_scattering(twice(group, i), discrete.grid(),
+                                                    part.functions, layers.front(), light, view);
+        values[i] += value;
+      }
+    }
+    return {flat(values), ordinates * static_cast<int>(discrete.grid().size())};
+  }
+
+  DoubleScatteringOf<Number> twice(const Group& group, std::size_t link) const {
+    return {slab_.optical_depth(slab_.layers.front()),
+            slab_.k / slab_.mu_t,
+            group.momentum,
+            group.lights[static_cast<std::size_t>(group.links[link].light)],
+            group.views[static_cast<std::size_t>(group.links[link].view)],
+            slab_.departure};
   }
 
   /// Once how large the entries are is known.
   void add_double_scattering() {
-    constexpr double part_of_tolerance = 0.01;
-    const auto scale = scales_with_slopes(request_.entries, sum(&Part::value));
-    const auto scattered_twice = slab_.albedo * slab_.albedo;
-    const double tolerance =
-        part_of_tolerance * refinement_.tolerance / std::abs(value_of(scattered_twice));
-    std::vector<std::vector<ComplexOf<Number>>> found(parts_.size());
-    parallel_for(parts_.size(), [&](std::size_t p) {
-      stop_if_interrupted();
-      for (const auto& link : parts_[p].group.links)
-        found[p].push_back(
-            scattered_twice *
-            slab_.twice(parts_[p].group, link).total(slab_.law, tolerance * scale[link.entry]));
-    });
-    for (std::size_t p = 0; p < parts_.size(); ++p) add(few_, parts_[p].group, flat(found[p]));
+    if constexpr (Geometry::has_double_scattering) {
+      constexpr double part_of_tolerance = 0.01;
+      const auto scale = scales_with_slopes(request_.entries, sum(&Part::value));
+      const auto& layer = slab_.layers.front();
+      const auto scattered_twice = layer.albedo * layer.albedo;
+      const double tolerance =
+          part_of_tolerance * refinement_.tolerance / std::abs(value_of(scattered_twice));
+      std::vector<std::vector<C>> found(parts_.size());
+      parallel_for(parts_.size(), [&](std::size_t p) {
+        stop_if_interrupted();
+        const Group& group = parts_[p].group;
+        for (std::size_t i = 0; i < group.links.size(); ++i)
+          found[p].push_back(
+              scattered_twice *
+              twice(group, i).total(layer.law, tolerance * scale[group.links[i].entry]));
+      });
+      for (std::size_t p = 0; p < parts_.size(); ++p) add(few_, parts_[p].group, flat(found[p]));
+    }
+  }
+
+  /// Those whose last two resolutions agree, or that would become too large, are done.
+  void settle() {
+    const double tolerance = refinement_.tolerance / 2;
+    const auto of_entries = scales_with_slopes(request_.entries, sum(&Part::value));
+    for (Part& part : parts_) {
+      if (part.done) continue;
+      std::vector<double> scale;
+      for (std::size_t i = 0; i < part.value.size(); ++i)
+        scale.push_back(of_entries[entry_of(part.group, i)]);
+      const double by_order = largest_change(part.finer.value, part.coarse.value, scale),
+                   by_modes = largest_change(part.wider.value, part.coarse.value, scale),
+                   worst = std::max(by_order, by_modes);
+      const int size = std::max(part.finer.ordinates, part.wider.ordinates);
+      // One small difference may be chance: the one before must have been small too.
+      part.done = (worst <= tolerance && part.near) || 4 * size > 3 * refinement_.most_ordinates;
+      part.near = worst <= 100 * tolerance;
+      if (!part.done)
+        move(part, by_order > tolerance || worst <= tolerance,
+             Geometry::refines_modes && (by_modes > tolerance || worst <= tolerance));
+    }
+  }
+
+  static void move(Part& part, bool refine_order, bool refine_modes) {
+    if (refine_order) part.at = part.at.finer_order();
+    if (refine_modes) part.at = part.at.finer_modes();
+    part.moved = refine_order && refine_modes;
+    if (!part.moved) part.coarse = refine_order ? part.finer : part.wider;
   }
 
   /// To entries what their links give.
-  void add(std::vector<Complex>& entries, const ChainGroup& group,
+  void add(std::vector<Complex>& entries, const Group& group,
            const std::vector<Complex>& values) const {
     for (std::size_t i = 0; i < values.size(); ++i) entries[entry_of(group, i)] += values[i];
   }
 
-  std::size_t entry_of(const ChainGroup& group, std::size_t i) const {
+  std::size_t entry_of(const Group& group, std::size_t i) const {
     const std::size_t links = group.links.size();
     return i / links * request_.entries.size() + group.links[i % links].entry;
-  }
-
-  /// Parts whose last two orders agree, or that would become too large, are done.
-  void settle() {
-    const auto scale = scales_with_slopes(request_.entries, sum(&Part::value));
-    for (Part& part : parts_) {
-      double worst = 0;
-      for (std::size_t i = 0; i < part.value.size(); ++i)
-        if (const double size = scale[entry_of(part.group, i)]; size > 0)
-          worst = std::max(worst, std::abs(part.value[i] - part.before[i]) / size);
-      mc::settle(part, worst, refinement_);
-    }
   }
 
   std::vector<Complex> sum(std::vector<Complex> Part::*values) const {
@@ -185,73 +253,87 @@ class Refiner {
   }
 
   std::vector<Complex> difference() const {
-    auto fine = sum(&Part::value);
-    const auto coarse = sum(&Part::before);
+    auto fine = sum(&Part::value), coarse = few_;
+    for (const Part& part : parts_) add(coarse, part.group, part.coarse.value);
     for (std::size_t e = 0; e < fine.size(); ++e) fine[e] -= coarse[e];
     return fine;
   }
 
-  const Slab<Number>& slab_;
-  const CovarianceRequest& request_;
+  using GridKey = std::pair<std::vector<Focus>, int>;
+
+  const Slab& slab_;
+  const Request& request_;
   Refinement refinement_;
-  std::vector<Complex> few_;  ///< paths of one scattering and of two
+  std::vector<Complex> few_;  ///< paths of one scattering, and those of two that are apart
   std::vector<Part> parts_;
+  std::map<GridKey, std::unique_ptr<Discrete>> grids_;
   int ordinates_ = 0;
 };
 
-}  // namespace
-
-Refined slab_covariance(const Scene& slab, bool reversed, const Refinement& refinement,
-                        const FieldChange& change) {
-  const std::size_t entries = slab.request.entries.size();
-  if (slab.medium.mu_s == 0)
-    return {std::vector<Complex>(entries), std::vector<Complex>(entries), 0};
-  if (has_near_ends(slab.request))
-    return finite_ends_covariance(slab, refinement, [&](const Scene& of_plane_waves) {
-      return slab_covariance(of_plane_waves, reversed, refinement, change);
-    });
-  blas_single_thread();
-  const ScatteringLaw law(slab, change.delay);
-  const double albedo = slab.medium.albedo;
-  if (change.shift == 0)
-    return Refiner<double>({slab, law, law, albedo}, reversed, refinement).refined();
-  return Refiner<Complex>({slab, law, law, albedo, {1, change.shift}}, reversed, refinement)
-      .refined();
+template <typename Geometry>
+Refined changed_covariance(const Scene& scene, bool reversed, const Refinement& refinement,
+                           const FieldChange& change) {
+  const auto slab = slab_of<Geometry>(scene, change.delay);
+  const auto request = directions_of<Geometry>(scene.request);
+  if (change.shift == 0) return slab_covariance(slab, request, reversed, refinement);
+  const SlabOf<Geometry, Complex> shifted{
+      slab.k, slab.mu_t, slab.depth, slab.layers, {1, change.shift}};
+  return slab_covariance(shifted, request, reversed, refinement);
 }
 
-Refined slab_slopes(const Scene& slab, bool reversed, const Refinement& refinement,
-                    BulkParameter parameter) {
-  blas_single_thread();
-  const ScatteringLaw law(slab);
-  const BulkSlope slope = bulk_slope(slab, law, parameter);
+template <typename Geometry>
+Refined changing_covariance(const Scene& scene, bool reversed, const Refinement& refinement,
+                            BulkParameter parameter) {
+  const auto slab = slab_of<Geometry>(scene);
+  const auto& layer = slab.layers.front();
+  const auto slope = bulk_slope<Geometry>(scene, layer.law, parameter);
+  const SlabOf<Geometry, Dual<double>> changing{
+      slab.k,
+      slab.mu_t,
+      slab.depth,
+      {{layer.mu_t, layer.depth, {layer.albedo, slope.albedo}, slope.law}},
+      {{1, -slope.log_mu_t}}};
   return by_parameter(
-      Refiner<Dual<double>>(
-          {slab, law, slope.law, {slab.medium.albedo, slope.albedo}, {{1, -slope.log_mu_t}}},
-          reversed, refinement)
-          .refined(),
+      slab_covariance(changing, directions_of<Geometry>(scene.request), reversed, refinement),
       slope.unit);
 }
 
-FieldJob slab_covariance_job(const Scene& slab, bool reversed, const Refinement& refinement) {
-  const auto solve = [=] {
-    return refined_range(slab.request, refinement, [&](const Refinement& finer) {
-      return slab_covariance(slab, reversed, finer);
+}  // namespace
+
+template <typename Geometry, typename Number>
+Refined slab_covariance(const SlabOf<Geometry, Number>& slab,
+                        const RequestOf<typename Geometry::Direction>& request, bool reversed,
+                        const Refinement& refinement) {
+  blas_single_thread();
+  return CovarianceRefiner<Geometry, Number>(slab, request, reversed, refinement).refined();
+}
+
+Refined slab_covariance(const Scene& scene, bool reversed, const Refinement& refinement,
+                        const FieldChange& change) {
+  const std::size_t entries = scene.request.entries.size();
+  if (scene.medium.mu_s == 0)
+    return {std::vector<Complex>(entries), std::vector<Complex>(entries), 0};
+  if (has_near_ends(scene.request))
+    return finite_ends_covariance(scene, refinement, [&](const Scene& of_plane_waves) {
+      return slab_covariance(of_plane_waves, reversed, refinement, change);
     });
-  };
-  return two_batch_job(slab.request.entries.size(), 1, solve).field;
+  const auto covariance =
+      scene.medium.dimension == 3 ? changed_covariance<Space> : changed_covariance<Plane>;
+  return covariance(scene, reversed, refinement, change);
 }
 
-PathJob slab_change_job(const Scene& slab, bool reversed, const Refinement& refinement,
-                        const std::vector<FieldChange>& changes) {
-  return change_job(slab.request.entries.size(), changes, [=](const FieldChange& change) {
-    return slab_covariance(slab, reversed, refinement, change);
-  });
+Refined slab_slopes(const Scene& scene, bool reversed, const Refinement& refinement,
+                    BulkParameter parameter) {
+  const auto slopes =
+      scene.medium.dimension == 3 ? changing_covariance<Space> : changing_covariance<Plane>;
+  return slopes(scene, reversed, refinement, parameter);
 }
 
-GradientJob slab_gradient_job(const Scene& slab, bool reversed, const Refinement& refinement) {
-  return slope_job(slab, [=](BulkParameter parameter) {
-    return slab_slopes(slab, reversed, refinement, parameter);
-  });
-}
+template Refined slab_covariance(const SlabOf<Plane, double>&, const RequestOf<double>&, bool,
+                                 const Refinement&);
+template Refined slab_covariance(const SlabOf<Space, double>&, const RequestOf<Eigen::Vector3d>&,
+                                 bool, const Refinement&);
+template Refined slab_covariance(const SlabOf<Space, Complex>&, const RequestOf<Eigen::Vector3d>&,
+                                 bool, const Refinement&);
 
 }  // namespace flatspeckle::mc

@@ -1,36 +1,34 @@
 #pragma once
 
-#include "flatland/request/field_moments.h"
 #include "flatland/scene/scene.h"
+#include "mc/jobs/bulk_parameter.h"
 #include "mc/jobs/field_change.h"
-#include "mc/jobs/gradient_job.h"
-#include "mc/jobs/path_job.h"
 #include "mc/slab/refinement.h"
+#include "mc/slab/slab_scene.h"
 
 namespace flatspeckle::mc {
 
-/// The covariance of C14 and C18 on a slab, per entry of the request, as linear transport of pairs
-/// at one transverse frequency (conventions, C35 to C40): what covariance_job() estimates, single
-/// scattering in closed form. reversed: with reversed paths (C38). The tolerance is relative to the
-/// entry, or to the root of its two intensities (or that which the request has) where that is more.
-/// change: of the second field of each entry.
-Refined slab_covariance(const Scene& slab, bool reversed, const Refinement& refinement,
+/// The covariance of C14 and C18 on a slab in the plane or, as the scene says, of scalar waves in
+/// space (C41), per entry of the request, as linear transport of pairs at one transverse frequency
+/// (conventions, C35 to C40): what covariance_job() estimates, single scattering in closed form.
+/// Layers are of plane waves in far views. reversed: with reversed paths (C38). The tolerance is
+/// relative to the entry, or to the root of its two intensities (or that which the request has)
+/// where that is more. change: of the second field of each entry.
+Refined slab_covariance(const Scene& scene, bool reversed, const Refinement& refinement,
                         const FieldChange& change = {});
-
-/// The same as a job (two_batches()); the tolerance holds for a range too (range_refinement.h).
-FieldJob slab_covariance_job(const Scene& slab, bool reversed, const Refinement& refinement);
 
 /// Values per entry, then derivatives by a parameter: exact, of the doubling itself. The tolerance
 /// of a derivative is relative to the entry where that is more than what a relative change of the
-/// parameter makes. The slab scatters.
-Refined slab_slopes(const Scene& slab, bool reversed, const Refinement& refinement,
+/// parameter makes. The slab scatters, and has no layers.
+Refined slab_slopes(const Scene& scene, bool reversed, const Refinement& refinement,
                     BulkParameter parameter);
 
-/// As the gradient_job() of Monte Carlo.
-GradientJob slab_gradient_job(const Scene& slab, bool reversed, const Refinement& refinement);
-
-/// Quantities as those of delay_job(): the entries without change, then with each.
-PathJob slab_change_job(const Scene& slab, bool reversed, const Refinement& refinement,
-                        const std::vector<FieldChange>& changes);
+/// The same of a slab and directions, per length or area. Ordinates, and in space modes of the
+/// azimuth, are refined until each alone changes nothing. Number: double, Complex for two
+/// frequencies, or Dual<double>, whose derivatives follow the values.
+template <typename Geometry, typename Number>
+Refined slab_covariance(const SlabOf<Geometry, Number>& slab,
+                        const RequestOf<typename Geometry::Direction>& request, bool reversed,
+                        const Refinement& refinement);
 
 }  // namespace flatspeckle::mc

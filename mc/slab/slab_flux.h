@@ -7,8 +7,8 @@
 namespace flatspeckle::mc {
 
 /// Transport of intensity through a slab without chance: what flux_job() estimates, per light its
-/// shares and the share that leaves in each bin of the exit angle. The tolerance is relative to
-/// reflectance and transmittance.
+/// shares and the share that leaves in each bin of the exit angle, in space the polar one from +z.
+/// The tolerance is relative to reflectance and transmittance.
 Refined slab_flux(const Scene& slab, std::size_t angle_bins, const Refinement& refinement);
 
 /// The same as a job (two_batches()).

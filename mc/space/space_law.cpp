@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/numbers/gauss.h"
+#include "mc/jobs/bulk_parameter.h"
 
 namespace flatspeckle::mc {
 
@@ -54,6 +55,11 @@ SpaceLaw::SpaceLaw(std::function<double(double)> density, double delay)
       [this](double cosine) { return decay(cosine) * density_(cosine) / total_; });
   constexpr double moments_per_width = 30;  // g^l of Henyey-Greenstein is then 1e-13
   width_ = std::min(pi, moments_per_width / static_cast<double>(moments_.size()));
+}
+
+double SpaceLaw::pair_slope(double g, double first, double second) const {
+  const auto by_g = [g](double cosine) { return henyey_greenstein_slope(g, 1 - cosine, 3); };
+  return (by_g(first) + by_g(second)) / 2;
 }
 
 double SpaceLaw::decay(double cosine) const {

@@ -18,10 +18,13 @@ class SpaceLaw {
   double pair(double first, double second) const {
     return amplitude(first) * amplitude(second) * decay(second);
   }
+  /// Of Henyey-Greenstein's function without delay: d log pair / d g.
+  double pair_slope(double g, double first, double second) const;
   /// Those above rounding; of a table with kinks the first 2048.
   const std::vector<double>& moments() const { return moments_; }
   /// The angle within which p changes.
   double width() const { return width_; }
+  int least_order() const { return 0; }  ///< nodes of a panel
 
  private:
   double amplitude(double cosine) const;

@@ -1,16 +1,12 @@
 #include "mc/space/space_scene.h"
 
-#include <tuple>
-#include <utility>
-
 #include "core/error.h"
 #include "grin/media/hg_phase.h"
 #include "grin/media/mie_phase.h"
 #include "grin/media/rayleigh_phase.h"
 #include "grin/media/table_phase.h"
 #include "grin/media/two_term_phase.h"
-#include "mc/slab/range_refinement.h"
-#include "mc/transport/bulk_slope.h"
+#include "mc/space/space.h"
 
 namespace flatspeckle::mc {
 
@@ -55,18 +51,6 @@ void set_phase(BulkMedium& medium, const Scatterer& scatterer, const ScattererVa
   set_phase(medium, grin::TwoTermPhase{{*terms.g}, {*terms.g_back}, *terms.forward_share});
 }
 
-/// Of spheres at fixed extinction.
-BulkSlopeOf<SpaceSlope> space_slope(const Scene& scene, const SpaceLaw& law,
-                                    BulkParameter parameter) {
-  if (parameter != BulkParameter::radius && parameter != BulkParameter::index)
-    return bulk_slope_of<SpaceSlope>(scene.medium, law, parameter);
-  return scatterer_slope<SpaceSlope>(scene, law, parameter, [&](const Scatterer& scatterer) {
-    BulkMedium medium = scene.medium;
-    set_spheres(medium, scatterer, scene.k);
-    return std::pair(medium, SpaceLaw(medium.space_phase.density));
-  });
-}
-
 }  // namespace
 
 Scene in_space(Scene slab, const ScattererValues& values) {
@@ -81,52 +65,9 @@ Scene in_space(Scene slab, const ScattererValues& values) {
   return slab;
 }
 
-SpaceSlab space_slab(const Scene& scene, double delay) {
-  return {scene.k, scene.medium.mu_t, scene.domain.depth, scene.medium.albedo,
-          SpaceLaw(scene.medium.space_phase.density, delay)};
-}
-
-Refined space_covariance(const Scene& scene, bool reversed, const Refinement& refinement,
-                         const FieldChange& change) {
-  const SpaceSlab slab = space_slab(scene, change.delay);
-  const SpaceRequest request = space_request(scene.request);
-  if (change.shift == 0) return space_covariance(slab, request, reversed, refinement);
-  const SpaceSlabOf<Complex> shifted{slab.k,      slab.mu_t, slab.depth,
-                                     slab.albedo, slab.law,  {1, change.shift}};
-  return space_covariance(shifted, request, reversed, refinement);
-}
-
-Refined space_slopes(const Scene& scene, bool reversed, const Refinement& refinement,
-                     BulkParameter parameter) {
-  const SpaceSlab slab = space_slab(scene);
-  const auto slope = space_slope(scene, slab.law, parameter);
-  const SpaceSlabOf<Dual<double>> changing{slab.k,     slab.mu_t,
-                                           slab.depth, {slab.albedo, slope.albedo},
-                                           slope.law,  {{1, -slope.log_mu_t}}};
-  return by_parameter(
-      space_covariance(changing, space_request(scene.request), reversed, refinement), slope.unit);
-}
-
-FieldJob space_covariance_job(const Scene& scene, bool reversed, const Refinement& refinement) {
-  const auto solve = [=] {
-    return refined_range(scene.request, refinement, [&](const Refinement& finer) {
-      return space_covariance(scene, reversed, finer);
-    });
-  };
-  return two_batch_job(scene.request.entries.size(), 1, solve).field;
-}
-
-PathJob space_change_job(const Scene& scene, bool reversed, const Refinement& refinement,
-                         const std::vector<FieldChange>& changes) {
-  return change_job(scene.request.entries.size(), changes, [=](const FieldChange& change) {
-    return space_covariance(scene, reversed, refinement, change);
-  });
-}
-
-GradientJob space_gradient_job(const Scene& scene, bool reversed, const Refinement& refinement) {
-  return slope_job(scene, [=](BulkParameter parameter) {
-    return space_slopes(scene, reversed, refinement, parameter);
-  });
+Scene Space::with_scatterer(Scene scene, const Scatterer& scatterer) {
+  set_spheres(scene.medium, scatterer, scene.k);
+  return scene;
 }
 
 }  // namespace flatspeckle::mc

@@ -129,24 +129,6 @@ void AngularGrid::add_panel(double from, double to, double fine) {
   }
 }
 
-AngularGrid::Modes AngularGrid::mode_integrals(int modes) const {
-  Modes found{Matrix::Zero(size(), modes + 1), Matrix::Zero(size(), modes + 1)};
-  for (const Subpanel& part : subpanels_) {
-    const Eigen::Index n = part.angle.size();
-    const Eigen::ArrayXd c = part.angle.array().cos(), s = part.angle.array().sin();
-    Matrix cosine(n, modes + 1), sine(n, modes + 1);
-    cosine.col(0).setOnes();
-    sine.col(0).setZero();
-    for (Eigen::Index m = 0; m < modes; ++m) {
-      cosine.col(m + 1) = c * cosine.col(m).array() - s * sine.col(m).array();
-      sine.col(m + 1) = s * cosine.col(m).array() + c * sine.col(m).array();
-    }
-    found.cosine.middleRows(part.first, order_) += product(part.weighted_basis, cosine);
-    found.sine.middleRows(part.first, order_) += product(part.weighted_basis, sine);
-  }
-  return found;
-}
-
 Eigen::VectorXd AngularGrid::interval_integrals(double from, double to) const {
   Eigen::VectorXd found = Eigen::VectorXd::Zero(size());
   for (const Panel& panel : panels_) {

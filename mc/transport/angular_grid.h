@@ -52,12 +52,6 @@ class AngularGrid {
     return found;
   }
 
-  /// The same of cos(m theta) and sin(m theta), m = 0 .. modes: [node][m].
-  struct Modes {
-    Matrix cosine, sine;
-  };
-  Modes mode_integrals(int modes) const;
-
   /// The same of the indicator of [from, to].
   Eigen::VectorXd interval_integrals(double from, double to) const;
 

@@ -1,78 +1,117 @@
 #pragma once
 
 #include <algorithm>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "core/algebra/dual.h"
+#include "flatland/scene/scene.h"
 #include "mc/jobs/bulk_parameter.h"
-#include "mc/transport/scattering_law.h"
 
 namespace flatspeckle::mc {
 
-/// Of the modes or moments of a law: the last of them.
-inline int degree(const std::vector<double>& modes) {
-  return static_cast<int>(modes.size()) - 1;
+/// Of the moments of a law: the last of them.
+inline int degree(const std::vector<double>& moments) {
+  return static_cast<int>(moments.size()) - 1;
 }
-inline int degree(const Dual<std::vector<double>>& modes) {
-  return std::max(degree(modes.value), degree(modes.slope));
+inline int degree(const Dual<std::vector<double>>& moments) {
+  return std::max(degree(moments.value), degree(moments.slope));
 }
-
-/// Of g^m, m = 0 .. count - 1: derivatives by g.
-std::vector<double> power_slopes(double g, std::size_t count);
 
 /// A scattering law with its derivative by the logarithm of what its scatterers are, or by g.
-class ScatteringSlope {
+template <typename Law>
+class SlopeOf {
  public:
   /// A law next to it, and its weight in a difference.
   struct Neighbour {
     double weight;
-    ScatteringLaw law;
+    Law law;
   };
 
   /// Does not know of the parameter.
-  explicit ScatteringSlope(const ScatteringLaw& law);
-  /// Of Henyey-Greenstein's function by g.
-  static ScatteringSlope by_g(const ScatteringLaw& law, double g);
-  ScatteringSlope(const ScatteringLaw& law, std::vector<Neighbour> neighbours);
+  explicit SlopeOf(const Law& law)
+      : law_(law), moments_{law.moments(), std::vector<double>(law.moments().size())} {}
 
-  Dual<Complex> pair(double a, double b, double theta) const;
-  const Dual<std::vector<double>>& modes() const { return modes_; }
+  SlopeOf(const Law& law, std::vector<Neighbour> neighbours) : SlopeOf(law) {
+    neighbours_ = std::move(neighbours);
+    auto& moments = moments_.slope;
+    for (const auto& [weight, near] : neighbours_) {
+      moments.resize(std::max(moments.size(), near.moments().size()));
+      for (std::size_t m = 0; m < near.moments().size(); ++m)
+        moments[m] += weight * near.moments()[m];
+    }
+  }
+
+  /// Of Henyey-Greenstein's function without delay, by g: its moments are g^m.
+  static SlopeOf by_g(const Law& law, double g) {
+    SlopeOf slope(law);
+    slope.by_g_ = true;
+    slope.g_ = g;
+    auto& moments = slope.moments_.slope;
+    moments.assign(law.moments().size() + 1, 0);
+    for (std::size_t m = 1; m < moments.size(); ++m)
+      moments[m] = static_cast<double>(m) * std::pow(g, static_cast<double>(m - 1));
+    return slope;
+  }
+
+  /// turns: as those of the law's own pair().
+  template <typename... Turns>
+  auto pair(Turns... turns) const {
+    const auto value = law_.pair(turns...);
+    Dual<std::remove_const_t<decltype(value)>> pair{value, 0};
+    if (by_g_) pair.slope = law_.pair_slope(g_, turns...) * value;
+    for (const auto& [weight, near] : neighbours_) pair.slope += weight * near.pair(turns...);
+    return pair;
+  }
+  const Dual<std::vector<double>>& moments() const { return moments_; }
+  double width() const { return law_.width(); }
+  int least_order() const { return law_.least_order(); }
 
  private:
-  const ScatteringLaw& law_;
+  Law law_;
   bool by_g_ = false;
+  double g_ = 0;
   std::vector<Neighbour> neighbours_;
-  Dual<std::vector<double>> modes_;
+  Dual<std::vector<double>> moments_;
 };
+
+/// A scattering law of calculations with a Number.
+template <typename Geometry, typename Number>
+using LawOf = std::conditional_t<std::is_same_v<Number, Dual<double>>,
+                                 SlopeOf<typename Geometry::Law>, typename Geometry::Law>;
 
 /// What a change of one parameter does to a slab's medium, a scattering law with its derivative
 /// among it. Derivatives are by parameter/unit: those by a logarithm are as large as the values.
-template <typename Slope>
+template <typename Law>
 struct BulkSlopeOf {
   double unit, log_mu_t, albedo;
-  Slope law;
+  SlopeOf<Law> law;
 };
-using BulkSlope = BulkSlopeOf<ScatteringSlope>;
-
-/// By what describes the scatterers as a bulk: mu_t, albedo, g.
-template <typename Slope, typename Law>
-BulkSlopeOf<Slope> bulk_slope_of(const BulkMedium& medium, const Law& law,
-                                 BulkParameter parameter) {
-  if (parameter == BulkParameter::mu_t) return {medium.mu_t, 1, 0, Slope(law)};
-  if (parameter == BulkParameter::albedo) return {medium.albedo, 0, medium.albedo, Slope(law)};
-  return {1, 0, 0, Slope::by_g(law, medium.g)};
-}
 
 /// The radius, or the real part of the index, by which a scatterer is differentiated.
-double scatterer_unit(const Scatterer& scatterer, BulkParameter parameter);
-Scatterer with_size(Scatterer scatterer, BulkParameter parameter, double factor);
+inline double scatterer_unit(const Scatterer& scatterer, BulkParameter parameter) {
+  return parameter == BulkParameter::radius ? scatterer.radius : scatterer.index.real();
+}
+inline Scatterer with_size(Scatterer scatterer, BulkParameter parameter, double factor) {
+  if (parameter == BulkParameter::radius)
+    scatterer.radius *= factor;
+  else
+    scatterer.index.real(scatterer.index.real() * factor);
+  return scatterer;
+}
 
-/// By the logarithm of a scatterer's radius or index, by differences of fourth order, to 1e-10 or
-/// so. at(scatterer): a pair of its medium and law.
-template <typename Slope, typename Law, typename At>
-BulkSlopeOf<Slope> scatterer_slope(const Scene& scene, const Law& law, BulkParameter parameter,
-                                   const At& at) {
+/// By what describes the scatterers as a bulk: mu_t, albedo, g. By the logarithm of a scatterer's
+/// radius or index, by differences of fourth order, to 1e-10 or so. law: the scene's.
+template <typename Geometry>
+BulkSlopeOf<typename Geometry::Law> bulk_slope(const Scene& scene,
+                                               const typename Geometry::Law& law,
+                                               BulkParameter parameter) {
+  using Slope = SlopeOf<typename Geometry::Law>;
+  const BulkMedium& bulk = scene.medium;
+  if (parameter == BulkParameter::mu_t) return {bulk.mu_t, 1, 0, Slope(law)};
+  if (parameter == BulkParameter::albedo) return {bulk.albedo, 0, bulk.albedo, Slope(law)};
+  if (parameter == BulkParameter::g) return {1, 0, 0, Slope::by_g(law, bulk.g)};
   const Scatterer& scatterer = scene.scatterer;
   const double size = scene.k * scatterer.radius * std::abs(scatterer.index),
                step = 1e-3 / std::max(1.0, size);
@@ -80,31 +119,14 @@ BulkSlopeOf<Slope> scatterer_slope(const Scene& scene, const Law& law, BulkParam
   std::vector<typename Slope::Neighbour> neighbours;
   for (const auto& [steps, factor] : {std::pair(1, 8), {-1, -8}, {2, -1}, {-2, 1}}) {
     const double weight = factor / (12 * step);
-    auto [medium, near] = at(with_size(scatterer, parameter, 1 + steps * step));
-    log_mu_t += weight * medium.mu_t / scene.medium.mu_t;
-    albedo += weight * medium.albedo;
-    neighbours.push_back({weight, std::move(near)});
+    const Scene near =
+        Geometry::with_scatterer(scene, with_size(scatterer, parameter, 1 + steps * step));
+    log_mu_t += weight * near.medium.mu_t / bulk.mu_t;
+    albedo += weight * near.medium.albedo;
+    neighbours.push_back({weight, Geometry::law(near)});
   }
   return {scatterer_unit(scatterer, parameter), log_mu_t, albedo,
           Slope(law, std::move(neighbours))};
 }
-
-/// law: the scene's, and outlives the slope.
-BulkSlope bulk_slope(const Scene& scene, const ScatteringLaw& law, BulkParameter parameter);
-
-/// By what transport differentiates: bulk_parameters(), and of spheres the radius and the index.
-std::vector<BulkParameter> slab_parameters(const Scene& scene);
-
-template <typename Number>
-struct LawNumbers {
-  using Law = ScatteringLaw;
-};
-template <>
-struct LawNumbers<Dual<double>> {
-  using Law = ScatteringSlope;
-};
-/// A scattering law of calculations with a Number.
-template <typename Number>
-using LawOf = typename LawNumbers<Number>::Law;
 
 }  // namespace flatspeckle::mc

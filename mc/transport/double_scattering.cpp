@@ -53,21 +53,16 @@ double magnitude(const Dual<Complex>& z) {
 }  // namespace
 
 template <typename Number>
-DoubleScatteringOf<Number>::DoubleScatteringOf(const Scene& scene, double q, Pair lights,
-                                               Pair views, const Departure<Number>& departure)
-    : optical_depth_(scene.medium.mu_t * scene.domain.depth / departure.length),
+DoubleScatteringOf<Number>::DoubleScatteringOf(RealOf<Number> optical_depth, double k, double q,
+                                               Pair lights, Pair views,
+                                               const Departure<Number>& departure)
+    : optical_depth_(optical_depth),
       q_(q * departure.length),
-      extinction_(departure.extinction(scene.k / scene.medium.mu_t)),
+      extinction_(departure.extinction(k)),
       lights_(lights),
       views_(views),
-      light_(pair_wave(scene, lights, departure)),
-      view_(pair_wave(scene, turned_round(views), departure)) {}
-
-template <typename Number>
-ComplexOf<Number> DoubleScatteringOf<Number>::once() const {
-  return optical_depth_ * divided_difference(C(optical_depth_ * (light_.top + view_.top)),
-                                             C(optical_depth_ * (light_.bottom + view_.bottom)));
-}
+      light_(pair_wave(k, lights, departure)),
+      view_(pair_wave(k, turned_round(views), departure)) {}
 
 template <typename Number>
 ComplexOf<Number> DoubleScatteringOf<Number>::along(double sine, double cosine, bool down) const {

@@ -2,6 +2,7 @@
 
 #include "mc/transport/bulk_slope.h"
 #include "mc/transport/pair_wave.h"
+#include "mc/transport/scattering_law.h"
 
 namespace flatspeckle::mc {
 
@@ -13,13 +14,12 @@ template <typename Number>
 class DoubleScatteringOf {
  public:
   using C = ComplexOf<Number>;
-  using Law = LawOf<Number>;
+  using Law = std::conditional_t<std::is_same_v<Number, Dual<double>>, SlopeOf<ScatteringLaw>,
+                                 ScatteringLaw>;
 
-  DoubleScatteringOf(const Scene& scene, double q, Pair lights, Pair views,
-                     const Departure<Number>& departure = {});
-
-  /// What one scattering makes of the pairs, with their amplitudes but the scatterer's.
-  C once() const;
+  /// k, q: per mu_t.
+  DoubleScatteringOf(RealOf<Number> optical_depth, double k, double q, Pair lights, Pair views,
+                     const Departure<Number>& departure);
 
   /// Of unit sources and sensitivities along theta, on the way down or up: per cos(theta).
   C along(double sine, double cosine, bool down) const;
@@ -36,6 +36,5 @@ class DoubleScatteringOf {
   Pair lights_, views_;
   PairWaveOf<Number> light_, view_;
 };
-using DoubleScattering = DoubleScatteringOf<double>;
 
 }  // namespace flatspeckle::mc

@@ -103,13 +103,30 @@ std::vector<C> moments(const C& rate, int count) {
   return moment;
 }
 
+/// Rows with the signs of all but the first `even` columns turned.
+template <typename R>
+R turned(const R& rows, Eigen::Index even) {
+  const auto turn = [even](Rows r) {
+    r.rightCols(r.cols() - even) = -r.rightCols(r.cols() - even);
+    return r;
+  };
+  return linear(turn, rows);
+}
+
+/// [view][light]; of the signs that rows have, one is turned back.
+template <typename R>
+R contracted(const R& views, const R& lights, Eigen::Index even) {
+  return product_transposed(turned(views, even), lights);
+}
+
 /// A layer or some of them by what they do to radiance from above and below, rows times these; what
 /// leaves of lights and, turned round, of views; and what views collect.
+template <typename Number>
 struct Sheet {
-  Matrix top, bottom;  ///< reflected
-  Matrix down, up;     ///< transmitted
-  BothWays<Rows> lights, views;
-  Rows collected;
+  MatrixOf<Number> top, bottom;  ///< reflected
+  MatrixOf<Number> down, up;     ///< transmitted
+  BothWays<RowsOf<Number>> lights, views;
+  RowsOf<Number> collected;
 };
 
 /// A layer by what leaves it. Of equal radiance from above and below 1 - `equal` comes back, of
@@ -128,8 +145,9 @@ class Layer {
   Layer(const Operator& medium, RealOf<Number> depth, const Waves& lights, const Waves& views);
   /// Puts another one on top.
   void double_depth();
-  Sheet sheet(const std::vector<Complex>& light_factors,
-              const std::vector<Complex>& view_factors) const;
+  /// Whose lights and views have lost something before they enter.
+  Sheet<Number> sheet(const std::vector<C>& light_factors,
+                      const std::vector<C>& view_factors) const;
   LayerResponseOf<Number> response() const {
     return {of_lights(leaves_.up), of_lights(leaves_.down), collected_};
   }
@@ -140,8 +158,6 @@ class Layer {
   M rest() const { return identity_like(equal_) - 0.5 * (opposite_ + equal_); }
   void start_pairs(const Operator& medium);
   R collected_in_series(const std::vector<Mirrored<R>>& series) const;
-  R contracted(const R& views, const R& lights) const;
-  R turned(const R& rows) const;
   std::vector<C> rates() const;
   R of_lights(const R& rows) const {
     return linear([this](const Rows& r) -> Rows { return r.topRows(lights_); }, rows);
@@ -203,14 +219,15 @@ void Layer<Number>::start_pairs(const Operator& medium) {
   }
   const auto [down, up] = sum.both_ways();
   leaves_ = {down - product(up, reflected()), -product(up, transmitted_)};
-  collected_ = collected_in_series(series) - contracted(of_views(leaves_.down), of_lights(up));
+  collected_ =
+      collected_in_series(series) - contracted(of_views(leaves_.down), of_lights(up), even_);
 }
 
 /// What views collect of the radiance sum_j series[j] (z / depth)^(j+1).
 template <typename Number>
 RowsOf<Number> Layer<Number>::collected_in_series(const std::vector<Mirrored<R>>& series) const {
-  const R sums = turned(0.5 * of_views(waves_.up + waves_.down)),
-          differences = turned(0.5 * of_views(waves_.up - waves_.down));
+  const R sums = turned(R(0.5 * of_views(waves_.up + waves_.down)), even_),
+          differences = turned(R(0.5 * of_views(waves_.up - waves_.down)), even_);
   const auto rate = times(depth_, rates()), start = damping(waves_.bottom, depth_);
   std::vector<std::vector<C>> factors(series.size());
   for (auto v = static_cast<std::size_t>(lights_); v < rate.size(); ++v) {
@@ -223,21 +240,6 @@ RowsOf<Number> Layer<Number>::collected_in_series(const std::vector<Mirrored<R>>
     collected += scaled(factors[j], R(product_transposed(sums, series[j].sum) +
                                       product_transposed(differences, series[j].difference)));
   return collected;
-}
-
-/// [view][light]; of the signs that rows have, one is turned back.
-template <typename Number>
-RowsOf<Number> Layer<Number>::contracted(const R& views, const R& lights) const {
-  return product_transposed(turned(views), lights);
-}
-
-template <typename Number>
-RowsOf<Number> Layer<Number>::turned(const R& rows) const {
-  const auto turn = [this](Rows r) {
-    r.rightCols(r.cols() - even_) = -r.rightCols(r.cols() - even_);
-    return r;
-  };
-  return linear(turn, rows);
 }
 
 /// Of waves along z from the bottom to the top.
@@ -265,8 +267,8 @@ void Layer<Number>::double_depth() {
     for (std::size_t v = lights; v < upper.size(); ++v)
       multiply(collected_, static_cast<Eigen::Index>(v - lights), static_cast<Eigen::Index>(l),
                upper[v] * upper[l] + lower[v] * lower[l]);
-  collected_ += contracted(of_views(above.down), of_lights(up)) +
-                contracted(of_views(below.up), of_lights(down));
+  collected_ += contracted(of_views(above.down), of_lights(up), even_) +
+                contracted(of_views(below.up), of_lights(down), even_);
   leaves_ = {below.down + product(down, transmitted_), above.up + product(up, transmitted_)};
   const M by_sums = of_sums.before(transmitted_),
           by_differences = of_differences.before(transmitted_);
@@ -277,51 +279,49 @@ void Layer<Number>::double_depth() {
   depth_ = 2.0 * depth_;
 }
 
-template <>
-Sheet Layer<double>::sheet(const std::vector<Complex>& light_factors,
-                           const std::vector<Complex>& view_factors) const {
-  const auto ways = [&](const std::vector<Complex>& factors, const auto& of) {
-    return BothWays<Rows>{scaled(factors, of(leaves_.down)), scaled(factors, of(leaves_.up))};
-  };
-  Rows collected = scaled(view_factors, collected_);
-  for (Eigen::Index light = 0; light < lights_; ++light)
-    collected.col(light) *= light_factors[static_cast<std::size_t>(light)];
-  return {reflected(),
-          reflected(),
+template <typename Number>
+Sheet<Number> Layer<Number>::sheet(const std::vector<C>& light_factors,
+                                   const std::vector<C>& view_factors) const {
+  R collected = scaled(view_factors, collected_);
+  for (std::size_t l = 0; l < light_factors.size(); ++l)
+    for (std::size_t v = 0; v < view_factors.size(); ++v)
+      multiply(collected, static_cast<Eigen::Index>(v), static_cast<Eigen::Index>(l),
+               light_factors[l]);
+  const M back = reflected();
+  return {back,
+          back,
           transmitted_,
           transmitted_,
-          ways(light_factors, [this](const Rows& rows) { return of_lights(rows); }),
-          ways(view_factors, [this](const Rows& rows) { return of_views(rows); }),
+          scaled(light_factors, BothWays<R>{of_lights(leaves_.down), of_lights(leaves_.up)}),
+          scaled(view_factors, BothWays<R>{of_views(leaves_.down), of_views(leaves_.up)}),
           collected};
 }
 
 /// One above the other. even: rows whose sign is not turned.
-Sheet stacked(const Sheet& above, const Sheet& below, Eigen::Index even) {
-  const Matrix one = identity_like(above.top);
-  const FactorsOf<Matrix> of_down(Matrix(one - product(below.top, above.bottom))),
-      of_up(Matrix(one - product(above.bottom, below.top)));
-  const auto between = [&](const BothWays<Rows>& upper, const BothWays<Rows>& lower) {
-    return BothWays<Rows>{of_down.after(upper.down + product(lower.up, above.bottom)),
-                          of_up.after(lower.up + product(upper.down, below.top))};
+template <typename Number>
+Sheet<Number> stacked(const Sheet<Number>& above, const Sheet<Number>& below, Eigen::Index even) {
+  using M = MatrixOf<Number>;
+  using Ways = BothWays<RowsOf<Number>>;
+  const M one = identity_like(above.top);
+  const FactorsOf<M> of_down(M(one - product(below.top, above.bottom))),
+      of_up(M(one - product(above.bottom, below.top)));
+  const auto between = [&](const Ways& upper, const Ways& lower) {
+    return Ways{of_down.after(upper.down + product(lower.up, above.bottom)),
+                of_up.after(lower.up + product(upper.down, below.top))};
   };
-  const auto leaving = [&](const BothWays<Rows>& upper, const BothWays<Rows>& lower,
-                           const BothWays<Rows>& middle) {
-    return BothWays<Rows>{lower.down + product(middle.down, below.down),
-                          upper.up + product(middle.up, above.up)};
+  const auto leaving = [&](const Ways& upper, const Ways& lower, const Ways& middle) {
+    return Ways{lower.down + product(middle.down, below.down),
+                upper.up + product(middle.up, above.up)};
   };
-  const auto contracted = [&](Rows views, const Rows& lights) {
-    views.rightCols(views.cols() - even) = -views.rightCols(views.cols() - even);
-    return product_transposed(views, lights);
-  };
-  const auto lights = between(above.lights, below.lights);
+  const Ways lights = between(above.lights, below.lights);
   return {above.top + product(above.down, of_down.before(product(below.top, above.up))),
           below.bottom + product(below.up, of_up.before(product(above.bottom, below.down))),
           product(above.down, of_down.before(below.down)),
           product(below.up, of_up.before(above.up)),
           leaving(above.lights, below.lights, lights),
           leaving(above.views, below.views, between(above.views, below.views)),
-          above.collected + below.collected + contracted(above.views.down, lights.up) +
-              contracted(below.views.up, lights.down)};
+          above.collected + below.collected + contracted(above.views.down, lights.up, even) +
+              contracted(below.views.up, lights.down, even)};
 }
 
 template <typename Number>
@@ -332,51 +332,51 @@ double fastest_rate(const TransportOperatorOf<Number>& medium, const PairWavesOf
   return rate;
 }
 
-}  // namespace
-
-namespace {
-
 template <typename Number>
-Layer<Number> doubled(const TransportOperatorOf<Number>& medium, RealOf<Number> depth,
-                      const PairWavesOf<Number>& lights, const PairWavesOf<Number>& views) {
-  const double rate = std::max(fastest_rate(medium, lights), fastest_rate(medium, views));
+Layer<Number> doubled(const HomogeneousLayerOf<Number>& layer) {
+  const double rate =
+      std::max(fastest_rate(layer.medium, layer.lights), fastest_rate(layer.medium, layer.views));
   const int doublings =
-      std::max(0, static_cast<int>(std::ceil(std::log2(value_of(depth) * rate / 2))));
-  Layer<Number> layer(medium, std::ldexp(1.0, -doublings) * depth, lights, views);
+      std::max(0, static_cast<int>(std::ceil(std::log2(value_of(layer.depth) * rate / 2))));
+  Layer<Number> part(layer.medium, std::ldexp(1.0, -doublings) * layer.depth, layer.lights,
+                     layer.views);
   for (int i = 0; i < doublings; ++i) {
     stop_if_interrupted();
-    layer.double_depth();
+    part.double_depth();
   }
-  return layer;
+  return part;
+}
+
+/// Of each layer's lights or views.
+template <typename Number>
+auto entering(const std::vector<HomogeneousLayerOf<Number>>& layers,
+              PairWavesOf<Number> HomogeneousLayerOf<Number>::*waves) {
+  std::vector<std::vector<ComplexOf<Number>>> top, bottom;
+  for (const auto& layer : layers) {
+    top.push_back(times(layer.depth, (layer.*waves).top));
+    bottom.push_back(times(layer.depth, (layer.*waves).bottom));
+  }
+  return mc::entering(top, bottom);
 }
 
 }  // namespace
 
 template <typename Number>
-LayerResponseOf<Number> layer_response(const TransportOperatorOf<Number>& medium,
-                                       RealOf<Number> depth, const PairWavesOf<Number>& lights,
-                                       const PairWavesOf<Number>& views) {
-  return doubled(medium, depth, lights, views).response();
-}
-
-LayerResponse stack_response(const std::vector<StackedLayer>& layers) {
-  std::optional<Sheet> all;
-  for (const StackedLayer& one : layers) {
-    const Sheet sheet = doubled(one.medium, one.depth, one.lights, one.views)
-                            .sheet(one.light_factors, one.view_factors);
-    all = all ? stacked(*all, sheet, one.medium.even) : sheet;
+LayerResponseOf<Number> response_of(const std::vector<HomogeneousLayerOf<Number>>& layers) {
+  using One = HomogeneousLayerOf<Number>;
+  if (layers.size() == 1) return doubled(layers.front()).response();
+  const auto lights = entering(layers, &One::lights), views = entering(layers, &One::views);
+  std::optional<Sheet<Number>> all;
+  for (std::size_t l = 0; l < layers.size(); ++l) {
+    const auto sheet = doubled(layers[l]).sheet(lights[l], views[l]);
+    all = all ? stacked(*all, sheet, layers[l].medium.even) : sheet;
   }
   return {all->lights.up, all->lights.down, all->collected};
 }
 
-template LayerResponse layer_response(const TransportOperator&, double, const PairWaves&,
-                                      const PairWaves&);
-template LayerResponseOf<Complex> layer_response(const TransportOperatorOf<Complex>&, double,
-                                                 const PairWavesOf<Complex>&,
-                                                 const PairWavesOf<Complex>&);
-template LayerResponseOf<Dual<double>> layer_response(const TransportOperatorOf<Dual<double>>&,
-                                                      Dual<double>,
-                                                      const PairWavesOf<Dual<double>>&,
-                                                      const PairWavesOf<Dual<double>>&);
+template LayerResponseOf<double> response_of(const std::vector<HomogeneousLayerOf<double>>&);
+template LayerResponseOf<Complex> response_of(const std::vector<HomogeneousLayerOf<Complex>>&);
+template LayerResponseOf<Dual<double>> response_of(
+    const std::vector<HomogeneousLayerOf<Dual<double>>>&);
 
 }  // namespace flatspeckle::mc

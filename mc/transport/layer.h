@@ -16,7 +16,6 @@ struct TransportOperatorOf {
   Eigen::Index even = 0;
   double fastest = 0;  ///< bounds the rates of change along z
 };
-using TransportOperator = TransportOperatorOf<double>;
 
 /// Pairs of lights or of views, a row each: what exp(top z + bottom (depth - z)) of a light feeds
 /// into L+ and L- per mean free path, or a view of that sensitivity collects from L- and L+ (turned
@@ -27,7 +26,6 @@ struct PairWavesOf {
   std::vector<ComplexOf<Number>> top, bottom;
   RowsOf<Number> down, up;
 };
-using PairWaves = PairWavesOf<double>;
 
 /// Of both ends of a slab's paths.
 template <typename Number>
@@ -42,25 +40,37 @@ struct LayerResponseOf {
   RowsOf<Number> up, down;
   RowsOf<Number> collected;
 };
-using LayerResponse = LayerResponseOf<double>;
 
-/// By doubling from a layer so thin that its series converge to rounding. Number: double,
-/// Complex for complex extinction, or Dual<double> for derivatives too.
+/// One of the layers of a slab, all on the same ordinates.
 template <typename Number>
-LayerResponseOf<Number> layer_response(const TransportOperatorOf<Number>& medium,
-                                       RealOf<Number> depth, const PairWavesOf<Number>& lights,
-                                       const PairWavesOf<Number>& views);
-
-/// One of several layers on the same ordinates, with what those above and below leave of its
-/// lights and views where they enter it.
-struct StackedLayer {
-  TransportOperator medium;
-  double depth;
-  PairWaves lights, views;
-  std::vector<Complex> light_factors, view_factors;
+struct HomogeneousLayerOf {
+  TransportOperatorOf<Number> medium;
+  RealOf<Number> depth;
+  PairWavesOf<Number> lights, views;
 };
 
-/// Of layers from the top down, by the star product.
-LayerResponse stack_response(const std::vector<StackedLayer>& layers);
+/// Of layers from the top down, each by doubling from one so thin that its series converge to
+/// rounding; they are stacked by the star product (Redheffer), where a face that reflects would
+/// have its place among them. Number: double, Complex for complex extinction, or Dual<double> for
+/// derivatives too.
+template <typename Number>
+LayerResponseOf<Number> response_of(const std::vector<HomogeneousLayerOf<Number>>& layers);
+
+/// What the layers above and below leave of waves where they enter each layer, [layer][wave]. top
+/// and bottom: exponents of a layer as a whole, [layer][wave].
+template <typename C>
+std::vector<std::vector<C>> entering(const std::vector<std::vector<C>>& top,
+                                     const std::vector<std::vector<C>>& bottom) {
+  using std::exp;
+  auto factors = top;
+  for (std::size_t l = 0; l < top.size(); ++l)
+    for (std::size_t w = 0; w < top[l].size(); ++w) {
+      C exponent{};
+      for (std::size_t m = 0; m < top.size(); ++m)
+        if (m != l) exponent += m < l ? top[m][w] : bottom[m][w];
+      factors[l][w] = exp(exponent);
+    }
+  return factors;
+}
 
 }  // namespace flatspeckle::mc

@@ -1,12 +1,12 @@
 #pragma once
 
 #include <cmath>
-#include <compare>
 #include <numbers>
 #include <type_traits>
 
+#include <Eigen/Core>
+
 #include "core/algebra/dual.h"
-#include "flatland/scene/scene.h"
 
 namespace flatspeckle::mc {
 
@@ -16,16 +16,33 @@ template <typename Number>
 struct PairWaveOf {
   ComplexOf<Number> top{}, bottom{};
 };
-using PairWave = PairWaveOf<double>;
 
-/// Directions of two lights, from above or below; none along the slab.
-struct Pair {
-  double first, second;
-  auto operator<=>(const Pair&) const = default;
+/// Directions of two lights, from above or below, or of two views; none along the slab. Direction:
+/// an angle in the plane, a unit vector in space (z into the slab).
+template <typename Direction>
+struct PairOf {
+  Direction first, second;
+  bool operator==(const PairOf&) const = default;
 };
+using Pair = PairOf<double>;
+using SpacePair = PairOf<Eigen::Vector3d>;
 
-inline Pair turned_round(Pair pair) {
-  return {pair.first + std::numbers::pi, pair.second + std::numbers::pi};
+inline double turned_round(double angle) {
+  return angle + std::numbers::pi;
+}
+inline Eigen::Vector3d turned_round(const Eigen::Vector3d& direction) {
+  return -direction;
+}
+template <typename Direction>
+PairOf<Direction> turned_round(const PairOf<Direction>& pair) {
+  return {turned_round(pair.first), turned_round(pair.second)};
+}
+
+inline double cosine_of(double angle) {
+  return std::cos(angle);
+}
+inline double cosine_of(const Eigen::Vector3d& direction) {
+  return direction.z();
 }
 
 /// How a calculation departs from the scene.
@@ -45,11 +62,12 @@ struct Departure {
   }
 };
 
-/// Of two lights by the cosines of their directions; k: per mu_t.
-template <typename Number>
-PairWaveOf<Number> pair_wave(double k, double first, double second,
+/// k: per mu_t.
+template <typename Number, typename Direction>
+PairWaveOf<Number> pair_wave(double k, const PairOf<Direction>& pair,
                              const Departure<Number>& departure) {
   PairWaveOf<Number> wave;
+  const double first = cosine_of(pair.first), second = cosine_of(pair.second);
   for (const double cosine : {first, second}) {
     auto& end = cosine > 0 ? wave.top : wave.bottom;
     end = end - 1 / (2 * std::abs(cosine));
@@ -57,17 +75,6 @@ PairWaveOf<Number> pair_wave(double k, double first, double second,
   const double along = first - (1 + departure.shift) * second;
   wave.top += Complex(0, k * along) * departure.length;
   return wave;
-}
-
-template <typename Number>
-PairWaveOf<Number> pair_wave(const Scene& scene, Pair pair, const Departure<Number>& departure) {
-  return pair_wave(scene.k / scene.medium.mu_t, std::cos(pair.first), std::cos(pair.second),
-                   departure);
-}
-
-/// Transverse momentum of a pair (C35), per extinction coefficient. shift: Departure's.
-inline double transverse_momentum(const Scene& scene, Pair pair, double shift) {
-  return scene.k / scene.medium.mu_t * (std::sin(pair.first) - (1 + shift) * std::sin(pair.second));
 }
 
 }  // namespace flatspeckle::mc

@@ -49,7 +49,7 @@ std::vector<double> significant_modes(const std::function<double(double)>& p) {
 
 }  // namespace
 
-ScatteringLaw::ScatteringLaw(const Scene& scene, double delay) : delay_(delay), g_(scene.medium.g) {
+ScatteringLaw::ScatteringLaw(const Scene& scene, double delay) : delay_(delay) {
   const Scatterer& scatterer = scene.scatterer;
   if (scatterer.kind == Scatterer::Kind::hg)
     density_ = [g = scatterer.g](double theta) { return henyey_greenstein(g, theta); };
@@ -60,25 +60,29 @@ ScatteringLaw::ScatteringLaw(const Scene& scene, double delay) : delay_(delay), 
   else
     tabulate(scene);
   const auto p = [this](double theta) { return std::norm(amplitude(theta)); };
-  modes_ = significant_modes(p);
+  moments_ = significant_modes(p);
   if (delay > 0) {
     const auto decayed = [&](double theta) { return p(theta) * decay(theta); };
-    const int intervals = 4 * static_cast<int>(modes_.size() + 16);
+    const int intervals = 4 * static_cast<int>(moments_.size() + 16);
     const double share =
         cosine_modes(decayed, intervals).front() / cosine_modes(p, intervals).front();
-    modes_ = significant_modes(decayed);
-    for (double& mode : modes_) mode *= share;
+    moments_ = significant_modes(decayed);
+    for (double& mode : moments_) mode *= share;
   }
-  constexpr double modes_per_width = 30;  // g^m of Henyey-Greenstein is then 1e-13
-  width_ = std::min(pi, modes_per_width / static_cast<double>(modes_.size()));
+  constexpr double moments_per_width = 30;  // g^m of Henyey-Greenstein is then 1e-13
+  width_ = std::min(pi, moments_per_width / static_cast<double>(moments_.size()));
   const auto large = [](double mode) { return std::abs(mode) > 0.01; };
-  const auto lobes = std::find_if(modes_.rbegin(), modes_.rend(), large).base() - modes_.begin();
+  const auto lobes =
+      std::find_if(moments_.rbegin(), moments_.rend(), large).base() - moments_.begin();
   if (!is_peaked()) least_order_ = static_cast<int>(std::min<std::ptrdiff_t>(lobes / 2, 16));
 }
 
-double ScatteringLaw::slope(double angle) const {
-  const double half = std::sin(angle / 2);
-  return henyey_greenstein_slope(g_, 2 * half * half);
+double ScatteringLaw::pair_slope(double g, double a, double b, double theta) const {
+  const auto by_g = [g](double angle) {
+    const double half = std::sin(angle / 2);
+    return henyey_greenstein_slope(g, 2 * half * half);
+  };
+  return (by_g(theta - a) + by_g(theta - b)) / 2;
 }
 
 void ScatteringLaw::tabulate(const Scene& scene) {

@@ -10,8 +10,8 @@
 namespace flatspeckle::mc {
 
 /// What a scatterer of a medium does to pairs of directions, without chance: the amplitude A of C14
-/// over sqrt(sigma_s), so that |A|^2 is the phase function p, and p in Fourier modes,
-///   p(theta) = (modes[0] + 2 sum_m modes[m] cos(m theta)) / (2 pi).
+/// over sqrt(sigma_s), so that |A|^2 is the phase function p, and p by its Fourier moments,
+///   p(theta) = (moments[0] + 2 sum_m moments[m] cos(m theta)) / (2 pi).
 /// Of fields at two times, between which the scatterers diffuse, the later one is the second of a
 /// pair: each turn by theta loses exp(-2 delay (1 - cos theta)) (brownian.h).
 class ScatteringLaw {
@@ -30,10 +30,10 @@ class ScatteringLaw {
   }
   Complex amplitude(double angle) const;
 
-  /// Of Henyey-Greenstein's function without delay: d log p / d g.
-  double slope(double angle) const;
+  /// Of Henyey-Greenstein's function without delay: d log pair / d g.
+  double pair_slope(double g, double a, double b, double theta) const;
 
-  const std::vector<double>& modes() const { return modes_; }
+  const std::vector<double>& moments() const { return moments_; }
   /// The angle within which p changes.
   double width() const { return width_; }
   /// Narrower than what a quadrant's polynomials see.
@@ -46,9 +46,8 @@ class ScatteringLaw {
 
   std::function<double(double)> density_;  ///< of a bulk: p of an angle in [0, pi]
   std::vector<Complex> table_;             ///< of scatterers: A at equal steps over [0, pi]
-  std::vector<double> modes_;
+  std::vector<double> moments_;
   double delay_, width_ = 0;
-  double g_ = 0;  ///< the mean cosine
   int least_order_ = 0;
 };
 

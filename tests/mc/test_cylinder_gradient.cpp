@@ -1,7 +1,7 @@
 #include <doctest/doctest.h>
 
 #include "mc/estimators/gradient.h"
-#include "mc/slab/slab_covariance.h"
+#include "mc/slab/slab_jobs.h"
 #include "tests/mc/estimates.h"
 
 namespace flatspeckle::mc {

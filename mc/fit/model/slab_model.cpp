@@ -8,8 +8,6 @@
 #include "mc/jobs/flux_job.h"
 #include "mc/slab/slab_covariance.h"
 #include "mc/slab/slab_flux.h"
-#include "mc/space/space_flux.h"
-#include "mc/space/space_scene.h"
 
 namespace flatspeckle::mc {
 
@@ -84,8 +82,7 @@ void SlabModel::solve_fields(const Group& group, const Media& media, int order,
   for (const std::size_t i : group.curves) join(joint.request, media[i].scene.request);
   const Refinement once{tolerance, order, 0};
   const auto solve = [&](const FieldChange& change) {
-    return joint.medium.dimension == 3 ? space_covariance(joint, group.reversed, once, change)
-                                       : slab_covariance(joint, group.reversed, once, change);
+    return slab_covariance(joint, group.reversed, once, change);
   };
   std::vector<Refined> found{solve({})};
   for (const double delay : group.delays)
@@ -122,8 +119,7 @@ void SlabModel::solve_flux(const Group& group, const Media& media, VectorXd& all
       places.push_back(
           shares * static_cast<std::size_t>(place(media[i].scene.request.lights[entry])) +
           (curves_[i].observable == Observable::reflectance ? reflected : transmitted));
-  const Refined found = joint.medium.dimension == 3 ? space_flux(joint, bins, precise)
-                                                    : slab_flux(joint, bins, precise);
+  const Refined found = slab_flux(joint, bins, precise);
   auto next = places.begin();
   for (const std::size_t i : group.curves)
     for (Index j = 0; j < std::ssize(curves_[i].entries); ++j, ++next)

@@ -10,7 +10,6 @@
 #include "core/search/levenberg_marquardt.h"
 #include "mc/fit/task/curve_values.h"
 #include "mc/slab/slab_covariance.h"
-#include "mc/space/space_scene.h"
 
 namespace flatspeckle::mc {
 
@@ -38,8 +37,7 @@ std::vector<MatrixXcd> covariances(Scene scene) {
       for (std::size_t j = 0; j <= i; ++j)
         all.entries.push_back({channel(view, i), channel(view, j)});
   constexpr Refinement precise{1e-6};
-  const auto values = scene.medium.dimension == 3 ? space_covariance(scene, false, precise).value
-                                                  : slab_covariance(scene, false, precise).value;
+  const auto values = slab_covariance(scene, false, precise).value;
   std::vector<MatrixXcd> found;
   auto next = values.begin();
   for (std::size_t view = 0; view < views; ++view) {

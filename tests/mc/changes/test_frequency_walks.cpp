@@ -7,6 +7,7 @@
 #include "flatland/scene/frequency_shift.h"
 #include "mc/changes/frequency_shifts.h"
 #include "mc/slab/slab_covariance.h"
+#include "mc/slab/slab_jobs.h"
 #include "tests/mc/estimates.h"
 
 namespace flatspeckle::mc {

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "mc/slab/slab_covariance.h"
 #include "mc/space/space_scene.h"
 #include "tests/mc/estimates.h"
 
@@ -26,7 +27,7 @@ inline Scene in_space(const SceneSpec& spec, const CovarianceRequest& request) {
 }
 
 inline Refined by_transport(const Scene& scene, bool reversed, double tolerance) {
-  return space_covariance(scene, reversed, {tolerance});
+  return slab_covariance(scene, reversed, {tolerance});
 }
 
 /// A light and a view against both moved by transverse momenta q; the intensity is that of q = 0.

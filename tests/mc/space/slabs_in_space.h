@@ -4,14 +4,20 @@
 #include <numbers>
 
 #include "grin/media/phase_function.h"
-#include "mc/space/space_covariance.h"
+#include "mc/slab/slab_covariance.h"
+#include "mc/space/space.h"
 
 namespace flatspeckle::mc::tests {
 
+using SpaceSlab = SlabOf<Space, double>;
+using SpaceRequest = RequestOf<Eigen::Vector3d>;
+
 /// Henyey-Greenstein, wavelength 1.
 inline SpaceSlab hg_space(double depth, double optical_depth, double g, double albedo) {
-  return {2 * std::numbers::pi, optical_depth / depth, depth, albedo,
-          SpaceLaw([g](double cosine) { return grin::HenyeyGreenstein<3>{g}.density_at(cosine); })};
+  const double mu_t = optical_depth / depth;
+  const SpaceLaw law(
+      [g](double cosine) { return grin::HenyeyGreenstein<3>{g}.density_at(cosine); });
+  return {2 * std::numbers::pi, mu_t, depth, {{mu_t, depth, albedo, law}}};
 }
 
 /// A unit vector by its components along the slab, down into it.

@@ -19,6 +19,8 @@ using tests::downward;
 using tests::hg_in_space;
 using tests::hg_space;
 using tests::pi;
+using tests::SpaceRequest;
+using tests::SpaceSlab;
 using tests::spherical;
 
 constexpr double wavenumber = 2 * pi;
@@ -45,14 +47,13 @@ SpaceRequest request_of(const Channels& ends) {
 }
 
 Complex covariance(const SpaceSlab& slab, const Channels& ends, bool reversed, double tolerance) {
-  return space_covariance(slab, request_of(ends), reversed, {tolerance}).value[0];
+  return slab_covariance(slab, request_of(ends), reversed, {tolerance}).value[0];
 }
 
 Complex at_two_frequencies(const SpaceSlab& slab, const Channels& ends, double shift, bool reversed,
                            double tolerance) {
-  const SpaceSlabOf<Complex> shifted{slab.k,      slab.mu_t, slab.depth,
-                                     slab.albedo, slab.law,  {1, shift}};
-  return space_covariance(shifted, request_of(ends), reversed, {tolerance}).value[0];
+  const SlabOf<Space, Complex> shifted{slab.k, slab.mu_t, slab.depth, slab.layers, {1, shift}};
+  return slab_covariance(shifted, request_of(ends), reversed, {tolerance}).value[0];
 }
 
 Scene seen(double depth, double optical_depth, double g, double albedo, double light, double view) {
@@ -61,7 +62,7 @@ Scene seen(double depth, double optical_depth, double g, double albedo, double l
 }
 
 Complex shifted(const Scene& scene, double shift, bool reversed = false) {
-  return space_covariance(scene, reversed, {1e-7}, {.shift = shift}).value[0];
+  return slab_covariance(scene, reversed, {1e-7}, {.shift = shift}).value[0];
 }
 
 }  // namespace
@@ -110,8 +111,8 @@ TEST_CASE("slabs in space: a small shift turns the phase by the mean path") {
   for (const double view : {0.0, pi}) {  // on the way back with reversed paths
     const bool reversed = view > 1;
     const Scene scene = seen(depth, mu_t * depth, 0.6, albedo, 0, view);
-    const auto by_mu_t = space_slopes(scene, reversed, {1e-7}, BulkParameter::mu_t).value,
-               by_albedo = space_slopes(scene, reversed, {1e-7}, BulkParameter::albedo).value;
+    const auto by_mu_t = slab_slopes(scene, reversed, {1e-7}, BulkParameter::mu_t).value,
+               by_albedo = slab_slopes(scene, reversed, {1e-7}, BulkParameter::albedo).value;
     const double intensity = by_mu_t[0].real(),
                  lengths = -(by_mu_t[1] - albedo / mu_t * by_albedo[1]).real(),
                  beyond = lengths - (reversed ? 0 : depth) * intensity;
@@ -165,8 +166,8 @@ void check_slopes(BulkParameter parameter, double scale, bool reversed, const At
   CAPTURE(static_cast<int>(parameter));
   const Refinement refinement{1e-8, 6};
   tests::check_sixth_order(
-      space_slopes(at(0), reversed, refinement, parameter).value, scale,
-      [&](double step) { return space_covariance(at(step), reversed, refinement).value; });
+      slab_slopes(at(0), reversed, refinement, parameter).value, scale,
+      [&](double step) { return slab_covariance(at(step), reversed, refinement).value; });
 }
 
 }  // namespace

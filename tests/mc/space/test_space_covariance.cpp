@@ -14,6 +14,8 @@ using std::numbers::pi;
 using tests::against_first;
 using tests::downward;
 using tests::hg_space;
+using tests::SpaceRequest;
+using tests::SpaceSlab;
 using tests::spherical;
 
 constexpr double depth = 2000;
@@ -23,7 +25,7 @@ std::vector<double> memory_effect(const SpaceSlab& slab, const std::vector<doubl
                                   double tolerance) {
   std::vector<Vector3d> lights{downward(0, 0)};
   for (const double turn : turns) lights.push_back(downward(turn / (slab.k * slab.depth), 0));
-  const auto found = space_covariance(slab, against_first(lights, lights), false, {tolerance});
+  const auto found = slab_covariance(slab, against_first(lights, lights), false, {tolerance});
   const std::size_t n = turns.size();
   std::vector<double> values{found.value[n].real()};
   for (std::size_t i = 0; i < n; ++i)
@@ -39,7 +41,7 @@ Complex covariance(const SpaceSlab& slab, const SpacePair& lights, const SpacePa
                              {views.first, views.second},
                              {{0, 0}, {1, 1}},
                              {{0, 1}, {0, 0}, {1, 1}}};
-  return space_covariance(slab, request, reversed, {tolerance}).value[0];
+  return slab_covariance(slab, request, reversed, {tolerance}).value[0];
 }
 
 /// Of an oblique light, tilted along x by q1 and along y by q2 over the depth, and a view at an

@@ -3,7 +3,7 @@
 #include <doctest/doctest.h>
 
 #include "bench/oracles/photon_walk.h"
-#include "mc/space/space_flux.h"
+#include "mc/slab/slab_flux.h"
 #include "tests/mc/space/scenes_in_space.h"
 
 namespace flatspeckle::mc {
@@ -13,7 +13,7 @@ namespace {
 using std::numbers::pi;
 
 FluxEstimates estimates(const Scene& scene, std::size_t bins, double tolerance) {
-  const FluxJob job = space_flux_job(scene, bins, {tolerance});
+  const FluxJob job = slab_flux_job(scene, bins, {tolerance});
   return flux_estimates(job, tests::summed(job.batches, 2));
 }
 

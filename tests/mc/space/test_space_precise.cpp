@@ -18,7 +18,7 @@ TEST_CASE("slabs in space: forward peaks and absorption as in a walk of pairs") 
             slab.k / slab.mu_t, 5, g, albedo, normal, tilted, normal, tilted};
         const auto [value, error] = walk.estimate(400000, 1, true);
         const auto request = tests::against_first({normal, tilted}, {normal, tilted});
-        const auto found = space_covariance(slab, request, false, {1e-4}).value[0];
+        const auto found = slab_covariance(slab, request, false, {1e-4}).value[0];
         CHECK(std::abs(found.real() - value.real()) < 4 * error);
         CHECK(std::abs(found.imag() - value.imag()) < 4 * error);
         CHECK(error < 0.02 * std::abs(found));

@@ -7,6 +7,7 @@
 #include "grin/media/mie_sphere.h"
 #include "mc/changes/brownian.h"
 #include "mc/estimators/gradient.h"
+#include "mc/space/space.h"
 #include "tests/mc/space/scenes_in_space.h"
 
 namespace flatspeckle::mc {
@@ -69,7 +70,7 @@ TEST_CASE("Rayleigh's phase function, in the plane and in space") {
   CHECK(plane(pi / 2) == doctest::Approx(plane(0) / 2).epsilon(1e-12));
   const Scene scene = tests::in_space(spec, tilted_pairs(0.2, 0, momenta));
   check_agreement(scene, false, 40000, 0.05);
-  const auto moments = space_slab(scene).law.moments();  // 3/4 (1 + c^2) = 1 + P_2 / 2
+  const auto moments = Space::law(scene).moments();  // 3/4 (1 + c^2) = 1 + P_2 / 2
   REQUIRE(moments.size() == 3);
   CHECK(moments[1] == doctest::Approx(0).epsilon(1e-12));
   CHECK(moments[2] == doctest::Approx(0.1).epsilon(1e-12));
@@ -93,7 +94,7 @@ TEST_CASE("slabs in space: spheres") {
     CHECK(scene.medium.albedo ==
           doctest::Approx(sphere.scattering() / sphere.extinction()).epsilon(1e-12));
     CHECK(scene.medium.mu_s == scene.medium.albedo * scene.medium.mu_t);
-    const SpaceLaw& law = space_slab(scene).law;
+    const SpaceLaw law = Space::law(scene);
     CHECK(law.moments()[1] == doctest::Approx(sphere.mean_cosine()).epsilon(1e-12));
     CHECK(static_cast<int>(law.moments().size()) <= 2 * sphere.order() + 1);
     check_agreement(scene, false, 60000, 0.05);
@@ -117,9 +118,8 @@ TEST_CASE("slabs in space: correlations after delays by both methods") {
     const auto job = delay_job(scene, plan, delays, 5);
     const auto walked = jackknife(tests::summed(job.field.batches, 60000), job.all);
     for (std::size_t t = 0; t < delays.size(); ++t) {
-      const Complex expected = space_covariance(space_slab(scene, delays[t]),
-                                                space_request(scene.request), reversed, {1e-3})
-                                   .value[0];
+      const Complex expected =
+          slab_covariance(scene, reversed, {1e-3}, {.delay = delays[t]}).value[0];
       CHECK_WITHIN_4_SIGMA(walked.value[1 + t], walked.error[1 + t], expected, 0);
       CHECK(walked.error[1 + t] < 0.05 * std::abs(expected));
     }

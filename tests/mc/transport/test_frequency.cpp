@@ -8,6 +8,7 @@
 #include "flatland/scene/frequency_shift.h"
 #include "mc/jobs/changed_fields.h"
 #include "mc/slab/slab_covariance.h"
+#include "mc/slab/slab_jobs.h"
 #include "tests/mc/transport/slabs.h"
 
 namespace flatspeckle::mc {

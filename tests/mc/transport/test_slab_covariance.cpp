@@ -7,6 +7,7 @@
 #include "bench/oracles/slab_theory.h"
 #include "mc/changes/brownian.h"
 #include "mc/slab/slab_covariance.h"
+#include "mc/slab/slab_jobs.h"
 #include "mc/theory/diffusion.h"
 #include "mc/theory/memory_effect.h"
 #include "tests/mc/transport/sixth_order.h"

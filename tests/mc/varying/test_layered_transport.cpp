@@ -5,10 +5,10 @@
 #include "core/error.h"
 #include "flatland/media/layers.h"
 #include "mc/changes/brownian.h"
-#include "mc/jobs/flux_job.h"
-#include "mc/slab/layered_covariance.h"
+#include "mc/estimators/flux_walk.h"
 #include "mc/slab/slab_covariance.h"
 #include "mc/slab/slab_flux.h"
+#include "mc/slab/slab_jobs.h"
 #include "tests/mc/estimates.h"
 
 namespace flatspeckle::mc {
@@ -43,7 +43,7 @@ TEST_CASE("a slab cut into layers is the slab") {
         layered({{7, 0.7, g, albedo}, {33, 3.3, g, albedo}, {20, 2, g, albedo}}, some_pairs());
     for (const bool reversed : {false, true}) {
       const auto expected = slab_covariance(whole, reversed, {1e-6}).value,
-                 found = layered_covariance(cut, reversed, {1e-5}).value;
+                 found = slab_covariance(cut, reversed, {1e-5}).value;
       for (std::size_t e = 0; e < found.size(); ++e) {
         CAPTURE(e);
         CHECK(std::abs(found[e] - expected[e]) < 5e-5 * std::abs(expected[e / 2 * 2]));
@@ -54,7 +54,7 @@ TEST_CASE("a slab cut into layers is the slab") {
 
 TEST_CASE("different layers, absorbing ones among them, agree with paths") {
   const Scene scene = layered({{20, 2, 0.8, 0.99}, {30, 0.5, 0, 0}, {10, 1, 0, 1}}, some_pairs());
-  const auto expected = layered_covariance(scene, true, {1e-4}).value;
+  const auto expected = slab_covariance(scene, true, {1e-4}).value;
   const auto found = tests::run(scene, ReversedPaths::yes, 60000, 3).entries();
   for (std::size_t e = 0; e < expected.size(); ++e) {
     CAPTURE(e);
@@ -68,7 +68,7 @@ TEST_CASE("fields of two times: a cut slab is the slab, layers with shares of di
   const Scene whole = tests::hg_slab(60, {10, 0.7, 0.95}, some_pairs());
   const Scene cut = layered({{20, 2, 0.7, 0.95}, {40, 4, 0.7, 0.95}}, some_pairs());
   const auto expected = slab_covariance(whole, true, {1e-6}, {.delay = delay}).value,
-             found = layered_covariance(cut, true, {1e-5}, delay).value;
+             found = slab_covariance(cut, true, {1e-5}, {.delay = delay}).value;
   for (std::size_t e = 0; e < found.size(); ++e) {
     CAPTURE(e);
     CHECK(std::abs(found[e] - expected[e]) < 5e-5 * std::abs(expected[e / 2 * 2]));
@@ -83,7 +83,7 @@ TEST_CASE("layers that diffuse unlike each other agree with paths") {
   materials[0].motion.diffusion = 4;
   materials[1].motion.diffusion = 0.25;
   scene.profile = std::make_shared<const Layers>(materials, std::vector<double>{20, 10});
-  const auto expected = layered_covariance(scene, true, {1e-5}, delay).value;
+  const auto expected = slab_covariance(scene, true, {1e-5}, {.delay = delay}).value;
   const PathJob job = delay_job(scene, make_plan(scene, ReversedPaths::yes), {delay}, 5);
   const auto found = jackknife(tests::summed(job.field.batches, 60000), job.all);
   for (std::size_t e = 0; e < expected.size(); ++e) {
@@ -111,7 +111,7 @@ TEST_CASE("what three layers reflect and let through, without chance") {
 
 TEST_CASE("near ends and density maps are refused") {
   const Scene near = layered({{20, 2, 0.8, 1}}, intensity_request({0.0}, {near_sensor({0, 80})}));
-  CHECK_THROWS_AS(layered_covariance_job(near, false, {1e-4}), InputError);
+  CHECK_THROWS_AS(slab_covariance_job(near, false, {1e-4}), InputError);
 }
 
 }  // namespace flatspeckle::mc
