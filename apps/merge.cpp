@@ -1,12 +1,10 @@
-#include <algorithm>
 #include <filesystem>
 
 #include "apps/command/subcommands.h"
-#include "apps/experiments/point_store.h"
 #include "apps/experiments/sweep_experiments.h"
-#include "apps/sweep/merge_points.h"
-#include "apps/sweep/sweep_end.h"
+#include "apps/sweep/run_sweep.h"
 #include "core/error.h"
+#include "core/result/result_reader.h"
 
 namespace flatspeckle::apps {
 
@@ -38,11 +36,7 @@ int merge(const Arguments& arguments) {
   keys.read(folders);
   if (!command.settle()) return ExitStatus::done;
   if (folders.empty()) folders = {shards_of(run.out)};
-
-  const bool of_experiments = std::ranges::any_of(
-      folders, [](const std::string& folder) { return !journals_in(folder).empty(); });
-  return of_experiments ? merge_experiments(folders, run.out, partial, command.text())
-                        : merge_points(folders, run.out, partial, command.text());
+  return merge_sweep(sweep_of_config, folders, run.out, partial, command.text());
 }
 
 }  // namespace flatspeckle::apps

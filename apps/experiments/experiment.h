@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "apps/command/command_line.h"
 #include "core/keys/keys.h"
 #include "core/result/result_file.h"
 #include "core/run/runner.h"
@@ -85,5 +86,8 @@ struct ExperimentEntry {
 /// nullptr where there is none of this name.
 const ExperimentEntry* experiment_entry(const std::string& name);
 std::vector<std::string> experiment_names();
+
+/// The subcommand of this name as a call of the program. Returns its exit status.
+int single_run(const std::string& name, const Arguments& arguments);
 
 }  // namespace flatspeckle::apps

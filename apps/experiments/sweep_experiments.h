@@ -1,9 +1,9 @@
 #pragma once
 
+#include <memory>
 #include <string>
-#include <vector>
 
-#include "apps/command/command_line.h"
+#include "apps/sweep/sweep.h"
 
 namespace flatspeckle::apps {
 
@@ -11,11 +11,10 @@ namespace flatspeckle::apps {
 /// curves.
 std::string swept_subcommand(const Arguments& arguments);
 
-/// `sweep --of`.
-int sweep_experiments(const std::string& of, const Arguments& arguments);
-
-/// `merge` of such a sweep's journals in these folders, of which there is one at least.
-int merge_experiments(const std::vector<std::string>& folders, const std::string& out, bool partial,
-                      const std::string& command_line);
+/// A sweep of this subcommand's results, or, where it is empty, of memory-effect curves. Throws
+/// InputError for the name of what cannot be swept.
+std::unique_ptr<Sweep> make_sweep(const std::string& of);
+/// The same, of what a resolved configuration says.
+std::unique_ptr<Sweep> sweep_of_config(const std::string& config);
 
 }  // namespace flatspeckle::apps

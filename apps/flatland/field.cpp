@@ -3,7 +3,7 @@
 #include <cstdio>
 #include <limits>
 
-#include "apps/experiments/single_run.h"
+#include "apps/experiments/experiment.h"
 #include "apps/results/estimation.h"
 #include "core/error.h"
 #include "core/numbers/blas.h"

@@ -2,7 +2,7 @@
 
 #include <cstdio>
 
-#include "apps/experiments/single_run.h"
+#include "apps/experiments/experiment.h"
 #include "apps/results/estimation.h"
 #include "core/error.h"
 #include "core/session/identity.h"

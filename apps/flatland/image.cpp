@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "apps/experiments/single_run.h"
+#include "apps/experiments/experiment.h"
 #include "apps/results/estimation.h"
 #include "core/error.h"
 #include "core/numbers/memory.h"

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/experiments/single_run.h"
+#include "apps/experiments/experiment.h"
 #include "core/keys/number_text.h"
 #include "core/session/identity.h"
 #include "grin/render/energy_datasets.h"

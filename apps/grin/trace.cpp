@@ -4,7 +4,7 @@
 #include <iomanip>
 #include <sstream>
 
-#include "apps/experiments/single_run.h"
+#include "apps/experiments/experiment.h"
 #include "core/result/result_group.h"
 #include "grin/geometry/vector_values.h"
 #include "grin/rays/light_speed.h"

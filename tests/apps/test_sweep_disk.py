@@ -74,12 +74,12 @@ class DiskTest(SweepTest):
 
 class Full(DiskTest):
     def test_while_points_end(self):
-        self.mount(300)
+        self.mount(40)
         self.check_stopped(self.start("sweep", **MANY, out="sweep.h5"), "No space left", ".shards/")
         kept = self.finished()
         self.assertGreater(len(kept), 5)
         self.assertLess(len(kept), 40)
-        self.assertEqual(set(self.shards()), set(kept))
+        self.assertFalse(self.unfinished())
         self.check_stopped(self.start("sweep", "--resume", **MANY, out="sweep.h5"), "No space left")
         self.remount("size=4m")
         self.check_goes_on(MANY, {**kept, **self.finished()})
@@ -92,7 +92,7 @@ class Full(DiskTest):
         self.fill()
         process.send_signal(signal.SIGINT)
         process.send_signal(signal.SIGCONT)
-        self.check_stopped(process, "No space left", ".part.h5")
+        self.check_stopped(process, "No space left", ".part")
         kept = self.finished()
         (self.folder / "filler").unlink()
         self.check_goes_on(SLOW, kept)
