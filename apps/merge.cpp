@@ -1,12 +1,10 @@
-#include <algorithm>
 #include <filesystem>
 
 #include "apps/command/subcommands.h"
-#include "apps/experiments/point_store.h"
-#include "apps/experiments/sweep_experiments.h"
-#include "apps/sweep/merge_points.h"
-#include "apps/sweep/sweep_end.h"
+#include "apps/experiments/experiment_sweep.h"
+#include "apps/sweep/run_sweep.h"
 #include "core/error.h"
+#include "core/result/result_reader.h"
 
 namespace flatspeckle::apps {
 
@@ -41,10 +39,8 @@ int merge_folders(const Subcommand& command, MergeKeys& values) {
   keys.read(values.folders);
   if (!command.settle()) return ExitStatus::done;
   if (values.folders.empty()) values.folders = {shards_of(out)};
-  const bool of_experiments = std::ranges::any_of(
-      values.folders, [](const std::string& folder) { return !journals_in(folder).empty(); });
-  return (of_experiments ? merge_experiments : merge_points)(values.folders, out, values.partial,
-                                                             command.text());
+  const auto sweep_of = [](const std::string& config) { return make_sweep(value_in("of", config)); };
+  return merge_sweep(sweep_of, values.folders, out, values.partial, command.text());
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "apps/command/command_line.h"
 #include "core/keys/keys.h"
 #include "core/result/result_file.h"
 #include "core/run/runner.h"

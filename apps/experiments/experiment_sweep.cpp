@@ -3,8 +3,12 @@
 #include <algorithm>
 
 #include "apps/experiments/at_point.h"
+#include "apps/experiments/stacked_result.h"
+#include "apps/results/datasets.h"
+#include "apps/sweep/curve_sweep.h"
 #include "core/error.h"
 #include "core/keys/number_text.h"
+#include "core/result/result_group.h"
 #include "core/result/version.h"
 
 namespace flatspeckle::apps {
@@ -52,51 +56,28 @@ bool is_corner(const SweepPoints& points, std::size_t point) {
 }  // namespace
 
 ExperimentSweep::ExperimentSweep(const std::string& of)
-    : of_(of),
+    : Sweep(std::string("A sweep of: ") + ExperimentFamily(of).purpose()),
       family_(of),
-      base_(family_.unset()),
-      command_("sweep", std::string("A sweep of: ") + family_.purpose()) {
-  Keys& keys = command_.keys();
+      base_(family_.unset()) {
+  of_ = of;
+  Keys& keys = this->keys();
   base_->add_keys(keys);
   add_run_keys_of_many(keys, run_);
   keys.group("Sweep");
   keys.add("of", of_, "The subcommand whose results these are");
   add_keys(keys, vary_);
-  keys.add("shard", share_text_,
-           "i/n: work on every nth point only, from number i = 0 .. n - 1 on; then merge")
-      .no_file();
-}
-
-bool ExperimentSweep::read() {
-  out_ = settings().out;
-  session_.emplace(command_.text(), command_.keys(), settings(), command_.only_prints(),
-                   Session::Out::shared);
-  check();
-  return command_.settle();
-}
-
-void ExperimentSweep::parse_config(const std::string& config, const std::string& command_line) {
-  command_.parse_config(config);
-  session_.emplace(command_line, command_.keys(), settings(), true);
-  check();
+  add_share_key();
 }
 
 void ExperimentSweep::check() {
-  const Keys& keys = command_.keys();
+  const Keys& keys = this->keys();
   keys.read(of_);
-  keys.read(settings().seconds);
-  has_share_ = !keys.read(share_text_).empty();
-  if (has_share_) share_ = share_of(share_text_);
+  keys.read(run_.seconds);
   points_ = varied_points(keys, vary_, keys);
-  note_given();
-  check_points();
-}
-
-/// What all points have: of a key that is varied as a whole, nothing.
-void ExperimentSweep::note_given() {
-  std::set<std::string> noted = keys_of_the_sweep;
+  std::set<std::string> noted = keys_of_the_sweep;  // of a key that is varied as a whole, nothing
   for (const SweepAxis& axis : points_.axes) noted.insert(axis.key);
-  family_.take_given(command_.keys(), noted);
+  family_.take_given(keys, noted);
+  check_points();
 }
 
 /// Values one by one, and scenes of as many points as can soon be made.
@@ -107,8 +88,8 @@ void ExperimentSweep::check_points() {
   family_.set_given(all);
   for (std::size_t axis = 0; axis < points_.axes.size(); ++axis) check_values(points_, axis, all);
   set_point(points_, points_.count() - 1, all);
-  for (const std::size_t point : points_to_check()) checked(point, {&all, &command_.keys()});
-  all.join_reads(command_.keys());  // the seed
+  for (const std::size_t point : points_to_check()) experiment(point, {&all, &keys()});
+  all.join_reads(keys());  // the seed
   all.refuse_unread();
   inputs_ = experiment(0)->inputs();
 }
@@ -125,15 +106,20 @@ std::vector<std::size_t> ExperimentSweep::points_to_check() const {
   return some;
 }
 
-std::unique_ptr<Experiment> ExperimentSweep::checked(std::size_t point,
-                                                     const std::vector<const Keys*>& joined) const {
+std::unique_ptr<Experiment> ExperimentSweep::experiment(
+    std::size_t point, const std::vector<const Keys*>& joined) const {
   return at_point(points_, point, [&] {
     return family_.run([&](const Keys& keys) { set_point(points_, point, keys); }, joined);
   });
 }
 
-std::unique_ptr<Experiment> ExperimentSweep::experiment(std::size_t point) const {
-  return checked(point, {});
+SweepRun ExperimentSweep::open(std::size_t point) const {
+  const std::shared_ptr<const Experiment> experiment = this->experiment(point);
+  PlannedExperiment planned = plan_at(points_, point, *experiment);
+  return {planned.plan, std::move(planned.batches), experiment->stop(),
+          [experiment, write = std::move(planned.write)](ResultFile& file, const RunState& state) {
+            write(file, state.sums);
+          }};
 }
 
 std::string ExperimentSweep::identity_of_points() const {
@@ -148,6 +134,16 @@ std::string ExperimentSweep::identity() const {
   std::string text = identity_of_points() + (points_.is_list ? "a list\n" : "");
   for (const SweepAxis& axis : points_.axes) text += line(axis.key, {digest(axis.values)});
   return text;
+}
+
+void ExperimentSweep::write(ResultFile& file, const PointStore& store) const {
+  ResultGroup(file, stacked_table).attribute("of", of_);
+  write_stacked(file, *this, store);
+}
+
+std::unique_ptr<Sweep> make_sweep(const std::string& of) {
+  if (of.empty()) return std::make_unique<CurveSweep>();
+  return std::make_unique<ExperimentSweep>(of);
 }
 
 }  // namespace flatspeckle::apps

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <functional>
 #include <map>
+#include <utility>
 
-#include "apps/experiments/stacked_dataset.h"
 #include "apps/results/datasets.h"
 #include "core/keys/number_text.h"
 #include "core/result/result_group.h"
@@ -26,6 +26,120 @@ const DatasetTable stacked_table{
                     "datasets of some points that others have not, or in another shape"}}};
 
 namespace {
+
+/// What all points of a sweep have, in one dataset with the axes of the sweep in front. Values come
+/// point by point, in the order of the points, and are written by whole chunks of some 64 kB: no
+/// more than that is in memory, or one point's.
+class StackedDataset {
+ public:
+  using Held = CollectedDataset::Held;
+
+  /// of_point: its axes are those of each point; its values say their kind and number alone.
+  /// grid: the axes of the sweep, with scales; extents: how long they are.
+  StackedDataset(ResultFile& file, const CollectedDataset& of_point, const std::vector<Axis>& grid,
+                 const std::vector<std::size_t>& extents);
+
+  /// Of the next point.
+  void add(const Held& values);
+  void add(double value) { add(std::vector{value}); }
+  /// The next point has none: 0.
+  void add_none();
+
+ private:
+  std::vector<std::size_t> start() const;
+  std::vector<std::size_t> count(const std::vector<std::size_t>& start) const;
+
+  ResultFile& file_;
+  std::string name_;
+  std::vector<std::size_t> extents_, chunk_;
+  std::size_t of_each_;
+  std::size_t points_ = 0, waiting_points_ = 0;  ///< that are written, and that are not yet
+  Held waiting_;
+};
+
+using Extents = std::vector<std::size_t>;
+
+std::size_t product(const Extents& extents) {
+  std::size_t product = 1;
+  for (const std::size_t extent : extents) product *= extent;
+  return product;
+}
+
+std::size_t value_bytes(const CollectedDataset::Held& values) {
+  return std::visit([](const auto& held) { return sizeof(held.front()); }, values);
+}
+
+/// At most so many points that follow each other: the last axes whole, a part of the one before.
+Extents chunk_of(const Extents& extents, std::size_t most) {
+  Extents chunk(extents.size(), 1);
+  for (std::size_t axis = extents.size(); axis-- > 0 && most > 1;) {
+    chunk[axis] = std::min(extents[axis], most);
+    most = chunk[axis] == extents[axis] ? most / extents[axis] : 1;
+  }
+  return chunk;
+}
+
+Values values_of(const CollectedDataset::Held& held) {
+  return std::visit(
+      []<typename Value>(const std::vector<Value>& values) -> Values {
+        return std::span<const Value>(values);
+      },
+      held);
+}
+
+StackedDataset::StackedDataset(ResultFile& file, const CollectedDataset& of_point,
+                               const std::vector<Axis>& grid, const Extents& extents)
+    : file_(file),
+      name_(of_point.name),
+      extents_(extents),
+      of_each_(of_point.count()),
+      waiting_(of_point.values) {
+  constexpr std::size_t most_bytes = std::size_t{1} << 16;
+  const std::size_t bytes = std::max<std::size_t>(1, of_each_ * value_bytes(waiting_));
+  chunk_ = chunk_of(extents, std::max<std::size_t>(1, most_bytes / bytes));
+  std::visit([](auto& held) { held.clear(); }, waiting_);
+  std::vector<Axis> axes = grid;
+  axes.insert(axes.end(), of_point.axes.begin(), of_point.axes.end());
+  file.begin_dataset(name_, values_of(waiting_), axes, chunk_, of_point.units, of_point.long_name);
+}
+
+void StackedDataset::add(const Held& values) {
+  std::visit(
+      [&]<typename Value>(std::vector<Value>& held) {
+        const auto& own = std::get<std::vector<Value>>(values);
+        held.insert(held.end(), own.begin(), own.end());
+      },
+      waiting_);
+  ++waiting_points_;
+  const Extents from = start(), count = this->count(from);
+  if (waiting_points_ < product(count)) return;
+  file_.write_block(name_, values_of(waiting_), from, count);
+  std::visit([](auto& held) { held.clear(); }, waiting_);
+  points_ += std::exchange(waiting_points_, 0);
+}
+
+void StackedDataset::add_none() {
+  Held none = waiting_;
+  std::visit([&](auto& held) { held.assign(of_each_, {}); }, none);
+  add(none);
+}
+
+/// The first point that waits.
+Extents StackedDataset::start() const {
+  Extents start(extents_.size());
+  std::size_t rest = points_;
+  for (std::size_t axis = extents_.size(); axis-- > 0; rest /= extents_[axis])
+    start[axis] = rest % extents_[axis];
+  return start;
+}
+
+/// Of the chunk there, what is not beyond the end.
+Extents StackedDataset::count(const Extents& start) const {
+  Extents count = chunk_;
+  for (std::size_t axis = 0; axis < count.size(); ++axis)
+    count[axis] = std::min(count[axis], extents_[axis] - start[axis]);
+  return count;
+}
 
 bool is_mark(const std::string& name) {
   return name.ends_with("_rare");

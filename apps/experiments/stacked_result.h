@@ -1,7 +1,7 @@
 #pragma once
 
-#include "apps/experiments/point_store.h"
-#include "core/result/result_file.h"
+#include "apps/experiments/experiment_sweep.h"
+#include "apps/sweep/point_store.h"
 
 namespace flatspeckle::apps {
 

@@ -1,70 +1,52 @@
 #include "apps/fit/search_journal.h"
 
-#include <functional>
-#include <optional>
-#include <sstream>
-
-#include "core/error.h"
-#include "core/keys/number_text.h"
-
 namespace flatspeckle::apps {
 
 namespace {
 
-std::string head_of(const std::string& identity) {
-  return "search " + std::to_string(std::hash<std::string>{}(identity));
-}
+constexpr char step_kind = 's';
 
-std::string line_of(const mc::FitStep& step) {
-  std::string line = std::to_string(step.start) + ' ' + std::to_string(step.iteration);
+std::vector<std::byte> record_of(const mc::FitStep& step) {
+  ByteWriter record;
+  record.put(step.start);
+  record.put(step.iteration);
   for (const double value : {step.paths, step.damping, step.chi_squared, step.cpu_s})
-    line += ' ' + number_text(value);
-  for (const double value : step.at) line += ' ' + number_text(value);
-  return line;
+    record.put(value);
+  record.put(std::vector<double>(step.at.begin(), step.at.end()));
+  return record.take();
 }
 
-std::optional<mc::FitStep> step_of(const std::string& line) {
-  std::istringstream words(line);
+mc::FitStep step_of(ByteReader& record) {
   mc::FitStep step;
-  std::vector<double> at;
-  words >> step.start >> step.iteration >> step.paths >> step.damping >> step.chi_squared >>
-      step.cpu_s;
-  if (!words) return std::nullopt;
-  for (double value = 0; words >> value;) at.push_back(value);
+  record.get(step.start);
+  record.get(step.iteration);
+  for (double* value : {&step.paths, &step.damping, &step.chi_squared, &step.cpu_s})
+    record.get(*value);
+  const auto at = record.get<std::vector<double>>();
   step.at = Eigen::Map<const Eigen::VectorXd>(at.data(), std::ssize(at));
   return step;
 }
 
-/// Whole lines alone: the last may have been cut off.
-std::vector<std::string> lines_of(const std::filesystem::path& path) {
-  std::ifstream file(path);
-  std::vector<std::string> lines;
-  for (std::string line; std::getline(file, line) && !file.eof();) lines.push_back(line);
-  return lines;
+std::filesystem::path beside(const std::string& out, bool resume) {
+  std::filesystem::path path = out + ".search";
+  std::error_code none;
+  if (!resume) std::filesystem::remove(path, none);
+  return path;
 }
 
 }  // namespace
 
 SearchJournal::SearchJournal(const std::string& out, const std::string& identity, bool resume)
-    : path_(out + ".search") {
-  const auto lines = resume ? lines_of(path_) : std::vector<std::string>();
-  if (!lines.empty() && lines.front() != head_of(identity))
-    throw InputError("resume", path_.string(),
-                     "is of another search: keys, measurements and version must be the same");
-  for (std::size_t i = 1; i < lines.size(); ++i)
-    if (auto step = step_of(lines[i])) steps_.push_back(std::move(*step));
-  file_.open(path_);
-  file_ << head_of(identity) << '\n';
-  for (const mc::FitStep& step : steps_) file_ << line_of(step) << '\n';
-  file_.flush();
-}
+    : path_(beside(out, resume)),
+      journal_(
+          path_, JournalHead{identity}, "search",
+          [this](std::uint64_t, char, ByteReader& record) { steps_.push_back(step_of(record)); }) {}
 
 void SearchJournal::add(const mc::FitStep& step) {
-  file_ << line_of(step) << '\n' << std::flush;
+  journal_.append(step_kind, record_of(step));
 }
 
-void SearchJournal::remove() {
-  file_.close();
+void SearchJournal::remove() const {
   std::error_code none;
   std::filesystem::remove(path_, none);
 }

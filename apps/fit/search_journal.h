@@ -1,16 +1,15 @@
 #pragma once
 
-#include <filesystem>
-#include <fstream>
 #include <string>
 #include <vector>
 
+#include "core/session/journal.h"
 #include "mc/fit/task/fit_task.h"
 
 namespace flatspeckle::apps {
 
-/// The steps of a search, a line each in a file beside the result (NAME.search), so that one that
-/// was ended, however, can go on. It is gone once the result is there.
+/// The steps of a search in a journal beside the result (NAME.search), so that one that was ended,
+/// however, can go on. It is gone once the result is there.
 class SearchJournal {
  public:
   /// identity: what the search depends on. Reads the steps of the same search that are there, or
@@ -19,12 +18,12 @@ class SearchJournal {
 
   const std::vector<mc::FitStep>& steps() const { return steps_; }
   void add(const mc::FitStep& step);
-  void remove();
+  void remove() const;
 
  private:
   std::filesystem::path path_;
   std::vector<mc::FitStep> steps_;
-  std::ofstream file_;
+  Journal journal_;
 };
 
 }  // namespace flatspeckle::apps

@@ -29,6 +29,12 @@ const std::vector<double>& numbers(const CollectedResult& result, const char* na
 
 }  // namespace
 
+void EvaluationJournal::add(const std::string& name, const FinishedPoint& evaluation) {
+  const std::uint64_t place = journal_.add(name, evaluation);
+  const std::lock_guard lock(mutex_);
+  places_.emplace(name, place);
+}
+
 Evaluations::Evaluations(const ExperimentFamily& family, const Objective& objective,
                          const EvaluationSettings& settings, EvaluationJournal& journal)
     : family_(family), objective_(objective), settings_(settings), journal_(journal) {}

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "apps/experiments/experiment_family.h"
-#include "apps/optimise/evaluation_journal.h"
 #include "apps/optimise/objective.h"
 #include "apps/optimise/search_axes.h"
+#include "apps/sweep/point_journal.h"
 #include "core/run/stopwatch.h"
 
 namespace flatspeckle::apps {
@@ -21,6 +21,29 @@ struct EvaluationSettings {
   std::optional<std::uint64_t> samples;  ///< of the first measurements
   std::optional<double> seconds;         ///< after which no new ones are begun
   int threads = 1;
+};
+
+/// Evaluations of a search in a journal, known by their names.
+class EvaluationJournal {
+ public:
+  /// As PointJournal. Throws InputError, IoError.
+  EvaluationJournal(const std::filesystem::path& path, const JournalHead& head)
+      : journal_(path, head, "search", [this](const std::string& name, std::uint64_t place) {
+          places_.emplace(name, place);
+        }) {}
+
+  std::size_t size() const { return journal_.size(); }
+  bool has(const std::string& name) const { return places_.contains(name); }
+  /// Of one that is there.
+  FinishedPoint read(const std::string& name) const { return journal_.read(places_.at(name)); }
+  /// For any thread, while no other function is called.
+  void add(const std::string& name, const FinishedPoint& evaluation);
+  void sync() { journal_.sync(); }
+
+ private:
+  std::unordered_map<std::string, std::uint64_t> places_;
+  std::mutex mutex_;
+  PointJournal journal_;
 };
 
 /// One of them: where, with how much effort, and what was found.

@@ -11,7 +11,6 @@
 #include "core/error.h"
 #include "core/keys/number_text.h"
 #include "core/result/result_group.h"
-#include "core/result/result_reader.h"
 #include "core/result/version.h"
 #include "core/run/interrupt.h"
 #include "core/session/session.h"
@@ -112,7 +111,8 @@ class Optimisation : public Call {
     const Session session(command_.text(), keys, values_.run, command_.only_prints());
     read(session);
     if (!command_.settle()) return ExitStatus::done;
-    return is_complete() ? ExitStatus::done : search(session);
+    return session.is_complete(identity(), fs::exists(journal())) ? ExitStatus::done
+                                                                  : search(session);
   }
 
  private:
@@ -188,19 +188,6 @@ class Optimisation : public Call {
            "\nsamples = " + std::to_string(settings_.samples.value_or(0)) + '\n' + inputs_;
   }
   std::string identity() const { return identity_of_evaluations() + command_.keys().identity(); }
-
-  bool is_complete() const {
-    const std::string& out = values_.run.out;
-    if (!values_.run.resume || !fs::exists(out)) return false;
-    const ResultReader file(out);
-    const bool is_same = file.has_attribute("/", "identity") &&
-                         file.attribute<std::string>("/", "identity") == identity();
-    if (!is_same && !fs::exists(journal()))
-      throw InputError("resume: " + out + " holds another run; name another result file");
-    if (!is_same || !file.attribute<bool>("/", "complete")) return false;
-    std::cout << out << " is complete; nothing to resume\n";
-    return true;
-  }
 
   fs::path journal() const { return values_.run.out + ".evaluations"; }
 

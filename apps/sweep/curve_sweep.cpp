@@ -1,129 +1,234 @@
 #include "apps/sweep/curve_sweep.h"
 
-#include <filesystem>
-#include <iostream>
+#include <algorithm>
+#include <cmath>
 
-#include "apps/sweep/sweep_end.h"
-#include "apps/sweep/sweep_plan.h"
-#include "apps/sweep/sweep_ranks.h"
-#include "apps/sweep/sweep_work.h"
+#include "apps/results/datasets.h"
+#include "apps/results/tilt_search.h"
+#include "apps/sweep/curve_result.h"
+#include "apps/sweep/point_store.h"
 #include "core/error.h"
-#include "core/run/ranks.h"
-#include "core/run/remote_batches.h"
-#include "core/session/output_lock.h"
-#include "core/session/shard_folder.h"
+#include "core/result/result_group.h"
+#include "core/result/version.h"
+#include "core/session/identity.h"
+#include "mc/walk/plan.h"
 
 namespace flatspeckle::apps {
 
 namespace {
 
-using Part = ShardFolder::Part;
-
-/// Whether the folder holds anything of this sweep.
-bool has_begun(const SweepPlan& plan, ShardFolder& folder) {
-  for (std::size_t run = 0; run < plan.runs(); ++run)
-    for (Part part : {Part::finished, Part::unfinished})
-      if (folder.has(plan.name(run), part) &&
-          !folder.read(plan.name(run), part, plan.identity(run), [](const ResultReader&) {}))
-        return true;
-  return false;
+std::string header() {
+  return "flatspeckle " + version() + ", sweep, format 2\n";
 }
 
-/// Whether the result is there. Throws InputError where another run's is, unless this sweep was
-/// begun to replace it.
-bool is_complete(const SweepPlan& plan, ShardFolder& folder) {
-  const std::string& out = plan.settings.out;
-  if (!plan.settings.resume || !std::filesystem::exists(out)) return false;
-  const ResultReader file(out);
-  if (file.has_attribute("/", "identity") &&
-      file.attribute<std::string>("/", "identity") == plan.identity())
-    return file.attribute<bool>("/", "complete");
-  if (!has_begun(plan, folder))
-    throw InputError("resume: " + out + " holds another run; name another result file");
-  return false;
+/// Both transmission and reflection: their sum says nothing.
+bool mixes_sides(const CovarianceRequest& request) {
+  return std::any_of(request.views.begin(), request.views.end(), [&](const View& view) {
+    return std::cos(view.angle) * std::cos(request.views.front().angle) < 0;
+  });
 }
 
-ScatteredRuns share_of_runs(const SweepPlan& plan) {
-  return ScatteredRuns(plan.runs(), plan.share.value_or(SweepShare{}));
+void check_scene(const Scene& scene) {
+  if (scene.medium.mu_s == 0)
+    throw InputError("albedo", scene.medium.albedo,
+                     "what does not scatter has no correlation; must be in (0, 1]");
+  if (mixes_sides(scene.request))
+    throw InputError(
+        "view_angles: C_E is of all views together: give those in transmission or those in "
+        "reflection");
 }
-
-/// Throws InputError where the points that are there are all of another sweep: rather a slip in the
-/// keys than strays.
-void refuse_foreign_folder(const SweepPlan& plan, ShardFolder& folder, const ScatteredRuns& runs) {
-  constexpr int few = 2, enough = 16;
-  int seen = 0;
-  std::string wrong;
-  for (std::size_t i = 0; i < runs.size() && seen < enough; ++i) {
-    const std::string name = plan.name(runs[i]);
-    if (!folder.has(name, Part::finished)) continue;
-    const auto complaint =
-        folder.read(name, Part::finished, plan.identity(runs[i]), [](const ResultReader&) {});
-    if (!complaint || !complaint->starts_with("belongs")) return;
-    wrong = *complaint;
-    ++seen;
-  }
-  if (seen > few)
-    throw InputError("resume: what " + folder.path().string() + " holds " + wrong +
-                     "; name another result file, or remove the folder");
-}
-
-/// Throws InputError where work of an earlier sweep would be overwritten.
-void refuse_leftovers(const SweepPlan& plan, const ShardFolder& folder, const ScatteredRuns& runs) {
-  if (plan.settings.resume) return;
-  for (std::size_t i = 0; i < runs.size(); ++i)
-    if (const std::string name = plan.name(runs[i]);
-        folder.has(name, Part::finished) || folder.has(name, Part::unfinished))
-      throw InputError(folder.path().string() +
-                       " holds points of an earlier sweep: --resume goes on with them; remove the "
-                       "folder to begin again");
-}
-
-/// Of this process alone, or of rank 0.
-int lead(const SweepPlan& plan, RankServer* server) {
-  const std::string& out = plan.settings.out;
-  const OutputLock lock(plan.share ? out + ".shard-" + std::to_string(plan.share->number) : out);
-  ShardFolder folder(shards_of(out));
-  if (is_complete(plan, folder)) {
-    std::cout << out << " is complete; nothing to resume\n";
-    remove_points(plan, gather(plan, {shards_of(out)}, std::cerr), folder);
-    return ExitStatus::done;
-  }
-  const auto runs = share_of_runs(plan);
-  refuse_leftovers(plan, folder, runs);
-  refuse_foreign_folder(plan, folder, runs);
-  folder.make();
-  SweepWork work(plan, folder, runs);
-  const PoolEnd end = run_pool(
-      work.list(), {plan.settings.seconds, plan.session().threads(), "sweep", "points", server});
-  work.save_unfinished();
-  return end_sweep(plan, folder, end);
-}
-
-/// With rank 0, and for it.
-void follow(const SweepPlan& plan) {
-  ShardFolder none("");
-  SweepWork work(plan, none, share_of_runs(plan));
-  work_for_rank_0(work.list(), plan.session().threads());
-}
-
-class CurveSweep : public Call {
- public:
-  Subcommand& command() override { return plan_.command(); }
-  int run() override {
-    if (!plan_.read()) return ExitStatus::done;
-    if (!plan_.share) join_ranks();
-    return on_all_ranks([&](RankServer* server) { return lead(plan_, server); },
-                        [&] { follow(plan_); });
-  }
-
- private:
-  SweepPlan plan_;
-};
 
 }  // namespace
 
-std::unique_ptr<Call> curve_sweep() {
-  return std::make_unique<CurveSweep>();
+CurveSweep::CurveSweep()
+    : Sweep(
+          "Memory-effect curves over any of g, albedo, optical depth, radius, index and "
+          "density, by Monte Carlo, exactly, or both; with --of another subcommand's results "
+          "over any of its keys") {
+  base.scatterer = "hg";
+  base.domain = "slab";
+  base.covariance = "memory_effect";
+  Keys& keys = this->keys();
+  add_medium_keys(keys, base);
+  add_scatterer_keys(keys, base);
+  add_bulk_keys(keys, base);
+  add_profile_keys(keys, base);
+  add_sweep_keys(keys, lists_);
+  add_structure_key(keys, base);
+  add_view_keys(keys, base);
+  keys.add("tilts", base.tilts, "Rotations of the light").angle();
+  add_q_depths_key(keys, q_depths_);
+  keys.group("Methods");
+  keys.add("method", method_,
+           "Monte Carlo, exactly, of slabs by transport without chance; both: Monte Carlo and what "
+           "it is checked by; auto: of slabs transport, unless samples or seconds are given")
+      .one_of({"mc", "wave", "transport", "both", "auto"});
+  add_mc_keys(keys, methods);
+  add_wave_keys(keys, methods);
+  add_transport_keys(keys, methods);
+  add_dimension_key(keys, base);
+  add_run_keys(keys, run_);
+  keys.remove("keep_state");  // of one run
+  keys.group("Sweep of another subcommand");
+  keys.add("of", of_,
+           "Its name, as render: results of it over keys that vary or points name, in place of "
+           "memory-effect curves (then --help --of NAME has its keys)")
+      .only_of("sweeps of another subcommand");
+  add_vary_key(keys, vary_);
+  keys.group("Run");
+  add_share_key();
+}
+
+/// All that can be refused: every point must make a scene that the method can take.
+void CurveSweep::check() {
+  const Keys& keys = this->keys();
+  take_q_depths(keys, q_depths_, base);
+  choose_method(keys, method_, base, run_);
+  method_words = method_ == "both"
+                     ? std::vector<std::string>{"mc", base.domain == "slab" ? "transport" : "wave"}
+                     : std::vector{method_};
+  const auto has = [&](const char* word) { return std::ranges::count(method_words, word) > 0; };
+  if (has("transport")) read_transport(keys, methods, base, run_);
+  if (has("mc") || has("wave")) mc_stop_ = wave_stop_ = stop_rule(keys, run_);
+  if (const auto& own = keys.read(methods.wave_samples); own && has("wave"))
+    wave_stop_ = stop_rule(keys, run_, methods.wave_samples);
+  for (StopRule* stop : {&mc_stop_, &wave_stop_})
+    if (!stop->samples && !stop->target_error) stop->target_error = default_target_error;
+  if (method_ != "wave") reversed_ = reversed_paths(keys, methods);
+  if (has("wave"))
+    keys.read(methods.wave_tolerance);
+  else
+    keys.read(base.dimension);
+  points_ = sweep_points(keys, lists_);
+  check_points();
+  disregard_unused(keys, base, method_words);
+}
+
+void CurveSweep::check_points() {
+  each_run([](std::size_t, const Keyed<SceneSpec>&) {});  // the values of all, before any scene
+  Neglected neglected;
+  each_run([&](std::size_t run, const Keyed<SceneSpec>& point) {
+    const Scene scene = scene_of(point);
+    keys().join_reads(point.keys);
+    check_scene(scene);
+    if (method(run) == "wave") note_rounding(scene);
+    if (method(run) == "wave" || point_of(run) == 0)
+      estimation(run, scene);
+    else if (method(run) == "mc")
+      mc::require_walks(scene, mc::make_plan(scene, reversed_).weighted);
+    if (method(run) != "wave") neglected.add(scene);
+  });
+  if (method_ != "wave") refuse_absurd(methods, neglected);
+  note(neglected);
+}
+
+/// Where points come from a table, says which row cannot be used.
+void CurveSweep::each_run(
+    const std::function<void(std::size_t run, const Keyed<SceneSpec>&)>& use) const {
+  for (std::size_t run = 0; run < runs(); ++run) {
+    try {
+      with_point(run, [&](const Keyed<SceneSpec>& point) { use(run, point); });
+    } catch (const InputError& error) {
+      if (lists_.points.empty()) throw;
+      const std::size_t row = point_of(run) + 1;
+      throw InputError(lists_.points + ", row " + std::to_string(row) + ": " + error.what());
+    }
+  }
+}
+
+void CurveSweep::with_point(std::size_t run,
+                            const std::function<void(const Keyed<SceneSpec>&)>& use) const {
+  const Keyed<SceneSpec> point(base);
+  set_point(points_, point_of(run), point.keys);
+  point.keys.check();
+  use(point);
+}
+
+Scene CurveSweep::scene_of(const Keyed<SceneSpec>& point) const {
+  const Scene scene = make_scene(point.keys, point.values);
+  return with_dimension(method_words.size() > 1 ? rounded_scene(scene, point.values) : scene,
+                        point.values);
+}
+
+Scene CurveSweep::scene(std::size_t run) const {
+  Scene scene;
+  with_point(run, [&](const Keyed<SceneSpec>& point) { scene = scene_of(point); });
+  return scene;
+}
+
+Estimation CurveSweep::estimation(std::size_t run, const Scene& scene) const {
+  if (method(run) == "transport") return transport_estimation(scene, reversed_, methods.tolerance);
+  return method(run) == "mc" ? mc_estimation(scene, reversed_, session().seed())
+                             : wave_estimation(scene, methods.wave_tolerance, session().seed());
+}
+
+StopRule CurveSweep::stop(std::size_t run) const {
+  if (method(run) == "transport") return both_batches();
+  return method(run) == "wave" ? wave_stop_ : mc_stop_;
+}
+
+std::string CurveSweep::name(std::size_t run) const {
+  return method(run) + '_' + points_.name(point_of(run));
+}
+
+std::optional<std::size_t> CurveSweep::find(const std::string& name,
+                                            const PointFinder& finder) const {
+  for (std::size_t method = 0; method < method_words.size(); ++method) {
+    const std::string prefix = method_words[method] + '_';
+    if (!name.starts_with(prefix)) continue;
+    if (const auto point = finder.find(name.substr(prefix.size()))) return run(method, *point);
+  }
+  return std::nullopt;
+}
+
+SweepRun CurveSweep::open(std::size_t run) const {
+  const auto scene = std::make_shared<const Scene>(this->scene(run));
+  const Estimation planned = estimation(run, *scene);
+  return {planned.plan, planned.job.batches, stop(run),
+          [scene, job = planned.job](ResultFile& file, const RunState& state) {
+            write_point(file, point_result(*scene, job, state));
+          }};
+}
+
+/// Of the sweep's keys all but those that say which points and methods there are.
+std::string CurveSweep::identity_of_points() const {
+  auto left_out = keys_of_the_work;
+  left_out.insert(lists_.keys.begin(), lists_.keys.end());
+  left_out.insert({"points", "method"});
+  return header() + keys().config(left_out) + inputs_text(scene(0)) + inputs_text(keys());
+}
+
+std::string CurveSweep::identity() const {
+  std::string all = header() + keys().config(keys_of_the_work);
+  if (points_.is_list)
+    for (std::size_t point = 0; point < points_.count(); ++point) all += points_.name(point) + '\n';
+  return all;
+}
+
+bool CurveSweep::has_all_runs(std::size_t point, const PointStore& store) const {
+  for (std::size_t method = 0; method < method_words.size(); ++method)
+    if (!store.has(run(method, point))) return false;
+  return true;
+}
+
+std::size_t CurveSweep::finished_points(const PointStore& store) const {
+  std::size_t finished = 0;
+  for (std::size_t point = 0; point < points_.count(); ++point)
+    finished += has_all_runs(point, store) ? 1 : 0;
+  return finished;
+}
+
+void CurveSweep::write(ResultFile& file, const PointStore& store) const {
+  CurveResults results{{}, std::vector<std::vector<PointResult>>(method_words.size())};
+  for (std::size_t point = 0; point < points_.count(); ++point)
+    if (has_all_runs(point, store)) results.points.push_back(point);
+  store.for_each([&](std::size_t run, const FinishedPoint& finished) {
+    if (has_all_runs(point_of(run), store))
+      results.by_method[run / points_.count()].push_back(curve_of(finished));
+  });
+  print_ranges(*this, results);
+  ResultGroup(file, sweep_table).attribute("format", std::uint64_t{2});
+  write_sweep(file, *this, results);
 }
 
 }  // namespace flatspeckle::apps

@@ -1,10 +1,56 @@
 #pragma once
 
-#include "apps/command/subcommands.h"
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "apps/results/estimation.h"
+#include "apps/sweep/sweep.h"
 
 namespace flatspeckle::apps {
 
-/// `sweep` of memory-effect curves.
-std::unique_ptr<Call> curve_sweep();
+/// A sweep of memory-effect curves over lists of values. Its runs are its points by each of its
+/// methods.
+class CurveSweep : public Sweep {
+ public:
+  CurveSweep();
+
+  SceneSpec base;
+  MethodSettings methods;
+  std::vector<std::string> method_words;  ///< of mc, wave, transport
+
+  std::size_t runs() const override { return method_words.size() * points_.count(); }
+  std::size_t run(std::size_t method, std::size_t point) const {
+    return method * points_.count() + point;
+  }
+  Scene scene(std::size_t run) const;
+  StopRule stop(std::size_t run) const;
+
+  std::string name(std::size_t run) const override;
+  std::optional<std::size_t> find(const std::string& name,
+                                  const PointFinder& finder) const override;
+  SweepRun open(std::size_t run) const override;
+  std::string identity_of_points() const override;
+  std::string identity() const override;
+  std::size_t finished_points(const PointStore& store) const override;
+  void write(ResultFile& file, const PointStore& store) const override;
+
+ private:
+  void check() override;
+  void check_points();
+  void each_run(const std::function<void(std::size_t run, const Keyed<SceneSpec>&)>& use) const;
+  void with_point(std::size_t run, const std::function<void(const Keyed<SceneSpec>&)>& use) const;
+  Scene scene_of(const Keyed<SceneSpec>& point) const;
+  Estimation estimation(std::size_t run, const Scene& scene) const;
+  std::size_t point_of(std::size_t run) const { return run % points_.count(); }
+  const std::string& method(std::size_t run) const { return method_words[run / points_.count()]; }
+  bool has_all_runs(std::size_t point, const PointStore& store) const;
+
+  SweepLists lists_;
+  std::string method_ = "auto";
+  std::vector<double> q_depths_;  ///< empty once the tilts are made of it
+  mc::ReversedPaths reversed_ = mc::ReversedPaths::automatic;
+  StopRule mc_stop_, wave_stop_;
+};
 
 }  // namespace flatspeckle::apps

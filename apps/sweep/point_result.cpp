@@ -1,14 +1,21 @@
-#include "apps/sweep/point_result.h"
-
 #include <cmath>
 
+#include "apps/sweep/curve_result.h"
 #include "core/error.h"
-#include "core/result/result_group.h"
 #include "core/result/run_state_file.h"
-#include "flatland/scene/scene_datasets.h"
-#include "mc/theory/moments_datasets.h"
 
 namespace flatspeckle::apps {
+
+namespace {
+
+template <typename Value>
+std::vector<Value> kept_list(const FinishedPoint& finished, const std::string& name) {
+  const CollectedDataset* const set = finished.result.find(name);
+  if (set == nullptr) throw InputError("a finished point has no " + name);
+  return std::get<std::vector<Value>>(set->values);
+}
+
+}  // namespace
 
 PointResult point_result(const Scene& scene, const FieldJob& job, const RunState& state) {
   auto effect = mc::memory_effect(scene.request, state.sums, job.covariance);
@@ -20,13 +27,6 @@ PointResult point_result(const Scene& scene, const FieldJob& job, const RunState
           .range_error = effect.range.error * depth,
           .range_rare = effect.range.rare,
           .range_censored = static_cast<std::uint64_t>(effect.range.range.censored),
-          .relative_error = state.trace.relative_error.back(),
-          .samples = state.sums.total_samples(),
-          .cpu_s = state.cpu_s,
-          .wall_s = state.wall_s,
-          .reached = true,
-          .plan = {},
-          .started = {},
           .trace = state.trace};
 }
 
@@ -45,50 +45,40 @@ std::vector<double> deviation(const PointResult& mc, const PointResult& wave) {
   return deviation;
 }
 
-void write_point(ResultFile& file, const PointResult& point, const Scene& scene) {
-  write_axes(file, scene);
-  file.bind("MOVES", {"tilt"});
-  const ResultGroup root(file, mc::moves_table);
-  root.put("field_correlation", point.correlation, point.correlation_error, point.correlation_rare);
-  root.put("memory_effect_range", Estimate{{point.range}, {point.range_error}, {point.range_rare}});
-  file.attribute("/", "range_censored", point.range_censored);
-  file.attribute("/", "relative_error", point.relative_error);
-  file.attribute("/", "reached", point.reached);
+/// Under the names that they have in the result; what belongs together in one list.
+void write_point(ResultFile& file, const PointResult& point) {
+  const auto put = [&]<typename Value>(const char* name, const std::vector<Value>& values) {
+    file.dataset(name, std::span(values), {values.size()}, "", "");
+  };
+  put("field_correlation", point.correlation);
+  put("field_correlation_error", point.correlation_error);
+  put("field_correlation_rare", point.correlation_rare);
+  put("memory_effect_range", std::vector{point.range, point.range_error});
+  put("range_marks", std::vector{point.range_rare, point.range_censored});
   write_trace(file, "", point.trace);
 }
 
-PointResult read_point(const ResultReader& file) {
-  const auto tilts = file.shape("tilt");
-  for (const char* name : {"field_correlation", "field_correlation_error"})
-    if (file.shape(name) != tilts) throw InputError(std::string(name) + " is not one per tilt");
-  const auto scalar = [&](const char* name) {
-    const auto values = file.dataset<double>(name);
-    if (values.size() != 1) throw InputError(std::string(name) + " is not one number");
-    return values.front();
-  };
-  const auto rare = [&](const std::string& name) {
-    const auto values = file.dataset<double>(name);
-    if (!file.has(name + "_rare")) return std::vector<std::uint64_t>(values.size());
-    const auto marks = file.dataset<double>(name + "_rare");
-    if (marks.size() != values.size()) throw InputError(name + "_rare is not one per " + name);
-    return column(marks, [](double mark) { return std::uint64_t{mark != 0}; });
-  };
-  const auto attribute = [&](const char* name) { return file.attribute<double>("/", name); };
-  return {.correlation = file.dataset<double>("field_correlation"),
-          .correlation_error = file.dataset<double>("field_correlation_error"),
-          .correlation_rare = rare("field_correlation"),
-          .range = scalar("memory_effect_range"),
-          .range_error = scalar("memory_effect_range_error"),
-          .range_rare = rare("memory_effect_range").front(),
-          .range_censored = file.attribute<std::uint64_t>("/", "range_censored"),
-          .relative_error = attribute("relative_error"),
-          .samples = attribute("samples"),
-          .cpu_s = attribute("cpu_s"),
-          .wall_s = attribute("wall_s"),
-          .reached = file.attribute<bool>("/", "reached"),
-          .plan = file.attribute<std::string>("/", "plan"),
-          .started = file.attribute<std::string>("/", "started"),
-          .trace = read_trace(file, "")};
+PointResult curve_of(const FinishedPoint& finished) {
+  const auto numbers = [&](const std::string& name) { return kept_list<double>(finished, name); };
+  const auto counts = [&](const char* name) { return kept_list<std::uint64_t>(finished, name); };
+  const auto range = numbers("memory_effect_range");
+  const auto marks = counts("range_marks");
+  PointResult point{.correlation = numbers("field_correlation"),
+                    .correlation_error = numbers("field_correlation_error"),
+                    .correlation_rare = counts("field_correlation_rare"),
+                    .range = range.at(0),
+                    .range_error = range.at(1),
+                    .range_rare = marks.at(0),
+                    .range_censored = marks.at(1),
+                    .trace = {},
+                    .relative_error = finished.relative_error,
+                    .samples = finished.samples,
+                    .cpu_s = finished.cpu_s,
+                    .wall_s = finished.wall_s};
+  point.correlation_rare.resize(point.correlation.size());  // none where nothing is marked
+  for (const auto& [name, values] : trace_columns)
+    point.trace.*values = numbers(std::string("trace/") + name);
+  return point;
 }
 
 }  // namespace flatspeckle::apps

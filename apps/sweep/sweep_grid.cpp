@@ -1,8 +1,7 @@
-#include "apps/sweep/sweep_grid.h"
-
 #include <algorithm>
 
 #include "apps/results/datasets.h"
+#include "apps/sweep/curve_result.h"
 #include "core/keys/number_text.h"
 #include "core/result/result_group.h"
 
@@ -49,9 +48,9 @@ bool is_constant(const std::vector<double>& values) {
 }
 
 /// The numbers of an axis that is swept; none of one that is not.
-std::vector<double> swept_values(const SweepPlan& plan, const std::string& key) {
+std::vector<double> swept_values(const CurveSweep& sweep, const std::string& key) {
   std::vector<double> values;
-  for (const SweepAxis& axis : plan.points.axes)
+  for (const SweepAxis& axis : sweep.points().axes)
     if (axis.key == key)
       for (const std::string& text : axis.values.texts())
         values.push_back(parse_complex(key, text).real());
@@ -60,7 +59,7 @@ std::vector<double> swept_values(const SweepPlan& plan, const std::string& key) 
 
 }  // namespace
 
-void write_sweep_grid(ResultFile& file, const SweepPlan& plan, const std::vector<Scene>& scenes,
+void write_sweep_grid(ResultFile& file, const CurveSweep& sweep, const std::vector<Scene>& scenes,
                       bool as_list) {
   const ResultGroup axes(file, sweep_axes_table), root(file, sweep_table);
   std::vector<Axis> grid;
@@ -75,7 +74,7 @@ void write_sweep_grid(ResultFile& file, const SweepPlan& plan, const std::vector
     grid.emplace_back(quantity.name);
   };
   for (const Quantity& quantity : settings) {
-    const auto swept = swept_values(plan, quantity.name);
+    const auto swept = swept_values(sweep, quantity.name);
     if (swept.size() < 2) continue;
     add(quantity, swept, true);
     const auto absorbing = column(scenes, absorbing_index.value);
@@ -83,7 +82,7 @@ void write_sweep_grid(ResultFile& file, const SweepPlan& plan, const std::vector
       beside.push_back(absorbing_index);
   }
   for (const Quantity& quantity : bulk) {
-    const auto swept = swept_values(plan, quantity.name), values = column(scenes, quantity.value);
+    const auto swept = swept_values(sweep, quantity.name), values = column(scenes, quantity.value);
     add(quantity, swept.empty() ? std::vector{values.front()} : swept,
         !swept.empty() || is_constant(values));
   }

@@ -1,11 +1,8 @@
-#include "apps/sweep/sweep_output.h"
-
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
 #include "apps/results/datasets.h"
-#include "apps/sweep/sweep_grid.h"
+#include "apps/sweep/curve_result.h"
 #include "core/result/result_group.h"
 #include "core/result/run_state_file.h"
 #include "flatland/scene/scene_datasets.h"
@@ -61,7 +58,7 @@ const DatasetTable sweep_table{
 
 namespace {
 
-using Points = std::vector<std::reference_wrapper<const PointResult>>;
+using Points = std::vector<PointResult>;
 
 /// The curves of all points, one after the other.
 template <typename Value>
@@ -75,29 +72,23 @@ std::vector<Value> of_points(const Points& points, std::vector<Value> PointResul
 /// Writes the result of a sweep, over the points that are finished.
 class SweepWriter {
  public:
-  SweepWriter(ResultFile& file, const SweepPlan& plan, const SweepResults& results)
-      : file_(file), plan_(plan) {
-    const auto finished = finished_points(plan, results);
-    for (std::size_t point : finished) {
-      scenes_.push_back(plan.scene(point));
+  SweepWriter(ResultFile& file, const CurveSweep& sweep, const CurveResults& results)
+      : file_(file), sweep_(sweep), results_(results.by_method) {
+    for (std::size_t point : results.points) {
+      scenes_.push_back(sweep.scene(point));
       if (scenes_.size() > 1) scenes_.back().request = {};  // the same at all points, and large
-    }
-    for (std::size_t method = 0; method < plan.method_words.size(); ++method) {
-      results_.emplace_back();
-      for (std::size_t point : finished)
-        results_.back().emplace_back(*results[plan.run(method, point)]);
     }
   }
 
   void write() {
     write_domain(file_, scenes_.front());
-    const bool whole = scenes_.size() == plan_.points.count();
-    write_sweep_grid(file_, plan_, scenes_, plan_.points.is_list || !whole);
+    const bool whole = scenes_.size() == sweep_.points().count();
+    write_sweep_grid(file_, sweep_, scenes_, sweep_.points().is_list || !whole);
     write_axes(file_, scenes_.front());
     write_theory();
     const bool both = results_.size() > 1;
     for (std::size_t method = 0; method < results_.size(); ++method)
-      write_method(method, both ? plan_.method_words[method] : "");
+      write_method(method, both ? sweep_.method_words[method] : "");
     if (both) write_deviation();
   }
 
@@ -152,9 +143,9 @@ class SweepWriter {
     out.put("samples", column(points, &PointResult::samples));
     out.put("cpu_s", column(points, &PointResult::cpu_s));
     out.put("wall_s", column(points, &PointResult::wall_s));
-    if (const auto target = plan_.stop(plan_.run(method, 0)).target_error)
+    if (const auto target = sweep_.stop(sweep_.run(method, 0)).target_error)
       out.attribute("target_error", *target);
-    if (plan_.method_words[method] == "transport") mc::write_numerical(file_, group);
+    if (sweep_.method_words[method] == "transport") mc::write_numerical(file_, group);
     write_traces(out, points, group);
   }
 
@@ -179,7 +170,7 @@ class SweepWriter {
     std::vector<std::uint64_t> of_point;
     Trace all;
     for (std::size_t i = 0; i < points.size(); ++i) {
-      const Trace& own = points[i].get().trace;
+      const Trace& own = points[i].trace;
       of_point.insert(of_point.end(), own.samples.size(), i);
       for (const auto& [name, part] : trace_columns)
         (all.*part).insert((all.*part).end(), (own.*part).begin(), (own.*part).end());
@@ -198,26 +189,15 @@ class SweepWriter {
   }
 
   ResultFile& file_;
-  const SweepPlan& plan_;
+  const CurveSweep& sweep_;
   std::vector<Scene> scenes_;
-  std::vector<Points> results_;  ///< [method][point]
+  const std::vector<Points>& results_;  ///< [method][point]
 };
 
 }  // namespace
 
-std::vector<std::size_t> finished_points(const SweepPlan& plan, const SweepResults& results) {
-  std::vector<std::size_t> points;
-  for (std::size_t point = 0; point < plan.points.count(); ++point) {
-    bool all = true;
-    for (std::size_t method = 0; method < plan.method_words.size(); ++method)
-      all = all && results[plan.run(method, point)];
-    if (all) points.push_back(point);
-  }
-  return points;
-}
-
-void write_sweep(ResultFile& file, const SweepPlan& plan, const SweepResults& results) {
-  SweepWriter(file, plan, results).write();
+void write_sweep(ResultFile& file, const CurveSweep& sweep, const CurveResults& results) {
+  SweepWriter(file, sweep, results).write();
 }
 
 }  // namespace flatspeckle::apps

@@ -75,14 +75,21 @@ SweepPoints listed(const Keys& keys, const SweepLists& lists) {
   return list;
 }
 
-void refuse_twins(const SweepPoints& points) {
-  std::set<std::string> seen;
-  for (std::size_t point = 0; point < points.count(); ++point)
-    if (!seen.insert(points.name(point)).second)
-      throw InputError("the point " + points.name(point) + " is given twice");
+}  // namespace
+
+std::size_t AxisValues::size() const {
+  return range() != nullptr ? range()->count : std::get<0>(values_).size();
 }
 
-}  // namespace
+std::string AxisValues::operator[](std::size_t number) const {
+  return range() != nullptr ? number_text(range()->at(number)) : std::get<0>(values_)[number];
+}
+
+std::vector<std::string> AxisValues::texts() const {
+  std::vector<std::string> texts;
+  for (std::size_t i = 0; i < size(); ++i) texts.push_back((*this)[i]);
+  return texts;
+}
 
 std::size_t SweepPoints::count() const {
   if (is_list) return axes.front().values.size();
@@ -106,10 +113,6 @@ std::string SweepPoints::name(std::size_t point) const {
   return joined(parts, "_");
 }
 
-void SweepPoints::set(std::size_t point, const Keys& keys) const {
-  for (std::size_t i = 0; i < axes.size(); ++i) keys.set(axes[i].key, {value(i, point)});
-}
-
 void add_sweep_keys(Keys& keys, SweepLists& lists) {
   keys.group("Swept: lists of values");
   const auto rows = keys.rows();
@@ -128,14 +131,26 @@ void add_sweep_keys(Keys& keys, SweepLists& lists) {
            "all combinations");
 }
 
+void require_at_most(std::size_t most, const SweepPoints& points) {
+  double count = 1;  // which may be beyond what a whole number holds
+  for (const SweepAxis& axis : points.axes)
+    count = points.is_list ? static_cast<double>(axis.values.size())
+                           : count * static_cast<double>(axis.values.size());
+  if (count > static_cast<double>(most))
+    throw InputError("points of the sweep", count, "must be at most " + std::to_string(most));
+}
+
+void refuse_twins(const SweepPoints& points) {
+  std::set<std::string> seen;
+  for (std::size_t point = 0; point < points.count(); ++point)
+    if (!seen.insert(points.name(point)).second)
+      throw InputError("the point " + points.name(point) + " is given twice");
+}
+
 SweepPoints sweep_points(const Keys& keys, const SweepLists& lists) {
   const bool is_list = !keys.read(lists.points).empty();
   SweepPoints points = is_list ? listed(keys, lists) : SweepPoints{given_axes(keys, lists)};
-  constexpr double most_points = 1e5;
-  double count = 1;
-  if (!is_list)
-    for (const SweepAxis& axis : points.axes) count *= static_cast<double>(axis.values.size());
-  if (count > most_points) throw InputError("points of the sweep", count, "must be at most 100000");
+  require_at_most(100'000, points);
   refuse_twins(points);
   return points;
 }

@@ -1,13 +1,35 @@
 #pragma once
 
+#include <initializer_list>
 #include <map>
 #include <string>
+#include <variant>
 #include <vector>
 
-#include "apps/sweep/axis_values.h"
 #include "core/keys/keys.h"
+#include "core/keys/written_number.h"
 
 namespace flatspeckle::apps {
+
+/// Values of an axis, as text that reads back as the same numbers: a list of them, or a range,
+/// whose values are made when they are asked for, since they may be very many.
+class AxisValues {
+ public:
+  AxisValues(std::vector<std::string> texts = {}) : values_(std::move(texts)) {}
+  AxisValues(std::initializer_list<std::string> texts) : values_(std::vector(texts)) {}
+  explicit AxisValues(const NumberRange& range) : values_(range) {}
+
+  std::size_t size() const;
+  std::string operator[](std::size_t number) const;
+  std::string front() const { return (*this)[0]; }
+  std::string back() const { return (*this)[size() - 1]; }
+  std::vector<std::string> texts() const;
+  /// nullptr: a list.
+  const NumberRange* range() const { return std::get_if<NumberRange>(&values_); }
+
+ private:
+  std::variant<std::vector<std::string>, NumberRange> values_;
+};
 
 /// A key that a sweep varies, and its values.
 struct SweepAxis {
@@ -24,8 +46,6 @@ struct SweepPoints {
   std::string value(std::size_t axis, std::size_t point) const;
   /// "g=0.5_albedo=1": a name for files.
   std::string name(std::size_t point) const;
-  /// Sets the keys of a point.
-  void set(std::size_t point, const Keys& keys) const;
 };
 
 /// Lists of values as given on the command line, by key, and a table of points.
@@ -37,6 +57,11 @@ struct SweepLists {
 };
 /// Puts lists in the place of the keys that may be swept.
 void add_sweep_keys(Keys& keys, SweepLists& lists);
+
+/// Throws InputError where there are more.
+void require_at_most(std::size_t most, const SweepPoints& points);
+/// Throws InputError for a point that comes twice.
+void refuse_twins(const SweepPoints& points);
 
 /// Throws InputError for a table without rows, with columns that are no keys of a sweep or lists
 /// beside it, and for a point that comes twice.

@@ -1,10 +1,9 @@
-#include "apps/sweep/sweep_table.h"
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 
 #include "apps/results/moments_table.h"
+#include "apps/sweep/curve_result.h"
 
 namespace flatspeckle::apps {
 
@@ -12,83 +11,80 @@ namespace {
 
 class SweepTable {
  public:
-  SweepTable(const SweepPlan& plan, const SweepResults& results)
-      : plan_(plan),
-        results_(results),
-        points_(finished_points(plan, results)),
-        scene_(plan.scene(points_.front())) {}
+  SweepTable(const CurveSweep& sweep, const CurveResults& results)
+      : sweep_(sweep), results_(results), scene_(sweep.scene(results.points.front())) {}
 
   void print() const {
     note_few();
-    if (points_.size() > most_rows) return;
+    if (results_.points.size() > most_rows) return;
     print_header();
-    for (std::size_t point : points_) print_row(point);
+    for (std::size_t i = 0; i < results_.points.size(); ++i) print_row(i);
   }
 
  private:
-  bool both() const { return plan_.method_words.size() > 1; }
-  const PointResult& result(std::size_t method, std::size_t point) const {
-    return *results_[plan_.run(method, point)];
-  }
+  bool both() const { return sweep_.method_words.size() > 1; }
   bool is_rough(const PointResult& result) const {
     return mc::few_steps(scene_.request.tilt_q, range_in_q(scene_, result));
   }
 
   void note_few() const {
-    std::size_t few = 0;
-    for (std::size_t point : points_)
-      for (std::size_t method = 0; method < plan_.method_words.size(); ++method)
-        few += is_rough(result(method, point)) ? 1 : 0;
+    std::size_t few = 0, all = 0;
+    for (const auto& points : results_.by_method) {
+      all += points.size();
+      few += static_cast<std::size_t>(
+          std::ranges::count_if(points, [&](const PointResult& own) { return is_rough(own); }));
+    }
     if (few > 0)
       std::fprintf(stderr,
                    "note: %zu of %zu ranges (marked *) are read off curves with fewer than four "
                    "tilts below them; their errors do not know what the curve does in between\n",
-                   few, points_.size() * plan_.method_words.size());
+                   few, all);
   }
 
   void print_header() const {
-    for (const SweepAxis& axis : plan_.points.axes)
+    for (const SweepAxis& axis : sweep_.points().axes)
       if (axis.values.size() > 1) std::printf("%13s ", axis.key.c_str());
-    for (const std::string& method : plan_.method_words)
+    for (const std::string& method : sweep_.method_words)
       std::printf(" %-24s", both() ? ("range q L, " + method).c_str() : "range q L at C_I = 1/2");
     std::puts(both() ? " deviation of C_E, RMS in standard errors" : "");
   }
 
-  void print_row(std::size_t point) const {
-    for (std::size_t i = 0; i < plan_.points.axes.size(); ++i)
-      if (plan_.points.axes[i].values.size() > 1)
-        std::printf("%13s ", plan_.points.value(i, point).c_str());
-    for (std::size_t method = 0; method < plan_.method_words.size(); ++method) {
-      const PointResult& own = result(method, point);
+  void print_row(std::size_t number) const {
+    const SweepPoints& points = sweep_.points();
+    for (std::size_t i = 0; i < points.axes.size(); ++i)
+      if (points.axes[i].values.size() > 1)
+        std::printf("%13s ", points.value(i, results_.points[number]).c_str());
+    for (const auto& of_method : results_.by_method) {
+      const PointResult& own = of_method[number];
       const std::string text =
           range_text({own.range, mc::Range::Censoring(own.range_censored)}, own.range_error) +
           (is_rough(own) ? " *" : "");
       std::printf(both() ? " %-24s" : " %s", text.c_str());
     }
-    if (both()) std::printf(" %.2f", rms_deviation(point));
+    if (both()) std::printf(" %.2f", rms_deviation(number));
     std::puts("");
   }
 
   /// Over the tilts but 0, where both are 1.
-  double rms_deviation(std::size_t point) const {
+  double rms_deviation(std::size_t number) const {
     double sum = 0, count = 0;
-    for (double each : deviation(result(0, point), result(1, point))) {
+    const auto& curves = results_.by_method;
+    for (double each : deviation(curves[0][number], curves[1][number])) {
       sum += each * each;
       count += each == 0 ? 0 : 1;
     }
     return count > 0 ? std::sqrt(sum / count) : 0;
   }
 
-  const SweepPlan& plan_;
-  const SweepResults& results_;
-  std::vector<std::size_t> points_;
+  const CurveSweep& sweep_;
+  const CurveResults& results_;
   Scene scene_;
 };
 
 }  // namespace
 
-void print_ranges(const SweepPlan& plan, const SweepResults& results) {
-  SweepTable(plan, results).print();
+void print_ranges(const CurveSweep& sweep, const CurveResults& results) {
+  SweepTable(sweep, results).print();
 }
 
 }  // namespace flatspeckle::apps

@@ -4,20 +4,18 @@
 #include <memory>
 #include <mutex>
 #include <string>
-#include <vector>
 
-#include "apps/sweep/sweep_plan.h"
+#include "apps/sweep/point_store.h"
 #include "core/run/runner.h"
-#include "core/session/shard_folder.h"
 
 namespace flatspeckle::apps {
 
-/// Runs of a sweep as the runner takes them: each goes on from the unfinished file in the folder,
-/// if there is one, and ends in a finished one. Those that have one need no work.
+/// Runs of a sweep as a pool takes them: each goes on from where it was cut off, if it was, and
+/// ends in the store's journal. Those that are finished need no work.
 class SweepWork {
  public:
-  /// Those of `runs`, by their numbers in the plan.
-  SweepWork(const SweepPlan& plan, ShardFolder& folder, const ScatteredRuns& runs);
+  /// The runs of this share. store: nullptr of ranks that only compute.
+  SweepWork(const Sweep& sweep, PointStore* store);
 
   RunList list();
   /// After the pool has stopped.
@@ -25,23 +23,18 @@ class SweepWork {
 
  private:
   struct Open {
-    Scene scene;
-    Estimation estimation;
+    SweepRun run;
     RunState state;
+    std::string started;
   };
 
-  using Part = ShardFolder::Part;
+  std::optional<OpenRun> open(std::size_t run);
+  void ended(std::size_t run);
+  void save(std::size_t run);
+  Open& find(std::size_t run);
 
-  bool read_or_set_aside(std::size_t number, Part part,
-                         const std::function<void(const ResultReader&)>& reading);
-  std::optional<OpenRun> open(std::size_t number);
-  void ended(std::size_t number);
-  void save(std::size_t number);
-  Open& find(std::size_t number);
-  void write_made(ResultFile& file, const Open& open, bool converged) const;
-
-  const SweepPlan& plan_;
-  ShardFolder& folder_;
+  const Sweep& sweep_;
+  PointStore* store_;
   ScatteredRuns runs_;
   std::mutex mutex_;
   std::map<std::size_t, std::unique_ptr<Open>> open_;

@@ -14,7 +14,7 @@ namespace flatspeckle::apps {
 
 namespace {
 
-constexpr double most_points = 1e6;
+constexpr std::size_t most_points = 1'000'000;
 
 [[noreturn]] void refuse(const std::string& text, const std::string& accepted) {
   throw InputError("vary", text, accepted);
@@ -50,24 +50,19 @@ void refuse_twins(const SweepAxis& axis) {
 
 SweepPoints grid_of(const VaryValues& values, const Keys& of) {
   SweepPoints points;
-  double count = 1;
   for (const std::string& text : values.vary) {
     points.axes.push_back(varied_axis(of, text));
     const SweepAxis& axis = points.axes.back();
     for (std::size_t i = 0; i + 1 < points.axes.size(); ++i)
       if (points.axes[i].key == axis.key) refuse(text, axis.key + " is varied already");
-    count *= static_cast<double>(axis.values.size());
   }
-  if (count > most_points)
-    throw InputError("points of the sweep", count, "must be at most 1000000");
+  require_at_most(most_points, points);
   return points;
 }
 
 SweepPoints list_of(const std::string& path, const Keys& of) {
   const Table table = read_csv(path);
   if (table.rows() == 0) throw InputError("points", path, "must have at least one row");
-  if (static_cast<double>(table.rows()) > most_points)
-    throw InputError("points of the sweep", table.rows(), "must be at most 1000000");
   SweepPoints points;
   points.is_list = true;
   for (const std::string& name : table.names()) {
@@ -76,10 +71,8 @@ SweepPoints list_of(const std::string& path, const Keys& of) {
     for (const double value : table.column(name)) values.push_back(number_text(value));
     points.axes.push_back({name, std::move(values)});
   }
-  std::set<std::string> seen;
-  for (std::size_t point = 0; point < points.count(); ++point)
-    if (!seen.insert(points.name(point)).second)
-      throw InputError("the point " + points.name(point) + " is given twice");
+  require_at_most(most_points, points);
+  refuse_twins(points);
   return points;
 }
 

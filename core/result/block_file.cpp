@@ -81,6 +81,14 @@ bool is_torn(int descriptor, std::uint64_t place, std::uint64_t size) {
 
 }  // namespace
 
+std::vector<std::byte> block_of(std::span<const std::byte> bytes) {
+  const Head head{word_of_blocks, checksum_of(bytes), bytes.size()};
+  const auto front = std::as_bytes(std::span(&head, 1));
+  std::vector<std::byte> whole(front.begin(), front.end());
+  whole.insert(whole.end(), bytes.begin(), bytes.end());
+  return whole;
+}
+
 BlockFile::BlockFile(std::filesystem::path path, Access access) : path_(std::move(path)) {
   const int flags = access == Access::read ? O_RDONLY : O_RDWR | O_CREAT;
   descriptor_ = open(path_.c_str(), flags | O_CLOEXEC, 0666);
@@ -112,10 +120,7 @@ void BlockFile::cut() {
 }
 
 std::uint64_t BlockFile::append(std::span<const std::byte> bytes) {
-  const Head head{word_of_blocks, checksum_of(bytes), bytes.size()};
-  const auto front = std::as_bytes(std::span(&head, 1));
-  std::vector<std::byte> whole(front.begin(), front.end());
-  whole.insert(whole.end(), bytes.begin(), bytes.end());
+  const std::vector<std::byte> whole = block_of(bytes);
   if (!write_at(descriptor_, end_, whole)) {
     const int error = errno;
     const auto restored = ftruncate(descriptor_, static_cast<off_t>(end_));

@@ -9,6 +9,9 @@
 
 namespace flatspeckle {
 
+/// Returns the bytes behind their length and checksum: a block of a BlockFile.
+std::vector<std::byte> block_of(std::span<const std::byte> bytes);
+
 /// A file of blocks of bytes that only grows, each with its length and checksum: what was written
 /// before a process died is there, and what was being written is known not to be.
 class BlockFile {

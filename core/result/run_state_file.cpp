@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "core/result/byte_stream.h"
 #include "core/result/result_group.h"
 
 namespace flatspeckle {
@@ -83,6 +84,33 @@ RunState read_state(const ResultReader& file, const std::string& group, std::siz
   state.sums.restore({file.attribute<std::uint64_t>(group, "batches"),
                       file.dataset<double>(group + "/group_samples"),
                       file.dataset<Complex>(group + "/group_sums")});
+  return state;
+}
+
+std::vector<std::byte> bytes_of(const RunState& state) {
+  const GroupedSums::State sums = state.sums.state();
+  ByteWriter bytes;
+  bytes.put(sums.batches);
+  bytes.put(sums.samples);
+  bytes.put(sums.sums);
+  for (const auto& [name, values] : trace_columns) bytes.put(state.trace.*values);
+  bytes.put(state.wall_s);
+  bytes.put(state.cpu_s);
+  return bytes.take();
+}
+
+RunState state_of(std::span<const std::byte> record, std::size_t size) {
+  ByteReader bytes(record);
+  RunState state{GroupedSums(size), {}};
+  GroupedSums::State sums;
+  bytes.get(sums.batches);
+  bytes.get(sums.samples);
+  bytes.get(sums.sums);
+  state.sums.restore(std::move(sums));
+  for (const auto& [name, values] : trace_columns) bytes.get(state.trace.*values);
+  bytes.get(state.wall_s);
+  bytes.get(state.cpu_s);
+  bytes.require_end();
   return state;
 }
 

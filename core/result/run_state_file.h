@@ -1,6 +1,8 @@
 #pragma once
 
+#include <span>
 #include <string>
+#include <vector>
 
 #include "core/result/dataset_row.h"
 #include "core/result/result_reader.h"
@@ -23,5 +25,10 @@ void write_state(ResultFile& file, const std::string& group, const RunState& sta
 /// The run that write_state wrote, for batches of `size` sums. Throws InputError if the group is
 /// not such a run or is one of another size.
 RunState read_state(const ResultReader& file, const std::string& group, std::size_t size);
+
+/// The same as bytes, with the whole trace, for a journal.
+std::vector<std::byte> bytes_of(const RunState& state);
+/// Throws InputError where the bytes are no run of batches of `size` sums.
+RunState state_of(std::span<const std::byte> record, std::size_t size);
 
 }  // namespace flatspeckle

@@ -120,6 +120,19 @@ int Session::once(ResultFile file,
   return made->status;
 }
 
+bool Session::is_complete(const std::string& identity, bool has_begun) const {
+  const std::string& path = settings_.out;
+  if (!settings_.resume || !std::filesystem::exists(path)) return false;
+  const ResultReader file(path);
+  const bool is_same = file.has_attribute("/", "identity") &&
+                       file.attribute<std::string>("/", "identity") == identity;
+  if (!is_same && !has_begun)
+    throw InputError("resume: " + path + " holds another run; name another result file");
+  if (!is_same || !file.attribute<bool>("/", "complete")) return false;
+  std::cout << path << " is complete; nothing to resume\n";
+  return true;
+}
+
 /// All states at once: what is saved while one run goes on must hold those of the others. HDF5,
 /// which may crash on a damaged file, sees none.
 void Session::resume() {

@@ -69,6 +69,10 @@ class Session {
   /// Of a run, once it has ended.
   const GroupedSums& sums(const std::string& run) const { return states_.at(run).sums; }
 
+  /// Whether --resume finds the whole result of this identity there, which is said. Throws
+  /// InputError where another run's is, unless this one has begun to replace it.
+  bool is_complete(const std::string& identity, bool has_begun) const;
+
   /// How results of this call came about, but for plan and costs.
   Provenance provenance() const;
   /// Ends a file that is whole but for that; says where it is.

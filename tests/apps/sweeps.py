@@ -8,6 +8,7 @@ import time
 import h5py
 import numpy as np
 
+import journals
 from program import ProgramTest, datasets
 
 # 2 x 2 x 2 points.
@@ -46,9 +47,17 @@ class SweepTest(ProgramTest):
                 for path in (sorted(place.iterdir()) if place.is_dir() else [])
                 if not path.name.startswith(".")}
 
+    def journal(self, number=0, of=1, out="sweep.h5"):
+        """The finished points of a share."""
+        return self.points(out) / f"share-{number}-of-{of}.points"
+
     def finished(self, out="sweep.h5", folder=None):
-        return {name: data for name, data in self.shards(out, folder).items()
-                if name.endswith(".h5") and not name.endswith(".part.h5")}
+        """All finished points by name."""
+        return journals.points_in(self.points(out, folder))
+
+    def unfinished(self, out="sweep.h5"):
+        """What points at work go on from, by the names of the files."""
+        return {name: data for name, data in self.shards(out).items() if name.endswith(".part")}
 
     def all_points(self, keys, out="sweep.h5"):
         """Leaves every point finished in the folder and no result yet."""

@@ -6,6 +6,7 @@ import unittest
 
 import numpy as np
 
+from journals import records
 from program import DATA, PROGRAM, ProgramTest, attributes, datasets, flags
 
 MEASURED = DATA / "measurements"
@@ -190,12 +191,12 @@ class Fit(ProgramTest):
         command = [PROGRAM, *words, *flags(keys), "--out", "killed.h5"]
         with subprocess.Popen(command, cwd=self.folder, stdout=subprocess.DEVNULL) as run:
             journal = self.folder / "killed.h5.search"
-            while run.poll() is None and not (journal.exists() and len(journal.read_text().splitlines()) > 4):
+            while run.poll() is None and not (journal.exists() and len(records(journal)) > 4):
                 time.sleep(0.002)
             run.kill()
         self.assertFalse((self.folder / "killed.h5").exists())
-        with open(journal, "a") as file:
-            file.write("0 9 cut")
+        with open(journal, "ab") as file:
+            file.write(b"fblk cut")
         self.call(*words, "--resume", **keys, out="killed.h5")
         whole, resumed = datasets(self.folder / "whole.h5"), datasets(self.folder / "killed.h5")
         for name in whole:

@@ -1,11 +1,8 @@
 """`sweep --of`: its points are runs of the subcommand, nothing is lost, and parts make the whole."""
 
-import os
 import shutil
-import signal
 import subprocess
 import sys
-import time
 import unittest
 
 import h5py
@@ -146,38 +143,6 @@ class SweepOf(SweepTest):
         self.assert_same("sweep.h5", "whole.h5")
         self.assertFalse(self.points().exists())
 
-    def test_killed_again_and_again(self):
-        self.call("sweep", **MANY, out="whole.h5")
-        for _ in range(5):
-            process = self.start("sweep", **MANY, out="sweep.h5", resume=True)
-            time.sleep(0.15)
-            process.send_signal(signal.SIGKILL)
-            process.wait()
-        self.call("sweep", **MANY, out="sweep.h5", resume=True)
-        self.assert_same("sweep.h5", "whole.h5")
-
-    def journal(self, number=0, of=1):
-        return self.points() / f"share-{number}-of-{of}.points"
-
-    def test_damage(self):
-        self.call("sweep", **MANY, out="whole.h5")
-        for damage in ("cut", "changed", "zeros"):
-            with self.subTest(damage=damage):
-                self.call("sweep", **MANY, out="sweep.h5", shard="0/1")
-                data = bytearray(self.journal().read_bytes())
-                if damage == "cut":
-                    del data[-7:]
-                elif damage == "changed":
-                    data[len(data) // 2] ^= 1
-                else:
-                    data += bytes(100)
-                self.journal().write_bytes(data)
-                done = self.call("sweep", **MANY, out="sweep.h5", resume=True)
-                self.assertEqual("damaged" in done.stderr, damage != "cut", done.stderr)
-                self.assert_same("sweep.h5", "whole.h5")
-                (self.folder / "sweep.h5").unlink()
-                shutil.rmtree(self.points(), ignore_errors=True)
-
     def test_shares_and_merge(self):
         self.call("sweep", **MANY, out="whole.h5")
         for i in range(3):
@@ -197,16 +162,6 @@ class SweepOf(SweepTest):
             at = (int(np.flatnonzero(whole["amplitude"] == part["amplitude"][i])[0]),
                   int(np.flatnonzero(whole["g"] == part["g"][i])[0]))
             self.assertEqual(part["total"][i], whole["total"][at])
-
-    def test_larger_grid_takes_over(self):
-        self.call("sweep", **{**MANY, "vary": ["amplitude=0,0.0008", "g=0,0.45"]}, out="sweep.h5",
-                  shard="0/1")
-        before = self.journal().stat().st_size
-        done = self.call("sweep", **MANY, out="sweep.h5", resume=True)
-        self.assertIn("30 of 30 points", done.stderr + done.stdout)
-        self.call("sweep", **MANY, out="whole.h5")
-        self.assert_same("sweep.h5", "whole.h5")
-        self.assertGreater(before, 0)
 
     def test_finished_points_are_known(self):
         """By their names alone, whatever the points are made of."""
@@ -239,13 +194,6 @@ class SweepOf(SweepTest):
         done = subprocess.run([sys.executable, "-S", "-c", tell, PROGRAM, *words, *flags(keys)], cwd=self.folder,
                               capture_output=True, text=True, check=True)
         return int(done.stdout) * 1024
-
-    def test_complete(self):
-        self.call("sweep", **GRID, out="sweep.h5")
-        self.call("sweep", **GRID, out="sweep.h5", shard="0/1")
-        done = self.call("sweep", **GRID, out="sweep.h5", resume=True)
-        self.assertIn("nothing to resume", done.stdout)
-        self.assertFalse(self.points().exists())
 
     def test_config_makes_it_again(self):
         self.call("sweep", **GRID, out="sweep.h5")
@@ -310,17 +258,6 @@ class SweepOf(SweepTest):
         self.assertEqual({name: data for name, data in self.shards().items()}, before)
         self.call("sweep", **GRID, out="done.h5")
         self.check("another run", out="done.h5", mu_a=0.1, resume=True)
-
-    def test_full_disk(self):
-        """Ends with 4, keeps what was written, and goes on."""
-        limit = f"ulimit -f 2; trap '' XFSZ; exec {PROGRAM} sweep " + " ".join(
-            f"--{key} " + " ".join(map(str, value if isinstance(value, list) else [value]))
-            for key, value in {**MANY, "shard": "0/1", "out": "sweep.h5"}.items())
-        status = os.waitstatus_to_exitcode(os.system(f"cd {self.folder}; bash -c '{limit}' 2>/dev/null >/dev/null"))
-        self.assertEqual(status, 4)
-        self.call("sweep", **MANY, out="sweep.h5", resume=True)
-        self.call("sweep", **MANY, out="whole.h5")
-        self.assert_same("sweep.h5", "whole.h5")
 
 
 if __name__ == "__main__":

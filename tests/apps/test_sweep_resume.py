@@ -4,11 +4,13 @@ comes out the same."""
 import random
 import shutil
 import signal
+import struct
 import time
 import unittest
 
+import journals
 from program import attributes
-from sweeps import MANY, SLOW, SWEEP, SweepTest, is_complete
+from sweeps import MANY, SLOW, SWEEP, SweepTest, is_complete, names_of
 
 # About two seconds of two threads.
 LONG = {**MANY, "samples": 40_000}
@@ -53,8 +55,9 @@ class Kill(SweepTest):
         self.all_points(SWEEP)
         name = next(iter(self.finished()))
         place = self.points()
-        (place / f".{name}.tmp-1").write_bytes(b"left behind")
-        shutil.copy(place / name, place / name.replace(".h5", ".part.h5"))
+        (place / f".{name}.part.tmp-1").write_bytes(b"left behind")
+        for ending in (".part", ".part.h5"):  # the second of an earlier version
+            shutil.copy(self.journal(), place / f"{name}{ending}")
         self.call("sweep", "--resume", **SWEEP, out="sweep.h5")
         self.assertFalse(place.exists())
         self.assert_same_data("sweep.h5", "whole.h5")
@@ -79,8 +82,7 @@ class Interruption(SweepTest):
                     self.interrupted(number, **{**keys, "threads": threads}, resume=True,
                                      out="sweep.h5")
                     self.assertFalse((self.folder / "sweep.h5").exists())
-                parts = [name for name in self.shards() if name.endswith(".part.h5")]
-                self.assertTrue(parts)
+                self.assertTrue(self.unfinished())
                 done = self.call("sweep", "--resume", **keys, out="sweep.h5")
                 self.assertNotIn("warning", done.stderr)
                 self.assert_same_data("sweep.h5", "whole.h5")
@@ -90,16 +92,14 @@ class Interruption(SweepTest):
     def test_goes_on_from_where_it_was(self):
         """And does not begin the point again: the time of the first part counts as well."""
         keys = {**SLOW, "optical_depth": [3], "samples": 3_000_000}
-        self.interrupted(cpu_s=0.3, **keys, out="sweep.h5")
-        (name, data), = self.shards().items()
-        self.assertTrue(name.endswith(".part.h5"))
-        before = attributes(self.points() / name)
-        self.assertGreater(before["samples"], 1000)
-        self.interrupted(cpu_s=0.1, **keys, resume=True, out="sweep.h5")
-        after = attributes(self.points() / name)
-        self.assertGreater(after["samples"], before["samples"])
-        self.assertGreater(after["wall_s"], before["wall_s"])
-        self.assertGreater(after["cpu_s"], before["cpu_s"])
+        costs = []
+        for _ in range(2):
+            self.interrupted(cpu_s=0.3, **keys, resume=True, out="sweep.h5")
+            name, = self.unfinished()
+            (_, _), (_, state) = journals.records(self.points() / name)
+            costs.append((*struct.unpack("<Q", state[:8]), *struct.unpack("<2d", state[-16:])))
+        for first, both in zip(*costs):  # batches, wall and processor time
+            self.assertGreater(both, first)
 
     def test_by_both_methods(self):
         keys = {"domain": "box", "width": 10, "depth": 10, "scatterer": "point",
@@ -118,7 +118,7 @@ class Interruption(SweepTest):
         self.call("sweep", **SLOW, shard="0/2", out="sweep.h5", status=2)
         self.call("sweep", "--resume", **SLOW, shard="0/2", out="sweep.h5")
         self.assertEqual(len(self.finished()), 3)
-        self.assertEqual(self.shards(), self.finished())
+        self.assertFalse(self.unfinished())
         self.call("merge", out="sweep.h5")
         self.assert_same_data("sweep.h5", "whole.h5")
 
@@ -151,61 +151,60 @@ def flipped_at(position, bit):
 
 
 class Damage(SweepTest):
-    """All points are finished, or unfinished, and then some files are damaged."""
+    """Points are finished, or unfinished, and then what is kept of them is damaged."""
 
     def setUp(self):
         super().setUp()
         self.call("sweep", **SWEEP, out="whole.h5")
 
-    def damage(self, names, change, out="sweep.h5"):
-        """Returns what the damaged files hold."""
-        damaged = {}
-        for name in names:
-            path = self.points(out) / name
-            damaged[name] = change(path.read_bytes())
-            path.write_bytes(damaged[name])
-        return damaged
-
-    def check_mended(self, damaged, whole="whole.h5", keys=SWEEP):
-        """Each damaged file is told of, kept beside, and done again."""
+    def check_mended(self, aside, whole="whole.h5", keys=SWEEP):
+        """What was damaged is told of, kept beside, and done again."""
         done = self.call("sweep", "--resume", **keys, out="sweep.h5")
         warnings = [line for line in done.stderr.splitlines() if line.startswith("warning: ")]
-        self.assertEqual(len(warnings), len(damaged), done.stderr)
-        for name in damaged:
-            self.assertTrue(any(f"/{name} " in line and "set aside" in line for line in warnings),
-                            done.stderr)
+        self.assertEqual(len(warnings), len(aside), done.stderr)
+        for name in aside:
+            self.assertTrue(any(f"{name}.aside-1" in line for line in warnings), done.stderr)
         self.assert_same_data("sweep.h5", whole)
-        self.assertEqual(self.shards(),
-                         {f"{name}.aside-1": data for name, data in damaged.items()})
+        self.assertEqual(self.shards(), {f"{name}.aside-1": data for name, data in aside.items()})
         shutil.rmtree(self.points(), ignore_errors=True)
         (self.folder / "sweep.h5").unlink()
         return warnings
 
+    def damage(self, path, change):
+        """Returns what the file holds now, by name."""
+        path.write_bytes(change(path.read_bytes()))
+        return {path.name: path.read_bytes()}
+
     def test_of_finished_points(self):
-        for change in (truncated, emptied, flipped_at(5000, 3), lambda data: data + b"\0",
-                       lambda data: data[:-1], lambda data: b"\0" * len(data)):
+        positions = random.Random(2)
+        flips = [flipped_at(positions.randrange(1 << 20), positions.randrange(8))
+                 for _ in range(12)]
+        for change in (*flips, lambda data: data + bytes(100), lambda data: bytes(len(data))):
             self.all_points(SWEEP)
-            names = list(self.finished())[1:4]
-            for line in self.check_mended(self.damage(names, change)):
+            for line in self.check_mended(self.damage(self.journal(), change)):
                 self.assertIn("damaged", line)
 
-    def test_of_any_byte(self):
-        self.call("sweep", **MANY, out="many.h5")
-        positions = random.Random(2)
-        for _ in range(3):
-            self.all_points(MANY)
+    def test_of_what_was_cut_off(self):
+        """As by a failure of the machine: nobody needs to be told."""
+        for change in (truncated, emptied, lambda data: data[:-1], lambda data: data[:7]):
+            self.all_points(SWEEP)
+            self.damage(self.journal(), change)
+            self.check_mended({})
+
+    def test_of_unfinished_points(self):
+        self.call("sweep", **SLOW, out="slow.h5")
+        for change in (truncated, emptied, flipped_at(9000, 0)):
+            self.interrupted(**SLOW, out="sweep.h5")
             damaged = {}
-            for name in self.finished():
-                flip = flipped_at(positions.randrange(1 << 20), positions.randrange(8))
-                damaged |= self.damage([name], flip)
-            self.assertEqual(len(damaged), 40)
-            self.check_mended(damaged, "many.h5", MANY)
+            for name in self.unfinished():
+                damaged |= self.damage(self.points() / name, change)
+            self.assertTrue(damaged)
+            self.check_mended(damaged, "slow.h5", SLOW)
 
     def test_of_no_file_at_all(self):
-        """A folder in the place of a point."""
-        self.all_points(SWEEP)
-        path = self.points() / next(iter(self.finished()))
-        path.unlink()
+        """A folder in the place of an unfinished point."""
+        self.call("sweep", **SWEEP, shard="1/2", out="sweep.h5")
+        path = self.points() / f"{sorted(set(names_of(SWEEP)) - self.finished().keys())[0]}.part"
         path.mkdir()
         (path / "inside").write_text("kept")
         done = self.call("sweep", "--resume", **SWEEP, out="sweep.h5")
@@ -213,67 +212,55 @@ class Damage(SweepTest):
         self.assertEqual((self.points() / f"{path.name}.aside-1" / "inside").read_text(), "kept")
         self.assert_same_data("sweep.h5", "whole.h5")
 
-    def test_of_unfinished_points(self):
-        self.call("sweep", **SLOW, out="slow.h5")
-        for change in (truncated, emptied, flipped_at(9000, 0)):
-            self.interrupted(**SLOW, out="sweep.h5")
-            names = [name for name in self.shards() if name.endswith(".part.h5")]
-            self.assertTrue(names)
-            self.check_mended(self.damage(names, change), "slow.h5", SLOW)
-
-    def foreign(self, **changes):
-        """The finished points of another sweep under the same names."""
-        self.all_points({**SWEEP, **changes}, out="other.h5")
-        files = self.finished("other.h5")
-        shutil.rmtree(self.points("other.h5"))
-        return files
-
     def test_of_another_sweep(self):
+        """Nothing is touched."""
         for changes in ({"seed": 2}, {"depth": 101}, {"tilts": [0, 0.001, 0.011]},
                         {"view_angles": [0.1]}, {"samples": 4001}, {"target_error": 0.5},
                         {"reversed_paths": "no"}):
             with self.subTest(changes=changes):
-                others = self.foreign(**changes)
-                self.all_points(SWEEP)
-                self.assertEqual(others.keys(), self.finished().keys())
-                name = list(others)[2]
-                damaged = self.damage([name], lambda _: others[name])
-                for line in self.check_mended(damaged):
-                    self.assertIn("another sweep", line)
-
-    def test_of_another_point(self):
-        self.all_points(SWEEP)
-        first, second, *_ = files = self.finished()
-        self.check_mended(self.damage([first], lambda _: files[second]))
+                self.all_points({**SWEEP, **changes})
+                before = self.shards()
+                done = self.call("sweep", "--resume", **SWEEP, out="sweep.h5", status=2)
+                self.assert_one_line(done.stderr, "another sweep", next(iter(changes)))
+                self.assertEqual(self.shards(), before)
+                shutil.rmtree(self.points())
 
     def test_of_unfinished_points_of_another_sweep(self):
+        """Or of another point."""
         keys = {**SLOW, "optical_depth": [3], "samples": 3_000_000}
         self.call("sweep", **keys, out="slow.h5")
-        self.interrupted(**keys, seed=2, out="sweep.h5")
-        for line in self.check_mended(self.shards(), "slow.h5", keys):
-            self.assertIn("another sweep", line)
-
-    def test_of_an_unfinished_point_under_a_finished_ones_name(self):
-        self.interrupted(**SLOW, out="sweep.h5")
-        name = next(name for name in self.shards() if name.endswith(".part.h5"))
-        path = self.points() / name
-        path.rename(self.points() / name.replace(".part.h5", ".h5"))
-        self.call("sweep", **SLOW, out="slow.h5")
-        done = self.call("sweep", "--resume", **SLOW, out="sweep.h5")
-        self.assertIn("cannot be used", done.stderr)
-        self.assert_same_data("sweep.h5", "slow.h5")
+        for changes in ({"seed": 2}, {"optical_depth": [2]}):
+            self.interrupted(**{**keys, **changes}, out="other.h5")
+            (other, data), = self.unfinished("other.h5").items()
+            shutil.rmtree(self.points("other.h5"))
+            self.points().mkdir()
+            name = other.replace("optical_depth=2", "optical_depth=3")
+            (self.points() / name).write_bytes(data)
+            for line in self.check_mended(self.shards(), "slow.h5", keys):
+                self.assertIn("another sweep", line)
 
     def test_time_and_again(self):
-        """What was set aside before is kept as well."""
+        """What was kept before is kept as well."""
         kept = {}
         for number in (1, 2, 3):
             self.all_points({**SWEEP, "resume": True})
-            name = next(iter(self.finished()))
-            damaged = self.damage([name], flipped_at(100 * number, 0))
-            kept[f"{name}.aside-{number}"] = damaged[name]
+            damaged = self.damage(self.journal(), flipped_at(100 * number, 0))
+            kept |= {f"{name}.aside-{number}": data for name, data in damaged.items()}
             self.call("sweep", "--resume", **SWEEP, out="sweep.h5")
             self.assertEqual(self.shards(), kept)
             (self.folder / "sweep.h5").unlink()
+
+    def test_of_a_sweep_of_an_earlier_version(self):
+        """Its points had files of their own."""
+        self.points().mkdir()
+        (self.points() / "mc_optical_depth=1_g=0_albedo=1.h5").write_bytes(b"a point")
+        before = self.shards()
+        for words in (["sweep"], ["sweep", "--resume"]):
+            done = self.call(*words, **SWEEP, out="sweep.h5", status=2)
+            self.assert_one_line(done.stderr, "sweep.h5.shards", "files of their own")
+        done = self.call("merge", out="sweep.h5", status=2)
+        self.assert_one_line(done.stderr, "sweep.h5.shards", "files of their own")
+        self.assertEqual(self.shards(), before)
 
 
 class MergeOfDamage(SweepTest):
@@ -282,9 +269,6 @@ class MergeOfDamage(SweepTest):
         self.call("sweep", **SWEEP, out="whole.h5")
         self.all_points(SWEEP)
         self.names = list(self.finished())
-
-    def change(self, name, data):
-        (self.points() / name).write_bytes(data)
 
     def check_refused(self, *words):
         before = self.shards()
@@ -303,45 +287,40 @@ class MergeOfDamage(SweepTest):
         self.assertEqual(attributes(self.folder / "sweep.h5")["samples"], 4000 * (8 - missing))
 
     def test_missing(self):
-        for name in self.names[:2]:
-            (self.points() / name).unlink()
+        journals.drop(self.journal(), *self.names[:2])
         self.check_refused("2 of 8", "--partial")
         self.check_partial(2)
 
     def test_damaged(self):
-        for change in (truncated, emptied, flipped_at(7000, 5)):
-            whole = (self.points() / self.names[0]).read_bytes()
-            self.change(self.names[0], change(whole))
-            done = self.check_refused("1 of 8", self.names[0][:-3], "--partial")
-            self.assertIn(f"{self.names[0][:-3]} is damaged", done.stderr)
-            self.check_partial(1)
-            (self.folder / "sweep.h5").unlink()
-            self.change(self.names[0], whole)
-        self.call("merge", out="sweep.h5")
-        self.assert_same_data("sweep.h5", "whole.h5")
+        whole = self.journal().read_bytes()
+        place = whole.index(self.names[5].encode())
+        self.journal().write_bytes(flipped_at(place, 5)(whole))
+        done = self.check_refused("3 of 8", "--partial")
+        self.assertIn("is damaged; 5 points", done.stderr)
+        self.check_partial(3)
+        self.journal().write_bytes(whole)
+        self.call("merge", out="merged.h5", shards="sweep.h5.shards")
+        self.assert_same_data("merged.h5", "whole.h5")
 
     def test_of_another_sweep(self):
-        """Whichever of the files comes first in the folder."""
-        self.all_points({**SWEEP, "seed": 2}, out="other.h5")
-        for name in self.names:
-            own = (self.points() / name).read_bytes()
-            self.change(name, (self.points("other.h5") / name).read_bytes())
-            done = self.check_refused("1 of 8", name[:-3])
-            self.assertIn("another sweep", done.stderr)
-            self.check_partial(1)
-            (self.folder / "sweep.h5").unlink()
-            self.change(name, own)
+        """Among those of this one, whichever comes first."""
+        self.call("sweep", **SWEEP, seed=2, shard="1/2", out="other.h5")
+        for name in ("a.points", "z.points"):
+            shutil.copy(self.journal(1, 2, "other.h5"), self.points() / name)
+            done = self.call("merge", out="merged.h5", shards="sweep.h5.shards")
+            self.assertIn("another sweep (seed = 2)", done.stderr)
+            self.assert_same_data("merged.h5", "whole.h5")
+            (self.points() / name).unlink()
 
     def test_then_resumed(self):
         """A partial result is no end."""
-        (self.points() / self.names[0]).unlink()
+        journals.drop(self.journal(), self.names[0])
         self.check_partial(1)
         self.call("sweep", "--resume", **SWEEP, out="sweep.h5")
         self.assert_same_data("sweep.h5", "whole.h5")
 
     def test_nothing_there(self):
-        for name in self.names:
-            (self.points() / name).unlink()
+        journals.drop(self.journal(), *self.names)
         self.check_refused("sweep.h5.shards")
         self.assert_one_line(self.call("merge", out="none.h5", status=2).stderr, "none.h5.shards")
         done = self.call("merge", "--partial", out="none.h5", status=2)

@@ -61,7 +61,7 @@ class Case:
         """With --resume, if there is anything to go on with."""
         points = self.folder / "x.h5.shards"
         out = self.folder / "x.h5"
-        begun = list(points.glob("*.h5")) if points.is_dir() else \
+        begun = list(points.glob("*.points")) if points.is_dir() else \
             out.exists() and out.read_bytes() != (self.folder / "older.h5").read_bytes()
         return {**keys, "resume": True} if subcommand in RESUMABLE and begun else keys
 

@@ -1,10 +1,10 @@
+#include "apps/sweep/point_journal.h"
 #include "core/result/sealed_file.h"
-#include "core/session/shard_folder.h"
 #include "tests/fuzz/input.h"
 #include "tests/fuzz/result_kinds.h"
 
-// Damaged HDF5 files. The first byte says what the rest is read as. HDF5 sees no damaged file of a
-// kind that is sealed, and others in a child process first.
+// Damaged HDF5 files and journals. The first byte says what the rest is read as. HDF5 sees no
+// damaged file of a kind that is sealed, and others in a child process first.
 
 namespace {
 
@@ -12,9 +12,11 @@ using namespace flatspeckle;
 
 const char* const path = "input.h5";
 
-void read_shard(const std::string&) {
-  ShardFolder folder(".");
-  folder.read("input", ShardFolder::Part::finished, "identity", [](const ResultReader&) {});
+void read_journal(const std::string& file) {
+  std::vector<std::uint64_t> places;
+  const apps::PointJournal journal(
+      file, "identity", [&](const std::string&, std::uint64_t place) { places.push_back(place); });
+  for (const std::uint64_t place : places) journal.read(place);
 }
 
 }  // namespace
@@ -26,7 +28,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* input, std::size_t siz
   const unsigned kind = bytes.below(static_cast<unsigned>(kinds.size()) + 1);
   fuzz::write_file(path, {reinterpret_cast<const char*>(input) + 1, size > 0 ? size - 1 : 0});
   if (kind == kinds.size())
-    fuzz::taken(path, read_shard);
+    fuzz::taken(path, read_journal);
   else if (!kinds[kind].is_sealed || is_sealed(path))
     fuzz::taken(path, kinds[kind].read);
   return 0;

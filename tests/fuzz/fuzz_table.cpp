@@ -1,6 +1,6 @@
 #include <map>
 
-#include "apps/sweep/sweep_plan.h"
+#include "apps/sweep/curve_sweep.h"
 #include "core/keys/csv.h"
 #include "flatland/placement/placement.h"
 #include "flatland/request/sensor.h"
@@ -25,10 +25,10 @@ void check_placement(const Scatterer& scatterer) {
 }
 
 void check_sweep(const std::string& config) {
-  SweepPlan plan;
-  plan.parse_config(config + "points = \"table.csv\"\ntilts = [0, 0.01]\n");
-  for (std::size_t run = 0; run < plan.runs(); ++run) {
-    const BulkMedium medium = plan.scene(run).medium;
+  CurveSweep sweep;
+  sweep.parse_config(config + "points = \"table.csv\"\ntilts = [0, 0.01]\n");
+  for (std::size_t run = 0; run < sweep.runs(); ++run) {
+    const BulkMedium medium = sweep.scene(run).medium;
     for (double number : {medium.mu_s, medium.mu_t, medium.g, medium.albedo})
       fuzz::require_finite(number);
   }

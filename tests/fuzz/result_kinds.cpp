@@ -2,7 +2,6 @@
 
 #include <numbers>
 
-#include "apps/sweep/point_result.h"
 #include "core/result/result_file.h"
 #include "core/result/result_reader.h"
 #include "core/result/run_state_file.h"
@@ -48,32 +47,6 @@ void read_run(const std::string& path) {
   }
   ResultFile file("again.h5");
   write_state(file, "state", state);
-}
-
-void write_shard(const std::string& path) {
-  ResultFile file(path);
-  file.scale("tilt", std::vector{0.0, 0.1}, "rad", "");
-  const std::vector<Axis> tilt{"tilt"};
-  file.dataset("field_correlation", std::vector{1.0, 0.6}, tilt, "1", "");
-  file.dataset("field_correlation_error", std::vector{0.0, 0.1}, tilt, "1", "");
-  file.dataset("memory_effect_range", std::vector{1.0}, {}, "1", "");
-  file.dataset("memory_effect_range_error", std::vector{0.1}, {}, "1", "");
-  for (const char* name : {"relative_error", "samples", "cpu_s", "wall_s"})
-    file.attribute("/", name, 0.5);
-  file.attribute("/", "range_censored", std::uint64_t{1});
-  file.attribute("/", "reached", true);
-  file.attribute("/", "plan", "mc");
-  file.attribute("/", "started", "now");
-  write_trace(file, "", {{1}, {1}, {80}, {0.5}});
-  file.commit();
-}
-
-void read_shard(const std::string& path) {
-  const auto point = apps::read_point(ResultReader(path));
-  for (const auto* numbers : {&point.correlation, &point.correlation_error})
-    for (std::size_t tilt = 0; tilt < point.correlation.size(); ++tilt)
-      require_finite(numbers->at(tilt));
-  require_finite(point.range + point.range_error);
 }
 
 constexpr DiskSpacing disks{0.1, 0.5};
@@ -138,19 +111,6 @@ const std::vector<ResultKind>& result_kinds() {
         {"state/trace/samples", ""},
         {"state/trace/relative_error", ""}},
        read_run,
-       true},
-      {write_shard,
-       {{"field_correlation", ""},
-        {"field_correlation_error", ""},
-        {"memory_effect_range", ""},
-        {"memory_effect_range_error", ""},
-        {"/", "relative_error"},
-        {"/", "samples"},
-        {"/", "range_censored"},
-        {"/", "reached"},
-        {"/", "plan"},
-        {"trace/wall_s", ""}},
-       read_shard,
        true},
       {write_structure,
        {{"q", ""},

@@ -20,7 +20,7 @@ struct ResultKind {
   bool is_sealed = false;  ///< the program reads it only where its seal holds
 };
 
-/// Run states, points of sweeps, structure factors, grids of the index and of the density.
+/// Run states, structure factors, grids of the index and of the density.
 const std::vector<ResultKind>& result_kinds();
 
 }  // namespace flatspeckle::fuzz

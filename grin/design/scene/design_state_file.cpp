@@ -1,12 +1,6 @@
 #include "grin/design/scene/design_state_file.h"
 
-#include <fstream>
-#include <iterator>
-
-#include "core/result/atomic_file.h"
-#include "core/result/byte_stream.h"
-#include "core/result/sealed_file.h"
-#include "core/session/identity.h"
+#include "core/session/journal.h"
 
 namespace flatspeckle::grin::design {
 
@@ -31,13 +25,6 @@ void each_member(State& state, const Use& use) {
   use(state.history.coefficients);
 }
 
-std::vector<std::byte> bytes_of(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  const std::vector<char> text{std::istreambuf_iterator<char>(file), {}};
-  const auto bytes = std::as_bytes(std::span(text));
-  return {bytes.begin(), bytes.end()};
-}
-
 }  // namespace
 
 std::filesystem::path state_path(const std::filesystem::path& out) {
@@ -46,35 +33,28 @@ std::filesystem::path state_path(const std::filesystem::path& out) {
 
 void save_state(const std::filesystem::path& path, const std::string& identity,
                 const DesignState& state) {
-  ByteWriter writer;
-  writer.put(identity);
-  each_member(state, [&](const auto& member) { writer.put(member); });
-  auto bytes = writer.take();
-  seal(bytes);
-  replace_file(path, bytes, Durable::no);
+  ByteWriter record;
+  each_member(state, [&](const auto& member) { record.put(member); });
+  keep_record(path, identity, record.take(), Durable::no);
 }
 
-bool holds(const std::filesystem::path& path, const std::string& identity) {
-  if (!is_sealed(path)) return false;
-  const auto bytes = bytes_of(path);
-  return ByteReader(bytes).get<std::string>() == identity;
+bool holds(const std::filesystem::path& path, const std::string& identity) try {
+  return kept_record(path, identity, "search").has_value();
+} catch (const InputError&) {
+  return false;
 }
 
 std::optional<DesignState> read_state(const std::filesystem::path& path,
-                                      const std::string& identity) {
-  if (!std::filesystem::exists(path)) return std::nullopt;
-  if (!is_sealed(path))
-    throw InputError("resume: " + path.string() + " is damaged; remove it to begin afresh");
-  const auto bytes = bytes_of(path);
-  ByteReader reader(bytes);
-  if (const auto found = reader.get<std::string>(); found != identity)
-    throw InputError("resume: " + path.string() + " holds another search (" +
-                     first_difference(found, identity) +
-                     "); scene, files and program version must be the same");
+                                      const std::string& identity) try {
+  const auto kept = kept_record(path, identity, "search");
+  if (!kept) return std::nullopt;
+  ByteReader record(*kept);
   DesignState state;
-  each_member(state, [&](auto& member) { reader.get(member); });
+  each_member(state, [&](auto& member) { record.get(member); });
   if (!state.history.cpu_s.empty()) state.cpu_before = state.history.cpu_s.back();
   return state;
+} catch (const InputError& error) {
+  throw InputError(std::string("resume: ") + error.what() + "; remove it to begin afresh");
 }
 
 }  // namespace flatspeckle::grin::design

@@ -1,9 +1,10 @@
-#include "apps/sweep/sweep_share.h"
+#include "apps/sweep/sweep.h"
 
 #include <algorithm>
 #include <charconv>
 #include <numeric>
 
+#include "apps/sweep/point_store.h"
 #include "core/error.h"
 
 namespace flatspeckle::apps {
@@ -30,6 +31,34 @@ std::size_t ScatteredRuns::size() const {
 
 std::size_t ScatteredRuns::operator[](std::size_t number) const {
   return (share_.number + number * share_.count) * stride_ % runs_;
+}
+
+bool Sweep::read() {
+  session_.emplace(command_.text(), keys(), run_, command_.only_prints(), Session::Out::shared);
+  take_points();
+  return command_.settle();
+}
+
+void Sweep::parse_config(const std::string& config, const std::string& command_line) {
+  command_.parse_config(config);
+  session_.emplace(command_line, keys(), run_, true);
+  take_points();
+}
+
+void Sweep::take_points() {
+  if (!keys().read(share_text_).empty()) share_ = share_of(share_text_);
+  check();
+}
+
+void Sweep::add_share_key() {
+  keys()
+      .add("shard", share_text_,
+           "i/n: work on every nth point only, from number i = 0 .. n - 1 on; then merge")
+      .no_file();
+}
+
+std::size_t Sweep::finished_points(const PointStore& store) const {
+  return store.finished();
 }
 
 }  // namespace flatspeckle::apps

@@ -1,0 +1,220 @@
+#include "apps/sweep/point_store.h"
+
+#include <algorithm>
+#include <iostream>
+#include <map>
+
+#include "core/error.h"
+#include "core/result/run_state_file.h"
+#include "core/session/aside.h"
+
+namespace flatspeckle::apps {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr const char* ending = ".points";
+constexpr const char* unfinished_ending = ".part";
+
+constexpr int bits_of_place = 48;  // of a byte in a journal, which is below 256 TB
+constexpr std::uint64_t most_place = (std::uint64_t{1} << bits_of_place) - 1;
+
+fs::path own_journal(const std::string& folder, const SweepShare& share) {
+  return fs::path(folder) /
+         ("share-" + std::to_string(share.number) + "-of-" + std::to_string(share.count) + ending);
+}
+
+/// As the name of a file, which may not be too long.
+std::string file_name(const std::string& name) {
+  constexpr std::size_t longest = 150;
+  if (name.size() <= longest) return name;
+  return name.substr(0, longest) + "-" + std::to_string(std::hash<std::string>{}(name));
+}
+
+/// Returns the name of the run at work whose file it is, also one in the making
+/// (core/result/atomic_file.h) and one of an earlier version (.part.h5); empty for others.
+std::string unfinished_name(const fs::path& path) {
+  std::string text = path.filename().string();
+  if (const auto making = text.rfind(".tmp-"); text.starts_with('.') && making != text.npos)
+    text = text.substr(1, making - 1);
+  for (const std::string part : {unfinished_ending, ".part.h5"})
+    if (text.ends_with(part)) return text.substr(0, text.size() - part.size());
+  return "";
+}
+
+void make_folder(const fs::path& folder) {
+  std::error_code failed;
+  fs::create_directory(folder, failed);
+  if (failed || !fs::is_directory(folder))
+    throw IoError("cannot make the folder " + folder.string() + ": " +
+                  (failed ? failed.message() : "something else is there"));
+}
+
+void remove_file(const fs::path& path) {
+  std::error_code failed;
+  if (!fs::remove(path, failed) && failed)
+    throw IoError("removing " + path.string() + " failed: " + failed.message());
+}
+
+}  // namespace
+
+std::vector<fs::path> journals_in(const std::string& folder) {
+  std::vector<fs::path> found;
+  if (std::error_code none; !fs::is_directory(folder, none)) return found;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    const fs::path& path = entry.path();
+    if (path.extension() == ending) found.push_back(path);
+    if (path.extension() == ".h5" && unfinished_name(path).empty())
+      throw InputError(folder + " holds points in files of their own, as earlier versions made " +
+                       "them: end or merge that sweep by its version, or remove the folder");
+  }
+  std::ranges::sort(found);
+  return found;
+}
+
+PointStore::PointStore(const Sweep& sweep, const std::vector<std::string>& folders)
+    : sweep_(sweep),
+      finder_(sweep.points()),
+      identity_(sweep.identity_of_points()),
+      folders_(folders) {
+  for (const std::string& folder : folders) {
+    const std::size_t before = strangers_;
+    open_others(folder, {});
+    if (strangers_ > before)
+      warnings_ += "warning: " + folder + ": " + std::to_string(strangers_ - before) +
+                   " points of another sweep are left out\n";
+  }
+}
+
+PointStore::PointStore(const Sweep& sweep, const std::string& folder)
+    : sweep_(sweep),
+      finder_(sweep.points()),
+      identity_(sweep.identity_of_points()),
+      folders_{folder} {
+  const fs::path own = own_journal(folder, sweep.share().value_or(SweepShare{}));
+  const auto there = journals_in(folder);
+  const bool has_begun = sweep.share() ? std::ranges::count(there, own) > 0 : !there.empty();
+  if (has_begun && !sweep.settings().resume)
+    throw InputError(folder +
+                     " holds points of an earlier sweep: --resume goes on with them; remove the "
+                     "folder to begin again");
+  make_folder(folder);
+  journals_.push_back(std::make_unique<PointJournal>(own, JournalHead{identity_, sweep.config()},
+                                                     "sweep", notes()));
+  paths_.push_back(own);
+  open_others(folder, own);
+  std::cerr << warnings_;
+}
+
+void PointStore::open_others(const std::string& folder, const fs::path& own) {
+  for (const fs::path& path : journals_in(folder)) {
+    if (path == own) continue;
+    try {
+      journals_.push_back(std::make_unique<PointJournal>(path, identity_, notes()));
+      paths_.push_back(path);
+      if (journals_.back()->is_damaged())
+        warnings_ += "warning: " + path.string() + " is damaged; " +
+                     std::to_string(journals_.back()->size()) + " points of it are taken\n";
+    } catch (const InputError& error) {
+      warnings_ += std::string("warning: ") + error.what() + "; it is left out\n";
+    }
+  }
+}
+
+/// What the next journal tells.
+PointJournal::Found PointStore::notes() {
+  return [this](const std::string& name, std::uint64_t place) {
+    if (const auto run = sweep_.find(name, finder_))
+      note(*run, journals_.size(), place);
+    else
+      ++strangers_;
+  };
+}
+
+/// Of a run that several journals have, the first counts.
+void PointStore::note(std::size_t run, std::size_t journal, std::uint64_t place) {
+  const std::lock_guard lock(mutex_);
+  if (places_.at(run) != 0) return;
+  places_.set(run, journal << bits_of_place | place);
+  ++finished_;
+}
+
+bool PointStore::has(std::size_t run) const {
+  const std::lock_guard lock(mutex_);
+  return places_.at(run) != 0;
+}
+
+void PointStore::for_each(
+    const std::function<void(std::size_t run, const FinishedPoint&)>& use) const {
+  for (std::size_t run = 0; run < sweep_.runs(); ++run)
+    if (const std::uint64_t found = places_.at(run); found != 0)
+      use(run, journals_[found >> bits_of_place]->read(found & most_place));
+}
+
+void PointStore::add(std::size_t run, const FinishedPoint& finished) {
+  const std::string name = sweep_.name(run);
+  note(run, 0, journals_.front()->add(name, finished));
+  std::error_code none;
+  fs::remove(unfinished_file(name), none);
+  constexpr double seconds_between_syncs = 2;
+  if (const double now = clock_.seconds(); now > synced_ + seconds_between_syncs) {
+    synced_ = now;
+    sync();
+  }
+}
+
+fs::path PointStore::unfinished_file(const std::string& name) const {
+  return fs::path(folders_.front()) / (file_name(name) + unfinished_ending);
+}
+
+/// What cannot be used is set aside, and the run done again.
+RunState PointStore::unfinished(std::size_t run, std::size_t size) const {
+  const std::string name = sweep_.name(run);
+  const fs::path path = unfinished_file(name);
+  try {
+    const auto kept = kept_record(path, identity_of(name), "sweep");
+    return kept ? state_of(*kept, size) : RunState{};
+  } catch (const InputError& error) {
+    const fs::path place = free_aside(path);
+    std::error_code failed;
+    fs::rename(path, place, failed);
+    if (failed) throw IoError("renaming " + path.string() + " failed: " + failed.message());
+    // In one piece: other threads may have something to say as well.
+    std::cerr << std::string("warning: ") + error.what() + "; set aside as " +
+                     place.filename().string() + '\n';
+    return {};
+  }
+}
+
+void PointStore::save_unfinished(std::size_t run, const RunState& state) const {
+  const std::string name = sweep_.name(run);
+  keep_record(unfinished_file(name), identity_of(name), bytes_of(state), Durable::yes);
+}
+
+void PointStore::remove() {
+  journals_.clear();
+  for (const fs::path& path : paths_) remove_file(path);
+  for (const std::string& folder : folders_) {
+    if (!fs::is_directory(folder)) continue;
+    remove_unfinished(folder);
+    std::error_code not_empty;
+    fs::remove(folder, not_empty);
+  }
+}
+
+/// Those of this sweep's runs, as of a process that was killed.
+void PointStore::remove_unfinished(const fs::path& folder) const {
+  std::multimap<std::string, fs::path> there;
+  for (const auto& entry : fs::directory_iterator(folder))
+    if (const std::string name = unfinished_name(entry.path()); !name.empty())
+      there.emplace(name, entry.path());
+  for (std::size_t run = 0; run < sweep_.runs() && !there.empty(); ++run) {
+    const std::string name = file_name(sweep_.name(run));
+    const auto [first, last] = there.equal_range(name);
+    for (auto found = first; found != last; ++found) remove_file(found->second);
+    there.erase(name);
+  }
+}
+
+}  // namespace flatspeckle::apps
