@@ -158,9 +158,8 @@ class FluxWalk {
       flying_.push_back({particle.x, scattering_.sample(particle.w, random_), particle.weight});
   }
 
-  /// To the next collision; false if that would be outside. All of it is inlined, whatever else the
-  /// file has: calls would cost 5 %.
-  [[gnu::flatten]] bool fly(Particle& particle) {
+  /// To the next collision; false if that would be outside.
+  bool fly(Particle& particle) {
     constexpr std::uint64_t between_looks = 4096;
     if (++flights_ % between_looks == 0) stop_if_interrupted();
     const double stretch = entry_.stretch(particle.w, mu_t_);
