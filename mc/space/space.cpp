@@ -70,7 +70,7 @@ Eigen::Vector3d Space::matched(const SpacePair& lights, const SpacePair& views, 
           std::copysign(std::sqrt(1 - along.squaredNorm()), views.second.z())};
 }
 
-Space::Momentum Space::momentum(const SpacePair& lights, double, double shift) {
+Space::Momentum Space::momentum(const SpacePair& lights, double, double, double shift) {
   constexpr double same_momentum = 1e-12;
   const Eigen::Vector3d difference = lights.first - (1 + shift) * lights.second;
   const auto rounded = [](double q) { return std::round(q / same_momentum) * same_momentum; };

@@ -28,7 +28,7 @@ struct Space {
   /// The second view, turned (slab.h).
   static Direction matched(const SpacePair& lights, const SpacePair& views, double shift);
   /// Transverse; shift: Departure's.
-  static Momentum momentum(const SpacePair& lights, double, double shift);
+  static Momentum momentum(const SpacePair& lights, double, double, double shift);
   static double size(const Momentum& momentum, double k) {
     return k * Eigen::Vector2d(momentum[0], momentum[1]).norm();
   }

@@ -73,8 +73,7 @@ std::vector<ChainGroup<Geometry>> grouped(
   const typename Geometry::Foci foci(lights, slab.mu_t * slab.depth, slab.width());
   std::map<std::pair<typename Geometry::Momentum, std::vector<Focus>>, ChainGroup<Geometry>> groups;
   for (const auto& chain : chains) {
-    const auto momentum =
-        Geometry::momentum(chain.lights, slab.k / slab.mu_t, slab.departure.shift);
+    const auto momentum = Geometry::momentum(chain.lights, slab.k, slab.mu_t, slab.departure.shift);
     const auto own = foci.of(chain.lights, momentum);
     ChainGroup<Geometry>& group = groups[{momentum, own}];
     group.momentum = momentum;

@@ -31,10 +31,10 @@ double Plane::matched(const Pair& lights, const Pair& views, double shift) {
   return matched_view(lights.first, views.first, lights.second, views.second, shift);
 }
 
-double Plane::momentum(const Pair& lights, double k, double shift) {
+double Plane::momentum(const Pair& lights, double k, double mu_t, double shift) {
   constexpr double same_momentum = 1e-12;  // of k
-  const double unit = same_momentum * k,
-               q = k * (std::sin(lights.first) - (1 + shift) * std::sin(lights.second));
+  const double unit = same_momentum * k / mu_t,
+               q = k / mu_t * (std::sin(lights.first) - (1 + shift) * std::sin(lights.second));
   return unit * std::round(q / unit);
 }
 

@@ -23,8 +23,8 @@ struct Plane {
   static Direction direction(double angle) { return angle; }
   /// The second view, turned (slab.h).
   static Direction matched(const Pair& lights, const Pair& views, double shift);
-  /// Transverse (C35); k: per mu_t, shift: Departure's.
-  static Momentum momentum(const Pair& lights, double k, double shift);
+  /// Transverse (C35). shift: Departure's.
+  static Momentum momentum(const Pair& lights, double k, double mu_t, double shift);
   static double size(Momentum momentum, double) { return momentum; }
 
   static Law law(const Scene& scene, double delay = 0) { return ScatteringLaw(scene, delay); }
