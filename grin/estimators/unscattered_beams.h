@@ -12,7 +12,7 @@ namespace flatspeckle::grin {
 // (Bidirectional), and it is summed apart: with its transmittance instead of by chance, by rays
 // from points spread evenly over the beams (in a square a lattice of the golden ratio, on a disk
 // its spiral; shifted at random for each batch), and by ways from the sensors back to the beams
-// (beam_search.h), which find a pinhole and the glints in a small lens.
+// (beam_search.cpp), which find a pinhole and the glints in a small lens.
 //
 // The space is that of without_scattering(stage), where each flight goes to the boundary.
 
