@@ -317,7 +317,7 @@ void print_pictures(const mc::LineScene& line, const mc::ImagingTask& task,
                     const mc::ImagingPrediction& prediction) {
   std::printf("frames divided by the reference: ");
   if (!media.empty()) {
-    const mc::Measured mean = mc::mean_psnr(media);
+    const mc::MeanOverMedia mean = mc::mean_psnr(media);
     std::printf("PSNR %.1f +- %.2g dB", mean.value, mean.error);
   }
   if (task.deconvolution.method == mc::DeconvolutionTask::Method::wiener)
@@ -328,7 +328,7 @@ void print_pictures(const mc::LineScene& line, const mc::ImagingTask& task,
 
 void print_moments(const mc::LineScene& line, const mc::ImagingTask& task,
                    const std::vector<mc::ImagedMedium>& media) {
-  const mc::Measured contrast = mc::mean_contrast(line.object, media),
+  const mc::MeanOverMedia contrast = mc::mean_contrast(line.object, media),
                      fourth = mc::mean_fourth_moment(media);
   std::printf(
       "contrast %.4f +- %.2g (Gaussian: %.4f), E|u|^4/(E|u|^2)^2 %.3f +- %.2g, %.0f grains\n",
@@ -342,7 +342,7 @@ void print_sources(const mc::ImagingTask& task, const std::vector<mc::ImagedMedi
   std::printf("single frames: contrast %.4f +- %.2g (Gaussian: %.4f)\n", contrast.found.value,
               contrast.found.error, contrast.expected);
   if (!task.blinking.unmixes) return;
-  const mc::Measured rate = mc::sources_success(media),
+  const mc::MeanOverMedia rate = mc::sources_success(media),
                      count = mc::mean_over(media, 0, [](const auto&m) {
                        return static_cast<double>(m.blinked.found.count.sources);
                      });
