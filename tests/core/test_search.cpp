@@ -7,7 +7,7 @@
 #include "core/search/noisy_search.h"
 #include "core/search/sum_blocks.h"
 
-using namespace flatspeckle;
+namespace flatspeckle::test_search {
 
 namespace {
 
@@ -227,3 +227,5 @@ TEST_CASE("confidence") {
   }
   CHECK(std::abs(better - expected) < 4 * std::sqrt(variance));
 }
+
+}  // namespace flatspeckle::test_search

@@ -15,7 +15,7 @@
 #include "tests/grin/furnace.h"
 #include "tests/grin/space_stages.h"
 
-namespace flatspeckle::grin::tests {
+namespace flatspeckle::grin::tests::test_joins_through_body {
 
 namespace {
 
@@ -418,4 +418,4 @@ TEST_CASE("flights and joins agree on where light collides in and around a refra
     }
 }
 
-}  // namespace flatspeckle::grin::tests
+}  // namespace flatspeckle::grin::tests::test_joins_through_body

@@ -14,7 +14,7 @@
 #include "tests/grin/furnace.h"
 #include "tests/grin/space_stages.h"
 
-namespace flatspeckle::grin::tests {
+namespace flatspeckle::grin::tests::test_mesh_body {
 
 namespace {
 
@@ -119,4 +119,4 @@ TEST_CASE("no path by a ring of triangles is worth far more than others") {
   CHECK(most < 40 * sum);
 }
 
-}  // namespace flatspeckle::grin::tests
+}  // namespace flatspeckle::grin::tests::test_mesh_body

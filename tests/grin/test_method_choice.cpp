@@ -5,7 +5,7 @@
 #include "tests/grin/furnace.h"
 #include "tests/grin/render_tests.h"
 
-namespace flatspeckle::grin::tests {
+namespace flatspeckle::grin::tests::test_method_choice {
 
 using bench::NamedRender;
 
@@ -187,4 +187,4 @@ TEST_CASE("in the dark nothing is preferred") {
   CHECK(chosen(box(0, Homogeneous{}, aside, pinhole)) == RenderMethod::bidirectional);
 }
 
-}  // namespace flatspeckle::grin::tests
+}  // namespace flatspeckle::grin::tests::test_method_choice

@@ -10,7 +10,7 @@
 #include "grin/paths/beam_join.h"
 #include "grin/paths/path_join.h"
 
-namespace flatspeckle::grin::tests {
+namespace flatspeckle::grin::tests::test_path_weights {
 
 namespace {
 
@@ -408,4 +408,4 @@ TEST_CASE("weights sum to 1 on paths from beams that sensors' paths are joined t
   }
 }
 
-}  // namespace flatspeckle::grin::tests
+}  // namespace flatspeckle::grin::tests::test_path_weights

@@ -6,7 +6,7 @@
 #include "mc/theory/memory_effect.h"
 #include "tests/mc/estimates.h"
 
-namespace flatspeckle::mc {
+namespace flatspeckle::mc::test_near_field {
 
 namespace {
 
@@ -141,4 +141,4 @@ TEST_CASE("the error bars of sensors inside the medium are honest") {
   }
 }
 
-}  // namespace flatspeckle::mc
+}  // namespace flatspeckle::mc::test_near_field

@@ -8,7 +8,7 @@
 #include "tests/mc/estimates.h"
 #include "tests/statistics.h"
 
-namespace flatspeckle::mc {
+namespace flatspeckle::mc::test_scattering {
 
 namespace {
 
@@ -111,4 +111,4 @@ TEST_CASE("a thin TM cylinder scatters like a point") {
           doctest::Approx(1 / (2 * pi)).epsilon(2e-3));
 }
 
-}  // namespace flatspeckle::mc
+}  // namespace flatspeckle::mc::test_scattering

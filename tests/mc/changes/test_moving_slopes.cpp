@@ -7,7 +7,7 @@
 #include "mc/slab/slab_covariance.h"
 #include "tests/mc/estimates.h"
 
-namespace flatspeckle::mc {
+namespace flatspeckle::mc::test_moving_slopes {
 
 namespace {
 
@@ -131,4 +131,4 @@ TEST_CASE("derivatives of decays through a slab by its medium are those of trans
   check(2, 0.02, exact(0.51, 3), exact(0.49, 3));
 }
 
-}  // namespace flatspeckle::mc
+}  // namespace flatspeckle::mc::test_moving_slopes

@@ -4,7 +4,7 @@
 
 #include "mc/fit/task/correlated_errors.h"
 
-namespace flatspeckle::mc {
+namespace flatspeckle::mc::test_correlated_errors {
 
 TEST_CASE("errors of ratios of sums are correlated as their terms are") {
   // x and y of variances 1 and 4 about 10 and 20, correlation 1/2; values x / 10 and y / x.
@@ -56,4 +56,4 @@ TEST_CASE("too few groups tell nothing of correlations") {
   CHECK(correlated_errors(sums, sample_mean).size() == 0);
 }
 
-}  // namespace flatspeckle::mc
+}  // namespace flatspeckle::mc::test_correlated_errors

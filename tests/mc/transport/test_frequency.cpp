@@ -10,7 +10,7 @@
 #include "mc/slab/slab_covariance.h"
 #include "tests/mc/transport/slabs.h"
 
-namespace flatspeckle::mc {
+namespace flatspeckle::mc::test_frequency {
 
 namespace {
 
@@ -159,4 +159,4 @@ TEST_CASE("the second view turns to keep transverse momenta, as far as there is 
   CHECK(std::abs(found.covariance.value[0] - covariance) < 1e-5 * std::abs(covariance));
 }
 
-}  // namespace flatspeckle::mc
+}  // namespace flatspeckle::mc::test_frequency

@@ -12,7 +12,7 @@
 #include "tests/mc/transport/sixth_order.h"
 #include "tests/mc/transport/slabs.h"
 
-namespace flatspeckle::mc {
+namespace flatspeckle::mc::test_slab_covariance {
 
 namespace {
 
@@ -313,4 +313,4 @@ TEST_CASE("Monte Carlo on random slabs agrees with transport") {
   }
 }
 
-}  // namespace flatspeckle::mc
+}  // namespace flatspeckle::mc::test_slab_covariance

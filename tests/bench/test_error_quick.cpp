@@ -10,7 +10,7 @@
 #include "bench/error/error_curve.h"
 #include "core/run/parallel.h"
 
-using namespace flatspeckle::bench;
+namespace flatspeckle::bench::test_error_quick {
 
 namespace {
 
@@ -32,7 +32,7 @@ std::vector<Curve> run_all(const std::vector<Run>& runs) {
 
 }  // namespace
 
-TEST_CASE("bench_error_quick: error curves") {
+TEST_CASE("nightly: bench_error_quick: error curves") {
   for (const ErrorCurve& curve : run_all<ErrorRun, ErrorCurve>(error_runs())) {
     CAPTURE(curve.scene);
     CAPTURE(curve.method);
@@ -59,7 +59,7 @@ TEST_CASE("bench_error_quick: error curves") {
   }
 }
 
-TEST_CASE("bench_error_quick: cost curves") {
+TEST_CASE("nightly: bench_error_quick: cost curves") {
   for (const CostCurve& curve : run_all<CostRun, CostCurve>(cost_runs())) {
     CAPTURE(curve.what);
     CHECK(curve.size.size() == curve.cpu_s.size());
@@ -70,3 +70,5 @@ TEST_CASE("bench_error_quick: cost curves") {
     CHECK(std::isfinite(curve.exponent_error));
   }
 }
+
+}  // namespace flatspeckle::bench::test_error_quick
