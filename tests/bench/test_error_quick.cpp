@@ -14,7 +14,7 @@ namespace flatspeckle::bench::test_error_quick {
 
 namespace {
 
-constexpr double cpu_seconds = 0.5;
+constexpr double cpu_seconds = 2;
 
 bool is_rising(const std::vector<double>& values) {
   for (std::size_t i = 0; i < values.size(); ++i)
@@ -54,8 +54,10 @@ TEST_CASE("nightly: bench_error_quick: error curves") {
     CHECK(std::isfinite(curve.slope_error));
     CHECK(std::isfinite(curve.efficiency));
     CHECK(curve.efficiency > 0);
-    if (curve.is_monte_carlo)
-      CHECK(std::abs(curve.slope + 0.5) < std::max(0.3, 4 * curve.slope_error));
+    if (curve.is_monte_carlo) {
+      CHECK(std::abs(curve.slope + 0.5) < 4 * curve.slope_error);
+      CHECK(curve.slope_error < 0.5 / 4);  // a curve that does not fall is seen
+    }
   }
 }
 
