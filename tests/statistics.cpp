@@ -1,6 +1,7 @@
 #include "tests/statistics.h"
 
 #include <cmath>
+#include <cstdlib>
 
 #include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/quadrature/gauss_kronrod.hpp>
@@ -42,6 +43,15 @@ void check_chi_square(const std::vector<double>& counts, const std::vector<doubl
   const ChiSquare test(counts, probabilities);
   REQUIRE(test.degrees >= 5);
   CHECK(test.statistic < test.limit());
+}
+
+std::uint64_t fresh_seed(std::uint64_t number) {
+  const char* moved = std::getenv("FLATSPECKLE_TEST_SEED");
+  return number + (moved ? 1'000'003 * std::strtoull(moved, nullptr, 10) : 0);
+}
+
+Effort effort() {
+  return std::getenv("FLATSPECKLE_TEST_WHOLE") ? Effort{1, 1} : Effort{};
 }
 
 double integral(const std::function<double(double)>& f, double from, double to) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <vector>
 
@@ -24,6 +25,16 @@ struct ChiSquare {
 
 /// The probabilities must be those of all that was counted.
 void check_chi_square(const std::vector<double>& counts, const std::vector<double>& probabilities);
+
+/// The seed of this number; where FLATSPECKLE_TEST_SEED is set (scripts/check.sh), a fresh one.
+std::uint64_t fresh_seed(std::uint64_t number);
+
+/// What long tests take of their samples by day, a quarter, and how much larger errors are then; by
+/// night (FLATSPECKLE_TEST_WHOLE is set) they take all.
+struct Effort {
+  double samples = 0.25, errors = 2;
+};
+Effort effort();
 
 /// Integral by adaptive Gauss-Kronrod quadrature, to a relative 1e-10 or so.
 double integral(const std::function<double(double)>& f, double from, double to);

@@ -6,6 +6,7 @@ damaged or other than those of an undisturbed run, litter, refusals of more than
 """
 
 import argparse
+import os
 import pathlib
 import sys
 import tempfile
@@ -56,7 +57,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--runs", type=int, default=1000)
-    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--seed", type=int, default=int(os.environ.get("FLATSPECKLE_TEST_SEED", 1)))
     parser.add_argument("--seconds", type=float, default=float("inf"))
     parser.add_argument("--only", type=int)
     given = parser.parse_args()

@@ -11,8 +11,7 @@
 #include "bench/measure/power_fit.h"
 #include "core/numbers/random.h"
 
-using namespace flatspeckle;
-using namespace flatspeckle::bench;
+namespace flatspeckle::bench::test_error_curve {
 
 namespace {
 
@@ -104,3 +103,5 @@ TEST_CASE("measure_cost finds the exponent of a loop in a loop") {
   CHECK(curve.size.size() == 5);
   CHECK(curve.exponent == doctest::Approx(2).epsilon(0.1));
 }
+
+}  // namespace flatspeckle::bench::test_error_curve

@@ -3,7 +3,7 @@
 
 #include "tests/bench/check_extremes.h"
 
-namespace flatspeckle::bench {
+namespace flatspeckle::bench::test_extremes {
 
 namespace {
 
@@ -33,4 +33,8 @@ TEST_CASE("A row fails by its figure, by NaN, by a refusal that nobody asked for
   CHECK(!good(row([] { return Finding{0, 1}; }, "width")));
 }
 
-}  // namespace flatspeckle::bench
+TEST_CASE("nightly: Extreme cases that take long are right, or refused with a clear error") {
+  tests::check_extremes(true);
+}
+
+}  // namespace flatspeckle::bench::test_extremes

@@ -14,7 +14,7 @@
 #include "core/run/runner.h"
 #include "core/run/stopwatch.h"
 
-using namespace flatspeckle;
+namespace flatspeckle::test_batch_pool {
 
 namespace {
 
@@ -385,3 +385,5 @@ TEST_CASE("zz a signal ends all runs after the batches in hand, and they can go 
   CHECK(tasks[4].endings == 0);
   CHECK(tasks[9].state.sums.batches() == 0);
 }
+
+}  // namespace flatspeckle::test_batch_pool

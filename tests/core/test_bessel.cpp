@@ -9,7 +9,7 @@
 #include "core/keys/csv.h"
 #include "core/numbers/bessel.h"
 
-namespace flatspeckle {
+namespace flatspeckle::test_bessel {
 
 namespace {
 
@@ -151,4 +151,4 @@ TEST_CASE("J_{n+1} / J_n and J_n' / J_n of complex argument agree with Arb") {
   }
 }
 
-}  // namespace flatspeckle
+}  // namespace flatspeckle::test_bessel

@@ -8,7 +8,8 @@
 #include "core/error.h"
 #include "core/result/block_file.h"
 
-using namespace flatspeckle;
+namespace flatspeckle::test_block_file {
+
 namespace fs = std::filesystem;
 
 namespace {
@@ -111,3 +112,5 @@ TEST_CASE("a file of blocks that is not there, or changed since") {
   blocks.change(16 + 16 + 16);  // in the head of the third
   CHECK_THROWS_AS(file.read(33), IoError);
 }
+
+}  // namespace flatspeckle::test_block_file

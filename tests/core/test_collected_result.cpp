@@ -6,7 +6,7 @@
 #include "core/error.h"
 #include "core/result/collected_result.h"
 
-using namespace flatspeckle;
+namespace flatspeckle::test_collected_result {
 
 namespace {
 
@@ -89,3 +89,5 @@ TEST_CASE("values are finite there too, and names stand once") {
   CHECK_THROWS_AS(file.begin_dataset("blocks", std::span<const Complex>(), {}, {}, "1", "again"),
                   std::logic_error);
 }
+
+}  // namespace flatspeckle::test_collected_result

@@ -5,7 +5,7 @@
 #include "core/numbers/control_variate.h"
 #include "core/numbers/random.h"
 
-using namespace flatspeckle;
+namespace flatspeckle::test_control_variate {
 
 namespace {
 
@@ -53,3 +53,5 @@ TEST_CASE("what a control variate tells nothing of stays as it is") {
   const GroupedSums few = sums_of(1, 20);
   CHECK(controlled_jackknife(few, first_two, 2).value[0] == jackknife(few, first_two).value[0]);
 }
+
+}  // namespace flatspeckle::test_control_variate

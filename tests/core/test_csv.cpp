@@ -9,7 +9,7 @@
 #include "core/error.h"
 #include "core/keys/csv.h"
 
-using namespace flatspeckle;
+namespace flatspeckle::test_csv {
 
 namespace {
 
@@ -116,3 +116,5 @@ TEST_CASE("files that cannot be read are bad input") {
   CHECK_THROWS_AS(read_csv("no/such/file.csv"), InputError);
   CHECK_THROWS_AS(read_csv(std::filesystem::temp_directory_path()), InputError);
 }
+
+}  // namespace flatspeckle::test_csv

@@ -6,7 +6,7 @@
 #include "core/error.h"
 #include "core/result/guarded_read.h"
 
-namespace flatspeckle {
+namespace flatspeckle::test_guarded_read {
 
 TEST_CASE("what cannot be read without a crash is refused, and names the file") {
   for (const int signal : {SIGSEGV, SIGABRT, SIGKILL})
@@ -20,4 +20,4 @@ TEST_CASE("a guarded read gives what it reads, or throws what that throws") {
   CHECK_THROWS_WITH_AS(guarded_read("some.h5", refused), "not this one", InputError);
 }
 
-}  // namespace flatspeckle
+}  // namespace flatspeckle::test_guarded_read

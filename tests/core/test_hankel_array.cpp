@@ -11,7 +11,7 @@
 #include "core/numbers/hankel_array.h"
 #include "core/numbers/hankel_fit.h"
 
-namespace flatspeckle {
+namespace flatspeckle::test_hankel_array {
 
 namespace {
 
@@ -160,4 +160,4 @@ TEST_CASE("Wronskian J_{n+1} Y_n - J_n Y_{n+1} = 2 / (pi x) of sets, up to the t
     }
 }
 
-}  // namespace flatspeckle
+}  // namespace flatspeckle::test_hankel_array

@@ -10,7 +10,8 @@
 #include "core/result/run_state_file.h"
 #include "core/session/journal.h"
 
-using namespace flatspeckle;
+namespace flatspeckle::test_journal {
+
 namespace fs = std::filesystem;
 
 namespace {
@@ -128,3 +129,5 @@ TEST_CASE("a run's state comes back from its bytes, bit for bit") {
   CHECK_THROWS_AS(state_of(bytes, 3), InputError);
   CHECK_THROWS_AS(state_of(std::span(bytes).first(100), 2), InputError);
 }
+
+}  // namespace flatspeckle::test_journal

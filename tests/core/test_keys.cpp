@@ -3,7 +3,7 @@
 #include "core/keys/keys.h"
 #include "core/keys/number_text.h"
 
-using namespace flatspeckle;
+namespace flatspeckle::test_keys {
 
 namespace {
 
@@ -133,3 +133,5 @@ TEST_CASE("complex numbers") {
   CHECK(number_text(Complex(1.5, -0.1)) == "1.5-0.1i");
   CHECK(number_text(-0.0) == "0");
 }
+
+}  // namespace flatspeckle::test_keys

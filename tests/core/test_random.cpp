@@ -6,7 +6,7 @@
 
 #include "core/numbers/random.h"
 
-using namespace flatspeckle;
+namespace flatspeckle::test_random {
 
 TEST_CASE("random numbers are addressed: seed, stream, batch and draw alone fix them") {
   RandomStream a(7, 1, 5), b(7, 1, 5);
@@ -69,3 +69,5 @@ TEST_CASE("uniform numbers are uniform, within and across batches") {
     CHECK(chi2 < limit);
   }
 }
+
+}  // namespace flatspeckle::test_random

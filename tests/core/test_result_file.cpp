@@ -21,7 +21,8 @@
 #include "core/result/result_reader.h"
 #include "core/result/run_state_file.h"
 
-using namespace flatspeckle;
+namespace flatspeckle::test_result_file {
+
 namespace fs = std::filesystem;
 
 namespace {
@@ -462,3 +463,5 @@ TEST_CASE("a result says where it came from") {
   CHECK(reader.attribute<double>("/", "samples") == 1e6);
   CHECK(reader.attribute<bool>("/", "converged"));
 }
+
+}  // namespace flatspeckle::test_result_file

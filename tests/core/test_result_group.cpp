@@ -7,7 +7,8 @@
 #include "core/result/result_group.h"
 #include "core/result/result_reader.h"
 
-using namespace flatspeckle;
+namespace flatspeckle::test_result_group {
+
 namespace fs = std::filesystem;
 
 namespace {
@@ -111,3 +112,5 @@ TEST_CASE("a role must be bound") {
   CHECK_THROWS_WITH_AS(root.put("intensity", estimate), "VIEW: stands for nothing here",
                        std::logic_error);
 }
+
+}  // namespace flatspeckle::test_result_group

@@ -10,7 +10,7 @@
 #include "core/run/interrupt.h"
 #include "core/run/runner.h"
 
-using namespace flatspeckle;
+namespace flatspeckle::test_runner {
 
 namespace {
 
@@ -164,3 +164,5 @@ TEST_CASE("zz a signal ends the run after the batches in hand, without a gap") {
   }
   CHECK(direct.state().sums == state.sums.state().sums);
 }
+
+}  // namespace flatspeckle::test_runner

@@ -6,7 +6,7 @@
 #include "core/numbers/bessel.h"
 #include "core/numbers/scaled_bessel.h"
 
-namespace flatspeckle {
+namespace flatspeckle::test_scaled_bessel {
 
 TEST_CASE("Where numbers are in range, scaled cylinder functions are the plain ones") {
   for (const double x : {0.01, 1.0, 2.4, 30.0}) {
@@ -46,4 +46,4 @@ TEST_CASE("Scaled numbers add and multiply") {
   CHECK(static_cast<long double>(huge) == INFINITY);
 }
 
-}  // namespace flatspeckle
+}  // namespace flatspeckle::test_scaled_bessel

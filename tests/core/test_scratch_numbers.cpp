@@ -2,7 +2,7 @@
 
 #include "core/result/scratch_numbers.h"
 
-using namespace flatspeckle;
+namespace flatspeckle::test_scratch_numbers {
 
 TEST_CASE("scratch numbers are what they were set to, and 0 before") {
   ScratchNumbers numbers;
@@ -16,3 +16,5 @@ TEST_CASE("scratch numbers are what they were set to, and 0 before") {
   CHECK(numbers.at(999) == 0);
   CHECK(numbers.at(1001) == 0);
 }
+
+}  // namespace flatspeckle::test_scratch_numbers

@@ -10,7 +10,7 @@
 #include "core/result/result_reader.h"
 #include "core/result/sealed_file.h"
 
-using namespace flatspeckle;
+namespace flatspeckle::test_sealed_file {
 
 namespace {
 
@@ -131,3 +131,5 @@ TEST_CASE("a result file without a seal is not sealed") {
   file.commit();
   CHECK_FALSE(is_sealed(folder.file()));
 }
+
+}  // namespace flatspeckle::test_sealed_file

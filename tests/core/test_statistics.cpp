@@ -8,7 +8,7 @@
 #include "core/numbers/random.h"
 #include "core/numbers/statistics.h"
 
-using namespace flatspeckle;
+namespace flatspeckle::test_statistics {
 
 TEST_CASE("the jackknife of a mean is the standard error of the mean") {
   GroupedSums sums(1);
@@ -183,3 +183,5 @@ TEST_CASE("groups are held as they come; long rows get fewer, so that the sums f
   for (int batch = 0; batch < 17; ++batch) wide.add(1, row);
   CHECK(wide.groups() == 16);
 }
+
+}  // namespace flatspeckle::test_statistics

@@ -6,7 +6,7 @@
 #include "core/error.h"
 #include "core/keys/written_number.h"
 
-using namespace flatspeckle;
+namespace flatspeckle::test_written_number {
 
 namespace {
 
@@ -78,3 +78,5 @@ TEST_CASE("a range knows the numbers of its values, and of no others") {
     CHECK_FALSE(range->find(-1e3).has_value());
   }
 }
+
+}  // namespace flatspeckle::test_written_number

@@ -7,7 +7,7 @@
 #include "flatland/media/medium.h"
 #include "flatland/media/structure_factor.h"
 
-using namespace flatspeckle;
+namespace flatspeckle::test_correlated_medium {
 
 namespace {
 
@@ -159,3 +159,5 @@ TEST_CASE("the unit of length does not matter") {
   CHECK(other.g == doctest::Approx(one.g).epsilon(1e-12));
   CHECK(7 * other.mu_t == doctest::Approx(one.mu_t).epsilon(1e-12));
 }
+
+}  // namespace flatspeckle::test_correlated_medium

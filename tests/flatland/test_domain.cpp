@@ -5,7 +5,7 @@
 
 #include "flatland/media/domain.h"
 
-using namespace flatspeckle;
+namespace flatspeckle::test_domain {
 
 TEST_CASE("angles go from +z towards +x") {
   CHECK(direction(0).z == 1);
@@ -35,3 +35,5 @@ TEST_CASE("a slab has no sides") {
   CHECK(slab.distance_to_edge({0, 4}, {1, 0}) == std::numeric_limits<double>::infinity());
   CHECK(slab.contains({1e9, 4}));
 }
+
+}  // namespace flatspeckle::test_domain

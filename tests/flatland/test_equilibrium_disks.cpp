@@ -11,8 +11,7 @@
 #include "periodic_disks.h"
 #include "tests/statistics.h"
 
-using namespace flatspeckle;
-using namespace flatspeckle::tests;
+namespace flatspeckle::tests::test_equilibrium_disks {
 
 namespace {
 
@@ -184,3 +183,5 @@ TEST_CASE("disks that cannot be placed are refused") {
   refused({Domain::Kind::box, 50, 2.9}, radii, 0, PlacementRule::Kind::equilibrium);
   CHECK_NOTHROW(draw(unit_disk_box(50, 0.69), radii, 0, default_gap * 0.5));
 }
+
+}  // namespace flatspeckle::tests::test_equilibrium_disks

@@ -6,8 +6,7 @@
 #include "flatland/placement/event_chain.h"
 #include "periodic_disks.h"
 
-using namespace flatspeckle;
-using namespace flatspeckle::tests;
+namespace flatspeckle::tests::test_event_chain {
 
 namespace {
 
@@ -151,3 +150,5 @@ TEST_CASE("the pressure of event chains and their contact value agree with the e
     CHECK(std::abs(contact / theory.contact_value() - 1) < 0.04);
   }
 }
+
+}  // namespace flatspeckle::tests::test_event_chain

@@ -8,7 +8,7 @@
 #include "core/error.h"
 #include "flatland/placement/placement.h"
 
-using namespace flatspeckle;
+namespace flatspeckle::test_placement {
 
 namespace {
 
@@ -126,3 +126,5 @@ TEST_CASE("bad placements are refused") {
   CHECK_THROWS_AS(CsvFile("x,z\n1,2\n1,2\n").read({}), InputError);
   CHECK_NOTHROW(CsvFile("x,z\n1,2\n1,2.001\n").read({}));
 }
+
+}  // namespace flatspeckle::test_placement

@@ -6,7 +6,7 @@
 #include "core/error.h"
 #include "flatland/request/request.h"
 
-using namespace flatspeckle;
+namespace flatspeckle::test_request {
 
 namespace {
 constexpr double k = 2 * std::numbers::pi, pi = std::numbers::pi;
@@ -104,3 +104,5 @@ TEST_CASE("translations move the light and near sensors, not far views") {
   CHECK(request.lights[far.light] == request.lights[near.light]);
   CHECK(request.views[far.view] == far_view(0.3));
 }
+
+}  // namespace flatspeckle::test_request

@@ -6,7 +6,7 @@
 #include "bench/oracles/bessel_oracle.h"
 #include "flatland/scatterers/scatterer.h"
 
-namespace flatspeckle {
+namespace flatspeckle::test_scatterer {
 
 namespace {
 
@@ -184,4 +184,4 @@ TEST_CASE("The isolated order leaves out nothing above the tolerance and keeps n
       }
 }
 
-}  // namespace flatspeckle
+}  // namespace flatspeckle::test_scatterer

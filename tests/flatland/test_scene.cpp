@@ -7,7 +7,7 @@
 #include "core/keys/number_text.h"
 #include "flatland/scene/scene.h"
 
-using namespace flatspeckle;
+namespace flatspeckle::test_scene {
 
 namespace {
 
@@ -189,3 +189,5 @@ TEST_CASE("a structure factor is one of disks of stated density") {
   disks.min_gap = 0.2;
   says(make_scene(disks).medium.structure.origin(), "packing fraction 0.175");
 }
+
+}  // namespace flatspeckle::test_scene

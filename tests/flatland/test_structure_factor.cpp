@@ -7,10 +7,9 @@
 
 #include "core/numbers/random.h"
 #include "flatland/media/structure_factor.h"
-
 #include "periodic_disks.h"
 
-using namespace flatspeckle;
+namespace flatspeckle::test_structure_factor {
 
 namespace {
 
@@ -108,3 +107,5 @@ TEST_CASE("independent points have S = 1, with honest errors") {
   CHECK(shells > 80);
   CHECK(std::abs(squares / shells - 1) < 4 * std::sqrt(2 / shells));
 }
+
+}  // namespace flatspeckle::test_structure_factor

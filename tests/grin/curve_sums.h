@@ -9,6 +9,7 @@
 #include "bench/oracles/harmonic_ball.h"
 #include "core/run/parallel.h"
 #include "grin/connections/connection_solver.h"
+#include "tests/statistics.h"
 
 // Sums over the curves between two points of a harmonic ball: the exact ones against K-weighted
 // estimates (conventions, C26).
@@ -51,7 +52,7 @@ Moments estimated(const Trial& trial, int estimates, std::uint64_t seed) {
   std::vector<Moments> parts(100);
   parallel_for(parts.size(), [&](std::size_t part) {
     for (int i = 0; i < estimates / 100; ++i) {
-      RandomStream random(seed, part, i);
+      RandomStream random(flatspeckle::tests::fresh_seed(seed), part, i);
       parts[part].add(connect(trial, random, parts[part].statistics));
     }
   });

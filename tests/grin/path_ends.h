@@ -100,7 +100,7 @@ void check_directions(const Sample& sample, const Towards& towards, const Vec3& 
           towards(direction_about(axis, cosine, azimuth)).density * 4 * pi /
           (rings * sectors * parts * parts);
     }
-  tests::check_chi_square(counts, probabilities);
+  flatspeckle::tests::check_chi_square(counts, probabilities);
 }
 
 /// What sampling says about a direction is what towards() says, but for the picture's edge.

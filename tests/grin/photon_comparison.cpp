@@ -128,26 +128,30 @@ PhotonSensor lens_sensor(const Camera& camera) {
   };
 }
 
-PhotonPicture photon_picture(const TwoScenes& scenes, std::uint64_t photons, std::uint64_t seed) {
+PhotonPicture photon_picture(const TwoScenes& scenes, std::uint64_t most_photons,
+                             std::uint64_t seed) {
+  const double share = flatspeckle::tests::effort().samples;
+  const auto photons = static_cast<std::uint64_t>(share * static_cast<double>(most_photons));
   const PixelGrid grid = pixels_of(scenes.scene.sensors[0]).grid;
   const TimeBins& bins = scenes.scene.bins;
   const std::size_t pixels = static_cast<std::size_t>(grid.columns) * grid.rows;
   PhotonTally tally(pixels * bins.count, photons), steady(pixels, photons);
-  walk_photons(scenes.walk, scenes.source, photons, seed, [&](const Photon& p) {
-    const auto seen = scenes.sensor(p);
-    if (!seen) return;
-    const std::size_t pixel = seen->pixel;
-    steady.add(pixel, seen->worth);
-    if (bins.count == 1) return tally.add(pixel, seen->worth);
-    if (p.optical_path < bins.first || p.optical_path > bins.last) return;
-    // shared between the bins whose centres are next to it
-    const double width = (bins.last - bins.first) / bins.count;
-    const double at =
-        std::clamp((p.optical_path - bins.first) / width - 0.5, 0.0, bins.count - 1.0);
-    const int before = std::min(static_cast<int>(at), bins.count - 2);
-    tally.add(pixel * bins.count + before, seen->worth * (before + 1 - at));
-    tally.add(pixel * bins.count + before + 1, seen->worth * (at - before));
-  });
+  walk_photons(scenes.walk, scenes.source, photons, flatspeckle::tests::fresh_seed(seed),
+               [&](const Photon& p) {
+                 const auto seen = scenes.sensor(p);
+                 if (!seen) return;
+                 const std::size_t pixel = seen->pixel;
+                 steady.add(pixel, seen->worth);
+                 if (bins.count == 1) return tally.add(pixel, seen->worth);
+                 if (p.optical_path < bins.first || p.optical_path > bins.last) return;
+                 // shared between the bins whose centres are next to it
+                 const double width = (bins.last - bins.first) / bins.count;
+                 const double at =
+                     std::clamp((p.optical_path - bins.first) / width - 0.5, 0.0, bins.count - 1.0);
+                 const int before = std::min(static_cast<int>(at), bins.count - 2);
+                 tally.add(pixel * bins.count + before, seen->worth * (before + 1 - at));
+                 tally.add(pixel * bins.count + before + 1, seen->worth * (at - before));
+               });
   PhotonPicture picture;
   for (std::size_t i = 0; i < tally.size(); ++i) {
     picture.value.push_back(scenes.power * tally.mean(i));
@@ -164,8 +168,9 @@ void check_against(const PhotonPicture& photons, const TwoScenes& scenes,
                    const RenderRequest& request, std::uint64_t samples, double precision) {
   const std::string method = request.method ? name(*request.method) : "auto";
   CAPTURE(method);
-  const RenderJob job = render_job(scenes.scene, request, 11);
-  const RunState state = run_render(job, static_cast<double>(samples));
+  const RenderJob job = render_job(scenes.scene, request, flatspeckle::tests::fresh_seed(11));
+  const RunState state =
+      run_render(job, flatspeckle::tests::effort().samples * static_cast<double>(samples));
   const RenderedPicture picture = rendered_picture(job, state.sums);
   check_all(picture.bins.value, picture.bins.error, photons.value, photons.error);
   if (scenes.scene.bins.count > 1)
@@ -182,7 +187,7 @@ void check_against(const PhotonPicture& photons, const TwoScenes& scenes,
   CAPTURE(c.b);
   CAPTURE(c.b_error);
   CHECK(c.agree());
-  CHECK(c.a_error < precision * c.a);
+  CHECK(c.a_error < flatspeckle::tests::effort().errors * precision * c.a);
 }
 
 }  // namespace flatspeckle::grin::tests

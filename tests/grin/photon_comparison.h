@@ -44,7 +44,8 @@ struct PhotonPicture {
 PhotonPicture photon_picture(const TwoScenes& scenes, std::uint64_t photons, std::uint64_t seed);
 
 /// Checks pixels, bins and totals of a method against the oracle, each within 4 combined standard
-/// errors, and that the error of the total is no more than `precision` of it.
+/// errors, and that the error of the total is no more than `precision` of it. These and photons are
+/// what is taken by night: see Effort.
 void check_against(const PhotonPicture& photons, const TwoScenes& scenes,
                    const RenderRequest& request, std::uint64_t samples, double precision);
 

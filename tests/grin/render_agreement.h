@@ -39,7 +39,7 @@ struct Mean {
 
 inline Mean mean_of(const RenderScene& scene, RenderMethod method, double samples,
                     std::uint64_t seed) {
-  const RenderJob job = render_job(scene, {.method = method}, seed);
+  const RenderJob job = render_job(scene, {.method = method}, flatspeckle::tests::fresh_seed(seed));
   const Estimate mean = pixel_mean(job, run_render(job, samples));
   const bool few = !mean.rare.empty() && mean.rare[0] > 0;  // a marked error is doubled in pictures
   return {mean.value[0].real(), (few ? 2 : 1) * mean.error[0]};

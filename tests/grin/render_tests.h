@@ -8,6 +8,7 @@
 #include <doctest/doctest.h>
 
 #include "grin/render/render_job.h"
+#include "tests/statistics.h"
 
 namespace flatspeckle::grin::tests {
 
@@ -44,7 +45,7 @@ inline RunState run_render(const RenderJob& job, double samples, int threads = 0
 
 inline Rendered rendered(const RenderScene& scene, const RenderRequest& request,
                          const StopRule& stop, std::uint64_t seed = 1) {
-  const RenderJob job = render_job(scene, request, seed);
+  const RenderJob job = render_job(scene, request, flatspeckle::tests::fresh_seed(seed));
   const RunState state = run_render(job, stop);
   return {rendered_picture(job, state.sums), *job.counts, state.cpu_s, state.sums.total_samples()};
 }

@@ -54,8 +54,10 @@ void check_lens_and_pinhole(TwoScenes scenes, std::uint64_t photons, unsigned sa
   const PhotonPicture picture = photon_picture(scenes, photons, 6);
   check_against(picture, scenes, {RenderMethod::bidirectional}, samples, precision);
   const auto mean = [&](RenderMethod method) {
-    const RenderJob job = render_job(scenes.scene, {.method = method}, 12);
-    const Estimate found = pixel_mean(job, run_render(job, samples));
+    const RenderJob job =
+        render_job(scenes.scene, {.method = method}, flatspeckle::tests::fresh_seed(12));
+    const Estimate found =
+        pixel_mean(job, run_render(job, flatspeckle::tests::effort().samples * samples));
     return std::pair(found.value[0].real(), found.error[0]);
   };
   const auto by_lens = mean(RenderMethod::light);
@@ -72,7 +74,7 @@ void check_lens_and_pinhole(TwoScenes scenes, std::uint64_t photons, unsigned sa
     CAPTURE(lens);
     CAPTURE(lens_error);
     CHECK(std::abs(value - lens) < 4 * std::hypot(error, lens_error) + 0.005 * lens);
-    CHECK(error < 1.5 * precision * lens);
+    CHECK(error < 1.5 * flatspeckle::tests::effort().errors * precision * lens);
   }
 }
 

@@ -12,10 +12,9 @@
 
 // Estimators against analog photons, on detectors that photons hit.
 
-using namespace flatspeckle;
-using namespace flatspeckle::grin;
-using namespace flatspeckle::grin::tests;
-using namespace flatspeckle::oracles;
+namespace flatspeckle::grin::tests::test_against_photons {
+
+using namespace oracles;
 
 namespace {
 
@@ -266,3 +265,5 @@ TEST_CASE("a Luneburg ball that scatters, seen from outside by a lens and a pinh
       body_from_outside(Luneburg({}), walk, side_beam, beam_source({0, 0, -1.9}, {0, 0, 1}, 0.8)),
       600000, 50000);
 }
+
+}  // namespace flatspeckle::grin::tests::test_against_photons

@@ -11,7 +11,7 @@
 
 // Light paths without joins, side by side, and powers on disks within each other.
 
-namespace flatspeckle::grin::tests {
+namespace flatspeckle::grin::tests::test_analog_light {
 
 namespace {
 
@@ -266,4 +266,4 @@ TEST_CASE("analog light is refused where it cannot be") {
   CHECK_THROWS_AS(check(scene, {RenderMethod::analog}), InputError);
 }
 
-}  // namespace flatspeckle::grin::tests
+}  // namespace flatspeckle::grin::tests::test_analog_light

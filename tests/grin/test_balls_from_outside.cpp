@@ -5,10 +5,9 @@
 
 #include "tests/grin/seen_from_outside.h"
 
-using namespace flatspeckle;
-using namespace flatspeckle::grin;
-using namespace flatspeckle::grin::tests;
-using namespace flatspeckle::oracles;
+namespace flatspeckle::grin::tests::test_balls_from_outside {
+
+using namespace oracles;
 
 namespace {
 
@@ -31,7 +30,8 @@ TwoScenes three_balls(const AnyIndexField& field, const WalkScene& walk, const L
 
 }  // namespace
 
-TEST_CASE("a ball within a ball and one beside, seen from outside by a lens and a pinhole") {
+TEST_CASE(
+    "nightly: a ball within a ball and one beside, seen from outside by a lens and a pinhole") {
   check_lens_and_pinhole(
       three_balls(Homogeneous{0.4}, ball_walk(1.4), side_point, point_source({0, 0, -1.5})),
       6000000, 400000, 0.06);
@@ -40,15 +40,17 @@ TEST_CASE("a ball within a ball and one beside, seen from outside by a lens and 
                          3000000, 200000, 0.06);
 }
 
-TEST_CASE("a ball of the same index as the one around it, seen from outside") {
+TEST_CASE("nightly: a ball of the same index as the one around it, seen from outside") {
   TwoScenes scenes =
       body_from_outside(Homogeneous{0.4}, ball_walk(1.4), side_point, point_source({0, 0, -1.5}));
   add_ball(scenes, {0.2, 0.1, -0.3}, 0.5, 1.4, 3, 1);
   check_lens_and_pinhole(scenes, 6000000, 400000);
 }
 
-TEST_CASE("a glass ball in a Luneburg ball, seen from outside by a lens and a pinhole") {
+TEST_CASE("nightly: a glass ball in a Luneburg ball, seen from outside by a lens and a pinhole") {
   const WalkScene walk = luneburg_walk();
   check_lens_and_pinhole(three_balls(Luneburg({}), walk, side_point, point_source({0, 0, -1.5})),
                          1500000, 100000, 0.1);
 }
+
+}  // namespace flatspeckle::grin::tests::test_balls_from_outside

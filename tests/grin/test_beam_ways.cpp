@@ -13,7 +13,7 @@
 #include "tests/grin/render_tests.h"
 #include "tests/grin/space_stages.h"
 
-namespace flatspeckle::grin::tests {
+namespace flatspeckle::grin::tests::test_beam_ways {
 
 namespace {
 
@@ -306,4 +306,4 @@ TEST_CASE("a pinhole sees a beam that shines into it, thinned by what absorbs on
   check(Homogeneous{0.2}, ball, 1.2, gaussian, there);
 }
 
-}  // namespace flatspeckle::grin::tests
+}  // namespace flatspeckle::grin::tests::test_beam_ways

@@ -14,7 +14,7 @@
 #include "grin/fields/parabolic.h"
 #include "tests/grin/connection_lists.h"
 
-namespace flatspeckle::grin {
+namespace flatspeckle::grin::test_connection {
 
 using bench::random_direction;
 using bench::random_point;
@@ -231,4 +231,4 @@ TEST_CASE("statistics add up, in any order") {
   CHECK(forward.success_rate() > 0.5);
 }
 
-}  // namespace flatspeckle::grin
+}  // namespace flatspeckle::grin::test_connection

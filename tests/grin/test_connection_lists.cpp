@@ -8,7 +8,7 @@
 #include "bench/scenes/random_fields.h"
 #include "tests/grin/connection_lists.h"
 
-namespace flatspeckle::grin {
+namespace flatspeckle::grin::test_connection_lists {
 
 using bench::random_direction;
 using bench::random_point;
@@ -88,4 +88,4 @@ TEST_CASE("none is missing: among lenses the orientations of all curves add up t
   CHECK(most >= 5);
 }
 
-}  // namespace flatspeckle::grin
+}  // namespace flatspeckle::grin::test_connection_lists

@@ -1,7 +1,7 @@
 #include "bench/scenes/random_fields.h"
 #include "tests/grin/curve_sums.h"
 
-namespace flatspeckle::grin::tests {
+namespace flatspeckle::grin::tests::test_connection_sums {
 
 TEST_CASE("in Luneburg's ball f K has the mean f of the one curve") {
   const Inside<bench::Ball> ball{{1}};
@@ -30,4 +30,8 @@ TEST_CASE("roulette leaves the mean alone") {
   CHECK(moments.statistics.roulette_ends > estimates / 20);
 }
 
-}  // namespace flatspeckle::grin::tests
+TEST_CASE("nightly: f K has the mean of the sum of f over four curves, to 0.2 %") {
+  check_four_curves(600'000, 0.002);
+}
+
+}  // namespace flatspeckle::grin::tests::test_connection_sums

@@ -10,7 +10,7 @@
 
 // Light deep behind media: importance in depth changes the variance alone.
 
-namespace flatspeckle::grin::tests {
+namespace flatspeckle::grin::tests::test_deep_renders {
 
 namespace {
 
@@ -167,4 +167,4 @@ TEST_CASE("a deep slab takes a pilot to light tracing") {
   CHECK(render_job(scene, {}, 1).plan.starts_with("light (chosen by a pilot)"));
 }
 
-}  // namespace flatspeckle::grin::tests
+}  // namespace flatspeckle::grin::tests::test_deep_renders

@@ -8,7 +8,7 @@
 #include "grin/media/even_turns.h"
 #include "tests/statistics.h"
 
-namespace flatspeckle::grin {
+namespace flatspeckle::grin::test_even_turns {
 
 using std::numbers::pi;
 
@@ -48,10 +48,11 @@ TEST_CASE("each of even turns is one of the phase function on average, the azimu
     CHECK(longest == doctest::Approx(1).epsilon(1e-12));
     std::vector<double> chances;
     for (int i = 0; i < bins; ++i)
-      chances.push_back(tests::integral([&](double c) { return 2 * pi * phase.density(c); },
-                                        2.0 * i / bins - 1, 2.0 * (i + 1) / bins - 1));
-    tests::check_chi_square(cosines, chances);
-    tests::check_chi_square(azimuths, std::vector<double>(bins, 1.0 / bins));
+      chances.push_back(
+          flatspeckle::tests::integral([&](double c) { return 2 * pi * phase.density(c); },
+                                       2.0 * i / bins - 1, 2.0 * (i + 1) / bins - 1));
+    flatspeckle::tests::check_chi_square(cosines, chances);
+    flatspeckle::tests::check_chi_square(azimuths, std::vector<double>(bins, 1.0 / bins));
   }
 }
 
@@ -92,4 +93,4 @@ TEST_CASE("even roulette keeps each by its chance, and as many as their sum") {
           4 * std::sqrt(chances[k] * (1 - chances[k]) / calls));
 }
 
-}  // namespace flatspeckle::grin
+}  // namespace flatspeckle::grin::test_even_turns

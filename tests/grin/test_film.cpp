@@ -7,7 +7,7 @@
 #include "core/numbers/random.h"
 #include "grin/paths/transport_counts.h"
 
-namespace flatspeckle::grin {
+namespace flatspeckle::grin::test_film {
 
 namespace {
 
@@ -109,4 +109,4 @@ TEST_CASE("film: what is not finite is counted and left out, of light and of its
   CHECK(sums[bins.first_by_field() + 1] == 6.0);
 }
 
-}  // namespace flatspeckle::grin
+}  // namespace flatspeckle::grin::test_film

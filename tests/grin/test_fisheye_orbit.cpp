@@ -10,8 +10,8 @@
 #include "grin/curved/ray_field.h"
 #include "grin/rays/ray_step.h"
 
-using namespace flatspeckle;
-using namespace flatspeckle::grin;
+namespace flatspeckle::grin::test_fisheye_orbit {
+
 using bench::random_direction;
 using bench::random_point;
 
@@ -177,3 +177,5 @@ TEST_CASE("all ways between two points of the fisheye are found as often as thei
     CHECK(std::abs(sum - expected) < 4 * std::sqrt((square - sum * sum) / draws) + 1e-3 * expected);
   }
 }
+
+}  // namespace flatspeckle::grin::test_fisheye_orbit

@@ -13,7 +13,7 @@
 #include "tests/grin/space_stages.h"
 #include "tests/statistics.h"
 
-namespace flatspeckle::grin {
+namespace flatspeckle::grin::test_flight {
 
 namespace {
 
@@ -401,4 +401,4 @@ TEST_CASE("a frozen wave is the wave at that phase; other fields have none") {
   CHECK_THROWS_AS(make_space(Fisheye({}), stage, {0.1, 8})->frozen(1), InputError);
 }
 
-}  // namespace flatspeckle::grin
+}  // namespace flatspeckle::grin::test_flight

@@ -4,7 +4,7 @@
 #include "grin/media/free_flight.h"
 #include "tests/statistics.h"
 
-namespace flatspeckle::grin {
+namespace flatspeckle::grin::test_free_flight {
 
 namespace {
 
@@ -20,8 +20,8 @@ void check_flight(Sample sample, Density density, double longest, std::uint64_t 
     if (distance >= 0 && distance < longest) ++counts[static_cast<int>(distance / longest * bins)];
   }
   for (int bin = 0; bin < bins; ++bin)
-    probabilities[bin] = tests::integral(density, edge(bin), edge(bin + 1));
-  tests::check_chi_square(counts, probabilities);
+    probabilities[bin] = flatspeckle::tests::integral(density, edge(bin), edge(bin + 1));
+  flatspeckle::tests::check_chi_square(counts, probabilities);
 }
 
 }  // namespace
@@ -35,7 +35,7 @@ TEST_CASE("a bounded flight is sampled by its density, which integrates to 1, fr
     const auto density = [&](double s) { return flight.density(s); };
     // beyond 20 mean free paths nothing comes; the bins would be empty
     const double seen = depth > 20 ? longest * 20 / depth : longest;
-    CHECK(tests::integral(density, 0, seen) == doctest::Approx(1).epsilon(1e-8));
+    CHECK(flatspeckle::tests::integral(density, 0, seen) == doctest::Approx(1).epsilon(1e-8));
     check_flight([&](double u) { return flight.sample(u); }, density, seen, ++seed);
   }
 }
@@ -100,4 +100,4 @@ TEST_CASE("pulled flights keep every mean, and are as worth along the way as the
   }
 }
 
-}  // namespace flatspeckle::grin
+}  // namespace flatspeckle::grin::test_free_flight

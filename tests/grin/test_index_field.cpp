@@ -7,7 +7,7 @@
 #include "grin/fields/any_index_field.h"
 #include "tests/grin/derivatives.h"
 
-namespace flatspeckle::grin {
+namespace flatspeckle::grin::test_index_field {
 
 namespace {
 
@@ -185,4 +185,4 @@ TEST_CASE("A field chosen at run time") {
                         StandingWave(0, 0.02, 1, 7, 1).excess(x)));
 }
 
-}  // namespace flatspeckle::grin
+}  // namespace flatspeckle::grin::test_index_field

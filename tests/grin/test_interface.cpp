@@ -4,7 +4,7 @@
 
 #include "grin/surfaces/interface.h"
 
-namespace flatspeckle::grin {
+namespace flatspeckle::grin::test_interface {
 
 namespace {
 
@@ -58,4 +58,4 @@ TEST_CASE("A jump of 1e-9 keeps its digits, one of 0 does nothing") {
   CHECK(*nothing.refracted() == ray_vector(1.3, 0.4));
 }
 
-}  // namespace flatspeckle::grin
+}  // namespace flatspeckle::grin::test_interface

@@ -8,7 +8,7 @@
 #include "grin/connections/connection_solver.h"
 #include "tests/grin/space_stages.h"
 
-namespace flatspeckle::grin {
+namespace flatspeckle::grin::test_join {
 
 namespace {
 
@@ -268,4 +268,4 @@ TEST_CASE("the share of curves that start along the chord does not change their 
   CHECK(std::abs(spread.mean() - exact) < 4 * spread.error());
 }
 
-}  // namespace flatspeckle::grin
+}  // namespace flatspeckle::grin::test_join

@@ -14,8 +14,9 @@
 #include "grin/surfaces/straight_way.h"
 #include "tests/grin/furnace.h"
 #include "tests/grin/space_stages.h"
+#include "tests/statistics.h"
 
-namespace flatspeckle::grin::tests {
+namespace flatspeckle::grin::tests::test_joins_through_body {
 
 namespace {
 
@@ -117,8 +118,7 @@ double along_ray(const Surface& body, const ScatteringMedium& medium, const Vec3
   return sum;
 }
 
-double single_scattering(const Surface& body, const ScatteringMedium& medium) {
-  constexpr int nodes = 200;
+double single_scattering(const Surface& body, const ScatteringMedium& medium, int nodes = 200) {
   const double half = std::tan(field_of_view / 2);
   double sum = 0;
   for (int i = 0; i < nodes; ++i)
@@ -140,22 +140,22 @@ TEST_CASE("a pinhole, a point light and a body that scatters once: quadrature") 
   const ScatteringMedium medium{.mu_s = 0.5, .mu_a = 0.5};
   for (const Surface& body : {Surface(Sphere{}), block}) {
     const double expected = single_scattering(body, medium);
+    constexpr double accuracy = 5e-4;  // of the quadrature
+    CHECK(std::abs(single_scattering(body, medium, 141) - expected) < accuracy * expected);
     for (const RenderMethod method : unbiased_methods) {
       const Rendered result =
           rendered(seen_from_outside(body, medium), {.method = method, .max_scatterings = 1}, 2e5);
       CAPTURE(name(method));
-      CHECK(std::abs(result.value() - expected) < 4 * result.error() + 5e-4 * expected);
+      CHECK(std::abs(result.value() - expected) < 4 * result.error() + accuracy * expected);
       CHECK(result.error() < 0.02 * expected);
     }
   }
-  CHECK(single_scattering(Sphere{}, medium) == doctest::Approx(2.894e-4).epsilon(0.001));
 }
 
 TEST_CASE("a pinhole sees all of a body that scatters light of a point, as a lens does") {
   const ScatteringMedium medium{.mu_s = 0.5, .mu_a = 0.5};
   RenderScene scene = seen_from_outside(Sphere{}, medium);
   const Rendered pinhole = rendered(scene, RenderMethod::bidirectional, 4e5);
-  CHECK(pinhole.value() == doctest::Approx(3.74e-4).epsilon(0.03));
   CHECK(pinhole.error() < 0.005 * pinhole.value());
   scene.sensors = {
       Camera{Vec3(2, 0, 0), -Vec3::UnitX(), Vec3::UnitY(), field_of_view, {1, 1}, 0.1, 2}};
@@ -270,7 +270,7 @@ TEST_CASE("a flight that a body refracts and the join of its ends are one way") 
     with_space(named, [&](const auto& space) {
       CAPTURE(named.name);
       RandomStream random(3, 97, 0);
-      constexpr int trials = 3000;
+      constexpr int trials = 100000;  // some ways are found by one of thousands
       int flights = 0, missed = 0;
       for (int i = 0; i < 1000; ++i) {
         const PathPoint p = random_point_of(named.stage, random);
@@ -299,7 +299,7 @@ TEST_CASE("a flight that a body refracts and the join of its ends are one way") 
               doctest::Approx(n_p * n_p * back->spreading).epsilon(1e-4));
       }
       CHECK(flights > 25);
-      CHECK(missed < flights / 20);  // rare ways, of many trials
+      CHECK(missed == 0);
     });
 }
 
@@ -358,14 +358,13 @@ struct Mean {
   }
 };
 
-/// Sums over ways that focus light, or that few trials find, vary without bound: of those both
-/// sides count a share, by |J| and by the chance to be found again.
+/// Sums over ways that focus light vary without bound, and of ways that graze a surface or are
+/// reflected often few are found: both sides count a share of those, by what the way itself is.
 template <class Way>
-double share(const Space& space, const PathPoint& p, const PathPoint& q, const Way& way,
-             RandomStream& random) {
-  constexpr int trials = 20;
-  if (!same_way(space, p, q, way, trials, random)) return 0;
-  return std::min(1.0, way.spreading * std::pow(space.index(q) / way.optical_path, 2));
+double share(const Space& space, const PathPoint& q, const Way& way) {
+  if (way.passages.count > 2) return 0;
+  return way.fresnel *
+         std::min(1.0, way.spreading * std::pow(space.index(q) / way.optical_path, 2));
 }
 
 /// Every other one near the bodies.
@@ -388,12 +387,13 @@ TEST_CASE("flights and joins agree on where light collides in and around a refra
       RandomStream random(6, 97, 0);
       ConnectionStatistics statistics;
       std::vector<Mean> flown(named.stage.parts()), joined(flown);  // of light that was refracted
-      for (int i = 0; i < 15000; ++i) {
+      const flatspeckle::tests::Effort effort = flatspeckle::tests::effort();
+      for (int i = 0; i < 100000 * effort.samples; ++i) {
         const Flight flight = space->fly(p, bench::random_direction(random), random);
         const bool counts = flight.end == Flight::End::collision && flight.is_joinable &&
                             flight.passages.count > 0 &&
                             flight.point.x.cwiseAbs().maxCoeff() < reach;
-        const double seen = counts ? share(*space, p, flight.point, flight, random) : 0;
+        const double seen = counts ? share(*space, flight.point, flight) : 0;
         for (Part part = around; part < named.stage.parts(); ++part)
           flown[part].add(flight.point.part == part ? seen : 0);
         const PathPoint q = random_point_of(named.stage, random, i % 2 ? near_bodies : reach);
@@ -401,7 +401,7 @@ TEST_CASE("flights and joins agree on where light collides in and around a refra
         const ScatteringMedium& medium = named.stage.medium_in(q.part);
         const double value = join ? medium.mu_t() * join->transmittance * join->multiplicity /
                                         (4 * pi * join->spreading * density_of_points(q.x)) *
-                                        share(*space, p, q, *join, random)
+                                        share(*space, q, *join)
                                   : 0;
         for (Part part = around; part < named.stage.parts(); ++part)
           joined[part].add(q.part == part ? value : 0);
@@ -413,9 +413,9 @@ TEST_CASE("flights and joins agree on where light collides in and around a refra
         const double error = std::hypot(flown[k].error(), joined[k].error());
         CAPTURE(error);
         CHECK(std::abs(flown[k].mean() - joined[k].mean()) <= 4 * error);
-        CHECK(error <= 0.3 * flown[k].mean() + 1e-3);
+        CHECK(error <= 0.06 * effort.errors * flown[k].mean() + 1e-3);
       }
     }
 }
 
-}  // namespace flatspeckle::grin::tests
+}  // namespace flatspeckle::grin::tests::test_joins_through_body

@@ -7,7 +7,7 @@
 #include "grin/geometry/lens.h"
 #include "grin/surfaces/straight_way.h"
 
-using namespace flatspeckle::grin;
+namespace flatspeckle::grin::test_lens {
 
 namespace {
 
@@ -117,3 +117,5 @@ TEST_CASE("what is no lens") {
   CHECK(Lens::make({0, 0, 0}, 1, 1, -1, 2));          // a ball
   CHECK_FALSE(Lens::make({0, 0, 0}, 1, -1, 1, 0));
 }
+
+}  // namespace flatspeckle::grin::test_lens

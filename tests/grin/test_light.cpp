@@ -5,7 +5,7 @@
 #include "grin/lights/light.h"
 #include "tests/grin/path_ends.h"
 
-namespace flatspeckle::grin {
+namespace flatspeckle::grin::test_light {
 
 namespace {
 
@@ -67,7 +67,7 @@ void check_positions(const Lights& lights, const Part& part, const std::vector<d
   RandomStream random(seed, 82, 0);
   for (int i = 0; i < 100000; ++i)
     ++counts[part(lights.sample_position(UniformSpace{}, random).point.x)];
-  tests::check_chi_square(counts, shares);
+  flatspeckle::tests::check_chi_square(counts, shares);
 }
 
 int of(double share, int parts) {
@@ -330,4 +330,4 @@ TEST_CASE("lights that cannot be are refused by name") {
   refused(test_box, BeamLight{Vec3(0, 0, 1), Vec3(0, 0, 1), 1e-200}, "light = 1: has a size");
 }
 
-}  // namespace flatspeckle::grin
+}  // namespace flatspeckle::grin::test_light

@@ -8,7 +8,7 @@
 #include "grin/render/map_datasets.h"
 #include "tests/grin/furnace.h"
 
-namespace flatspeckle::grin::tests {
+namespace flatspeckle::grin::tests::test_light_map {
 
 namespace {
 
@@ -189,4 +189,4 @@ TEST_CASE("fluence in the white furnace is that of the index, in every field") {
   }
 }
 
-}  // namespace flatspeckle::grin::tests
+}  // namespace flatspeckle::grin::tests::test_light_map

@@ -5,12 +5,12 @@
 
 #include "bench/scenes/random_fields.h"
 #include "grin/connections/connection_trial.h"
-#include "grin/curved/ray_field.h"
 #include "grin/curved/luneburg_orbit.h"
+#include "grin/curved/ray_field.h"
 #include "tests/grin/ray_tests.h"
 
-using namespace flatspeckle;
-using namespace flatspeckle::grin;
+namespace flatspeckle::grin::test_luneburg_orbit {
+
 using bench::random_direction;
 using bench::random_point;
 
@@ -121,3 +121,5 @@ TEST_CASE("points on one another have no way between them") {
   CHECK(found.outcome == TrialOutcome::degenerate);
   CHECK(!found.curve);
 }
+
+}  // namespace flatspeckle::grin::test_luneburg_orbit

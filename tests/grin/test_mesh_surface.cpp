@@ -13,7 +13,7 @@
 #include "grin/surfaces/mesh_distance.h"
 #include "grin/surfaces/straight_way.h"
 
-namespace flatspeckle::grin::tests {
+namespace flatspeckle::grin::tests::test_mesh_surface {
 
 using namespace bench;
 
@@ -255,4 +255,4 @@ TEST_CASE("spacings that do not suit a mesh are refused") {
   CHECK_THROWS_WITH_AS(smooth(far, 0.1), doctest::Contains("too fine"), InputError);
 }
 
-}  // namespace flatspeckle::grin::tests
+}  // namespace flatspeckle::grin::tests::test_mesh_surface

@@ -8,7 +8,7 @@
 #include "grin/media/mie_phase.h"
 #include "tests/statistics.h"
 
-namespace flatspeckle::grin {
+namespace flatspeckle::grin::test_mie {
 
 namespace {
 
@@ -173,9 +173,9 @@ TEST_CASE("turns are drawn from the phase function of spheres") {
       cosine += (1 - turn) / draws;
     }
     for (double& probability : probabilities) probability /= whole;
-    tests::check_chi_square(counts, probabilities);
+    flatspeckle::tests::check_chi_square(counts, probabilities);
     CHECK(std::abs(cosine - phase.mean_cosine()) < 4 * 0.7 / std::sqrt(draws));
   }
 }
 
-}  // namespace flatspeckle::grin
+}  // namespace flatspeckle::grin::test_mie

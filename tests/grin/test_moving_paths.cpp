@@ -11,7 +11,7 @@
 // Derivatives of powers by numbers of the index field: against closed forms, and against
 // differences of powers that the same random numbers make.
 
-namespace flatspeckle::grin::tests {
+namespace flatspeckle::grin::tests::test_moving_paths {
 
 namespace {
 
@@ -152,10 +152,18 @@ TEST_CASE("derivatives by the index are those of differences, whatever shines") 
   };
   RenderValues fog = guided_values({0.1, 6}, {2}, 0.05, 0.8);
   fog.lights = {};
-  SUBCASE("a face") { fog.lights.face_light = {0, 0, 0, 1, 1}; }
-  SUBCASE("the environment") { fog.lights.environment = 1; }
-  SUBCASE("a fibre") { fog.lights.fibre_light = {0, 0, 0, 0, 0, 1, 0.5, 0.6, 1}; }
-  SUBCASE("a Gaussian fibre") { fog.lights.gaussian_fibre = {0, 0, 0, 0, 0, 1, 0.5, 0.3, 1}; }
+  SUBCASE("a face") {
+    fog.lights.face_light = {0, 0, 0, 1, 1};
+  }
+  SUBCASE("the environment") {
+    fog.lights.environment = 1;
+  }
+  SUBCASE("a fibre") {
+    fog.lights.fibre_light = {0, 0, 0, 0, 0, 1, 0.5, 0.6, 1};
+  }
+  SUBCASE("a Gaussian fibre") {
+    fog.lights.gaussian_fibre = {0, 0, 0, 0, 0, 1, 0.5, 0.3, 1};
+  }
   check_differences(fog, "index", index, 0, pi * 2 * 2);
 }
 
@@ -201,4 +209,4 @@ TEST_CASE("the kernel of edges has no second moment") {
   CHECK(moment(4) == doctest::Approx(-1.0 / 21));
 }
 
-}  // namespace flatspeckle::grin::tests
+}  // namespace flatspeckle::grin::tests::test_moving_paths

@@ -7,8 +7,8 @@
 #include "grin/connections/connection_solver.h"
 #include "grin/curved/parabolic_rays.h"
 
-using namespace flatspeckle;
-using namespace flatspeckle::grin;
+namespace flatspeckle::grin::test_parabolic_ways {
+
 using bench::random_direction;
 using bench::random_point;
 
@@ -124,3 +124,5 @@ TEST_CASE(
   }
   CHECK(twice > 2);
 }
+
+}  // namespace flatspeckle::grin::test_parabolic_ways

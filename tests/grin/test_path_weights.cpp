@@ -10,7 +10,7 @@
 #include "grin/paths/path_join.h"
 #include "grin/space/space.h"
 
-namespace flatspeckle::grin::tests {
+namespace flatspeckle::grin::tests::test_path_weights {
 
 namespace {
 
@@ -406,4 +406,4 @@ TEST_CASE("weights sum to 1 on paths from beams that sensors' paths are joined t
   }
 }
 
-}  // namespace flatspeckle::grin::tests
+}  // namespace flatspeckle::grin::tests::test_path_weights

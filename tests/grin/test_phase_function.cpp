@@ -7,7 +7,7 @@
 #include "grin/media/phase_function.h"
 #include "tests/statistics.h"
 
-namespace flatspeckle::grin {
+namespace flatspeckle::grin::test_phase_function {
 
 namespace {
 
@@ -31,7 +31,7 @@ std::vector<double> probabilities(const Phase& phase, int dimension,
                                   const std::vector<double>& edges) {
   std::vector<double> result;
   for (std::size_t i = 0; i + 1 < edges.size(); ++i) {
-    result.push_back(tests::integral(
+    result.push_back(flatspeckle::tests::integral(
         [&](double angle) {
           return phase.density(angle) * (dimension == 2 ? 1 : 2 * pi * std::sin(angle));
         },
@@ -59,8 +59,8 @@ std::vector<double> sampled_counts(const Phase& phase, const std::vector<double>
 template <typename Phase>
 void check_sampler(const Phase& phase, int dimension, double width, std::uint64_t seed) {
   const auto edges = bin_edges(dimension, width);
-  tests::check_chi_square(sampled_counts(phase, edges, seed),
-                          probabilities(phase, dimension, edges));
+  flatspeckle::tests::check_chi_square(sampled_counts(phase, edges, seed),
+                                       probabilities(phase, dimension, edges));
 }
 
 /// <cos^power> over all directions.
@@ -69,7 +69,7 @@ double moment(const Phase& phase, int dimension, int power, double width) {
   double sum = 0;
   const auto edges = bin_edges(dimension, width);
   for (std::size_t i = 0; i + 1 < edges.size(); ++i) {
-    sum += tests::integral(
+    sum += flatspeckle::tests::integral(
         [&](double angle) {
           return phase.density(angle) * std::pow(std::cos(angle), power) *
                  (dimension == 2 ? 1 : 2 * pi * std::sin(angle));
@@ -147,7 +147,8 @@ TEST_CASE("Henyey-Greenstein in flatland is C22 and its sampler inverts the dist
     }
     for (const double u : {0.01, 0.3, 0.77, 0.999}) {
       const auto density = [&](double angle) { return phase.density(angle); };
-      CHECK(tests::integral(density, -pi, phase.sample(u)) == doctest::Approx(u).epsilon(1e-8));
+      CHECK(flatspeckle::tests::integral(density, -pi, phase.sample(u)) ==
+            doctest::Approx(u).epsilon(1e-8));
     }
   }
 }
@@ -200,4 +201,4 @@ TEST_CASE("a tabulated phase function never sends light where its density is 0")
   for (int i = 0; i < 10000; ++i) CHECK(phase.density(phase.sample(random.uniform())) > 0);
 }
 
-}  // namespace flatspeckle::grin
+}  // namespace flatspeckle::grin::test_phase_function

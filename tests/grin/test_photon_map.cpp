@@ -9,9 +9,7 @@
 #include "grin/estimators/photon_map.h"
 #include "tests/grin/render_tests.h"
 
-using namespace flatspeckle;
-using namespace flatspeckle::grin;
-using namespace flatspeckle::grin::tests;
+namespace flatspeckle::grin::tests::test_photon_map {
 
 namespace {
 
@@ -289,3 +287,5 @@ TEST_CASE("the photon map agrees with light tracing in focused sound") {
 TEST_CASE("the photon map converges to bidirectional tracing within a mesh") {
   check_shrinking(beam_in_mesh(), RenderMethod::bidirectional, 100000, 60000);
 }
+
+}  // namespace flatspeckle::grin::tests::test_photon_map

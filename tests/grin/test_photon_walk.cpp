@@ -9,8 +9,9 @@
 
 // The oracle itself, and its references, against what is known for certain.
 
-using namespace flatspeckle::grin;
-using namespace flatspeckle::oracles;
+namespace flatspeckle::grin::test_photon_walk {
+
+using namespace oracles;
 
 namespace {
 
@@ -110,3 +111,5 @@ TEST_CASE("analog photons are reciprocal where the index varies: n^2 weighs the 
   CHECK(std::abs(top * down.mean(0) - bottom * up.mean(0)) < 4 * error);
   CHECK(std::abs(down.mean(0) - up.mean(0)) > 10 * error);
 }
+
+}  // namespace flatspeckle::grin::test_photon_walk

@@ -6,7 +6,7 @@
 #include "core/numbers/mean_errors.h"
 #include "grin/render/picture_errors.h"
 
-namespace flatspeckle::grin::tests {
+namespace flatspeckle::grin::tests::test_picture_errors {
 
 namespace {
 
@@ -98,4 +98,4 @@ TEST_CASE("where many paths have been errors stay as they are") {
   CHECK(many.unmarked < 0.98);
 }
 
-}  // namespace flatspeckle::grin::tests
+}  // namespace flatspeckle::grin::tests::test_picture_errors

@@ -8,7 +8,7 @@
 #include "grin/space/space.h"
 #include "tests/grin/example_sensors.h"
 
-namespace flatspeckle::grin {
+namespace flatspeckle::grin::test_pictures {
 
 namespace {
 
@@ -350,4 +350,4 @@ TEST_CASE(
   seen_from_sensor(disk, 3).check_like(thrown_by_light(disk, 4));
 }
 
-}  // namespace flatspeckle::grin
+}  // namespace flatspeckle::grin::test_pictures

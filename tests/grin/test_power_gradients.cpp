@@ -10,7 +10,7 @@
 // Derivatives of powers by mu_s, mu_a and g: against closed forms, and against differences of
 // powers that the same random numbers make.
 
-namespace flatspeckle::grin::tests {
+namespace flatspeckle::grin::tests::test_power_gradients {
 
 namespace {
 
@@ -141,4 +141,4 @@ TEST_CASE("derivatives are of analog light") {
   CHECK_THROWS_AS(check(guide({0.4, 0.05, 0.7}), {RenderMethod::light}), InputError);
 }
 
-}  // namespace flatspeckle::grin::tests
+}  // namespace flatspeckle::grin::tests::test_power_gradients

@@ -9,10 +9,9 @@
 
 // Light by optical path.
 
-using namespace flatspeckle;
-using namespace flatspeckle::grin;
-using namespace flatspeckle::grin::tests;
-using namespace flatspeckle::oracles;
+namespace flatspeckle::grin::tests::test_pulses {
+
+using namespace oracles;
 
 namespace {
 
@@ -168,3 +167,5 @@ TEST_CASE("late light of a slab decays as transport and, nearly, as diffusion ha
   CHECK(std::abs(value - exact) < 4 * error);
   CHECK(std::abs(diffusion - exact) < 0.05 * exact);
 }
+
+}  // namespace flatspeckle::grin::tests::test_pulses

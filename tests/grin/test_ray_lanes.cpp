@@ -13,7 +13,7 @@
 
 // Rays side by side in lanes, against the same rays one by one.
 
-namespace flatspeckle::grin {
+namespace flatspeckle::grin::test_ray_lanes {
 
 namespace {
 
@@ -312,4 +312,4 @@ TEST_CASE("transducers meet light at all phases of their frequencies") {
         doctest::Approx(0.1 + std::cos(0.9)).epsilon(1e-12));
 }
 
-}  // namespace flatspeckle::grin
+}  // namespace flatspeckle::grin::test_ray_lanes

@@ -12,7 +12,7 @@
 #include "tests/grin/ray_tests.h"
 #include "tests/statistics.h"
 
-namespace flatspeckle::grin {
+namespace flatspeckle::grin::test_ray_step {
 
 using tests::go;
 using tests::pi;
@@ -192,4 +192,4 @@ TEST_CASE_TEMPLATE("Layers: n sin of the angle to their normal stays", I, INTEGR
   CHECK((ray_invariants(ramp, ray).transverse - first).norm() < 1e-14);
 }
 
-}  // namespace flatspeckle::grin
+}  // namespace flatspeckle::grin::test_ray_step

@@ -4,7 +4,7 @@
 #include "core/run/stopwatch.h"
 #include "tests/grin/furnace.h"
 
-namespace flatspeckle::grin::tests {
+namespace flatspeckle::grin::tests::test_render {
 
 namespace {
 
@@ -175,4 +175,4 @@ TEST_CASE("bad requests are refused") {
   CHECK_THROWS_AS(render_job(silent, {}, 1), InputError);
 }
 
-}  // namespace flatspeckle::grin::tests
+}  // namespace flatspeckle::grin::tests::test_render

@@ -2,7 +2,7 @@
 
 #include "tests/grin/render_agreement.h"
 
-namespace flatspeckle::grin::tests {
+namespace flatspeckle::grin::tests::test_render_agreement {
 
 namespace {
 
@@ -57,4 +57,14 @@ TEST_CASE("light tracing and bidirectional agree under a beam") {
   }
 }
 
-}  // namespace flatspeckle::grin::tests
+// Path tracing joins to where a beam scatters by 1/r^2 alone: rare paths carry much, so that it
+// needs many.
+TEST_CASE("nightly: path tracing and bidirectional agree under a beam") {
+  for (const NamedRender& named : beam_scenes()) {
+    CAPTURE(named.name);
+    check_agreement(named.scene, bidirectional_mean(named.scene), RenderMethod::path,
+                    20 * agreement_samples);
+  }
+}
+
+}  // namespace flatspeckle::grin::tests::test_render_agreement

@@ -19,7 +19,7 @@
 #include "tests/grin/space_stages.h"
 #include "tests/statistics.h"
 
-namespace flatspeckle::grin {
+namespace flatspeckle::grin::test_scattering_medium {
 
 namespace {
 
@@ -253,4 +253,4 @@ TEST_CASE("stages refuse what cannot be") {
   refuses(bad, "inside of the stage");
 }
 
-}  // namespace flatspeckle::grin
+}  // namespace flatspeckle::grin::test_scattering_medium

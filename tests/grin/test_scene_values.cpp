@@ -11,7 +11,7 @@
 // Scenes made of plain structs, without a command line: what they come to, and what is refused by
 // the names of keys.
 
-namespace flatspeckle::grin {
+namespace flatspeckle::grin::test_scene_values {
 
 namespace {
 
@@ -441,4 +441,4 @@ TEST_CASE("methods of pictures") {
   refused({.max_scatterings = -1}, "max_scatterings = -1: must be from 0");
 }
 
-}  // namespace flatspeckle::grin
+}  // namespace flatspeckle::grin::test_scene_values

@@ -7,7 +7,7 @@
 #include "grin/connections/geometric_spreading.h"
 #include "tests/grin/example_sensors.h"
 
-namespace flatspeckle::grin {
+namespace flatspeckle::grin::test_sensor {
 
 namespace {
 
@@ -245,4 +245,4 @@ TEST_CASE("sensors that cannot be are refused by the keys of the scene") {
           "needs a sphere or a box");
 }
 
-}  // namespace flatspeckle::grin
+}  // namespace flatspeckle::grin::test_sensor

@@ -9,7 +9,7 @@
 
 // Reflectance and transmittance of a slab in one run, and media that are described in two ways.
 
-namespace flatspeckle::grin::tests {
+namespace flatspeckle::grin::tests::test_several_sensors {
 
 namespace {
 
@@ -115,4 +115,4 @@ TEST_CASE("a slab of two equal terms, or of a table, is that of henyey_greenstei
   check_same({HgPhase{0.7}}, {table});
 }
 
-}  // namespace flatspeckle::grin::tests
+}  // namespace flatspeckle::grin::tests::test_several_sensors

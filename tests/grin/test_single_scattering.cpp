@@ -3,7 +3,7 @@
 #include "bench/oracles/fisheye_curves.h"
 #include "tests/grin/furnace.h"
 
-namespace flatspeckle::grin::tests {
+namespace flatspeckle::grin::tests::test_single_scattering {
 
 namespace {
 
@@ -133,4 +133,4 @@ TEST_CASE("light scattered once agrees with quadrature where two curves join man
   }
 }
 
-}  // namespace flatspeckle::grin::tests
+}  // namespace flatspeckle::grin::tests::test_single_scattering

@@ -5,10 +5,9 @@
 
 // Reflected and transmitted light of slabs against exact transport.
 
-using namespace flatspeckle;
-using namespace flatspeckle::grin;
-using namespace flatspeckle::grin::tests;
-using namespace flatspeckle::oracles;
+namespace flatspeckle::grin::tests::test_slab_render {
+
+using namespace oracles;
 
 TEST_CASE("van de Hulst's slab by light and bidirectional tracing") {
   for (const RenderMethod method : {RenderMethod::light, RenderMethod::bidirectional}) {
@@ -56,3 +55,15 @@ TEST_CASE("the errors of short runs in a thick slab hold") {
   CHECK(within >= 16);
   CHECK(squares < 2);
 }
+
+TEST_CASE("nightly: van de Hulst's slab to 1e-4 by light tracing") {
+  check_share_to(van_de_hulst(Face::reflected), RenderMethod::light, 0.09739, 1e-4);
+  check_share_to(van_de_hulst(Face::transmitted), RenderMethod::light, 0.66096, 1e-4);
+}
+
+TEST_CASE("nightly: van de Hulst's slab to 1e-4 by bidirectional tracing") {
+  check_share_to(van_de_hulst(Face::reflected), RenderMethod::bidirectional, 0.09739, 1e-4);
+  check_share_to(van_de_hulst(Face::transmitted), RenderMethod::bidirectional, 0.66096, 1e-4);
+}
+
+}  // namespace flatspeckle::grin::tests::test_slab_render

@@ -10,7 +10,7 @@
 
 // The slow mode and stretched flights: what is worth something on average and what is not.
 
-namespace flatspeckle::grin {
+namespace flatspeckle::grin::test_slow_mode {
 
 namespace {
 
@@ -80,4 +80,4 @@ TEST_CASE("stretched flights weigh as much as plain ones") {
   }
 }
 
-}  // namespace flatspeckle::grin
+}  // namespace flatspeckle::grin::test_slow_mode

@@ -11,7 +11,7 @@
 #include "grin/fields/spline_field.h"
 #include "tests/grin/derivatives.h"
 
-namespace flatspeckle::grin {
+namespace flatspeckle::grin::test_spline_field {
 
 namespace {
 
@@ -155,4 +155,4 @@ TEST_CASE("A spline field from a file") {
   CHECK_THROWS_AS(read_spline_field(path), InputError);
 }
 
-}  // namespace flatspeckle::grin
+}  // namespace flatspeckle::grin::test_spline_field

@@ -13,7 +13,7 @@
 #include "grin/media/start_directions.h"
 #include "grin/rays/ray_step.h"
 
-namespace flatspeckle::grin {
+namespace flatspeckle::grin::test_spreading {
 
 using bench::random_direction;
 using bench::random_point;
@@ -160,4 +160,4 @@ TEST_CASE("start directions follow their density") {
   CHECK((sum / count - 0.4 * 0.9 * chord).norm() < 5 / std::sqrt(count));
 }
 
-}  // namespace flatspeckle::grin
+}  // namespace flatspeckle::grin::test_spreading

@@ -6,8 +6,7 @@
 #include "grin/media/start_directions.h"
 #include "grin/scene/step_choice.h"
 
-using namespace flatspeckle;
-using namespace flatspeckle::grin;
+namespace flatspeckle::grin::test_step_choice {
 
 namespace {
 
@@ -160,3 +159,5 @@ TEST_CASE("a narrow blob in a wide stage is not jumped over") {
   CHECK(exact.v[0] > 0.05);
   CHECK((ray.x - exact.x).norm() < 2 * step_tolerance * ray.arc_length);
 }
+
+}  // namespace flatspeckle::grin::test_step_choice

@@ -3,9 +3,9 @@
 #include <doctest/doctest.h>
 
 #include "core/error.h"
+#include "grin/fields/fisheye.h"
 #include "grin/fields/gaussian_blobs.h"
 #include "grin/fields/linear_ramp.h"
-#include "grin/fields/fisheye.h"
 #include "grin/fields/parabolic.h"
 #include "grin/fields/sech.h"
 #include "grin/fields/tanh_ramp.h"
@@ -15,7 +15,7 @@
 #include "tests/grin/ray_tests.h"
 #include "tests/statistics.h"
 
-namespace flatspeckle::grin {
+namespace flatspeckle::grin::test_trace {
 
 using tests::pi;
 
@@ -301,4 +301,4 @@ TEST_CASE("Rays are lost, not bent, where there is no index") {
   CHECK(std::abs(stopped.x[0] - 1.2) < 1e-11);
 }
 
-}  // namespace flatspeckle::grin
+}  // namespace flatspeckle::grin::test_trace

@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "flatland/media/layers.h"
+#include "tests/statistics.h"
 
 namespace flatspeckle::mc::tests {
 
@@ -79,7 +80,7 @@ Run run(const Scene& scene, ReversedPaths reversed, std::uint64_t paths, std::ui
 }
 
 Run run(const Scene& scene, const Plan& plan, std::uint64_t paths, std::uint64_t seed) {
-  Run result{covariance_job(scene, plan, seed), {}};
+  Run result{covariance_job(scene, plan, flatspeckle::tests::fresh_seed(seed)), {}};
   result.sums = summed(result.job.batches, paths);
   return result;
 }

@@ -3,6 +3,7 @@
 #include "bench/oracles/discrete_ordinates.h"
 #include "mc/estimators/flux.h"
 #include "tests/mc/estimates.h"
+#include "tests/statistics.h"
 
 namespace flatspeckle::mc::tests {
 
@@ -14,7 +15,7 @@ struct FluxRun {
 
 inline FluxRun run_flux(const Scene& scene, const StopRule& stop, std::uint64_t seed,
                         std::size_t bins = 8) {
-  FluxRun result{flux_job(scene, bins, seed), {}, {}};
+  FluxRun result{flux_job(scene, bins, flatspeckle::tests::fresh_seed(seed)), {}, {}};
   RunOptions options;
   options.stop = stop;
   options.threads = 2;

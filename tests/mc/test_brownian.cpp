@@ -7,7 +7,7 @@
 #include "mc/theory/diffusion.h"
 #include "tests/mc/estimates.h"
 
-namespace flatspeckle::mc {
+namespace flatspeckle::mc::test_brownian {
 
 namespace {
 
@@ -173,4 +173,4 @@ TEST_CASE("what does not scatter has no correlation") {
   for (const Complex value : run.correlation().value) CHECK(value == 0.0);
 }
 
-}  // namespace flatspeckle::mc
+}  // namespace flatspeckle::mc::test_brownian

@@ -5,7 +5,7 @@
 #include "mc/ends/coherent_field.h"
 #include "tests/mc/estimates.h"
 
-namespace flatspeckle::mc {
+namespace flatspeckle::mc::test_coherent_field {
 
 namespace {
 
@@ -109,4 +109,4 @@ TEST_CASE("there is a coherent field for scatterers in a box seen from afar, and
   CHECK_FALSE(has_coherent_field(tests::hg_slab(2, {}, far)));
 }
 
-}  // namespace flatspeckle::mc
+}  // namespace flatspeckle::mc::test_coherent_field

@@ -10,7 +10,7 @@
 #include "flatland/media/structure_factor.h"
 #include "tests/mc/estimates.h"
 
-namespace flatspeckle::mc {
+namespace flatspeckle::mc::test_correlated_media {
 
 namespace {
 
@@ -90,4 +90,4 @@ TEST_CASE("the covariance of correlated disks is positive semidefinite") {
   CHECK(values.back() > 0);
 }
 
-}  // namespace flatspeckle::mc
+}  // namespace flatspeckle::mc::test_correlated_media

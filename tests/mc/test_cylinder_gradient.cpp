@@ -4,7 +4,7 @@
 #include "mc/slab/slab_jobs.h"
 #include "tests/mc/estimates.h"
 
-namespace flatspeckle::mc {
+namespace flatspeckle::mc::test_cylinder_gradient {
 
 namespace {
 
@@ -72,4 +72,4 @@ TEST_CASE("cylinders in a box: derivatives are differences of runs with common r
   check(entries(0.3, 1.52), entries(0.3, 1.48), 0.04, 2);
 }
 
-}  // namespace flatspeckle::mc
+}  // namespace flatspeckle::mc::test_cylinder_gradient

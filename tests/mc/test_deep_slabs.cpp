@@ -5,7 +5,7 @@
 #include "bench/oracles/discrete_ordinates.h"
 #include "tests/mc/estimates.h"
 
-namespace flatspeckle::mc {
+namespace flatspeckle::mc::test_deep_slabs {
 
 namespace {
 
@@ -62,4 +62,4 @@ TEST_CASE("optical depth 100, isotropic, albedo 1") {
   check_slab(100, 0, 1, 40, 100000, 0.1);
 }
 
-}  // namespace flatspeckle::mc
+}  // namespace flatspeckle::mc::test_deep_slabs

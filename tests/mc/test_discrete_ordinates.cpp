@@ -6,7 +6,7 @@
 #include "bench/oracles/slab_theory.h"
 #include "tests/mc/estimates.h"
 
-namespace flatspeckle::mc {
+namespace flatspeckle::mc::test_discrete_ordinates {
 
 namespace {
 
@@ -126,4 +126,4 @@ TEST_CASE("anisotropic slab: intensities agree with discrete ordinates") {
   }
 }
 
-}  // namespace flatspeckle::mc
+}  // namespace flatspeckle::mc::test_discrete_ordinates

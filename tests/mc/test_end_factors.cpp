@@ -5,7 +5,7 @@
 #include "mc/ends/end_factors.h"
 #include "tests/mc/estimates.h"
 
-namespace flatspeckle::mc {
+namespace flatspeckle::mc::test_end_factors {
 
 namespace {
 
@@ -66,4 +66,4 @@ TEST_CASE("attenuation stops at the nearer edge, at a near sensor at the sensor"
   }
 }
 
-}  // namespace flatspeckle::mc
+}  // namespace flatspeckle::mc::test_end_factors

@@ -6,7 +6,7 @@
 #include "bench/oracles/slab_theory.h"
 #include "tests/mc/estimates.h"
 
-namespace flatspeckle::mc {
+namespace flatspeckle::mc::test_energy {
 
 namespace {
 
@@ -183,4 +183,4 @@ TEST_CASE("transmitted and reflected power agree with counted photons, anisotrop
       0, 10, 63);
 }
 
-}  // namespace flatspeckle::mc
+}  // namespace flatspeckle::mc::test_energy

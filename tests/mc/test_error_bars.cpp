@@ -7,7 +7,7 @@
 #include "mc/theory/memory_effect.h"
 #include "tests/mc/estimates.h"
 
-namespace flatspeckle::mc {
+namespace flatspeckle::mc::test_error_bars {
 
 namespace {
 
@@ -95,4 +95,4 @@ TEST_CASE("error bars of the memory effect and its range are honest") {
   for (const double ratio : ratios) CHECK(ratio == doctest::Approx(1).epsilon(0.15));
 }
 
-}  // namespace flatspeckle::mc
+}  // namespace flatspeckle::mc::test_error_bars

@@ -9,7 +9,7 @@
 #include "core/error.h"
 #include "tests/mc/estimates.h"
 
-namespace flatspeckle::mc {
+namespace flatspeckle::mc::test_estimator {
 
 namespace {
 
@@ -303,4 +303,4 @@ TEST_CASE("the plan leaves out what a scene does not need") {
   CHECK(plan_of(0, 0.3, 1 - 1e-9).weighted);
 }
 
-}  // namespace flatspeckle::mc
+}  // namespace flatspeckle::mc::test_estimator

@@ -8,7 +8,7 @@
 #include "mc/theory/memory_effect.h"
 #include "tests/mc/estimates.h"
 
-namespace flatspeckle::mc {
+namespace flatspeckle::mc::test_extremes {
 
 namespace {
 
@@ -146,4 +146,4 @@ TEST_CASE("needles and sheets of a box, lit and seen along their edges: finite")
   }
 }
 
-}  // namespace flatspeckle::mc
+}  // namespace flatspeckle::mc::test_extremes

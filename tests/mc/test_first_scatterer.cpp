@@ -7,7 +7,7 @@
 #include "tests/mc/estimates.h"
 #include "tests/statistics.h"
 
-namespace flatspeckle::mc {
+namespace flatspeckle::mc::test_first_scatterer {
 
 namespace {
 
@@ -144,4 +144,4 @@ TEST_CASE("several lights: the mixture and first direction have the density that
   CHECK(sum * 2 * pi / directions_round == doctest::Approx(first.density(x)).epsilon(1e-12));
 }
 
-}  // namespace flatspeckle::mc
+}  // namespace flatspeckle::mc::test_first_scatterer

@@ -12,7 +12,7 @@
 #include "mc/estimators/flux.h"
 #include "tests/mc/flux_runs.h"
 
-namespace flatspeckle::mc {
+namespace flatspeckle::mc::test_flux {
 
 namespace {
 
@@ -314,4 +314,4 @@ TEST_CASE("flux does not depend on the threads or on the unit of length") {
   CHECK(std::abs(in_units(1, 1) - in_units(1024, 1)) < 1e-12);
 }
 
-}  // namespace flatspeckle::mc
+}  // namespace flatspeckle::mc::test_flux

@@ -11,7 +11,7 @@
 #include "mc/theory/memory_effect.h"
 #include "tests/mc/estimates.h"
 
-namespace flatspeckle::mc {
+namespace flatspeckle::mc::test_gradient {
 
 namespace {
 
@@ -358,4 +358,4 @@ TEST_CASE("what does not scatter has no derivatives, and too many entries are re
                   InputError);
 }
 
-}  // namespace flatspeckle::mc
+}  // namespace flatspeckle::mc::test_gradient

@@ -10,7 +10,7 @@
 #include "mc/walk/importance.h"
 #include "tests/mc/estimates.h"
 
-namespace flatspeckle::mc {
+namespace flatspeckle::mc::test_importance {
 
 namespace {
 
@@ -160,4 +160,4 @@ TEST_CASE("narrow boxes lose by their sides what absorption takes elsewhere") {
   CHECK(lossless.error[0] < 0.1 * lossless.value[0].real());
 }
 
-}  // namespace flatspeckle::mc
+}  // namespace flatspeckle::mc::test_importance

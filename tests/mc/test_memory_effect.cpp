@@ -7,7 +7,7 @@
 #include "mc/theory/memory_effect.h"
 #include "tests/mc/estimates.h"
 
-namespace flatspeckle::mc {
+namespace flatspeckle::mc::test_memory_effect {
 
 namespace {
 
@@ -198,4 +198,4 @@ TEST_CASE("diffusion is finite far out, for strong absorption, and for thin slab
   }
 }
 
-}  // namespace flatspeckle::mc
+}  // namespace flatspeckle::mc::test_memory_effect

@@ -10,7 +10,7 @@
 #include "tests/mc/estimates.h"
 #include "tests/statistics.h"
 
-namespace flatspeckle::mc {
+namespace flatspeckle::mc::test_near_lights {
 
 namespace {
 
@@ -164,4 +164,4 @@ TEST_CASE("a beam beside the medium is refused") {
   CHECK_NOTHROW(FirstScatterer(box({gaussian_beam(0, {4, 0}, 1)})));
 }
 
-}  // namespace flatspeckle::mc
+}  // namespace flatspeckle::mc::test_near_lights

@@ -8,7 +8,7 @@
 #include "mc/theory/memory_effect.h"
 #include "tests/mc/estimates.h"
 
-namespace flatspeckle::mc {
+namespace flatspeckle::mc::test_pair_transport {
 
 namespace {
 
@@ -108,4 +108,4 @@ TEST_CASE("the memory effect of forward-peaked scatterers agrees with pair trans
   check_memory_effect(30, 0.8, 0.8, 5, 100000);
 }
 
-}  // namespace flatspeckle::mc
+}  // namespace flatspeckle::mc::test_pair_transport

@@ -9,7 +9,7 @@
 #include "tests/mc/estimates.h"
 #include "tests/statistics.h"
 
-namespace flatspeckle::mc {
+namespace flatspeckle::mc::test_scattering {
 
 namespace {
 
@@ -121,4 +121,4 @@ TEST_CASE("scattering in the plane: phase functions of other scenes are rejected
   CHECK_THROWS_AS(with_scattering(scene, Plan::Phase::isotropic, ignored), std::logic_error);
 }
 
-}  // namespace flatspeckle::mc
+}  // namespace flatspeckle::mc::test_scattering

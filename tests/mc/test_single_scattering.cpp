@@ -6,7 +6,7 @@
 #include "mc/theory/memory_effect.h"
 #include "tests/mc/estimates.h"
 
-namespace flatspeckle::mc {
+namespace flatspeckle::mc::test_single_scattering {
 
 namespace {
 
@@ -158,4 +158,4 @@ TEST_CASE("the outgoing wave is H0 near by, its far form beyond, and joins withi
   CHECK(std::abs(after - std::polar(std::sqrt(k / 10), 10.0)) < 1e-8);
 }
 
-}  // namespace flatspeckle::mc
+}  // namespace flatspeckle::mc::test_single_scattering

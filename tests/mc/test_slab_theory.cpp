@@ -6,7 +6,7 @@
 #include "bench/oracles/slab_theory.h"
 #include "tests/mc/estimates.h"
 
-namespace flatspeckle::mc {
+namespace flatspeckle::mc::test_slab_theory {
 
 namespace {
 
@@ -147,4 +147,4 @@ TEST_CASE("isotropic slab a million wavelengths over 2 pi thick") {
                        theory.single(back, back) + 2.0 * theory.ladder(back, back), 1e-4);
 }
 
-}  // namespace flatspeckle::mc
+}  // namespace flatspeckle::mc::test_slab_theory

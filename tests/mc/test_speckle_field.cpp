@@ -9,7 +9,7 @@
 #include "tests/mc/estimates.h"
 #include "tests/statistics.h"
 
-namespace flatspeckle::mc {
+namespace flatspeckle::mc::test_speckle_field {
 
 namespace {
 
@@ -445,4 +445,4 @@ TEST_CASE("views are equally spaced in their sine or along a line") {
   CHECK_FALSE(equal_step(line));
 }
 
-}  // namespace flatspeckle::mc
+}  // namespace flatspeckle::mc::test_speckle_field

@@ -6,7 +6,7 @@
 #include "mc/theory/memory_effect.h"
 #include "tests/mc/estimates.h"
 
-namespace flatspeckle::mc {
+namespace flatspeckle::mc::test_standard_scenes {
 
 namespace {
 
@@ -147,4 +147,4 @@ TEST_CASE("box_points_absorbing") {
   check_entries(0.8, 39, {{pi, 0, 1.64}}, 3e-3, ReversedPaths::no, 14);
 }
 
-}  // namespace flatspeckle::mc
+}  // namespace flatspeckle::mc::test_standard_scenes

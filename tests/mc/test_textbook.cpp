@@ -7,7 +7,7 @@
 #include "bench/oracles/textbook.h"
 #include "tests/mc/estimates.h"
 
-namespace flatspeckle::mc {
+namespace flatspeckle::mc::test_textbook {
 
 namespace {
 
@@ -115,4 +115,4 @@ TEST_CASE("ours and the textbook estimator agree on slabs of Henyey-Greenstein s
   }
 }
 
-}  // namespace flatspeckle::mc
+}  // namespace flatspeckle::mc::test_textbook

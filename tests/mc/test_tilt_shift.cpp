@@ -6,7 +6,7 @@
 #include "mc/theory/memory_effect.h"
 #include "tests/mc/estimates.h"
 
-namespace flatspeckle::mc {
+namespace flatspeckle::mc::test_tilt_shift {
 
 namespace {
 
@@ -118,4 +118,4 @@ TEST_CASE("single scattering is C21, with views summed before the modulus") {
   CHECK(single_scattering_correlation(0.1, {0.1}, depth, q) == 1);
 }
 
-}  // namespace flatspeckle::mc
+}  // namespace flatspeckle::mc::test_tilt_shift

@@ -2,10 +2,11 @@
 
 #include "bench/oracles/textbook.h"
 #include "tests/mc/estimates.h"
+#include "tests/statistics.h"
 
 // Against the textbook at 0.1 %: minutes.
 
-namespace flatspeckle::mc {
+namespace flatspeckle::mc::test_unbiased {
 
 namespace {
 
@@ -23,8 +24,9 @@ Estimate run_to_target(const FieldJob& job) {
 
 void check_unbiased(const Scene& scene, ReversedPaths reversed) {
   const Plan plan = make_plan(scene, reversed);
-  const auto found = run_to_target(covariance_job(scene, plan, 21));
-  const auto expected = run_to_target(oracles::textbook_job(scene, plan.reversed, 400, 22));
+  const auto found = run_to_target(covariance_job(scene, plan, flatspeckle::tests::fresh_seed(21)));
+  const auto expected = run_to_target(
+      oracles::textbook_job(scene, plan.reversed, 400, flatspeckle::tests::fresh_seed(22)));
   for (std::size_t e = 0; e < found.value.size(); ++e) {
     CAPTURE(e);
     CHECK_WITHIN_4_SIGMA(found.value[e], std::hypot(found.error[e], expected.error[e]),
@@ -49,17 +51,17 @@ Scene box(const std::string& scatterer, const CovarianceRequest& request) {
 
 }  // namespace
 
-TEST_CASE("boxes of points and of cylinders") {
+TEST_CASE("nightly: boxes of points and of cylinders") {
   const auto request = memory_effect_request(2 * pi, 0, {0.1, 0.8, pi - 0.3}, {0.04, 0.16});
   for (const char* scatterer : {"point", "tm"})
     check_unbiased(box(scatterer, request), ReversedPaths::yes);
 }
 
-TEST_CASE("slabs at optical depth 10") {
+TEST_CASE("nightly: slabs at optical depth 10") {
   const auto request = memory_effect_request(2 * pi, 0, {0}, {0.0002, 0.0005});
   for (const double g : {0.0, 0.9})
     for (const double albedo : {1.0, 0.9})
       check_unbiased(tests::hg_slab(1000, {100, g, albedo}, request), ReversedPaths::no);
 }
 
-}  // namespace flatspeckle::mc
+}  // namespace flatspeckle::mc::test_unbiased

@@ -1,9 +1,11 @@
 """Every subcommand is a function with every key of the program's table, with its default and help, and
-each key takes a value that the program accepts."""
+each key takes a value that the program accepts: by day with one subcommand that has it, by night (argument Night)
+with each."""
 
 import inspect
 import re
 import subprocess
+import sys
 import unittest
 
 from package import PackageTest, fs
@@ -48,12 +50,16 @@ class EveryKey(PackageTest):
         self.assertNotIn("unknown key", line)
         return not line or fs.InputError(line).key != key.name or UNUSED.search(line)
 
+    def check_value(self, subcommand, key):
+        with self.subTest(subcommand=subcommand, key=key.name):
+            if key.name != "out":
+                self.assertTrue(any(self.is_understood(subcommand, key, value) for value in candidates(key)))
+
     def test_each_key_takes_a_value(self):
-        for subcommand in functions.subcommands():
-            for key in keys.keys_of(subcommand).values():
-                with self.subTest(subcommand=subcommand, key=key.name):
-                    if key.name != "out":
-                        self.assertTrue(any(self.is_understood(subcommand, key, value) for value in candidates(key)))
+        seen = {(key.name, key.type, key.is_list): (subcommand, key)
+                for subcommand in functions.subcommands() for key in keys.keys_of(subcommand).values()}
+        for subcommand, key in seen.values():
+            self.check_value(subcommand, key)
 
     def test_each_key_is_described(self):
         for subcommand in functions.subcommands():
@@ -76,5 +82,12 @@ class EveryKey(PackageTest):
             self.assertFalse({"cache", "progress", "scene"} & set(keys.keys_of(subcommand)), subcommand)
 
 
+class Night(EveryKey):
+    def test_each_key_takes_a_value(self):
+        for subcommand in functions.subcommands():
+            for key in keys.keys_of(subcommand).values():
+                self.check_value(subcommand, key)
+
+
 if __name__ == "__main__":
-    unittest.main()
+    unittest.main(defaultTest="EveryKey" if len(sys.argv) < 2 else None)

@@ -8,9 +8,10 @@
 
 #include "flatland/scene/scene.h"
 #include "mc/changes/brownian.h"
+#include "tests/statistics.h"
 #include "wave_solver/solutions/wave_solution.h"
 
-using namespace flatspeckle;
+namespace flatspeckle::test_brownian {
 
 namespace {
 
@@ -77,7 +78,8 @@ BatchJob moving_ensemble(const Scene& scene, const mc::Motion& motion) {
 
 RunState run(const BatchJob& job, std::uint64_t samples) {
   RunOptions options;
-  options.stop.samples = samples;
+  options.stop.samples =
+      static_cast<std::uint64_t>(tests::effort().samples * static_cast<double>(samples));
   RunState state;
   run_batches(job, options, state);
   return state;
@@ -114,7 +116,7 @@ void check_motion(const mc::Motion& motion) {
          exact.value[i].real(), " + i ", exact.value[i].imag(), ", Monte Carlo ",
          mc.value[i].real(), " + i ", mc.value[i].imag(), " +- ", error);
     CHECK(std::abs(mc.value[i] - exact.value[i]) < std::max(4 * error, bias));
-    CHECK(error < 0.015);
+    CHECK(error < 0.015 * tests::effort().errors);
   }
 }
 
@@ -127,3 +129,5 @@ TEST_CASE("diffusing points decorrelate the exact fields as Monte Carlo says") {
 TEST_CASE("points that flow with a shear and diffuse do so too") {
   check_motion({.diffusion = 0.5, .velocity = {-0.15, 0.1}, .shear = 0.06});
 }
+
+}  // namespace flatspeckle::test_brownian

@@ -11,7 +11,7 @@
 #include "flatland/scene/scene.h"
 #include "mc/estimators/covariance_estimator.h"
 
-using namespace flatspeckle;
+namespace flatspeckle::test_correlated_media {
 
 namespace {
 
@@ -121,3 +121,5 @@ TEST_CASE("what is left goes with the shift of the wavenumber") {
   CHECK(with.rms < allowance(scene) + 4 * with.mean_error);
   CHECK(without.rms > 8 * with.rms);
 }
+
+}  // namespace flatspeckle::test_correlated_media

@@ -6,9 +6,10 @@
 
 #include "flatland/scene/frequency_shift.h"
 #include "mc/changes/frequency_shifts.h"
+#include "tests/statistics.h"
 #include "wave_solver/solutions/ensemble.h"
 
-using namespace flatspeckle;
+namespace flatspeckle::test_frequency {
 
 namespace {
 
@@ -33,7 +34,8 @@ Scene box_of_points(const std::string& covariance) {
 
 mc::ChangeEstimates estimates(const Scene& scene, const mc::PathJob& job, std::uint64_t samples) {
   RunOptions options;
-  options.stop.samples = samples;
+  options.stop.samples =
+      static_cast<std::uint64_t>(tests::effort().samples * static_cast<double>(samples));
   RunState state;
   run_batches(job.field.batches, options, state);
   return mc::change_estimates(scene.request, job, state.sums);
@@ -53,7 +55,7 @@ void check(const Scene& scene, std::uint64_t placements) {
     INFO("correlation ", i, ": exact ", exact.value[i].real(), " ", exact.value[i].imag(),
          " i, Monte Carlo ", mc.value[i].real(), " ", mc.value[i].imag(), " i +- ", error);
     CHECK(std::abs(mc.value[i] - exact.value[i]) < 4 * error + bias);
-    CHECK(error < 0.015);
+    CHECK(error < 0.015 * tests::effort().errors);
   }
 }
 
@@ -85,3 +87,5 @@ TEST_CASE("without shifts an ensemble is that of one frequency") {
     CHECK(std::abs(same[2 * channels + i] - alone[i]) < 1e-12 * std::abs(alone[i]));
   }
 }
+
+}  // namespace flatspeckle::test_frequency

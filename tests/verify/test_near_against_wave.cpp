@@ -9,9 +9,10 @@
 
 #include "flatland/scene/scene.h"
 #include "mc/estimators/covariance_estimator.h"
+#include "tests/statistics.h"
 #include "wave_solver/solutions/ensemble.h"
 
-using namespace flatspeckle;
+namespace flatspeckle::test_near_against_wave {
 
 namespace {
 
@@ -29,7 +30,8 @@ Scene box_points(const CovarianceRequest& request) {
 
 FieldMoments estimate(const FieldJob& job, std::uint64_t samples) {
   RunOptions options;
-  options.stop.samples = samples;
+  options.stop.samples =
+      static_cast<std::uint64_t>(tests::effort().samples * static_cast<double>(samples));
   RunState state;
   run_batches(job.batches, options, state);
   return field_moments(job, state.sums);
@@ -50,7 +52,8 @@ void check_agreement(const CovarianceRequest& request, std::uint64_t paths,
     CHECK(std::abs(mc.value[e] - wave.value[e]) <
           std::max(4 * error, 0.03 * std::abs(wave.value[e])));
     // so that the test can fail: intensities are known
-    if (request.entries[e].a == request.entries[e].b) CHECK(error < 0.1 * std::abs(wave.value[e]));
+    if (request.entries[e].a == request.entries[e].b)
+      CHECK(error < 0.1 * tests::effort().errors * std::abs(wave.value[e]));
   }
 }
 
@@ -86,3 +89,5 @@ TEST_CASE("tilt-shift maps of a plane wave and of a beam, translation of a near 
   check_agreement(translation_request(point_source({0, -3}), {near_sensor({0, 13})}, {0, 0.5, 2}),
                   200'000, 4'000);
 }
+
+}  // namespace flatspeckle::test_near_against_wave

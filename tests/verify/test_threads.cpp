@@ -5,7 +5,7 @@
 #include "mc/estimators/covariance_estimator.h"
 #include "wave_solver/solutions/ensemble.h"
 
-using namespace flatspeckle;
+namespace flatspeckle::test_threads {
 
 namespace {
 
@@ -68,3 +68,5 @@ TEST_CASE("sums over exact placements do not depend on threads") {
     check_threads(wave::wave_job(scene, 3, 1e-6).batches, 40);
   }
 }
+
+}  // namespace flatspeckle::test_threads

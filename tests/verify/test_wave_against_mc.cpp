@@ -12,7 +12,7 @@
 #include "mc/estimators/covariance_estimator.h"
 #include "wave_solver/solutions/ensemble.h"
 
-using namespace flatspeckle;
+namespace flatspeckle::test_wave_against_mc {
 
 namespace {
 
@@ -176,3 +176,5 @@ TEST_CASE("near sensors outside the box see the same covariance by both methods"
                                           near_sensor({14, 5}), near_sensor({2, -3})});
   check_agreement(by_mc(scene, 300'000), by_wave(scene, 10'000), 0.03);
 }
+
+}  // namespace flatspeckle::test_wave_against_mc

@@ -12,7 +12,7 @@
 #include "wave_solver/equations/neighbours.h"
 #include "wave_solver/solutions/wave_solution.h"
 
-namespace flatspeckle::wave {
+namespace flatspeckle::wave::test_basis_order {
 
 namespace {
 
@@ -231,4 +231,4 @@ TEST_CASE("From 1e-4 to 100: sizes, indices and metals") {
       }
 }
 
-}  // namespace flatspeckle::wave
+}  // namespace flatspeckle::wave::test_basis_order

@@ -6,7 +6,7 @@
 #include "core/numbers/random.h"
 #include "wave_solver/skeletons/box_tree.h"
 
-namespace flatspeckle::wave {
+namespace flatspeckle::wave::test_box_tree {
 
 namespace {
 
@@ -96,4 +96,4 @@ TEST_CASE("Distances between rectangles count from rim to rim") {
   CHECK(unit.distance(Vec2{-3, 0.5}) == doctest::Approx(3));
 }
 
-}  // namespace flatspeckle::wave
+}  // namespace flatspeckle::wave::test_box_tree

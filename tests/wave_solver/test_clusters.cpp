@@ -11,7 +11,7 @@
 #include "wave_solver/clusters/cluster_solution.h"
 #include "wave_solver/solutions/wave_solution.h"
 
-namespace flatspeckle::wave {
+namespace flatspeckle::wave::test_clusters {
 
 namespace {
 
@@ -107,4 +107,4 @@ TEST_CASE("clusters closer than the gap of their T-matrix are refused") {
   CHECK_THROWS_AS(cluster_t_matrix(five_disks(), k, 1e-3), InputError);
 }
 
-}  // namespace flatspeckle::wave
+}  // namespace flatspeckle::wave::test_clusters

@@ -8,7 +8,7 @@
 #include "reference.h"
 #include "wave_solver/equations/cylinder_waves.h"
 
-namespace flatspeckle::wave {
+namespace flatspeckle::wave::test_cylinder_waves {
 
 namespace {
 
@@ -124,4 +124,4 @@ TEST_CASE("A receiver in the sender's place gets nothing") {
   }
 }
 
-}  // namespace flatspeckle::wave
+}  // namespace flatspeckle::wave::test_cylinder_waves

@@ -10,7 +10,7 @@
 #include "wave_solver/dense/symmetric_factor.h"
 #include "wave_solver/equations/t_matrix_system.h"
 
-namespace flatspeckle::wave {
+namespace flatspeckle::wave::test_dense_factor {
 
 namespace {
 
@@ -128,4 +128,4 @@ TEST_CASE("Singular and infinite systems are refused") {
   CHECK_THROWS_AS(DenseFactor({infinity}, 1), std::runtime_error);
 }
 
-}  // namespace flatspeckle::wave
+}  // namespace flatspeckle::wave::test_dense_factor

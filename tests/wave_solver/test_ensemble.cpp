@@ -8,7 +8,7 @@
 #include "wave_solver/solutions/ensemble.h"
 #include "wave_solver/solutions/wave_solution.h"
 
-namespace flatspeckle::wave {
+namespace flatspeckle::wave::test_ensemble {
 
 namespace {
 
@@ -169,4 +169,4 @@ TEST_CASE("Slabs and bulk phase functions are refused") {
   CHECK_THROWS_AS(wave_job(henyey_greenstein, 1, 1e-8), InputError);
 }
 
-}  // namespace flatspeckle::wave
+}  // namespace flatspeckle::wave::test_ensemble

@@ -11,7 +11,7 @@
 #include "wave_solver/equations/t_matrix_system.h"
 #include "wave_solver/skeletons/fast_direct.h"
 
-namespace flatspeckle::wave {
+namespace flatspeckle::wave::test_fast_direct {
 
 namespace {
 
@@ -195,4 +195,4 @@ TEST_CASE("Fast direct: statistics tell of every level") {
   CHECK(statistics.wall_seconds > 0);
 }
 
-}  // namespace flatspeckle::wave
+}  // namespace flatspeckle::wave::test_fast_direct

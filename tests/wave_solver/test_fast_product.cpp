@@ -10,7 +10,7 @@
 #include "wave_solver/sums/fast_product.h"
 #include "wave_solver/sums/ring_product.h"
 
-namespace flatspeckle::wave {
+namespace flatspeckle::wave::test_fast_product {
 
 namespace {
 
@@ -123,4 +123,4 @@ TEST_CASE("the product does not depend on the number of threads") {
   for (const auto& other : products) CHECK(other == products[0]);
 }
 
-}  // namespace flatspeckle::wave
+}  // namespace flatspeckle::wave::test_fast_product

@@ -9,7 +9,7 @@
 #include "wave_solver/maps/field_map.h"
 #include "wave_solver/solutions/interior_field.h"
 
-namespace flatspeckle::wave {
+namespace flatspeckle::wave::test_field_map {
 
 namespace {
 
@@ -278,4 +278,4 @@ TEST_CASE("Tiles cover a map once, in whole chunks") {
   }
 }
 
-}  // namespace flatspeckle::wave
+}  // namespace flatspeckle::wave::test_field_map

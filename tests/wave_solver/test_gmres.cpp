@@ -10,7 +10,7 @@
 #include "wave_solver/sums/fast_product.h"
 #include "wave_solver/sums/gmres.h"
 
-namespace flatspeckle::wave {
+namespace flatspeckle::wave::test_gmres {
 
 namespace {
 
@@ -166,4 +166,4 @@ TEST_CASE("a preconditioner makes it iterative refinement, resonant points or no
   CHECK(found.steps[0] <= 8);
 }
 
-}  // namespace flatspeckle::wave
+}  // namespace flatspeckle::wave::test_gmres

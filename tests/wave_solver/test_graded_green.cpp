@@ -7,7 +7,7 @@
 #include "core/numbers/hankel_array.h"
 #include "wave_solver/graded/graded_green.h"
 
-namespace flatspeckle::wave {
+namespace flatspeckle::wave::test_graded_green {
 
 namespace {
 
@@ -100,4 +100,4 @@ TEST_CASE("Other fields have no exact solver") {
   CHECK_THROWS_AS(GradedGreen(field, k, 10), InputError);
 }
 
-}  // namespace flatspeckle::wave
+}  // namespace flatspeckle::wave::test_graded_green

@@ -10,7 +10,7 @@
 #include "wave_solver/sums/grid_sum.h"
 #include "wave_solver/sums/helmholtz_sum.h"
 
-namespace flatspeckle::wave {
+namespace flatspeckle::wave::test_helmholtz_sum {
 
 namespace {
 
@@ -210,4 +210,4 @@ TEST_CASE("sizes of transforms are the next even products of 2, 3 and 5") {
   CHECK(smooth(transform_size(1e50)));
 }
 
-}  // namespace flatspeckle::wave
+}  // namespace flatspeckle::wave::test_helmholtz_sum

@@ -4,7 +4,7 @@
 
 #include "inside_disks.h"
 
-namespace flatspeckle::wave {
+namespace flatspeckle::wave::test_inside_disks {
 
 TEST_CASE("Fields are within the tolerance on both sides of the rims: small clusters") {
   const std::vector<double> tolerances{1e-3, 1e-6, 1e-9};
@@ -24,4 +24,37 @@ TEST_CASE("Fields in narrow gaps are within the tolerance, on both of the rims t
   }
 }
 
-}  // namespace flatspeckle::wave
+TEST_CASE(
+    "nightly: Fields are within the tolerance on both sides of the rims: 60 clusters of 2 to 13") {
+  const std::vector<double> tolerances{1e-3, 1e-6, 1e-9, 1e-12};
+  const auto worst = worst_errors(100, 60, {13, 5000}, tolerances);
+  for (std::size_t i = 0; i < worst.size(); ++i) {
+    CAPTURE(tolerances[i]);
+    CHECK(worst[i].inside < 1);
+    CHECK(worst[i].outside < 1);
+  }
+}
+
+TEST_CASE(
+    "nightly: Fields in the narrowest gaps are within the tolerance, on both of the rims that face "
+    "it") {
+  for (const std::string kind : {"D", "N", "TM15", "TE15"})
+    for (const double ratio : {1.0, 0.2})
+      for (const double gap : {0.1, 0.01, 1e-3}) {
+        if (kind == "N" && gap < 0.01) continue;  // a thousand unknowns each
+        CAPTURE(kind);
+        check_gap(kind, ratio, gap, {1e-3, 1e-6, 1e-9, 1e-12});
+      }
+}
+
+TEST_CASE("nightly: The map of hundred_disks.toml is within its tolerance") {
+  const Scatterer disk{.kind = Scatterer::Kind::tm, .radius = 0.4, .index = 1.5};
+  const PlacementRule rule{
+      .kind = PlacementRule::Kind::hard_disk, .mean_count = 100, .count = 100, .min_gap = 0.05};
+  RandomStream random(1, static_cast<std::uint64_t>(Stream::placement), 0);
+  const Placement placement = draw_placement({Domain::Kind::box, 18, 14}, disk, rule, random);
+  constexpr double tolerance = 1e-8;
+  CHECK(worst_on_map(placement, 0, {{-10, -4}, {10, 18}, 600, 660}, tolerance, 37) < tolerance);
+}
+
+}  // namespace flatspeckle::wave::test_inside_disks

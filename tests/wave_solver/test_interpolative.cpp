@@ -5,7 +5,7 @@
 
 #include "wave_solver/skeletons/interpolative.h"
 
-namespace flatspeckle::wave {
+namespace flatspeckle::wave::test_interpolative {
 
 namespace {
 
@@ -125,4 +125,4 @@ TEST_CASE("Real and imaginary parts of a row are two rows") {
   CHECK(largest_error(matrix, found) < 1e-11);
 }
 
-}  // namespace flatspeckle::wave
+}  // namespace flatspeckle::wave::test_interpolative

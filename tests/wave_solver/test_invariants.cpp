@@ -9,7 +9,7 @@
 #include "reference.h"
 #include "wave_solver/solutions/wave_solution.h"
 
-namespace flatspeckle::wave {
+namespace flatspeckle::wave::test_invariants {
 
 namespace {
 
@@ -160,4 +160,4 @@ TEST_CASE("The near field goes over into the far field") {
   }
 }
 
-}  // namespace flatspeckle::wave
+}  // namespace flatspeckle::wave::test_invariants

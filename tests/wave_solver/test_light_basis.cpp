@@ -7,7 +7,7 @@
 #include "wave_solver/solutions/light_basis.h"
 #include "wave_solver/solutions/wave_solution.h"
 
-namespace flatspeckle::wave {
+namespace flatspeckle::wave::test_light_basis {
 
 namespace {
 
@@ -142,4 +142,4 @@ TEST_CASE("Point sources are the reciprocal of near sensors, and plane waves fro
   CHECK_THROWS_AS(basis_of({point_source(here), plane_wave(0)}, two_pi, around, 1e-6), InputError);
 }
 
-}  // namespace flatspeckle::wave
+}  // namespace flatspeckle::wave::test_light_basis

@@ -10,7 +10,7 @@
 #include "reference.h"
 #include "wave_solver/solutions/wave_solution.h"
 
-namespace flatspeckle::wave {
+namespace flatspeckle::wave::test_reference {
 
 namespace {
 
@@ -105,4 +105,4 @@ TEST_CASE("fifty points: nothing is truncated, the tolerance does not matter") {
   }
 }
 
-}  // namespace flatspeckle::wave
+}  // namespace flatspeckle::wave::test_reference

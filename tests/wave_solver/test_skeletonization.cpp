@@ -8,7 +8,7 @@
 #include "wave_solver/equations/t_matrix_system.h"
 #include "wave_solver/skeletons/skeletonization.h"
 
-namespace flatspeckle::wave {
+namespace flatspeckle::wave::test_skeletonization {
 
 TEST_CASE("The contour goes once around at its distance, evenly") {
   const Rectangle hull{{-1, 2}, {3, 2.5}};
@@ -83,4 +83,4 @@ TEST_CASE("A skeleton tells the waves of its box to all outside, near and far") 
   }
 }
 
-}  // namespace flatspeckle::wave
+}  // namespace flatspeckle::wave::test_skeletonization

@@ -7,7 +7,7 @@
 #include "wave_solver/equations/t_matrix_system.h"
 #include "wave_solver/solutions/wave_solution.h"
 
-namespace flatspeckle::wave {
+namespace flatspeckle::wave::test_wave_solution {
 
 TEST_CASE("Nothing scatters nothing") {
   const auto solution = solve({}, two_pi, {0, 1});
@@ -131,4 +131,4 @@ TEST_CASE("A matrix beyond this machine's memory is refused before it is allocat
   }
 }
 
-}  // namespace flatspeckle::wave
+}  // namespace flatspeckle::wave::test_wave_solution

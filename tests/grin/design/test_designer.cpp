@@ -7,7 +7,7 @@
 #include "core/error.h"
 #include "grin/design/scene/designer.h"
 
-namespace flatspeckle::grin::design {
+namespace flatspeckle::grin::design::test_designer {
 
 namespace {
 
@@ -182,4 +182,4 @@ TEST_CASE("Bounds of the index hold") {
   CHECK(designer.at_bounds(state) > 0);
 }
 
-}  // namespace flatspeckle::grin::design
+}  // namespace flatspeckle::grin::design::test_designer

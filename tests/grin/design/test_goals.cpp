@@ -8,7 +8,7 @@
 #include "grin/design/goals/picture_goal.h"
 #include "grin/design/scene/design_scene.h"
 
-namespace flatspeckle::grin::design {
+namespace flatspeckle::grin::design::test_goals {
 
 namespace {
 
@@ -218,4 +218,4 @@ TEST_CASE("The same of pictures and of deflections, in a box") {
   check_gradient(deflections);
 }
 
-}  // namespace flatspeckle::grin::design
+}  // namespace flatspeckle::grin::design::test_goals

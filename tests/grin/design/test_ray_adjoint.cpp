@@ -8,7 +8,7 @@
 #include "grin/design/adjoint/reading.h"
 #include "grin/design/forms/field_form.h"
 
-namespace flatspeckle::grin::design {
+namespace flatspeckle::grin::design::test_ray_adjoint {
 
 namespace {
 
@@ -207,4 +207,4 @@ TEST_CASE("Knots are inserted without changing the field") {
   }
 }
 
-}  // namespace flatspeckle::grin::design
+}  // namespace flatspeckle::grin::design::test_ray_adjoint

@@ -10,7 +10,7 @@
 #include "mc/slab/slab_jobs.h"
 #include "tests/mc/estimates.h"
 
-namespace flatspeckle::mc {
+namespace flatspeckle::mc::test_frequency_walks {
 
 namespace {
 
@@ -133,4 +133,4 @@ TEST_CASE("frequencies are refused where fields have no counterpart") {
   CHECK_THROWS_AS(check(intensity_request({1.5}, {far_view(-1.5)}), -0.1), InputError);
 }
 
-}  // namespace flatspeckle::mc
+}  // namespace flatspeckle::mc::test_frequency_walks

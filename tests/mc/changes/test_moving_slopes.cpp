@@ -9,7 +9,7 @@
 #include "mc/slab/slab_covariance.h"
 #include "tests/mc/estimates.h"
 
-namespace flatspeckle::mc {
+namespace flatspeckle::mc::test_moving_slopes {
 
 namespace {
 
@@ -142,4 +142,4 @@ TEST_CASE("derivatives of paths: plans and slopes that would give wrong numbers 
   CHECK_THROWS_AS(moving_slope_job(scene, plan, delays, motion, {}, 3), std::logic_error);
 }
 
-}  // namespace flatspeckle::mc
+}  // namespace flatspeckle::mc::test_moving_slopes

@@ -4,7 +4,7 @@
 
 #include "mc/fit/task/correlated_errors.h"
 
-namespace flatspeckle::mc {
+namespace flatspeckle::mc::test_correlated_errors {
 
 TEST_CASE("errors of ratios of sums are correlated as their terms are") {
   // x and y of variances 1 and 4 about 10 and 20, correlation 1/2; values x / 10 and y / x.
@@ -28,9 +28,22 @@ TEST_CASE("errors of ratios of sums are correlated as their terms are") {
   CHECK(found(1, 1) * n == doctest::Approx(0.04).epsilon(0.3));
   CHECK(found(0, 1) * n == doctest::Approx(-0.01).epsilon(0.3));
   CHECK(found(0, 1) == found(1, 0));
-  const Estimate alone = jackknife(sums, theta);
-  const double groups = static_cast<double>(sums.groups()), hartlap = (groups - 1) / (groups - 4);
-  CHECK(found(1, 1) == doctest::Approx(hartlap * alone.error[1] * alone.error[1]));
+}
+
+TEST_CASE("the inverse of errors known from few groups has the mean of the exact inverse") {
+  // A fit weighs by the inverse. The mean of 12 numbers of variance 1: the inverse is 12.
+  constexpr int groups = 12, runs = 20000;
+  std::mt19937_64 random(5);
+  std::normal_distribution<double> normal;
+  double sum = 0, squares = 0;
+  for (int run = 0; run < runs; ++run) {
+    GroupedSums sums(1);
+    for (int group = 0; group < groups; ++group) sums.add(1, std::vector<Complex>{normal(random)});
+    const double inverse = 1 / correlated_errors(sums, sample_mean)(0, 0);
+    sum += inverse / runs;
+    squares += inverse * inverse / runs;
+  }
+  CHECK(std::abs(sum - groups) < 4 * std::sqrt((squares - sum * sum) / runs));
 }
 
 TEST_CASE("errors that all but cancel in a difference are not believed to the last digit") {
@@ -56,4 +69,4 @@ TEST_CASE("too few groups tell nothing of correlations") {
   CHECK(correlated_errors(sums, sample_mean).size() == 0);
 }
 
-}  // namespace flatspeckle::mc
+}  // namespace flatspeckle::mc::test_correlated_errors

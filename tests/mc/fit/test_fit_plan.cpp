@@ -4,7 +4,7 @@
 
 #include "mc/fit/plan/fit_plan.h"
 
-namespace flatspeckle::mc {
+namespace flatspeckle::mc::test_fit_plan {
 
 namespace {
 
@@ -52,4 +52,4 @@ TEST_CASE("errors of a plan fall with the root of the patterns, and grow with wh
   }
 }
 
-}  // namespace flatspeckle::mc
+}  // namespace flatspeckle::mc::test_fit_plan

@@ -8,7 +8,7 @@
 #include "core/numbers/complex.h"
 #include "mc/fit/task/intensity_pairs.h"
 
-namespace flatspeckle::mc {
+namespace flatspeckle::mc::test_intensity_pairs {
 
 namespace {
 
@@ -61,4 +61,4 @@ TEST_CASE("C_I of pairs is unbiased, its errors are what is told, and far less t
   CHECK(errors[3] == doctest::Approx(1.1 / std::sqrt(patterns)).epsilon(0.2));
 }
 
-}  // namespace flatspeckle::mc
+}  // namespace flatspeckle::mc::test_intensity_pairs

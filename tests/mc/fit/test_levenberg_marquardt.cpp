@@ -5,7 +5,7 @@
 
 #include "core/search/levenberg_marquardt.h"
 
-namespace flatspeckle::mc {
+namespace flatspeckle::mc::test_levenberg_marquardt {
 
 namespace {
 
@@ -129,4 +129,4 @@ TEST_CASE("what cannot be told apart is named, not hidden") {
   CHECK(known.worst[0] == doctest::Approx(-known.worst[1]));
 }
 
-}  // namespace flatspeckle::mc
+}  // namespace flatspeckle::mc::test_levenberg_marquardt

@@ -3,7 +3,7 @@
 #include "bench/scenes/synthetic_slab.h"
 #include "mc/fit/fit_datasets.h"
 
-namespace flatspeckle::mc {
+namespace flatspeckle::mc::test_medium_fit {
 
 namespace {
 
@@ -75,4 +75,4 @@ TEST_CASE("a thick slab in transmission tells mu_s (1 - g) alone; a thin one tel
   CHECK(both.errors[1] < thick.errors[1] / 2);
 }
 
-}  // namespace flatspeckle::mc
+}  // namespace flatspeckle::mc::test_medium_fit

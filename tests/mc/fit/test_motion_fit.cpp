@@ -2,7 +2,7 @@
 
 #include "bench/scenes/moving_media.h"
 
-namespace flatspeckle::mc {
+namespace flatspeckle::mc::test_motion_fit {
 
 namespace {
 
@@ -33,4 +33,4 @@ TEST_CASE("shear and diffusion are told apart by light in several views") {
               VectorXd{{bench::ShearedSlab::diffusion, bench::ShearedSlab::shear}}, 4);
 }
 
-}  // namespace flatspeckle::mc
+}  // namespace flatspeckle::mc::test_motion_fit

@@ -5,7 +5,7 @@
 #include "core/search/levenberg_marquardt.h"
 #include "tests/mc/transport/slabs.h"
 
-namespace flatspeckle::mc {
+namespace flatspeckle::mc::test_slab_information {
 
 namespace {
 
@@ -88,4 +88,4 @@ TEST_CASE("a thick slab in transmission hides g, and reflection tells it") {
   CHECK(both.condition < alone.condition);
 }
 
-}  // namespace flatspeckle::mc
+}  // namespace flatspeckle::mc::test_slab_information

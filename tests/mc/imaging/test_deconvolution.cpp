@@ -7,7 +7,7 @@
 
 #include "mc/recovery/deconvolution.h"
 
-namespace flatspeckle::mc {
+namespace flatspeckle::mc::test_deconvolution {
 
 namespace {
 
@@ -95,4 +95,4 @@ TEST_CASE("the ratio of peak to noise is that of its definition") {
   CHECK(psnr(truth, truth) > 100);
 }
 
-}  // namespace flatspeckle::mc
+}  // namespace flatspeckle::mc::test_deconvolution

@@ -14,7 +14,7 @@
 #include "mc/recovery/speckle_band.h"
 #include "tests/mc/estimates.h"
 
-namespace flatspeckle::mc {
+namespace flatspeckle::mc::test_imaging {
 
 namespace {
 
@@ -325,4 +325,4 @@ TEST_CASE("the speckle of a point that moves is shifted, and as alike as predict
   }
 }
 
-}  // namespace flatspeckle::mc
+}  // namespace flatspeckle::mc::test_imaging

@@ -7,7 +7,7 @@
 
 #include "mc/recovery/phase_retrieval.h"
 
-namespace flatspeckle::mc {
+namespace flatspeckle::mc::test_phase_retrieval {
 
 namespace {
 
@@ -57,4 +57,4 @@ TEST_CASE("pictures are compared at their best shift, mirrored or not") {
   CHECK(best_correlation(truth, other) < 0.95);
 }
 
-}  // namespace flatspeckle::mc
+}  // namespace flatspeckle::mc::test_phase_retrieval

@@ -9,7 +9,7 @@
 #include "mc/recovery/image_score.h"
 #include "mc/recovery/sparse_search.h"
 
-namespace flatspeckle::mc {
+namespace flatspeckle::mc::test_success {
 
 namespace {
 
@@ -139,4 +139,4 @@ TEST_CASE("the dimmest point decides, and no signal is no success") {
   CHECK(predicted_success(std::vector<double>{5}, 2, 100) == doctest::Approx(1).epsilon(0.05));
 }
 
-}  // namespace flatspeckle::mc
+}  // namespace flatspeckle::mc::test_success

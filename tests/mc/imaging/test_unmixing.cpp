@@ -10,7 +10,7 @@
 #include "mc/recovery/image_score.h"
 #include "mc/unmixing/unmixing.h"
 
-namespace flatspeckle::mc {
+namespace flatspeckle::mc::test_unmixing {
 
 namespace {
 
@@ -198,4 +198,4 @@ TEST_CASE("frames that hold too little are refused") {
   CHECK_THROWS_AS(unmixed(frames, {.lags = 10, .sources = 4}), InputError);
 }
 
-}  // namespace flatspeckle::mc
+}  // namespace flatspeckle::mc::test_unmixing

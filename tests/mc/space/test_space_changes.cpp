@@ -10,7 +10,7 @@
 #include "tests/mc/space/slabs_in_space.h"
 #include "tests/mc/transport/sixth_order.h"
 
-namespace flatspeckle::mc {
+namespace flatspeckle::mc::test_space_changes {
 
 namespace {
 
@@ -213,4 +213,4 @@ TEST_CASE("slabs in space: derivatives by the radius and the index of spheres") 
   check_slopes(BulkParameter::index, 0.1, false, [&](double step) { return scene(0, step); });
 }
 
-}  // namespace flatspeckle::mc
+}  // namespace flatspeckle::mc::test_space_changes

@@ -6,7 +6,7 @@
 #include "mc/slab/slab_flux.h"
 #include "tests/mc/space/scenes_in_space.h"
 
-namespace flatspeckle::mc {
+namespace flatspeckle::mc::test_space_flux {
 
 namespace {
 
@@ -89,4 +89,4 @@ TEST_CASE("flux in space: exits of photons by polar angle") {
   }
 }
 
-}  // namespace flatspeckle::mc
+}  // namespace flatspeckle::mc::test_space_flux

@@ -10,7 +10,7 @@
 #include "mc/space/space.h"
 #include "tests/mc/space/scenes_in_space.h"
 
-namespace flatspeckle::mc {
+namespace flatspeckle::mc::test_space_walks {
 
 namespace {
 
@@ -150,4 +150,4 @@ TEST_CASE("slabs in space: derivatives of Monte Carlo are differences of transpo
   }
 }
 
-}  // namespace flatspeckle::mc
+}  // namespace flatspeckle::mc::test_space_walks

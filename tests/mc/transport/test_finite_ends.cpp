@@ -4,7 +4,7 @@
 
 #include "tests/mc/transport/slabs.h"
 
-namespace flatspeckle::mc {
+namespace flatspeckle::mc::test_finite_ends {
 
 namespace {
 
@@ -105,4 +105,4 @@ TEST_CASE("near sensors beside a slab as in a wide box by Monte Carlo") {
                     ReversedPaths::no, 400000, 0.05);
 }
 
-}  // namespace flatspeckle::mc
+}  // namespace flatspeckle::mc::test_finite_ends

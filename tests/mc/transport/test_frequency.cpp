@@ -11,7 +11,7 @@
 #include "mc/slab/slab_jobs.h"
 #include "tests/mc/transport/slabs.h"
 
-namespace flatspeckle::mc {
+namespace flatspeckle::mc::test_frequency {
 
 namespace {
 
@@ -160,4 +160,4 @@ TEST_CASE("the second view turns to keep transverse momenta, as far as there is 
   CHECK(std::abs(found.covariance.value[0] - covariance) < 1e-5 * std::abs(covariance));
 }
 
-}  // namespace flatspeckle::mc
+}  // namespace flatspeckle::mc::test_frequency

@@ -13,7 +13,7 @@
 #include "tests/mc/transport/sixth_order.h"
 #include "tests/mc/transport/slabs.h"
 
-namespace flatspeckle::mc {
+namespace flatspeckle::mc::test_slab_covariance {
 
 namespace {
 
@@ -23,8 +23,8 @@ using tests::pi;
 using tests::wavenumber;
 
 /// Depth 2000, light along the normal: intensity, C_E for q L = 2, reflected ladder at pi - 0.2.
-std::vector<double> known(double optical_depth, double g, double albedo,
-                          const Refinement& refinement) {
+std::vector<double> intensity_correlation_ladder(double optical_depth, double g, double albedo,
+                                                 const Refinement& refinement) {
   constexpr double depth = 2000;
   const tests::HgBulk bulk{depth / optical_depth, g, albedo};
   const auto request = memory_effect_request(wavenumber, 0, {0}, {deflected(0, 2 / depth)});
@@ -46,6 +46,27 @@ double half_width(double optical_depth, double g, double albedo) {
   return depth * memory_effect_range(request.tilt_q, field_correlation(request, found.value)).value;
 }
 
+oracles::PairTransport::Medium oracle_medium(double depth, double optical_depth, double g,
+                                             double albedo) {
+  return {wavenumber, depth, optical_depth / depth, albedo, [g](double angle) {
+            return (1 - g * g) / (2 * pi * (1 + g * g - 2 * g * std::cos(angle)));
+          }};
+}
+
+/// Intensity along the normal, and C_E where light and view are tilted by q L, by another program.
+std::vector<double> by_ordinates(double optical_depth, double g, double albedo, double q_depth) {
+  constexpr double depth = 2000;
+  const int panels = g < 0.8 ? 5 : 8;
+  const double tilted = deflected(0, q_depth / depth);
+  const auto medium = oracle_medium(depth, optical_depth, g, albedo);
+  const std::vector<oracles::PairTransport::Pair> both = {{0, tilted}},
+                                                  each = {{0, 0}, {tilted, tilted}};
+  const oracles::PairTransport pair(medium, both, both, panels), alone(medium, each, each, panels);
+  const double intensity = alone.covariance(0, 0).real();
+  return {intensity,
+          std::abs(pair.covariance(0, 0)) / std::sqrt(intensity * alone.covariance(1, 1).real())};
+}
+
 double backscattered(double d, bool reversed, double tolerance = 1e-8) {
   const auto request = intensity_request({0.0}, {far_view(pi - d)});
   return slab_covariance(hg_slab(200, {50, 0.5, 0.98}, request), reversed, {tolerance})
@@ -55,40 +76,66 @@ double backscattered(double d, bool reversed, double tolerance = 1e-8) {
 
 }  // namespace
 
-TEST_CASE("slab transport: known intensities and correlations") {
-  const auto check = [](const std::vector<double>& found, const std::vector<double>& expected,
-                        double last_digit) {
-    for (std::size_t i = 0; i < found.size(); ++i)
-      CHECK(std::abs(found[i] - expected[i]) < 0.51 * last_digit);
-  };
-  check(known(10, 0, 1, {1e-8}), {0.0877521, 0.5056681, 0.4149210}, 1e-7);
-  check(known(10, 0.9, 1, {1e-7}), {0.439608, 0.764401, 0.140830}, 1e-6);
-  check(known(30, 0.9, 0.99, {1e-7}), {0.12780, 0.55225, 0.20458}, 1e-5);
+namespace {
+
+struct DeepSlab {
+  double optical_depth, g, albedo;
+};
+
+}  // namespace
+
+TEST_CASE("slab transport: intensities and correlations of deep slabs as by discrete ordinates") {
+  for (const DeepSlab& slab :
+       {DeepSlab{10, 0, 1}, DeepSlab{10, 0.8, 1}, DeepSlab{30, 0.9, 0.99}}) {
+    CAPTURE(slab.g);
+    const auto found =
+                   intensity_correlation_ladder(slab.optical_depth, slab.g, slab.albedo, {1e-7}),
+               expected = by_ordinates(slab.optical_depth, slab.g, slab.albedo, 2);
+    for (std::size_t i = 0; i < expected.size(); ++i)
+      CHECK(found[i] == doctest::Approx(expected[i]).epsilon(1e-5));
+  }
+  const oracles::IsotropicSlab theory(wavenumber, 2000, 10 / 2000.0, 0.9);
+  CHECK(
+      intensity_correlation_ladder(10, 0, 0.9, {1e-7})[2] ==
+      doctest::Approx(theory.without_reversed({0, pi - 0.2}, {0, pi - 0.2}).real()).epsilon(3e-4));
 }
 
-TEST_CASE("slab transport: known ranges of the memory effect") {
-  CHECK(half_width(10, 0, 1) == doctest::Approx(1.3688).epsilon(4e-5));
-  CHECK(half_width(10, 0.5, 1) == doctest::Approx(1.29155).epsilon(4e-5));
-  CHECK(half_width(10, 0.8, 1) == doctest::Approx(1.3816).epsilon(4e-5));
-  CHECK(half_width(10, 0.9, 1) == doctest::Approx(2.5815).epsilon(4e-5));
-  CHECK(half_width(10, 0, 0.9) == doctest::Approx(2.1543).epsilon(4e-5));
-  CHECK(half_width(40, 0, 1) == doctest::Approx(1.4396).epsilon(4e-5));
+TEST_CASE("slab transport: the memory effect ends where discrete ordinates have C_I = 1/2") {
+  for (const DeepSlab& slab : {DeepSlab{10, 0, 1}, DeepSlab{10, 0.5, 1}, DeepSlab{10, 0.9, 1},
+                               DeepSlab{10, 0, 0.9}, DeepSlab{40, 0, 1}}) {
+    CAPTURE(slab.optical_depth);
+    CAPTURE(slab.g);
+    const double q_depth = half_width(slab.optical_depth, slab.g, slab.albedo),
+                 correlation =
+                     by_ordinates(slab.optical_depth, slab.g, slab.albedo, q_depth)[1];
+    CHECK(std::abs(correlation * correlation - 0.5) < 5e-5);
+  }
 }
 
-TEST_CASE("slab transport: known cone of coherent backscattering") {
-  CHECK(std::abs(backscattered(0, false) - 0.209971) < 1e-6);
-  CHECK(std::abs(backscattered(0.3, false) - 0.204302) < 1e-6);
-  const double distance[] = {0, 0.002, 0.01, 0.05},
-               reversed[] = {0.183984, 0.083290, 0.019222, 0.004523};
-  for (int i = 0; i < 4; ++i)
-    CHECK(std::abs(backscattered(distance[i], true, 1e-7) - backscattered(distance[i], false) -
-                   reversed[i]) < 1e-6);
-  CHECK(std::abs(backscattered(0.3, true, 1e-6) - backscattered(0.3, false) - 0.000755) < 1e-6);
+TEST_CASE("slab transport: the cone of coherent backscattering") {
+  // exactly backwards, reversed paths double all that is scattered twice or more
+  constexpr double optical_depth = 4, g = 0.5, albedo = 0.98;
+  const double once =
+                   albedo * (1 - g) / (2 * pi * (1 + g)) * (1 - std::exp(-2 * optical_depth)) / 2,
+               ladder = backscattered(0, false);
+  CHECK(std::abs(backscattered(0, true, 1e-7) - ladder - (ladder - once)) < 1e-6);
+  const double distances[] = {0.002, 0.01, 0.05, 0.3};
+  for (std::size_t i = 0; i < 4; ++i) {
+    const double d = distances[i];
+    CAPTURE(d);
+    const auto request = intensity_request({0.0}, {far_view(pi - d)});
+    const Scene scene = hg_slab(200, {50, g, albedo}, request);
+    const auto found = tests::run(scene, ReversedPaths::yes, 200000, 40 + i).entries();
+    const double expected = backscattered(d, true, 1e-6);
+    CHECK_WITHIN_4_SIGMA(found.value[0], found.error[0], expected, 0);
+    CHECK(found.error[0] < 0.01 * expected);
+  }
 }
 
 TEST_CASE("slab transport converges to nine digits") {
   for (const double g : {0.0, 0.9, -0.5}) {
-    const auto fine = known(10, g, 0.99, {1e-12, 20}), coarse = known(10, g, 0.99, {1e-9});
+    const auto fine = intensity_correlation_ladder(10, g, 0.99, {1e-12, 20}),
+               coarse = intensity_correlation_ladder(10, g, 0.99, {1e-9});
     for (std::size_t i = 0; i < fine.size(); ++i)
       CHECK(coarse[i] == doctest::Approx(fine[i]).epsilon(1e-9));
   }
@@ -126,12 +173,8 @@ TEST_CASE("slab transport agrees with other solutions of the same equation") {
       const Complex peaked =
           slab_covariance(hg_slab(depth, {depth / optical_depth, g, 0.9}, request), false, {})
               .value[0];
-      const oracles::PairTransport transport(
-          {wavenumber, depth, optical_depth / depth, 0.9,
-           [g](double angle) {
-             return (1 - g * g) / (2 * pi * (1 + g * g - 2 * g * std::cos(angle)));
-           }},
-          {{light, pair.light2}}, {{view, pair.view2}}, 5);
+      const oracles::PairTransport transport(oracle_medium(depth, optical_depth, g, 0.9),
+                                             {{light, pair.light2}}, {{view, pair.view2}}, 5);
       CHECK(std::abs(peaked - transport.covariance(0, 0)) < 1e-5 * std::abs(peaked));
     }
   }
@@ -314,4 +357,4 @@ TEST_CASE("Monte Carlo on random slabs agrees with transport") {
   }
 }
 
-}  // namespace flatspeckle::mc
+}  // namespace flatspeckle::mc::test_slab_covariance

@@ -6,7 +6,7 @@
 #include "mc/slab/slab_flux.h"
 #include "tests/mc/flux_runs.h"
 
-namespace flatspeckle::mc {
+namespace flatspeckle::mc::test_slab_flux {
 
 namespace {
 
@@ -78,4 +78,4 @@ TEST_CASE("flux by transport of what does not scatter") {
   CHECK(flux.reflectance.value[0] == 0.0);
 }
 
-}  // namespace flatspeckle::mc
+}  // namespace flatspeckle::mc::test_slab_flux

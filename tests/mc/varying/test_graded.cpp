@@ -12,7 +12,7 @@
 #include "tests/mc/estimates.h"
 #include "tests/statistics.h"
 
-namespace flatspeckle::mc {
+namespace flatspeckle::mc::test_graded {
 
 namespace {
 
@@ -232,4 +232,4 @@ TEST_CASE("Caustics before the medium's end are refused") {
   CHECK_THROWS_AS(tests::run(turning, ReversedPaths::no, 400, 1), InputError);
 }
 
-}  // namespace flatspeckle::mc
+}  // namespace flatspeckle::mc::test_graded

@@ -11,7 +11,7 @@
 #include "mc/slab/slab_jobs.h"
 #include "tests/mc/estimates.h"
 
-namespace flatspeckle::mc {
+namespace flatspeckle::mc::test_layered_transport {
 
 namespace {
 
@@ -114,4 +114,4 @@ TEST_CASE("near ends and density maps are refused") {
   CHECK_THROWS_AS(slab_covariance_job(near, false, {1e-4}), InputError);
 }
 
-}  // namespace flatspeckle::mc
+}  // namespace flatspeckle::mc::test_layered_transport

@@ -6,7 +6,7 @@
 #include "mc/varying/layer_gradient.h"
 #include "tests/mc/flux_runs.h"
 
-namespace flatspeckle::mc {
+namespace flatspeckle::mc::test_layers {
 
 namespace {
 
@@ -126,4 +126,4 @@ TEST_CASE("derivatives by each layer agree with those of adding and doubling") {
     }
 }
 
-}  // namespace flatspeckle::mc
+}  // namespace flatspeckle::mc::test_layers

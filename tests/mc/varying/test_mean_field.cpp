@@ -7,7 +7,7 @@
 #include "mc/graded/homogenised_box.h"
 #include "tests/mc/estimates.h"
 
-namespace flatspeckle::mc {
+namespace flatspeckle::mc::test_mean_field {
 
 namespace {
 
@@ -62,4 +62,4 @@ TEST_CASE("A box that hardly differs adds one scattering, cells of any shape") {
   CHECK(worst < 0.007 * largest);
 }
 
-}  // namespace flatspeckle::mc
+}  // namespace flatspeckle::mc::test_mean_field

@@ -10,11 +10,11 @@
 #include "bench/error/error_curve.h"
 #include "core/run/parallel.h"
 
-using namespace flatspeckle::bench;
+namespace flatspeckle::bench::test_error_quick {
 
 namespace {
 
-constexpr double cpu_seconds = 0.5;
+constexpr double cpu_seconds = 2;
 
 bool is_rising(const std::vector<double>& values) {
   for (std::size_t i = 0; i < values.size(); ++i)
@@ -32,7 +32,7 @@ std::vector<Curve> run_all(const std::vector<Run>& runs) {
 
 }  // namespace
 
-TEST_CASE("bench_error_quick: error curves") {
+TEST_CASE("nightly: bench_error_quick: error curves") {
   for (const ErrorCurve& curve : run_all<ErrorRun, ErrorCurve>(error_runs())) {
     CAPTURE(curve.scene);
     CAPTURE(curve.method);
@@ -54,12 +54,14 @@ TEST_CASE("bench_error_quick: error curves") {
     CHECK(std::isfinite(curve.slope_error));
     CHECK(std::isfinite(curve.efficiency));
     CHECK(curve.efficiency > 0);
-    if (curve.is_monte_carlo)
-      CHECK(std::abs(curve.slope + 0.5) < std::max(0.3, 4 * curve.slope_error));
+    if (curve.is_monte_carlo) {
+      CHECK(std::abs(curve.slope + 0.5) < 4 * curve.slope_error);
+      CHECK(curve.slope_error < 0.5 / 4);  // a curve that does not fall is seen
+    }
   }
 }
 
-TEST_CASE("bench_error_quick: cost curves") {
+TEST_CASE("nightly: bench_error_quick: cost curves") {
   for (const CostCurve& curve : run_all<CostRun, CostCurve>(cost_runs())) {
     CAPTURE(curve.what);
     CHECK(curve.size.size() == curve.cpu_s.size());
@@ -70,3 +72,5 @@ TEST_CASE("bench_error_quick: cost curves") {
     CHECK(std::isfinite(curve.exponent_error));
   }
 }
+
+}  // namespace flatspeckle::bench::test_error_quick
