@@ -100,7 +100,7 @@ TEST_CASE("film: what is not finite is counted and left out, of light and of its
   TransportCounts counts;
   constexpr double beyond = std::numeric_limits<double>::infinity();
   for (const double value : {2.0, beyond, 0.0 * beyond, -beyond}) {
-    deposit<false>(film, counts, 0, value, 0);
+    deposit(film, counts, 0, value, 0);
     deposit_by_field(film, counts, 0, 1, 3 * value);
   }
   CHECK(counts.lost_values == 6);
