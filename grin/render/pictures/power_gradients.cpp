@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 
+#include "grin/render/sensors/sensor_edges.h"
 #include "grin/render/transport/path_score.h"
 
 namespace flatspeckle::grin {
@@ -42,7 +43,7 @@ Estimate by_medium(const PixelSums& pixels, const GroupedSums& sums, const Of& o
 
 /// What each width of edges makes of a derivative, and its differences from the next narrower ones,
 /// [width or pair][entry].
-using Widths = std::vector<std::vector<Complex>>;
+using PowersByWidth = std::vector<std::vector<Complex>>;
 constexpr std::size_t width_count = edge_widths;
 
 /// use(width, a narrower one).
@@ -53,7 +54,7 @@ void for_pairs(const Use& use) {
     for (std::size_t other = one + 1; other < std::min(one + compared + 1, width_count); ++other)
       use(one, other);
 }
-void append_differences(Widths& widths) {
+void append_differences(PowersByWidth& widths) {
   for_pairs([&](std::size_t one, std::size_t other) {
     std::vector<Complex> difference = widths[one];
     for (std::size_t i = 0; i < difference.size(); ++i) difference[i] -= widths[other][i];
@@ -83,7 +84,7 @@ std::array<double, width_count - 1> squared_errors(
   return squares;
 }
 
-/// Of the estimates of Widths, entry after entry `count` apart: the width with the smallest error.
+/// Of the estimates of PowersByWidth, entry after entry `count` apart: the width with the smallest error.
 void append_best(const Estimate& widths, std::size_t first, std::size_t count, Estimate& best) {
   const auto at = [&](std::size_t column) { return first + column * count; };
   const auto squares =
@@ -105,7 +106,7 @@ Estimate by_field(const PixelSums& pixels, const GroupedSums& sums, const Of& of
   const Estimate all = jackknife(sums, [&](double samples, std::span<const Complex> all) {
     std::vector<Complex> made;
     for (int parameter = 0; parameter < parameters; ++parameter) {
-      Widths widths;
+      PowersByWidth widths;
       for (int width = 0; width < edge_widths; ++width) {
         const int number = pixels.bins.first_by_field() + parameter * edge_widths + width;
         of(widths.emplace_back(pixels.means(samples, all, number)));

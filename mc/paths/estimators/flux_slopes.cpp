@@ -12,7 +12,7 @@ namespace flatspeckle::mc {
 
 namespace {
 
-constexpr std::uint64_t walks_per_batch = 400;
+constexpr std::uint64_t sloped_walks_per_batch = 400;
 constexpr std::size_t ends = 2;  ///< reflected, transmitted
 
 /// What all batches share.
@@ -103,7 +103,7 @@ SummedBatches batches(const std::shared_ptr<const FluxSlopes>& of, const Scatter
     const auto lights = of->scene.request.lights.angles();
     for (std::size_t light = 0; light < lights.size(); ++light) {
       SlopedFluxWalk<Scattering> walk(*of, scattering, lights[light], random);
-      for (std::uint64_t path = 0; path < walks_per_batch; ++path)
+      for (std::uint64_t path = 0; path < sloped_walks_per_batch; ++path)
         walk.walk(sums.subspan(ends * light), ends * lights.size());
     }
   };
@@ -122,7 +122,7 @@ PathJob flux_slope_job(const Scene& scene, const std::vector<MediumSlope>& slope
     return sample_mean(samples, sums);
   };
   job.field.batches.size = job.entries * (1 + slopes.size());
-  job.field.batches.samples_per_batch = static_cast<double>(walks_per_batch);
+  job.field.batches.samples_per_batch = static_cast<double>(sloped_walks_per_batch);
   job.field.batches.relative_error = relative_error_of(job.all);
   with_scattering(scene, phase_of(scene.scatterer), [&](const auto& scattering) {
     job.field.batches.run = batches(of, scattering, seed);
